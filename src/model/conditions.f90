@@ -1,0 +1,67 @@
+! SPDX-License-Identifier: MIT
+!> Constraints, loads and initial values as data, every set already resolved to nodes.
+module conditions_m
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: conditions_t, prescribed_motion_t, nodal_load_t, pressure_load_t, body_load_t, &
+    damping_t, motion_velocity, motion_acceleration, motion_displacement
+
+  !> What a prescribed motion gives (VAD of *BOUNDARY_PRESCRIBED_MOTION).
+  integer, parameter :: motion_velocity = 0, motion_acceleration = 1, motion_displacement = 2
+
+  !> Motion of one degree of freedom of one node.
+  type :: prescribed_motion_t
+    integer :: node = 0               !! node index
+    integer :: direction = 1          !! 1 x, 2 y
+    integer :: kind = motion_velocity !! one of the `motion_` constants
+    integer :: curve = 0              !! index into model%curves
+    real(wp) :: scale = 1.0_wp        !! factor on the ordinate
+    real(wp) :: birth = 0.0_wp        !! active from this time
+    real(wp) :: death = 1.0e28_wp     !! active until this time
+  end type prescribed_motion_t
+
+  !> Force on one degree of freedom of one node.
+  type :: nodal_load_t
+    integer :: node = 0
+    integer :: direction = 1
+    integer :: curve = 0
+    real(wp) :: scale = 1.0_wp
+  end type nodal_load_t
+
+  !> Pressure on one edge; positive pushes against the outward normal. The edge is walked
+  !> counter-clockwise round its body (the deck layer turns it where needed).
+  type :: pressure_load_t
+    integer :: nodes(2) = 0
+    integer :: curve = 0
+    real(wp) :: scale = 1.0_wp
+    real(wp) :: arrival = 0.0_wp !! no load before this time; the curve starts then
+  end type pressure_load_t
+
+  !> Base acceleration: bodies feel minus the curve (*LOAD_BODY_X, _Y).
+  type :: body_load_t
+    integer :: direction = 1
+    integer :: curve = 0
+    real(wp) :: scale = 1.0_wp
+  end type body_load_t
+
+  !> *DAMPING_GLOBAL: f = -D m v, factor per direction.
+  type :: damping_t
+    integer :: curve = 0                !! index of the curve of D(t), 0 = constant
+    real(wp) :: coefficient = 0.0_wp    !! D where there is no curve
+    real(wp) :: factor(2) = 1.0_wp      !! STX, STY
+  end type damping_t
+
+  !> All conditions of a model.
+  type :: conditions_t
+    integer, allocatable :: fixed_nodes(:)      !! nodes with a fixed degree of freedom ...
+    integer, allocatable :: fixed_directions(:) !! ... and its direction, each pair once
+    type(prescribed_motion_t), allocatable :: motions(:)
+    type(nodal_load_t), allocatable :: nodal_loads(:)
+    type(pressure_load_t), allocatable :: pressures(:)
+    type(body_load_t), allocatable :: body_loads(:)
+    type(damping_t), allocatable :: damping     !! present only when the deck asks
+    real(wp), allocatable :: initial_velocity(:, :) !! (2, n_node), present only when the deck asks
+  end type conditions_t
+
+end module conditions_m

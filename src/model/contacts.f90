@@ -1,0 +1,40 @@
+! SPDX-License-Identifier: MIT
+!> Contact interfaces as the deck describes them.
+module contacts_m
+  use kinds_m, only : wp
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: contact_t, contact_kind_t, penalty_per_node, penalty_distributed, penalty_factor
+
+  !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate.
+  integer, parameter :: penalty_per_node = 0, penalty_distributed = 1, penalty_factor = 2
+
+  !> A formulation that the program knows: the deck layer is handed this list, so that only the
+  !> contact dispatcher knows the types.
+  type :: contact_kind_t
+    integer :: number = 0             !! CTYPE
+    character(40) :: name = ''        !! name in messages
+    logical :: uses_gauss_points = .false. !! whether NGAUSS has a meaning
+  end type contact_kind_t
+
+  !> One interface.
+  type :: contact_t
+    integer :: id = 0                      !! user id, or its position in the deck
+    character(:), allocatable :: title     !! heading of the _TITLE option
+    integer :: contact_type = 0            !! CTYPE
+    logical :: chosen_by_keyword = .false. !! a stock keyword chose the type
+    type(surface_t) :: slave, master       !! SURFA, SURFB
+    integer :: n_gauss = 2                 !! NGAUSS
+    integer :: penalty_unit = penalty_per_node !! one of the `penalty_` constants
+    real(wp) :: penalty = 0.0_wp           !! PEN, in its unit
+    real(wp) :: master_penalty = 0.0_wp    !! PENT, penalty of the master pass, in the same unit
+    real(wp) :: damping = 0.0_wp           !! VDC as a fraction of critical
+    real(wp) :: birth = 0.0_wp             !! TBIRTH
+    real(wp) :: death = 1.0e20_wp          !! TDEATH
+    logical :: strict = .false.            !! IPF = 1: strict type 5
+    integer :: search_interval = 0         !! FREQ, cycles between global searches; 0 = the program's choice
+    real(wp) :: search_depth = 0.0_wp      !! SRCH: deepest first contact that is caught; 0 = automatic
+  end type contact_t
+
+end module contacts_m

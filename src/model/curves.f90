@@ -1,0 +1,54 @@
+! SPDX-License-Identifier: MIT
+!> Load curves: piecewise linear, the end values held outside the range of the abscissa.
+module curves_m
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: curve_t, curve_value, curve_is_constant
+
+  !> One *DEFINE_CURVE, its scale factors and offsets already applied.
+  type :: curve_t
+    integer :: id = 0                      !! user id
+    real(wp), allocatable :: abscissa(:)   !! increasing, one or more points
+    real(wp), allocatable :: ordinate(:)   !! same length
+  end type curve_t
+
+contains
+
+  !> Ordinate at `x`: linear between points, end values outside.
+  pure function curve_value(curve, x) result(y)
+    type(curve_t), intent(in) :: curve
+    real(wp), intent(in) :: x
+    real(wp) :: y
+    integer :: low, high, middle
+
+    high = size(curve%abscissa)
+    if (x <= curve%abscissa(1)) then
+      y = curve%ordinate(1)
+      return
+    else if (x >= curve%abscissa(high)) then
+      y = curve%ordinate(high)
+      return
+    end if
+    low = 1
+    do while (high - low > 1)
+      middle = (low + high)/2
+      if (curve%abscissa(middle) <= x) then
+        low = middle
+      else
+        high = middle
+      end if
+    end do
+    y = curve%ordinate(low) + (curve%ordinate(high) - curve%ordinate(low)) &
+      *((x - curve%abscissa(low))/(curve%abscissa(high) - curve%abscissa(low)))
+  end function curve_value
+
+  !> Whether the curve has one value everywhere.
+  pure function curve_is_constant(curve) result(constant)
+    type(curve_t), intent(in) :: curve
+    logical :: constant
+
+    constant = maxval(curve%ordinate) <= minval(curve%ordinate)
+  end function curve_is_constant
+
+end module curves_m

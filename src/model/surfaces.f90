@@ -1,0 +1,46 @@
+! SPDX-License-Identifier: MIT
+!> Contact surfaces: ordered chains of 2-node segments, walked counter-clockwise round their own
+!> body, so that the outward normal of a segment with unit tangent t is n = (t_y, -t_x).
+!> A surface may hold several chains, open or closed.
+module surfaces_m
+  implicit none
+  private
+  public :: surface_t, link_segments
+
+  !> One surface. "Local" node numbers count the nodes of this surface in walking order.
+  type :: surface_t
+    integer :: n_node = 0
+    integer :: n_segment = 0
+    integer, allocatable :: nodes(:)           !! (n_node) node indices in the mesh, chain after chain
+    integer, allocatable :: segments(:, :)     !! (2, n_segment) local numbers of start and end node
+    integer, allocatable :: segment_element(:) !! (n_segment) index of the element behind
+    integer, allocatable :: previous(:)        !! (n_segment) segment before, 0 at a chain's start
+    integer, allocatable :: next(:)            !! (n_segment) segment after, 0 at a chain's end
+    integer, allocatable :: incoming(:)        !! (n_node) segment that ends at the node, or 0
+    integer, allocatable :: outgoing(:)        !! (n_node) segment that starts at the node, or 0
+  end type surface_t
+
+contains
+
+  !> Fill the neighbour lists from `nodes` and `segments`.
+  pure subroutine link_segments(surface)
+    type(surface_t), intent(inout) :: surface !! its neighbour lists are made anew
+    integer :: i_segment
+
+    surface%n_node = size(surface%nodes)
+    surface%n_segment = size(surface%segments, 2)
+    if (allocated(surface%incoming)) deallocate (surface%incoming, surface%outgoing)
+    if (allocated(surface%previous)) deallocate (surface%previous, surface%next)
+    allocate (surface%incoming(surface%n_node), surface%outgoing(surface%n_node), source=0)
+    allocate (surface%previous(surface%n_segment), surface%next(surface%n_segment))
+    do i_segment = 1, surface%n_segment
+      surface%outgoing(surface%segments(1, i_segment)) = i_segment
+      surface%incoming(surface%segments(2, i_segment)) = i_segment
+    end do
+    do i_segment = 1, surface%n_segment
+      surface%previous(i_segment) = surface%incoming(surface%segments(1, i_segment))
+      surface%next(i_segment) = surface%outgoing(surface%segments(2, i_segment))
+    end do
+  end subroutine link_segments
+
+end module surfaces_m

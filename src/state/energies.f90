@@ -1,0 +1,49 @@
+! SPDX-License-Identifier: MIT
+!> The energy account of one instant and its balance.
+module energies_m
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: energies_t, total_energy, energy_ratio
+
+  !> Energies at one instant, J per metre of thickness.
+  type :: energies_t
+    real(wp) :: kinetic = 0.0_wp
+    real(wp) :: internal = 0.0_wp
+    real(wp) :: hourglass = 0.0_wp
+    real(wp) :: viscous = 0.0_wp       !! dissipated by the bulk viscosity
+    real(wp) :: damping = 0.0_wp       !! dissipated by global damping
+    real(wp) :: contact = 0.0_wp       !! minus the work of the contact forces
+    real(wp) :: external_work = 0.0_wp !! work of loads and prescribed motion
+    real(wp) :: initial = 0.0_wp       !! total at time zero
+  end type energies_t
+
+contains
+
+  !> Sum of all that the body holds and has dissipated.
+  pure function total_energy(energies) result(total)
+    type(energies_t), intent(in) :: energies
+    real(wp) :: total
+
+    total = energies%kinetic + energies%internal + energies%hourglass + energies%viscous &
+      + energies%damping + energies%contact
+  end function total_energy
+
+  !> total / (initial + external work); 1 when both vanish (METHODS section 3).
+  pure function energy_ratio(energies) result(ratio)
+    type(energies_t), intent(in) :: energies
+    real(wp) :: ratio
+    real(wp) :: expected, total
+
+    expected = energies%initial + energies%external_work
+    total = total_energy(energies)
+    if (abs(expected) > 0.0_wp) then
+      ratio = total/expected
+    else if (abs(total) > 0.0_wp) then
+      ratio = huge(1.0_wp)
+    else
+      ratio = 1.0_wp
+    end if
+  end function energy_ratio
+
+end module energies_m

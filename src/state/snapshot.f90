@@ -1,0 +1,57 @@
+! SPDX-License-Identifier: MIT
+!> One instant as the output layer sees it: plain arrays in deck order and rows of the histories.
+!> The drivers fill it, only for what is due.
+module snapshot_m
+  use kinds_m, only : wp
+  use energies_m, only : energies_t
+  implicit none
+  private
+  public :: snapshot_t, interface_result_t, part_result_t, slave_result_t
+
+  !> Resultants of one interface.
+  type :: interface_result_t
+    real(wp) :: slave_force(2) = 0.0_wp
+    real(wp) :: master_force(2) = 0.0_wp
+    integer :: n_active = 0
+  end type interface_result_t
+
+  !> Sums over one part.
+  type :: part_result_t
+    real(wp) :: kinetic = 0.0_wp
+    real(wp) :: internal = 0.0_wp
+    real(wp) :: hourglass = 0.0_wp
+    real(wp) :: momentum(2) = 0.0_wp
+    real(wp) :: mass = 0.0_wp
+  end type part_result_t
+
+  !> Slave nodes of one interface in walking order; all arrays (n_slave).
+  type :: slave_result_t
+    integer, allocatable :: node(:)        !! node indices
+    real(wp), allocatable :: arc_length(:) !! along the slave chain
+    real(wp), allocatable :: gap(:)        !! 0 when unpaired
+    real(wp), allocatable :: pressure(:)   !! normal force / competence length, 0 where inactive
+    real(wp), allocatable :: force(:, :)   !! (2, n_slave) contact force from all points
+    real(wp), allocatable :: length(:)     !! competence length, current
+  end type slave_result_t
+
+  !> The instant. Node arrays are in model order (the writer maps through mesh%deck_node); element
+  !> arrays in deck order.
+  type :: snapshot_t
+    real(wp) :: time = 0.0_wp
+    real(wp) :: dt = 0.0_wp
+    integer :: cycle = 0
+    type(energies_t) :: energies
+    real(wp), allocatable :: displacement(:, :)  !! (2, n_node)
+    real(wp), allocatable :: velocity(:, :)      !! (2, n_node) at the same instant as displacement
+    real(wp), allocatable :: acceleration(:, :)  !! (2, n_node)
+    real(wp), allocatable :: contact_force(:, :) !! (2, n_node)
+    real(wp), allocatable :: contact_pressure(:) !! (n_node)
+    real(wp), allocatable :: gap(:)              !! (n_node)
+    real(wp), allocatable :: stress(:, :)        !! (4, n_element) xx yy zz xy
+    real(wp), allocatable :: plastic_strain(:)   !! (n_element)
+    type(interface_result_t), allocatable :: interfaces(:)
+    type(part_result_t), allocatable :: parts(:)
+    type(slave_result_t), allocatable :: slaves(:) !! one per interface
+  end type snapshot_t
+
+end module snapshot_m

@@ -1,0 +1,36 @@
+! SPDX-License-Identifier: MIT
+!> Everything that changes during a run, and exactly what a restart would have to write.
+!>
+!> Displacement is stored, never position: strains, volume ratios and gaps are formed from
+!> differences of u and of X, since differences of large coordinates lose the digits that a patch test needs.
+!> In the explicit driver v lives at half steps: `motion(3:4)` is v(n-1/2) when the forces of cycle n are
+!> formed. Node arrays are in the order of the model (special nodes first, see layout_t).
+module state_m
+  use kinds_m, only : wp
+  use block_state_m, only : block_state_t
+  use contact_state_m, only : contact_state_t
+  use energies_m, only : energies_t
+  implicit none
+  private
+  public :: state_t
+
+  !> State of a run.
+  type :: state_t
+    integer :: cycle = 0
+    real(wp) :: time = 0.0_wp
+    real(wp) :: dt = 0.0_wp                    !! step that leads away from this state
+    real(wp), allocatable :: motion(:, :)      !! (4, n_node) u_x, u_y, v_x, v_y: one load a node
+    real(wp), allocatable :: mass(:)           !! (n_node) lumped mass
+    real(wp), allocatable :: inverse_mass(:, :) !! (2, n_node) 1/m, 0 where the motion is prescribed
+    real(wp), allocatable :: force_special(:, :) !! (2, n_special) contact + external force
+    real(wp), allocatable :: force_slots(:, :) !! (2, force slots) internal force, tile by tile
+    real(wp), allocatable :: internal_force(:, :) !! (2, n_node) divergence of stress; interior nodes
+                                               !! only in cycles that write
+    type(block_state_t) :: elements
+    type(contact_state_t), allocatable :: contacts(:)
+    real(wp) :: external_work = 0.0_wp
+    real(wp) :: damping_work = 0.0_wp
+    real(wp) :: initial_energy = 0.0_wp
+  end type state_t
+
+end module state_m
