@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+# Shared by build.sh, run.sh and test.sh, which source it: installs what is missing and builds.
+# Needs bash; sets `root`, the top of the source tree.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+venv="$root/build/venv"
+
+say() {
+  printf '== %s\n' "$*"
+}
+
+complain() {
+  printf '%s\n' "$*" >&2
+}
+
+# lacking: one line "package: what it is for" for each thing that is not on this machine.
+lacking() {
+  if ! command -v gfortran >/dev/null; then
+    echo "gfortran: Fortran compiler"
+    echo "liblapack-dev: LAPACK"
+  elif ! echo end | gfortran -x f95 - -llapack -lblas -o /dev/null 2>/dev/null; then
+    echo "liblapack-dev: LAPACK"
+  fi
+  if ! command -v cmake >/dev/null; then
+    echo "cmake: CMake, 3.22 or newer"
+  elif ! cmake_is_new; then
+    echo "cmake: CMake, 3.22 or newer (found: $(cmake --version | head -n 1))"
+  fi
+  command -v ninja >/dev/null || echo "ninja-build: Ninja"
+  command -v h5fc >/dev/null || echo "libhdf5-dev: HDF5 with its Fortran interface"
+  if ! command -v python3 >/dev/null; then
+    echo "python3: Python, 3.9 or newer"
+    echo "python3-venv: Python's virtual environments"
+  elif ! python3 -c 'import venv, ensurepip' 2>/dev/null; then
+    echo "python3-venv: Python's virtual environments"
+  fi
+}
+
+cmake_is_new() {
+  local version major minor
+  version=$(cmake --version | sed -n 's/^cmake version \([0-9]*\.[0-9]*\).*/\1/p')
+  major=${version%%.*}
+  minor=${version#*.}
+  [ "$((major * 1000 + minor))" -ge 3022 ]
+}
+
+# give_up REASON LINES: say what to install by hand and stop.
+give_up() {
+  complain "$1"
+  complain "Please install these, then run this script again:"
+  printf '%s\n' "$2" | sed 's/^\([^:]*\): \(.*\)$/  \1  (\2)/' >&2
+  complain "On Debian or Ubuntu:"
+  complain "  sudo apt-get update && sudo apt-get install -y $(package_names "$2")"
+  exit 1
+}
+
+package_names() {
+  printf '%s\n' "$1" | sed 's/:.*//' | tr '\n' ' ' | sed 's/ $//'
+}
+
+# Install the system packages that are missing.
+install_packages() {
+  local missing as_root packages
+  missing=$(lacking)
+  [ -n "$missing" ] || return 0
+  command -v apt-get >/dev/null || give_up "Something is missing and there is no apt-get here." "$missing"
+  as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || give_up "Something is missing and this is not root (and has no sudo)." "$missing"
+    # Without a terminal nobody can type a password.
+    if [ ! -t 0 ] && ! sudo -n true 2>/dev/null; then
+      give_up "Something is missing and sudo asks for a password." "$missing"
+    fi
+    as_root=(sudo)
+  fi
+  packages=$(package_names "$missing")
+  say "installing system packages: $packages"
+  mkdir -p "$root/build"
+  # shellcheck disable=SC2086  # package names are words
+  if ! { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update &&
+         "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y \
+           --no-install-recommends $packages; } >"$root/build/packages.log" 2>&1; then
+    tail -n 5 "$root/build/packages.log" >&2
+    give_up "apt-get failed; its output is in build/packages.log." "$missing"
+  fi
+  missing=$(lacking)
+  [ -z "$missing" ] || give_up "Still missing after apt-get:" "$missing"
+}
+
+# install_tools [EXTRA]: the Python package of tools/ in the private environment, with an extra.
+install_tools() {
+  local extra=${1:-} stamp want
+  stamp="$venv/installed${extra:+-$extra}"
+  # The environment holds absolute paths, so it is made anew when the tree has moved.
+  want="$root $(cksum <"$root/tools/pyproject.toml")"
+  if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$want" ] && "$venv/bin/python" -c '' 2>/dev/null; then
+    return 0
+  fi
+  if [ ! -x "$venv/bin/python" ] || ! "$venv/bin/python" -c '' 2>/dev/null ||
+     ! grep -qsF "$root " "$venv"/installed*; then
+    say "making the Python environment build/venv"
+    rm -rf "$venv"
+    python3 -m venv "$venv" || { complain "python3 -m venv failed"; exit 1; }
+  fi
+  say "installing the Python tools${extra:+ and what the tests need}"
+  if ! (cd "$root" && "$venv/bin/python" -m pip install --disable-pip-version-check \
+        -e "./tools${extra:+[$extra]}") >"$root/build/pip.log" 2>&1; then
+    tail -n 15 "$root/build/pip.log" >&2
+    complain "pip failed; its output is in build/pip.log."
+    exit 1
+  fi
+  printf '%s\n' "$want" >"$stamp"
+}
+
+# build TYPE [TARGET]: release or debug; the program, or the target `all` for the tests too.
+build() {
+  local type=$1 target=${2:-slideline} folder name log
+  folder="$root/build/$type"
+  case $type in
+    release) name=Release ;;
+    debug) name=Debug ;;
+    *) complain "no such build: $type (release or debug)"; exit 1 ;;
+  esac
+  mkdir -p "$root/build"
+  log="$root/build/$type.log"
+  if ! grep -qsF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
+    say "configuring build/$type"
+    rm -rf "$folder"
+    if ! cmake -S "$root" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=$name \
+         -DPython3_EXECUTABLE="$venv/bin/python" >"$log" 2>&1; then
+      cat "$log" >&2
+      rm -f "$folder/CMakeCache.txt"
+      exit 1
+    fi
+  fi
+  say "building build/$type${2:+ with its tests}"
+  if [ -t 1 ]; then
+    cmake --build "$folder" --target "$target" --parallel "$(nproc)" || exit 1
+  elif ! cmake --build "$folder" --target "$target" --parallel "$(nproc)" >"$log" 2>&1; then
+    tail -n 60 "$log" >&2
+    complain "the build failed; its output is in build/$type.log"
+    exit 1
+  fi
+}
