@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: MIT
+"""The rules of the house (doc/architecture.md, doc/style.md), as tests."""
+import re
+import statistics
+import subprocess
+
+import pytest
+
+from fortran_source import ROOT, read_source, without_strings
+
+#: layer -> layers it may use
+LAYERS = {
+    "base": set(),
+    "model": {"base"},
+    "deck": {"base", "model"},
+    "state": {"base", "model"},
+    "material": {"base", "model"},
+    "element": {"base", "model", "state", "material"},
+    "contact": {"base", "model", "state"},
+    "loads": {"base", "model"},
+    "output": {"base", "model", "state"},
+    "solve": {"base", "model", "state", "element", "contact", "loads", "output"},
+}
+#: modules from outside -> layers that may use them
+OUTSIDE = {"hdf5": {"output"}, "omp_lib": {"state", "element", "contact", "solve", ""}}
+#: what decides between kinds -> the one file that may ask for it
+DISPATCHERS = {
+    "contact_type": "contact_dispatch.f90",
+    "law": "material_dispatch.f90",
+    "element_form": "element_dispatch.f90",
+}
+MOST_FILE_LINES, MOST_PROCEDURE_LINES, MOST_ARGUMENTS, MOST_COLUMNS = 450, 100, 10, 132
+MOST_MEDIAN_LINES = 25
+AIM_FILE_LINES, AIM_PROCEDURE_LINES, AIM_ARGUMENTS = 300, 60, 8
+TOP_LEVEL = {"CMakeLists.txt", "README.md", "src", "input", "tests", "tools", "doc"}
+
+SOURCES = [read_source(path) for path in sorted((ROOT / "src").rglob("*.f90"))]
+OWNER = {module: source for source in SOURCES for module in source.modules}
+OWNER["build_info_m"] = None  # made by CMake, in base
+
+
+def layer_of(source):
+    """The folder of src/ that a file is in; empty for src/ itself."""
+    parts = source.path.relative_to(ROOT / "src").parts
+    return parts[0] if len(parts) > 1 else ""
+
+
+def tracked_files():
+    """The files of the repository."""
+    done = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True,
+                          check=False)
+    if done.returncode != 0:
+        pytest.skip("not a git repository")
+    return [name for name in done.stdout.split("\0") if name and (ROOT / name).exists()]
+
+
+def report(capsys, text):
+    """Print a figure past pytest's capture."""
+    with capsys.disabled():
+        print(f"\n{text}")
+
+
+def test_there_are_sources():
+    assert SOURCES
+
+
+def test_folders_of_src_are_the_layers():
+    folders = {layer_of(source) for source in SOURCES} - {""}
+    assert folders <= set(LAYERS)
+
+
+def test_build_gives_each_layer_what_the_table_gives_it():
+    text = (ROOT / "CMakeLists.txt").read_text()
+    built = {words[0]: set(words[1:])
+             for words in (call.split() for call in re.findall(r"^add_layer\(([^)]*)\)", text, re.M))}
+    assert built == LAYERS
+
+
+def test_file_holds_the_one_module_named_after_it():
+    wrong = [source.name for source in SOURCES
+             if source.path.name != "main.f90" and source.modules != [source.path.stem + "_m"]]
+    assert not wrong
+
+
+def test_use_names_what_it_takes():
+    wrong = [f"{source.name}:{use.line}: use {use.module}" for source in SOURCES
+             for use in source.uses if not use.only]
+    assert not wrong
+
+
+def test_no_use_upward_or_sideways():
+    wrong = []
+    for source in SOURCES:
+        layer = layer_of(source)
+        allowed = LAYERS.get(layer, set(LAYERS)) | {layer}
+        for use in source.uses:
+            if use.intrinsic:
+                continue
+            if use.module in OUTSIDE:
+                fine = layer in OUTSIDE[use.module]
+            elif use.module in OWNER:
+                owner = OWNER[use.module]
+                fine = (layer_of(owner) if owner else "base") in allowed
+            else:
+                fine = False
+            if not fine:
+                wrong.append(f"{source.name}:{use.line}: use {use.module}")
+    assert not wrong
+
+
+@pytest.mark.parametrize("word, dispatcher", DISPATCHERS.items())
+def test_only_the_dispatcher_asks_for_the_kind(word, dispatcher):
+    asks = re.compile(rf"^(?:\w+\s*:\s*)?select\s+case\s*\(.*\b{word}\b|"
+                      rf"\b{word}\b(?:\([^)]*\))?\s*(?:==|/=|\.eq\.|\.ne\.)", re.I)
+    wrong = [f"{source.name}:{line}: {statement}" for source in SOURCES
+             for line, statement in source.statements
+             if source.path.name != dispatcher and asks.search(without_strings(statement))]
+    assert not wrong
+
+
+def test_sizes(capsys):
+    procedures = [(procedure, source) for source in SOURCES for procedure in source.procedures]
+    wrong = [f"{source.name}: {len(source.lines)} lines" for source in SOURCES
+             if len(source.lines) > MOST_FILE_LINES]
+    wrong += [f"{source.name}: {procedure.name} has {procedure.lines} lines"
+              for procedure, source in procedures if procedure.lines > MOST_PROCEDURE_LINES]
+    wrong += [f"{source.name}: {procedure.name} has {procedure.arguments} arguments"
+              for procedure, source in procedures if procedure.arguments > MOST_ARGUMENTS]
+    median = statistics.median(procedure.lines for procedure, _ in procedures)
+    beyond = [source.name for source in SOURCES if len(source.lines) > AIM_FILE_LINES]
+    beyond += [f"{source.name}:{procedure.name}" for procedure, source in procedures
+               if procedure.lines > AIM_PROCEDURE_LINES or procedure.arguments > AIM_ARGUMENTS]
+    report(capsys, f"{len(SOURCES)} files, {sum(len(source.lines) for source in SOURCES)} lines, "
+                   f"{len(procedures)} procedures of {median:g} lines in the median; "
+                   f"beyond the aim: {', '.join(beyond) or 'nothing'}")
+    assert not wrong
+    assert median <= MOST_MEDIAN_LINES
+
+
+def test_no_line_is_too_long():
+    files = [path for folder in ("src", "tests") for pattern in ("*.f90", "*.pf")
+             for path in sorted((ROOT / folder).rglob(pattern))]
+    wrong = [f"{path.relative_to(ROOT)}:{number}" for path in files
+             for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+             if len(line) > MOST_COLUMNS]
+    assert not wrong
+
+
+def test_modules_are_private_and_typed():
+    wrong = []
+    for source in SOURCES:
+        texts = [statement.lower() for _, statement in source.statements]
+        if "implicit none" not in texts:
+            wrong.append(f"{source.name}: no implicit none")
+        if source.modules and "private" not in texts:
+            wrong.append(f"{source.name}: not private")
+    assert not wrong
+
+
+@pytest.mark.parametrize("what, pattern", [
+    ("goto", r"\bgo\s*to\b"),
+    ("common", r"^common\s*/"),
+    ("include", r"^include\b"),
+    ("preprocessor", r"^#"),
+    ("pointer", r"^(?:type|class|real|integer|logical|character)\b.*,\s*pointer\b.*::"),
+])
+def test_what_the_house_does_without(what, pattern):
+    wrong = [f"{source.name}:{line}: {what}" for source in SOURCES
+             for line, statement in source.statements
+             if re.search(pattern, without_strings(statement), re.I)]
+    assert not wrong
+
+
+def test_only_main_stops():
+    wrong = [f"{source.name}:{line}" for source in SOURCES if source.path.name != "main.f90"
+             for line, statement in source.statements
+             if re.search(r"(?:^|\)\s*)stop\b", without_strings(statement), re.I)
+             and not re.search(r"\berror\s+stop\b", statement, re.I)]
+    assert not wrong
+
+
+def test_sources_name_their_licence():
+    files = [name for name in tracked_files()
+             if re.search(r"^(src|tools|tests)/.*\.(f90|f90\.in|pf|py|sh)$", name)]
+    wrong = [name for name in files
+             if "SPDX-License-Identifier: MIT" not in "".join((ROOT / name).read_text(
+                 encoding="utf-8").splitlines(keepends=True)[:2])]
+    assert not wrong
+
+
+def test_top_level_holds_what_it_should():
+    names = {name.split("/")[0] for name in tracked_files()}
+    assert {name for name in names if not name.startswith(".")} <= TOP_LEVEL
+
+
+def texts(names):
+    """(name, text) of the files that are text."""
+    for name in names:
+        try:
+            yield name, (ROOT / name).read_text(encoding="utf-8")
+        except (UnicodeDecodeError, IsADirectoryError):
+            continue
+
+
+def test_no_paths_of_one_machine():
+    path = re.compile(r"(?<![\w./}])/(?:work|root|home|tmp)/")
+    wrong = [f"{name}:{number}" for name, text in texts(tracked_files())
+             for number, line in enumerate(text.splitlines(), 1) if path.search(line)]
+    assert not wrong
+
+
+def test_nothing_is_left_for_later():
+    word = re.compile(r"\b(?:TODO|FIXME|XXX)\b|\bstubs?\b|\bnot implemented\b")
+    wrong = [f"{name}:{number}" for name, text in texts(tracked_files())
+             if name.startswith(("src/", "tools/"))
+             for number, line in enumerate(text.splitlines(), 1) if word.search(line)]
+    assert not wrong

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+"""The build itself keeps the layers apart: a `use` outside the table does not compile.
+
+A tree of one small module per layer is built with the project's own CMakeLists.txt; then each layer is
+given a `use` of every other one and compiled with the command that the build has for that layer.
+"""
+import json
+import shlex
+import shutil
+import subprocess
+
+import pytest
+
+from fortran_source import ROOT
+from test_house import LAYERS
+
+GOOD = "module probe_{layer}_m\n{uses}  implicit none\n  integer :: {layer}_value = 1\nend module\n"
+USE = "  use probe_{layer}_m, only: {layer}_value\n"
+
+
+@pytest.fixture(scope="module", name="commands")
+def build_small_tree(tmp_path_factory):
+    """layer -> (compile command without its file, folder to run it in)"""
+    tree = tmp_path_factory.mktemp("layers")
+    shutil.copy(ROOT / "CMakeLists.txt", tree)
+    for layer, allowed in LAYERS.items():
+        folder = tree / "src" / layer
+        folder.mkdir(parents=True)
+        uses = "".join(USE.format(layer=name) for name in sorted(allowed))
+        (folder / f"probe_{layer}.f90").write_text(GOOD.format(layer=layer, uses=uses))
+    shutil.copy(ROOT / "src/base/build_info.f90.in", tree / "src/base")
+    build = tree / "build"
+    for command in (["cmake", "-S", tree, "-B", build, "-G", "Ninja", "-DSLIDELINE_TESTS=OFF",
+                     "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"],
+                    ["cmake", "--build", build]):
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+    commands = {}
+    for entry in json.loads((build / "compile_commands.json").read_text()):
+        for layer in LAYERS:
+            if entry["file"].endswith(f"src/{layer}/probe_{layer}.f90"):
+                words = shlex.split(entry["command"])
+                words = [word for word in words[:words.index("-c")] if word != "-fpreprocessed"]
+                commands[layer] = (words, entry["directory"])
+    return commands
+
+
+def test_every_layer_has_a_command(commands):
+    assert set(commands) == set(LAYERS)
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_layer_sees_what_it_may_use_and_nothing_else(commands, layer, tmp_path):
+    words, folder = commands[layer]
+    seen = set()
+    for other in LAYERS:
+        if other == layer:
+            continue
+        source = tmp_path / f"try_{other}.f90"
+        source.write_text(f"module try_m\n{USE.format(layer=other)}  implicit none\nend module\n")
+        done = subprocess.run([*words, "-fsyntax-only", source], cwd=folder, capture_output=True,
+                              text=True, check=False)
+        if done.returncode == 0:
+            seen.add(other)
+        else:
+            assert "Cannot open module file" in done.stderr
+    assert seen == LAYERS[layer]
