@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""Plane-strain bar (nu = 0) hit at one end: the elastic wave."""
+import numpy as np
+
+from meshes import Deck, grid
+
+RHO, YOUNG, LENGTH, SPEED = 1000.0, 1.0e6, 10.0, 0.01
+SOUND = np.sqrt(YOUNG / RHO)
+STRESS = RHO * SOUND * SPEED
+END_TIME = 0.8 * LENGTH / SOUND
+
+
+def bar_deck(n, load):
+    """n square elements along the bar; the left end gets a velocity or a pressure step."""
+    height = LENGTH / n
+    deck = Deck(f"bar of {n} elements, {load}")
+    deck.control(END_TIME, dt=0.8 * height / SOUND).part().elastic(RHO, YOUNG, 0.0)
+    nodes = deck.mesh(*grid(n, 1, LENGTH, height))
+    left = nodes[[0, n + 1]]
+    if load == "velocity":
+        deck.curve(1, [(0.0, SPEED), (1.0, SPEED)])
+        for node in left:
+            deck.prescribe(node, 1, 0, 1)
+    else:
+        deck.curve(1, [(0.0, STRESS), (1.0, STRESS)])
+        # walked counter-clockwise round the body: down the left end
+        deck.add("*LOAD_SEGMENT", (1, 1.0, 0.0, left[1], left[0], left[0], left[0]))
+    return deck.output(plot=END_TIME / 200.0, glstat=END_TIME / 200.0, matsum=END_TIME / 200.0), height
+
+
+def arrival(time, stress):
+    """First time at which |stress| passes half of rho c v, between two states."""
+    k = int(np.argmax(np.abs(stress) > 0.5 * STRESS))
+    a, b = abs(stress[k - 1]), abs(stress[k])
+    return time[k - 1] + (0.5 * STRESS - a) / (b - a) * (time[k] - time[k - 1])
+
+
+def check_load(run, load):
+    n_elements, errors = (50, 100, 200), []
+    for n in n_elements:
+        deck, height = bar_deck(n, load)
+        result = run.program(deck, name=f"{load}_{n}")
+        time, stress = result.times, result.cells("stress")[..., 0]
+        centre = (np.arange(n) + 0.5) * LENGTH / n
+        exact = np.where(centre < SOUND * time[-1], -STRESS, 0.0)
+        errors.append(np.mean(np.abs(stress[-1] - exact)) / STRESS)
+        run.report(f"{load}: mean stress error / rho c v, {n} elements", errors[-1])
+    run.check(f"{load}: order of the mean error", run.order(1.0 / np.array(n_elements), errors), 0.5,
+              0.1, "abs", "a jump with a dispersive tail: 1/2")
+    for place in (0.25, 0.5, 0.7):
+        k = int(place * n)
+        run.check(f"{load}: arrival at {centre[k]:.3f} m", arrival(time, stress[:, k]),
+                  centre[k] / SOUND, 0.015, source="x/c")
+    # the two arrivals' difference is free of the start
+    run.check(f"{load}: wave speed",
+              (centre[140] - centre[40]) / (arrival(time, stress[:, 140])
+                                            - arrival(time, stress[:, 40])), SOUND, 5e-3,
+              source="sqrt(E/rho)")
+    behind = centre < 0.6 * LENGTH
+    run.check(f"{load}: stress behind the front", stress[-1, behind].mean(), -STRESS, 5e-3,
+              source="rho c v")
+    velocity = result.points("velocity")[-1, :n + 1, 0]
+    run.check(f"{load}: velocity behind the front", velocity[:int(0.6 * n)].mean(), SPEED, 5e-3,
+              source="p/(rho c)")
+    area = LENGTH / n
+    energy = result.table("glstat")
+    run.check(f"{load}: external work", energy["external_work"][-1],
+              RHO * SOUND * SPEED ** 2 * area * END_TIME, 1e-2, source="rho c v^2 t")
+    run.check(f"{load}: energy ratio", energy["energy_ratio"][40:], 1.0, 1e-2, "abs",
+              "balance, past the first fifth")
+    momentum = result.table("matsum")
+    run.check(f"{load}: momentum", momentum["momentum_x"][-1], STRESS * area * END_TIME, 1e-2,
+              source="stress x time")
+    if load == "pressure":
+        run.check("pressure: momentum is the impulse at all times", momentum["momentum_x"],
+                  STRESS * area * momentum["time"], 1e-11, source="p A t, central difference")
+
+
+def check(run):
+    check_load(run, "velocity")
+    check_load(run, "pressure")

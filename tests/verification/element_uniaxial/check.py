@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""Uniaxial strain of one element and of a distorted patch, small and finite."""
+import numpy as np
+
+from meshes import Deck, distorted_patch, grid, moduli
+
+RHO, YOUNG, POISSON = 1.0e4, 1.0e6, 0.3
+BULK, SHEAR, _ = moduli(YOUNG, POISSON)
+
+
+def stretched_element(stretch, n_step):
+    """Unit square pulled to `stretch` along x in one second, y held."""
+    deck = Deck(f"uniaxial strain to {stretch}")
+    deck.control(1.0, dt=1.0 / n_step).part().elastic(RHO, YOUNG, POISSON)
+    nodes = deck.mesh(*grid(1, 1))
+    deck.curve(1, [(0.0, 0.0), (1.0, stretch - 1.0)])
+    deck.fix(nodes, y=1).fix(nodes[[0, 2]], x=1)
+    for node in nodes[[1, 3]]:
+        deck.prescribe(node, 1, 2, 1)
+    return deck.output(plot=0.1, glstat=0.1)
+
+
+def log_strain_stress(stretch):
+    """sigma = K ln J + 2 G dev(ln lambda), components xx yy zz xy yz xz."""
+    strain = np.log(np.asarray(stretch))
+    mean, zero = BULK * strain, 0.0 * strain
+    lateral = mean - 2.0 * SHEAR * strain / 3.0
+    return np.stack([mean + 4.0 * SHEAR * strain / 3.0, lateral, lateral, zero, zero, zero], -1)
+
+
+def midstep_sum(stretch, n_step):
+    """What a mid-step velocity gradient adds up to in place of ln(lambda)."""
+    lam = 1.0 + (stretch - 1.0) * np.arange(n_step + 1) / n_step
+    return np.sum(2.0 * (lam[1:] - lam[:-1]) / (lam[1:] + lam[:-1]))
+
+
+def check_stretch(run, stretch, tolerance):
+    n_steps, errors = (50, 100), []
+    for n_step in n_steps:
+        result = run.program(stretched_element(stretch, n_step))
+        now = 1.0 + (stretch - 1.0) * result.times
+        expected = log_strain_stress(now)
+        found = result.cells("stress")[:, 0, :]
+        errors.append(abs(found[-1, 0] - found[-1, 1] - 2.0 * SHEAR * np.log(stretch)))
+    run.check(f"stress, stretch to {stretch}", found, expected, tolerance,
+              source="logarithmic strain")
+    run.check(f"xx - yy, stretch to {stretch}, mid-step sum", found[-1, 0] - found[-1, 1],
+              2.0 * SHEAR * midstep_sum(stretch, n_steps[-1]), 1e-11,
+              source="sum of 2 (b - a)/(b + a)")
+    run.check(f"mean stress, stretch to {stretch}", found[:, :3].mean(axis=1),
+              BULK * np.log(now), 1e-12, source="K ln J")
+    run.check(f"plot pressure, stretch to {stretch}", result.cells("pressure")[:, 0].ravel(),
+              -BULK * np.log(now), 1e-12, source="minus a third of the trace")
+    run.check(f"plot mises, stretch to {stretch}", result.cells("mises")[:, 0].ravel(),
+              2.0 * SHEAR * np.abs(np.log(now)), tolerance, source="2 G |ln lambda|")
+    if abs(stretch - 1.0) > 0.1:
+        run.check(f"order in the step, stretch to {stretch}",
+                  run.order(1.0 / np.array(n_steps), errors), 2.0, 0.1, "abs", "mid-step rule")
+        internal = stretch * np.log(stretch) - stretch + 1.0
+        run.check(f"internal energy, stretch to {stretch}", result.table("glstat")["internal"][-1],
+                  (BULK + 4.0 * SHEAR / 3.0) * internal, 1e-3, source="integral of sigma d lambda")
+
+
+def check_patch(run):
+    """Affine motion of the boundary, the middle node free: F = I + t A."""
+    rate = np.array([[0.2, 0.0], [0.0, 0.0]])
+    coordinates, quads = distorted_patch()
+    deck = Deck("distorted patch, uniaxial strain")
+    deck.control(1.0, dt=0.005).part().elastic(RHO, YOUNG, POISSON)
+    nodes = deck.mesh(coordinates, quads)
+    deck.curve(1, [(0.0, 1.0), (2.0, 1.0)])
+    velocity = coordinates @ rate.T
+    deck.add("*INITIAL_VELOCITY_NODE", *[(node, *speed) for node, speed in zip(nodes, velocity)])
+    for k, node in enumerate(nodes):
+        if k == 4:
+            continue
+        deck.prescribe(node, 1, 0, 1, velocity[k, 0]).prescribe(node, 2, 0, 1, velocity[k, 1])
+    deck.output(plot=0.1, glstat=0.1)
+    result = run.program(deck)
+    expected = log_strain_stress(1.0 + rate[0, 0] * result.times)
+    found = result.cells("stress")
+    run.check("patch: stress of all elements", found, expected[:, None, :] + 0.0 * found, 1e-5,
+              source="uniform field")
+    spread = np.max(np.abs(found - found.mean(axis=1, keepdims=True)))
+    run.check("patch: spread between elements / stress", spread / np.max(np.abs(expected)), 0.0,
+              1e-11, "abs", "patch test")
+    moved = result.points("displacement")[-1, 4, :2]
+    run.check("patch: displacement of the free node", moved, velocity[4], 1e-11,
+              source="affine motion")
+
+
+def check(run):
+    check_stretch(run, 1.001, 1e-8)
+    check_stretch(run, 1.5, 1e-5)
+    check_stretch(run, 0.6, 2e-5)
+    check_patch(run)

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""Hourglass forces: decay rate, frequency, and no force on linear motion."""
+import numpy as np
+
+from meshes import Deck, distorted_patch, grid, moduli
+
+RHO, YOUNG, POISSON = 1000.0, 1.0e6, 0.3
+_, _, WAVE_MODULUS = moduli(YOUNG, POISSON)
+SOUND = np.sqrt(WAVE_MODULUS / RHO)
+WIDTH, HEIGHT = 2.0, 1.0
+AREA = WIDTH * HEIGHT
+
+
+def mode_deck(form, coefficient, speed, dt, end_time, n_x=1, n_y=1, dof=1):
+    """n_x by n_y rectangles, each in the hourglass pattern, node (0, 0) with +speed."""
+    coordinates, quads = grid(n_x, n_y, WIDTH * n_x, HEIGHT * n_y)
+    deck = Deck("hourglass mode")
+    deck.control(end_time, dt=dt).hourglass(form, coefficient)
+    deck.part().elastic(RHO, YOUNG, POISSON)
+    nodes = deck.mesh(coordinates, quads)
+    signs = [(-1) ** (k % (n_x + 1) + k // (n_x + 1)) for k in range(len(nodes))]
+    deck.add("*INITIAL_VELOCITY_NODE",
+             *[(node, *((sign * speed, 0.0) if dof == 1 else (0.0, sign * speed)))
+               for node, sign in zip(nodes, signs)])
+    return deck.output(glstat=dt, nodout=dt, nodes=nodes[:1])
+
+
+def decay_rate(run, coefficient, dt, **layout):
+    """Rate of the free decay from a straight line through log(velocity)."""
+    rate = 4.0 * coefficient * SOUND / np.sqrt(AREA)
+    deck = mode_deck(1, coefficient, 1.0e-7, dt, 2.0 / rate, **layout)
+    result = run.program(deck)
+    history = result.node(1)
+    velocity = history["vy" if layout.get("dof") == 2 else "vx"]
+    inside = slice(1, len(velocity) - 1)
+    slope = np.polyfit(history["time"][inside], np.log(velocity[inside]), 1)[0]
+    return -slope, result
+
+
+def check_viscous(run):
+    coefficient = 0.08
+    rate = 4.0 * coefficient * SOUND / np.sqrt(AREA)
+    steps = 1.0e-2 / rate, 5.0e-3 / rate
+    found = [decay_rate(run, coefficient, dt)[0] for dt in steps]
+    for dt, value in zip(steps, found):
+        run.report("viscous decay rate / closed form", value / rate, f"rate x step {rate * dt:g}")
+    run.check("viscous decay rate, step to zero", 2.0 * found[1] - found[0], rate, 1e-4,
+              source="4 Q c/sqrt(A)")
+    slope, result = decay_rate(run, coefficient, steps[1], n_x=3, n_y=2)
+    run.check("viscous decay rate in a 3 x 2 mesh", slope, rate, 1e-2, source="same for any size")
+    slope, result = decay_rate(run, coefficient, steps[1], dof=2)
+    run.check("viscous decay rate in y", slope, rate, 1e-2, source="same")
+    energy = result.table("glstat")
+    start = energy["kinetic"][0]
+    run.check("initial kinetic energy", start, 0.5 * RHO * AREA * 1.0e-14, 1e-12, source="m v^2/2")
+    run.check("hourglass energy at the end / initial energy", energy["hourglass"][-1] / start,
+              1.0 - np.exp(-4.0), 5e-3, "abs", "what the velocity lost")
+    run.check("energy ratio, viscous", energy["energy_ratio"], 1.0, 5e-3, "abs", "balance")
+    run.check("internal energy stays zero", energy["internal"][-1] / start, 0.0, 1e-6, "abs",
+              "the centre sees no strain")
+
+
+def check_stiffness(run):
+    coefficient = 0.05
+    # B_x.B_x + B_y.B_y = (w^2 + h^2) for a rectangle; q = 4 displacement; m = rho A/4
+    omega = np.sqrt(4.0 * coefficient * WAVE_MODULUS * (WIDTH ** 2 + HEIGHT ** 2)
+                    / (AREA * RHO * AREA))
+    dt = 0.05 / omega
+    speed = 1.0e-7
+    theta = 2.0 * np.arcsin(0.5 * omega * dt)
+    for form in (4, 5):
+        result = run.program(mode_deck(form, coefficient, speed, dt, 20.0 / omega))
+        history = result.node(1)
+        cycle = np.rint(history["time"] / dt)
+        expected = speed * dt * np.sin(cycle * theta) / np.sin(theta)
+        run.check(f"stiffness form {form}: displacement", history["ux"], expected, 1e-5,
+                  source="central difference at the closed-form frequency")
+    energy = result.table("glstat")
+    run.check("stiffness form: energy ratio", energy["energy_ratio"], 1.0, 2e-3, "abs", "balance")
+    crossings = history["time"][1:][np.diff(np.sign(history["ux"])) != 0]
+    run.report("stiffness frequency from the zero crossings / closed form",
+               np.pi / (np.mean(np.diff(crossings)) * omega))
+
+
+def check_linear_motion(run):
+    """Rigid motion + uniform strain of a distorted patch: no hourglass work at all."""
+    coordinates, quads = distorted_patch()
+    rate = np.array([[0.1, 0.35], [-0.2, -0.15]])
+    for form in (1, 4):
+        deck = Deck("linear velocity field")
+        deck.control(1.0, dt=0.002).hourglass(form, 0.1).part().elastic(RHO, YOUNG, POISSON)
+        nodes = deck.mesh(coordinates, quads)
+        deck.curve(1, [(0.0, 1.0), (2.0, 1.0)])
+        velocity = coordinates @ rate.T + (0.3, -0.2)
+        for k, node in enumerate(nodes):
+            deck.prescribe(node, 1, 0, 1, velocity[k, 0]).prescribe(node, 2, 0, 1, velocity[k, 1])
+        deck.output(glstat=0.1)
+        energy = run.program(deck).table("glstat")
+        run.check(f"form {form}: hourglass / internal energy, linear motion",
+                  energy["hourglass"][-1] / energy["internal"][-1], 0.0, 1e-18, "abs",
+                  "gamma is orthogonal to linear fields")
+        run.check(f"form {form}: internal energy is there", energy["internal"][-1], 1.0, 0.0,
+                  "min", "so that the check above means something")
+
+
+def check(run):
+    check_viscous(run)
+    check_stiffness(run)
+    check_linear_motion(run)

@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Run one verification case: `run_case.py CASE --program EXE --work DIR`.
+
+The case is the folder CASE beside this file; its check.py holds `check(run)`.
+Each check is printed as one line and kept in DIR/<case>.json, from which
+make_table.py writes the table of doc/verification.md. The exit status is 0
+only if at least one check ran and all passed.
+"""
+import argparse
+import csv
+import importlib.util
+import json
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+import traceback
+
+import h5py
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+TEXT_COLUMNS = ("side", "phase")
+
+
+class Table(dict):
+    """Columns of one CSV table as arrays."""
+
+    def where(self, **wanted):
+        """Rows in which each named column has the given value."""
+        keep = np.ones(len(next(iter(self.values()))), dtype=bool)
+        for name, value in wanted.items():
+            keep &= self[name] == value
+        return Table({name: column[keep] for name, column in self.items()})
+
+
+class Result:
+    """What one run of the program left behind."""
+
+    def __init__(self, folder, job, finished):
+        self.folder = folder
+        self.job = job
+        self.status = finished.returncode
+        self.stdout = finished.stdout
+        self.stderr = finished.stderr
+        self._tables = {}
+        self._arrays = {}
+
+    @property
+    def vtkhdf(self):
+        return self.folder / f"{self.job}.vtkhdf"
+
+    def csv_path(self, name):
+        return self.folder / f"{self.job}.{name}.csv"
+
+    def table(self, name):
+        """The CSV table `name` (glstat, rcforc, nodout, contact, matsum)."""
+        if name not in self._tables:
+            with open(self.csv_path(name), newline="") as stream:
+                rows = list(csv.reader(stream))
+            columns = list(zip(*rows[1:])) if len(rows) > 1 else [()] * len(rows[0])
+            self._tables[name] = Table(
+                (head, np.array(column) if head in TEXT_COLUMNS else np.array(column, dtype=float))
+                for head, column in zip(rows[0], columns))
+        return self._tables[name]
+
+    def node(self, user_id):
+        """The nodout rows of one node."""
+        return self.table("nodout").where(node=user_id)
+
+    def _read(self, path):
+        if path not in self._arrays:
+            with h5py.File(self.vtkhdf, "r") as stream:
+                self._arrays[path] = stream[path][()]
+        return self._arrays[path]
+
+    @property
+    def times(self):
+        """Times of the stored states."""
+        return self._read("VTKHDF/Steps/Values")
+
+    def _stacked(self, group, name):
+        values = self._read(f"VTKHDF/{group}/{name}")
+        return values.reshape((len(self.times), -1) + values.shape[1:])
+
+    def points(self, name):
+        """Point field as (state, node[, component]); `Points` = current coordinates."""
+        if name == "Points":
+            values = self._read("VTKHDF/Points")
+            return values.reshape((len(self.times), -1, 3))
+        return self._stacked("PointData", name)
+
+    def cells(self, name):
+        """Cell field as (state, element[, component])."""
+        return self._stacked("CellData", name)
+
+
+class Run:
+    """Handed to check(run): runs the program and keeps the verdicts."""
+
+    def __init__(self, case, program, work):
+        self.case = case
+        self.folder = HERE / case
+        self.root = HERE.parents[1]
+        self.program_path = program
+        self.work = work / case
+        self.records = []
+        self.reported = []
+        self._n_run = 0
+        shutil.rmtree(self.work, ignore_errors=True)
+        self.work.mkdir(parents=True)
+
+    def program(self, deck, *args, name=None, expect_status=0):
+        """Run a deck (a path, a text or an object with text()) and return its Result."""
+        self._n_run += 1
+        name = name or f"run{self._n_run:02d}"
+        folder = self.work / name
+        folder.mkdir()
+        if isinstance(deck, pathlib.Path):
+            path = deck
+        else:
+            path = folder / f"{name}.k"
+            path.write_text(deck if isinstance(deck, str) else deck.text())
+        command = [str(self.program_path), f"i={path}", f"d={folder}", f"jobid={name}", *args]
+        finished = subprocess.run(command, capture_output=True, text=True, timeout=600)
+        (folder / "stdout.txt").write_text(finished.stdout)
+        (folder / "stderr.txt").write_text(finished.stderr)
+        if finished.returncode != expect_status:
+            raise RuntimeError(f"{name}: exit status {finished.returncode}, expected "
+                               f"{expect_status}\n{finished.stderr}{finished.stdout[-2000:]}")
+        return Result(folder, name, finished)
+
+    def check(self, quantity, found, expected, tol, kind="rel", source=""):
+        """Compare and record. Arrays: largest difference, relative to the largest expected.
+
+        kind: rel, abs, or one of the bounds min (found >= expected - tol) and max.
+        """
+        found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
+        try:
+            difference = found - expected
+        except ValueError as problem:
+            return self._keep(quantity, math.nan, math.nan, math.nan, tol, kind, str(problem))
+        if kind == "min":
+            error = float(np.max(-difference)) if difference.size else math.nan
+        elif kind == "max":
+            error = float(np.max(difference)) if difference.size else math.nan
+        else:
+            error = float(np.max(np.abs(difference))) if difference.size else math.nan
+            if kind == "rel":
+                scale = float(np.max(np.abs(expected)))
+                error = error / scale if scale > 0.0 else math.inf
+        if difference.size > 1:
+            found, expected = (np.broadcast_to(x, difference.shape).ravel()
+                               for x in (found, expected))
+            gap = np.abs(difference).ravel()
+            worst = np.argmax(gap) if np.any(gap > 0.0) else np.argmax(np.abs(expected))
+            found, expected = found[worst], expected[worst]
+        elif difference.size == 1:
+            found, expected = found.reshape(()), expected.reshape(())
+        else:
+            found = expected = math.nan
+        return self._keep(quantity, float(found), float(expected), error, tol, kind, source)
+
+    def _keep(self, quantity, found, expected, error, tol, kind, source):
+        passed = bool(error <= tol)
+        self.records.append({"quantity": quantity, "found": found, "expected": expected,
+                             "error": error, "tolerance": tol, "kind": kind,
+                             "source": source, "passed": passed})
+        print(f"{'pass' if passed else 'FAIL'}  {self.case}: {quantity}: found {found:.9g}, "
+              f"expected {expected:.9g}, error {error:.3g} ({kind}, tolerance {tol:.3g})",
+              flush=True)
+        return passed
+
+    def true(self, quantity, condition, source=""):
+        """A yes-or-no check."""
+        return self.check(quantity, 1.0 if condition else 0.0, 1.0, 0.0, "abs", source)
+
+    def report(self, quantity, value, note=""):
+        """A figure for the table that is not judged."""
+        self.reported.append({"quantity": quantity, "found": float(value), "note": note})
+        print(f"note  {self.case}: {quantity}: {float(value):.6g} {note}", flush=True)
+
+    @staticmethod
+    def order(sizes, errors):
+        """Slope of log(error) over log(size) between the last two entries."""
+        return float(np.log(errors[-2] / errors[-1]) / np.log(sizes[-2] / sizes[-1]))
+
+
+def load_check(case):
+    sys.path.insert(0, str(HERE))
+    spec = importlib.util.spec_from_file_location(f"check_{case}", HERE / case / "check.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.check
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("case")
+    parser.add_argument("--program", required=True, type=pathlib.Path)
+    parser.add_argument("--work", required=True, type=pathlib.Path)
+    options = parser.parse_args()
+    work = options.work.resolve()
+    work.mkdir(parents=True, exist_ok=True)
+    run = Run(options.case, options.program.resolve(), work)
+    problem = None
+    try:
+        load_check(options.case)(run)
+    except Exception:  # the case fails, with the reason on record
+        problem = traceback.format_exc()
+        print(problem, flush=True)
+    n_failed = sum(not record["passed"] for record in run.records) + (problem is not None)
+    n_passed = sum(record["passed"] for record in run.records)
+    report = {"case": options.case, "checks": run.records, "reported": run.reported,
+              "problem": problem}
+    (work / f"{options.case}.json").write_text(json.dumps(report, indent=1) + "\n")
+    if not run.records:
+        print("no check ran")
+    print(f"{n_passed} passed, {n_failed} failed")
+    return 0 if n_failed == 0 and n_passed > 0 else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
