@@ -1,0 +1,190 @@
+! SPDX-License-Identifier: MIT
+!> One CSV file that grows by rows: comma between values, no blanks, reals with 17 significant digits.
+!> Rows are kept in a buffer of whole lines and reach the file with one system call, at the latest a second
+!> after they came. The values are kept too: the results file takes them over at the end.
+module csv_table_m
+  use kinds_m, only : wp, long
+  use errors_m, only : error_t
+  use files_m, only : text_file_t, create_text_file, append_text, close_text_file
+  implicit none
+  private
+  public :: csv_table_t, open_table, add_row, flush_table, close_table, column_name, n_columns, &
+    row_text, kind_real, kind_integer, kind_side
+
+  !> Kinds of columns: a real, an integer, a side of an interface (1 = slave, 2 = master).
+  integer, parameter :: kind_real = 1, kind_integer = 2, kind_side = 3
+  !> Bytes of the buffer of lines.
+  integer, parameter :: buffer_size = 65536
+  !> Bytes of the longest value with its comma, and of a formatted real.
+  integer, parameter :: value_size = 26, real_size = 24
+
+  !> One table.
+  type :: csv_table_t
+    logical :: is_open = .false.            !! rows are taken only while open
+    character(:), allocatable :: name       !! glstat, rcforc and so on
+    character(:), allocatable :: header     !! column names with commas between
+    integer, allocatable :: kinds(:)        !! (n_column) `kind_` of each column
+    integer :: n_row = 0                    !! rows so far
+    real(wp), allocatable :: values(:, :)   !! (n_column, capacity) all rows; integers are exact
+    type(text_file_t) :: file
+    character(:), allocatable :: buffer     !! lines that wait
+    integer :: n_waiting = 0                !! bytes of them
+    integer(long) :: flushed = 0            !! clock tick of the last write
+    type(error_t), allocatable :: trouble   !! first failure; reported by the next flush or close
+  end type csv_table_t
+
+contains
+
+  !> Make the file `<prefix>.<name>.csv` and write its header.
+  subroutine open_table(table, prefix, name, header, kinds, error)
+    type(csv_table_t), intent(out) :: table
+    character(*), intent(in) :: prefix   !! directory and job name
+    character(*), intent(in) :: name
+    character(*), intent(in) :: header   !! column names with commas between
+    integer, intent(in) :: kinds(:)      !! `kind_` of each column
+    type(error_t), allocatable, intent(out) :: error
+
+    call create_text_file(table%file, prefix//'.'//name//'.csv', error)
+    if (allocated(error)) return
+    call append_text(table%file, header//new_line('a'), error)
+    if (allocated(error)) return
+    table%name = name
+    table%header = header
+    table%kinds = kinds
+    table%is_open = .true.
+    allocate (table%values(size(kinds), 64))
+    allocate (character(buffer_size) :: table%buffer)
+    call system_clock(table%flushed)
+  end subroutine open_table
+
+  !> Number of columns.
+  pure function n_columns(table) result(n)
+    type(csv_table_t), intent(in) :: table
+    integer :: n
+
+    n = size(table%kinds)
+  end function n_columns
+
+  !> Name of a column.
+  pure function column_name(table, i_column) result(name)
+    type(csv_table_t), intent(in) :: table
+    integer, intent(in) :: i_column
+    character(:), allocatable :: name
+    integer :: i, comma
+
+    name = table%header//','
+    do i = 1, i_column - 1
+      comma = index(name, ',')
+      name = name(comma + 1:)
+    end do
+    name = name(:index(name, ',') - 1)
+  end function column_name
+
+  !> Take one row; nothing happens to a table that is not open.
+  subroutine add_row(table, values)
+    type(csv_table_t), intent(inout) :: table
+    real(wp), intent(in) :: values(:)   !! (n_column)
+    real(wp), allocatable :: larger(:, :)
+    integer(long) :: now, rate
+
+    if (.not. table%is_open) return
+    if (table%n_row == size(table%values, 2)) then
+      allocate (larger(size(table%values, 1), 2*table%n_row))
+      larger(:, :table%n_row) = table%values
+      call move_alloc(larger, table%values)
+    end if
+    table%n_row = table%n_row + 1
+    table%values(:, table%n_row) = values
+    if (table%n_waiting + value_size*size(values) > buffer_size) call write_waiting(table)
+    call append_line(table%buffer, table%n_waiting, values, table%kinds)
+    call system_clock(now, rate)
+    if (now - table%flushed > rate) call write_waiting(table)
+  end subroutine add_row
+
+  !> One row as text, with its line end.
+  pure function row_text(values, kinds) result(text)
+    real(wp), intent(in) :: values(:)
+    integer, intent(in) :: kinds(:)   !! `kind_` of each value
+    character(:), allocatable :: text
+    character(value_size*size(values)) :: buffer
+    integer :: n
+
+    n = 0
+    call append_line(buffer, n, values, kinds)
+    text = buffer(:n)
+  end function row_text
+
+  !> Append a row and its line end behind `n` bytes of the buffer. All reals go through one internal
+  !> write, which is what a row costs.
+  pure subroutine append_line(buffer, n, values, kinds)
+    character(*), intent(inout) :: buffer
+    integer, intent(inout) :: n        !! bytes in use
+    real(wp), intent(in) :: values(:)
+    integer, intent(in) :: kinds(:)
+    character(real_size) :: reals(size(values))
+    character(12) :: whole
+    integer :: i
+
+    write (reals, '(es24.16e3)') values
+    do i = 1, size(values)
+      select case (kinds(i))
+      case (kind_integer)
+        write (whole, '(i0)') nint(values(i))
+        call append_word(buffer, n, trim(whole))
+      case (kind_side)
+        call append_word(buffer, n, trim(merge('slave ', 'master', nint(values(i)) == 1)))
+      case default
+        call append_word(buffer, n, trim(adjustl(reals(i))))
+      end select
+    end do
+    buffer(n:n) = new_line('a') ! in place of the last comma
+  end subroutine append_line
+
+  !> Append a word and a comma behind `n` bytes of the buffer.
+  pure subroutine append_word(buffer, n, word)
+    character(*), intent(inout) :: buffer
+    integer, intent(inout) :: n
+    character(*), intent(in) :: word
+
+    buffer(n + 1:n + len(word)) = word
+    n = n + len(word) + 1
+    buffer(n:n) = ','
+  end subroutine append_word
+
+  !> Write the waiting lines. The first failure is remembered and ends the writing.
+  subroutine write_waiting(table)
+    type(csv_table_t), intent(inout) :: table
+    type(error_t), allocatable :: error
+
+    if (table%n_waiting > 0 .and. .not. allocated(table%trouble)) then
+      call append_text(table%file, table%buffer(:table%n_waiting), error)
+      if (allocated(error)) call move_alloc(error, table%trouble)
+    end if
+    table%n_waiting = 0
+    call system_clock(table%flushed)
+  end subroutine write_waiting
+
+  !> Bring all rows into the file.
+  subroutine flush_table(table, error)
+    type(csv_table_t), intent(inout) :: table
+    type(error_t), allocatable, intent(out) :: error
+
+    if (.not. table%is_open) return
+    call write_waiting(table)
+    if (allocated(table%trouble)) error = table%trouble
+  end subroutine flush_table
+
+  !> Bring all rows into the file and close it; the values stay.
+  subroutine close_table(table, error)
+    type(csv_table_t), intent(inout) :: table
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: closing
+
+    if (.not. table%is_open) return
+    call flush_table(table, error)
+    call close_text_file(table%file, closing)
+    table%is_open = .false.
+    if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
+  end subroutine close_table
+
+end module csv_table_m

@@ -1,0 +1,283 @@
+! SPDX-License-Identifier: MIT
+!> Small helpers over HDF5 for the results file. They and the results file are the only places that see
+!> an HDF5 status.
+!>
+!> Here `error` is carried along: a procedure that is handed an error does nothing, so that a
+!> sequence of calls needs one question at its end.
+module hdf5_writing_m
+  use, intrinsic :: iso_c_binding, only : c_ptr, c_loc, c_char, c_null_char
+  use hdf5
+  use kinds_m, only : wp, long
+  use errors_m, only : error_t, raise, status_files
+  implicit none
+  private
+  public :: growing_t, as_real, as_integer, as_index, &
+    create_growing, link_growing, append_rows, close_growing, &
+    make_group, write_rows, write_string_attribute, write_index_attribute, write_text, &
+    check_status
+
+  !> What the rows of a dataset hold: float64, int32, int64.
+  integer, parameter :: as_real = 1, as_integer = 2, as_index = 3
+
+  !> A dataset that grows by whole rows.
+  type :: growing_t
+    integer(hid_t) :: id = -1                !! open dataset
+    character(:), allocatable :: name        !! for messages
+    integer :: content = as_real             !! one of the `as_` constants
+    integer :: n_column = 0                  !! 0: one-dimensional
+    integer(long) :: n_row = 0               !! rows so far
+  end type growing_t
+
+contains
+
+  !> Turn an HDF5 status into an error that names the file operation.
+  subroutine check_status(status, what, error)
+    integer, intent(in) :: status                       !! of the call, < 0 on failure
+    character(*), intent(in) :: what                    !! file and dataset
+    type(error_t), allocatable, intent(inout) :: error  !! kept when there is one already
+
+    if (status >= 0 .or. allocated(error)) return
+    call raise(error, 'cannot write '//what//': the file system or HDF5 refused '// &
+      '(is the disk full?)', status_files)
+  end subroutine check_status
+
+  !> HDF5 type in memory of a kind of content.
+  function memory_type(content) result(type_id)
+    integer, intent(in) :: content
+    integer(hid_t) :: type_id
+
+    select case (content)
+    case (as_real); type_id = H5T_NATIVE_DOUBLE
+    case (as_integer); type_id = H5T_NATIVE_INTEGER
+    case default; type_id = h5kind_to_type(long, H5_INTEGER_KIND)
+    end select
+  end function memory_type
+
+  !> HDF5 type in the file of a kind of content, the same on every machine.
+  function file_type(content) result(type_id)
+    integer, intent(in) :: content
+    integer(hid_t) :: type_id
+
+    select case (content)
+    case (as_real); type_id = H5T_IEEE_F64LE
+    case (as_integer); type_id = H5T_STD_I32LE
+    case default; type_id = H5T_STD_I64LE
+    end select
+  end function file_type
+
+  !> Make a group and close it again.
+  subroutine make_group(parent, name, error)
+    integer(hid_t), intent(in) :: parent
+    character(*), intent(in) :: name
+    type(error_t), allocatable, intent(inout) :: error
+    integer(hid_t) :: group
+    integer :: status
+
+    if (allocated(error)) return
+    call h5gcreate_f(parent, name, group, status)
+    call check_status(status, name, error)
+    if (allocated(error)) return
+    call h5gclose_f(group, status)
+    call check_status(status, name, error)
+  end subroutine make_group
+
+  !> Make a dataset of no rows that grows; a chunk holds `chunk_rows` rows.
+  subroutine create_growing(parent, name, content, n_column, chunk_rows, dataset, error)
+    integer(hid_t), intent(in) :: parent
+    character(*), intent(in) :: name                   !! path below `parent`
+    integer, intent(in) :: content                     !! one of the `as_` constants
+    integer, intent(in) :: n_column                    !! 0: one-dimensional
+    integer, intent(in) :: chunk_rows                  !! rows per chunk
+    type(growing_t), intent(out) :: dataset
+    type(error_t), allocatable, intent(inout) :: error
+    integer(hsize_t) :: dims(2), most(2), chunk(2)
+    integer(hid_t) :: space, creation
+    integer :: status(6), rank
+
+    if (allocated(error)) return
+    dataset%name = name
+    dataset%content = content
+    dataset%n_column = n_column
+    rank = merge(1, 2, n_column == 0)
+    dims = [0_hsize_t, int(n_column, hsize_t)]
+    most = [H5S_UNLIMITED_F, int(n_column, hsize_t)]
+    chunk = [int(max(chunk_rows, 1), hsize_t), int(n_column, hsize_t)]
+    if (rank == 2) then ! Fortran counts the columns first
+      dims = dims(2:1:-1)
+      most = most(2:1:-1)
+      chunk = chunk(2:1:-1)
+    end if
+    call h5screate_simple_f(rank, dims, space, status(1), most)
+    call h5pcreate_f(H5P_DATASET_CREATE_F, creation, status(2))
+    call h5pset_chunk_f(creation, rank, chunk, status(3))
+    call h5pset_fill_time_f(creation, H5D_FILL_TIME_NEVER_F, status(4))
+    call h5dcreate_f(parent, name, file_type(content), space, dataset%id, status(5), creation)
+    call h5pclose_f(creation, status(6))
+    call check_status(minval(status), name, error)
+    call h5sclose_f(space, status(1))
+    call check_status(status(1), name, error)
+  end subroutine create_growing
+
+  !> Give a growing dataset one more name: arrays of equal content are stored once.
+  subroutine link_growing(dataset, parent, name, error)
+    type(growing_t), intent(in) :: dataset
+    integer(hid_t), intent(in) :: parent
+    character(*), intent(in) :: name                   !! path below `parent`
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: status
+
+    if (allocated(error)) return
+    call h5lcreate_hard_f(parent, dataset%name, parent, name, status)
+    call check_status(status, name, error)
+  end subroutine link_growing
+
+  !> Append rows and keep the dataset open.
+  subroutine append_rows(dataset, n_row, values, error)
+    type(growing_t), intent(inout) :: dataset
+    integer, intent(in) :: n_row                       !! rows to append
+    type(c_ptr), intent(in) :: values                  !! the rows, one after the other
+    type(error_t), allocatable, intent(inout) :: error
+    integer(hsize_t) :: dims(2), counts(2), start(2)
+    integer(hid_t) :: space, memory
+    integer :: status(5), rank
+
+    if (allocated(error) .or. n_row == 0) return
+    rank = merge(1, 2, dataset%n_column == 0)
+    dims = int(dataset%n_column, hsize_t)
+    counts = dims
+    start = 0
+    dims(rank) = dataset%n_row + n_row
+    counts(rank) = n_row
+    start(rank) = dataset%n_row
+    call h5dset_extent_f(dataset%id, dims, status(1))
+    call h5dget_space_f(dataset%id, space, status(2))
+    call h5sselect_hyperslab_f(space, H5S_SELECT_SET_F, start(:rank), counts(:rank), status(3))
+    call h5screate_simple_f(rank, counts, memory, status(4))
+    call h5dwrite_f(dataset%id, memory_type(dataset%content), values, status(5), memory, space)
+    call check_status(minval(status), dataset%name, error)
+    call h5sclose_f(space, status(1))
+    call h5sclose_f(memory, status(2))
+    if (.not. allocated(error)) dataset%n_row = dataset%n_row + n_row
+  end subroutine append_rows
+
+  !> Close a growing dataset; nothing happens when it is not open.
+  subroutine close_growing(dataset, error)
+    type(growing_t), intent(inout) :: dataset
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: status
+
+    if (dataset%id < 0) return
+    call h5dclose_f(dataset%id, status)
+    dataset%id = -1
+    call check_status(status, dataset%name, error)
+  end subroutine close_growing
+
+  !> Write a whole one-dimensional dataset of fixed size.
+  subroutine write_rows(parent, name, content, n_row, values, error, stored_type)
+    integer(hid_t), intent(in) :: parent
+    character(*), intent(in) :: name                   !! path below `parent`
+    integer, intent(in) :: content                     !! one of the `as_` constants
+    integer, intent(in) :: n_row
+    type(c_ptr), intent(in) :: values                  !! the first value
+    type(error_t), allocatable, intent(inout) :: error
+    integer(hid_t), intent(in), optional :: stored_type !! type in the file, where it is special
+    integer(hid_t) :: space, dataset, type_id
+    integer :: status(4)
+
+    if (allocated(error)) return
+    type_id = file_type(content)
+    if (present(stored_type)) type_id = stored_type
+    status = 0
+    call h5screate_simple_f(1, [int(n_row, hsize_t)], space, status(1))
+    call h5dcreate_f(parent, name, type_id, space, dataset, status(2))
+    if (status(2) >= 0) then
+      if (n_row > 0) call h5dwrite_f(dataset, memory_type(content), values, status(3))
+      call h5dclose_f(dataset, status(4))
+    end if
+    call check_status(minval(status), name, error)
+    call h5sclose_f(space, status(1))
+  end subroutine write_rows
+
+  !> Write an attribute of 64-bit integers.
+  subroutine write_index_attribute(parent, name, values, error)
+    integer(hid_t), intent(in) :: parent               !! open group
+    character(*), intent(in) :: name
+    integer(long), intent(in), target :: values(:)
+    type(error_t), allocatable, intent(inout) :: error
+    integer(long), target :: copy(size(values))
+    integer(hid_t) :: space, attribute
+    integer :: status(5)
+
+    if (allocated(error)) return
+    copy = values
+    call h5screate_simple_f(1, [size(values, kind=hsize_t)], space, status(1))
+    call h5acreate_f(parent, name, H5T_STD_I64LE, space, attribute, status(2))
+    call h5awrite_f(attribute, memory_type(as_index), c_loc(copy), status(3))
+    call h5aclose_f(attribute, status(4))
+    call h5sclose_f(space, status(5))
+    call check_status(minval(status), name, error)
+  end subroutine write_index_attribute
+
+  !> Write a string attribute: of exactly its length in ASCII (as VTK wants its own), or of
+  !> variable length in UTF-8, which Python reads as `str`.
+  subroutine write_string_attribute(parent, name, text, fixed, error)
+    integer(hid_t), intent(in) :: parent               !! open group
+    character(*), intent(in) :: name
+    character(*), intent(in) :: text
+    logical, intent(in) :: fixed                       !! exact length; not for an empty text
+    type(error_t), allocatable, intent(inout) :: error
+    character(kind=c_char, len=:), allocatable, target :: bytes
+    type(c_ptr), target :: reference
+    integer(hid_t) :: space, attribute, type_id
+    integer :: status(7)
+
+    if (allocated(error)) return
+    status = 0
+    bytes = text//c_null_char
+    reference = c_loc(bytes)
+    call h5screate_f(H5S_SCALAR_F, space, status(1))
+    if (fixed) then
+      call h5tcopy_f(H5T_FORTRAN_S1, type_id, status(2))
+      call h5tset_size_f(type_id, int(len(text), size_t), status(3))
+    else
+      call h5tcopy_f(H5T_STRING, type_id, status(2))
+      call h5tset_cset_f(type_id, H5T_CSET_UTF8_F, status(3))
+      call h5tset_strpad_f(type_id, H5T_STR_NULLTERM_F, status(7))
+    end if
+    call h5acreate_f(parent, name, type_id, space, attribute, status(4))
+    if (fixed) then
+      call h5awrite_f(attribute, type_id, c_loc(bytes), status(5))
+    else
+      call h5awrite_f(attribute, type_id, c_loc(reference), status(5))
+    end if
+    call h5aclose_f(attribute, status(6))
+    call check_status(minval(status), name, error)
+    call h5tclose_f(type_id, status(1))
+    call h5sclose_f(space, status(2))
+  end subroutine write_string_attribute
+
+  !> Write a text of any size as a scalar string dataset.
+  subroutine write_text(parent, name, text, error)
+    integer(hid_t), intent(in) :: parent
+    character(*), intent(in) :: name                   !! path below `parent`
+    character(*), intent(in), target :: text
+    type(error_t), allocatable, intent(inout) :: error
+    character(:), allocatable, target :: bytes
+    integer(hid_t) :: space, dataset, type_id
+    integer :: status(6)
+
+    if (allocated(error)) return
+    bytes = text
+    if (len(bytes) == 0) bytes = ' '
+    call h5tcopy_f(H5T_FORTRAN_S1, type_id, status(1))
+    call h5tset_size_f(type_id, int(len(bytes), size_t), status(2))
+    call h5screate_f(H5S_SCALAR_F, space, status(3))
+    call h5dcreate_f(parent, name, type_id, space, dataset, status(4))
+    call h5dwrite_f(dataset, type_id, c_loc(bytes), status(5))
+    call h5dclose_f(dataset, status(6))
+    call check_status(minval(status), name, error)
+    call h5tclose_f(type_id, status(1))
+    call h5sclose_f(space, status(2))
+  end subroutine write_text
+
+end module hdf5_writing_m

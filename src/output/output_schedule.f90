@@ -1,0 +1,94 @@
+! SPDX-License-Identifier: MIT
+!> When an output is due: at time zero and at the cycle nearest to each multiple of its interval.
+!> Multiples are formed as k times the interval, never by adding, so that nothing drifts. An interval that
+!> varies (a curve of time) leads from each output time to the next.
+module output_schedule_m
+  use kinds_m, only : wp, long
+  use controls_m, only : interval_t
+  use curves_m, only : curve_t, curve_value
+  implicit none
+  private
+  public :: schedule_t, start_schedule, is_due, mark_written, is_active
+
+  !> A tie of two cycles round an output time goes to the first, although sums of steps carry
+  !> rounding: this fraction of a step is forgiven.
+  real(wp), parameter :: forgiven = 1.0e-6_wp
+  !> Shortest interval as a fraction of the run, so that every count stays finite.
+  real(wp), parameter :: shortest = 1.0e-9_wp
+
+  !> The plan of one output.
+  type :: schedule_t
+    logical :: active = .false.         !! false: never due
+    real(wp) :: interval = 0.0_wp       !! constant interval, s; unused with a curve
+    logical :: varies = .false.         !! the interval comes from the curve
+    type(curve_t) :: curve              !! interval against time, s
+    integer(long) :: count = 0          !! multiples that are done
+    real(wp) :: next = 0.0_wp           !! next output time, s
+    real(wp) :: end_time = 0.0_wp       !! no output time lies after it
+  end type schedule_t
+
+contains
+
+  !> Plan the outputs of `interval` from time zero to `end_time`.
+  pure subroutine start_schedule(schedule, interval, curves, end_time)
+    type(schedule_t), intent(out) :: schedule
+    type(interval_t), intent(in) :: interval
+    type(curve_t), intent(in) :: curves(:)   !! the model's curves
+    real(wp), intent(in) :: end_time         !! s
+
+    schedule%end_time = end_time
+    schedule%varies = interval%curve > 0
+    if (schedule%varies) schedule%curve = curves(interval%curve)
+    schedule%active = schedule%varies .or. interval%dt > 0.0_wp
+    schedule%interval = max(interval%dt, shortest*end_time)
+  end subroutine start_schedule
+
+  !> Whether this output was asked for at all.
+  pure function is_active(schedule) result(active)
+    type(schedule_t), intent(in) :: schedule
+    logical :: active
+
+    active = schedule%active
+  end function is_active
+
+  !> Whether the state at `time` is the nearest to an output time that has not been written;
+  !> `dt` is the step between states.
+  pure function is_due(schedule, time, dt) result(due)
+    type(schedule_t), intent(in) :: schedule
+    real(wp), intent(in) :: time, dt   !! s
+    logical :: due
+
+    due = schedule%active
+    if (due) due = schedule%next <= schedule%end_time + forgiven*dt .and. &
+      schedule%next <= time + (0.5_wp + forgiven)*dt
+  end function is_due
+
+  !> Move on to the first output time that a later state is nearest to. Several intervals that fell
+  !> into one step are done together.
+  pure subroutine mark_written(schedule, time, dt)
+    type(schedule_t), intent(inout) :: schedule
+    real(wp), intent(in) :: time, dt   !! s, as given to `is_due`
+
+    if (.not. schedule%varies .and. schedule%active) schedule%count = max(schedule%count, &
+      int((time + (0.5_wp + forgiven)*dt)/schedule%interval, long) - 1)
+    do while (is_due(schedule, time, dt))
+      call advance(schedule)
+    end do
+  end subroutine mark_written
+
+  !> The output time after the present one. A curve that falls to zero ends the output.
+  pure subroutine advance(schedule)
+    type(schedule_t), intent(inout) :: schedule
+    real(wp) :: interval
+
+    schedule%count = schedule%count + 1
+    if (.not. schedule%varies) then
+      schedule%next = real(schedule%count, wp)*schedule%interval
+      return
+    end if
+    interval = curve_value(schedule%curve, schedule%next)
+    schedule%next = schedule%next + max(interval, shortest*schedule%end_time)
+    if (interval <= 0.0_wp) schedule%active = .false.
+  end subroutine advance
+
+end module output_schedule_m
