@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""Forms of the command line and overrides."""
+import re
+
+import numpy as np
+import pytest
+from conftest import columns, drop, numbers
+
+NORMAL = "N o r m a l    t e r m i n a t i o n"
+
+
+def test_help_and_version(slideline):
+    for option in ("--help", "--version"):
+        done = slideline(option)
+        assert done.returncode == 0
+        assert "slideline" in done.stdout.lower()
+    assert "i=" in slideline("--help").stdout and "ncpu=" in slideline("--help").stdout
+    assert re.search(r"\d+\.\d+", slideline("--version").stdout)
+
+
+def test_bare_deck_path_and_defaults(slideline, tmp_path):
+    (tmp_path / "first.k").write_text(drop(end_time=0.002).text())
+    done = slideline("first.k")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "first.glstat.csv").exists()
+    assert (tmp_path / "first.vtkhdf").exists()
+
+
+def test_results_folder_with_parents_and_job_name(slideline, tmp_path):
+    done = slideline("d=a/b/c", "jobid=other", deck=drop(end_time=0.002))
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "a" / "b" / "c" / "other.glstat.csv").exists()
+    assert not list((tmp_path / "a" / "b" / "c").glob("job*"))
+
+
+def test_memory_is_accepted_and_ignored(slideline, tmp_path):
+    done = slideline("d=m", "memory=200m", deck=drop(end_time=0.002))
+    assert done.returncode == 0, done.stderr
+    done = slideline("d=n", deck=drop(end_time=0.002))
+    assert (tmp_path / "m/job.glstat.csv").read_bytes() == (tmp_path / "n/job.glstat.csv").read_bytes()
+
+
+@pytest.mark.parametrize("words", [["nonsense=1"], ["--nonsense"], ["ctype=two"], ["ctype.7=2"],
+                                   ["ncpu=0"], ["endtim="], ["p:absent=3"]])
+def test_wrong_words_are_refused(slideline, words):
+    done = slideline("d=w", *words, deck=drop(end_time=0.002))
+    assert done.returncode == 1
+    assert words[0].split("=")[0].split(":")[-1] in done.stderr
+
+
+def test_no_argument_says_how(slideline):
+    done = slideline()
+    assert done.returncode == 1
+    assert "i=" in done.stderr + done.stdout
+
+
+def test_missing_deck(slideline):
+    done = slideline("i=absent.k")
+    assert done.returncode in (1, 3)
+    assert "absent.k" in done.stderr
+
+
+def test_end_time_and_step(slideline, tmp_path):
+    done = slideline("d=e", "endtim=0.004", "dt=2.0e-4", deck=drop())
+    assert done.returncode == 0, done.stderr
+    glstat = tmp_path / "e" / "job.glstat.csv"
+    assert numbers(glstat, "time")[-1] == pytest.approx(0.004, rel=1e-12)
+    assert numbers(glstat, "cycle")[-1] == 20
+    assert np.all(numbers(glstat, "dt") == 2.0e-4)
+
+
+def test_step_factor(slideline, tmp_path):
+    deck = drop(end_time=0.003)
+    text = deck.text().replace("0.0,0.9,0,0.0,0.0,9001", "0.0,0.9,0,0.0,0.0,0")
+    for factor in ("0.8", "0.4"):
+        assert slideline(f"d=s{factor}", f"tssfac={factor}", deck=text).returncode == 0
+    big, small = (numbers(tmp_path / f"s{f}" / "job.glstat.csv", "dt")[0] for f in ("0.8", "0.4"))
+    assert big / small == pytest.approx(2.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("word", ["ctype=1", "ctype.1=1"])
+def test_contact_type(slideline, tmp_path, word):
+    assert slideline("d=a", word, deck=drop(kind=2)).returncode == 0
+    assert slideline("d=b", deck=drop(kind=1)).returncode == 0
+    assert slideline("d=c", deck=drop(kind=2)).returncode == 0
+    over, plain, two = ((tmp_path / d / "job.rcforc.csv").read_bytes() for d in "abc")
+    assert over == plain
+    assert over != two
+
+
+def test_penalty(slideline, tmp_path):
+    assert slideline("d=a", "pen=1.0e5", deck=drop()).returncode == 0
+    assert slideline("d=b", deck=drop(penalty=1.0e5)).returncode == 0
+    assert slideline("d=c", deck=drop()).returncode == 0
+    over, plain, other = ((tmp_path / d / "job.rcforc.csv").read_bytes() for d in "abc")
+    assert over == plain
+    assert over != other
+
+
+def test_parameter(slideline, tmp_path):
+    assert slideline("d=a", "p:tend=0.004", "p:V0=-1.0", deck=drop(parametric=True)).returncode == 0
+    assert numbers(tmp_path / "a" / "job.glstat.csv", "time")[-1] == pytest.approx(0.004, rel=1e-12)
+    nodout = columns(tmp_path / "a" / "job.nodout.csv")
+    assert float(nodout["vy"][0]) == -1.0
+
+
+def test_progress_in_a_pipe(finished):
+    _, done = finished
+    assert NORMAL in done.stdout
+    assert re.search(r"(?m)^ *\d+ t \S+ dt \S+", done.stdout)
+    assert "\r" not in done.stdout
+    assert "\x1b" not in done.stdout
+    assert "Problem time" in done.stdout and "Problem cycle" in done.stdout
+    assert "Elapsed time" in done.stdout and "nanosecond" in done.stdout.lower()
+    assert "contact_search" in done.stdout

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+"""Exit codes 0 to 4, what is said, and what is left on disk."""
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy as np
+import pytest
+from conftest import drop, numbers
+from meshes import Deck, grid
+
+NORMAL = "N o r m a l    t e r m i n a t i o n"
+ERROR = "E r r o r    t e r m i n a t i o n"
+
+
+def test_normal_is_0(finished):
+    folder, done = finished
+    assert done.returncode == 0
+    assert NORMAL in done.stdout
+    assert ERROR not in done.stdout + done.stderr
+    assert NORMAL in (folder / "drop.log").read_text()
+
+
+def test_refused_deck_is_1(slideline, tmp_path):
+    done = slideline("d=r", deck=drop(kind=9))
+    assert done.returncode == 1
+    assert NORMAL not in done.stdout
+    assert "CONTACT_2D_SLIDELINE" in done.stderr
+    for name in ("NTS", "NTS-AR", "two-pass"):
+        assert name in done.stderr
+    assert not list((tmp_path / "r").glob("*.vtkhdf"))
+
+
+def test_inverted_element_is_2(slideline, tmp_path):
+    deck = Deck("driven through itself")
+    deck.control(1.0, dt=0.001).part().elastic(1.0e4, 1.0e6, 0.3)
+    nodes = deck.mesh(*grid(1, 1))
+    deck.curve(1, [(0.0, 0.0), (1.0, -2.0)])
+    deck.fix(nodes, y=1).fix(nodes[[0, 2]], x=1)
+    for node in nodes[[1, 3]]:
+        deck.prescribe(node, 1, 2, 1)
+    deck.output(plot=0.1, glstat=0.1)
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 2
+    assert ERROR in done.stdout + done.stderr
+    assert NORMAL not in done.stdout
+    assert "element" in done.stderr and " 1" in done.stderr
+    last = numbers(tmp_path / "x" / "job.glstat.csv", "time")[-1]
+    assert 0.3 <= last <= 0.55
+    with h5py.File(tmp_path / "x" / "job.vtkhdf") as stream:
+        assert stream["VTKHDF/Steps"].attrs["NSteps"] >= 4
+
+
+def test_unstable_step_is_2(slideline):
+    done = slideline("d=u", "dt=0.02", "endtim=4.0", deck=drop())
+    assert done.returncode == 2
+    assert ERROR in done.stdout + done.stderr
+    assert "stable" in done.stderr + done.stdout
+
+
+def test_folder_that_is_a_file_is_3(slideline, tmp_path):
+    (tmp_path / "taken").write_text("a file\n")
+    done = slideline("d=taken", deck=drop())
+    assert done.returncode == 3
+    assert "taken" in done.stderr
+    assert (tmp_path / "taken").read_text() == "a file\n"
+
+
+def start_long_run(exe, tmp_path):
+    (tmp_path / "long.k").write_text(drop(end_time=1.0e4).text())
+    process = subprocess.Popen([exe, "i=long.k", "d=out", "dt=1.0e-4"], cwd=tmp_path, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    path = tmp_path / "out" / "long.glstat.csv"
+    for _ in range(100):
+        time.sleep(0.1)
+        if path.exists() and path.stat().st_size > 1000:
+            return process
+    process.kill()
+    pytest.fail("the run wrote nothing in ten seconds")
+
+
+def test_terminated_is_4(exe, tmp_path):
+    process = start_long_run(exe, tmp_path)
+    process.send_signal(signal.SIGTERM)
+    stdout, stderr = process.communicate(timeout=20)
+    assert process.returncode == 4, stderr
+    assert NORMAL not in stdout
+    with h5py.File(tmp_path / "out" / "long.vtkhdf") as stream:
+        steps = stream["VTKHDF/Steps"]
+        last = numbers(tmp_path / "out" / "long.glstat.csv", "time")[-1]
+        assert steps["Values"][-1] == last, "the last state is written on the way out"
+
+
+def test_killed_run_leaves_files_that_open(exe, tmp_path):
+    process = start_long_run(exe, tmp_path)
+    process.kill()
+    process.communicate(timeout=20)
+    lines = (tmp_path / "out" / "long.glstat.csv").read_text().splitlines()
+    assert len(lines) > 1
+    with h5py.File(tmp_path / "out" / "long.vtkhdf") as stream:
+        steps = stream["VTKHDF/Steps"]
+        count = int(steps.attrs["NSteps"])
+        assert count >= 1
+        assert len(steps["Values"]) == count
+        assert len(stream["VTKHDF/Points"]) >= count * int(stream["VTKHDF/NumberOfPoints"][0])
+        assert np.all(np.isfinite(stream["VTKHDF/CellData/stress"][:]))
+
+
+def test_many_errors_in_one_pass(slideline, tmp_path):
+    wrong = ["*FROBNICATE",                                   # unknown keyword
+             "      99     abc             0.0",              # no number
+             "      91       1       1       2     777       4",  # dangling node
+             "         5        77         1         1",      # dangling section of a part: part 5
+             "        -2        -3         9",                # unknown contact type
+             "     12345         0         1         1",      # SPC on an absent node
+             "         1         1         0      4711",      # absent curve
+             "        88         2         1       1.0"]      # load on an absent set
+    base = drop().text().splitlines()
+    lines = base[:-1] + ["*FROBNICATE", "*NODE", wrong[1], "*ELEMENT_SHELL", wrong[2],
+                         "*PART", "stray", wrong[3], "*CONTACT_2D_SLIDELINE", wrong[4],
+                         "*BOUNDARY_SPC_NODE", wrong[5], "*BOUNDARY_PRESCRIBED_MOTION_NODE", wrong[6],
+                         "*LOAD_NODE_SET", wrong[7], "*END"]
+    done = slideline("d=x", deck="\n".join(lines) + "\n", name="bad")
+    assert done.returncode == 1
+    missing = [text for text in wrong if f"bad.k:{lines.index(text) + 1}:" not in done.stderr]
+    assert not missing, f"no message for {missing}\n{done.stderr}"
+    for found in ("FROBNICATE", "abc", "777", "4711", "12345", "88"):
+        assert found in done.stderr, found

@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: MIT
+"""The result files: names, headers, number format, states, histories in HDF5, VTK."""
+import re
+
+import h5py
+import numpy as np
+import pytest
+from conftest import columns, drop, numbers
+from meshes import Deck, grid
+
+HEADERS = {
+    "glstat": "time,cycle,dt,kinetic,internal,hourglass,viscous,damping,contact,external_work,"
+              "total,energy_ratio",
+    "rcforc": "time,interface,side,fx,fy,n_active",
+    "nodout": "time,node,x,y,ux,uy,vx,vy,ax,ay",
+    "contact": "time,interface,node,s,x,y,gap,pressure,fx,fy,length",
+    "matsum": "time,part,kinetic,internal,hourglass,momentum_x,momentum_y,mass",
+    "timing": "phase,seconds,calls,share",
+}
+INTEGERS = {"cycle", "interface", "n_active", "node", "part", "calls"}
+REAL = re.compile(r"-?\d\.\d{16}E[+-]\d{2,3}")
+PHASES = {"elements", "contact_search", "contact_pairing", "contact_force", "nodes", "output", "input",
+          "solver", "total"}
+HISTORIES = ("glstat", "rcforc", "nodout", "contact", "matsum")
+
+
+@pytest.mark.parametrize("table", HEADERS)
+def test_header(finished, table):
+    with open(finished[0] / f"drop.{table}.csv", newline="") as stream:
+        assert stream.readline() == HEADERS[table] + "\n"
+
+
+def test_other_files(finished):
+    folder, _ = finished
+    for suffix in ("vtkhdf", "log", "effective.k"):
+        assert (folder / f"drop.{suffix}").stat().st_size > 0
+    names = {path.name for path in folder.iterdir()}
+    assert names == {f"drop.{t}.csv" for t in HEADERS} | {"drop.vtkhdf", "drop.log",
+                                                          "drop.effective.k"}
+
+
+@pytest.mark.parametrize("table", HISTORIES)
+def test_number_format(finished, table):
+    path = finished[0] / f"drop.{table}.csv"
+    raw = path.read_bytes()
+    assert not set(raw) & set(b' "\r\t')
+    assert raw.endswith(b"\n") and b"\n\n" not in raw
+    for name, values in columns(path).items():
+        assert values
+        for text in values:
+            if name == "side":
+                assert text in ("slave", "master")
+            elif name in INTEGERS:
+                assert re.fullmatch(r"\d+", text), (name, text)
+            else:
+                assert REAL.fullmatch(text), (name, text)
+
+
+def test_one_row_per_time_and_entity(finished):
+    folder, _ = finished
+    keys = {"glstat": ("time",), "rcforc": ("time", "interface", "side"), "nodout": ("time", "node"),
+            "contact": ("time", "interface", "node"), "matsum": ("time", "part")}
+    for table, names in keys.items():
+        table_columns = columns(folder / f"drop.{table}.csv")
+        rows = list(zip(*(table_columns[name] for name in names)))
+        assert len(rows) == len(set(rows)), table
+        times = np.array([float(text) for text in table_columns["time"]])
+        assert np.all(np.diff(times) >= 0.0), table
+
+
+def test_intervals_first_and_last(finished):
+    folder, _ = finished
+    for table in HISTORIES:
+        time = np.unique(numbers(folder / f"drop.{table}.csv", "time"))
+        interval = 2.0e-3 if table == "contact" else 1.0e-3
+        assert time == pytest.approx(np.arange(len(time)) * interval, abs=1e-9), table
+        assert time[0] == 0.0 and time[-1] == pytest.approx(0.02, rel=1e-12)
+    with h5py.File(folder / "drop.vtkhdf") as stream:
+        states = stream["VTKHDF/Steps/Values"][:]
+        assert states == pytest.approx(np.arange(11) * 2.0e-3, abs=1e-9)
+        assert np.all(stream["VTKHDF/PointData/displacement"][:24] == 0.0)
+
+
+def test_last_state_when_the_interval_does_not_fit(slideline, tmp_path):
+    deck = drop(end_time=0.0047)
+    assert slideline("d=l", deck=deck).returncode == 0
+    for table in HISTORIES:
+        assert numbers(tmp_path / "l" / f"job.{table}.csv", "time")[-1] == pytest.approx(0.0047)
+    with h5py.File(tmp_path / "l" / "job.vtkhdf") as stream:
+        assert stream["VTKHDF/Steps/Values"][-1] == pytest.approx(0.0047)
+
+
+def test_what_was_not_asked_for_is_not_written(slideline, tmp_path):
+    deck = Deck("quiet")
+    deck.control(0.01, dt=0.001).part().elastic(1.0e4, 1.0e6, 0.3)
+    deck.mesh(*grid(1, 1))
+    assert slideline("d=q", deck=deck).returncode == 0
+    names = {path.name for path in (tmp_path / "q").iterdir()}
+    assert {"job.glstat.csv", "job.log"} <= names
+    for table in ("rcforc", "nodout", "contact", "matsum"):
+        assert f"job.{table}.csv" not in names
+
+
+def test_initial_overlap_force_at_time_zero(slideline, tmp_path):
+    deck = drop(end_time=0.001)
+    text = deck.text()
+    upper = Deck("moved")
+    upper.mesh(*grid(3, 2, 0.6, 0.4, (0.2, -0.001)), part=1)
+    moved = "\n".join(upper.lines[3:16])
+    start = text.index("*NODE")
+    text = text[:start] + moved + "\n" + text[text.index("*ELEMENT_SHELL"):]
+    done = slideline("d=o", deck=text)
+    assert done.returncode == 0, done.stderr
+    force = columns(tmp_path / "o" / "job.rcforc.csv")
+    assert float(force["time"][0]) == 0.0
+    first = [float(v) for v, t, s in zip(force["fy"], force["time"], force["side"])
+             if float(t) == 0.0 and s == "slave"]
+    # type 2, eps 2e5 per node, competence lengths 0.1 0.2 0.2 0.1 over 0.2: three full nodes
+    assert first == [pytest.approx(3 * 2.0e5 * 0.001, rel=1e-9)]
+    assert "penetrat" in (tmp_path / "o" / "job.log").read_text().lower()
+
+
+def test_timing_table(finished):
+    table = columns(finished[0] / "drop.timing.csv")
+    assert set(table["phase"]) == PHASES
+    seconds = dict(zip(table["phase"], map(float, table["seconds"])))
+    parts = sum(value for phase, value in seconds.items() if phase != "total")
+    assert parts == pytest.approx(seconds["total"], rel=1e-6)
+    assert all(value >= 0.0 for value in seconds.values())
+
+
+@pytest.mark.parametrize("table", HISTORIES)
+def test_histories_in_hdf5(finished, table):
+    folder, _ = finished
+    text = columns(folder / f"drop.{table}.csv")
+    with h5py.File(folder / "drop.vtkhdf") as stream:
+        group = stream[f"history/{table}"]
+        assert set(group) == set(text)
+        for name, values in text.items():
+            stored = group[name][:]
+            if name == "side":
+                wanted = np.array([{"slave": 1, "master": 2}[value] for value in values])
+            else:
+                wanted = np.array([float(value) for value in values])
+            assert np.array_equal(stored, wanted), (table, name)
+
+
+def test_run_group(finished):
+    folder, _ = finished
+    with h5py.File(folder / "drop.vtkhdf") as stream:
+        for name in ("deck", "title", "version", "build", "options"):
+            assert name in stream["run"].attrs
+        deck = stream["run/effective_deck"][()]
+        title = stream["run"].attrs["title"]
+
+    def plain(value):
+        value = np.asarray(value).ravel()[0] if not isinstance(value, (bytes, str)) else value
+        return value.decode() if isinstance(value, bytes) else str(value)
+
+    assert plain(title).strip() == "drop"
+    assert plain(deck).strip() == (folder / "drop.effective.k").read_text().strip()
+
+
+def test_arrays(finished):
+    folder, _ = finished
+    with h5py.File(folder / "drop.vtkhdf") as stream:
+        root = stream["VTKHDF"]
+        assert root.attrs["Version"].tolist() == [2, 0]
+        assert root.attrs["Type"] == b"UnstructuredGrid"
+        points = {"displacement": 3, "velocity": 3, "contact_force": 3, "contact_pressure": None,
+                  "gap": None, "node_id": None}
+        cells = {"stress": 6, "plastic_strain": None, "pressure": None, "mises": None,
+                 "part_id": None, "element_id": None}
+        for group, wanted in (("PointData", points), ("CellData", cells)):
+            assert set(wanted) <= set(root[group])
+            for name, size in wanted.items():
+                array = root[group][name]
+                assert array.shape[1:] in ([(size,)] if size else [(), (1,)]), name
+                assert array.dtype.kind == ("i" if name.endswith("_id") else "f")
+                assert array.dtype.itemsize == 8 or name.endswith("_id")
+        n_node, n_cell = int(root["NumberOfPoints"][0]), int(root["NumberOfCells"][0])
+        assert (n_node, n_cell) == (30, 16)
+        steps = len(root["Steps/Values"])
+        ids = np.array(root["PointData/node_id"]).reshape(steps, n_node)
+        assert np.all(ids == np.arange(1, 31))
+        ids = np.array(root["CellData/element_id"]).reshape(steps, n_cell)
+        assert np.all(ids == np.arange(1, 17))
+        stress = np.array(root["CellData/stress"])
+        assert np.array(root["CellData/pressure"]).ravel() == pytest.approx(
+            -stress[:, :3].mean(axis=1), rel=1e-12, abs=1e-6)
+        xx, yy, zz, xy, yz, xz = stress.T
+        assert not yz.any() and not xz.any()
+        mises = np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * xy ** 2)
+        assert np.array(root["CellData/mises"]).ravel() == pytest.approx(mises, rel=1e-9, abs=1e-6)
+
+
+def test_nodout_agrees_with_the_states(finished):
+    folder, _ = finished
+    table = {k: np.array(v, dtype=float) for k, v in columns(folder / "drop.nodout.csv").items()}
+    with h5py.File(folder / "drop.vtkhdf") as stream:
+        times = stream["VTKHDF/Steps/Values"][:]
+        moved = stream["VTKHDF/PointData/displacement"][:].reshape(len(times), -1, 3)
+        speed = stream["VTKHDF/PointData/velocity"][:].reshape(len(times), -1, 3)
+        place = stream["VTKHDF/Points"][:].reshape(len(times), -1, 3)
+    for k, time in enumerate(times):
+        for node in (1, 13, 20):
+            row = (table["time"] == time) & (table["node"] == node)
+            assert row.sum() == 1
+            for name, value in (("ux", moved[k, node - 1, 0]), ("uy", moved[k, node - 1, 1]),
+                                ("vx", speed[k, node - 1, 0]), ("vy", speed[k, node - 1, 1]),
+                                ("x", place[k, node - 1, 0]), ("y", place[k, node - 1, 1])):
+                assert table[name][row][0] == value, name
+
+
+def test_vtk_reads_every_step(finished):
+    import vtk
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    folder, _ = finished
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(str(folder / "drop.vtkhdf"))
+    reader.UpdateInformation()
+    key = vtk.vtkStreamingDemandDrivenPipeline.TIME_STEPS()
+    times = reader.GetOutputInformation(0).Get(key)
+    with h5py.File(folder / "drop.vtkhdf") as stream:
+        root = stream["VTKHDF"]
+        assert np.array_equal(times, root["Steps/Values"][:])
+        for k, time in enumerate(times):
+            reader.UpdateTimeStep(time)
+            grid_ = reader.GetOutput()
+            n_node, n_cell = grid_.GetNumberOfPoints(), grid_.GetNumberOfCells()
+            assert (n_node, n_cell) == (30, 16)
+            assert grid_.GetCellType(0) == vtk.VTK_QUAD
+            assert np.array_equal(vtk_to_numpy(grid_.GetPoints().GetData()),
+                                  root["Points"][k * n_node:(k + 1) * n_node])
+            for data, group, size in ((grid_.GetPointData(), "PointData", n_node),
+                                      (grid_.GetCellData(), "CellData", n_cell)):
+                for name in root[group]:
+                    stored = root[group][name][k * size:(k + 1) * size]
+                    read = vtk_to_numpy(data.GetArray(name))
+                    assert np.array_equal(read.ravel(), np.asarray(stored).ravel()), (k, name)
+
+
+def test_triangle_is_a_triangle(slideline, tmp_path):
+    deck = Deck("a quad and a triangle")
+    deck.control(0.002, dt=0.001).part().elastic(1.0e4, 1.0e6, 0.3)
+    deck.mesh([(0, 0), (1, 0), (1, 1), (0, 1), (2, 0.5)], [(0, 1, 2, 3), (1, 4, 2, 2)])
+    deck.output(plot=0.001)
+    done = slideline("d=t", deck=deck)
+    assert done.returncode == 0, done.stderr
+    with h5py.File(tmp_path / "t" / "job.vtkhdf") as stream:
+        assert stream["VTKHDF/Types"][:].tolist() == [9, 5]
+        assert stream["VTKHDF/Offsets"][:].tolist() == [0, 4, 7]
+        assert stream["VTKHDF/Connectivity"][:].tolist() == [0, 1, 2, 3, 1, 4, 2]
