@@ -52,11 +52,38 @@ def test_inverted_element_is_2(slideline, tmp_path):
         assert stream["VTKHDF/Steps"].attrs["NSteps"] >= 4
 
 
-def test_unstable_step_is_2(slideline):
-    done = slideline("d=u", "dt=0.02", "endtim=4.0", deck=drop())
+def test_energy_out_of_bounds_is_2(slideline, tmp_path):
+    """A contact far too stiff for the step; ENDENG 5 per cent catches what it creates."""
+    text = drop().text().replace("*CONTROL_TERMINATION\n0.02,", "*CONTROL_TERMINATION\n0.02,0,0.0,5.0")
+    assert slideline("d=good", deck=text).returncode == 0
+    done = slideline("d=bad", "pen=1.0e10", deck=text)
     assert done.returncode == 2
     assert ERROR in done.stdout + done.stderr
-    assert "stable" in done.stderr + done.stdout
+    assert "energy" in done.stderr or "element" in done.stderr
+    log = done.stdout + done.stderr + (tmp_path / "bad" / "job.log").read_text()
+    assert "contact" in log and "stable" in log
+
+
+def test_step_below_its_floor_is_2(slideline):
+    """A squeezed element wants a smaller step than DTMIN allows."""
+    deck = Deck("squeezed")
+    deck.add("*CONTROL_TERMINATION", (1.0, 0, 0.5)).add("*CONTROL_TIMESTEP", (0.0, 0.9))
+    deck.part().elastic(1.0e4, 1.0e6, 0.3)
+    nodes = deck.mesh(*grid(1, 1))
+    deck.curve(1, [(0.0, 0.0), (1.0, -0.9)])
+    deck.fix(nodes, y=1).fix(nodes[[0, 2]], x=1)
+    for node in nodes[[1, 3]]:
+        deck.prescribe(node, 1, 2, 1)
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 2
+    assert "DTMIN" in done.stderr
+
+
+def test_step_above_the_stable_one_is_not_used(slideline, tmp_path):
+    done = slideline("d=u", "dt=0.02", deck=drop())
+    assert done.returncode == 0
+    assert "stable step" in done.stderr + (tmp_path / "u" / "job.log").read_text()
+    assert np.all(numbers(tmp_path / "u" / "job.glstat.csv", "dt") < 0.01)
 
 
 def test_folder_that_is_a_file_is_3(slideline, tmp_path):
