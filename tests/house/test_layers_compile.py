@@ -2,7 +2,8 @@
 """The build itself keeps the layers apart: a `use` outside the table does not compile.
 
 A tree of one small module per layer is built with the project's own CMakeLists.txt; then each layer is
-given a `use` of every other one and compiled with the command that the build has for that layer.
+given a `use` of every other one and compiled with the command that the build has for that layer.  The
+other way round, a changed module must reach the layers that use it.
 """
 import json
 import shlex
@@ -18,9 +19,9 @@ GOOD = "module probe_{layer}_m\n{uses}  implicit none\n  integer :: {layer}_valu
 USE = "  use probe_{layer}_m, only: {layer}_value\n"
 
 
-@pytest.fixture(scope="module", name="commands")
+@pytest.fixture(scope="module", name="tree")
 def build_small_tree(tmp_path_factory):
-    """layer -> (compile command without its file, folder to run it in)"""
+    """The folder of a small tree of layers that has been built in its folder `build`."""
     tree = tmp_path_factory.mktemp("layers")
     shutil.copy(ROOT / "CMakeLists.txt", tree)
     for layer, allowed in LAYERS.items():
@@ -35,8 +36,14 @@ def build_small_tree(tmp_path_factory):
                     ["cmake", "--build", build]):
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout + done.stderr
+    return tree
+
+
+@pytest.fixture(scope="module", name="commands")
+def read_commands(tree):
+    """layer -> (compile command without its file, folder to run it in)"""
     commands = {}
-    for entry in json.loads((build / "compile_commands.json").read_text()):
+    for entry in json.loads((tree / "build/compile_commands.json").read_text()):
         for layer in LAYERS:
             if entry["file"].endswith(f"src/{layer}/probe_{layer}.f90"):
                 words = shlex.split(entry["command"])
@@ -65,3 +72,14 @@ def test_layer_sees_what_it_may_use_and_nothing_else(commands, layer, tmp_path):
         else:
             assert "Cannot open module file" in done.stderr
     assert seen == LAYERS[layer]
+
+
+def test_changed_module_reaches_the_layers_above(commands, tree):
+    """`commands` comes first because this leaves the tree changed."""
+    assert commands
+    base = tree / "src/base/probe_base.f90"
+    base.write_text(base.read_text().replace("base_value", "other_value"))
+    done = subprocess.run(["cmake", "--build", tree / "build", "--", "-k", "0"], capture_output=True,
+                          text=True, check=False)
+    assert done.returncode != 0
+    assert "src/model/probe_model.f90" in done.stdout
