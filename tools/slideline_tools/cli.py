@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: MIT
 """The command `slideline-tools`: info | plot | animate | compare | bless | make-deck."""
 import argparse
+import dataclasses
+import os
 import pathlib
 import sys
+import tempfile
 
-from slideline_tools import __version__
+from slideline_tools import UserError, __version__
 
 OK, FAILED, UNUSABLE = 0, 1, 2
 
 
-class ToolError(Exception):
+class ToolError(UserError):
     """A request that cannot be met; the text is for the user."""
 
 
@@ -58,11 +61,170 @@ def write_deck(options, scene, *arguments):
     return OK
 
 
+def add_info(commands):
+    parser = commands.add_parser("info", help="say what a results file holds",
+                                 description="Print what a results file holds.")
+    parser.add_argument("results", help="<job>.vtkhdf")
+    parser.set_defaults(run=info)
+
+
+def info(options):
+    from slideline_tools.describe import describe
+    from slideline_tools.results import read
+    print("\n".join(describe(read(options.results))))
+    return OK
+
+
+def add_picture_options(parser):
+    parser.add_argument("results", help="<job>.vtkhdf")
+    parser.add_argument("--field", help="for example plastic_strain, mises, velocity:y, stress:xy")
+    parser.add_argument("--scale", type=float, default=1.0, help="factor on the displacements")
+    parser.add_argument("--zoom", type=float, nargs=4, metavar=("X0", "X1", "Y0", "Y1"),
+                        help="window to show")
+
+
+def add_plot(commands):
+    parser = commands.add_parser(
+        "plot", help="draw a field, histories or the contact pressure",
+        description="Draw a picture of a results file. Without --field, --state, --history or "
+                    "--contact: a field above the energies and the contact force.")
+    add_picture_options(parser)
+    parser.add_argument("--state", action="append",
+                        help="number (-1 = last, 0 = first) or time; may be repeated")
+    parser.add_argument("--history", action="append", metavar="TABLE:COLUMN,...[@NAME=VALUE]",
+                        help="for example glstat:kinetic,internal or rcforc:fy@side=slave; "
+                             "may be repeated")
+    parser.add_argument("--contact", action="store_true",
+                        help="contact pressure along the slave surface")
+    parser.add_argument("--output", "-o", required=True, help="picture (.png, .pdf, .svg)")
+    parser.set_defaults(run=plot)
+
+
+def plot(options):
+    from slideline_tools import plots
+    from slideline_tools.results import read
+    results = read(options.results)
+    states = options.state or ["-1"]
+    if options.history and options.contact:
+        raise ToolError("choose one of --history and --contact")
+    if options.history:
+        figure = plots.history_figure(results, options.history)
+    elif options.contact:
+        figure = plots.contact_figure(results, states)
+    elif options.field or options.state or options.zoom:
+        figure = plots.field_figure(results, options.field, states, options.scale, options.zoom)
+    else:
+        figure = plots.report_figure(results, scale=options.scale)
+    plots.save(figure, made_folder(options.output))
+    print(f"wrote {options.output}")
+    return OK
+
+
+def add_animate(commands):
+    parser = commands.add_parser("animate", help="moving picture of a field (GIF or MP4)",
+                                 description="Write a moving picture of all states.")
+    add_picture_options(parser)
+    parser.add_argument("--rate", type=float, default=12.0, help="pictures a second")
+    parser.add_argument("--output", "-o", required=True, help="file ending in .gif or .mp4")
+    parser.set_defaults(run=animate)
+
+
+def animate(options):
+    from slideline_tools import animation
+    from slideline_tools.results import read
+    count = animation.animate(read(options.results), made_folder(options.output), options.field,
+                              options.scale, options.rate, options.zoom)
+    print(f"wrote {options.output} ({count} states)")
+    return OK
+
+
+def made_folder(path):
+    """The path, after its folder has been made."""
+    path = pathlib.Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def add_compare(commands):
+    parser = commands.add_parser(
+        "compare", help="compare a history with a reference",
+        description="Compare a CSV history with a reference, per column and entity, on the times "
+                    "of the reference, with peak, time of peak, impulse and final value.",
+        epilog="Exit status: 0 agreed, 1 a column failed, 2 the tables cannot be compared.")
+    parser.add_argument("result")
+    parser.add_argument("reference")
+    parser.add_argument("--columns", help="comma list (default: all of the reference)")
+    parser.add_argument("--rtol", type=float, default=1.0e-3, help="relative tolerance (1e-3)")
+    parser.add_argument("--floor", type=float, default=1.0e-3,
+                        help="absolute tolerance over the column's maximum (1e-3)")
+    parser.add_argument("--atol", type=float, help="absolute tolerance instead of --floor")
+    parser.add_argument("--time", type=float, default=1.0e-2,
+                        help="tolerance of the time of the peak over the time span (1e-2)")
+    parser.add_argument("--column-rtol", action="append", default=[], metavar="COLUMN=RTOL",
+                        help="relative tolerance of one column; may be repeated")
+    parser.add_argument("--measures", help="comma list of: values, peak, time of peak, impulse, "
+                                           "final (default: all)")
+    parser.set_defaults(run=run_compare)
+
+
+def run_compare(options):
+    from slideline_tools import compare
+    from slideline_tools.histories import read_csv
+    result, reference = read_csv(options.result), read_csv(options.reference)
+    measures = tuple(options.measures.split(",")) if options.measures else compare.MEASURES
+    for name in measures:
+        if name not in compare.MEASURES:
+            raise ToolError(f"unknown measure '{name}'; there are {', '.join(compare.MEASURES)}")
+    default = compare.Tolerance(options.rtol, options.floor, options.atol, options.time, measures)
+    special = {}
+    for entry in options.column_rtol:
+        name, _, value = entry.partition("=")
+        try:
+            special[name] = dataclasses.replace(default, rtol=float(value))
+        except ValueError:
+            raise ToolError(f"'{entry}': expected COLUMN=RTOL") from None
+    columns = options.columns.split(",") if options.columns else reference.value_columns
+    compare.judged_columns(reference, [*columns, *special])
+    report = compare.compare(result, reference, columns, special, default)
+    report.name = f"{options.result} against {options.reference}"
+    print(report.text())
+    return OK if report.passed else FAILED
+
+
+def add_bless(commands):
+    parser = commands.add_parser(
+        "bless", help="renew the reference of a regression case",
+        description="Run a regression case and make its histories the reference.")
+    parser.add_argument("case", help="folder name below tests/regression")
+    parser.add_argument("--reason", required=True, help="why the reference changes; kept in "
+                                                        "case.toml")
+    parser.add_argument("--program", help="default: $SLIDELINE or build/release/slideline")
+    parser.add_argument("--root", help="the repository (default: found from here)")
+    parser.set_defaults(run=bless)
+
+
+def bless(options):
+    from slideline_tools import regression
+    if not options.reason.strip():
+        raise ToolError("the reason must say something")
+    root = regression.repository_root(options.root)
+    program = options.program or os.environ.get("SLIDELINE") or root / "build/release/slideline"
+    case = regression.Case(root / "tests/regression" / options.case, root)
+    with tempfile.TemporaryDirectory() as work:
+        case.run(program, work)
+        case.bless(work, options.reason.strip(), regression.program_version(program))
+    print(f"renewed the reference of {options.case}")
+    return OK
+
+
 def build_parser():
-    parser = argparse.ArgumentParser(prog="slideline-tools", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="slideline-tools",
+        description="Look into, draw and compare results of slideline, and write scene decks.")
     parser.add_argument("--version", action="version", version=f"slideline-tools {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    add_make_deck(commands)
+    for add in (add_info, add_plot, add_animate, add_compare, add_make_deck, add_bless):
+        add(commands)
     return parser
 
 
@@ -71,7 +233,7 @@ def main(arguments=None):
     options = build_parser().parse_args(arguments)
     try:
         return options.run(options)
-    except (ToolError, OSError) as problem:
+    except (UserError, OSError) as problem:
         print(f"slideline-tools: {problem}", file=sys.stderr)
         return UNUSABLE
 

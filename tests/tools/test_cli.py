@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""Help, information and errors of the command line."""
+import subprocess
+import sys
+
+import pytest
+
+COMMANDS = ("info", "plot", "animate", "compare", "make-deck", "bless")
+
+
+def test_help_lists_the_commands(tool):
+    finished = tool("--help")
+    assert finished.returncode == 0
+    assert all(name in finished.stdout for name in COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_each_command_has_help(tool, command):
+    finished = tool(command, "--help")
+    assert finished.returncode == 0 and "usage" in finished.stdout
+
+
+def test_no_command_is_an_error(tool):
+    assert tool().returncode == 2
+    assert tool("paint").returncode == 2
+
+
+def test_info(tool, results_file):
+    finished = tool("info", results_file)
+    assert finished.returncode == 0, finished.stderr
+    for text in ("three cells", "7 nodes, 3 elements", "part 1: 2, part 2: 1",
+                 "3, time 0 to 1", "plastic_strain", "glstat: 11 rows", "interface 1, master"):
+        assert text in finished.stdout
+
+
+@pytest.mark.parametrize("command", ["info", "plot", "animate"])
+def test_missing_results(tmp_path, tool, command):
+    more = [] if command == "info" else ["--output", tmp_path / "x.gif"]
+    finished = tool(command, tmp_path / "none.vtkhdf", *more)
+    assert finished.returncode == 2
+    assert "no such file" in finished.stderr and "Traceback" not in finished.stderr
+
+
+def test_bless_wants_a_reason(tool):
+    finished = tool("bless", "collision_type_1")
+    assert finished.returncode == 2 and "--reason" in finished.stderr
+    finished = tool("bless", "collision_type_1", "--reason", " ")
+    assert finished.returncode == 2 and "reason" in finished.stderr
+
+
+def test_as_a_program():
+    """The console script's module runs by itself and hands its status to the shell."""
+    command = [sys.executable, "-m", "slideline_tools.cli"]
+    finished = subprocess.run([*command, "--version"], capture_output=True, text=True, check=False)
+    assert finished.returncode == 0 and finished.stdout.startswith("slideline-tools ")
+    finished = subprocess.run([*command, "info", "none.vtkhdf"], capture_output=True, text=True,
+                              check=False)
+    assert finished.returncode == 2 and finished.stdout == ""

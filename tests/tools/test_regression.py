@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+"""Regression cases with a stand-in program: agreement, deviation, breakdown, renewal."""
+import pathlib
+import stat
+import subprocess
+import sys
+
+import pytest
+
+from slideline_tools.regression import Case, CaseError, repository_root, run_case
+
+STAND_IN = """#!{python}
+import pathlib, sys
+values = dict(word.split("=", 1) for word in sys.argv[1:] if "=" in word)
+if "--version" in sys.argv:
+    print("stand-in 1.0")
+    sys.exit(0)
+factor = float(values.get("factor", "1"))
+if factor < 0:
+    print("Error: it broke", file=sys.stderr)
+    sys.exit(2)
+rows = ["time,part,kinetic,mass"]
+for step in range(11):
+    for part in (1, 2):
+        rows.append("%r,%d,%r,1.0" % (0.1 * step, part, factor * part * step ** 2))
+out = pathlib.Path(values["d"], values["jobid"] + ".matsum.csv")
+out.write_text("\\n".join(rows) + "\\n")
+"""
+
+CASE = """deck = "input/none.k"
+arguments = ["factor={factor}"]
+
+[[table]]
+name = "matsum"
+columns = ["kinetic"]
+where = {{ part = 2 }}
+rtol = 1e-3
+"""
+
+
+@pytest.fixture
+def world(tmp_path):
+    """A repository with one case and a stand-in for the program."""
+    folder = tmp_path / "tests" / "regression" / "small"
+    folder.mkdir(parents=True)
+    program = tmp_path / "program"
+    program.write_text(STAND_IN.format(python=sys.executable))
+    program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    write_case(folder, 1)
+    return tmp_path, folder, program
+
+
+def write_case(folder, factor):
+    (folder / "case.toml").write_text(CASE.format(factor=factor))
+
+
+def judge(world, capsys):
+    root, folder, program = world
+    status = run_case(Case(folder, root), program, root / "work", sys.stdout)
+    return status, capsys.readouterr().out
+
+
+def bless(world, tool, *more):
+    root, _, program = world
+    return tool("bless", "small", "--root", root, "--program", program, *more)
+
+
+def test_blessed_reference_agrees_and_keeps_the_reason(world, tool, capsys):
+    finished = bless(world, tool, "--reason", 'first "reference"')
+    assert finished.returncode == 0, finished.stderr
+    assert judge(world, capsys)[0] == 0
+    case = Case(world[1], world[0])
+    assert case.content["blessed"][0]["reason"] == 'first "reference"'
+    assert case.content["blessed"][0]["version"] == "stand-in 1.0"
+    lines = (world[1] / "matsum.csv").read_text().splitlines()
+    assert lines[0] == "time,part,kinetic" and len(lines) == 12
+    assert bless(world, tool, "--reason", "second").returncode == 0
+    assert [note["reason"] for note in Case(world[1], world[0]).content["blessed"]] == [
+        'first "reference"', "second"]
+
+
+def test_changed_result_fails_and_names_the_column(world, tool, capsys):
+    bless(world, tool, "--reason", "first")
+    write_case(world[1], 1.01)
+    status, text = judge(world, capsys)
+    assert status == 1
+    assert "failed: kinetic" in text
+
+
+def test_program_that_breaks_down(world, tool, capsys):
+    bless(world, tool, "--reason", "first")
+    write_case(world[1], -1)
+    status, text = judge(world, capsys)
+    assert status == 2
+    assert "status 2" in text and "it broke" in text
+
+
+def test_missing_reference_and_missing_program(world, capsys):
+    status, text = judge(world, capsys)
+    assert status == 2 and "cannot read" in text
+    world[2].unlink()
+    status, text = judge(world, capsys)
+    assert status == 2 and "cannot start" in text
+
+
+def test_old_results_are_not_judged(world, tool, capsys):
+    """A program that writes nothing must not pass with the files of an earlier run."""
+    bless(world, tool, "--reason", "first")
+    assert judge(world, capsys)[0] == 0
+    world[2].write_text(f"#!{sys.executable}\n")
+    status, text = judge(world, capsys)
+    assert status == 2 and "cannot read" in text
+
+
+@pytest.mark.parametrize("content", ["", 'deck = "x.k"', "deck = ", '[[table]]\nname = "a"'])
+def test_broken_case(world, content):
+    (world[1] / "case.toml").write_text(content)
+    with pytest.raises(CaseError):
+        Case(world[1], world[0])
+
+
+def test_runner_script(world, slideline, tmp_path):
+    """The script beside the cases refuses an unknown case."""
+    script = repository_root() / "tests" / "regression" / "run_case.py"
+    finished = subprocess.run([sys.executable, str(script), "none", "--program", slideline,
+                               "--work", str(tmp_path)], capture_output=True, text=True,
+                              check=False)
+    assert finished.returncode == 2 and "case.toml" in finished.stdout
+    assert pathlib.Path(slideline).exists()

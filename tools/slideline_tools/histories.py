@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: MIT
+"""History tables: columns over time, as in the CSV files and in `/history` of a results file."""
+import csv
+import pathlib
+
+import numpy as np
+
+from slideline_tools import UserError
+
+TEXT_COLUMNS = ("side", "phase")
+INTEGER_COLUMNS = ("cycle", "interface", "node", "part", "n_active", "calls")
+ENTITY_COLUMNS = ("interface", "side", "node", "part")
+SIDES = {1: "slave", 2: "master"}
+
+
+class HistoryError(UserError):
+    """A table that cannot be read or lacks what was asked of it."""
+
+
+class History:
+    """One table: equally long columns by name.
+
+    Columns that name an entity (`interface`, `side`, `node`, `part`) split the rows into one
+    series per entity. Values are in the units of the deck; `time` is in its unit of time.
+    """
+
+    def __init__(self, name, columns):
+        """`name`: table name such as 'glstat'; `columns`: dict of equally long arrays."""
+        self.name = name
+        self.columns = dict(columns)
+        if len({len(column) for column in self.columns.values()}) > 1:
+            raise HistoryError(f"{name}: columns of different length")
+
+    def __getitem__(self, column):
+        try:
+            return self.columns[column]
+        except KeyError:
+            raise HistoryError(f"{self.name} has no column '{column}'; "
+                               f"it has {', '.join(self.columns)}") from None
+
+    def __contains__(self, column):
+        return column in self.columns
+
+    def __len__(self):
+        """Number of rows."""
+        return len(next(iter(self.columns.values()), ()))
+
+    @property
+    def entity_columns(self):
+        """Names of the columns that tell the series of this table apart."""
+        return [name for name in ENTITY_COLUMNS if name in self.columns]
+
+    @property
+    def value_columns(self):
+        """Names of the columns that are neither time, entity nor text."""
+        return [name for name in self.columns
+                if name != "time" and name not in ENTITY_COLUMNS + TEXT_COLUMNS]
+
+    def where(self, **wanted):
+        """The rows in which each named column has the given value."""
+        keep = np.ones(len(self), dtype=bool)
+        for name, value in wanted.items():
+            keep &= self[name] == value
+        return History(self.name, {name: column[keep] for name, column in self.columns.items()})
+
+    def series(self):
+        """One (entity, History) per entity in order of appearance; entity = tuple of values."""
+        names = self.entity_columns
+        if not names:
+            return [((), self)]
+        rows_of = {}
+        for row, key in enumerate(zip(*(self[name].tolist() for name in names))):
+            rows_of.setdefault(key, []).append(row)
+        return [(key, History(self.name, {name: column[rows] for name, column
+                                          in self.columns.items()}))
+                for key, rows in rows_of.items()]
+
+    def entity_label(self, entity):
+        """Text for one entity, for example 'interface 1, slave'."""
+        return ", ".join(str(value) if name == "side" else f"{name} {value}"
+                         for name, value in zip(self.entity_columns, entity))
+
+
+def read_csv(path):
+    """The table in a CSV file of the program or in one of the same form.
+
+    Raises HistoryError if the file is missing, empty, ragged or holds text in a number column.
+    """
+    path = pathlib.Path(path)
+    try:
+        with open(path, newline="", encoding="utf-8") as stream:
+            rows = [row for row in csv.reader(stream) if row]
+    except (OSError, UnicodeDecodeError) as problem:
+        raise HistoryError(f"cannot read {path}: {problem}") from problem
+    if not rows:
+        raise HistoryError(f"{path}: the file is empty")
+    names, rows = rows[0], rows[1:]
+    if len(set(names)) < len(names):
+        raise HistoryError(f"{path}: a column name occurs twice")
+    for number, row in enumerate(rows, start=2):
+        if len(row) != len(names):
+            raise HistoryError(f"{path}: line {number} has {len(row)} fields, "
+                               f"the header has {len(names)}")
+    columns = zip(*rows) if rows else [()] * len(names)
+    return History(table_name(path), {name: as_column(path, name, texts)
+                                      for name, texts in zip(names, columns)})
+
+
+def table_name(path):
+    """'glstat' for `job.glstat.csv`; the stem of any other CSV file."""
+    return pathlib.Path(path).stem.rsplit(".", 1)[-1]
+
+
+def as_column(path, name, texts):
+    """An array of text, integers or reals, as the column's name says."""
+    if name in TEXT_COLUMNS:
+        return np.array(texts, dtype=str)
+    try:
+        values = np.array([float(text) for text in texts])
+    except ValueError as problem:
+        raise HistoryError(f"{path}: column {name}: {problem}") from None
+    if name in INTEGER_COLUMNS and np.all(np.isfinite(values)) and np.all(values % 1 == 0):
+        return values.astype(int)
+    return values
+
+
+def from_hdf5(name, group):
+    """The table in one group of `/history` (one 1-D dataset per column)."""
+    columns = {}
+    for column in column_order(group):
+        values = group[column][()]
+        if column == "side" and values.dtype.kind in "iu":
+            values = np.array([SIDES.get(int(value), str(value)) for value in values], dtype=str)
+        elif values.dtype.kind in "SO":
+            values = np.array([v.decode() if isinstance(v, bytes) else str(v) for v in values])
+        columns[column] = values
+    shortest = min((len(values) for values in columns.values()), default=0)
+    # A killed run may have grown some columns by a row that others lack.
+    return History(name, {column: values[:shortest] for column, values in columns.items()})
+
+
+def column_order(group):
+    """Column names as the CSV file has them: time, entities, then the others."""
+    first = [name for name in ("time", "cycle") + ENTITY_COLUMNS if name in group]
+    return first + [name for name in group if name not in first]

@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: MIT
+"""Figures: a field on the deformed mesh, histories, contact pressure along the surface."""
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib.collections import PolyCollection  # noqa: E402
+from mpl_toolkits.axes_grid1 import make_axes_locatable  # noqa: E402
+
+from slideline_tools.fields import default_field, scalar_field  # noqa: E402
+from slideline_tools.results import ResultsError  # noqa: E402
+
+STYLE = {
+    "figure.dpi": 150, "savefig.dpi": 150, "font.size": 9, "axes.titlesize": 9,
+    "axes.grid": False, "legend.frameon": False, "lines.linewidth": 1.2,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.formatter.limits": (-3, 4),
+    "axes.formatter.use_mathtext": True, "legend.fontsize": 8,
+}
+PAGE_WIDTH = 7.0
+COLOURS = ("#0b559f", "#c23b22", "#2e7d32", "#7b3f99", "#b8860b", "#00838f", "#5d4037", "#555555")
+LINES = ("-", "--", "-.", ":")
+
+
+# ---- a field on the deformed mesh --------------------------------------------------------------
+
+def deformed(results, state, scale=1.0):
+    """(n_node, 2) coordinates of a state with its displacement drawn `scale` times."""
+    points = results.points[state][:, :2]
+    if scale == 1.0:
+        return points
+    moved = results.point_field("displacement")[state][:, :2]
+    return points + (scale - 1.0) * moved
+
+
+def draw_field(axes, results, field, state, scale=1.0, limits=None, edges=True):
+    """Draw one state of a ScalarField; returns the artist that carries the colours."""
+    points = deformed(results, state, scale)
+    cells = results.cells
+    low, high = field.limits() if limits is None else limits
+    colours = field.colours() if limits is None else (
+        "RdBu_r" if low < 0.0 < high else "viridis" if low >= 0.0 else "viridis_r")
+    values = field.values[state]
+    if field.at_nodes:
+        artist = draw_nodal(axes, points, cells, values, colours, low, high)
+    else:
+        artist = PolyCollection(points[cells], array=values, cmap=colours, linewidths=0.0)
+        artist.set_clim(low, high)
+        # Neighbouring polygons without an edge leave hairlines between them.
+        artist.set_edgecolor("face")
+        artist.set_linewidth(0.2)
+        axes.add_collection(artist)
+    if edges:
+        axes.add_collection(PolyCollection(points[cells], facecolors="none", edgecolors="#00000090",
+                                           linewidths=edge_width(len(cells))))
+    axes.set_aspect("equal")
+    return artist
+
+
+def draw_nodal(axes, points, cells, values, colours, low, high):
+    """Smooth colours of a nodal field: each quad as four triangles about its centre."""
+    n_node = len(points)
+    centre = n_node + np.arange(len(cells))
+    every_point = np.vstack([points, points[cells].mean(axis=1)])
+    every_value = np.concatenate([values, values[cells].mean(axis=1)])
+    triangles = np.concatenate([
+        np.stack([cells[:, k], cells[:, (k + 1) % 4], centre], axis=1) for k in range(4)])
+    triangles = triangles[triangles[:, 0] != triangles[:, 1]]
+    return axes.tripcolor(every_point[:, 0], every_point[:, 1], triangles, every_value,
+                          shading="gouraud", cmap=colours, vmin=low, vmax=high)
+
+
+def edge_width(n_cell):
+    """Thin element edges, thinner for finer meshes."""
+    return float(np.clip(6.0 / np.sqrt(max(n_cell, 1)), 0.08, 0.4))
+
+
+def frame(axes, results, states, scale=1.0, zoom=None):
+    """Same window for all states: the box of all their points, or zoom = (x0, x1, y0, y1)."""
+    if zoom is None:
+        boxes = [deformed(results, state, scale) for state in states]
+        low = np.min([box.min(axis=0) for box in boxes], axis=0)
+        high = np.max([box.max(axis=0) for box in boxes], axis=0)
+        margin = 0.02 * max(high - low)
+        zoom = (low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin)
+    axes.set_xlim(zoom[0], zoom[1])
+    axes.set_ylim(zoom[2], zoom[3])
+    return zoom
+
+
+def panel_height(zoom, width):
+    """Height in inches that an equal-aspect panel of this window needs."""
+    height = width * (zoom[3] - zoom[2]) / (zoom[1] - zoom[0])
+    return float(np.clip(height, 0.9, 7.0))
+
+
+def field_panel(axes, results, field, state, scale, limits, zoom, bar=True):
+    """One state with title, axes and its own colour bar."""
+    artist = draw_field(axes, results, field, state, scale, limits)
+    axes.set_xlim(zoom[0], zoom[1])
+    axes.set_ylim(zoom[2], zoom[3])
+    title = f"{run_title(results)}t = {results.times[state]:.4g}"
+    axes.set_title(title + ("" if scale == 1.0 else f", displacement x {scale:g}"), loc="left")
+    axes.set_xlabel("x")
+    axes.set_ylabel("y")
+    axes.locator_params(axis="y", nbins=5)
+    if bar:
+        colour_bar(axes, artist, field.label)
+    return artist
+
+
+def colour_bar(axes, artist, label):
+    """A colour bar as high as the panel."""
+    room = make_axes_locatable(axes).append_axes("right", size="2.5%", pad=0.08)
+    bar = axes.figure.colorbar(artist, cax=room)
+    bar.outline.set_linewidth(0.4)
+    bar.locator = matplotlib.ticker.MaxNLocator(5)
+    bar.update_ticks()
+    bar.set_label("\n".join(wrapped(label)), fontsize=8)
+
+
+def wrapped(label):
+    """A long label on two lines, broken before its bracket."""
+    head, bracket, tail = label.partition(" (")
+    return [label] if len(label) < 24 or not bracket else [head, "(" + tail]
+
+
+def run_title(results):
+    title = results.run.get("title", "")
+    return f"{title}, " if title else ""
+
+
+def field_figure(results, name=None, states=("-1",), scale=1.0, zoom=None):
+    """A figure with one panel per state, below each other, on one colour scale."""
+    field = scalar_field(results, name or default_field(results))
+    states = [results.state_index(state) for state in states]
+    with plt.rc_context(STYLE):
+        scratch = plt.figure()
+        zoom = frame(scratch.add_subplot(), results, states, scale, zoom)
+        plt.close(scratch)
+        height = panel_height(zoom, PAGE_WIDTH - 1.9)
+        figure, panels = plt.subplots(len(states), 1, squeeze=False, layout="constrained",
+                                      figsize=(PAGE_WIDTH, (height + 0.75) * len(states)))
+        limits = field.limits(states)
+        for axes, state in zip(panels[:, 0], states):
+            field_panel(axes, results, field, state, scale, limits, zoom)
+        return figure
+
+
+# ---- histories ---------------------------------------------------------------------------------
+
+def parse_history(request):
+    """'rcforc:fx,fy@side=slave' -> (table, [columns], {column: value})."""
+    table, _, rest = request.partition(":")
+    columns, *filters = rest.split("@")
+    wanted = {}
+    for entry in filters:
+        name, equals, value = entry.partition("=")
+        if not equals:
+            raise ResultsError(f"'{entry}': expected COLUMN=VALUE after @")
+        wanted[name] = value if name == "side" else number(value)
+    names = [column for column in columns.split(",") if column]
+    if not table or not names:
+        raise ResultsError(f"'{request}': expected TABLE:COLUMN,COLUMN[@ENTITY=VALUE]")
+    return table, names, wanted
+
+
+def number(text):
+    try:
+        return float(text)
+    except ValueError:
+        raise ResultsError(f"'{text}' is not a number") from None
+
+
+def draw_history(axes, results, request):
+    """Lines of one request such as 'glstat:kinetic,internal'."""
+    table, columns, wanted = parse_history(request)
+    history = results.history(table).where(**wanted)
+    if not len(history):
+        raise ResultsError(f"'{request}': no rows")
+    count = 0
+    for entity, rows in history.series():
+        for column in columns:
+            name = column.replace("_", " ")
+            label = f"{history.entity_label(entity)}: {name}" if entity else name
+            axes.plot(rows["time"], rows[column], label=label, color=COLOURS[count % len(COLOURS)],
+                      linestyle=LINES[(count // len(COLOURS)) % len(LINES)])
+            count += 1
+    axes.set_xlabel("time")
+    axes.margins(x=0.0)
+    axes.grid(True, linewidth=0.3, color="#bbbbbb")
+    if count > 1:
+        axes.legend(ncols=1 if count < 5 else 2, loc="best")
+    else:
+        axes.set_ylabel(label)
+
+
+def history_figure(results, requests):
+    """A figure with one panel per request, below each other."""
+    with plt.rc_context(STYLE):
+        figure, panels = plt.subplots(len(requests), 1, squeeze=False, layout="constrained",
+                                      sharex=True, figsize=(PAGE_WIDTH, 2.6 * len(requests)))
+        for axes, request in zip(panels[:, 0], requests):
+            draw_history(axes, results, request)
+            axes.set_title(request.partition(":")[0], loc="left")
+        for axes in panels[:-1, 0]:
+            axes.set_xlabel("")
+        figure.suptitle(results.run.get("title", results.path.name), fontsize=9)
+        return figure
+
+
+# ---- contact pressure --------------------------------------------------------------------------
+
+def contact_figure(results, states=("-1",)):
+    """Contact pressure over the arc length of each slave surface at the given states."""
+    contact = results.history("contact")
+    interfaces = sorted(set(contact["interface"].tolist()))
+    if not interfaces:
+        raise ResultsError(f"{results.path}: the contact table is empty")
+    with plt.rc_context(STYLE):
+        figure, panels = plt.subplots(len(interfaces), 1, squeeze=False, layout="constrained",
+                                      figsize=(PAGE_WIDTH, 2.8 * len(interfaces)))
+        for axes, interface in zip(panels[:, 0], interfaces):
+            rows = contact.where(interface=interface)
+            known = np.unique(rows["time"])
+            for count, state in enumerate(states):
+                time = results.times[results.state_index(state)]
+                nearest = known[np.argmin(np.abs(known - time))]
+                chain = rows.where(time=nearest)
+                axes.plot(chain["s"], chain["pressure"], marker="o", markersize=2.5,
+                          color=COLOURS[count % len(COLOURS)], label=f"t = {nearest:.4g}")
+            axes.set_title(f"{run_title(results)}interface {interface}", loc="left")
+            axes.set_xlabel("arc length s along the slave surface")
+            axes.set_ylabel("contact pressure")
+            axes.set_ylim(bottom=0.0)
+            axes.grid(True, linewidth=0.3, color="#bbbbbb")
+            axes.legend()
+        return figure
+
+
+# ---- the report picture ------------------------------------------------------------------------
+
+def report_figure(results, state="-1", name=None, scale=1.0):
+    """A field on the deformed mesh above the energies and, with contact, the contact force."""
+    field = scalar_field(results, name or default_field(results))
+    state = results.state_index(state)
+    panels = [request for request in report_requests(results) if request]
+    with plt.rc_context(STYLE):
+        scratch = plt.figure()
+        zoom = frame(scratch.add_subplot(), results, [state], scale)
+        plt.close(scratch)
+        height = panel_height(zoom, PAGE_WIDTH - 1.9) + 0.75
+        lower = 2.5 if panels else 0.0
+        figure = plt.figure(figsize=(PAGE_WIDTH, height + lower), layout="constrained")
+        grid = figure.add_gridspec(2 if panels else 1, max(len(panels), 1),
+                                   height_ratios=[height, lower] if panels else None)
+        field_panel(figure.add_subplot(grid[0, :]), results, field, state, scale,
+                    field.limits([state]), zoom)
+        for column, (request, title) in enumerate(panels):
+            axes = figure.add_subplot(grid[1, column])
+            draw_history(axes, results, request)
+            axes.set_title(title, loc="left")
+            axes.axvline(results.times[state], color="#888888", linewidth=0.6)
+        return figure
+
+
+def report_requests(results):
+    """What the lower panels of the report picture show."""
+    panels = []
+    if "glstat" in results.histories:
+        glstat = results.history("glstat")
+        wanted = [name for name in ("kinetic", "internal", "hourglass", "contact", "total")
+                  if name in glstat and (name in ("kinetic", "internal", "total")
+                                         or np.any(glstat[name] != 0.0))]
+        panels.append(("glstat:" + ",".join(wanted), "energies"))
+    if "rcforc" in results.histories and len(results.history("rcforc")):
+        panels.append(("rcforc:fy@side=slave", "contact force in y on the slave side"))
+    elif "nodout" in results.histories and len(results.history("nodout")):
+        panels.append(("nodout:uy", "displacement in y"))
+    return panels
+
+
+def save(figure, path):
+    """Write a figure to a PNG, PDF or SVG file."""
+    figure.savefig(path)
+    plt.close(figure)

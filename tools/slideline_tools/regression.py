@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: MIT
+"""Regression cases: run a deck, compare its histories with stored references, renew these.
+
+A case is a folder with `case.toml`:
+
+    deck = "input/collision/collision.k"    # below the root of the repository
+    arguments = ["ctype=1"]                 # for the program, may be left out
+    [[table]]
+    name = "glstat"                         # reference: glstat.csv in the folder
+    columns = ["kinetic", "internal"]
+    where = { part = 2 }                    # rows to keep, may be left out
+    rtol = 1e-3                             # also floor, atol, time, measures
+    tolerance.kinetic.rtol = 1e-4           # for one column
+    [[blessed]]                             # written by `bless`, newest last
+    date = "2026-01-31"
+    reason = "first reference"
+"""
+import datetime
+import json
+import pathlib
+import subprocess
+
+try:
+    import tomllib
+except ModuleNotFoundError:  # Python before 3.11
+    import tomli as tomllib
+
+from slideline_tools import UserError
+from slideline_tools.compare import Tolerance, Unusable, compare, judged_columns
+from slideline_tools.histories import HistoryError, read_csv
+
+REFERENCE_FORMAT = "{:.9E}"
+
+
+class CaseError(UserError):
+    """A case that cannot be read or whose program run failed."""
+
+
+def repository_root(start=None):
+    """The folder above `start` (default: this file, then the current folder) with the cases."""
+    starts = [start] if start else [pathlib.Path(__file__), pathlib.Path.cwd()]
+    for one in starts:
+        for folder in [pathlib.Path(one).resolve(), *pathlib.Path(one).resolve().parents]:
+            if (folder / "tests" / "regression").is_dir():
+                return folder
+    raise CaseError("no folder tests/regression above here; run from inside the repository")
+
+
+class Case:
+    """One regression case; `folder` holds its case.toml."""
+
+    def __init__(self, folder, root):
+        self.folder = pathlib.Path(folder)
+        self.root = pathlib.Path(root)
+        self.file = self.folder / "case.toml"
+        try:
+            self.content = tomllib.loads(self.file.read_text(encoding="utf-8"))
+        except (OSError, tomllib.TOMLDecodeError) as problem:
+            raise CaseError(f"cannot read {self.file}: {problem}") from problem
+        if "deck" not in self.content or not self.content.get("table"):
+            raise CaseError(f"{self.file}: a case needs a deck and at least one [[table]]")
+
+    def run(self, program, work):
+        """Run the program in `work`; returns the folder of the results."""
+        work = pathlib.Path(work)
+        work.mkdir(parents=True, exist_ok=True)
+        for old in work.glob("case.*"):
+            old.unlink()
+        command = [str(pathlib.Path(program).resolve()), f"i={self.root / self.content['deck']}",
+                   f"d={work}", "jobid=case", *self.content.get("arguments", ())]
+        try:
+            finished = subprocess.run(command, capture_output=True, text=True, check=False)
+        except OSError as problem:
+            raise CaseError(f"cannot start {program}: {problem.strerror}") from problem
+        if finished.returncode != 0:
+            raise CaseError(f"the program ended with status {finished.returncode}:\n"
+                            f"{finished.stdout[-2000:]}{finished.stderr[-2000:]}")
+        return work
+
+    def table(self, entry, work):
+        """The rows of one table of the run that the case looks at."""
+        table = read_csv(pathlib.Path(work) / f"case.{entry['name']}.csv")
+        return table.where(**entry.get("where", {}))
+
+    def reports(self, work):
+        """Compare every table of a finished run with its reference."""
+        for entry in self.content["table"]:
+            reference = read_csv(self.reference_file(entry))
+            reference.name = f"{self.folder.name}: {entry['name']}"
+            default = tolerance(entry)
+            special = {name: tolerance({**entry, **changes})
+                       for name, changes in entry.get("tolerance", {}).items()}
+            judged_columns(reference, entry["columns"])
+            yield compare(self.table(entry, work), reference, entry["columns"], special, default)
+
+    def reference_file(self, entry):
+        return self.folder / entry.get("reference", f"{entry['name']}.csv")
+
+    def bless(self, work, reason, version=""):
+        """Make the histories of a finished run the reference and note the reason."""
+        for entry in self.content["table"]:
+            table = self.table(entry, work)
+            names = ["time", *table.entity_columns, *judged_columns(table, entry["columns"])]
+            write_reference(self.reference_file(entry), table, names)
+        note = ["", "[[blessed]]", f'date = "{datetime.date.today().isoformat()}"',
+                f"reason = {json.dumps(reason)}"]
+        if version:
+            note.append(f"version = {json.dumps(version)}")
+        with open(self.file, "a", encoding="utf-8") as stream:
+            stream.write("\n".join(note) + "\n")
+
+
+def tolerance(entry):
+    """Tolerance with the keys that a [[table]] may give."""
+    keys = ("rtol", "floor", "atol", "time")
+    given = {key: float(entry[key]) for key in keys if key in entry}
+    if "measures" in entry:
+        given["measures"] = tuple(entry["measures"])
+    return Tolerance(**given)
+
+
+def write_reference(path, table, names):
+    """A CSV file of the given columns with ten significant digits."""
+    lines = [",".join(names)]
+    columns = [[text_of(value) for value in table[name].tolist()] for name in names]
+    lines += [",".join(row) for row in zip(*columns)]
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
+def text_of(value):
+    return REFERENCE_FORMAT.format(value) if isinstance(value, float) else str(value)
+
+
+def run_case(case, program, work, out):
+    """Run and compare a case; reports go to `out`. Returns 0 passed, 1 failed, 2 unusable."""
+    try:
+        passed = True
+        work = case.run(program, work)
+        for report in case.reports(work):
+            print(report.text(), file=out)
+            passed = passed and report.passed
+        return 0 if passed else 1
+    except (CaseError, HistoryError, Unusable) as problem:
+        print(f"{case.folder.name}: {problem}", file=out)
+        return 2
+
+
+def program_version(program):
+    """First line of `--version`, without anything that looks like a path."""
+    finished = subprocess.run([str(program), "--version"], capture_output=True, text=True,
+                              check=False)
+    line = (finished.stdout.splitlines() or [""])[0]
+    return "" if "/" in line else line.strip()

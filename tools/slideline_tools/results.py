@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+"""Reader of the results file `<job>.vtkhdf`.
+
+The names and shapes of the file are known here and nowhere else in the tools. States come as
+arrays with the state as first index, points and cells in the order of the deck:
+
+    results = read("collision.vtkhdf")
+    results.times                           # (n_state,), unit of time of the deck
+    results.points[-1]                      # (n_node, 3), current coordinates of the last state
+    results.cell_field("plastic_strain")    # (n_state, n_cell)
+    results.history("glstat")["kinetic"]    # one column of a history table
+"""
+import pathlib
+
+import h5py
+import numpy as np
+
+from slideline_tools import UserError
+from slideline_tools.histories import from_hdf5
+
+TRIANGLE, QUAD = 5, 9
+STRESS_COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
+VECTOR_COMPONENTS = ("x", "y", "z")
+
+
+class ResultsError(UserError):
+    """A file that is missing, is no results file, or lacks what was asked of it."""
+
+
+def read(path):
+    """Open a results file; raises ResultsError if it is none."""
+    return Results(path)
+
+
+class Results:
+    """States, histories and run information of one results file (all read on demand).
+
+    `path`     the file
+    `times`    (n_state,) time of each state, in the unit of time of the deck (s in SI decks)
+    `run`      dict of texts: deck, title, version, build, options, effective_deck
+    """
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        self._arrays = {}
+        try:
+            with h5py.File(self.path, "r") as stream:
+                self._read_structure(stream)
+        except (OSError, KeyError, ValueError, AttributeError) as problem:
+            reason = "no such file" if not self.path.exists() else problem
+            raise ResultsError(f"cannot read {self.path}: {reason}") from problem
+
+    def _read_structure(self, stream):
+        root = stream["VTKHDF"]
+        kind = root.attrs["Type"]
+        kind = kind.decode() if isinstance(kind, bytes) else str(kind)
+        if kind.strip() != "UnstructuredGrid":
+            raise ValueError(f"VTKHDF type {kind}, not UnstructuredGrid")
+        steps = root["Steps"]
+        self.version = tuple(int(number) for number in root.attrs["Version"])
+        self.n_node = int(root["NumberOfPoints"][0])
+        self.n_cell = int(root["NumberOfCells"][0])
+        self.times = steps["Values"][:int(steps.attrs["NSteps"])].astype(float)
+        self.point_fields = list(root.get("PointData", ()))
+        self.cell_fields = list(root.get("CellData", ()))
+        self.histories = list(stream.get("history", ()))
+        self.run = self._run_texts(stream.get("run"))
+
+    @staticmethod
+    def _run_texts(group):
+        if group is None:
+            return {}
+        texts = dict(group.attrs)
+        texts.update((name, group[name][()]) for name in group)
+        return {name: plain_text(value) for name, value in texts.items()}
+
+    @property
+    def n_state(self):
+        """Number of stored states."""
+        return len(self.times)
+
+    def _stacked(self, path, offsets, rows):
+        """All states of a stacked array: (n_state, rows[, components])."""
+        if path not in self._arrays:
+            with h5py.File(self.path, "r") as stream:
+                root = stream["VTKHDF"]
+                values = root[path][()]
+                starts = root[offsets][()].ravel()[:self.n_state].astype(int)
+            picked = [values[start:start + rows] for start in starts]
+            if any(len(state) != rows for state in picked):
+                raise ResultsError(f"{self.path}: {path} is shorter than its states need")
+            self._arrays[path] = np.array(picked).reshape((self.n_state, rows) + values.shape[1:])
+        return self._arrays[path]
+
+    @property
+    def points(self):
+        """(n_state, n_node, 3): current coordinates in the unit of length of the deck."""
+        return self._stacked("Points", "Steps/PointOffsets", self.n_node)
+
+    def point_field(self, name):
+        """(n_state, n_node) or (n_state, n_node, 3) of a field at the nodes.
+
+        displacement, velocity, contact_force (per unit depth), contact_pressure, gap, node_id.
+        """
+        self._require(name, self.point_fields, "point")
+        return self._stacked(f"PointData/{name}", f"Steps/PointDataOffsets/{name}", self.n_node)
+
+    def cell_field(self, name):
+        """(n_state, n_cell) or (n_state, n_cell, 6) of a field in the elements.
+
+        stress (xx yy zz xy yz xz, tension positive), plastic_strain (dimensionless), pressure
+        (= -trace/3), mises, part_id, element_id.
+        """
+        self._require(name, self.cell_fields, "cell")
+        return self._stacked(f"CellData/{name}", f"Steps/CellDataOffsets/{name}", self.n_cell)
+
+    def _require(self, name, present, kind):
+        if name not in present:
+            raise ResultsError(f"{self.path}: no {kind} field '{name}'; "
+                               f"there are {', '.join(present) or 'none'}")
+
+    @property
+    def cells(self):
+        """(n_cell, 4) indices of the nodes (from 0); a triangle repeats its last node."""
+        if "cells" not in self._arrays:
+            with h5py.File(self.path, "r") as stream:
+                root = stream["VTKHDF"]
+                connectivity = root["Connectivity"][()]
+                offsets = root["Offsets"][()]
+                types = root["Types"][()]
+            if not np.all(np.isin(types, (TRIANGLE, QUAD))):
+                raise ResultsError(f"{self.path}: a cell is neither a triangle nor a quad")
+            starts = offsets[:self.n_cell].astype(int)
+            corner = np.where(types[:self.n_cell] == TRIANGLE, 2, 3)
+            self._arrays["cells"] = np.stack(
+                [connectivity[starts + np.minimum(k, corner)] for k in range(4)],
+                axis=1).astype(int)
+        return self._arrays["cells"]
+
+    def history(self, name):
+        """A history table (see histories.History): glstat, rcforc, nodout, contact or matsum."""
+        if name not in self.histories:
+            raise ResultsError(f"{self.path}: no history '{name}'; "
+                               f"there are {', '.join(self.histories) or 'none'}")
+        if name not in self._arrays:
+            with h5py.File(self.path, "r") as stream:
+                self._arrays[name] = from_hdf5(name, stream["history"][name])
+        return self._arrays[name]
+
+    def state_index(self, wanted):
+        """Index of a state: an integer text counts states (-1 = last), a real is a time."""
+        if not self.n_state:
+            raise ResultsError(f"{self.path}: no states")
+        text = str(wanted)
+        try:
+            index = int(text)
+        except ValueError:
+            return self._nearest_state(text)
+        if not -self.n_state <= index < self.n_state:
+            raise ResultsError(f"no state {index}: there are {self.n_state}, from 0 on")
+        return index % self.n_state
+
+    def _nearest_state(self, text):
+        try:
+            time = float(text)
+        except ValueError:
+            raise ResultsError(f"'{text}' is neither a state number nor a time") from None
+        spare = 1.0e-9 * abs(self.times[-1])
+        if not self.times[0] - spare <= time <= self.times[-1] + spare:
+            raise ResultsError(f"time {time:g} is outside the states "
+                               f"({self.times[0]:g} to {self.times[-1]:g})")
+        return int(np.argmin(np.abs(self.times - time)))
+
+
+def plain_text(value):
+    """Text of an HDF5 string attribute or dataset, in whichever form h5py hands it over."""
+    if isinstance(value, np.ndarray):
+        value = value.ravel()
+        parts = [plain_text(part) for part in value]
+        return parts[0] if len(parts) == 1 else "\n".join(parts)
+    if isinstance(value, bytes):
+        value = value.decode("utf-8", errors="replace")
+    return str(value).rstrip(" \x00")
