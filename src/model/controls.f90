@@ -38,7 +38,6 @@ module controls_m
     real(wp) :: dt_scale = 0.9_wp            !! TSSFAC
     integer :: length_rule = length_by_side  !! ISDO
     integer :: dt_curve = 0                  !! LCTM: index of the curve that caps the step
-    real(wp) :: dt_constant = 0.0_wp         !! dt= of the command line; 0 = not given
     real(wp) :: penalty_scale = 0.1_wp       !! SLSFAC
     logical :: contact_limits_step = .true.  !! ECDT = 1 switches the contact warning off
     type(output_plan_t) :: output

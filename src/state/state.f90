@@ -19,13 +19,17 @@ module state_m
     integer :: cycle = 0
     real(wp) :: time = 0.0_wp
     real(wp) :: dt = 0.0_wp                    !! step that leads away from this state
+    real(wp) :: dt_before = 0.0_wp             !! step that led here, 0 at the start
     real(wp), allocatable :: motion(:, :)      !! (4, n_node) u_x, u_y, v_x, v_y: one load a node
     real(wp), allocatable :: mass(:)           !! (n_node) lumped mass
     real(wp), allocatable :: inverse_mass(:, :) !! (2, n_node) 1/m, 0 where the motion is prescribed
     real(wp), allocatable :: force_special(:, :) !! (2, n_special) contact + external force
+    real(wp), allocatable :: external(:, :)    !! (2, n_special) external force; only where the deck has loads
     real(wp), allocatable :: force_slots(:, :) !! (2, force slots) internal force, tile by tile
-    real(wp), allocatable :: internal_force(:, :) !! (2, n_node) divergence of stress; interior nodes
+    real(wp), allocatable :: internal_force(:, :) !! (2, n_node) divergence of stress; of interior nodes
                                                !! only in cycles that write
+    real(wp), allocatable :: prescribed_velocity(:) !! (n_motion) v(n-1/2), v(n+1/2) once the cycle knows it
+    real(wp) :: body_acceleration(2) = 0.0_wp  !! of *LOAD_BODY at `time`
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)
     real(wp) :: external_work = 0.0_wp

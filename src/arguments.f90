@@ -1,0 +1,175 @@
+! SPDX-License-Identifier: MIT
+!> The command line: `i=DECK d=DIR jobid=NAME ncpu=N memory=... OVERRIDES`; a bare path works as i=.
+module arguments_m
+  use errors_m, only : error_t, raise, status_input
+  implicit none
+  private
+  public :: arguments_t, read_arguments, help_text
+
+  !> Longest single argument.
+  integer, parameter :: argument_length = 4096
+
+  !> What the command line asks for.
+  type :: arguments_t
+    logical :: help = .false.
+    logical :: version = .false.
+    character(:), allocatable :: deck       !! path of the deck
+    character(:), allocatable :: directory  !! where results go
+    character(:), allocatable :: job        !! stem of the result files
+    character(:), allocatable :: line       !! all arguments in one line, for the record
+    integer :: n_thread = 1
+    character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
+  end type arguments_t
+
+  !> Names that may be overridden for every deck (a contact one also as NAME.INTERFACE).
+  character(6), parameter :: override_names(6) = [character(6) :: 'ctype', 'ngauss', 'pen', &
+    'endtim', 'dt', 'tssfac']
+
+contains
+
+  !> Read the arguments; all mistakes are reported together.
+  subroutine read_arguments(arguments, error)
+    type(arguments_t), intent(out) :: arguments
+    type(error_t), allocatable, intent(out) :: error
+    character(argument_length) :: word
+    character(:), allocatable :: mistakes
+    integer :: i
+
+    allocate (arguments%overrides(0))
+    arguments%line = ''
+    mistakes = ''
+    do i = 1, command_argument_count()
+      call get_command_argument(i, word)
+      arguments%line = arguments%line//merge(' ', '', i > 1)//trim(word)
+      call read_word(trim(word), arguments, mistakes)
+    end do
+    if (arguments%help .or. arguments%version) return
+    if (.not. allocated(arguments%deck)) mistakes = mistakes &
+      //'no deck given: expected i=DECK'//new_line('a')
+    if (len(mistakes) > 0) then
+      call raise(error, mistakes//'try slideline --help', status_input)
+      return
+    end if
+    if (.not. allocated(arguments%directory)) arguments%directory = '.'
+    if (.not. allocated(arguments%job)) arguments%job = file_stem(arguments%deck)
+  end subroutine read_arguments
+
+  !> Understand one argument.
+  subroutine read_word(word, arguments, mistakes)
+    character(*), intent(in) :: word
+    type(arguments_t), intent(inout) :: arguments
+    character(:), allocatable, intent(inout) :: mistakes
+    character(:), allocatable :: name, value
+    integer :: equals, status
+
+    equals = index(word, '=')
+    if (word == '--help' .or. word == '-h') then
+      arguments%help = .true.
+      return
+    else if (word == '--version') then
+      arguments%version = .true.
+      return
+    else if (equals == 0 .and. word(1:min(1, len(word))) /= '-') then
+      call take(arguments%deck, word, 'deck', mistakes)
+      return
+    end if
+    name = lower(word(:equals - 1))
+    value = word(equals + 1:)
+    select case (name)
+    case ('i')
+      call take(arguments%deck, value, 'deck', mistakes)
+    case ('d')
+      call take(arguments%directory, value, 'd=', mistakes)
+    case ('jobid')
+      call take(arguments%job, value, 'jobid=', mistakes)
+      if (index(value, '/') > 0) mistakes = mistakes//'jobid="'//value &
+        //'": expected a name without /'//new_line('a')
+    case ('ncpu')
+      read (value, *, iostat=status) arguments%n_thread
+      if (status /= 0 .or. verify(value, '0123456789') > 0 .or. arguments%n_thread < 1 &
+        .or. arguments%n_thread > 1024) mistakes = mistakes//'ncpu="'//value &
+        //'": expected a number from 1 to 1024'//new_line('a')
+    case ('memory', 'memory2')
+    case default
+      if (is_override(name)) then
+        arguments%overrides = [character(argument_length) :: arguments%overrides, word]
+      else
+        mistakes = mistakes//'unknown argument "'//word//'"'//new_line('a')
+      end if
+    end select
+  end subroutine read_word
+
+  !> Set a text once.
+  subroutine take(target_text, value, name, mistakes)
+    character(:), allocatable, intent(inout) :: target_text
+    character(*), intent(in) :: value, name
+    character(:), allocatable, intent(inout) :: mistakes
+
+    if (allocated(target_text)) then
+      mistakes = mistakes//name//' is given twice: "'//target_text//'" and "'//value//'"' &
+        //new_line('a')
+    else if (len_trim(value) == 0) then
+      mistakes = mistakes//name//' is empty'//new_line('a')
+    else
+      target_text = value
+    end if
+  end subroutine take
+
+  !> Whether `name` may stand before the = of an override.
+  pure function is_override(name) result(known)
+    character(*), intent(in) :: name
+    logical :: known
+    integer :: dot
+
+    dot = index(name, '.')
+    known = any(override_names == name) .or. index(name, 'p:') == 1
+    if (dot > 1 .and. dot < len(name)) known = known .or. (any(override_names(1:3) == name(:dot - 1)) &
+      .and. verify(name(dot + 1:), '0123456789') == 0)
+  end function is_override
+
+  !> Lower case.
+  pure function lower(text) result(folded)
+    character(*), intent(in) :: text
+    character(len(text)) :: folded
+    integer :: i
+
+    folded = text
+    do i = 1, len(text)
+      if (text(i:i) >= 'A' .and. text(i:i) <= 'Z') folded(i:i) = achar(iachar(text(i:i)) + 32)
+    end do
+  end function lower
+
+  !> File name without folders and last extension.
+  pure function file_stem(path) result(stem)
+    character(*), intent(in) :: path
+    character(:), allocatable :: stem
+    integer :: dot
+
+    stem = path(index(path, '/', back=.true.) + 1:)
+    dot = index(stem, '.', back=.true.)
+    if (dot > 1) stem = stem(:dot - 1)
+  end function file_stem
+
+  !> What --help prints.
+  function help_text() result(text)
+    character(:), allocatable :: text
+    character(1), parameter :: n = new_line('a')
+
+    text = 'slideline: 2D explicit contact dynamics'//n//n// &
+      'usage: slideline i=DECK [d=DIR] [jobid=NAME] [ncpu=N] [OVERRIDES]'//n// &
+      '       slideline DECK ...     the same'//n//n// &
+      '  i=DECK        LS-DYNA style keyword deck'//n// &
+      '  d=DIR         folder of the results, made with its parents (default: .)'//n// &
+      '  jobid=NAME    stem of the result files (default: the deck''s)'//n// &
+      '  ncpu=N        threads (default 1); the results have the same bits at any number'//n// &
+      '  memory=...    accepted and ignored'//n//n// &
+      'overrides, for sweeps:'//n// &
+      '  ctype=T ngauss=N pen=P      contact of every interface; ctype.2=T of interface 2'//n// &
+      '  endtim=T dt=DT tssfac=F     end time, constant step, safety factor'//n// &
+      '  p:NAME=VALUE                a *PARAMETER of the deck'//n//n// &
+      'results: JOB.vtkhdf (ParaView), JOB.*.csv, JOB.log, JOB.effective.k (the deck as run)'//n// &
+      'exit status: 0 normal, 1 refused input, 2 error termination, 3 files, 4 stopped on request'//n// &
+      '--version prints the version, compiler and options'
+  end function help_text
+
+end module arguments_m

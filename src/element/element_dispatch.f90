@@ -1,0 +1,44 @@
+! SPDX-License-Identifier: MIT
+!> Element forces tile by tile, and the one place that asks for the element form.
+module element_dispatch_m
+  use kinds_m, only : wp
+  use block_state_m, only : block_state_t
+  use element_chunk_m, only : element_chunk_t, scatter_chunk
+  use layout_m, only : chunk_size, tile_t
+  use model_m, only : model_t
+  use parts_m, only : form_one_point
+  use quad_one_point_m, only : advance_one_point
+  implicit none
+  private
+  public :: add_tile_forces
+
+contains
+
+  !> Advance all elements of one tile by the step `dt` that led here and sum their internal forces on the tile's
+  !> local nodes.
+  subroutine add_tile_forces(model, tile, motion, dt, elements, force)
+    type(model_t), intent(in) :: model
+    type(tile_t), intent(in) :: tile
+    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node)
+    real(wp), intent(in) :: dt
+    type(block_state_t), intent(inout) :: elements     !! only this tile's slots are touched
+    real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local), set here
+    type(element_chunk_t) :: chunk
+    integer :: i_chunk, first
+
+    force = 0.0_wp
+    do i_chunk = tile%first_chunk, tile%last_chunk
+      first = (i_chunk - 1)*chunk_size + 1
+      associate (part => model%parts(model%layout%chunk_part(i_chunk)))
+        select case (model%sections(part%section)%element_form)
+        case (form_one_point)
+          call advance_one_point(i_chunk, model%layout%slot_nodes(1, first), motion, &
+            model%materials(part%material), part%hourglass, model%controls%length_rule, dt, &
+            elements, chunk)
+          call scatter_chunk(model%layout%slot_local(1, first), chunk, force)
+        end select
+      end associate
+    end do
+  end subroutine add_tile_forces
+
+end module element_dispatch_m

@@ -1,0 +1,178 @@
+! SPDX-License-Identifier: MIT
+!> Element state at time zero, lumped mass, and what the output asks of elements.
+module element_state_m
+  use kinds_m, only : wp
+  use block_state_m, only : block_state_t
+  use layout_m, only : chunk_size
+  use material_dispatch_m, only : history_size
+  use model_m, only : model_t
+  use parts_m, only : hourglass_stiffness
+  use volumetric_m, only : log_ratio, volumetric_energy
+  implicit none
+  private
+  public :: start_elements, lump_mass, element_stresses, element_plastic_strains, &
+    add_part_energies
+
+contains
+
+  !> Allocate the streams and fill the reference shape. Elastic parts get no plastic history, parts
+  !> without stiffness hourglass control no hourglass memory.
+  subroutine start_elements(model, elements)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(out) :: elements
+    integer :: n_slot, n_chunk, i_slot
+
+    n_slot = model%layout%n_slot
+    n_chunk = model%layout%n_chunk
+    allocate (elements%reference(n_slot, 6))
+    allocate (elements%deviator(n_slot, 3), source=0.0_wp)
+    allocate (elements%deviatoric_work(n_chunk), elements%hourglass_work(n_chunk), &
+      elements%viscous_work(n_chunk), source=0.0_wp)
+    allocate (elements%time_limit(n_chunk), elements%volume_limit(n_chunk), source=1.0_wp)
+    do i_slot = 1, n_slot
+      call fill_reference(model, i_slot, elements%reference)
+    end do
+    call reserve_memories(model, elements)
+  end subroutine start_elements
+
+  !> Diagonals and h.X of one slot; padding repeats the slot before it, so that it divides by no zero.
+  subroutine fill_reference(model, i_slot, reference)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_slot
+    real(wp), intent(inout) :: reference(:, :)
+    real(wp) :: x(2, 4)
+
+    if (model%layout%slot_element(i_slot) == 0) then
+      reference(i_slot, :) = reference(i_slot - 1, :)
+      return
+    end if
+    x = model%mesh%coordinates(:, model%layout%slot_nodes(:, i_slot))
+    reference(i_slot, 1:2) = x(:, 3) - x(:, 1)
+    reference(i_slot, 3:4) = x(:, 4) - x(:, 2)
+    reference(i_slot, 5:6) = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
+  end subroutine fill_reference
+
+  !> Where each chunk's history and hourglass memory start.
+  subroutine reserve_memories(model, elements)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(inout) :: elements
+    integer :: i_chunk, n_history, n_hourglass, n
+
+    allocate (elements%history_start(model%layout%n_chunk), &
+      elements%hourglass_start(model%layout%n_chunk), source=0)
+    n_history = 0
+    n_hourglass = 0
+    do i_chunk = 1, model%layout%n_chunk
+      associate (part => model%parts(model%layout%chunk_part(i_chunk)))
+        n = history_size(model%materials(part%material))
+        if (n > 0) elements%history_start(i_chunk) = n_history + 1
+        n_history = n_history + n*chunk_size
+        if (part%hourglass%form == hourglass_stiffness) then
+          elements%hourglass_start(i_chunk) = n_hourglass + 1
+          n_hourglass = n_hourglass + 2*chunk_size
+        end if
+      end associate
+    end do
+    allocate (elements%history(n_history), elements%hourglass_strain(n_hourglass), source=0.0_wp)
+  end subroutine reserve_memories
+
+  !> Lumped mass: a quarter of each quad, a third of each triangle to its nodes.
+  subroutine lump_mass(model, mass)
+    type(model_t), intent(in) :: model
+    real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of thickness
+    real(wp) :: x(2, 4), area
+    integer :: i, corners
+
+    allocate (mass(model%mesh%n_node), source=0.0_wp)
+    do i = 1, model%mesh%n_element
+      associate (nodes => model%mesh%element_nodes(:, i), &
+        material => model%materials(model%parts(model%mesh%element_part(i))%material))
+        x = model%mesh%coordinates(:, nodes)
+        area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
+          - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+        corners = merge(3, 4, nodes(4) == nodes(3))
+        mass(nodes(:corners)) = mass(nodes(:corners)) + material%density*area/corners
+      end associate
+    end do
+  end subroutine lump_mass
+
+  !> Cauchy stress of all elements, xx yy zz xy, in deck order.
+  subroutine element_stresses(model, motion, elements, stress)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: motion(:, :)
+    type(block_state_t), intent(in) :: elements
+    real(wp), intent(inout) :: stress(:, :) !! (4, n_element)
+    real(wp) :: volumetric
+    integer :: i, slot
+
+    do i = 1, model%mesh%n_element
+      slot = model%layout%element_slot(i)
+      volumetric = model%materials(model%parts(model%mesh%element_part(i))%material)%bulk &
+        *log_ratio(slot_stretch(model, motion, elements, slot))
+      stress(1, i) = elements%deviator(slot, 1) + volumetric
+      stress(2, i) = elements%deviator(slot, 2) + volumetric
+      stress(3, i) = volumetric - (elements%deviator(slot, 1) + elements%deviator(slot, 2))
+      stress(4, i) = elements%deviator(slot, 3)
+    end do
+  end subroutine element_stresses
+
+  !> Effective plastic strain of all elements in deck order, 0 in elastic parts.
+  subroutine element_plastic_strains(model, elements, plastic_strain)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    real(wp), intent(inout) :: plastic_strain(:) !! (n_element)
+    integer :: i, slot, i_chunk
+
+    plastic_strain = 0.0_wp
+    do i = 1, model%mesh%n_element
+      slot = model%layout%element_slot(i)
+      i_chunk = (slot - 1)/chunk_size + 1
+      if (elements%history_start(i_chunk) == 0) cycle
+      plastic_strain(i) = elements%history(elements%history_start(i_chunk) &
+        + mod(slot - 1, chunk_size))
+    end do
+  end subroutine element_plastic_strains
+
+  !> J - 1 of the element in a slot.
+  pure function slot_stretch(model, motion, elements, slot) result(stretch)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: motion(:, :)
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: slot
+    real(wp) :: stretch
+    real(wp) :: d31(2), d42(2)
+
+    associate (nodes => model%layout%slot_nodes(:, slot), r => elements%reference(slot, :))
+      d31 = motion(1:2, nodes(3)) - motion(1:2, nodes(1))
+      d42 = motion(1:2, nodes(4)) - motion(1:2, nodes(2))
+      stretch = ((r(1)*d42(2) + d31(1)*(r(4) + d42(2))) - (r(3)*d31(2) + d42(1)*(r(2) + d31(2)))) &
+        /(r(1)*r(4) - r(3)*r(2))
+    end associate
+  end function slot_stretch
+
+  !> Energies per part. The volumetric part of the internal energy is a potential and is evaluated
+  !> here; only the work of the deviator is accumulated in the step.
+  subroutine add_part_energies(model, motion, elements, internal, hourglass, viscous)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: motion(:, :)
+    type(block_state_t), intent(in) :: elements
+    real(wp), intent(inout), dimension(:) :: internal, hourglass, viscous !! (n_part)
+    integer :: i_chunk, part, slot
+
+    do i_chunk = 1, model%layout%n_chunk
+      part = model%layout%chunk_part(i_chunk)
+      internal(part) = internal(part) + elements%deviatoric_work(i_chunk)
+      hourglass(part) = hourglass(part) + elements%hourglass_work(i_chunk)
+      viscous(part) = viscous(part) + elements%viscous_work(i_chunk)
+      do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
+        if (model%layout%slot_element(slot) == 0) cycle
+        associate (r => elements%reference(slot, :))
+          internal(part) = internal(part) + 0.5_wp*(r(1)*r(4) - r(3)*r(2)) &
+            *volumetric_energy(model%materials(model%parts(part)%material)%bulk, &
+            slot_stretch(model, motion, elements, slot))
+        end associate
+      end do
+    end do
+  end subroutine add_part_energies
+
+end module element_state_m

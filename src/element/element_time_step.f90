@@ -1,0 +1,90 @@
+! SPDX-License-Identifier: MIT
+!> Stable step of a chunk: L/c with L = area over the longest side or diagonal (ISDO of *CONTROL_TIMESTEP),
+!> and L/(Q + sqrt(Q^2 + c^2)), Q = Q2 c + Q1 L |t|, in compression under bulk viscosity.
+module element_time_step_m
+  use kinds_m, only : wp
+  use layout_m, only : chunk_size
+  use controls_m, only : length_by_diagonal
+  use element_chunk_m, only : element_chunk_t
+  use parts_m, only : hourglass_t
+  implicit none
+  private
+  public :: stable_step
+
+contains
+
+  !> Smallest L/c of the chunk, and its smallest volume ratio.
+  pure subroutine stable_step(length_rule, sound_speed, viscosity, chunk, limit, volume)
+    integer, intent(in) :: length_rule
+    real(wp), intent(in) :: sound_speed
+    type(hourglass_t), intent(in) :: viscosity !! its Q1 and Q2 count
+    type(element_chunk_t), intent(in) :: chunk
+    real(wp), intent(out) :: limit             !! s
+    real(wp), intent(out) :: volume            !! smallest A/A0
+    real(wp) :: squared(chunk_size), smallest
+    integer :: i
+
+    if (length_rule == length_by_diagonal) then
+      call longest_diagonals(chunk, squared)
+    else
+      call longest_sides(chunk, squared)
+    end if
+    smallest = huge(1.0_wp)
+    volume = huge(1.0_wp)
+    !$omp simd reduction(min : smallest, volume)
+    do i = 1, chunk_size
+      squared(i) = chunk%area(i)*chunk%area(i)/squared(i)
+      smallest = min(smallest, squared(i))
+      volume = min(volume, 1.0_wp + chunk%stretch(i))
+    end do
+    limit = sqrt(smallest)/sound_speed
+    if (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp) &
+      limit = minval(viscous_limit(sqrt(squared), sound_speed, viscosity%quadratic, &
+      viscosity%linear, chunk%trace))
+  end subroutine stable_step
+
+  !> Step of one element under bulk viscosity.
+  pure elemental function viscous_limit(length, sound_speed, quadratic, linear, trace) result(limit)
+    real(wp), intent(in) :: length, sound_speed, quadratic, linear, trace
+    real(wp) :: limit
+    real(wp) :: q
+
+    q = 0.0_wp
+    if (trace < 0.0_wp) q = linear*sound_speed - quadratic*length*trace
+    limit = length/(q + sqrt(q*q + sound_speed*sound_speed))
+  end function viscous_limit
+
+  !> Square of the longest side: with d = d31 -+ d42, opposite sides are (d +- h)/2.
+  pure subroutine longest_sides(chunk, squared)
+    type(element_chunk_t), intent(in) :: chunk
+    real(wp), intent(out) :: squared(chunk_size)
+    real(wp) :: ax, ay, bx, by, hx, hy
+    integer :: i
+
+    !$omp simd private(ax, ay, bx, by, hx, hy)
+    do i = 1, chunk_size
+      ax = 0.5_wp*(chunk%x31(i) - chunk%x42(i))
+      ay = 0.5_wp*(chunk%y31(i) - chunk%y42(i))
+      bx = 0.5_wp*(chunk%x31(i) + chunk%x42(i))
+      by = 0.5_wp*(chunk%y31(i) + chunk%y42(i))
+      hx = 0.5_wp*chunk%hx(i)
+      hy = 0.5_wp*chunk%hy(i)
+      ! |a +- h|^2 is largest with the sign of a.h.
+      squared(i) = hx*hx + hy*hy + max(ax*ax + ay*ay + 2.0_wp*abs(ax*hx + ay*hy), &
+        bx*bx + by*by + 2.0_wp*abs(bx*hx + by*hy))
+    end do
+  end subroutine longest_sides
+
+  !> Square of the longer diagonal.
+  pure subroutine longest_diagonals(chunk, squared)
+    type(element_chunk_t), intent(in) :: chunk
+    real(wp), intent(out) :: squared(chunk_size)
+    integer :: i
+
+    !$omp simd
+    do i = 1, chunk_size
+      squared(i) = max(chunk%x31(i)**2 + chunk%y31(i)**2, chunk%x42(i)**2 + chunk%y42(i)**2)
+    end do
+  end subroutine longest_diagonals
+
+end module element_time_step_m

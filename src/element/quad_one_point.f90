@@ -1,0 +1,130 @@
+! SPDX-License-Identifier: MIT
+!> One chunk of one-point quads: from nodal motion to nodal forces, stress updated on the way.
+module quad_one_point_m
+  use kinds_m, only : wp
+  use block_state_m, only : block_state_t
+  use bulk_viscosity_m, only : add_bulk_viscosity
+  use element_chunk_m, only : element_chunk_t, gather_chunk
+  use element_time_step_m, only : stable_step
+  use hourglass_m, only : resist_viscously, resist_elastically
+  use layout_m, only : chunk_size
+  use material_dispatch_m, only : update_stress
+  use parts_m, only : hourglass_t, material_t, hourglass_viscous
+  use quad_kinematics_m, only : form_present_shape, form_increments, form_forces
+  use stress_chunk_m, only : stress_chunk_t
+  use volumetric_m, only : volumetric_stress
+  implicit none
+  private
+  public :: advance_one_point
+
+contains
+
+  !> Advance one chunk by the step `dt` that led to the present motion (dt = 0: forces only) and
+  !> leave its forces in `chunk`.
+  pure subroutine advance_one_point(i_chunk, nodes, motion, material, hourglass, length_rule, dt, &
+    elements, chunk)
+    integer, intent(in) :: i_chunk
+    integer, intent(in) :: nodes(4, chunk_size)
+    real(wp), intent(in), contiguous :: motion(:, :)  !! (4, n_node)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    integer, intent(in) :: length_rule
+    real(wp), intent(in) :: dt
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk     !! forces out
+    type(stress_chunk_t) :: stress
+    integer :: first, n_slot
+
+    first = (i_chunk - 1)*chunk_size + 1
+    n_slot = size(elements%reference, 1)
+    call gather_chunk(nodes, motion, chunk)
+    call form_present_shape(elements%reference(first, 1), n_slot, chunk)
+    call form_increments(dt, chunk, stress)
+    call load_deviator(elements%deviator(first, 1), n_slot, stress)
+    if (elements%history_start(i_chunk) > 0) then
+      call update_stress(material, stress, elements%history(elements%history_start(i_chunk)))
+    else
+      call update_stress(material, stress)
+    end if
+    call store_deviator(stress, n_slot, elements%deviator(first, 1))
+    elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
+      + work_of_deviator(stress%work, chunk%mid_area)
+    call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
+    call resist(i_chunk, material, hourglass, dt, stress, elements, chunk)
+    call form_forces(stress, chunk)
+    call stable_step(length_rule, material%sound_speed, hourglass, chunk, &
+      elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
+  end subroutine advance_one_point
+
+  !> Bulk viscosity and hourglass control of one chunk, with their work.
+  pure subroutine resist(i_chunk, material, hourglass, dt, stress, elements, chunk)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    real(wp), intent(in) :: dt
+    type(stress_chunk_t), intent(in) :: stress
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk
+    real(wp) :: work
+    integer :: first
+
+    if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
+      call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
+        material%sound_speed, dt, chunk, work)
+      elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
+    end if
+    if (hourglass%form == hourglass_viscous) then
+      call resist_viscously(0.25_wp*hourglass%coefficient*material%density*material%sound_speed, &
+        dt, chunk, work)
+    else
+      first = elements%hourglass_start(i_chunk)
+      call resist_elastically(0.25_wp*hourglass%coefficient*(material%bulk &
+        + 4.0_wp*material%shear/3.0_wp), dt, stress, elements%hourglass_strain(first), &
+        elements%hourglass_strain(first + chunk_size), chunk, work)
+    end if
+    elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
+  end subroutine resist
+
+  !> Deviator of a chunk out of its streams.
+  pure subroutine load_deviator(stream, stride, stress)
+    integer, intent(in) :: stride
+    real(wp), intent(in) :: stream(stride, *)
+    type(stress_chunk_t), intent(inout) :: stress
+    integer :: i
+
+    do i = 1, chunk_size
+      stress%sxx(i) = stream(i, 1)
+      stress%syy(i) = stream(i, 2)
+      stress%sxy(i) = stream(i, 3)
+    end do
+  end subroutine load_deviator
+
+  !> Deviator of a chunk into its streams.
+  pure subroutine store_deviator(stress, stride, stream)
+    type(stress_chunk_t), intent(in) :: stress
+    integer, intent(in) :: stride
+    real(wp), intent(inout) :: stream(stride, *)
+    integer :: i
+
+    do i = 1, chunk_size
+      stream(i, 1) = stress%sxx(i)
+      stream(i, 2) = stress%syy(i)
+      stream(i, 3) = stress%sxy(i)
+    end do
+  end subroutine store_deviator
+
+  !> Work of the deviator over a chunk; padding has no strain and adds nothing.
+  pure function work_of_deviator(density, area) result(work)
+    real(wp), intent(in) :: density(chunk_size) !! per volume
+    real(wp), intent(in) :: area(chunk_size)    !! mid-step
+    real(wp) :: work
+    integer :: i
+
+    work = 0.0_wp
+    !$omp simd reduction(+ : work)
+    do i = 1, chunk_size
+      work = work + density(i)*area(i)
+    end do
+  end function work_of_deviator
+
+end module quad_one_point_m

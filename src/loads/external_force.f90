@@ -1,0 +1,84 @@
+! SPDX-License-Identifier: MIT
+!> Loads from outside: nodal forces, pressure on edges, base acceleration.
+module external_force_m
+  use kinds_m, only : wp
+  use conditions_m, only : conditions_t, pressure_load_t
+  use curves_m, only : curve_t, curve_value
+  use model_m, only : model_t
+  implicit none
+  private
+  public :: form_external_force, body_acceleration, damping_rate
+
+contains
+
+  !> Nodal loads and pressures at `time` on the present geometry.
+  subroutine form_external_force(model, motion, time, force)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: motion(:, :)    !! (4, n_node)
+    real(wp), intent(in) :: time
+    real(wp), intent(inout) :: force(:, :)  !! (2, n_special), set here
+    integer :: i
+
+    force = 0.0_wp
+    associate (loads => model%conditions%nodal_loads)
+      do i = 1, size(loads)
+        force(loads(i)%direction, loads(i)%node) = force(loads(i)%direction, loads(i)%node) &
+          + loads(i)%scale*curve_value(model%curves(loads(i)%curve), time)
+      end do
+    end associate
+    do i = 1, size(model%conditions%pressures)
+      call add_pressure(model, model%conditions%pressures(i), motion, time, force)
+    end do
+  end subroutine form_external_force
+
+  !> Pressure on one edge, half of it to each node: against the outward normal (t_y, -t_x).
+  subroutine add_pressure(model, load, motion, time, force)
+    type(model_t), intent(in) :: model
+    type(pressure_load_t), intent(in) :: load
+    real(wp), intent(in) :: motion(:, :)
+    real(wp), intent(in) :: time
+    real(wp), intent(inout) :: force(:, :)
+    real(wp) :: edge(2), half(2)
+
+    if (time < load%arrival) return
+    edge = (model%mesh%coordinates(:, load%nodes(2)) - model%mesh%coordinates(:, load%nodes(1))) &
+      + (motion(1:2, load%nodes(2)) - motion(1:2, load%nodes(1)))
+    half = 0.5_wp*load%scale*curve_value(model%curves(load%curve), time - load%arrival) &
+      *[-edge(2), edge(1)]
+    force(:, load%nodes(1)) = force(:, load%nodes(1)) + half
+    force(:, load%nodes(2)) = force(:, load%nodes(2)) + half
+  end subroutine add_pressure
+
+  !> Acceleration that *LOAD_BODY gives every node: minus the base acceleration.
+  pure function body_acceleration(conditions, curves, time) result(acceleration)
+    type(conditions_t), intent(in) :: conditions
+    type(curve_t), intent(in) :: curves(:)
+    real(wp), intent(in) :: time
+    real(wp) :: acceleration(2)
+    integer :: i
+
+    acceleration = 0.0_wp
+    do i = 1, size(conditions%body_loads)
+      associate (load => conditions%body_loads(i))
+        acceleration(load%direction) = acceleration(load%direction) &
+          - load%scale*curve_value(curves(load%curve), time)
+      end associate
+    end do
+  end function body_acceleration
+
+  !> D per direction of the global damping f = -D m v.
+  pure function damping_rate(conditions, curves, time) result(rate)
+    type(conditions_t), intent(in) :: conditions
+    type(curve_t), intent(in) :: curves(:)
+    real(wp), intent(in) :: time
+    real(wp) :: rate(2)
+
+    rate = 0.0_wp
+    if (.not. allocated(conditions%damping)) return
+    associate (damping => conditions%damping)
+      rate = damping%coefficient*damping%factor
+      if (damping%curve > 0) rate = curve_value(curves(damping%curve), time)*damping%factor
+    end associate
+  end function damping_rate
+
+end module external_force_m

@@ -1,0 +1,40 @@
+! SPDX-License-Identifier: MIT
+!> slideline: arguments in, exit status out.
+program slideline
+  use, intrinsic :: iso_c_binding, only : c_int
+  use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+  use arguments_m, only : arguments_t, read_arguments, help_text
+  use build_info_m, only : version, build_type, compiler, flags
+  use errors_m, only : error_t
+  use run_m, only : run_deck
+  implicit none
+
+  interface
+    !> C library: end the process with a status that is known only now.
+    subroutine c_exit(status) bind(c, name='exit')
+      import :: c_int
+      integer(c_int), value :: status
+    end subroutine c_exit
+  end interface
+
+  type(arguments_t) :: arguments
+  type(error_t), allocatable :: error
+
+  call read_arguments(arguments, error)
+  if (.not. allocated(error)) then
+    if (arguments%help) then
+      write (output_unit, '(a)') help_text()
+    else if (arguments%version) then
+      write (output_unit, '(a)') 'slideline '//version, 'build '//build_type//', '//compiler, &
+        'flags '//flags
+    else
+      call run_deck(arguments, error)
+    end if
+  end if
+  if (allocated(error)) then
+    write (error_unit, '(a)') error%message
+    flush (output_unit)
+    flush (error_unit)
+    call c_exit(int(error%status, c_int))
+  end if
+end program slideline

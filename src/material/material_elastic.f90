@@ -1,0 +1,38 @@
+! SPDX-License-Identifier: MIT
+!> Elastic deviator: Jaumann rate, s* = Q s Q^T + 2 G dev(D) dt (seed (A4)).
+module material_elastic_m
+  use kinds_m, only : wp
+  use layout_m, only : chunk_size
+  use stress_chunk_m, only : stress_chunk_t, rotate_deviator
+  implicit none
+  private
+  public :: update_elastic
+
+contains
+
+  !> Advance the deviator of a chunk by one step and leave its work (trapezoidal rule).
+  pure subroutine update_elastic(shear, chunk)
+    real(wp), intent(in) :: shear              !! G
+    type(stress_chunk_t), intent(inout) :: chunk !! increments in, deviator in and out, work out
+    real(wp) :: third, exx, eyy, oxx, oyy, oxy
+    integer :: i
+
+    call rotate_deviator(chunk%cos2, chunk%sin2, chunk%sxx, chunk%syy, chunk%sxy)
+    !$omp simd private(third, exx, eyy, oxx, oyy, oxy)
+    do i = 1, chunk_size
+      third = (chunk%dxx(i) + chunk%dyy(i))/3.0_wp
+      exx = chunk%dxx(i) - third
+      eyy = chunk%dyy(i) - third
+      oxx = chunk%sxx(i)
+      oyy = chunk%syy(i)
+      oxy = chunk%sxy(i)
+      chunk%sxx(i) = oxx + 2.0_wp*shear*exx
+      chunk%syy(i) = oyy + 2.0_wp*shear*eyy
+      chunk%sxy(i) = oxy + 2.0_wp*shear*chunk%dxy(i)
+      ! dev(D) and D do the same work on a deviator; D_zz = 0 spares the zz term.
+      chunk%work(i) = 0.5_wp*((chunk%sxx(i) + oxx)*chunk%dxx(i) &
+        + (chunk%syy(i) + oyy)*chunk%dyy(i)) + (chunk%sxy(i) + oxy)*chunk%dxy(i)
+    end do
+  end subroutine update_elastic
+
+end module material_elastic_m

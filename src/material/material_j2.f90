@@ -1,0 +1,91 @@
+! SPDX-License-Identifier: MIT
+!> J2 plasticity with linear isotropic, kinematic or mixed hardening: elastic trial stress, then radial
+!> return (seed (A4) to (A6)). With flow direction xi = s - alpha and its von Mises value xi_v,
+!> d_eps = (xi_v - sigma_Y - beta E_p eps_p)/(3G + E_p), s -= 3G d_eps xi/xi_v,
+!> alpha += (1 - beta) E_p d_eps xi/xi_v: xi ends on the updated yield surface.
+module material_j2_m
+  use kinds_m, only : wp
+  use layout_m, only : chunk_size
+  use parts_m, only : material_t
+  use stress_chunk_m, only : stress_chunk_t, rotate_deviator
+  implicit none
+  private
+  public :: update_j2_isotropic, update_j2_mixed
+
+contains
+
+  !> Advance a chunk by one step; isotropic hardening (beta = 1), no back stress.
+  pure subroutine update_j2_isotropic(material, chunk, plastic_strain)
+    type(material_t), intent(in) :: material
+    type(stress_chunk_t), intent(inout) :: chunk          !! increments in, deviator in and out, work out
+    real(wp), intent(inout) :: plastic_strain(chunk_size) !! effective plastic strain
+    real(wp) :: third, exx, eyy, exy, sxx, syy, sxy, mises, growth, factor, double_shear, inverse, work
+    integer :: i
+
+    call rotate_deviator(chunk%cos2, chunk%sin2, chunk%sxx, chunk%syy, chunk%sxy)
+    double_shear = 2.0_wp*material%shear
+    inverse = 1.0_wp/(3.0_wp*material%shear + material%hardening)
+    !$omp simd private(third, exx, eyy, exy, sxx, syy, sxy, mises, growth, factor, work)
+    do i = 1, chunk_size
+      exx = chunk%dxx(i)
+      eyy = chunk%dyy(i)
+      exy = chunk%dxy(i)
+      third = (exx + eyy)/3.0_wp
+      sxx = chunk%sxx(i)
+      syy = chunk%syy(i)
+      sxy = chunk%sxy(i)
+      work = sxx*exx + syy*eyy + 2.0_wp*sxy*exy
+      sxx = sxx + double_shear*(exx - third)
+      syy = syy + double_shear*(eyy - third)
+      sxy = sxy + double_shear*exy
+      mises = sqrt(3.0_wp*(sxx*sxx + syy*syy + sxx*syy + sxy*sxy))
+      growth = max(0.0_wp, mises - material%yield - material%hardening*plastic_strain(i))*inverse
+      factor = 1.0_wp - 3.0_wp*material%shear*growth/max(mises, tiny(1.0_wp))
+      chunk%sxx(i) = factor*sxx
+      chunk%syy(i) = factor*syy
+      chunk%sxy(i) = factor*sxy
+      plastic_strain(i) = plastic_strain(i) + growth
+      chunk%work(i) = 0.5_wp*(work + factor*(sxx*exx + syy*eyy + 2.0_wp*sxy*exy))
+    end do
+  end subroutine update_j2_isotropic
+
+  !> Advance a chunk by one step; kinematic or mixed hardening (beta < 1).
+  pure subroutine update_j2_mixed(material, chunk, plastic_strain, axx, ayy, axy)
+    type(material_t), intent(in) :: material
+    type(stress_chunk_t), intent(inout) :: chunk
+    real(wp), intent(inout) :: plastic_strain(chunk_size)
+    real(wp), intent(inout), dimension(chunk_size) :: axx, ayy, axy !! back stress, a deviator
+    real(wp) :: third, exx, eyy, exy, sxx, syy, sxy, mises, growth, flow, inverse, work
+    integer :: i
+
+    call rotate_deviator(chunk%cos2, chunk%sin2, chunk%sxx, chunk%syy, chunk%sxy)
+    call rotate_deviator(chunk%cos2, chunk%sin2, axx, ayy, axy)
+    inverse = 1.0_wp/(3.0_wp*material%shear + material%hardening)
+    !$omp simd private(third, exx, eyy, exy, sxx, syy, sxy, mises, growth, flow, work)
+    do i = 1, chunk_size
+      exx = chunk%dxx(i)
+      eyy = chunk%dyy(i)
+      exy = chunk%dxy(i)
+      third = (exx + eyy)/3.0_wp
+      work = chunk%sxx(i)*exx + chunk%syy(i)*eyy + 2.0_wp*chunk%sxy(i)*exy
+      sxx = chunk%sxx(i) + 2.0_wp*material%shear*(exx - third) - axx(i)
+      syy = chunk%syy(i) + 2.0_wp*material%shear*(eyy - third) - ayy(i)
+      sxy = chunk%sxy(i) + 2.0_wp*material%shear*exy - axy(i)
+      mises = sqrt(3.0_wp*(sxx*sxx + syy*syy + sxx*syy + sxy*sxy))
+      growth = max(0.0_wp, mises - material%yield &
+        - material%beta*material%hardening*plastic_strain(i))*inverse
+      flow = growth/max(mises, tiny(1.0_wp))
+      chunk%sxx(i) = sxx*(1.0_wp - 3.0_wp*material%shear*flow) + axx(i)
+      chunk%syy(i) = syy*(1.0_wp - 3.0_wp*material%shear*flow) + ayy(i)
+      chunk%sxy(i) = sxy*(1.0_wp - 3.0_wp*material%shear*flow) + axy(i)
+      flow = flow*(1.0_wp - material%beta)*material%hardening
+      axx(i) = axx(i) + flow*sxx
+      ayy(i) = ayy(i) + flow*syy
+      axy(i) = axy(i) + flow*sxy
+      plastic_strain(i) = plastic_strain(i) + growth
+      chunk%work(i) = 0.5_wp*(work + chunk%sxx(i)*exx + chunk%syy(i)*eyy &
+        + 2.0_wp*chunk%sxy(i)*exy)
+    end do
+  end subroutine update_j2_mixed
+
+end module material_j2_m

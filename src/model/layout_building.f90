@@ -1,0 +1,332 @@
+! SPDX-License-Identifier: MIT
+!> Makes the layout of a mesh: elements along a Hilbert curve, cut into tiles and chunks; nodes in the
+!> order in which the tiles touch them.
+module layout_building_m
+  use kinds_m, only : wp, long
+  use layout_m, only : layout_t, tile_t, chunk_size
+  use mesh_m, only : mesh_t
+  use sorting_m, only : sorted_order
+  implicit none
+  private
+  public :: build_slots, order_nodes, build_local_numbers
+
+  !> Elements of a tile: its nodes and forces stay in the fast caches, and few nodes are shared.
+  integer, parameter :: tile_elements = 512
+  !> Cells of the Hilbert curve along each axis, 2^16.
+  integer, parameter :: curve_bits = 16
+
+contains
+
+  !> Tiles, chunks and slots of the elements (no node numbers yet).
+  subroutine build_slots(mesh, layout)
+    type(mesh_t), intent(in) :: mesh
+    type(layout_t), intent(out) :: layout !! tiles' chunks, chunk_part, slot_element, element_slot
+    integer, allocatable :: order(:), in_tile(:)
+    integer :: n_tile, i_tile, first, last
+
+    order = sorted_order(hilbert_keys(mesh))
+    n_tile = max(1, (mesh%n_element + tile_elements - 1)/tile_elements)
+    allocate (layout%tiles(n_tile), layout%element_slot(mesh%n_element))
+    allocate (layout%chunk_part(0), layout%slot_element(0))
+    call reserve_chunks(mesh, order, layout)
+    layout%n_chunk = 0
+    do i_tile = 1, n_tile
+      call tile_range(mesh%n_element, n_tile, i_tile, first, last)
+      in_tile = order(first:last)
+      in_tile = in_tile(sorted_order(int(mesh%element_part(in_tile), long)*huge(0) + in_tile))
+      layout%tiles(i_tile)%first_chunk = layout%n_chunk + 1
+      call fill_chunks(mesh, in_tile, layout)
+      layout%tiles(i_tile)%last_chunk = layout%n_chunk
+    end do
+    layout%n_slot = layout%n_chunk*chunk_size
+  end subroutine build_slots
+
+  !> Elements first .. last of the curve belong to a tile.
+  pure subroutine tile_range(n_element, n_tile, i_tile, first, last)
+    integer, intent(in) :: n_element, n_tile, i_tile
+    integer, intent(out) :: first, last
+
+    first = int(int(n_element, long)*(i_tile - 1)/n_tile) + 1
+    last = int(int(n_element, long)*i_tile/n_tile)
+  end subroutine tile_range
+
+  !> Allocate the chunk arrays once their number is known.
+  subroutine reserve_chunks(mesh, order, layout)
+    type(mesh_t), intent(in) :: mesh
+    integer, intent(in) :: order(:)          !! elements along the curve
+    type(layout_t), intent(inout) :: layout
+    integer, allocatable :: counts(:)
+    integer :: i_tile, n_tile, n_chunk, first, last, i
+
+    n_tile = size(layout%tiles)
+    allocate (counts(maxval(mesh%element_part)))
+    n_chunk = 0
+    do i_tile = 1, n_tile
+      call tile_range(mesh%n_element, n_tile, i_tile, first, last)
+      counts = 0
+      do i = first, last
+        counts(mesh%element_part(order(i))) = counts(mesh%element_part(order(i))) + 1
+      end do
+      n_chunk = n_chunk + sum((counts + chunk_size - 1)/chunk_size)
+    end do
+    deallocate (layout%chunk_part, layout%slot_element)
+    allocate (layout%chunk_part(n_chunk), layout%slot_element(n_chunk*chunk_size), source=0)
+  end subroutine reserve_chunks
+
+  !> Put the elements of one tile, sorted by part, into chunks.
+  subroutine fill_chunks(mesh, elements, layout)
+    type(mesh_t), intent(in) :: mesh
+    integer, intent(in) :: elements(:)      !! sorted by part
+    type(layout_t), intent(inout) :: layout
+    integer :: i, part, filled, slot
+
+    part = 0
+    filled = 0
+    do i = 1, size(elements)
+      if (mesh%element_part(elements(i)) /= part .or. filled == chunk_size) then
+        part = mesh%element_part(elements(i))
+        filled = 0
+        layout%n_chunk = layout%n_chunk + 1
+        layout%chunk_part(layout%n_chunk) = part
+      end if
+      filled = filled + 1
+      slot = (layout%n_chunk - 1)*chunk_size + filled
+      layout%slot_element(slot) = elements(i)
+      layout%element_slot(elements(i)) = slot
+    end do
+  end subroutine fill_chunks
+
+  !> New order of the nodes: special ones first, then the interior nodes of each tile; in either
+  !> class in the order in which the elements touch them. Fills the tiles' node ranges.
+  subroutine order_nodes(mesh, is_special, layout, order)
+    type(mesh_t), intent(in) :: mesh
+    logical, intent(inout) :: is_special(:) !! (n_node) in: wanted special; out: all special nodes
+    type(layout_t), intent(inout) :: layout
+    integer, allocatable, intent(out) :: order(:) !! (n_node) present index of each new node
+    logical, allocatable :: placed(:)
+    integer :: i_tile, n_placed
+
+    call mark_shared_nodes(mesh, layout, is_special)
+    allocate (order(mesh%n_node))
+    allocate (placed(mesh%n_node), source=.false.)
+    n_placed = 0
+    do i_tile = 1, size(layout%tiles)
+      call place_tile_nodes(mesh, layout, i_tile, is_special, placed, order, n_placed)
+    end do
+    call place_rest(is_special, placed, order, n_placed)
+    layout%n_special = n_placed
+    do i_tile = 1, size(layout%tiles)
+      layout%tiles(i_tile)%first_node = n_placed + 1
+      call place_tile_nodes(mesh, layout, i_tile, .not. is_special, placed, order, n_placed)
+      layout%tiles(i_tile)%last_node = n_placed
+    end do
+  end subroutine order_nodes
+
+  !> Nodes that several tiles touch are special; so is a node without any element.
+  subroutine mark_shared_nodes(mesh, layout, is_special)
+    type(mesh_t), intent(in) :: mesh
+    type(layout_t), intent(in) :: layout
+    logical, intent(inout) :: is_special(:)
+    integer, allocatable :: tile_of(:)
+    integer :: i_tile, slot, k, node
+
+    allocate (tile_of(mesh%n_node), source=0)
+    do i_tile = 1, size(layout%tiles)
+      do slot = first_slot(layout%tiles(i_tile)), last_slot(layout%tiles(i_tile))
+        if (layout%slot_element(slot) == 0) cycle
+        do k = 1, 4
+          node = mesh%element_nodes(k, layout%slot_element(slot))
+          if (tile_of(node) /= 0 .and. tile_of(node) /= i_tile) is_special(node) = .true.
+          tile_of(node) = i_tile
+        end do
+      end do
+    end do
+    is_special = is_special .or. tile_of == 0
+  end subroutine mark_shared_nodes
+
+  !> Place those nodes of a tile that are wanted and not yet placed.
+  subroutine place_tile_nodes(mesh, layout, i_tile, wanted, placed, order, n_placed)
+    type(mesh_t), intent(in) :: mesh
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: i_tile
+    logical, intent(in) :: wanted(:)
+    logical, intent(inout) :: placed(:)
+    integer, intent(inout) :: order(:)
+    integer, intent(inout) :: n_placed
+    integer :: slot, k, node
+
+    do slot = first_slot(layout%tiles(i_tile)), last_slot(layout%tiles(i_tile))
+      if (layout%slot_element(slot) == 0) cycle
+      do k = 1, 4
+        node = mesh%element_nodes(k, layout%slot_element(slot))
+        if (placed(node) .or. .not. wanted(node)) cycle
+        placed(node) = .true.
+        n_placed = n_placed + 1
+        order(n_placed) = node
+      end do
+    end do
+  end subroutine place_tile_nodes
+
+  !> Place special nodes that no element touches.
+  pure subroutine place_rest(is_special, placed, order, n_placed)
+    logical, intent(in) :: is_special(:)
+    logical, intent(inout) :: placed(:)
+    integer, intent(inout) :: order(:)
+    integer, intent(inout) :: n_placed
+    integer :: node
+
+    do node = 1, size(is_special)
+      if (placed(node) .or. .not. is_special(node)) cycle
+      placed(node) = .true.
+      n_placed = n_placed + 1
+      order(n_placed) = node
+    end do
+  end subroutine place_rest
+
+  !> Node numbers of the slots, global and local to the tile, and the force slots of special nodes.
+  !> `mesh` holds the new node order.
+  subroutine build_local_numbers(mesh, layout)
+    type(mesh_t), intent(in) :: mesh
+    type(layout_t), intent(inout) :: layout
+    integer, allocatable :: local(:), special(:)
+    integer :: i_tile, n_special_slots
+
+    allocate (layout%slot_nodes(4, layout%n_slot), layout%slot_local(4, layout%n_slot))
+    allocate (local(mesh%n_node), source=0)
+    allocate (special(4*mesh%n_element))
+    n_special_slots = 0
+    do i_tile = 1, size(layout%tiles)
+      call number_tile(mesh, i_tile, layout, local, special, n_special_slots)
+    end do
+    layout%special_node = special(:n_special_slots)
+    call list_node_slots(layout)
+  end subroutine build_local_numbers
+
+  !> Local numbers of one tile; its special nodes get the next force slots.
+  subroutine number_tile(mesh, i_tile, layout, local, special, n_special_slots)
+    type(mesh_t), intent(in) :: mesh
+    integer, intent(in) :: i_tile
+    type(layout_t), intent(inout) :: layout
+    integer, intent(inout) :: local(:)        !! local number + offset of this tile, by node
+    integer, intent(inout) :: special(:)      !! node of each force slot
+    integer, intent(inout) :: n_special_slots
+    integer :: n_interior, first_special, slot, k, node, sink
+
+    associate (tile => layout%tiles(i_tile))
+      n_interior = tile%last_node - tile%first_node + 1
+      first_special = n_special_slots + 1
+      do slot = first_slot(tile), last_slot(tile)
+        if (layout%slot_element(slot) == 0) cycle
+        do k = 1, 4
+          node = mesh%element_nodes(k, layout%slot_element(slot))
+          layout%slot_nodes(k, slot) = node
+          if (node > layout%n_special) then
+            local(node) = node - tile%first_node + 1
+          else if (local(node) < first_special) then
+            n_special_slots = n_special_slots + 1
+            special(n_special_slots) = node
+            local(node) = n_special_slots
+          end if
+          if (node > layout%n_special) then
+            layout%slot_local(k, slot) = local(node)
+          else
+            layout%slot_local(k, slot) = n_interior + local(node) - first_special + 1
+          end if
+        end do
+      end do
+      tile%first_special = first_special
+      tile%last_special = n_special_slots
+      sink = n_interior + n_special_slots - first_special + 2
+      do slot = first_slot(tile), last_slot(tile)
+        if (layout%slot_element(slot) /= 0) cycle
+        layout%slot_nodes(:, slot) = layout%slot_nodes(1, slot - 1)
+        layout%slot_local(:, slot) = sink
+      end do
+      layout%n_local = max(layout%n_local, sink)
+    end associate
+  end subroutine number_tile
+
+  !> For each special node the force slots that hold its parts, in rising order.
+  subroutine list_node_slots(layout)
+    type(layout_t), intent(inout) :: layout
+    integer, allocatable :: position(:)
+    integer :: i_slot, node
+
+    allocate (layout%node_slots(layout%n_special + 1), source=0)
+    do i_slot = 1, size(layout%special_node)
+      node = layout%special_node(i_slot)
+      layout%node_slots(node + 1) = layout%node_slots(node + 1) + 1
+    end do
+    layout%node_slots(1) = 1
+    do node = 1, layout%n_special
+      layout%node_slots(node + 1) = layout%node_slots(node) + layout%node_slots(node + 1)
+    end do
+    allocate (layout%slot_list(size(layout%special_node)))
+    position = layout%node_slots
+    do i_slot = 1, size(layout%special_node)
+      node = layout%special_node(i_slot)
+      layout%slot_list(position(node)) = i_slot
+      position(node) = position(node) + 1
+    end do
+  end subroutine list_node_slots
+
+  !> First element slot of a tile.
+  pure integer function first_slot(tile)
+    type(tile_t), intent(in) :: tile
+
+    first_slot = (tile%first_chunk - 1)*chunk_size + 1
+  end function first_slot
+
+  !> Last element slot of a tile.
+  pure integer function last_slot(tile)
+    type(tile_t), intent(in) :: tile
+
+    last_slot = tile%last_chunk*chunk_size
+  end function last_slot
+
+  !> Position of each element's centre along a Hilbert curve over the bounding box.
+  pure function hilbert_keys(mesh) result(keys)
+    type(mesh_t), intent(in) :: mesh
+    integer(long), allocatable :: keys(:) !! (n_element)
+    real(wp) :: low(2), cell, centre(2)
+    integer :: i, cells
+
+    cells = 2**curve_bits
+    low = minval(mesh%coordinates, 2)
+    cell = max(maxval(maxval(mesh%coordinates, 2) - low), tiny(1.0_wp))/cells
+    allocate (keys(mesh%n_element))
+    do i = 1, mesh%n_element
+      centre = 0.25_wp*sum(mesh%coordinates(:, mesh%element_nodes(:, i)), 2)
+      keys(i) = hilbert_distance(min(int((centre(1) - low(1))/cell), cells - 1), &
+        min(int((centre(2) - low(2))/cell), cells - 1))
+    end do
+  end function hilbert_keys
+
+  !> Distance along the Hilbert curve of the cell (x, y) of a 2^curve_bits square.
+  pure function hilbert_distance(x, y) result(distance)
+    integer, intent(in) :: x, y !! 0 .. 2^curve_bits - 1
+    integer(long) :: distance
+    integer :: p, q, rx, ry, side, swap
+
+    p = x
+    q = y
+    distance = 0
+    side = 2**(curve_bits - 1)
+    do while (side > 0)
+      rx = merge(1, 0, iand(p, side) > 0)
+      ry = merge(1, 0, iand(q, side) > 0)
+      distance = distance + int(side, long)*side*ieor(3*rx, ry)
+      if (ry == 0) then
+        if (rx == 1) then
+          p = 2**curve_bits - 1 - p
+          q = 2**curve_bits - 1 - q
+        end if
+        swap = p
+        p = q
+        q = swap
+      end if
+      side = side/2
+    end do
+  end function hilbert_distance
+
+end module layout_building_m

@@ -1,0 +1,108 @@
+! SPDX-License-Identifier: MIT
+!> Puts a finished model into the order of the step: nodes renumbered everywhere, layout built.
+module renumber_m
+  use kinds_m, only : wp
+  use layout_building_m, only : build_slots, order_nodes, build_local_numbers
+  use model_m, only : model_t
+  implicit none
+  private
+  public :: renumber_model
+
+contains
+
+  !> Renumber the nodes of the whole model and build its layout. Called once, after the deck layer.
+  subroutine renumber_model(model)
+    type(model_t), intent(inout) :: model
+    logical, allocatable :: is_special(:)
+    integer, allocatable :: order(:), new_index(:)
+    integer :: i
+
+    call build_slots(model%mesh, model%layout)
+    allocate (is_special(model%mesh%n_node), source=.false.)
+    call mark_touched_nodes(model, is_special)
+    call order_nodes(model%mesh, is_special, model%layout, order)
+    allocate (new_index(model%mesh%n_node))
+    do i = 1, model%mesh%n_node
+      new_index(order(i)) = i
+    end do
+    call renumber_mesh(model, order, new_index)
+    call renumber_conditions(model, order, new_index)
+    call renumber_surfaces(model, new_index)
+    call build_local_numbers(model%mesh, model%layout)
+  end subroutine renumber_model
+
+  !> Nodes that contact, loads or prescribed motion touch.
+  subroutine mark_touched_nodes(model, is_special)
+    type(model_t), intent(in) :: model
+    logical, intent(inout) :: is_special(:) !! (n_node)
+    integer :: i
+
+    do i = 1, size(model%contacts)
+      is_special(model%contacts(i)%slave%nodes) = .true.
+      is_special(model%contacts(i)%master%nodes) = .true.
+    end do
+    is_special(model%conditions%motions%node) = .true.
+    is_special(model%conditions%nodal_loads%node) = .true.
+    do i = 1, size(model%conditions%pressures)
+      is_special(model%conditions%pressures(i)%nodes) = .true.
+    end do
+  end subroutine mark_touched_nodes
+
+  !> Mesh arrays.
+  subroutine renumber_mesh(model, order, new_index)
+    type(model_t), intent(inout) :: model
+    integer, intent(in) :: order(:)     !! old index of each new node
+    integer, intent(in) :: new_index(:) !! new index of each old node
+    integer :: i
+
+    associate (mesh => model%mesh)
+      mesh%node_id = mesh%node_id(order)
+      mesh%coordinates = mesh%coordinates(:, order)
+      do i = 1, mesh%n_element
+        mesh%element_nodes(:, i) = new_index(mesh%element_nodes(:, i))
+      end do
+      mesh%deck_node = new_index
+    end associate
+  end subroutine renumber_mesh
+
+  !> Conditions, output plan and sets.
+  subroutine renumber_conditions(model, order, new_index)
+    type(model_t), intent(inout) :: model
+    integer, intent(in) :: order(:), new_index(:)
+    integer :: i
+
+    associate (conditions => model%conditions, output => model%controls%output)
+      conditions%fixed_nodes = new_index(conditions%fixed_nodes)
+      conditions%motions%node = new_index(conditions%motions%node)
+      conditions%nodal_loads%node = new_index(conditions%nodal_loads%node)
+      do i = 1, size(conditions%pressures)
+        conditions%pressures(i)%nodes = new_index(conditions%pressures(i)%nodes)
+      end do
+      if (allocated(conditions%initial_velocity)) &
+        conditions%initial_velocity = conditions%initial_velocity(:, order)
+      output%history_nodes = new_index(output%history_nodes)
+    end associate
+    do i = 1, size(model%node_sets)
+      model%node_sets(i)%nodes = new_index(model%node_sets(i)%nodes)
+    end do
+    do i = 1, size(model%segment_sets)
+      model%segment_sets(i)%nodes(1, :) = new_index(model%segment_sets(i)%nodes(1, :))
+      model%segment_sets(i)%nodes(2, :) = new_index(model%segment_sets(i)%nodes(2, :))
+    end do
+  end subroutine renumber_conditions
+
+  !> Contact surfaces.
+  subroutine renumber_surfaces(model, new_index)
+    type(model_t), intent(inout) :: model
+    integer, intent(in) :: new_index(:)
+    integer :: i
+
+    do i = 1, size(model%contacts)
+      associate (slave => model%contacts(i)%slave, master => model%contacts(i)%master)
+        slave%nodes = new_index(slave%nodes)
+        master%nodes = new_index(master%nodes)
+      end associate
+    end do
+  end subroutine renumber_surfaces
+
+end module renumber_m

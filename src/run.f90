@@ -1,0 +1,134 @@
+! SPDX-License-Identifier: MIT
+!> One run: deck, model, state, driver, files.
+module run_m
+  use, intrinsic :: iso_fortran_env, only : output_unit
+  use arguments_m, only : arguments_t
+  use build_info_m, only : version, build_type, compiler, flags
+  use clock_m, only : lap, start_clock, phase_input, phase_output
+  use contact_dispatch_m, only : contact_kinds
+  use deck_m, only : deck_request_t, read_deck
+  use errors_m, only : error_t, raise, status_stopped, status_files
+  use explicit_m, only : advance_explicit
+  use files_m, only : make_directory, join_path
+  use log_m, only : open_log, close_log, write_log, to_text
+  use model_m, only : model_t
+  use monitor_m, only : monitor_t, start_monitor, finish_monitor
+  use progress_m, only : show_end
+  use renumber_m, only : renumber_model
+  use results_file_m, only : run_info_t
+  use signals_m, only : catch_stop_signals
+  use start_m, only : start_state
+  use state_m, only : state_t
+  use timing_file_m, only : write_timing
+  implicit none
+  private
+  public :: run_deck
+
+contains
+
+  !> Run what the command line asks for.
+  subroutine run_deck(arguments, error)
+    type(arguments_t), intent(in) :: arguments
+    type(error_t), allocatable, intent(out) :: error
+    type(model_t) :: model
+    type(state_t) :: state
+    type(monitor_t) :: monitor
+    character(:), allocatable :: effective, prefix
+
+    call start_clock(monitor%clock)
+    call catch_stop_signals()
+    call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler//')')
+    call write_log(monitor%log, 'command line: '//arguments%line)
+    call read_deck(request_of(arguments), contact_kinds, monitor%log, model, effective, error)
+    if (allocated(error)) return
+    call renumber_model(model)
+    prefix = join_path(arguments%directory, arguments%job)
+    call open_outputs(arguments, prefix, effective, monitor, error)
+    if (allocated(error)) return
+    call start_state(model, monitor%log, state)
+    call start_monitor(model, prefix, info_of(arguments, model, effective), monitor, error)
+    if (allocated(error)) return
+    call lap(monitor%clock, phase_input)
+    call drive(arguments, model, prefix, state, monitor, error)
+    call close_log(monitor%log)
+  end subroutine run_deck
+
+  !> What the deck layer has to know of the command line.
+  pure function request_of(arguments) result(request)
+    type(arguments_t), intent(in) :: arguments
+    type(deck_request_t) :: request
+
+    request%path = arguments%deck
+    request%overrides = arguments%overrides
+  end function request_of
+
+  !> What the results file keeps about the run.
+  pure function info_of(arguments, model, effective) result(info)
+    type(arguments_t), intent(in) :: arguments
+    type(model_t), intent(in) :: model
+    character(*), intent(in) :: effective
+    type(run_info_t) :: info
+
+    info%title = ''
+    if (allocated(model%controls%title)) info%title = model%controls%title
+    info%deck = arguments%deck
+    info%version = version
+    info%build = build_type//', '//compiler//', '//flags
+    info%options = arguments%line
+    info%effective_deck = effective
+  end function info_of
+
+  !> Make the directory, the log and the effective deck.
+  subroutine open_outputs(arguments, prefix, effective, monitor, error)
+    type(arguments_t), intent(in) :: arguments
+    character(*), intent(in) :: prefix, effective
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+    integer :: unit, status
+    character(200) :: reason
+
+    call make_directory(arguments%directory, error)
+    if (allocated(error)) return
+    call open_log(monitor%log, prefix//'.log', error)
+    if (allocated(error)) return
+    open (newunit=unit, file=prefix//'.effective.k', status='replace', action='write', &
+      access='stream', form='unformatted', iostat=status, iomsg=reason)
+    if (status == 0) write (unit, iostat=status, iomsg=reason) effective
+    if (status == 0) close (unit, iostat=status, iomsg=reason)
+    if (status /= 0) call raise(error, 'cannot write '//prefix//'.effective.k: '//trim(reason), &
+      status_files)
+  end subroutine open_outputs
+
+  !> Advance to the end, close the files and say how it ended.
+  subroutine drive(arguments, model, prefix, state, monitor, error)
+    type(arguments_t), intent(in) :: arguments
+    type(model_t), intent(in) :: model
+    character(*), intent(in) :: prefix
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: closing_error
+    character(:), allocatable :: reason
+    logical :: stopped
+
+    if (model%controls%check_only) then
+      reason = 'model checked, no solution asked for (NOSOL)'
+    else
+      call advance_explicit(model, arguments%n_thread, state, monitor, reason, error)
+    end if
+    stopped = reason == 'stopped on request'
+    if (allocated(error)) reason = error%message
+    call finish_monitor(monitor, closing_error)
+    if (.not. allocated(error) .and. allocated(closing_error)) &
+      call move_alloc(closing_error, error)
+    call lap(monitor%clock, phase_output)
+    call write_timing(prefix//'.timing.csv', monitor%clock, closing_error)
+    if (.not. allocated(error) .and. allocated(closing_error)) &
+      call move_alloc(closing_error, error)
+    call show_end(monitor%progress, monitor%clock, monitor%log, .not. allocated(error), reason, &
+      state%cycle, state%time, model%mesh%n_element)
+    if (stopped .and. .not. allocated(error)) call raise(error, &
+      'stopped on request at time '//to_text(state%time), status_stopped)
+  end subroutine drive
+
+end module run_m

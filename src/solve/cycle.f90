@@ -1,0 +1,209 @@
+! SPDX-License-Identifier: MIT
+!> What one thread does in each explicit cycle: contact and loads before the elements; writing; time,
+!> step and health after them.
+module cycle_m
+  use clock_m, only : lap, phase_nodes
+  use constraints_m, only : update_activity
+  use contact_force_m, only : apply_contact
+  use energies_m, only : energy_ratio, total_energy
+  use errors_m, only : error_t
+  use external_force_m, only : form_external_force, body_acceleration, damping_rate
+  use health_m, only : check_elements, check_step, check_energy
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
+  use node_motion_m, only : leap_t, make_leap
+  use prescribed_m, only : find_prescribed_velocities, start_prescribed, impose_prescribed, &
+    prescribed_work
+  use progress_m, only : show_progress, wants_line
+  use signals_m, only : stop_requested
+  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
+  use state_m, only : state_t
+  use time_step_m, only : step_plan_t, start_steps, first_step, next_step, is_last
+  implicit none
+  private
+  public :: cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
+
+  !> Shared by the team, written by one thread between barriers.
+  type :: cycle_t
+    logical :: writes = .true.       !! this cycle writes something
+    logical :: finished = .false.    !! the run is over
+    logical :: last = .false.        !! this cycle is the last one
+    type(due_t) :: due
+    type(leap_t) :: leap             !! motion factors of this cycle
+    type(step_plan_t) :: steps
+    logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
+    real(wp) :: damping(2) = 0.0_wp  !! D per direction
+    real(wp) :: ratio = 1.0_wp       !! last energy ratio known
+    real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
+    real(wp), allocatable :: displacement(:) !! (n_motion) u(n) of prescribed motions
+    character(:), allocatable :: reason      !! what ended the run
+    type(error_t), allocatable :: error
+  end type cycle_t
+
+contains
+
+  !> Set up the cycles.
+  subroutine start_cycles(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(cycle_t), intent(out) :: cycle
+
+    associate (motions => model%conditions%motions)
+      allocate (cycle%velocity(size(motions)), cycle%displacement(size(motions)), source=0.0_wp)
+      cycle%timed_motions = any(motions%birth > 0.0_wp .or. &
+        motions%death < model%controls%end_time)
+    end associate
+    cycle%reason = 'termination time reached'
+    cycle%steps = start_steps(model, state%time)
+  end subroutine start_cycles
+
+  !> Forces on the special nodes at u(n), and what this cycle has to write.
+  subroutine begin_cycle(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(cycle_t), intent(inout) :: cycle
+    integer :: i
+
+    cycle%last = is_last(cycle%steps, state%cycle, state%time) .or. cycle%last
+    cycle%due = find_due(monitor, state%time, state%dt, state%cycle == 0 .or. cycle%last)
+    cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
+    call apply_loads(model, state, cycle)
+    do i = 1, size(model%contacts)
+      call apply_contact(model%contacts(i), model%mesh%coordinates, state%motion, state%mass, &
+        state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
+        state%force_special)
+    end do
+    if (state%cycle > 0) call prepare_leap(model, state, cycle)
+    call lap(monitor%clock, phase_nodes)
+  end subroutine begin_cycle
+
+  !> Loads from outside and their work (trapezoidal rule), body acceleration and damping.
+  subroutine apply_loads(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(cycle_t), intent(inout) :: cycle
+    real(wp) :: half, body(2), momentum(2)
+
+    half = 0.5_wp*state%dt_before
+    if (allocated(state%external)) then
+      state%external_work = state%external_work + half*power(state%external, state%motion)
+      call form_external_force(model, state%motion, state%time, state%external)
+      state%external_work = state%external_work + half*power(state%external, state%motion)
+      state%force_special = state%external
+    else
+      state%force_special = 0.0_wp
+    end if
+    if (size(model%conditions%body_loads) > 0) then
+      body = body_acceleration(model%conditions, model%curves, state%time)
+      momentum(1) = sum(state%mass*state%motion(3, :))
+      momentum(2) = sum(state%mass*state%motion(4, :))
+      state%external_work = state%external_work &
+        + half*dot_product(body + state%body_acceleration, momentum)
+      state%body_acceleration = body
+    end if
+    if (allocated(model%conditions%damping)) then
+      state%damping_work = state%damping_work + state%dt_before*(cycle%damping(1) &
+        *sum(state%mass*state%motion(3, :)**2) + cycle%damping(2)*sum(state%mass*state%motion(4, :)**2))
+      cycle%damping = damping_rate(model%conditions, model%curves, state%time)
+    end if
+  end subroutine apply_loads
+
+  !> Power of forces on the first nodes.
+  pure function power(force, motion)
+    real(wp), intent(in), contiguous :: force(:, :)  !! (2, n)
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n or more)
+    real(wp) :: power
+    integer :: i
+
+    power = 0.0_wp
+    do i = 1, size(force, 2)
+      power = power + (force(1, i)*motion(3, i) + force(2, i)*motion(4, i))
+    end do
+  end function power
+
+  !> Motion factors and prescribed velocities once the step is known.
+  subroutine prepare_leap(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(cycle_t), intent(inout) :: cycle
+    integer :: i
+
+    cycle%leap = make_leap(state%dt_before, state%dt, cycle%damping, state%body_acceleration)
+    if (cycle%timed_motions) call update_activity(model, state%time, state%mass, state%inverse_mass)
+    do i = 1, size(cycle%displacement)
+      associate (prescribed => model%conditions%motions(i))
+        cycle%displacement(i) = state%motion(prescribed%direction, prescribed%node)
+      end associate
+    end do
+    call find_prescribed_velocities(model, state, cycle%velocity)
+  end subroutine prepare_leap
+
+  !> Write what is due; the first cycle first finds its step.
+  subroutine report_cycle(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(cycle_t), intent(inout) :: cycle
+
+    if (state%cycle == 0) then
+      call first_step(model, state%elements, monitor%log, cycle%steps, state%dt, cycle%error)
+      if (allocated(cycle%error)) then
+        cycle%finished = .true.
+        return
+      end if
+      call prepare_leap(model, state, cycle)
+      call start_prescribed(model, cycle%velocity, state)
+    end if
+    state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
+      cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
+    call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
+    if (cycle%due%glstat .or. cycle%due%matsum) call fill_energies(model, state, monitor%snapshot)
+    if (state%cycle == 0) then
+      state%initial_energy = total_energy(monitor%snapshot%energies)
+      monitor%snapshot%energies%initial = state%initial_energy
+    end if
+    if (cycle%due%matsum) call fill_parts(model, monitor%snapshot)
+    if (cycle%due%rcforc) call fill_interfaces(model, state, monitor%snapshot)
+    if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
+    call write_due(model, cycle%due, state%dt, monitor, cycle%error)
+    if (cycle%due%glstat) cycle%ratio = energy_ratio(monitor%snapshot%energies)
+    if (cycle%due%plot) call show_progress(monitor%progress, monitor%clock, state%cycle, &
+      state%time, state%dt, cycle%ratio, 'write vtkhdf state')
+    if (.not. allocated(cycle%error) .and. cycle%due%glstat) call check_energy(model%controls, &
+      monitor%snapshot%energies, cycle%error)
+    cycle%finished = cycle%last .or. allocated(cycle%error)
+  end subroutine report_cycle
+
+  !> Prescribed nodes to their places, health, and on to the next instant.
+  subroutine end_cycle(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(cycle_t), intent(inout) :: cycle
+    real(wp) :: before
+
+    if (cycle%finished) return
+    call check_elements(model, state, cycle%error)
+    if (size(cycle%velocity) > 0) then
+      before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
+      state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
+        cycle%damping, before, 0.5_wp*state%dt)
+      call impose_prescribed(model, cycle%velocity, cycle%displacement, state)
+    end if
+    state%cycle = state%cycle + 1
+    state%dt_before = state%dt
+    call next_step(model, state%elements, monitor%log, state%cycle, cycle%steps, state%time, state%dt)
+    if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
+      state%dt, cycle%error)
+    if (allocated(cycle%error)) cycle%finished = .true.
+    if (stop_requested() .and. .not. cycle%last) then
+      cycle%last = .true.
+      cycle%reason = 'stopped on request'
+    end if
+    if (wants_line(monitor%progress, state%cycle, monitor%clock%last)) call show_progress( &
+      monitor%progress, monitor%clock, state%cycle, state%time, state%dt, cycle%ratio, '')
+  end subroutine end_cycle
+
+end module cycle_m

@@ -1,0 +1,140 @@
+! SPDX-License-Identifier: MIT
+!> Central difference in leap-frog form: v lives at half steps.
+!> One parallel region spans the whole run. Each cycle has four parts with a barrier behind each:
+!> contact and loads on the special nodes (one thread); elements, tile by tile, whose interior nodes move at
+!> once; special nodes; and the end of the cycle (one thread). A cycle that writes keeps the forces and
+!> moves the nodes after writing, so that what is written belongs to one instant.
+module explicit_m
+  use clock_m, only : lap, phase_elements, phase_nodes, phase_output
+  use cycle_m, only : cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
+  use element_dispatch_m, only : add_tile_forces
+  use errors_m, only : error_t
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use monitor_m, only : monitor_t
+  use node_motion_m, only : share_tile_forces, keep_tile_forces, move_tile_nodes, &
+    sum_special_force, move_special_node
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: advance_explicit
+
+contains
+
+  !> From the state at time zero to the end of the run.
+  subroutine advance_explicit(model, n_thread, state, monitor, reason, error)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: n_thread
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    character(:), allocatable, intent(out) :: reason  !! what ended the run
+    type(error_t), allocatable, intent(out) :: error  !! what went wrong, if anything
+    type(cycle_t) :: cycle
+
+    call start_cycles(model, state, cycle)
+    !$omp parallel num_threads(n_thread) default(none) shared(model, state, monitor, cycle)
+    call run_cycles(model, state, monitor, cycle)
+    !$omp end parallel
+    reason = cycle%reason
+    if (allocated(cycle%error)) call move_alloc(cycle%error, error)
+  end subroutine advance_explicit
+
+  !> The cycles, run by every thread of the team.
+  subroutine run_cycles(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(cycle_t), intent(inout) :: cycle
+    real(wp), allocatable :: force(:, :)
+
+    allocate (force(2, model%layout%n_local))
+    do
+      !$omp master
+      call begin_cycle(model, state, monitor, cycle)
+      !$omp end master
+      !$omp barrier
+      call advance_tiles(model, state, cycle, force)
+      !$omp master
+      call lap(monitor%clock, phase_elements)
+      !$omp end master
+      call advance_special_nodes(model, state, cycle)
+      if (cycle%writes) then
+        !$omp master
+        call lap(monitor%clock, phase_nodes)
+        call report_cycle(model, state, monitor, cycle)
+        call lap(monitor%clock, phase_output)
+        !$omp end master
+        !$omp barrier
+        if (.not. cycle%finished) call move_all_nodes(model, state, cycle)
+      end if
+      !$omp master
+      call end_cycle(model, state, monitor, cycle)
+      call lap(monitor%clock, phase_nodes)
+      !$omp end master
+      !$omp barrier
+      if (cycle%finished) exit
+    end do
+  end subroutine run_cycles
+
+  !> Element forces; interior nodes move at once unless this cycle writes.
+  subroutine advance_tiles(model, state, cycle, force)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(cycle_t), intent(in) :: cycle
+    real(wp), intent(inout) :: force(:, :) !! (2, n_local) this thread's own
+    integer :: i_tile
+
+    !$omp do schedule(static)
+    do i_tile = 1, size(model%layout%tiles)
+      associate (tile => model%layout%tiles(i_tile))
+        call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+        call share_tile_forces(tile, force, state%force_slots)
+        if (cycle%writes) then
+          call keep_tile_forces(tile, force, state%internal_force)
+        else
+          call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, force, &
+            state%inverse_mass, state%motion)
+        end if
+      end associate
+    end do
+    !$omp end do
+  end subroutine advance_tiles
+
+  !> Sum the forces of special nodes; they move at once unless this cycle writes.
+  subroutine advance_special_nodes(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(cycle_t), intent(in) :: cycle
+    integer :: node
+
+    !$omp do schedule(static)
+    do node = 1, model%layout%n_special
+      state%internal_force(:, node) = sum_special_force(model%layout, state%force_slots, node)
+      if (.not. cycle%writes) call move_special_node(cycle%leap, node, state)
+    end do
+    !$omp end do
+  end subroutine advance_special_nodes
+
+  !> Move all nodes after a cycle that wrote.
+  subroutine move_all_nodes(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(cycle_t), intent(in) :: cycle
+    integer :: i_tile, node
+
+    !$omp do schedule(static)
+    do i_tile = 1, size(model%layout%tiles)
+      associate (tile => model%layout%tiles(i_tile))
+        if (tile%last_node >= tile%first_node) call move_tile_nodes(cycle%leap, tile%first_node, &
+          tile%last_node, state%internal_force(1, tile%first_node), state%inverse_mass, state%motion)
+      end associate
+    end do
+    !$omp end do
+    !$omp do schedule(static)
+    do node = 1, model%layout%n_special
+      call move_special_node(cycle%leap, node, state)
+    end do
+    !$omp end do
+  end subroutine move_all_nodes
+
+end module explicit_m

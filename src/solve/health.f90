@@ -1,0 +1,91 @@
+! SPDX-License-Identifier: MIT
+!> Checks that end a run which has gone wrong, with the cause in words.
+module health_m
+  use controls_m, only : controls_t
+  use energies_m, only : energies_t, energy_ratio, total_energy
+  use errors_m, only : error_t, raise, status_run
+  use kinds_m, only : wp
+  use layout_m, only : chunk_size
+  use log_m, only : to_text
+  use model_m, only : model_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: check_elements, check_step, check_energy
+
+contains
+
+  !> Volumes must stay positive and stresses finite.
+  subroutine check_elements(model, state, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: checksum
+    logical :: volumes_good
+
+    volumes_good = minval(state%elements%volume_limit) > 0.0_wp
+    checksum = sum(state%elements%deviatoric_work) + sum(state%elements%hourglass_work)
+    ! Not a number, or beyond all numbers.
+    if (volumes_good .and. abs(checksum) <= huge(1.0_wp)) return
+    call name_bad_chunk(model, state, error)
+  end subroutine check_elements
+
+  !> Find the element at fault.
+  subroutine name_bad_chunk(model, state, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: what
+    integer :: i_chunk, slot, element
+    real(wp) :: x(2, 4), area
+
+    do i_chunk = 1, model%layout%n_chunk
+      do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
+        element = model%layout%slot_element(slot)
+        if (element == 0) cycle
+        associate (nodes => model%mesh%element_nodes(:, element))
+          x = model%mesh%coordinates(:, nodes) + state%motion(1:2, nodes)
+        end associate
+        area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
+          - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+        if (area > 0.0_wp .and. area <= huge(area) .and. &
+          all(abs(state%elements%deviator(slot, :)) <= huge(area))) cycle
+        what = 'negative area'
+        if (.not. area <= 0.0_wp) what = 'values that are not finite'
+        call raise(error, what//' in element '//to_text(model%mesh%element_id(element))//' of part ' &
+          //to_text(model%parts(model%mesh%element_part(element))%id)//' at cycle ' &
+          //to_text(state%cycle)//', time '//to_text(state%time), status_run)
+        return
+      end do
+    end do
+    call raise(error, 'negative area or values that are not finite at cycle ' &
+      //to_text(state%cycle)//', time '//to_text(state%time), status_run)
+  end subroutine name_bad_chunk
+
+  !> The step must stay above its floor (DTMIN of *CONTROL_TERMINATION).
+  subroutine check_step(controls, first_dt, dt, error)
+    type(controls_t), intent(in) :: controls
+    real(wp), intent(in) :: first_dt, dt
+    type(error_t), allocatable, intent(out) :: error
+
+    if (dt > 0.0_wp .and. dt >= controls%dt_floor*first_dt) return
+    call raise(error, 'the time step '//to_text(dt)//' fell below its floor '// &
+      to_text(controls%dt_floor*first_dt)//' (DTMIN times the first step)', status_run)
+  end subroutine check_step
+
+  !> The energy ratio must stay within ENDENG per cent of one where the deck sets it, and energies finite.
+  subroutine check_energy(controls, energies, error)
+    type(controls_t), intent(in) :: controls
+    type(energies_t), intent(in) :: energies
+    type(error_t), allocatable, intent(out) :: error
+
+    if (.not. abs(total_energy(energies)) <= huge(1.0_wp)) then
+      call raise(error, 'the total energy is not finite', status_run)
+    else if (controls%energy_limit > 0.0_wp .and. &
+      abs(energy_ratio(energies) - 1.0_wp) > 0.01_wp*controls%energy_limit) then
+      call raise(error, 'the energy ratio '//to_text(energy_ratio(energies))//' changed by more than ' &
+        //to_text(controls%energy_limit)//' per cent (ENDENG)', status_run)
+    end if
+  end subroutine check_energy
+
+end module health_m

@@ -1,0 +1,122 @@
+! SPDX-License-Identifier: MIT
+!> Watches a run for the files: what is due, and writing it.
+module monitor_m
+  use clock_m, only : clock_t
+  use errors_m, only : error_t
+  use history_file_m, only : histories_t, open_histories, append_glstat, append_rcforc, &
+    append_nodout, append_matsum, append_contact, flush_histories, close_histories
+  use kinds_m, only : wp
+  use log_m, only : log_t
+  use model_m, only : model_t
+  use output_schedule_m, only : schedule_t, start_schedule, is_due, mark_written
+  use progress_m, only : progress_t, start_progress
+  use results_file_m, only : results_file_t, run_info_t, open_results, append_state, finish_results
+  use snapshot_m, only : snapshot_t
+  use snapshot_filling_m, only : start_snapshot
+  implicit none
+  private
+  public :: monitor_t, start_monitor, find_due, any_due, write_due, finish_monitor, due_t
+
+  !> What is due in one cycle.
+  type :: due_t
+    logical :: plot = .false., glstat = .false., rcforc = .false., nodout = .false., &
+      matsum = .false.
+  end type due_t
+
+  !> Files, their schedules, the log, the clock and the progress lines of a run.
+  type :: monitor_t
+    type(schedule_t) :: plot, glstat, rcforc, nodout, matsum
+    type(results_file_t) :: results
+    type(histories_t) :: histories
+    type(snapshot_t) :: snapshot
+    type(log_t) :: log
+    type(clock_t) :: clock
+    type(progress_t) :: progress
+    logical :: has_plot = .false. !! the deck asks for plot states
+  end type monitor_t
+
+contains
+
+  !> Open the files of this run. `prefix` is directory and job name.
+  subroutine start_monitor(model, prefix, run_info, monitor, error)
+    type(model_t), intent(in) :: model
+    character(*), intent(in) :: prefix
+    type(run_info_t), intent(in) :: run_info
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (plan => model%controls%output, end_time => model%controls%end_time)
+      call start_schedule(monitor%plot, plan%plot, model%curves, end_time)
+      call start_schedule(monitor%glstat, plan%glstat, model%curves, end_time)
+      call start_schedule(monitor%rcforc, plan%rcforc, model%curves, end_time)
+      call start_schedule(monitor%nodout, plan%nodout, model%curves, end_time)
+      call start_schedule(monitor%matsum, plan%matsum, model%curves, end_time)
+      monitor%has_plot = plan%plot%dt > 0.0_wp .or. plan%plot%curve > 0
+      call start_progress(monitor%progress, end_time, plan%status_interval)
+    end associate
+    call start_snapshot(model, monitor%snapshot)
+    call open_histories(monitor%histories, prefix, model, error)
+    if (allocated(error)) return
+    call open_results(monitor%results, prefix//'.vtkhdf', model, run_info, error)
+  end subroutine start_monitor
+
+  !> What is due at `time`; `everything` for the first and the last state.
+  pure function find_due(monitor, time, dt, everything) result(due)
+    type(monitor_t), intent(in) :: monitor
+    real(wp), intent(in) :: time, dt
+    logical, intent(in) :: everything
+    type(due_t) :: due
+
+    due%plot = monitor%has_plot .and. (everything .or. is_due(monitor%plot, time, dt))
+    due%glstat = everything .or. is_due(monitor%glstat, time, dt)
+    due%rcforc = everything .or. is_due(monitor%rcforc, time, dt)
+    due%nodout = everything .or. is_due(monitor%nodout, time, dt)
+    due%matsum = everything .or. is_due(monitor%matsum, time, dt)
+  end function find_due
+
+  !> Whether anything is due.
+  pure function any_due(due) result(any_of_them)
+    type(due_t), intent(in) :: due
+    logical :: any_of_them
+
+    any_of_them = due%plot .or. due%glstat .or. due%rcforc .or. due%nodout .or. due%matsum
+  end function any_due
+
+  !> Write what is due from the snapshot.
+  subroutine write_due(model, due, dt, monitor, error)
+    type(model_t), intent(in) :: model
+    type(due_t), intent(in) :: due
+    real(wp), intent(in) :: dt
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (shot => monitor%snapshot, histories => monitor%histories)
+      if (due%glstat) call append_glstat(histories, shot)
+      if (due%rcforc) call append_rcforc(histories, model, shot)
+      if (due%nodout) call append_nodout(histories, model, shot)
+      if (due%matsum) call append_matsum(histories, model, shot)
+      if (due%plot) then
+        call append_contact(histories, model, shot)
+        call append_state(monitor%results, model, shot, error)
+        if (allocated(error)) return
+        call flush_histories(histories, error)
+      end if
+      if (due%glstat) call mark_written(monitor%glstat, shot%time, dt)
+      if (due%rcforc) call mark_written(monitor%rcforc, shot%time, dt)
+      if (due%nodout) call mark_written(monitor%nodout, shot%time, dt)
+      if (due%matsum) call mark_written(monitor%matsum, shot%time, dt)
+      if (due%plot) call mark_written(monitor%plot, shot%time, dt)
+    end associate
+  end subroutine write_due
+
+  !> Close the files.
+  subroutine finish_monitor(monitor, error)
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+
+    call close_histories(monitor%histories, error)
+    if (allocated(error)) return
+    call finish_results(monitor%results, monitor%histories, error)
+  end subroutine finish_monitor
+
+end module monitor_m

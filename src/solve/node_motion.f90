@@ -1,0 +1,109 @@
+! SPDX-License-Identifier: MIT
+!> Sums of nodal forces and the leap-frog motion of the nodes:
+!> v(n+1/2) = [(1 - D h/2) v(n-1/2) + h a]/(1 + D h/2), u(n+1) = u(n) + dt v(n+1/2), with h the mean of the two steps.
+!> The damping acts on the mean of the two velocities, so it never limits the step.
+module node_motion_m
+  use kinds_m, only : wp
+  use layout_m, only : layout_t, tile_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: leap_t, make_leap, share_tile_forces, keep_tile_forces, move_tile_nodes, &
+    sum_special_force, move_special_node
+
+  !> Factors of one leap, the same for all nodes.
+  type :: leap_t
+    real(wp) :: dt = 0.0_wp        !! t(n+1) - t(n)
+    real(wp) :: half(2) = 0.0_wp   !! what an acceleration counts in the velocity
+    real(wp) :: keep(2) = 1.0_wp   !! what the old velocity counts
+    real(wp) :: body(2) = 0.0_wp   !! acceleration of every free node
+  end type leap_t
+
+contains
+
+  !> Factors from the steps before and after, damping and body acceleration.
+  pure function make_leap(dt_before, dt, damping, body) result(leap)
+    real(wp), intent(in) :: dt_before, dt
+    real(wp), intent(in) :: damping(2) !! D per direction
+    real(wp), intent(in) :: body(2)    !! acceleration per direction
+    type(leap_t) :: leap
+    real(wp) :: mean
+
+    mean = 0.5_wp*(dt_before + dt)
+    leap%dt = dt
+    leap%half = mean/(1.0_wp + 0.5_wp*damping*mean)
+    leap%keep = (1.0_wp - 0.5_wp*damping*mean)/(1.0_wp + 0.5_wp*damping*mean)
+    leap%body = body
+  end function make_leap
+
+  !> A tile's forces on its special nodes into its force slots.
+  subroutine share_tile_forces(tile, force, force_slots)
+    type(tile_t), intent(in) :: tile
+    real(wp), intent(in), contiguous :: force(:, :)          !! (2, n_local) of the tile
+    real(wp), intent(inout), contiguous :: force_slots(:, :) !! (2, force slots)
+    integer :: n_interior, i
+
+    n_interior = tile%last_node - tile%first_node + 1
+    do i = tile%first_special, tile%last_special
+      force_slots(:, i) = force(:, n_interior + i - tile%first_special + 1)
+    end do
+  end subroutine share_tile_forces
+
+  !> A tile's forces on its interior nodes into the nodal array, for a cycle that writes.
+  subroutine keep_tile_forces(tile, force, internal_force)
+    type(tile_t), intent(in) :: tile
+    real(wp), intent(in), contiguous :: force(:, :)
+    real(wp), intent(inout), contiguous :: internal_force(:, :) !! (2, n_node)
+
+    internal_force(:, tile%first_node:tile%last_node) = &
+      force(:, 1:tile%last_node - tile%first_node + 1)
+  end subroutine keep_tile_forces
+
+  !> Move the interior nodes first .. last.
+  subroutine move_tile_nodes(leap, first, last, force, inverse_mass, motion)
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
+    real(wp), intent(in) :: force(2, first:*)        !! internal force of those nodes
+    real(wp), intent(in) :: inverse_mass(2, *)       !! of all nodes
+    real(wp), intent(inout) :: motion(4, *)          !! of all nodes
+    integer :: i, k
+
+    do i = first, last
+      do k = 1, 2
+        motion(2 + k, i) = leap%keep(k)*motion(2 + k, i) + leap%half(k) &
+          *(merge(leap%body(k), 0.0_wp, inverse_mass(k, i) > 0.0_wp) - force(k, i)*inverse_mass(k, i))
+        motion(k, i) = motion(k, i) + leap%dt*motion(2 + k, i)
+      end do
+    end do
+  end subroutine move_tile_nodes
+
+  !> Internal force of one special node: its slots in their fixed order.
+  pure function sum_special_force(layout, force_slots, node) result(force)
+    type(layout_t), intent(in) :: layout
+    real(wp), intent(in), contiguous :: force_slots(:, :)
+    integer, intent(in) :: node
+    real(wp) :: force(2)
+    integer :: i
+
+    force = 0.0_wp
+    do i = layout%node_slots(node), layout%node_slots(node + 1) - 1
+      force = force + force_slots(:, layout%slot_list(i))
+    end do
+  end function sum_special_force
+
+  !> Move one special node; its internal force stands in state%internal_force.
+  subroutine move_special_node(leap, node, state)
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: node
+    type(state_t), intent(inout) :: state
+    integer :: k
+
+    do k = 1, 2
+      state%motion(2 + k, node) = leap%keep(k)*state%motion(2 + k, node) + leap%half(k) &
+        *(merge(leap%body(k), 0.0_wp, state%inverse_mass(k, node) > 0.0_wp) &
+        + (state%force_special(k, node) - state%internal_force(k, node))*state%inverse_mass(k, node))
+      state%motion(k, node) = state%motion(k, node) + leap%dt*state%motion(2 + k, node)
+    end do
+  end subroutine move_special_node
+
+end module node_motion_m

@@ -1,0 +1,155 @@
+! SPDX-License-Identifier: MIT
+!> What a person or a script sees while the run goes on: one updating line on a terminal, plain lines in the
+!> DYNA manner in a pipe, and the summary at the end.
+module progress_m
+  use, intrinsic :: iso_fortran_env, only : output_unit
+  use clock_m, only : clock_t, elapsed_seconds, phase_seconds, phase_names, n_phase
+  use kinds_m, only : wp, long
+  use log_m, only : log_t, write_log
+  use signals_m, only : output_is_terminal
+  implicit none
+  private
+  public :: progress_t, start_progress, show_progress, show_end, wants_line
+
+  !> Seconds between two refreshes on a terminal, and between two lines in a pipe.
+  real(wp), parameter :: terminal_interval = 0.25_wp, pipe_interval = 10.0_wp
+
+  !> What the lines need to know.
+  type :: progress_t
+    logical :: terminal = .false.
+    logical :: line_open = .false.  !! an updating line waits for its end
+    integer :: status_interval = 0  !! cycles between lines, 0 = by time only
+    real(wp) :: end_time = 0.0_wp
+    integer(long) :: next_tick = 0  !! clock tick of the next line
+    integer(long) :: wait = 0       !! ticks between lines
+  end type progress_t
+
+contains
+
+  !> Set up the lines.
+  subroutine start_progress(progress, end_time, status_interval)
+    type(progress_t), intent(out) :: progress
+    real(wp), intent(in) :: end_time
+    integer, intent(in) :: status_interval
+    integer(long) :: now, rate
+
+    progress%terminal = output_is_terminal()
+    progress%end_time = end_time
+    progress%status_interval = status_interval
+    call system_clock(now, rate)
+    progress%wait = int(merge(terminal_interval, pipe_interval, progress%terminal)*real(rate, wp), long)
+    progress%next_tick = now + progress%wait
+  end subroutine start_progress
+
+  !> Whether a line is due though no file was written. `tick` is a clock tick read for another purpose.
+  pure function wants_line(progress, cycle, tick) result(wanted)
+    type(progress_t), intent(in) :: progress
+    integer, intent(in) :: cycle
+    integer(long), intent(in) :: tick
+    logical :: wanted
+
+    wanted = tick >= progress%next_tick
+    if (progress%status_interval > 0 .and. .not. progress%terminal) &
+      wanted = wanted .or. mod(cycle, progress%status_interval) == 0
+  end function wants_line
+
+  !> One line. `event` says what was written, blank for none; `ratio` is the last energy ratio known.
+  subroutine show_progress(progress, clock, cycle, time, dt, ratio, event)
+    type(progress_t), intent(inout) :: progress
+    type(clock_t), intent(in) :: clock
+    integer, intent(in) :: cycle
+    real(wp), intent(in) :: time, dt, ratio
+    character(*), intent(in) :: event
+    real(wp) :: share, to_go
+    character(8) :: date
+    character(10) :: hour
+
+    progress%next_tick = clock%last + progress%wait
+    if (progress%terminal) then
+      share = min(1.0_wp, time/progress%end_time)
+      to_go = 0.0_wp
+      if (share > 0.0_wp) to_go = elapsed_seconds(clock)*(1.0_wp - share)/share
+      write (output_unit, '(a,es11.4,a,f5.1,a,i0,a,es9.2,a,f8.5,a,a)', advance='no') &
+        achar(13)//' t', time, '  ', 100.0_wp*share, ' %  cycle ', cycle, '  dt', dt, &
+        '  energy ratio', ratio, '  to go ', duration(to_go)//'   '
+      progress%line_open = .true.
+      flush (output_unit)
+    else
+      call date_and_time(date, hour)
+      write (output_unit, '(i10,a,es10.4,a,es8.2,1x,a22,10x,a)') cycle, ' t ', time, ' dt ', dt, &
+        event, date(5:6)//'/'//date(7:8)//'/'//date(3:4)//' '//hour(1:2)//':'//hour(3:4)//':' &
+        //hour(5:6)
+    end if
+  end subroutine show_progress
+
+  !> The end of the run: how it ended, problem time, cycles, cost and the timing table.
+  subroutine show_end(progress, clock, log, normal, reason, cycle, time, n_element)
+    type(progress_t), intent(inout) :: progress
+    type(clock_t), intent(in) :: clock
+    type(log_t), intent(inout) :: log
+    logical, intent(in) :: normal
+    character(*), intent(in) :: reason !! what ended the run
+    integer, intent(in) :: cycle
+    real(wp), intent(in) :: time
+    integer, intent(in) :: n_element
+    real(wp) :: seconds(n_phase), elapsed, cost
+    character(100) :: line
+    integer :: i
+
+    if (progress%line_open) write (output_unit, '()')
+    progress%line_open = .false.
+    seconds = phase_seconds(clock)
+    elapsed = elapsed_seconds(clock)
+    cost = 0.0_wp
+    if (cycle > 0) cost = 1.0e9_wp*(sum(seconds) - sum(seconds([6, 7])))/real(cycle, wp)/n_element
+    call say(log, '')
+    call say(log, ' *** '//reason//' ***')
+    if (normal) then
+      call say(log, ' N o r m a l    t e r m i n a t i o n')
+    else
+      call say(log, ' E r r o r    t e r m i n a t i o n')
+    end if
+    call say(log, '')
+    write (line, '(a,es16.8)') ' Problem time        = ', time
+    call say(log, trim(line))
+    write (line, '(a,i0)') ' Problem cycle       = ', cycle
+    call say(log, trim(line))
+    write (line, '(a,f0.3,a)') ' Elapsed time        = ', elapsed, ' seconds'
+    call say(log, trim(line))
+    write (line, '(a,f0.2,a)') ' Time per zone cycle = ', cost, ' nanoseconds (output and input apart)'
+    call say(log, trim(line))
+    write (line, '(a,i0)') ' Warnings            = ', log%n_warning
+    call say(log, trim(line))
+    call say(log, '')
+    call say(log, ' T i m i n g   i n f o r m a t i o n      seconds   share %        calls')
+    do i = 1, n_phase
+      if (clock%calls(i) == 0) cycle
+      write (line, '(a,a24,f17.4,f10.2,i13)') '  ', phase_names(i), seconds(i), &
+        100.0_wp*seconds(i)/max(sum(seconds), tiny(1.0_wp)), clock%calls(i)
+      call say(log, trim(line))
+    end do
+    flush (output_unit)
+  end subroutine show_end
+
+  !> One line to standard output and to the log.
+  subroutine say(log, text)
+    type(log_t), intent(inout) :: log
+    character(*), intent(in) :: text
+
+    write (output_unit, '(a)') text
+    call write_log(log, text)
+  end subroutine say
+
+  !> Seconds as h:mm:ss.
+  pure function duration(seconds) result(text)
+    real(wp), intent(in) :: seconds
+    character(:), allocatable :: text
+    character(20) :: buffer
+    integer(long) :: whole
+
+    whole = int(min(seconds, 1.0e9_wp), long)
+    write (buffer, '(i0,":",i2.2,":",i2.2)') whole/3600, mod(whole/60, 60_long), mod(whole, 60_long)
+    text = trim(buffer)
+  end function duration
+
+end module progress_m

@@ -1,0 +1,51 @@
+! SPDX-License-Identifier: MIT
+!> From a model to its state at time zero.
+module start_m
+  use kinds_m, only : wp
+  use constraints_m, only : fix_nodes, update_activity
+  use contact_force_m, only : start_contact
+  use element_state_m, only : start_elements, lump_mass
+  use initial_values_m, only : start_motion
+  use log_m, only : log_t
+  use model_m, only : model_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: start_state
+
+contains
+
+  !> Allocate and fill everything that the run changes.
+  subroutine start_state(model, log, state)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    type(state_t), intent(out) :: state
+    integer :: i
+
+    call start_motion(model, state%motion)
+    call lump_mass(model, state%mass)
+    allocate (state%inverse_mass(2, model%mesh%n_node), source=0.0_wp)
+    do i = 1, model%mesh%n_node
+      if (state%mass(i) > 0.0_wp) state%inverse_mass(:, i) = 1.0_wp/state%mass(i)
+    end do
+    call update_activity(model, 0.0_wp, state%mass, state%inverse_mass)
+    call fix_nodes(model, state%inverse_mass)
+    allocate (state%force_special(2, model%layout%n_special), source=0.0_wp)
+    if (size(model%conditions%nodal_loads) + size(model%conditions%pressures) > 0) &
+      allocate (state%external(2, model%layout%n_special), source=0.0_wp)
+    allocate (state%force_slots(2, size(model%layout%special_node)), source=0.0_wp)
+    allocate (state%internal_force(2, model%mesh%n_node), source=0.0_wp)
+    allocate (state%prescribed_velocity(size(model%conditions%motions)), source=0.0_wp)
+    do i = 1, size(model%conditions%motions)
+      associate (prescribed => model%conditions%motions(i))
+        state%prescribed_velocity(i) = state%motion(2 + prescribed%direction, prescribed%node)
+      end associate
+    end do
+    call start_elements(model, state%elements)
+    allocate (state%contacts(size(model%contacts)))
+    do i = 1, size(model%contacts)
+      call start_contact(model%contacts(i), model, log, state%contacts(i))
+    end do
+  end subroutine start_state
+
+end module start_m

@@ -1,0 +1,129 @@
+! SPDX-License-Identifier: MIT
+!> The time step: TSSFAC times the smallest L/c of the elements, capped by a curve; constant where the curve
+!> is constant and lies below the stable step. The limit of one cycle rules the step of the next, so that a
+!> cycle need not wait for its own elements.
+module time_step_m
+  use block_state_m, only : block_state_t
+  use curves_m, only : curve_value, curve_is_constant
+  use errors_m, only : error_t, raise, status_input
+  use kinds_m, only : wp
+  use log_m, only : log_t, warn, write_log, to_text
+  use model_m, only : model_t
+  implicit none
+  private
+  public :: step_plan_t, start_steps, first_step, next_step, is_last
+
+  !> How the steps go on.
+  type :: step_plan_t
+    real(wp) :: first_dt = 0.0_wp    !! first step, the measure of the floor
+    real(wp) :: constant = 0.0_wp    !! the constant step while it holds, else 0
+    real(wp) :: start_time = 0.0_wp  !! time at `start_cycle`, from where the constant step counts
+    integer :: start_cycle = 0
+    integer :: n_cycle = 0           !! cycles to the end at the constant step
+    integer :: end_cycle = 0         !! ENDCYC, 0 = none
+    real(wp) :: end_time = 0.0_wp
+    logical :: warned = .false.      !! the cap has been found above the stable step
+  end type step_plan_t
+
+contains
+
+  !> The plan at the start.
+  pure function start_steps(model, time) result(steps)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: time
+    type(step_plan_t) :: steps
+
+    steps%end_time = model%controls%end_time
+    steps%end_cycle = model%controls%end_cycle
+    steps%start_time = time
+  end function start_steps
+
+  !> The first step, from the elements at time zero.
+  subroutine first_step(model, elements, log, steps, dt, error)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    type(log_t), intent(inout) :: log
+    type(step_plan_t), intent(inout) :: steps
+    real(wp), intent(out) :: dt
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: limit
+
+    limit = minval(elements%time_limit)
+    dt = choose_step(model, limit, steps%start_time, log, steps)
+    if (model%controls%dt_initial > 0.0_wp .and. model%controls%dt_curve == 0) &
+      dt = min(dt, model%controls%dt_initial)
+    if (.not. dt > 0.0_wp) then
+      call raise(error, 'the first time step is not positive: stable step '//to_text(limit) &
+        //', step '//to_text(dt), status_input)
+      return
+    end if
+    steps%first_dt = dt
+    if (model%controls%dt_curve > 0 .and. .not. steps%warned) then
+      if (curve_is_constant(model%curves(model%controls%dt_curve))) then
+        steps%constant = dt
+        steps%n_cycle = max(1, nint((steps%end_time - steps%start_time)/dt))
+      end if
+    end if
+    call write_log(log, 'first time step '//to_text(dt)//', smallest L/c of the elements ' &
+      //to_text(limit))
+  end subroutine first_step
+
+  !> Step at `time` from the elements' limit; warns once when the cap is above the stable step.
+  function choose_step(model, limit, time, log, steps) result(dt)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: limit, time
+    type(log_t), intent(inout) :: log
+    type(step_plan_t), intent(inout) :: steps
+    real(wp) :: dt, cap
+
+    dt = model%controls%dt_scale*limit
+    if (model%controls%dt_curve == 0) return
+    cap = curve_value(model%curves(model%controls%dt_curve), time)
+    if (cap <= limit) then
+      dt = cap
+      if (.not. curve_is_constant(model%curves(model%controls%dt_curve))) &
+        dt = min(cap, model%controls%dt_scale*limit)
+    else if (.not. steps%warned .and. curve_is_constant(model%curves(model%controls%dt_curve))) then
+      call warn(log, 'the constant time step '//to_text(cap)//' at time '//to_text(time) &
+        //' lies above the stable step '//to_text(limit)//' of the elements; using TSSFAC times ' &
+        //'the stable step from here on')
+      steps%warned = .true.
+    end if
+  end function choose_step
+
+  !> Time of cycle `cycle` and the step that leads away from it. A constant step counts time as n dt.
+  subroutine next_step(model, elements, log, cycle, steps, time, dt)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    type(log_t), intent(inout) :: log
+    integer, intent(in) :: cycle              !! number of the new cycle
+    type(step_plan_t), intent(inout) :: steps
+    real(wp), intent(inout) :: time           !! in: old, out: new
+    real(wp), intent(inout) :: dt             !! in: step that led here, out: next one
+
+    if (steps%constant > 0.0_wp) then
+      time = steps%start_time + (cycle - steps%start_cycle)*steps%constant
+    else
+      time = time + dt
+    end if
+    dt = choose_step(model, minval(elements%time_limit), time, log, steps)
+    if (steps%warned) steps%constant = 0.0_wp
+  end subroutine next_step
+
+  !> Whether the cycle at `time` is the last: nint(ENDTIM/dt) cycles of a constant step, otherwise the first
+  !> cycle at or after the end time.
+  pure function is_last(steps, cycle, time) result(last)
+    type(step_plan_t), intent(in) :: steps
+    integer, intent(in) :: cycle
+    real(wp), intent(in) :: time
+    logical :: last
+
+    if (steps%constant > 0.0_wp) then
+      last = cycle - steps%start_cycle >= steps%n_cycle
+    else
+      last = time >= steps%end_time*(1.0_wp - 1.0e-12_wp)
+    end if
+    if (steps%end_cycle > 0) last = last .or. cycle >= steps%end_cycle
+  end function is_last
+
+end module time_step_m
