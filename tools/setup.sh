@@ -15,8 +15,9 @@ complain() {
 
 # lacking: one line "package: what it is for" for each thing that is not on this machine.
 lacking() {
-  if ! command -v gfortran >/dev/null; then
+  if ! command -v gfortran >/dev/null || ! echo end | gfortran -x f95 - -o /dev/null 2>/dev/null; then
     echo "gfortran: Fortran compiler"
+    echo "libc6-dev: what it links with"
     echo "liblapack-dev: LAPACK"
   elif ! echo end | gfortran -x f95 - -llapack -lblas -o /dev/null 2>/dev/null; then
     echo "liblapack-dev: LAPACK"
