@@ -96,7 +96,7 @@ def panel_height(zoom, width):
 
 
 def field_panel(axes, results, field, state, scale, limits, zoom, bar=True):
-    """One state with title, axes and its own colour bar."""
+    """One state with title and axes and, if asked for, its own colour bar."""
     artist = draw_field(axes, results, field, state, scale, limits)
     axes.set_xlim(zoom[0], zoom[1])
     axes.set_ylim(zoom[2], zoom[3])
@@ -106,17 +106,17 @@ def field_panel(axes, results, field, state, scale, limits, zoom, bar=True):
     axes.set_ylabel("y")
     axes.locator_params(axis="y", nbins=5)
     if bar:
-        colour_bar(axes, artist, field.label)
+        room = make_axes_locatable(axes).append_axes("right", size="2.5%", pad=0.08)
+        finish_bar(axes.figure.colorbar(artist, cax=room), field.label)
     return artist
 
 
-def colour_bar(axes, artist, label):
-    """A colour bar as high as the panel."""
-    room = make_axes_locatable(axes).append_axes("right", size="2.5%", pad=0.08)
-    bar = axes.figure.colorbar(artist, cax=room)
+def finish_bar(bar, label):
+    """Ticks from the lowest to the highest value, both included, and a small label."""
     bar.outline.set_linewidth(0.4)
-    bar.locator = matplotlib.ticker.MaxNLocator(5)
-    bar.update_ticks()
+    low, high = bar.mappable.get_clim()
+    ticks = np.linspace(low, high, 5)
+    bar.set_ticks(ticks, labels=[f"{tick:.3g}" for tick in ticks])
     bar.set_label("\n".join(wrapped(label)), fontsize=8)
 
 
@@ -144,7 +144,13 @@ def field_figure(results, name=None, states=("-1",), scale=1.0, zoom=None):
                                       figsize=(PAGE_WIDTH, (height + 0.75) * len(states)))
         limits = field.limits(states)
         for axes, state in zip(panels[:, 0], states):
-            field_panel(axes, results, field, state, scale, limits, zoom)
+            artist = field_panel(axes, results, field, state, scale, limits, zoom,
+                                 bar=len(states) == 1)
+        if len(states) > 1:
+            finish_bar(figure.colorbar(artist, ax=list(panels[:, 0]), aspect=30, pad=0.02),
+                       field.label)
+            for axes in panels[:-1, 0]:
+                axes.set_xlabel("")
         return figure
 
 
@@ -261,6 +267,7 @@ def report_figure(results, state="-1", name=None, scale=1.0):
             axes = figure.add_subplot(grid[1, column])
             draw_history(axes, results, request)
             axes.set_title(title, loc="left")
+            axes.set_ylabel("")
             axes.axvline(results.times[state], color="#888888", linewidth=0.6)
         return figure
 

@@ -1,0 +1,28 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# usage: tools/batch/collision.sh [LEVELS [TYPES]]
+# Runs the collision scene for every refinement level and contact type (default "1 2 3 4" and
+# "1 2 3") into results/batch/collision, prints a table and compares it with the reference.
+# RENEW=1 makes the table the new reference.
+set -eu
+
+root=$(cd "$(dirname "$0")/../.." && pwd)
+levels=${1:-1 2 3 4}
+types=${2:-1 2 3}
+out=$root/results/batch/collision
+
+"$root/tools/build.sh" release
+for level in $levels; do
+  suffix=
+  [ "$level" = 1 ] || suffix=_$level
+  for type in $types; do
+    run=level_${level}_type_${type}
+    echo "== collision, level $level, contact type $type"
+    mkdir -p "$out/$run"
+    "$root/build/release/slideline" i="$root/input/collision/collision$suffix.k" \
+      d="$out/$run" jobid=collision ctype="$type" >"$out/$run/progress.txt"
+  done
+done
+
+"$root/build/venv/bin/python" "$root/tools/batch/table.py" collision "$out" \
+  "$root/input/collision/reference.csv" ${RENEW:+--renew}
