@@ -12,11 +12,13 @@ types=${2:-1 2 3}
 out=$root/results/batch/collision
 
 "$root/tools/build.sh" release
+runs=
 for level in $levels; do
   suffix=
   [ "$level" = 1 ] || suffix=_$level
   for type in $types; do
     run=level_${level}_type_${type}
+    runs="$runs $run"
     echo "== collision, level $level, contact type $type"
     mkdir -p "$out/$run"
     "$root/build/release/slideline" i="$root/input/collision/collision$suffix.k" \
@@ -24,5 +26,6 @@ for level in $levels; do
   done
 done
 
+# shellcheck disable=SC2086  # the names of the runs are words
 "$root/build/venv/bin/python" "$root/tools/batch/table.py" collision "$out" \
-  "$root/input/collision/reference.csv" ${RENEW:+--renew}
+  "$root/input/collision/reference.csv" $runs ${RENEW:+--renew}

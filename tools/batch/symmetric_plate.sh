@@ -9,10 +9,12 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 meshes=${1:-8x4 16x8 32x16 64x32}
 out=$root/results/batch/symmetric_plate
+runs=
 
 # run NAME DECK IHQ QH: one run of the program.
 run() {
   echo "== symmetric plate, $1"
+  runs="$runs $1"
   mkdir -p "$out/$1"
   "$root/build/release/slideline" i="$2" d="$out/$1" jobid=symmetric_plate \
     p:ihq="$3" p:qh="$4" >"$out/$1/progress.txt"
@@ -34,5 +36,6 @@ for mesh in $meshes; do
   done
 done
 
+# shellcheck disable=SC2086  # the names of the runs are words
 "$root/build/venv/bin/python" "$root/tools/batch/table.py" symmetric_plate "$out" \
-  "$root/input/symmetric_plate/reference.csv" ${RENEW:+--renew}
+  "$root/input/symmetric_plate/reference.csv" $runs ${RENEW:+--renew}

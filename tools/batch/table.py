@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Table of a batch of scene runs, compared with the reference table of the scene.
 
-    table.py SCENE FOLDER REFERENCE.csv [--renew]
+    table.py SCENE FOLDER REFERENCE.csv RUN... [--renew]
 
-FOLDER holds one folder per run, named after it, with the results of the job `SCENE`. The rows
+FOLDER holds one folder per RUN, named after it, with the results of the job `SCENE`. The rows
 go to FOLDER/table.csv too. --renew writes the reference instead of comparing with it.
 Exit status: 0 agreed, 1 a number deviates, 2 something is missing.
 """
@@ -71,12 +71,10 @@ def main():
     parser.add_argument("scene", choices=("collision", "symmetric_plate"))
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("reference", type=pathlib.Path)
+    parser.add_argument("runs", nargs="+", metavar="RUN")
     parser.add_argument("--renew", action="store_true")
     options = parser.parse_args()
-    folders = sorted(entry for entry in options.folder.iterdir() if entry.is_dir())
-    if not folders:
-        print(f"{options.folder}: no runs", file=sys.stderr)
-        return 2
+    folders = [options.folder / run for run in options.runs]
     try:
         rows = {folder.name: row_of(options.scene, folder) for folder in folders}
         times = {folder.name: summaries.timing(folder, options.scene) for folder in folders}

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The scenes: each function returns the text of one complete deck (SI units, plane strain)."""
+import pathlib
+import sys
+
 import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
@@ -249,3 +252,16 @@ def committed_decks():
         for law in ("elastic", "elastoplastic"):
             yield (f"symmetric_plate/plate_{n_x}x{n_y}_{law}.k",
                    symmetric_plate(n_x, n_y, elastoplastic=law == "elastoplastic"))
+
+
+def main(folder):
+    """Write the decks kept in the repository below `folder`."""
+    for name, text in committed_decks():
+        path = pathlib.Path(folder) / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="ascii")
+        print(f"wrote {path}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
