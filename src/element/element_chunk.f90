@@ -10,9 +10,9 @@ module element_chunk_m
 
   !> One chunk.
   type :: element_chunk_t
-    real(wp) :: d31(4, chunk_size) !! node 3 minus node 1: u_x, u_y, v_x, v_y
-    real(wp) :: d42(4, chunk_size) !! node 4 minus node 2
-    real(wp) :: h(4, chunk_size)   !! node 1 - node 2 + node 3 - node 4
+    real(wp) :: u31(2, chunk_size), v31(2, chunk_size) !! u and v of node 3 minus node 1
+    real(wp) :: u42(2, chunk_size), v42(2, chunk_size) !! of node 4 minus node 2
+    real(wp) :: hu(2, chunk_size), hv(2, chunk_size)   !! of node 1 - node 2 + node 3 - node 4
     real(wp), dimension(chunk_size) :: x31, y31, x42, y42 !! present diagonals
     real(wp), dimension(chunk_size) :: hx, hy             !! present h.x, h.y
     real(wp), dimension(chunk_size) :: gx, gy             !! hourglass velocity gamma.v
@@ -27,46 +27,53 @@ module element_chunk_m
 
 contains
 
-  !> Differences of the nodal motion. The loop over elements stays scalar: each node is one 32-byte load,
+  !> Differences of the nodal motion, displacement and velocity apart: pairs are what the vectorised loops
+  !> read without a remainder. The loop over elements stays scalar: each node is one 32-byte load,
   !> where a vectorised gather would be several times slower.
   pure subroutine gather_chunk(nodes, motion, chunk)
-    integer, intent(in) :: nodes(4, chunk_size)    !! node indices
-    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u_x, u_y, v_x, v_y
+    integer, intent(in) :: nodes(4, chunk_size)      !! node indices
+    real(wp), intent(in) :: motion(4, *)           !! all nodes: u_x, u_y, v_x, v_y
     type(element_chunk_t), intent(inout) :: chunk
+    real(wp) :: d31(4), d42(4), h(4)
     integer :: i, k
 
     !GCC$ NOVECTOR
     do i = 1, chunk_size
       do k = 1, 4
-        chunk%d31(k, i) = motion(k, nodes(3, i)) - motion(k, nodes(1, i))
-        chunk%d42(k, i) = motion(k, nodes(4, i)) - motion(k, nodes(2, i))
-        chunk%h(k, i) = (motion(k, nodes(1, i)) - motion(k, nodes(2, i))) &
+        d31(k) = motion(k, nodes(3, i)) - motion(k, nodes(1, i))
+        d42(k) = motion(k, nodes(4, i)) - motion(k, nodes(2, i))
+        h(k) = (motion(k, nodes(1, i)) - motion(k, nodes(2, i))) &
           + (motion(k, nodes(3, i)) - motion(k, nodes(4, i)))
       end do
+      chunk%u31(:, i) = d31(1:2)
+      chunk%v31(:, i) = d31(3:4)
+      chunk%u42(:, i) = d42(1:2)
+      chunk%v42(:, i) = d42(3:4)
+      chunk%hu(:, i) = h(1:2)
+      chunk%hv(:, i) = h(3:4)
     end do
   end subroutine gather_chunk
 
-  !> Add the nodal forces of a chunk to the tile's own nodes.
+  !> Add the nodal forces of a chunk to the tile's own nodes, in pairs (x, y).
   pure subroutine scatter_chunk(local, chunk, force)
-    integer, intent(in) :: local(4, chunk_size)        !! local numbers in the tile
+    integer, intent(in) :: local(4, chunk_size)  !! local numbers in the tile
     type(element_chunk_t), intent(in) :: chunk
-    real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local) internal force
+    real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes
+    real(wp) :: first(2), second(2), third(2), fourth(2)
     integer :: i, k
 
     !GCC$ NOVECTOR
     do i = 1, chunk_size
       do k = 1, 2
-        force(k, local(1, i)) = force(k, local(1, i)) + (chunk%swing(k, i) - chunk%force(k, i))
+        first(k) = chunk%swing(k, i) - chunk%force(k, i)
+        third(k) = chunk%swing(k, i) + chunk%force(k, i)
+        second(k) = chunk%swing(k, i) + chunk%force(k + 2, i)
+        fourth(k) = chunk%swing(k, i) - chunk%force(k + 2, i)
       end do
-      do k = 1, 2
-        force(k, local(2, i)) = force(k, local(2, i)) - (chunk%swing(k, i) + chunk%force(k + 2, i))
-      end do
-      do k = 1, 2
-        force(k, local(3, i)) = force(k, local(3, i)) + (chunk%swing(k, i) + chunk%force(k, i))
-      end do
-      do k = 1, 2
-        force(k, local(4, i)) = force(k, local(4, i)) + (chunk%force(k + 2, i) - chunk%swing(k, i))
-      end do
+      force(:, local(1, i)) = force(:, local(1, i)) + first
+      force(:, local(2, i)) = force(:, local(2, i)) - second
+      force(:, local(3, i)) = force(:, local(3, i)) + third
+      force(:, local(4, i)) = force(:, local(4, i)) - fourth
     end do
   end subroutine scatter_chunk
 

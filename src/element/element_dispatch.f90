@@ -22,7 +22,7 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node)
     real(wp), intent(in) :: dt
     type(block_state_t), intent(inout) :: elements     !! only this tile's slots are touched
-    real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local), set here
+    real(wp), intent(inout) :: force(2, model%layout%n_local) !! set here
     type(element_chunk_t) :: chunk
     integer :: i_chunk, first
 

@@ -24,15 +24,15 @@ contains
 
     !$omp simd private(growth, start)
     do i = 1, chunk_size
-      chunk%x31(i) = reference(i, 1) + chunk%d31(1, i)
-      chunk%y31(i) = reference(i, 2) + chunk%d31(2, i)
-      chunk%x42(i) = reference(i, 3) + chunk%d42(1, i)
-      chunk%y42(i) = reference(i, 4) + chunk%d42(2, i)
-      chunk%hx(i) = reference(i, 5) + chunk%h(1, i)
-      chunk%hy(i) = reference(i, 6) + chunk%h(2, i)
+      chunk%x31(i) = reference(i, 1) + chunk%u31(1, i)
+      chunk%y31(i) = reference(i, 2) + chunk%u31(2, i)
+      chunk%x42(i) = reference(i, 3) + chunk%u42(1, i)
+      chunk%y42(i) = reference(i, 4) + chunk%u42(2, i)
+      chunk%hx(i) = reference(i, 5) + chunk%hu(1, i)
+      chunk%hy(i) = reference(i, 6) + chunk%hu(2, i)
       start = 0.5_wp*(reference(i, 1)*reference(i, 4) - reference(i, 3)*reference(i, 2))
-      growth = 0.5_wp*((reference(i, 1)*chunk%d42(2, i) + chunk%d31(1, i)*chunk%y42(i)) &
-        - (reference(i, 3)*chunk%d31(2, i) + chunk%d42(1, i)*chunk%y31(i)))
+      growth = 0.5_wp*((reference(i, 1)*chunk%u42(2, i) + chunk%u31(1, i)*chunk%y42(i)) &
+        - (reference(i, 3)*chunk%u31(2, i) + chunk%u42(1, i)*chunk%y31(i)))
       chunk%area(i) = start + growth
       chunk%stretch(i) = growth/start
     end do
@@ -49,16 +49,16 @@ contains
     back = 0.5_wp*dt
     !$omp simd private(x31, y31, x42, y42, factor, lxx, lxy, lyx, lyy, tangent, inverse, cosine, sine)
     do i = 1, chunk_size
-      x31 = chunk%x31(i) - back*chunk%d31(3, i)
-      y31 = chunk%y31(i) - back*chunk%d31(4, i)
-      x42 = chunk%x42(i) - back*chunk%d42(3, i)
-      y42 = chunk%y42(i) - back*chunk%d42(4, i)
+      x31 = chunk%x31(i) - back*chunk%v31(1, i)
+      y31 = chunk%y31(i) - back*chunk%v31(2, i)
+      x42 = chunk%x42(i) - back*chunk%v42(1, i)
+      y42 = chunk%y42(i) - back*chunk%v42(2, i)
       chunk%mid_area(i) = 0.5_wp*(x31*y42 - x42*y31)
       factor = 0.5_wp/chunk%mid_area(i)
-      lxx = factor*(chunk%d31(3, i)*y42 - chunk%d42(3, i)*y31)
-      lxy = factor*(x31*chunk%d42(3, i) - x42*chunk%d31(3, i))
-      lyx = factor*(chunk%d31(4, i)*y42 - chunk%d42(4, i)*y31)
-      lyy = factor*(x31*chunk%d42(4, i) - x42*chunk%d31(4, i))
+      lxx = factor*(chunk%v31(1, i)*y42 - chunk%v42(1, i)*y31)
+      lxy = factor*(x31*chunk%v42(1, i) - x42*chunk%v31(1, i))
+      lyx = factor*(chunk%v31(2, i)*y42 - chunk%v42(2, i)*y31)
+      lyy = factor*(x31*chunk%v42(2, i) - x42*chunk%v31(2, i))
       chunk%trace(i) = lxx + lyy
       stress%dxx(i) = dt*lxx
       stress%dyy(i) = dt*lyy
@@ -71,10 +71,10 @@ contains
       stress%sine(i) = sine
       stress%cos2(i) = cosine*cosine - sine*sine
       stress%sin2(i) = 2.0_wp*cosine*sine
-      x31 = chunk%hx(i) - back*chunk%h(3, i)
-      y31 = chunk%hy(i) - back*chunk%h(4, i)
-      chunk%gx(i) = chunk%h(3, i) - (lxx*x31 + lxy*y31)
-      chunk%gy(i) = chunk%h(4, i) - (lyx*x31 + lyy*y31)
+      x31 = chunk%hx(i) - back*chunk%hv(1, i)
+      y31 = chunk%hy(i) - back*chunk%hv(2, i)
+      chunk%gx(i) = chunk%hv(1, i) - (lxx*x31 + lxy*y31)
+      chunk%gy(i) = chunk%hv(2, i) - (lyx*x31 + lyy*y31)
     end do
   end subroutine form_increments
 

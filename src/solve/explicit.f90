@@ -81,7 +81,7 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(cycle_t), intent(in) :: cycle
-    real(wp), intent(inout) :: force(:, :) !! (2, n_local) this thread's own
+    real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local) this thread's own
     integer :: i_tile
 
     !$omp do schedule(static)

@@ -39,21 +39,22 @@ contains
   !> A tile's forces on its special nodes into its force slots.
   subroutine share_tile_forces(tile, force, force_slots)
     type(tile_t), intent(in) :: tile
-    real(wp), intent(in), contiguous :: force(:, :)          !! (2, n_local) of the tile
-    real(wp), intent(inout), contiguous :: force_slots(:, :) !! (2, force slots)
+    real(wp), intent(in) :: force(2, *)          !! of the tile's local nodes
+    real(wp), intent(inout) :: force_slots(2, *)
     integer :: n_interior, i
 
     n_interior = tile%last_node - tile%first_node + 1
     do i = tile%first_special, tile%last_special
-      force_slots(:, i) = force(:, n_interior + i - tile%first_special + 1)
+      force_slots(1, i) = force(1, n_interior + i - tile%first_special + 1)
+      force_slots(2, i) = force(2, n_interior + i - tile%first_special + 1)
     end do
   end subroutine share_tile_forces
 
   !> A tile's forces on its interior nodes into the nodal array, for a cycle that writes.
   subroutine keep_tile_forces(tile, force, internal_force)
     type(tile_t), intent(in) :: tile
-    real(wp), intent(in), contiguous :: force(:, :)
-    real(wp), intent(inout), contiguous :: internal_force(:, :) !! (2, n_node)
+    real(wp), intent(in) :: force(2, *)
+    real(wp), intent(inout) :: internal_force(2, *) !! of all nodes
 
     internal_force(:, tile%first_node:tile%last_node) = &
       force(:, 1:tile%last_node - tile%first_node + 1)
@@ -80,14 +81,15 @@ contains
   !> Internal force of one special node: its slots in their fixed order.
   pure function sum_special_force(layout, force_slots, node) result(force)
     type(layout_t), intent(in) :: layout
-    real(wp), intent(in), contiguous :: force_slots(:, :)
+    real(wp), intent(in) :: force_slots(2, *)
     integer, intent(in) :: node
     real(wp) :: force(2)
     integer :: i
 
     force = 0.0_wp
     do i = layout%node_slots(node), layout%node_slots(node + 1) - 1
-      force = force + force_slots(:, layout%slot_list(i))
+      force(1) = force(1) + force_slots(1, layout%slot_list(i))
+      force(2) = force(2) + force_slots(2, layout%slot_list(i))
     end do
   end function sum_special_force
 
