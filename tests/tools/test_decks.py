@@ -162,6 +162,59 @@ def test_plate_load_is_80_kn_per_metre_on_the_whole_edge(n_x):
     assert model.parameters["load"] == 80.0e3
 
 
+@pytest.mark.parametrize("level", [1, 2])
+def test_sliding(level):
+    model = Model(scenes.sliding(level))
+    plate, die = model.corners(1), model.corners(2)
+    assert (len(plate), len(die)) == (144 * level ** 2, 54 * level ** 2)
+    assert np.all(areas(model.corners()) > 0.0)
+    assert areas(plate).sum() == pytest.approx(36.0e-3 * 4.0e-3, rel=1e-9)
+    under_crown = 2.0 * 4.5e-3 ** 3 / (6.0 * 20.0e-3)
+    assert areas(die).sum() == pytest.approx(9.0e-3 * 2.0e-3 - under_crown, rel=0.01 / level ** 2)
+    lower, upper = model.chain(3), model.chain(2)
+    np.testing.assert_allclose(lower[:, 1], (lower[:, 0] - 0.010) ** 2 / 0.040, atol=1e-12)
+    assert np.all(upper[:, 1] == 0.002) and np.all(np.diff(lower[:, 0]) > 0.0)
+    assert np.all(model.chain(1)[:, 1] == -0.004) and np.all(np.diff(model.chain(4)[:, 0]) < 0.0)
+    given = model.parameters
+    assert given["endtim"] / given["dt"] == pytest.approx(150000 * level, rel=1e-12)
+    assert given["pen"] == 10.0e9 / level
+
+
+def test_strokes_of_the_die():
+    model = Model(scenes.sliding(1))
+    for lines, distance, end in zip(model.all_blocks("DEFINE_CURVE_TITLE")[1:],
+                                    (-0.15e-3, 8.0e-3), (1.5e-3, 6.0e-3)):
+        points = np.array([(float(line[:20]), float(line[20:])) for line in lines[2:]])
+        t, v = points.T
+        assert np.sum(0.5 * (v[1:] + v[:-1]) * np.diff(t)) == pytest.approx(distance, rel=1e-9)
+        assert np.all(v[t >= end - 1e-12] == 0.0)
+    start = 1.5e-3
+    assert np.all(v[t <= start] == 0.0)
+    middle = np.argmin(np.abs(t - 0.5 * (start + end)))
+    assert v[middle] == pytest.approx(2.0 * 8.0e-3 / 4.5e-3, rel=1e-9)
+    cards = [block[0].split()[:4] for block in model.all_blocks("BOUNDARY_PRESCRIBED_MOTION_SET")]
+    assert cards == [["2", "2", "0", "2"], ["2", "1", "0", "3"]]
+
+
+def test_block():
+    model = Model(scenes.block())
+    lower, upper = model.corners(1), model.corners(2)
+    assert (len(lower), len(upper)) == (100, 102)
+    assert areas(lower).sum() == pytest.approx(5.0) and areas(upper).sum() == pytest.approx(5.0)
+    slave, master = model.chain(3), model.chain(4)
+    assert len(slave) == 52 and len(master) == 51
+    assert np.all(slave[:, 1] == 0.0) and np.all(master[:, 1] == 0.0)
+    assert np.all(np.diff(slave[:, 0]) > 0.0) and np.all(np.diff(master[:, 0]) < 0.0)
+    assert np.all(model.chain(1)[:, 1] == -0.5) and np.all(model.chain(2)[:, 1] == 0.5)
+
+
+@pytest.mark.parametrize("scene", ["sliding", "block"])
+def test_make_deck_of_the_other_scenes(tmp_path, tool, scene):
+    path = tmp_path / "x.k"
+    assert tool("make-deck", scene, "--ctype", 3, "--output", path).returncode == 0
+    assert Model(path.read_text()).parameters["ctype"] == 3
+
+
 def test_hourglass_choice():
     given = Model(scenes.symmetric_plate(8, 4, hourglass="stiffness")).parameters
     assert (given["ihq"], given["qh"]) == (4, 0.05)

@@ -21,12 +21,19 @@ def add_make_deck(commands):
         "make-deck", help="write the deck of a scene",
         description="Write the keyword deck of a scene.")
     scenes = parser.add_subparsers(dest="scene", required=True, metavar="SCENE")
-    scene = scenes.add_parser("collision", help="projectile on a plate, half model")
-    scene.add_argument("--level", type=int, default=1, help="refinement N_r, 1 to 4 in the seed")
-    scene.add_argument("--ctype", type=int, default=2, help="contact type in the deck (2)")
-    scene.add_argument("--ngauss", type=int, default=4, help="Gauss points of type 6 (4)")
-    scene.add_argument("--output", "-o", required=True, help="deck file to write")
-    scene.set_defaults(run=make_collision)
+    for name, levels, points, text in (
+            ("collision", "1 to 4", 4, "projectile on a plate, half model"),
+            ("sliding", "1 to 3", 6, "die pressed into a plate and drawn along it"),
+            ("block", None, 4, "two soft blocks, explicit")):
+        scene = scenes.add_parser(name, help=text)
+        if levels:
+            scene.add_argument("--level", type=int, default=1,
+                               help=f"refinement N_r, {levels} in the seed")
+        scene.add_argument("--ctype", type=int, default=2, help="contact type in the deck (2)")
+        scene.add_argument("--ngauss", type=int, default=points,
+                           help=f"Gauss points of type 6 ({points})")
+        scene.add_argument("--output", "-o", required=True, help="deck file to write")
+        scene.set_defaults(run=make_contact_scene)
     scene = scenes.add_parser("symmetric_plate", help="plate on two pins under a step load")
     scene.add_argument("--nx", type=int, default=8, help="elements along 8 m, a multiple of 8")
     scene.add_argument("--ny", type=int, default=4, help="elements through 1 m, even")
@@ -38,9 +45,11 @@ def add_make_deck(commands):
     scene.set_defaults(run=make_symmetric_plate)
 
 
-def make_collision(options):
+def make_contact_scene(options):
     from slideline_tools import scenes
-    return write_deck(options, scenes.collision, options.level, options.ctype, options.ngauss)
+    level = () if options.scene == "block" else (options.level,)
+    return write_deck(options, getattr(scenes, options.scene), *level, options.ctype,
+                      options.ngauss)
 
 
 def make_symmetric_plate(options):

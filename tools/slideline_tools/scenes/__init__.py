@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: MIT
+"""The scenes: each function returns the text of one complete deck (SI units, plane strain)."""
+from slideline_tools.scenes.block import block
+from slideline_tools.scenes.collision import collision, collision_grids
+from slideline_tools.scenes.sliding import sliding, sliding_grids
+from slideline_tools.scenes.symmetric_plate import symmetric_plate, symmetric_plate_grid
+
+__all__ = ["block", "collision", "collision_grids", "committed_decks", "sliding", "sliding_grids",
+           "symmetric_plate", "symmetric_plate_grid"]
+
+
+def committed_decks():
+    """Path below `input/` and text of every deck kept in the repository."""
+    for level in (1, 2, 3, 4):
+        suffix = "" if level == 1 else f"_{level}"
+        yield f"collision/collision{suffix}.k", collision(level)
+    for n_x, n_y in ((8, 4), (16, 8), (32, 16)):
+        for law in ("elastic", "elastoplastic"):
+            yield (f"symmetric_plate/plate_{n_x}x{n_y}_{law}.k",
+                   symmetric_plate(n_x, n_y, elastoplastic=law == "elastoplastic"))

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""Block-to-block: two soft blocks with non-matching meshes are pressed together."""
+from slideline_tools.decks import Deck, Grid, spaced
+from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, part,
+                                           plane_strain, slideline)
+
+
+def block(ctype=2, ngauss=4):
+    """The block-to-block scene with the explicit method, 200 steps of 1 ms."""
+    lower = Grid(spaced((0.0, 10.0, 50)), spaced((-0.5, 0.0, 2)))
+    upper = Grid(spaced((0.0, 10.0, 51)), spaced((0.0, 0.5, 2)),
+                 first_node=10001, first_element=10001)
+    deck = Deck("block-to-block contact", [
+        "The upper of two soft blocks is pressed upon the lower one at 50 mm/s; their meshes "
+        "do not match. SI units (m, kg, s, N, Pa), plane strain, per metre of depth.",
+        "",
+        "Dimensions not given by the seed's text, so ours: each block 10 m x 0.5 m.",
+        "",
+        "Result: contact pressure along the slave surface at 0.2 s.",
+    ])
+    deck.block("The numbers to play with.")
+    deck.parameters(
+        ("ctype", ctype, "contact type: " + CONTACT_TYPES),
+        ("ngauss", ngauss, "Gauss points of a slave segment (type 6 only; others ignore it)"),
+        ("pen", 1.0e6, "penalty of a contact node in N/m"),
+        ("v0", -0.05, "velocity of the upper face in y in m/s"),
+        ("dt", 1.0e-3, "time step in s"),
+        ("endtim", 0.2, "end time in s: 200 steps"))
+    deck.block("When to stop, and a constant time step (the curve LCTM caps the step).")
+    deck.keyword("CONTROL_TERMINATION")
+    deck.card("endtim", "&endtim")
+    deck.constant_step(1, "&dt", 10.0)
+    energies_on(deck)
+    deck.block("Output: energies and contact force at each step, a state each 10 ms.")
+    deck.database(glstat="&dt", rcforc="&dt", matsum=0.01, binary_d3plot=0.01)
+    deck.block("Two bodies of one-point plane-strain quads (ELFORM 13), one material.")
+    part(deck, 1, "lower block", 1, 1)
+    part(deck, 2, "upper block", 1, 1)
+    plane_strain(deck, 1)
+    elastic(deck, 1, rho=1000.0, young=1.0e6, poisson=0.0)
+    deck.block("The lower face rests (u_y = 0), the upper face moves with a constant velocity.")
+    deck.node_set(1, "lower face of the lower block", lower.lower)
+    deck.spc_set(1, False, True)
+    deck.node_set(2, "upper face of the upper block", upper.upper)
+    deck.keyword("BOUNDARY_PRESCRIBED_MOTION_SET")
+    deck.card("nsid dof vad lcid sf", 2, 2, 0, 2, 1.0)
+    deck.curve(2, "velocity of the upper face", [(0.0, "&v0"), (10.0, "&v0")])
+    deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
+               "so a lower face runs from left to right, an upper face from right to left.")
+    deck.node_set(3, "slave: lower face of the upper block", upper.lower)
+    deck.node_set(4, "master: upper face of the lower block", lower.upper)
+    slideline(deck, 3, 4)
+    deck.block("Mesh of the lower block: 50 x 2 quads.")
+    lower.write(deck, 1)
+    deck.block("Mesh of the upper block: 51 x 2 quads.")
+    upper.write(deck, 2)
+    return deck.text()

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""Blocks of a deck that several scenes need, and their materials (SI units)."""
+
+STEEL = dict(rho=7850.0, young=210.0e9, poisson=0.3)
+ALUMINIUM = dict(rho=2700.0, young=69.0e9, poisson=0.33, yield_stress=276.0e6)
+
+CONTACT_TYPES = ("1 NTS, 2 NTS-AR, 3 two-pass NTS-AR, 4 VTS-PPT, 5 NTS-mAR, 6 mortar, "
+                 "7 segmented mortar")
+
+
+def part(deck, number, heading, section, material):
+    deck.keyword("PART", heading)
+    return deck.card("pid secid mid eosid hgid", number, section, material, 0, 0)
+
+
+def plane_strain(deck, section):
+    """One-point plane-strain section; the thickness is not used (unit depth)."""
+    deck.keyword("SECTION_SHELL")
+    deck.card("secid elform shrf nip", section, 13, 1.0, 1)
+    return deck.card("t1 t2 t3 t4", 1.0, 1.0, 1.0, 1.0)
+
+
+def elastic(deck, number, rho, young, poisson):
+    deck.keyword("MAT_ELASTIC")
+    return deck.card("mid ro e pr", number, rho, young, poisson)
+
+
+def perfectly_plastic(deck, number, rho, young, poisson, yield_stress):
+    deck.keyword("MAT_PLASTIC_KINEMATIC")
+    deck.card("mid ro e pr sigy etan beta", number, rho, young, poisson, yield_stress, 0.0, 1.0)
+    return deck.card("src srp fs vp", 0.0, 0.0, 0.0, 0.0)
+
+
+def energies_on(deck):
+    """All energies are computed and enter the balance of glstat."""
+    deck.keyword("CONTROL_ENERGY")
+    return deck.card("hgen rwen slnten rylen", 2, 2, 2, 2)
+
+
+def slideline(deck, slave, master):
+    """*CONTACT_2D_SLIDELINE between two node sets; type, points and penalty are parameters."""
+    deck.keyword("CONTACT_2D_SLIDELINE")
+    return deck.card("surfa surfb ctype ngauss pen fs fd dc",
+                     -slave, -master, "&ctype", "&ngauss", "&pen", 0.0, 0.0, 0.0)
