@@ -10,7 +10,9 @@ case $type in
   release | debug) ;;
   *) complain "usage: tools/build.sh [release|debug]"; exit 1 ;;
 esac
+lock
 install_packages
 install_tools
 build "$type"
+unlock
 say "the program is build/$type/slideline"

@@ -33,9 +33,11 @@ for argument in "$@"; do
   esac
 done
 
+lock
 install_packages
 install_tools
 build release
+unlock
 say "running $case_name"
 "$root/build/release/slideline" "i=$deck" "${place[@]}" "$@"
 status=$?

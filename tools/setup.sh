@@ -13,6 +13,19 @@ complain() {
   printf '%s\n' "$*" >&2
 }
 
+# One set-up or build at a time: a sweep may start many runs at once.
+lock() {
+  mkdir -p "$root/build" || exit 1
+  if command -v flock >/dev/null; then
+    exec 9>"$root/build/lock"
+    flock 9
+  fi
+}
+
+unlock() {
+  exec 9>&-
+}
+
 # lacking: one line "package: what it is for" for each thing that is not on this machine.
 lacking() {
   if ! command -v gfortran >/dev/null || ! echo end | gfortran -x f95 - -o /dev/null 2>/dev/null; then

@@ -7,6 +7,7 @@
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
+lock
 install_packages
 install_tools test
 failed=0
@@ -21,9 +22,12 @@ run_tests() {
 }
 
 build release all
+unlock
 run_tests release "$@"
 if [ $# -eq 0 ]; then
+  lock
   build debug all
+  unlock
   run_tests debug -L 'unit|rejected|program|quick'
 fi
 if [ $failed -ne 0 ]; then
