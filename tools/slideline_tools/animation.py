@@ -37,12 +37,18 @@ def animate(results, path, name=None, scale=1.0, rate=12, zoom=None):
         zoom = plots.frame(scratch.add_subplot(), results, states, scale, zoom)
         plt.close(scratch)
         height = plots.panel_height(zoom, plots.PAGE_WIDTH - 1.9) + 0.75
-        figure = plt.figure(figsize=(plots.PAGE_WIDTH, height), dpi=PIXELS_PER_INCH,
-                            layout="constrained")
+        figure, axes = plt.subplots(figsize=(plots.PAGE_WIDTH, height), layout="constrained")
+        artist = plots.field_panel(axes, results, field, 0, scale, limits, zoom)
+        plots.colour_bar(artist, [axes], field.label)
+        figure.suptitle(plots.run_title(results), fontsize=9)
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")  # the places stay as they are
         with writer.saving(figure, str(path), PIXELS_PER_INCH):
             for state in states:
-                figure.clear()
-                plots.field_panel(figure.add_subplot(), results, field, state, scale, limits, zoom)
+                for drawn in list(axes.collections):
+                    drawn.remove()
+                plots.draw_field(axes, results, field, state, scale, limits)
+                axes.set_title(plots.state_title(results, state, scale), loc="left")
                 writer.grab_frame()
         plt.close(figure)
     return results.n_state

@@ -42,13 +42,6 @@ class ScalarField:
             high = 0.0
         return (low, high) if high > low else (low, low + 1.0)
 
-    def colours(self, states=None):
-        """Name of a colour map that suits the sign of the values."""
-        low, high = self.limits(states)
-        if low < 0.0 < high:
-            return "RdBu_r"
-        return "viridis" if low >= 0.0 else "viridis_r"
-
 
 def scalar_field(results, name):
     """The field `name` or `name:component`; without component the length of a vector."""

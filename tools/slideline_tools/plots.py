@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Figures: a field on the deformed mesh, histories, contact pressure along the surface."""
+import textwrap
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -7,14 +9,13 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.collections import PolyCollection  # noqa: E402
-from mpl_toolkits.axes_grid1 import make_axes_locatable  # noqa: E402
 
 from slideline_tools.fields import default_field, scalar_field  # noqa: E402
 from slideline_tools.results import ResultsError  # noqa: E402
 
 STYLE = {
     "figure.dpi": 150, "savefig.dpi": 150, "font.size": 9, "axes.titlesize": 9,
-    "axes.grid": False, "legend.frameon": False, "lines.linewidth": 1.2,
+    "axes.grid": False, "legend.framealpha": 0.85, "legend.edgecolor": "none", "lines.linewidth": 1.2,
     "axes.spines.top": False, "axes.spines.right": False, "axes.formatter.limits": (-3, 4),
     "axes.formatter.use_mathtext": True, "legend.fontsize": 8,
 }
@@ -34,28 +35,31 @@ def deformed(results, state, scale=1.0):
     return points + (scale - 1.0) * moved
 
 
-def draw_field(axes, results, field, state, scale=1.0, limits=None, edges=True):
+def draw_field(axes, results, field, state, scale=1.0, limits=None):
     """Draw one state of a ScalarField; returns the artist that carries the colours."""
     points = deformed(results, state, scale)
     cells = results.cells
     low, high = field.limits() if limits is None else limits
-    colours = field.colours() if limits is None else (
-        "RdBu_r" if low < 0.0 < high else "viridis" if low >= 0.0 else "viridis_r")
     values = field.values[state]
     if field.at_nodes:
-        artist = draw_nodal(axes, points, cells, values, colours, low, high)
+        artist = draw_nodal(axes, points, cells, values, colours(low, high), low, high)
     else:
-        artist = PolyCollection(points[cells], array=values, cmap=colours, linewidths=0.0)
-        artist.set_clim(low, high)
         # Neighbouring polygons without an edge leave hairlines between them.
-        artist.set_edgecolor("face")
-        artist.set_linewidth(0.2)
+        artist = PolyCollection(points[cells], array=values, cmap=colours(low, high),
+                                edgecolors="face", linewidths=0.2)
+        artist.set_clim(low, high)
         axes.add_collection(artist)
-    if edges:
-        axes.add_collection(PolyCollection(points[cells], facecolors="none", edgecolors="#00000090",
-                                           linewidths=edge_width(len(cells))))
+    axes.add_collection(PolyCollection(points[cells], facecolors="none", edgecolors="#00000090",
+                                       linewidths=edge_width(len(cells))))
     axes.set_aspect("equal")
     return artist
+
+
+def colours(low, high):
+    """Colour map that is light at zero; two colours if the values have both signs."""
+    if low < 0.0 < high:
+        return "RdBu_r"
+    return "YlOrRd" if low >= 0.0 else "YlGnBu_r"
 
 
 def draw_nodal(axes, points, cells, values, colours, low, high):
@@ -95,40 +99,38 @@ def panel_height(zoom, width):
     return float(np.clip(height, 0.9, 7.0))
 
 
-def field_panel(axes, results, field, state, scale, limits, zoom, bar=True):
-    """One state with title and axes and, if asked for, its own colour bar."""
+def field_panel(axes, results, field, state, scale, limits, zoom):
+    """One state with title and axes; returns the artist that carries the colours."""
     artist = draw_field(axes, results, field, state, scale, limits)
     axes.set_xlim(zoom[0], zoom[1])
     axes.set_ylim(zoom[2], zoom[3])
-    title = f"{run_title(results)}t = {results.times[state]:.4g}"
-    axes.set_title(title + ("" if scale == 1.0 else f", displacement x {scale:g}"), loc="left")
+    axes.set_title(state_title(results, state, scale), loc="left")
     axes.set_xlabel("x")
     axes.set_ylabel("y")
     axes.locator_params(axis="y", nbins=5)
-    if bar:
-        room = make_axes_locatable(axes).append_axes("right", size="2.5%", pad=0.08)
-        finish_bar(axes.figure.colorbar(artist, cax=room), field.label)
     return artist
 
 
-def finish_bar(bar, label):
-    """Ticks from the lowest to the highest value, both included, and a small label."""
+def state_title(results, state, scale):
+    """Time of a state, and the scale of its displacements if it is not one."""
+    magnified = "" if scale == 1.0 else f", displacement x {scale:g}"
+    return f"t = {results.times[state]:.4g}{magnified}"
+
+
+def colour_bar(artist, panels, label):
+    """A colour bar beside the panels, with ticks from the lowest to the highest value."""
+    bar = panels[0].figure.colorbar(artist, ax=panels, aspect=12 * len(panels), pad=0.02)
     bar.outline.set_linewidth(0.4)
-    low, high = bar.mappable.get_clim()
-    ticks = np.linspace(low, high, 5)
+    ticks = np.linspace(*artist.get_clim(), 5)
     bar.set_ticks(ticks, labels=[f"{tick:.3g}" for tick in ticks])
-    bar.set_label("\n".join(wrapped(label)), fontsize=8)
-
-
-def wrapped(label):
-    """A long label on two lines, broken before its bracket."""
-    head, bracket, tail = label.partition(" (")
-    return [label] if len(label) < 24 or not bracket else [head, "(" + tail]
+    head, unit, _ = label.partition("(deck units)")
+    lines = textwrap.wrap(head, 24) + ([unit] if unit else [])
+    bar.set_label("\n".join(lines), fontsize=8)
 
 
 def run_title(results):
-    title = results.run.get("title", "")
-    return f"{title}, " if title else ""
+    """Title of the deck, or the name of the file."""
+    return results.run.get("title") or results.path.name
 
 
 def field_figure(results, name=None, states=("-1",), scale=1.0, zoom=None):
@@ -141,16 +143,14 @@ def field_figure(results, name=None, states=("-1",), scale=1.0, zoom=None):
         plt.close(scratch)
         height = panel_height(zoom, PAGE_WIDTH - 1.9)
         figure, panels = plt.subplots(len(states), 1, squeeze=False, layout="constrained",
-                                      figsize=(PAGE_WIDTH, (height + 0.75) * len(states)))
+                                      figsize=(PAGE_WIDTH, (height + 0.7) * len(states) + 0.2))
         limits = field.limits(states)
         for axes, state in zip(panels[:, 0], states):
-            artist = field_panel(axes, results, field, state, scale, limits, zoom,
-                                 bar=len(states) == 1)
-        if len(states) > 1:
-            finish_bar(figure.colorbar(artist, ax=list(panels[:, 0]), aspect=30, pad=0.02),
-                       field.label)
-            for axes in panels[:-1, 0]:
-                axes.set_xlabel("")
+            artist = field_panel(axes, results, field, state, scale, limits, zoom)
+        for axes in panels[:-1, 0]:
+            axes.set_xlabel("")
+        colour_bar(artist, list(panels[:, 0]), field.label)
+        figure.suptitle(run_title(results), fontsize=9)
         return figure
 
 
@@ -196,8 +196,11 @@ def draw_history(axes, results, request):
     axes.set_xlabel("time")
     axes.margins(x=0.0)
     axes.grid(True, linewidth=0.3, color="#bbbbbb")
-    if count > 1:
-        axes.legend(ncols=1 if count < 5 else 2, loc="best")
+    if count > 3:
+        axes.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.02, 0.99), columnspacing=1.0,
+                    handlelength=1.5, borderaxespad=0.0)
+    elif count > 1:
+        axes.legend(loc="best")
     else:
         axes.set_ylabel(label)
 
@@ -212,7 +215,7 @@ def history_figure(results, requests):
             axes.set_title(request.partition(":")[0], loc="left")
         for axes in panels[:-1, 0]:
             axes.set_xlabel("")
-        figure.suptitle(results.run.get("title", results.path.name), fontsize=9)
+        figure.suptitle(run_title(results), fontsize=9)
         return figure
 
 
@@ -236,12 +239,13 @@ def contact_figure(results, states=("-1",)):
                 chain = rows.where(time=nearest)
                 axes.plot(chain["s"], chain["pressure"], marker="o", markersize=2.5,
                           color=COLOURS[count % len(COLOURS)], label=f"t = {nearest:.4g}")
-            axes.set_title(f"{run_title(results)}interface {interface}", loc="left")
+            axes.set_title(f"interface {interface}", loc="left")
             axes.set_xlabel("arc length s along the slave surface")
             axes.set_ylabel("contact pressure")
             axes.set_ylim(bottom=0.0)
             axes.grid(True, linewidth=0.3, color="#bbbbbb")
             axes.legend()
+        figure.suptitle(run_title(results), fontsize=9)
         return figure
 
 
@@ -251,23 +255,22 @@ def report_figure(results, state="-1", name=None, scale=1.0):
     """A field on the deformed mesh above the energies and, with contact, the contact force."""
     field = scalar_field(results, name or default_field(results))
     state = results.state_index(state)
-    panels = [request for request in report_requests(results) if request]
+    panels = report_requests(results)
     with plt.rc_context(STYLE):
         scratch = plt.figure()
         zoom = frame(scratch.add_subplot(), results, [state], scale)
         plt.close(scratch)
-        height = panel_height(zoom, PAGE_WIDTH - 1.9) + 0.75
-        lower = 2.5 if panels else 0.0
-        figure = plt.figure(figsize=(PAGE_WIDTH, height + lower), layout="constrained")
-        grid = figure.add_gridspec(2 if panels else 1, max(len(panels), 1),
-                                   height_ratios=[height, lower] if panels else None)
-        field_panel(figure.add_subplot(grid[0, :]), results, field, state, scale,
-                    field.limits([state]), zoom)
+        heights = [panel_height(zoom, PAGE_WIDTH - 1.9) + 0.9, 2.6][:1 + bool(panels)]
+        figure = plt.figure(figsize=(PAGE_WIDTH, sum(heights)), layout="constrained")
+        parts = figure.subfigures(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
+        axes = parts[0].add_subplot()
+        artist = field_panel(axes, results, field, state, scale, field.limits([state]), zoom)
+        colour_bar(artist, [axes], field.label)
+        figure.suptitle(run_title(results), fontsize=9)
         for column, (request, title) in enumerate(panels):
-            axes = figure.add_subplot(grid[1, column])
+            axes = parts[1].add_subplot(1, len(panels), column + 1)
             draw_history(axes, results, request)
-            axes.set_title(title, loc="left")
-            axes.set_ylabel("")
+            axes.set_ylabel(title)
             axes.axvline(results.times[state], color="#888888", linewidth=0.6)
         return figure
 
@@ -280,9 +283,9 @@ def report_requests(results):
         wanted = [name for name in ("kinetic", "internal", "hourglass", "contact", "total")
                   if name in glstat and (name in ("kinetic", "internal", "total")
                                          or np.any(glstat[name] != 0.0))]
-        panels.append(("glstat:" + ",".join(wanted), "energies"))
+        panels.append(("glstat:" + ",".join(wanted), "energy"))
     if "rcforc" in results.histories and len(results.history("rcforc")):
-        panels.append(("rcforc:fy@side=slave", "contact force in y on the slave side"))
+        panels.append(("rcforc:fy@side=slave", "contact force in y, slave side"))
     elif "nodout" in results.histories and len(results.history("nodout")):
         panels.append(("nodout:uy", "displacement in y"))
     return panels
