@@ -12,6 +12,7 @@ module files_m
   implicit none
   private
   public :: join_path, parent_path, file_exists, is_directory, make_directory, &
+    remove_file, rename_file, &
     text_file_t, create_text_file, append_text, close_text_file
 
   !> Permissions of what is made, before the user's mask: rwx for all, rw for all.
@@ -31,6 +32,20 @@ module files_m
       integer(c_int), value :: mode                 !! permissions
       integer(c_int) :: status
     end function c_mkdir
+
+    !> C rename; 0 on success.
+    function c_rename(old, new) bind(c, name='rename') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: old(*), new(*) !! end with a null
+      integer(c_int) :: status
+    end function c_rename
+
+    !> C remove; 0 on success.
+    function c_remove(path) bind(c, name='remove') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*) !! ends with a null
+      integer(c_int) :: status
+    end function c_remove
 
     !> POSIX creat; a descriptor, or -1.
     function c_creat(path, mode) bind(c, name='creat') result(descriptor)
@@ -137,6 +152,28 @@ contains
         status_files)
     end if
   end subroutine make_directory
+
+  !> Remove a file; nothing happens when there is none.
+  subroutine remove_file(path, error)
+    character(*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    integer(c_int) :: status
+
+    if (.not. file_exists(path)) return
+    status = c_remove(path//c_null_char)
+    if (status /= 0) call raise(error, 'cannot replace '//path//': '//open_failure(path), &
+      status_files)
+  end subroutine remove_file
+
+  !> Give a file another name in the same directory, in one step; a file of that name is replaced.
+  subroutine rename_file(old, new, error)
+    character(*), intent(in) :: old, new
+    type(error_t), allocatable, intent(out) :: error
+    integer(c_int) :: status
+
+    status = c_rename(old//c_null_char, new//c_null_char)
+    if (status /= 0) call raise(error, 'cannot rename '//old//' to '//new, status_files)
+  end subroutine rename_file
 
   !> Make a text file, empty; one of the same name is emptied.
   subroutine create_text_file(file, path, error)

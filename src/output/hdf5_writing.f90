@@ -5,7 +5,7 @@
 !> Here `error` is carried along: a procedure that is handed an error does nothing, so that a
 !> sequence of calls needs one question at its end.
 module hdf5_writing_m
-  use, intrinsic :: iso_c_binding, only : c_ptr, c_loc, c_char, c_null_char
+  use, intrinsic :: iso_c_binding, only : c_ptr, c_loc, c_char, c_int, c_null_char
   use hdf5
   use kinds_m, only : wp, long
   use errors_m, only : error_t, raise, status_files
@@ -14,7 +14,7 @@ module hdf5_writing_m
   public :: growing_t, as_real, as_integer, as_index, &
     create_growing, link_growing, append_rows, close_growing, &
     make_group, write_rows, write_string_attribute, write_index_attribute, write_text, &
-    check_status
+    check_status, allow_reading
 
   !> What the rows of a dataset hold: float64, int32, int64.
   integer, parameter :: as_real = 1, as_integer = 2, as_index = 3
@@ -28,7 +28,26 @@ module hdf5_writing_m
     integer(long) :: n_row = 0               !! rows so far
   end type growing_t
 
+  interface
+    !> POSIX setenv; 0 on success.
+    function c_setenv(name, text, overwrite) bind(c, name='setenv') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: name(*), text(*) !! end with a null
+      integer(c_int), value :: overwrite   !! 0: what the user has set stays
+      integer(c_int) :: status
+    end function c_setenv
+  end interface
+
 contains
+
+  !> Let viewers open the file while the run still writes it, and let it live on network file systems without
+  !> locks: switches HDF5's lock off unless the user's environment says otherwise. To be
+  !> called before HDF5 is.
+  subroutine allow_reading()
+    integer(c_int) :: status
+
+    status = c_setenv('HDF5_USE_FILE_LOCKING'//c_null_char, 'FALSE'//c_null_char, 0_c_int)
+  end subroutine allow_reading
 
   !> Turn an HDF5 status into an error that names the file operation.
   subroutine check_status(status, what, error)
@@ -81,10 +100,11 @@ contains
     call check_status(status, name, error)
   end subroutine make_group
 
-  !> Make a dataset of no rows that grows; a chunk holds `chunk_rows` rows.
-  subroutine create_growing(parent, name, content, n_column, chunk_rows, dataset, error)
-    integer(hid_t), intent(in) :: parent
-    character(*), intent(in) :: name                   !! path below `parent`
+  !> Make a dataset of no rows that grows; a chunk holds `chunk_rows` rows. It has no place in the
+  !> file's tree before `link_growing`.
+  subroutine create_growing(file, name, content, n_column, chunk_rows, dataset, error)
+    integer(hid_t), intent(in) :: file
+    character(*), intent(in) :: name                   !! for messages
     integer, intent(in) :: content                     !! one of the `as_` constants
     integer, intent(in) :: n_column                    !! 0: one-dimensional
     integer, intent(in) :: chunk_rows                  !! rows per chunk
@@ -99,26 +119,24 @@ contains
     dataset%content = content
     dataset%n_column = n_column
     rank = merge(1, 2, n_column == 0)
-    dims = [0_hsize_t, int(n_column, hsize_t)]
-    most = [H5S_UNLIMITED_F, int(n_column, hsize_t)]
-    chunk = [int(max(chunk_rows, 1), hsize_t), int(n_column, hsize_t)]
-    if (rank == 2) then ! Fortran counts the columns first
-      dims = dims(2:1:-1)
-      most = most(2:1:-1)
-      chunk = chunk(2:1:-1)
-    end if
+    dims = int(n_column, hsize_t) ! Fortran counts the columns first
+    most = dims
+    chunk = dims
+    dims(rank) = 0
+    most(rank) = H5S_UNLIMITED_F
+    chunk(rank) = max(chunk_rows, 1)
     call h5screate_simple_f(rank, dims, space, status(1), most)
     call h5pcreate_f(H5P_DATASET_CREATE_F, creation, status(2))
     call h5pset_chunk_f(creation, rank, chunk, status(3))
     call h5pset_fill_time_f(creation, H5D_FILL_TIME_NEVER_F, status(4))
-    call h5dcreate_f(parent, name, file_type(content), space, dataset%id, status(5), creation)
+    call h5dcreate_anon_f(file, file_type(content), space, dataset%id, status(5), creation)
     call h5pclose_f(creation, status(6))
     call check_status(minval(status), name, error)
     call h5sclose_f(space, status(1))
     call check_status(status(1), name, error)
   end subroutine create_growing
 
-  !> Give a growing dataset one more name: arrays of equal content are stored once.
+  !> Give a growing dataset a name, or one more: arrays of equal content are stored once.
   subroutine link_growing(dataset, parent, name, error)
     type(growing_t), intent(in) :: dataset
     integer(hid_t), intent(in) :: parent
@@ -127,7 +145,7 @@ contains
     integer :: status
 
     if (allocated(error)) return
-    call h5lcreate_hard_f(parent, dataset%name, parent, name, status)
+    call h5olink_f(dataset%id, parent, name, status)
     call check_status(status, name, error)
   end subroutine link_growing
 

@@ -12,20 +12,20 @@ module results_file_m
   use hdf5
   use kinds_m, only : wp, long
   use errors_m, only : error_t, raise, status_files
+  use files_m, only : remove_file, rename_file
   use model_m, only : model_t
+  use controls_m, only : controls_t
   use snapshot_m, only : snapshot_t
   use history_file_m, only : histories_t, n_table
   use results_mesh_m, only : write_mesh, deck_order
   use csv_table_m, only : csv_table_t, column_name, n_columns, kind_real
   use hdf5_writing_m, only : growing_t, as_real, as_integer, as_index, create_growing, &
     link_growing, append_rows, close_growing, make_group, write_rows, &
-    write_string_attribute, write_index_attribute, write_text, check_status
+    allow_reading, write_string_attribute, write_index_attribute, write_text, check_status
   implicit none
   private
   public :: results_file_t, run_info_t, open_results, append_state, finish_results
 
-  !> Rows per chunk of the small arrays below Steps.
-  integer, parameter :: step_rows = 512
 
   !> Fields, in the order in which `append_state` writes them, and their numbers of columns.
   integer, parameter :: n_point_field = 6, n_cell_field = 4
@@ -38,9 +38,20 @@ module results_file_m
   !> Arrays below Steps: times, first point of a state, first cell, zeros and ones.
   integer, parameter :: n_step_array = 5, step_values = 1, step_points = 2, step_cells = 3, &
     step_zeros = 4, step_ones = 5
-  character(28), parameter :: step_names(n_step_array) = [character(28) :: 'Steps/Values', &
-    'Steps/PointOffsets', 'Steps/CellDataOffsets/stress', 'Steps/PartOffsets', &
-    'Steps/NumberOfParts']
+
+  !> Chunks that the planned states fill of the 64 in one table of HDF5, and a size that a table
+  !> is not below.
+  integer, parameter :: chunks_per_table = 52
+  integer(hsize_t), parameter :: table_size = 2048, page_size = 4096
+  !> Bytes that a chunk reaches where the states allow, and that it cannot exceed in HDF5.
+  integer(long), parameter :: small_chunk = 65536, large_chunk = 2_long**32 - 1
+  !> Rows per chunk of the arrays below Steps, at least: a row that needs a new chunk appears with
+  !> several writes.
+  integer, parameter :: least_step_rows = 1024
+  !> Bound on the number of states that is planned for.
+  integer, parameter :: most_planned = 4096
+  !> Behind the name of a file without a state.
+  character(*), parameter :: unfinished = '.part'
 
   !> What the file says of the run.
   type :: run_info_t
@@ -55,6 +66,7 @@ module results_file_m
   !> An open results file.
   type :: results_file_t
     character(:), allocatable :: path
+    logical :: is_named = .false.               !! it has its own name
     integer(hid_t) :: id = -1                   !! open file
     integer(hid_t) :: n_steps = -1              !! open attribute NSteps
     integer(long) :: n_state = 0                !! states in the file
@@ -69,7 +81,9 @@ module results_file_m
 
 contains
 
-  !> Make the file with the mesh and without a state. An existing file of the name is replaced.
+  !> Make the file with the mesh and without a state. It has its own name from the first state on, and
+  !> `<path>.part` before, so that what stands under the name always opens. A file
+  !> of that name from an earlier run is removed.
   subroutine open_results(file, path, model, run_info, error)
     type(results_file_t), intent(out) :: file
     character(*), intent(in) :: path
@@ -80,22 +94,19 @@ contains
     integer :: status
 
     file%path = path
-    call h5open_f(status)
-    call h5eset_auto_f(0, status) ! statuses become errors here; HDF5 itself stays quiet
-    call h5fcreate_f(path, H5F_ACC_TRUNC_F, file%id, status)
-    if (status < 0) then
-      file%id = -1
-      call raise(error, 'cannot write '//path//' (no directory, no permission or no space)', &
-        status_files)
-      return
-    end if
+    call remove_file(path, error)
+    if (allocated(error)) return
+    call create_file(file, error)
+    if (allocated(error)) return
     call make_group(file%id, 'VTKHDF', error)
     if (.not. allocated(error)) call h5gopen_f(file%id, 'VTKHDF', group, status)
-    call create_arrays(file, group, model, error)
+    call create_steps(file, group, planned_states(model%controls), error)
+    call create_fields(file, group, model, error)
     call write_string_attribute(group, 'Type', 'UnstructuredGrid', .true., error)
     call write_index_attribute(group, 'Version', [2_long, 0_long], error)
     call write_mesh(group, model, error)
     call write_run(file%id, run_info, error)
+    call make_group(file%id, 'history', error)
     call publish(file, error)
     call h5gclose_f(group, status)
     allocate (file%point_rows(3, model%mesh%n_node), file%cell_rows(6, model%mesh%n_element), &
@@ -104,57 +115,127 @@ contains
     call name_file(file, error)
   end subroutine open_results
 
-  !> Make the arrays that grow. Those below Steps that are equal for every field are one dataset with
-  !> many names, which keeps the cost of a state low.
-  subroutine create_arrays(file, group, model, error)
+  !> Number of states that the deck asks for; a guess when the interval varies. It only sizes the pieces of
+  !> the file: more states fit.
+  pure function planned_states(controls) result(n)
+    type(controls_t), intent(in) :: controls
+    integer :: n
+
+    n = chunks_per_table
+    associate (plot => controls%output%plot)
+      if (plot%curve == 0 .and. plot%dt > 0.0_wp) &
+        n = int(min(controls%end_time/plot%dt, real(most_planned, wp))) + 3
+    end associate
+  end function planned_states
+
+  !> States that share a chunk of a field: the planned ones fit into one table of chunks, and the chunks of
+  !> a small mesh are no crumbs.
+  pure function states_per_chunk(n_row, n_planned) result(n)
+    integer, intent(in) :: n_row       !! nodes or elements
+    integer, intent(in) :: n_planned   !! states
+    integer :: n
+    integer(long) :: state_size
+
+    state_size = 8_long*3*max(n_row, 1)
+    n = int(min(int(n_planned, long), small_chunk/state_size + 1))
+    n = max(n, (n_planned + chunks_per_table - 1)/chunks_per_table)
+    n = int(max(1_long, min(int(n, long), large_chunk/state_size)))
+  end function states_per_chunk
+
+  !> Make the HDF5 file. What keeps it whole at every instant: no chunk waits in a cache; a table of
+  !> chunks lies within a page, so that it changes with one write; tables of groups are small, so that
+  !> all of Steps lies within a page.
+  subroutine create_file(file, error)
+    type(results_file_t), intent(inout) :: file
+    type(error_t), allocatable, intent(out) :: error
+    integer(hid_t) :: creation, access
+    integer :: status(9)
+
+    call allow_reading()
+    call h5open_f(status(1))
+    call h5eset_auto_f(0, status(2)) ! statuses become errors here; HDF5 itself stays quiet
+    call h5pcreate_f(H5P_FILE_CREATE_F, creation, status(3))
+    call h5pset_sym_k_f(creation, 4, 4, status(4))
+    call h5pcreate_f(H5P_FILE_ACCESS_F, access, status(5))
+    call h5pset_cache_f(access, 0, 0_size_t, 0_size_t, 0.0, status(6))
+    call h5pset_alignment_f(access, table_size, page_size, status(7))
+    call h5pset_meta_block_size_f(access, 4*page_size, status(8))
+    call h5fcreate_f(file%path//unfinished, H5F_ACC_TRUNC_F, file%id, status(9), creation, access)
+    if (minval(status) < 0) then
+      file%id = -1
+      call raise(error, 'cannot write '//file%path//' (no directory, no permission or no space)', &
+        status_files)
+    end if
+    call h5pclose_f(creation, status(1))
+    call h5pclose_f(access, status(2))
+  end subroutine create_file
+
+  !> Make the arrays of points and fields.
+  subroutine create_fields(file, group, model, error)
     type(results_file_t), intent(inout) :: file
     integer(hid_t), intent(in) :: group                !! the open group /VTKHDF
     type(model_t), intent(in) :: model
     type(error_t), allocatable, intent(inout) :: error
-    integer :: i
+    character(:), allocatable :: name
+    integer :: i, n_planned, point_rows, cell_rows
 
-    call create_steps(file, group, error)
+    n_planned = planned_states(model%controls)
+    point_rows = model%mesh%n_node*states_per_chunk(model%mesh%n_node, n_planned)
+    cell_rows = model%mesh%n_element*states_per_chunk(2*model%mesh%n_element, n_planned)
     call make_group(group, 'PointData', error)
     call make_group(group, 'CellData', error)
-    call create_growing(group, 'Points', as_real, 3, model%mesh%n_node, file%point_fields(1), error)
-    do i = 2, n_point_field
-      call create_growing(group, 'PointData/'//trim(point_names(i)), as_real, point_columns(i), &
-        model%mesh%n_node, file%point_fields(i), error)
+    do i = 1, n_point_field
+      name = trim(point_names(i))
+      if (i > 1) name = 'PointData/'//name
+      call create_growing(file%id, name, as_real, point_columns(i), point_rows, &
+        file%point_fields(i), error)
+      call link_growing(file%point_fields(i), group, name, error)
     end do
     do i = 1, n_cell_field
-      call create_growing(group, 'CellData/'//trim(cell_names(i)), as_real, cell_columns(i), &
-        model%mesh%n_element, file%cell_fields(i), error)
+      name = 'CellData/'//trim(cell_names(i))
+      call create_growing(file%id, name, as_real, cell_columns(i), cell_rows, &
+        file%cell_fields(i), error)
+      call link_growing(file%cell_fields(i), group, name, error)
     end do
-  end subroutine create_arrays
+  end subroutine create_fields
 
-  !> Make the group Steps with its arrays and the attribute NSteps, which stays open.
-  subroutine create_steps(file, group, error)
+  !> Make the group Steps with its arrays and the attribute NSteps, which stays open. Arrays of equal
+  !> content are one dataset with many names. The five headers and the attribute are made
+  !> in one go before anything is linked: so they lie side by side within the first page of the file and
+  !> HDF5 brings them out with one write, which is what makes the appearance of a state atomic.
+  subroutine create_steps(file, group, n_planned, error)
     type(results_file_t), intent(inout) :: file
     integer(hid_t), intent(in) :: group                !! the open group /VTKHDF
+    integer, intent(in) :: n_planned                   !! states
     type(error_t), allocatable, intent(inout) :: error
     integer :: i, content
 
     call make_group(group, 'Steps', error)
-    call make_group(group, 'Steps/PointDataOffsets', error)
-    call make_group(group, 'Steps/CellDataOffsets', error)
     do i = 1, n_step_array
       content = merge(as_real, as_index, i == step_values)
-      call create_growing(group, trim(step_names(i)), content, 0, step_rows, file%steps(i), error)
+      call create_growing(file%id, 'Steps', content, 0, max(least_step_rows, 2*n_planned), &
+        file%steps(i), error)
     end do
+    call create_n_steps(file, group, error)
+    call make_group(group, 'Steps/PointDataOffsets', error)
+    call make_group(group, 'Steps/CellDataOffsets', error)
+    call link_growing(file%steps(step_values), group, 'Steps/Values', error)
+    call link_growing(file%steps(step_ones), group, 'Steps/NumberOfParts', error)
+    call link_growing(file%steps(step_zeros), group, 'Steps/PartOffsets', error)
     call link_growing(file%steps(step_zeros), group, 'Steps/CellOffsets', error)
     call link_growing(file%steps(step_zeros), group, 'Steps/ConnectivityIdOffsets', error)
     call link_growing(file%steps(step_zeros), group, 'Steps/PointDataOffsets/node_id', error)
     call link_growing(file%steps(step_zeros), group, 'Steps/CellDataOffsets/element_id', error)
     call link_growing(file%steps(step_zeros), group, 'Steps/CellDataOffsets/part_id', error)
+    call link_growing(file%steps(step_points), group, 'Steps/PointOffsets', error)
     do i = 2, n_point_field
       call link_growing(file%steps(step_points), group, &
         'Steps/PointDataOffsets/'//trim(point_names(i)), error)
     end do
-    do i = 2, n_cell_field
+    do i = 1, n_cell_field
       call link_growing(file%steps(step_cells), group, &
         'Steps/CellDataOffsets/'//trim(cell_names(i)), error)
     end do
-    call create_n_steps(file, group, error)
   end subroutine create_steps
 
   !> Make the attribute NSteps of the group Steps, zero, and keep it open.
@@ -227,8 +308,19 @@ contains
     end do
     if (.not. allocated(error)) file%n_state = file%n_state + 1
     call publish(file, error)
+    if (file%n_state == 1) call take_name(file, error)
     call name_file(file, error)
   end subroutine append_state
+
+  !> Give the file its own name.
+  subroutine take_name(file, error)
+    type(results_file_t), intent(inout) :: file
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (allocated(error) .or. file%is_named) return
+    call rename_file(file%path//unfinished, file%path, error)
+    file%is_named = .not. allocated(error)
+  end subroutine take_name
 
   !> Append the fields of the nodes, in deck order.
   subroutine append_point_fields(file, model, snapshot, error)
@@ -338,7 +430,6 @@ contains
     integer :: i, status
 
     if (file%id < 0) return
-    call make_group(file%id, 'history', error)
     do i = 1, n_table
       call write_table(file%id, histories%tables(i), error)
     end do
@@ -356,6 +447,7 @@ contains
     file%id = -1
     call check_status(status, 'the end of the file', error)
     call h5close_f(status)
+    call take_name(file, error)
     call name_file(file, error)
   end subroutine finish_results
 
