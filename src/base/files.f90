@@ -2,8 +2,8 @@
 !> Files and directories: paths, directories with their parents, and text files that are written in
 !> whole buffers.
 !>
-!> Text goes through the C library's `creat` and `write` and not through a Fortran unit, for two reasons
-!> that were measured: gfortran's `flush` and `close` report success on a full disk, and one
+!> Text goes through the C library's `creat` and `write` and not through a Fortran unit, for two
+!> reasons that were measured: gfortran's `flush` and `close` report success on a full disk, and one
 !> `write` of whole lines leaves no half line behind when the process is killed.
 module files_m
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_size_t, c_ptr, c_loc, c_null_char

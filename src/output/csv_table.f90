@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> One CSV file that grows by rows: comma between values, no blanks, reals with 17 significant digits.
-!> Rows are kept in a buffer of whole lines and reach the file with one system call, at the latest a second
-!> after they came. The values are kept too: the results file takes them over at the end.
+!> One CSV file that grows by rows: comma between values, no blanks, reals with 17 significant
+!> digits. Rows are kept in a buffer of whole lines and reach the file with one system call, at the
+!> latest a second after they came. The values are kept too: the results file takes them over at the
+!> end.
 module csv_table_m
   use kinds_m, only : wp, long
   use errors_m, only : error_t

@@ -1,12 +1,20 @@
 ! SPDX-License-Identifier: MIT
-!> Small helpers over HDF5 for the results file. They and the results file are the only places that see
-!> an HDF5 status.
+!> Small helpers over HDF5 for the results file. They and the results file are the only places that
+!> see an HDF5 status.
 !>
 !> Here `error` is carried along: a procedure that is handed an error does nothing, so that a
 !> sequence of calls needs one question at its end.
 module hdf5_writing_m
-  use, intrinsic :: iso_c_binding, only : c_ptr, c_loc, c_char, c_int, c_null_char
-  use hdf5
+  use, intrinsic :: iso_c_binding, only : c_ptr, c_loc, c_char, c_null_char
+  use hdf5, only : hid_t, hsize_t, size_t, H5_INTEGER_KIND, H5P_DATASET_CREATE_F, H5S_SCALAR_F, &
+    H5S_SELECT_SET_F, H5S_UNLIMITED_F, H5D_FILL_TIME_NEVER_F, H5T_CSET_UTF8_F, &
+    H5T_STR_NULLTERM_F, H5T_FORTRAN_S1, H5T_STRING, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER, &
+    H5T_IEEE_F64LE, H5T_STD_I32LE, H5T_STD_I64LE, h5kind_to_type, &
+    h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_anon_f, h5dcreate_f, &
+    h5dget_space_f, h5dset_extent_f, h5dwrite_f, h5gclose_f, h5gcreate_f, h5olink_f, h5pclose_f, &
+    h5pcreate_f, h5pset_chunk_f, h5pset_fill_time_f, h5sclose_f, h5screate_f, &
+    h5screate_simple_f, h5sselect_hyperslab_f, h5tclose_f, h5tcopy_f, h5tset_cset_f, &
+    h5tset_size_f, h5tset_strpad_f
   use kinds_m, only : wp, long
   use errors_m, only : error_t, raise, status_files
   implicit none
@@ -14,7 +22,7 @@ module hdf5_writing_m
   public :: growing_t, as_real, as_integer, as_index, &
     create_growing, link_growing, append_rows, close_growing, &
     make_group, write_rows, write_string_attribute, write_index_attribute, write_text, &
-    check_status, allow_reading
+    check_status
 
   !> What the rows of a dataset hold: float64, int32, int64.
   integer, parameter :: as_real = 1, as_integer = 2, as_index = 3
@@ -28,26 +36,7 @@ module hdf5_writing_m
     integer(long) :: n_row = 0               !! rows so far
   end type growing_t
 
-  interface
-    !> POSIX setenv; 0 on success.
-    function c_setenv(name, text, overwrite) bind(c, name='setenv') result(status)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: name(*), text(*) !! end with a null
-      integer(c_int), value :: overwrite   !! 0: what the user has set stays
-      integer(c_int) :: status
-    end function c_setenv
-  end interface
-
 contains
-
-  !> Let viewers open the file while the run still writes it, and let it live on network file systems without
-  !> locks: switches HDF5's lock off unless the user's environment says otherwise. To be
-  !> called before HDF5 is.
-  subroutine allow_reading()
-    integer(c_int) :: status
-
-    status = c_setenv('HDF5_USE_FILE_LOCKING'//c_null_char, 'FALSE'//c_null_char, 0_c_int)
-  end subroutine allow_reading
 
   !> Turn an HDF5 status into an error that names the file operation.
   subroutine check_status(status, what, error)
@@ -56,8 +45,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error  !! kept when there is one already
 
     if (status >= 0 .or. allocated(error)) return
-    call raise(error, 'cannot write '//what//': the file system or HDF5 refused '// &
-      '(is the disk full?)', status_files)
+    call raise(error, 'cannot write '//what//' (is the disk full?)', status_files)
   end subroutine check_status
 
   !> HDF5 type in memory of a kind of content.

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The histories: one CSV table per quantity. A table whose output was not asked for is not made, and
-!> rows for it are ignored, so that a driver may hand every snapshot to every table that is due.
+!> The histories: one CSV table per quantity. A table whose output was not asked for is not made,
+!> and rows for it are ignored, so that a driver may hand every snapshot to every table that is due.
 module history_file_m
   use kinds_m, only : wp
   use errors_m, only : error_t

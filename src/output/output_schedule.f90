@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> When an output is due: at time zero and at the cycle nearest to each multiple of its interval.
-!> Multiples are formed as k times the interval, never by adding, so that nothing drifts. An interval that
-!> varies (a curve of time) leads from each output time to the next.
+!> Multiples are formed as k times the interval, never by adding, so that nothing drifts. An
+!> interval that varies (a curve of time) leads from each output time to the next.
 module output_schedule_m
   use kinds_m, only : wp, long
   use controls_m, only : interval_t

@@ -2,7 +2,7 @@
 !> The part of the results file that is written once: mesh and ids, in deck order.
 module results_mesh_m
   use, intrinsic :: iso_c_binding, only : c_loc
-  use hdf5
+  use hdf5, only : hid_t, H5T_STD_U8LE
   use kinds_m, only : long
   use errors_m, only : error_t
   use model_m, only : model_t
@@ -69,8 +69,8 @@ contains
     end if
   end function deck_order
 
-  !> Where the nodes of each cell start in the list of `cell_nodes`, from zero, and its length at the end. A
-  !> triangle repeats its third node in the mesh and has three entries in the list.
+  !> Where the nodes of each cell start in the list of `cell_nodes`, from zero, and its length at
+  !> the end. A triangle repeats its third node in the mesh and has three entries in the list.
   pure function cell_starts(element_nodes) result(starts)
     integer, intent(in) :: element_nodes(:, :)   !! (4, n_element)
     integer :: starts(size(element_nodes, 2) + 1)

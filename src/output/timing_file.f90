@@ -26,8 +26,8 @@ contains
     call close_text_file(file, error)
   end subroutine write_timing
 
-  !> The file as text. Seconds are whole nanoseconds with nine decimals, so that the phases add up to the
-  !> total to the last digit.
+  !> The file as text. Seconds are whole nanoseconds with nine decimals, so that the phases add up
+  !> to the total to the last digit.
   function timing_text(clock) result(text)
     type(clock_t), intent(in) :: clock
     character(:), allocatable :: text
