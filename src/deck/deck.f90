@@ -1,0 +1,199 @@
+! SPDX-License-Identifier: MIT
+!> Deck in, model out: the one dispatch on keywords.
+!>
+!> The file is cut into keyword blocks, parameters are read, then each block is read by the
+!> procedure of its keyword into `raw_t` (user ids), then ids become indices and surfaces are built.
+!> All mistakes on the way are collected and come back as one error, in deck order.
+module deck_m
+  use kinds_m, only : wp
+  use errors_m, only : error_t
+  use log_m, only : log_t, to_text
+  use contacts_m, only : contact_kind_t
+  use model_m, only : model_t
+  use deck_report_m, only : emit_warnings, emit_errors
+  use deck_lines_m, only : deck_t, line_error, line_warning, shown_text
+  use deck_reader_m, only : read_blocks
+  use deck_schema_m, only : find_keyword, known_honoured, known_ignored, known_refused
+  use deck_parameters_m, only : parameters_t, read_parameters
+  use deck_overrides_m, only : overrides_t, read_overrides, override_text
+  use deck_override_apply_m, only : apply_overrides
+  use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
+  use deck_raw_m, only : raw_t, start_raw
+  use deck_mesh_m, only : read_nodes, read_elements, read_set, read_history_ids
+  use deck_part_m, only : read_part, read_section, read_hourglass
+  use deck_material_m, only : read_elastic, read_plastic_kinematic, read_curve
+  use deck_conditions_m, only : read_condition, read_initial_velocity
+  use deck_control_m, only : read_control
+  use deck_output_m, only : read_database
+  use deck_contact_m, only : read_contact
+  use deck_resolve_m, only : resolve_model
+  use deck_effective_m, only : write_effective
+  use deck_echo_m, only : echo_model
+  implicit none
+  private
+  public :: deck_request_t, read_deck
+
+  !> What is to be read.
+  type :: deck_request_t
+    character(:), allocatable :: path
+    character(:), allocatable :: overrides(:) !! `name=value`, `name.interface=value`, `p:NAME=value`
+  end type deck_request_t
+
+contains
+
+  !> Read a deck. `error` holds every mistake of it, one after the other; warnings and the echo of
+  !> what was understood go to the log.
+  subroutine read_deck(request, kinds, log, model, effective, error)
+    type(deck_request_t), intent(in) :: request
+    type(contact_kind_t), intent(in) :: kinds(:)             !! contact types that exist
+    type(log_t), intent(inout) :: log
+    type(model_t), intent(out) :: model
+    character(:), allocatable, intent(out) :: effective      !! the deck as run
+    type(error_t), allocatable, intent(out) :: error
+    type(deck_t) :: deck
+    type(parameters_t) :: parameters
+    type(overrides_t) :: overrides
+    type(raw_t) :: raw
+    character(:), allocatable :: tail
+    integer, allocatable :: known(:)
+    integer :: i
+
+    call read_blocks(request%path, deck, error)
+    if (allocated(error)) return
+    call know_blocks(deck, known)
+    if (allocated(request%overrides)) then
+      call read_overrides(request%overrides, deck, parameters, overrides)
+    else
+      allocate (overrides%items(0))
+    end if
+    call read_parameters(deck, parameters)
+    call start_raw(raw)
+    raw%end_given = len(override_text(overrides, 'ENDTIM', 0)) > 0
+    raw%controls%title = ''
+    do i = 1, deck%n_block
+      if (known(i) == known_honoured) call read_block(deck, parameters, i, kinds, overrides, raw)
+    end do
+    call apply_overrides(deck, kinds, overrides, raw, tail)
+    if (.not. raw%terminated .and. .not. raw%end_given) call line_error(deck, 0, &
+      'the deck has no end time (*CONTROL_TERMINATION)')
+    call resolve_model(deck, raw, model)
+    call emit_warnings(deck%report, log)
+    call emit_errors(deck%report, request%path, error)
+    if (allocated(error)) return
+    call echo_model(model, kinds, request%path, log)
+    call write_effective(deck, parameters, tail, effective)
+  end subroutine read_deck
+
+  !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
+  !> those without effect one warning each.
+  subroutine know_blocks(deck, known)
+    type(deck_t), intent(inout) :: deck
+    integer, allocatable, intent(out) :: known(:)
+    character(:), allocatable :: reason
+    character(100) :: name
+    integer :: i
+
+    allocate (known(deck%n_block))
+    if (deck%n_block == 0) call line_error(deck, 0, 'holds no keyword (a line that starts with *)')
+    do i = 1, deck%n_block
+      associate (block => deck%blocks(i))
+        call find_keyword(trim(block%given), name, known(i), block%titled, reason)
+        select case (known(i))
+        case (known_honoured)
+          block%name = name(:len(block%name))
+          select case (block%name)
+          case ('KEYWORD', 'END', 'COMMENT', 'INCLUDE', 'INCLUDE_PATH')
+            block%dropped = .true.
+          end select
+        case (known_ignored)
+          call line_warning(deck, block%keyword, 'ignored'//trim(block%given), 'has no effect here')
+        case (known_refused)
+          call line_error(deck, block%keyword, reason//' not part of this version')
+        case default
+          call line_error(deck, block%keyword, 'is not a keyword that this version knows')
+        end select
+      end associate
+    end do
+  end subroutine know_blocks
+
+  !> Read one block by its keyword.
+  subroutine read_block(deck, parameters, i, kinds, overrides, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i
+    type(contact_kind_t), intent(in) :: kinds(:)
+    type(overrides_t), intent(in) :: overrides
+    type(raw_t), intent(inout) :: raw
+
+    select case (deck%blocks(i)%name)
+    case ('TITLE')
+      call read_title(deck, i, raw)
+    case ('NODE')
+      call read_nodes(deck, parameters, i, raw)
+    case ('ELEMENT_SHELL')
+      call read_elements(deck, parameters, i, raw)
+    case ('SET_NODE_LIST', 'SET_NODE_LIST_GENERATE', 'SET_PART_LIST', 'SET_PART_LIST_GENERATE', &
+        'SET_SEGMENT')
+      call read_set(deck, parameters, i, raw)
+    case ('PART')
+      call read_part(deck, parameters, i, raw)
+    case ('SECTION_SHELL')
+      call read_section(deck, parameters, i, raw)
+    case ('HOURGLASS')
+      call read_hourglass(deck, parameters, i, raw)
+    case ('MAT_ELASTIC')
+      call read_elastic(deck, parameters, i, raw)
+    case ('MAT_PLASTIC_KINEMATIC')
+      call read_plastic_kinematic(deck, parameters, i, raw)
+    case ('DEFINE_CURVE')
+      call read_curve(deck, parameters, i, raw)
+    case ('INITIAL_VELOCITY', 'INITIAL_VELOCITY_GENERATION')
+      call read_initial_velocity(deck, parameters, i, raw)
+    case ('DATABASE_HISTORY_NODE')
+      call read_history_ids(deck, parameters, i, raw%history_nodes)
+    case ('DATABASE_HISTORY_NODE_SET')
+      call read_history_ids(deck, parameters, i, raw%history_node_sets)
+    case default
+      call read_family(deck, parameters, i, kinds, overrides, raw)
+    end select
+  end subroutine read_block
+
+  !> Keywords whose family says how they are read.
+  subroutine read_family(deck, parameters, i, kinds, overrides, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i
+    type(contact_kind_t), intent(in) :: kinds(:)
+    type(overrides_t), intent(in) :: overrides
+    type(raw_t), intent(inout) :: raw
+    integer :: n
+
+    n = scan(deck%blocks(i)%name, '_')
+    select case (deck%blocks(i)%name(:max(n, 1)))
+    case ('CONTROL_')
+      call read_control(deck, parameters, i, raw)
+    case ('DATABASE_')
+      call read_database(deck, parameters, i, raw)
+    case ('CONTACT_')
+      call read_contact(deck, parameters, i, kinds, overrides, raw)
+    case ('BOUNDARY_', 'INITIAL_', 'LOAD_', 'DAMPING_')
+      call read_condition(deck, parameters, i, raw)
+    end select
+  end subroutine read_family
+
+  !> *TITLE: the first line that is not blank.
+  subroutine read_title(deck, i, raw)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    character(:), allocatable :: text
+    logical :: found
+
+    call open_cursor(deck, i, cursor)
+    call row_comes(deck, cursor, found)
+    call next_text(deck, cursor, text)
+    raw%controls%title = trim(adjustl(shown_text(text)))
+  end subroutine read_title
+
+end module deck_m

@@ -1,0 +1,221 @@
+! SPDX-License-Identifier: MIT
+!> Walking through the cards of a block: cards in order, rows of a table, text lines; parameters
+!> put in; fields without effect or support noticed.
+module deck_cards_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
+    flag_parameter, block_of_line
+  use deck_fields_m, only : card_t, card_spec_t, make_spec, cut_card, read_numbers, field_text, &
+    field_error, place_error, max_field
+  use deck_schema_m, only : keyword_cards, refusal_reason, max_card
+  use deck_parameters_m, only : parameters_t, substitute
+  implicit none
+  private
+  public :: cursor_t, open_cursor, next_card, next_row, next_text, check_rest, report_field, &
+    row_comes, reject_field
+
+  !> A place in a block.
+  type :: cursor_t
+    integer :: block = 0
+    integer :: source = 0
+    integer :: line = 1           !! next line
+    integer :: last = 0           !! last line of the block
+    integer :: n_card = 0         !! cards that the keyword has
+    type(card_spec_t) :: specs(max_card)
+  end type cursor_t
+
+contains
+
+  !> Start at the first data line of a block.
+  subroutine open_cursor(deck, i_block, cursor)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: i_block
+    type(cursor_t), intent(out) :: cursor
+
+    cursor%block = i_block
+    cursor%source = deck%blocks(i_block)%source
+    cursor%line = deck%blocks(i_block)%first
+    cursor%last = deck%blocks(i_block)%last
+    call get_specs(deck, i_block, cursor%specs, cursor%n_card)
+  end subroutine open_cursor
+
+  !> The cards of a block's keyword in its layout.
+  subroutine get_specs(deck, i_block, specs, n_card)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: i_block
+    type(card_spec_t), intent(out) :: specs(max_card)
+    integer, intent(out) :: n_card
+    character(160) :: cards(max_card)
+    integer :: k
+
+    call keyword_cards(deck%blocks(i_block)%name, cards, n_card)
+    do k = 1, n_card
+      call make_spec(cards(k), k, deck%blocks(i_block)%layout, specs(k))
+    end do
+  end subroutine get_specs
+
+  !> Card number `number`: the next line, blank or not; all defaults when the block has ended.
+  subroutine next_card(deck, parameters, cursor, number, card)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    type(cursor_t), intent(inout) :: cursor
+    integer, intent(in) :: number
+    type(card_t), intent(out) :: card
+
+    if (cursor%line > cursor%last) then
+      card%line = deck%blocks(cursor%block)%keyword
+      card%number = number
+      call read_numbers(deck, cursor%specs(number), cursor%source, card)
+      return
+    end if
+    call read_line(deck, parameters, cursor, number, card)
+  end subroutine next_card
+
+  !> The next line that is not blank, as card `number`; `found` is false at the end of the block.
+  subroutine next_row(deck, parameters, cursor, number, card, found)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    type(cursor_t), intent(inout) :: cursor
+    integer, intent(in) :: number
+    type(card_t), intent(inout) :: card
+    logical, intent(out) :: found
+
+    call skip_blank(deck, cursor)
+    found = cursor%line <= cursor%last
+    if (found) call read_line(deck, parameters, cursor, number, card)
+  end subroutine next_row
+
+  !> Whether a line that is not blank is left.
+  subroutine row_comes(deck, cursor, found)
+    type(deck_t), intent(in) :: deck
+    type(cursor_t), intent(inout) :: cursor
+    logical, intent(out) :: found
+
+    call skip_blank(deck, cursor)
+    found = cursor%line <= cursor%last
+  end subroutine row_comes
+
+  !> Move past blank lines.
+  subroutine skip_blank(deck, cursor)
+    type(deck_t), intent(in) :: deck
+    type(cursor_t), intent(inout) :: cursor
+
+    do while (cursor%line <= cursor%last)
+      if (iand(deck%flags(cursor%line), flag_blank) == 0) exit
+      cursor%line = cursor%line + 1
+    end do
+  end subroutine skip_blank
+
+  !> The next line as plain text (titles and names are never cut).
+  subroutine next_text(deck, cursor, text)
+    type(deck_t), intent(in) :: deck
+    type(cursor_t), intent(inout) :: cursor
+    character(:), allocatable, intent(out) :: text
+
+    text = ''
+    if (cursor%line > cursor%last) return
+    text = trim(line_text(deck, cursor%line))
+    cursor%line = cursor%line + 1
+  end subroutine next_text
+
+  !> Read one line as card `number`.
+  subroutine read_line(deck, parameters, cursor, number, card)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    type(cursor_t), intent(inout) :: cursor
+    integer, intent(in) :: number
+    type(card_t), intent(inout) :: card
+    character(:), allocatable :: text
+    logical :: bad(max_field)
+    integer :: k
+
+    associate (spec => cursor%specs(number))
+      call cut_card(deck, spec, cursor%source, cursor%line, card)
+      if (iand(deck%flags(cursor%line), flag_parameter) /= 0) then
+        call substitute(deck, parameters, spec, cursor%source, card, text)
+        call replace_line(deck, cursor%line, text)
+        bad = card%bad
+        call cut_card(deck, spec, cursor%source, cursor%line, card)
+        card%bad = bad
+      end if
+      call read_numbers(deck, spec, cursor%source, card)
+      do k = 1, spec%n
+        if (spec%treatments(k) == 'h' .or. card%blank(k)) cycle
+        if (spec%treatments(k) /= 's') call notice_field(deck, spec, card, k)
+      end do
+    end associate
+    cursor%line = cursor%line + 1
+  end subroutine read_line
+
+  !> A field that is not honoured: a warning or an error when it asks for something.
+  subroutine notice_field(deck, spec, card, k)
+    type(deck_t), intent(inout) :: deck
+    type(card_spec_t), intent(in) :: spec
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    character(:), allocatable :: name
+    logical :: asks
+
+    if (card%bad(k)) return
+    select case (spec%kinds(k))
+    case ('i')
+      asks = card%i(k) /= 0 .and. card%i(k) /= nint(spec%defaults(k))
+    case ('f')
+      asks = abs(card%r(k)) > 0.0_wp .and. abs(card%r(k) - spec%defaults(k)) > 0.0_wp
+    case default
+      asks = .true.
+    end select
+    if (.not. asks) return
+    name = trim(deck%blocks(block_of_line(deck, card%line))%name)
+    if (spec%treatments(k) == 'r') then
+      call field_error(deck, spec, card, k, refusal_reason(name, trim(spec%names(k))))
+    else
+      call line_warning(deck, card%line, 'field '//name//' '//spec%names(k)//to_text(spec%number), &
+        'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &
+        //field_text(deck, card, k)//'" has no effect here')
+    end if
+  end subroutine notice_field
+
+  !> Lines that are left over once all cards have been read.
+  subroutine check_rest(deck, cursor)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(inout) :: cursor
+    logical :: found
+
+    call row_comes(deck, cursor, found)
+    if (found) call line_warning(deck, cursor%line, 'rest'//to_text(cursor%line), &
+      'this and what follows up to the next keyword is ignored: more lines than the keyword has cards')
+  end subroutine check_rest
+
+  !> An error of field `k` of a card just read.
+  subroutine report_field(deck, cursor, card, k, message)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    character(*), intent(in) :: message
+
+    if (.not. card%bad(k)) call field_error(deck, cursor%specs(card%number), card, k, message)
+  end subroutine report_field
+
+  !> An error of a field of a card that was read some time ago.
+  subroutine reject_field(deck, place, message)
+    type(deck_t), intent(inout) :: deck
+    type(place_t), intent(in) :: place
+    character(*), intent(in) :: message
+    type(card_spec_t) :: specs(max_card)
+    type(card_t) :: card
+    integer :: n_card, i_block
+
+    i_block = block_of_line(deck, place%line)
+    call get_specs(deck, i_block, specs, n_card)
+    if (place%line > deck%blocks(i_block)%keyword) then
+      call place_error(deck, specs(place%card), place, deck%blocks(i_block)%source, message)
+    else
+      card%line = place%line
+      call field_error(deck, specs(place%card), card, place%field, message)
+    end if
+  end subroutine reject_field
+
+end module deck_cards_m

@@ -1,0 +1,248 @@
+! SPDX-License-Identifier: MIT
+!> *CONTACT_2D_ cards. Contact types are numbers and names handed in by the caller; the stock
+!> keywords stand for fixed numbers, which must be among them.
+module deck_contact_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use text_m, only : read_integer, number_good
+  use contacts_m, only : contact_kind_t, penalty_per_node, penalty_factor
+  use deck_lines_m, only : deck_t, place_t, line_error
+  use deck_fields_m, only : card_t
+  use deck_parameters_m, only : parameters_t
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, check_rest, report_field
+  use deck_raw_m, only : raw_t, raw_contact_t
+  use deck_overrides_m, only : overrides_t, override_text
+  implicit none
+  private
+  public :: read_contact, kind_names, stock_type
+
+contains
+
+  !> One interface.
+  subroutine read_contact(deck, parameters, i_block, kinds, overrides, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(contact_kind_t), intent(in) :: kinds(:)
+    type(overrides_t), intent(in) :: overrides
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: cards(4)
+    type(raw_contact_t) :: entry
+    character(:), allocatable :: title
+    logical :: typed
+    integer :: k
+
+    call open_cursor(deck, i_block, cursor)
+    entry%contact%id = size(raw%contacts) + 1
+    entry%contact%title = ''
+    if (deck%blocks(i_block)%titled) then
+      call next_text(deck, cursor, title)
+      call take_title(title, entry)
+    end if
+    do k = 1, cursor%n_card
+      call next_card(deck, parameters, cursor, k, cards(k))
+    end do
+    call check_rest(deck, cursor)
+    call take_sides(deck, cursor, cards(1), entry)
+    entry%block = i_block
+    typed = len(override_text(overrides, 'CTYPE', entry%contact%id)) > 0
+    entry%contact%contact_type = stock_type(trim(deck%blocks(i_block)%name))
+    select case (deck%blocks(i_block)%name)
+    case ('CONTACT_2D_SLIDELINE')
+      call take_slideline(deck, cursor, cards, kinds, typed, entry)
+    case ('CONTACT_2D_PENALTY')
+      call take_penalty(deck, cursor, cards, entry)
+    case default
+      call take_automatic(deck, cursor, cards, entry)
+    end select
+    if (entry%contact%chosen_by_keyword .and. .not. typed) then
+      if (.not. any(kinds%number == entry%contact%contact_type)) call line_error(deck, &
+        deck%blocks(i_block)%keyword, 'stands for contact type ' &
+        //to_text(entry%contact%contact_type)//', which this version does not have' &
+        //kind_names(kinds))
+    end if
+    raw%contacts = [raw%contacts, entry]
+  end subroutine read_contact
+
+  !> The type that a stock keyword stands for; 0 for our own.
+  pure function stock_type(name) result(contact_type)
+    character(*), intent(in) :: name
+    integer :: contact_type
+
+    select case (name)
+    case ('CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE')
+      contact_type = 1
+    case ('CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE')
+      contact_type = 2
+    case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE', 'CONTACT_2D_PENALTY')
+      contact_type = 3
+    case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR')
+      contact_type = 7
+    case default
+      contact_type = 0
+    end select
+  end function stock_type
+
+  !> Title line: id in columns 1 to 10 where there is one, then the name.
+  subroutine take_title(title, entry)
+    character(*), intent(in) :: title
+    type(raw_contact_t), intent(inout) :: entry
+    integer :: id, status, n
+
+    n = min(10, len(title))
+    call read_integer(title(:n), id, status)
+    if (status == number_good .and. id > 0) then
+      entry%contact%id = id
+      entry%contact%title = trim(adjustl(title(n + 1:)))
+    else
+      entry%contact%title = trim(adjustl(title))
+    end if
+  end subroutine take_title
+
+  !> SURFA and SURFB.
+  subroutine take_sides(deck, cursor, card, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_contact_t), intent(inout) :: entry
+    integer :: k
+
+    do k = 1, 2
+      if (card%i(k) == 0) call report_field(deck, cursor, card, k, &
+        'is not a surface (more than 0: part set, less than 0: node set)')
+      entry%places(k) = place_t(line=card%line, card=1, field=k)
+      if (.not. card%bad(k)) entry%sides(k) = card%i(k)
+    end do
+  end subroutine take_sides
+
+  !> *CONTACT_2D_SLIDELINE.
+  subroutine take_slideline(deck, cursor, cards, kinds, typed, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: cards(:)
+    type(contact_kind_t), intent(in) :: kinds(:)
+    logical, intent(in) :: typed      !! the command line gives the type
+    type(raw_contact_t), intent(inout) :: entry
+
+    associate (contact => entry%contact)
+      contact%contact_type = cards(1)%i(3)
+      if (.not. (typed .or. any(kinds%number == cards(1)%i(3)))) call report_field(deck, cursor, cards(1), 3, &
+        'is not a contact type'//kind_names(kinds))
+      contact%n_gauss = cards(1)%i(4)
+      if (cards(1)%blank(4) .or. cards(1)%i(4) == 0) contact%n_gauss = 2
+      if (contact%n_gauss < 1 .or. contact%n_gauss > 10) call report_field(deck, cursor, cards(1), &
+        4, 'is not a number of Gauss points from 1 to 10')
+      contact%penalty = cards(1)%r(5)
+      if (cards(1)%r(5) <= 0.0_wp) call report_field(deck, cursor, cards(1), 5, &
+        'is not a penalty (more than 0)')
+      contact%penalty_unit = cards(2)%i(3)
+      if (cards(2)%i(3) < penalty_per_node .or. cards(2)%i(3) > penalty_factor) &
+        call report_field(deck, cursor, cards(2), 3, 'is not a unit of the penalty (0 N/m per ' &
+        //'contact node, 1 N/m^2, 2 factor on the built-in estimate)')
+      contact%master_penalty = contact%penalty
+      if (abs(cards(2)%r(4)) > 0.0_wp) contact%master_penalty = cards(2)%r(4)
+      if (cards(2)%r(4) < 0.0_wp) call report_field(deck, cursor, cards(2), 4, &
+        'is not a penalty (more than 0)')
+      call take_times(deck, cursor, cards(2), 1, entry)
+      call take_damping(deck, cursor, cards(2), 5, entry)
+      if (cards(2)%i(6) < 0 .or. cards(2)%i(6) > 1) call report_field(deck, cursor, cards(2), 6, &
+        'is not 0 or 1 (strict rule of type 5)')
+      contact%strict = cards(2)%i(6) == 1
+      if (cards(2)%i(7) < 0) call report_field(deck, cursor, cards(2), 7, 'is negative')
+      contact%search_interval = max(cards(2)%i(7), 0)
+      if (cards(2)%r(8) < 0.0_wp) call report_field(deck, cursor, cards(2), 8, 'is negative')
+      contact%search_depth = cards(2)%r(8)
+    end associate
+  end subroutine take_slideline
+
+  !> *CONTACT_2D_AUTOMATIC_: penalty as a factor on the built-in estimate.
+  subroutine take_automatic(deck, cursor, cards, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: cards(:)
+    type(raw_contact_t), intent(inout) :: entry
+
+    associate (contact => entry%contact)
+      contact%chosen_by_keyword = .true.
+      contact%penalty_unit = penalty_factor
+      contact%penalty = 1.0_wp
+      if (cards(1)%r(3) < 0.0_wp) call report_field(deck, cursor, cards(1), 3, 'is negative')
+      if (cards(1)%r(3) > 0.0_wp) contact%penalty = cards(1)%r(3)
+      contact%master_penalty = contact%penalty
+      if (cards(1)%i(4) < 0) call report_field(deck, cursor, cards(1), 4, 'is negative')
+      contact%search_interval = max(cards(1)%i(4), 0)
+      call take_times(deck, cursor, cards(2), 1, entry)
+      call take_damping(deck, cursor, cards(3), 2, entry)
+    end associate
+  end subroutine take_automatic
+
+  !> *CONTACT_2D_PENALTY: node sets, written with a positive number there; PEN is the factor on the
+  !> built-in estimate that the others multiply from SFACT and SLSFAC.
+  subroutine take_penalty(deck, cursor, cards, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: cards(:)
+    type(raw_contact_t), intent(inout) :: entry
+    integer :: k
+
+    associate (contact => entry%contact)
+      contact%chosen_by_keyword = .true.
+      contact%penalty_unit = penalty_factor
+      do k = 1, 2
+        if (entry%sides(k) < 0) call report_field(deck, cursor, cards(1), k, &
+          'is not a node set number (1 or more)')
+        entry%sides(k) = -abs(entry%sides(k))
+      end do
+      if (cards(2)%r(5) < 0.0_wp) call report_field(deck, cursor, cards(2), 5, 'is negative')
+      contact%penalty = 1.0_wp
+      if (cards(2)%r(5) > 0.0_wp) contact%penalty = cards(2)%r(5)/0.1_wp
+      contact%master_penalty = contact%penalty
+      call take_times(deck, cursor, cards(1), 3, entry)
+    end associate
+  end subroutine take_penalty
+
+  !> TBIRTH in field `k` and TDEATH after it; a death time of 0 means never.
+  subroutine take_times(deck, cursor, card, k, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    type(raw_contact_t), intent(inout) :: entry
+
+    entry%contact%birth = card%r(k)
+    entry%contact%death = card%r(k + 1)
+    if (.not. abs(card%r(k + 1)) > 0.0_wp) entry%contact%death = 1.0e20_wp
+    if (entry%contact%death <= entry%contact%birth) call report_field(deck, cursor, card, k + 1, &
+      'is not after TBIRTH "'//to_text(card%r(k))//'"')
+  end subroutine take_times
+
+  !> VDC in per cent of critical.
+  subroutine take_damping(deck, cursor, card, k, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    type(raw_contact_t), intent(inout) :: entry
+
+    if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, 'is negative')
+    if (card%r(k) > 1.0e6_wp) call report_field(deck, cursor, card, k, &
+      'is not a damping in per cent of critical')
+    entry%per_cent = card%r(k)
+    entry%contact%damping = card%r(k)/100.0_wp
+  end subroutine take_damping
+
+  !> ` (1 name, 2 name, ...)`.
+  pure function kind_names(kinds) result(text)
+    type(contact_kind_t), intent(in) :: kinds(:)
+    character(:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(kinds)
+      text = text//merge(' (', ', ', i == 1)//to_text(kinds(i)%number)//' '//trim(kinds(i)%name)
+    end do
+    if (size(kinds) > 0) text = text//')'
+  end function kind_names
+
+end module deck_contact_m

@@ -1,0 +1,144 @@
+! SPDX-License-Identifier: MIT
+!> *CONTROL_ cards.
+module deck_control_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use controls_m, only : length_by_side, length_by_diagonal
+  use deck_lines_m, only : deck_t, place_t, line_warning
+  use deck_fields_m, only : card_t
+  use deck_parameters_m, only : parameters_t
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field
+  use deck_raw_m, only : raw_t
+  use deck_part_m, only : hourglass_form, hourglass_coefficient
+  implicit none
+  private
+  public :: read_control
+
+contains
+
+  !> One *CONTROL_ keyword: its cards in order, then what they mean.
+  subroutine read_control(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: cards(6)
+    integer :: k
+
+    call open_cursor(deck, i_block, cursor)
+    do k = 1, cursor%n_card
+      call next_card(deck, parameters, cursor, k, cards(k))
+    end do
+    call check_rest(deck, cursor)
+    call warn_of_repetition(deck, i_block)
+    select case (deck%blocks(i_block)%name)
+    case ('CONTROL_TERMINATION')
+      call take_termination(deck, cursor, cards(1), raw)
+    case ('CONTROL_TIMESTEP')
+      call take_timestep(deck, cursor, cards(1), raw)
+    case ('CONTROL_HOURGLASS')
+      call hourglass_form(deck, cursor, cards(1), 1, raw%hourglass_default%form)
+      call hourglass_coefficient(deck, cursor, cards(1), 2, raw%hourglass_default%coefficient)
+    case ('CONTROL_BULK_VISCOSITY')
+      call take_bulk_viscosity(deck, cursor, cards(1), raw)
+    case ('CONTROL_CONTACT')
+      call take_contact(deck, cursor, cards, raw)
+    case ('CONTROL_OUTPUT')
+      if (cards(1)%i(7) < 0) call report_field(deck, cursor, cards(1), 7, 'is negative')
+      raw%controls%output%status_interval = cards(1)%i(7)
+    end select
+  end subroutine read_control
+
+  !> A control that is given again: the later one counts.
+  subroutine warn_of_repetition(deck, i_block)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    integer :: i
+
+    do i = 1, i_block - 1
+      if (deck%blocks(i)%name /= deck%blocks(i_block)%name) cycle
+      call line_warning(deck, deck%blocks(i_block)%keyword, 'again'//to_text(i_block), &
+        'is given again; this one counts')
+      return
+    end do
+  end subroutine warn_of_repetition
+
+  !> *CONTROL_TERMINATION.
+  subroutine take_termination(deck, cursor, card, raw)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_t), intent(inout) :: raw
+
+    if (card%r(1) <= 0.0_wp .and. .not. raw%end_given) call report_field(deck, cursor, card, 1, &
+      'is not an end time (more than 0)')
+    if (card%i(2) < 0) call report_field(deck, cursor, card, 2, 'is negative')
+    if (card%r(3) < 0.0_wp) call report_field(deck, cursor, card, 3, 'is negative')
+    if (card%r(4) < 0.0_wp) call report_field(deck, cursor, card, 4, 'is negative')
+    if (card%i(6) < 0 .or. card%i(6) > 1) call report_field(deck, cursor, card, 6, &
+      'is not 0 or 1 (stop after the initialisation)')
+    raw%terminated = .true.
+    raw%controls%end_time = card%r(1)
+    raw%controls%end_cycle = card%i(2)
+    raw%controls%dt_floor = card%r(3)
+    raw%controls%energy_limit = card%r(4)
+    raw%controls%check_only = card%i(6) == 1
+  end subroutine take_termination
+
+  !> *CONTROL_TIMESTEP.
+  subroutine take_timestep(deck, cursor, card, raw)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_t), intent(inout) :: raw
+
+    if (card%r(1) < 0.0_wp) call report_field(deck, cursor, card, 1, 'is negative')
+    if (card%r(2) < 0.0_wp) call report_field(deck, cursor, card, 2, &
+      'is negative: the scale of the step is more than 0 (blank and 0 mean 0.9)')
+    if (card%r(2) > 1.0_wp) call line_warning(deck, card%line, 'tssfac', &
+      'TSSFAC is above 1: the run may become unstable')
+    if (card%i(3) < 0 .or. card%i(3) > 1) call report_field(deck, cursor, card, 3, &
+      'is not an element length rule (0 area over longest side, 1 area over longest diagonal)')
+    if (card%i(6) < 0) call report_field(deck, cursor, card, 6, 'is not a curve number')
+    raw%controls%dt_initial = card%r(1)
+    raw%controls%dt_scale = 0.9_wp
+    if (card%r(2) > 0.0_wp) raw%controls%dt_scale = card%r(2)
+    raw%controls%length_rule = merge(length_by_diagonal, length_by_side, card%i(3) == 1)
+    raw%dt_curve = card%i(6)
+    raw%dt_curve_place = place_t(line=card%line, card=1, field=6)
+  end subroutine take_timestep
+
+  !> *CONTROL_BULK_VISCOSITY: off without the keyword; blank fields of it are LS-DYNA's defaults.
+  subroutine take_bulk_viscosity(deck, cursor, card, raw)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_t), intent(inout) :: raw
+    integer :: k
+
+    do k = 1, 2
+      if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, 'is negative')
+    end do
+    if (card%i(3) < -1 .or. card%i(3) > 1) call report_field(deck, cursor, card, 3, &
+      'is not a kind of bulk viscosity that this version has (1 standard)')
+    raw%hourglass_default%quadratic = card%r(1)
+    raw%hourglass_default%linear = card%r(2)
+  end subroutine take_bulk_viscosity
+
+  !> *CONTROL_CONTACT.
+  subroutine take_contact(deck, cursor, cards, raw)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: cards(:)
+    type(raw_t), intent(inout) :: raw
+
+    if (cards(1)%r(1) < 0.0_wp) call report_field(deck, cursor, cards(1), 1, 'is negative')
+    raw%controls%penalty_scale = 0.1_wp
+    if (cards(1)%r(1) > 0.0_wp) raw%controls%penalty_scale = cards(1)%r(1)
+    if (cards(2)%i(7) < 0 .or. cards(2)%i(7) > 1) call report_field(deck, cursor, cards(2), 7, &
+      'is not 0 or 1 (contact does not limit the step)')
+    raw%controls%contact_limits_step = cards(2)%i(7) == 0
+  end subroutine take_contact
+
+end module deck_control_m

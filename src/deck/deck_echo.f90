@@ -1,0 +1,137 @@
+! SPDX-License-Identifier: MIT
+!> What was understood of a deck, for the log.
+module deck_echo_m
+  use kinds_m, only : wp
+  use log_m, only : log_t, write_log, to_text
+  use parts_m, only : hourglass_stiffness, law_plastic
+  use contacts_m, only : contact_t, contact_kind_t
+  use controls_m, only : interval_t
+  use model_m, only : model_t
+  implicit none
+  private
+  public :: echo_model
+
+contains
+
+  !> Parts, materials, controls, conditions and interfaces.
+  subroutine echo_model(model, kinds, path, log)
+    type(model_t), intent(in) :: model
+    type(contact_kind_t), intent(in) :: kinds(:)
+    character(*), intent(in) :: path
+    type(log_t), intent(inout) :: log
+    integer :: i
+
+    call write_log(log, 'deck: '//path)
+    call write_log(log, 'title: '//model%controls%title)
+    call write_log(log, 'mesh: '//to_text(model%mesh%n_node)//' nodes, ' &
+      //to_text(model%mesh%n_element)//' elements, plane strain, unit depth')
+    do i = 1, size(model%parts)
+      call echo_part(model, i, log)
+    end do
+    do i = 1, size(model%materials)
+      call echo_material(model, i, log)
+    end do
+    call echo_conditions(model, log)
+    do i = 1, size(model%contacts)
+      call echo_contact(model%contacts(i), kinds, log)
+    end do
+    call write_log(log, 'end: time '//to_text(model%controls%end_time)//', step scale ' &
+      //to_text(model%controls%dt_scale))
+    if (model%controls%dt_curve > 0) call write_log(log, 'step capped by curve ' &
+      //to_text(model%curves(model%controls%dt_curve)%id))
+    call echo_interval('states', model%controls%output%plot)
+    call echo_interval('glstat', model%controls%output%glstat)
+    call echo_interval('matsum', model%controls%output%matsum)
+    call echo_interval('rcforc', model%controls%output%rcforc)
+    call echo_interval('nodout', model%controls%output%nodout)
+
+  contains
+
+    !> How often a file is written.
+    subroutine echo_interval(name, interval)
+      character(*), intent(in) :: name
+      type(interval_t), intent(in) :: interval
+
+      if (interval%curve > 0) then
+        call write_log(log, 'output '//name//': interval by curve ' &
+          //to_text(model%curves(interval%curve)%id))
+      else if (interval%dt > 0.0_wp) then
+        call write_log(log, 'output '//name//': every '//to_text(interval%dt))
+      end if
+    end subroutine echo_interval
+
+  end subroutine echo_model
+
+  !> One part.
+  subroutine echo_part(model, i, log)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: form
+
+    associate (part => model%parts(i))
+      form = 'viscous'
+      if (part%hourglass%form == hourglass_stiffness) form = 'stiffness'
+      call write_log(log, 'part '//to_text(part%id)//' "'//part%title//'": ' &
+        //to_text(count(model%mesh%element_part == i))//' elements, section ' &
+        //to_text(model%sections(part%section)%id)//', material ' &
+        //to_text(model%materials(part%material)%id)//', '//form//' hourglass control ' &
+        //to_text(part%hourglass%coefficient)//', bulk viscosity Q1 ' &
+        //to_text(part%hourglass%quadratic)//' Q2 '//to_text(part%hourglass%linear))
+    end associate
+  end subroutine echo_part
+
+  !> One material.
+  subroutine echo_material(model, i, log)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
+
+    associate (material => model%materials(i))
+      text = 'material '//to_text(material%id)//': density '//to_text(material%density)//', E ' &
+        //to_text(material%young)//', nu '//to_text(material%poisson)//', K ' &
+        //to_text(material%bulk)//', G '//to_text(material%shear)//', c ' &
+        //to_text(material%sound_speed)
+      if (material%law == law_plastic) text = text//', yield '//to_text(material%yield) &
+        //', plastic modulus '//to_text(material%hardening)//', beta '//to_text(material%beta)
+    end associate
+    call write_log(log, text)
+  end subroutine echo_material
+
+  !> Counts of the conditions.
+  subroutine echo_conditions(model, log)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+
+    associate (conditions => model%conditions)
+      call write_log(log, 'conditions: '//to_text(size(conditions%fixed_nodes)) &
+        //' fixed and '//to_text(size(conditions%motions))//' moved degrees of freedom, ' &
+        //to_text(size(conditions%nodal_loads))//' nodal loads, ' &
+        //to_text(size(conditions%pressures))//' pressure edges, ' &
+        //to_text(size(conditions%body_loads))//' body loads')
+    end associate
+  end subroutine echo_conditions
+
+  !> One interface.
+  subroutine echo_contact(contact, kinds, log)
+    type(contact_t), intent(in) :: contact
+    type(contact_kind_t), intent(in) :: kinds(:)
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: name, title
+    integer :: i
+
+    name = 'type '//to_text(contact%contact_type)
+    do i = 1, size(kinds)
+      if (kinds(i)%number == contact%contact_type) name = trim(kinds(i)%name)//' ('//name//')'
+    end do
+    if (contact%chosen_by_keyword) name = name//', chosen by keyword'
+    title = ''
+    if (len(contact%title) > 0) title = ' "'//contact%title//'"'
+    call write_log(log, 'interface '//to_text(contact%id)//title//': '//name//'; slave ' &
+      //to_text(contact%slave%n_node)//' nodes, '//to_text(contact%slave%n_segment) &
+      //' segments; master '//to_text(contact%master%n_node)//' nodes, ' &
+      //to_text(contact%master%n_segment)//' segments')
+  end subroutine echo_contact
+
+end module deck_echo_m

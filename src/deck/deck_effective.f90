@@ -1,0 +1,91 @@
+! SPDX-License-Identifier: MIT
+!> The deck as run: one file, parameters and command line resolved, which read again gives the same
+!> model to the last bit. Lines that nothing changed are copied as they were written.
+module deck_effective_m
+  use deck_lines_m, only : deck_t, layout_mark
+  use deck_parameters_m, only : parameters_t, parameter_comments
+  implicit none
+  private
+  public :: write_effective
+
+  !> A text that grows.
+  type :: buffer_t
+    character(:), allocatable :: text
+    integer :: n = 0
+  end type buffer_t
+
+contains
+
+  !> The text of the effective deck.
+  subroutine write_effective(deck, parameters, tail, effective)
+    type(deck_t), intent(in) :: deck
+    type(parameters_t), intent(in) :: parameters
+    character(*), intent(in) :: tail  !! keywords besides those of the deck
+    character(:), allocatable, intent(out) :: effective
+    type(buffer_t) :: buffer
+    integer :: i, line, source, n
+
+    n = expected_length(deck)
+    allocate (character(n) :: buffer%text)
+    call put(buffer, '$ The deck as run: includes, parameters and command line resolved.')
+    call put_text(buffer, parameter_comments(parameters))
+    call put(buffer, '*KEYWORD')
+    do i = 1, deck%n_block
+      if (deck%blocks(i)%dropped) cycle
+      if (allocated(deck%blocks(i)%replacement)) then
+        call put_text(buffer, deck%blocks(i)%replacement)
+        cycle
+      end if
+      call put(buffer, '*'//trim(deck%blocks(i)%given)//layout_mark(deck%blocks(i)%layout))
+      source = deck%blocks(i)%source
+      do line = deck%blocks(i)%first, deck%blocks(i)%last
+        if (deck%first(line) < 0) then
+          call put(buffer, deck%patch(-deck%first(line):deck%last(line)))
+        else
+          call put(buffer, deck%sources(source)%text(deck%first(line):deck%last(line)))
+        end if
+      end do
+    end do
+    call put_text(buffer, tail)
+    call put(buffer, '*END')
+    effective = buffer%text(:buffer%n)
+  end subroutine write_effective
+
+  !> Characters that the effective deck has at most, but for changed lines (the buffer grows).
+  pure function expected_length(deck) result(n)
+    type(deck_t), intent(in) :: deck
+    integer :: n
+    integer :: i
+
+    n = 4096
+    do i = 1, deck%n_line
+      n = n + 1 + max(deck%last(i) - abs(deck%first(i)) + 1, 0)
+    end do
+    n = n + 4*deck%n_block
+  end function expected_length
+
+  !> Append a line.
+  subroutine put(buffer, line)
+    type(buffer_t), intent(inout) :: buffer
+    character(*), intent(in) :: line
+
+    call put_text(buffer, line)
+    call put_text(buffer, new_line('a'))
+  end subroutine put
+
+  !> Append characters.
+  subroutine put_text(buffer, text)
+    type(buffer_t), intent(inout) :: buffer
+    character(*), intent(in) :: text
+    character(:), allocatable :: larger
+
+    if (buffer%n + len(text) > len(buffer%text)) then
+      allocate (character(buffer%n + buffer%n/2 + len(text)) :: larger)
+      larger(:buffer%n) = buffer%text(:buffer%n)
+      call move_alloc(larger, buffer%text)
+    end if
+    buffer%text(buffer%n + 1:buffer%n + len(text)) = text
+    buffer%n = buffer%n + len(text)
+  end subroutine put_text
+
+end module deck_effective_m

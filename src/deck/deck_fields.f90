@@ -1,0 +1,312 @@
+! SPDX-License-Identifier: MIT
+!> Lines to cards: fields cut by column or at commas, numbers read, defaults filled in.
+!> What a card may hold is said by a `card_spec_t`, made from one line of the table in
+!> `deck_schema_m`; the same table drives every message.
+module deck_fields_m
+  use kinds_m, only : wp
+  use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
+  use log_m, only : to_text
+  use deck_report_m, only : add_error, is_full
+  use deck_lines_m, only : deck_t, place_t, line_text, where_text, line_warning, marked_line, &
+    format_standard, format_long, format_i10, flag_comma
+  implicit none
+  private
+  public :: card_t, card_spec_t, make_spec, cut_card, read_numbers, field_text, field_error, &
+    place_error, max_field
+
+  !> Fields of one card at most.
+  integer, parameter :: max_field = 16
+
+  !> Numbers beyond this are refused, so that squares and products of deck values stay finite.
+  real(wp), parameter :: largest_value = 1.0e100_wp
+
+  !> What a card may hold.
+  type :: card_spec_t
+    integer :: n = 0                            !! fields
+    integer :: number = 1                       !! card number in messages
+    character(12) :: names(max_field) = ''
+    character :: kinds(max_field) = 'x'         !! i integer, f real, a text, x not used
+    character :: treatments(max_field) = 'h'    !! h honoured, s silently ignored, w ignored with a
+                                                !! warning, r refused unless it is the default
+    integer :: widths(max_field) = 10
+    real(wp) :: defaults(max_field) = 0.0_wp
+  end type card_spec_t
+
+  !> One card as read. Blank fields hold their defaults.
+  type :: card_t
+    integer :: line = 0                     !! line in the deck
+    integer :: number = 1                   !! card number
+    logical :: present = .false.            !! the deck has this card
+    integer :: first(max_field) = 1         !! characters of each field in the line, trimmed;
+    integer :: last(max_field) = 0          !! last < first: blank
+    logical :: blank(max_field) = .true.
+    logical :: bad(max_field) = .false.     !! an error has been reported for the field
+    integer :: i(max_field) = 0             !! values of the integer fields
+    real(wp) :: r(max_field) = 0.0_wp       !! values of the real fields
+  end type card_t
+
+contains
+
+  !> A card from its line of the table: words `NAME:kind[treatment][width][=default]`.
+  subroutine make_spec(text, number, layout, spec)
+    character(*), intent(in) :: text
+    integer, intent(in) :: number
+    integer, intent(in) :: layout   !! one of the `format_` constants
+    type(card_spec_t), intent(out) :: spec
+    integer :: start, finish, colon, at, status, last
+
+    spec%number = number
+    start = 1
+    last = len_trim(text)
+    do
+      do while (start <= last)
+        if (text(start:start) /= ' ') exit
+        start = start + 1
+      end do
+      if (start > last .or. spec%n == max_field) exit
+      finish = index(text(start:)//' ', ' ') + start - 2
+      colon = index(text(start:finish), ':') + start - 1
+      spec%n = spec%n + 1
+      spec%names(spec%n) = text(start:colon - 1)
+      spec%kinds(spec%n) = text(colon + 1:colon + 1)
+      at = colon + 2
+      if (at <= finish) then
+        if (scan(text(at:at), 'swr') == 1) then
+          spec%treatments(spec%n) = text(at:at)
+          at = at + 1
+        end if
+      end if
+      colon = index(text(start:finish), '=') + start - 1
+      if (colon >= start) then
+        call read_real(text(colon + 1:finish), spec%defaults(spec%n), status)
+      else
+        colon = finish + 1
+      end if
+      if (at < colon) call read_integer(text(at:colon - 1), spec%widths(spec%n), status)
+      start = finish + 1
+    end do
+    if (layout == format_long) spec%widths = max(spec%widths, 20)
+    if (layout == format_i10) spec%widths = max(spec%widths, 10)
+  end subroutine make_spec
+
+  !> Cut a line into the fields of a card; text beyond them gives a warning.
+  subroutine cut_card(deck, spec, source, line, card)
+    type(deck_t), intent(inout) :: deck
+    type(card_spec_t), intent(in) :: spec
+    integer, intent(in) :: source
+    integer, intent(in) :: line
+    type(card_t), intent(inout) :: card
+    integer :: first, last, rest
+
+    card%line = line
+    card%number = spec%number
+    card%present = .true.
+    card%bad = .false.
+    first = deck%first(line)
+    last = deck%last(line)
+    if (first < 0) then
+      call cut_text(deck%patch(-first:last), spec, iand(deck%flags(line), flag_comma) /= 0, card, &
+        rest)
+    else
+      call cut_text(deck%sources(source)%text(first:last), spec, &
+        iand(deck%flags(line), flag_comma) /= 0, card, rest)
+    end if
+    if (rest > 0) call line_warning(deck, line, 'extra'//where_keyword(deck, line), &
+      'text after the last field (column '//to_text(rest)//') is ignored')
+  end subroutine cut_card
+
+  !> Keyword of a line, as the key of a warning.
+  pure function where_keyword(deck, line) result(text)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: line
+    character(:), allocatable :: text
+
+    text = where_text(deck, line)
+    text = text(index(text, '*', back=.true.):)
+  end function where_keyword
+
+  !> Cut a text: by column, or at commas when it holds one.
+  pure subroutine cut_text(text, spec, comma, card, rest)
+    character(*), intent(in) :: text
+    type(card_spec_t), intent(in) :: spec
+    logical, intent(in) :: comma
+    type(card_t), intent(inout) :: card
+    integer, intent(out) :: rest !! column of text beyond the last field, or 0
+    integer :: k, start, finish, first, last, width
+
+    start = 1
+    rest = 0
+    do k = 1, spec%n
+      if (comma) then
+        width = 0
+        if (start <= len(text)) width = index(text(start:), ',')
+        finish = merge(start + width - 2, len(text), width > 0)
+      else
+        finish = min(start + spec%widths(k) - 1, len(text))
+      end if
+      first = start
+      last = finish
+      do while (last >= first)
+        if (text(last:last) /= ' ') exit
+        last = last - 1
+      end do
+      do while (first < last)
+        if (text(first:first) /= ' ') exit
+        first = first + 1
+      end do
+      card%first(k) = first
+      card%last(k) = last
+      card%blank(k) = last < first
+      if (comma) then
+        start = finish + 2
+      else
+        start = start + spec%widths(k)
+      end if
+    end do
+    if (start > len(text)) return
+    first = verify(text(start:), ' ,')
+    if (first > 0) rest = start + first - 1
+  end subroutine cut_text
+
+  !> Read the numbers of a card that has been cut, with defaults for blank fields.
+  subroutine read_numbers(deck, spec, source, card)
+    type(deck_t), intent(inout) :: deck
+    type(card_spec_t), intent(in) :: spec
+    integer, intent(in) :: source
+    type(card_t), intent(inout) :: card
+    integer :: k, status, first, shift
+
+    first = 1
+    shift = 0
+    if (card%line > 0) first = deck%first(card%line)
+    do k = 1, spec%n
+      card%r(k) = spec%defaults(k)
+      card%i(k) = 0
+      if (spec%kinds(k) == 'i') card%i(k) = nint(spec%defaults(k))
+      if (card%blank(k)) cycle
+      status = number_good
+      if (spec%kinds(k) == 'x' .or. spec%kinds(k) == 'a') cycle
+      if (first < 0) then
+        shift = -first - 1
+        call read_field(deck%patch(shift + card%first(k):shift + card%last(k)), spec%kinds(k))
+      else
+        shift = first - 1
+        call read_field(deck%sources(source)%text(shift + card%first(k):shift + card%last(k)), &
+          spec%kinds(k))
+      end if
+      if (status /= number_good) call number_error(deck, spec, card, k, status)
+    end do
+
+  contains
+
+    !> Read field `k`.
+    subroutine read_field(text, kind)
+      character(*), intent(in) :: text
+      character, intent(in) :: kind
+
+      if (kind == 'i') then
+        call read_integer(text, card%i(k), status)
+      else
+        call read_real(text, card%r(k), status)
+        if (abs(card%r(k)) > largest_value) status = number_range
+      end if
+    end subroutine read_field
+
+  end subroutine read_numbers
+
+  !> A field that does not hold the number it should.
+  subroutine number_error(deck, spec, card, k, status)
+    type(deck_t), intent(inout) :: deck
+    type(card_spec_t), intent(in) :: spec
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    integer, intent(in) :: status
+    character(:), allocatable :: text
+
+    text = field_text(deck, card, k)
+    if (text(1:1) == '<' .or. index(text, '&(') == 1 .or. index(text, '-&(') == 1) then
+      call field_error(deck, spec, card, k, 'is an inline expression, which is not read here; ' &
+        //'give it a name with *PARAMETER_EXPRESSION')
+    else if (status == number_fraction) then
+      call field_error(deck, spec, card, k, 'is not a whole number')
+    else if (status == number_range .and. spec%kinds(k) == 'i') then
+      call field_error(deck, spec, card, k, 'is too large: whole numbers reach 2147483647')
+    else if (status == number_range) then
+      call field_error(deck, spec, card, k, 'is too large: numbers reach 1e100')
+    else if (spec%kinds(k) == 'i') then
+      call field_error(deck, spec, card, k, 'is not a whole number')
+    else
+      call field_error(deck, spec, card, k, 'is not a number')
+    end if
+    card%i(k) = 0
+    if (spec%kinds(k) == 'i') card%i(k) = nint(spec%defaults(k))
+    card%r(k) = spec%defaults(k)
+  end subroutine number_error
+
+  !> Text of a field, without blanks around it.
+  pure function field_text(deck, card, k) result(text)
+    type(deck_t), intent(in) :: deck
+    type(card_t), intent(in) :: card
+    integer, intent(in) :: k
+    character(:), allocatable :: text
+
+    text = ''
+    if (.not. card%present .or. card%blank(k)) return
+    text = line_text(deck, card%line)
+    text = text(card%first(k):card%last(k))
+  end function field_text
+
+  !> An error of a field: `file:line: *KEYWORD card c field k (NAME): "text" message`, the card and
+  !> a mark under the field.
+  subroutine field_error(deck, spec, card, k, message)
+    type(deck_t), intent(inout) :: deck
+    type(card_spec_t), intent(in) :: spec
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    character(*), intent(in) :: message
+    character(:), allocatable :: text
+
+    card%bad(k) = .true.
+    if (is_full(deck%report)) then
+      deck%report%n_error = deck%report%n_error + 1
+      return
+    end if
+    text = where_text(deck, card%line)//' card '//to_text(spec%number)//' field '//to_text(k) &
+      //' ('//trim(spec%names(k))//'): '
+    if (card%present .and. .not. card%blank(k)) then
+      text = text//'"'//printable(field_text(deck, card, k))//'" '
+    else
+      text = text//'blank '
+    end if
+    text = text//message
+    if (card%present) text = text//new_line('a')//marked_line(line_text(deck, card%line), &
+      card%first(k), max(card%last(k), card%first(k)))
+    call add_error(deck%report, card%line, text)
+  end subroutine field_error
+
+  !> The text with what is not printable replaced.
+  pure function printable(text) result(shown)
+    character(*), intent(in) :: text
+    character(len(text)) :: shown
+    integer :: i
+
+    shown = text
+    do i = 1, len(text)
+      if (iachar(text(i:i)) < 32 .or. iachar(text(i:i)) > 126) shown(i:i) = '?'
+    end do
+  end function printable
+
+  !> As `field_error` for a card that has been left: it is cut again.
+  subroutine place_error(deck, spec, place, source, message)
+    type(deck_t), intent(inout) :: deck
+    type(card_spec_t), intent(in) :: spec
+    type(place_t), intent(in) :: place
+    integer, intent(in) :: source
+    character(*), intent(in) :: message
+    type(card_t) :: card
+
+    call cut_card(deck, spec, source, place%line, card)
+    call field_error(deck, spec, card, place%field, message)
+  end subroutine place_error
+
+end module deck_fields_m

@@ -1,0 +1,212 @@
+! SPDX-License-Identifier: MIT
+!> A deck as text: files, lines and keyword blocks, and messages that point into them.
+!>
+!> Files stay in memory as they were read. A line is a range of characters of its file. Where
+!> parameters or the command line change a line, its new text is kept in `patch` and the line
+!> points there (its `first` is negative), so that what is parsed is what the effective deck shows.
+module deck_lines_m
+  use, intrinsic :: iso_fortran_env, only : int8
+  use deck_report_m, only : report_t, add_error, add_warning
+  use log_m, only : to_text
+  implicit none
+  private
+  public :: deck_t, source_t, block_t, place_t, line_text, block_of_line, where_text, line_error, &
+    line_warning, replace_line, shown_text, marked_line, layout_mark, &
+    format_standard, format_long, format_i10, flag_comma, flag_parameter, flag_blank, max_source
+
+  !> Column layout of a block.
+  integer, parameter :: format_standard = 0, format_long = 1, format_i10 = 2
+  !> Bits of `flags`.
+  integer(int8), parameter :: flag_comma = 1_int8, flag_parameter = 2_int8, flag_blank = 4_int8
+  !> Files in one deck.
+  integer, parameter :: max_source = 1000
+
+  !> One file.
+  type :: source_t
+    character(:), allocatable :: path
+    character(:), allocatable :: text
+    integer :: parent = 0                !! the file that includes it, 0 for the deck itself
+    integer :: layout = format_standard  !! from its *KEYWORD line, or from the including file
+  end type source_t
+
+  !> One keyword with its data lines (comments left out, blank lines kept).
+  type :: block_t
+    character(80) :: name = ''           !! upper case, without asterisk, options and marks
+    character(80) :: given = ''          !! the same with the options
+    character(80) :: rest = ''           !! what follows the name on its line
+    integer :: source = 0
+    integer :: keyword = 0               !! line of the keyword
+    integer :: first = 1, last = 0       !! data lines
+    integer :: layout = format_standard
+    logical :: titled = .false.          !! _TITLE or _ID: a text line comes first
+    logical :: dropped = .false.         !! not part of the effective deck
+    character(:), allocatable :: replacement !! what the effective deck says in its place
+  end type block_t
+
+  !> A field of a card, for messages after the card has been left.
+  type :: place_t
+    integer :: line = 0
+    integer :: card = 1
+    integer :: field = 0
+  end type place_t
+
+  !> The whole deck.
+  type :: deck_t
+    type(source_t), allocatable :: sources(:)
+    integer :: n_source = 0
+    integer, allocatable :: first(:), last(:) !! characters of each line; first < 0: in `patch`
+    integer, allocatable :: number(:)         !! line number in its file
+    integer(int8), allocatable :: flags(:)
+    integer :: n_line = 0
+    type(block_t), allocatable :: blocks(:)
+    integer :: n_block = 0
+    character(:), allocatable :: patch        !! text of changed lines
+    integer :: n_patch = 0                    !! characters of it in use
+    type(report_t) :: report
+  end type deck_t
+
+contains
+
+  !> Text of a line.
+  pure function line_text(deck, line) result(text)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: line
+    character(:), allocatable :: text
+    integer :: source
+
+    if (line < 1 .or. line > deck%n_line) then
+      text = ''
+    else if (deck%first(line) < 0) then
+      text = deck%patch(-deck%first(line):deck%last(line))
+    else
+      source = deck%blocks(block_of_line(deck, line))%source
+      text = deck%sources(source)%text(deck%first(line):deck%last(line))
+    end if
+  end function line_text
+
+  !> The block that holds a line (keyword line or data line); 0 before the first.
+  pure function block_of_line(deck, line) result(i_block)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: line
+    integer :: i_block
+    integer :: low, high
+
+    low = 0
+    high = deck%n_block + 1
+    do while (high - low > 1)
+      i_block = (low + high)/2
+      if (deck%blocks(i_block)%keyword <= line) then
+        low = i_block
+      else
+        high = i_block
+      end if
+    end do
+    i_block = low
+  end function block_of_line
+
+  !> `file:number: *KEYWORD` of a line, the head of every message.
+  pure function where_text(deck, line) result(text)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: line
+    character(:), allocatable :: text
+    integer :: i_block
+
+    i_block = block_of_line(deck, line)
+    if (line < 1 .or. i_block < 1) then
+      text = deck%sources(1)%path
+      return
+    end if
+    text = deck%sources(deck%blocks(i_block)%source)%path//':'//to_text(deck%number(line)) &
+      //': *'//trim(deck%blocks(i_block)%given)
+  end function where_text
+
+  !> An error of a whole line, with the line under it.
+  subroutine line_error(deck, line, message)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line
+    character(*), intent(in) :: message
+
+    if (line < 1) then
+      call add_error(deck%report, line, where_text(deck, line)//': '//message)
+    else
+      call add_error(deck%report, line, where_text(deck, line)//': '//message//new_line('a') &
+        //'  | '//trim(shown_text(line_text(deck, line))))
+    end if
+  end subroutine line_error
+
+  !> A warning of a line; the same `key` is told once.
+  subroutine line_warning(deck, line, key, message)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line
+    character(*), intent(in) :: key
+    character(*), intent(in) :: message
+
+    call add_warning(deck%report, line, key, where_text(deck, line)//': '//message)
+  end subroutine line_warning
+
+  !> Give a line a new text (free format).
+  subroutine replace_line(deck, line, text)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line
+    character(*), intent(in) :: text
+    character(:), allocatable :: larger
+
+    if (.not. allocated(deck%patch)) allocate (character(4096) :: deck%patch)
+    if (deck%n_patch + len(text) > len(deck%patch)) then
+      allocate (character(2*len(deck%patch) + len(text)) :: larger)
+      larger(:deck%n_patch) = deck%patch(:deck%n_patch)
+      call move_alloc(larger, deck%patch)
+    end if
+    deck%patch(deck%n_patch + 1:deck%n_patch + len(text)) = text
+    deck%first(line) = -(deck%n_patch + 1)
+    deck%n_patch = deck%n_patch + len(text)
+    deck%last(line) = deck%n_patch
+    deck%flags(line) = 0_int8
+    if (index(text, ',') > 0) deck%flags(line) = flag_comma
+    if (len_trim(text) == 0) deck%flags(line) = flag_blank
+  end subroutine replace_line
+
+  !> The text fit for a terminal: other than printable ASCII becomes a question mark.
+  pure function shown_text(text) result(shown)
+    character(*), intent(in) :: text
+    character(min(len(text), 240)) :: shown
+    integer :: i
+
+    do i = 1, len(shown)
+      if (iachar(text(i:i)) >= 32 .and. iachar(text(i:i)) < 127) then
+        shown(i:i) = text(i:i)
+      else
+        shown(i:i) = '?'
+      end if
+    end do
+  end function shown_text
+
+  !> The line and under it a mark from character `first` to `last`.
+  pure function marked_line(text, first, last) result(marked)
+    character(*), intent(in) :: text
+    integer, intent(in) :: first, last
+    character(:), allocatable :: marked
+    integer :: from, to
+
+    from = min(max(first, 1), 230)
+    to = min(max(last, from), 240)
+    marked = '  | '//trim(shown_text(text))//new_line('a')//'  | '//repeat(' ', from - 1) &
+      //repeat('^', to - from + 1)
+  end function marked_line
+
+  !> The mark of a keyword's column layout.
+  pure function layout_mark(layout) result(mark)
+    integer, intent(in) :: layout
+    character(:), allocatable :: mark
+
+    select case (layout)
+    case (format_long)
+      mark = ' +'
+    case (format_i10)
+      mark = ' %'
+    case default
+      mark = ''
+    end select
+  end function layout_mark
+
+end module deck_lines_m

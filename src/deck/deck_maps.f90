@@ -1,0 +1,76 @@
+! SPDX-License-Identifier: MIT
+!> Id maps of every kind of thing in a deck; ids given twice are errors.
+module deck_maps_m
+  use log_m, only : to_text
+  use deck_lines_m, only : deck_t, place_t, where_text
+  use deck_cards_m, only : reject_field
+  use deck_ids_m, only : id_map_t, map_ids, index_of
+  use deck_raw_m, only : raw_t
+  implicit none
+  private
+  public :: maps_t, make_maps, resolve_id
+
+  !> Maps from user id to index.
+  type :: maps_t
+    type(id_map_t) :: nodes, elements, parts, sections, materials, hourglasses, curves, node_sets, &
+      part_sets, segment_sets
+  end type maps_t
+
+contains
+
+  !> Make all maps.
+  subroutine make_maps(deck, raw, maps)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(out) :: maps
+
+    call map_kind(deck, 'node', raw%node_id(:raw%n_node), raw%node_line(:raw%n_node), 1, maps%nodes)
+    call map_kind(deck, 'element', raw%element_id(:raw%n_element), &
+      raw%element_line(:raw%n_element), 1, maps%elements)
+    call map_kind(deck, 'part', [raw%parts%id], [raw%parts%line], 2, maps%parts)
+    call map_kind(deck, 'section', [raw%sections%id], raw%section_line, 1, maps%sections)
+    call map_kind(deck, 'material', [raw%materials%id], raw%material_line, 1, maps%materials)
+    call map_kind(deck, 'hourglass control', [raw%hourglasses%id], raw%hourglass_line, 1, &
+      maps%hourglasses)
+    call map_kind(deck, 'curve', [raw%curves%id], raw%curve_line, 1, maps%curves)
+    call map_kind(deck, 'node set', [raw%node_sets(:raw%n_node_set)%id], &
+      [raw%node_sets(:raw%n_node_set)%line], 1, maps%node_sets)
+    call map_kind(deck, 'part set', [raw%part_sets(:raw%n_part_set)%id], &
+      [raw%part_sets(:raw%n_part_set)%line], 1, maps%part_sets)
+    call map_kind(deck, 'segment set', [raw%segment_sets(:raw%n_segment_set)%id], &
+      [raw%segment_sets(:raw%n_segment_set)%line], 1, maps%segment_sets)
+  end subroutine make_maps
+
+  !> One map, with an error for each id that comes again.
+  subroutine map_kind(deck, what, ids, lines, card, map)
+    type(deck_t), intent(inout) :: deck
+    character(*), intent(in) :: what
+    integer, intent(in) :: ids(:)
+    integer, intent(in) :: lines(:) !! where each stands: its first field
+    integer, intent(in) :: card     !! on this card of its keyword
+    type(id_map_t), intent(out) :: map
+    integer, allocatable :: twice(:)
+    integer :: i, first
+
+    call map_ids(ids, map, twice)
+    do i = 1, size(twice)
+      first = index_of(map, ids(twice(i)))
+      call reject_field(deck, place_t(line=lines(twice(i)), card=card, field=1), &
+        'is the number of another '//what//' ('//where_text(deck, lines(first))//')')
+    end do
+  end subroutine map_kind
+
+  !> Index of an id that a field refers to; an error of that field when there is none.
+  subroutine resolve_id(deck, map, id, what, place, found)
+    type(deck_t), intent(inout) :: deck
+    type(id_map_t), intent(in) :: map
+    integer, intent(in) :: id
+    character(*), intent(in) :: what  !! `node`, `curve`, ...
+    type(place_t), intent(in) :: place
+    integer, intent(out) :: found
+
+    found = index_of(map, id)
+    if (found == 0) call reject_field(deck, place, 'there is no '//what//' '//to_text(id))
+  end subroutine resolve_id
+
+end module deck_maps_m

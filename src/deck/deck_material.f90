@@ -1,0 +1,188 @@
+! SPDX-License-Identifier: MIT
+!> *MAT_ cards and *DEFINE_CURVE.
+module deck_material_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use parts_m, only : material_t, law_elastic, law_plastic
+  use curves_m, only : curve_t
+  use deck_lines_m, only : deck_t, line_error
+  use deck_fields_m, only : card_t
+  use deck_parameters_m, only : parameters_t
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, check_rest, &
+    report_field
+  use deck_raw_m, only : raw_t
+  implicit none
+  private
+  public :: read_elastic, read_plastic_kinematic, read_curve
+
+contains
+
+  !> *MAT_ELASTIC.
+  subroutine read_elastic(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    type(material_t) :: material
+    character(:), allocatable :: title
+
+    call open_cursor(deck, i_block, cursor)
+    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call next_card(deck, parameters, cursor, 1, card)
+    call elastic_constants(deck, cursor, card, material)
+    material%law = law_elastic
+    call append_material(raw, material, card)
+    call check_rest(deck, cursor)
+  end subroutine read_elastic
+
+  !> *MAT_PLASTIC_KINEMATIC.
+  subroutine read_plastic_kinematic(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card, rate
+    type(material_t) :: material
+    character(:), allocatable :: title
+
+    call open_cursor(deck, i_block, cursor)
+    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call next_card(deck, parameters, cursor, 1, card)
+    call elastic_constants(deck, cursor, card, material)
+    material%law = law_plastic
+    if (card%r(5) <= 0.0_wp) call report_field(deck, cursor, card, 5, &
+      'is not a yield stress (more than 0)')
+    if (card%r(6) < 0.0_wp) then
+      call report_field(deck, cursor, card, 6, 'is negative: softening is not part of this law')
+    else if (card%r(6) >= card%r(3) .and. .not. card%bad(3)) then
+      call report_field(deck, cursor, card, 6, 'is not below E: the tangent modulus of the ' &
+        //'uniaxial stress-strain curve must be')
+    end if
+    if (card%r(7) < 0.0_wp .or. card%r(7) > 1.0_wp) call report_field(deck, cursor, card, 7, &
+      'is not between 0 (kinematic) and 1 (isotropic hardening)')
+    material%yield = card%r(5)
+    if (.not. any(card%bad)) material%hardening = card%r(3)*card%r(6)/(card%r(3) - card%r(6))
+    material%beta = card%r(7)
+    call next_card(deck, parameters, cursor, 2, rate)
+    if (abs(rate%r(3)) > 0.0_wp .and. rate%r(3) < 1.0e19_wp) call report_field(deck, cursor, rate, &
+      3, 'asks for failure at a plastic strain, which this version does not have; leave it 0')
+    call append_material(raw, material, card)
+    call check_rest(deck, cursor)
+  end subroutine read_plastic_kinematic
+
+  !> MID, RO, E, PR in the first four fields, and what follows from them.
+  subroutine elastic_constants(deck, cursor, card, material)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(material_t), intent(inout) :: material
+
+    if (card%i(1) < 1) call report_field(deck, cursor, card, 1, 'is not a number of 1 or more')
+    if (card%r(2) <= 0.0_wp) call report_field(deck, cursor, card, 2, &
+      'is not a density (more than 0)')
+    if (card%r(3) <= 0.0_wp) call report_field(deck, cursor, card, 3, &
+      'is not a Young''s modulus (more than 0)')
+    if (card%r(4) <= -1.0_wp .or. card%r(4) >= 0.5_wp) call report_field(deck, cursor, card, 4, &
+      'is not a Poisson''s ratio (more than -1 and less than 0.5)')
+    material%id = card%i(1)
+    material%density = card%r(2)
+    material%young = card%r(3)
+    material%poisson = card%r(4)
+    if (any(card%bad(2:4))) return
+    if (card%r(3) > 1.0e30_wp .or. card%r(3) < 1.0e-30_wp .or. card%r(2) > 1.0e30_wp &
+      .or. card%r(2) < 1.0e-30_wp) then
+      call report_field(deck, cursor, card, 3, &
+        'with RO "'//to_text(card%r(2))//'" is out of reach (1e-30 to 1e30)')
+      return
+    end if
+    material%bulk = card%r(3)/(3.0_wp*(1.0_wp - 2.0_wp*card%r(4)))
+    material%shear = card%r(3)/(2.0_wp*(1.0_wp + card%r(4)))
+    material%sound_speed = sqrt((material%bulk + 4.0_wp*material%shear/3.0_wp)/card%r(2))
+  end subroutine elastic_constants
+
+  !> One more material.
+  subroutine append_material(raw, material, card)
+    type(raw_t), intent(inout) :: raw
+    type(material_t), intent(in) :: material
+    type(card_t), intent(in) :: card
+
+    if (card%bad(1)) return
+    raw%materials = [raw%materials, material]
+    raw%material_line = [raw%material_line, card%line]
+  end subroutine append_material
+
+  !> *DEFINE_CURVE: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
+  subroutine read_curve(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: head, card
+    type(curve_t) :: curve
+    character(:), allocatable :: title
+    real(wp), allocatable :: points(:, :)
+    logical :: found
+    integer :: n
+
+    call open_cursor(deck, i_block, cursor)
+    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call next_card(deck, parameters, cursor, 1, head)
+    if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a number of 1 or more')
+    if (head%r(3) < 0.0_wp) call report_field(deck, cursor, head, 3, &
+      'is negative: it would turn the curve round')
+    if (.not. abs(head%r(3)) > 0.0_wp) head%r(3) = 1.0_wp
+    if (.not. abs(head%r(4)) > 0.0_wp) head%r(4) = 1.0_wp
+    allocate (points(2, max(cursor%last - cursor%line + 1, 1)))
+    n = 0
+    do
+      call next_row(deck, parameters, cursor, 2, card, found)
+      if (.not. found) exit
+      n = n + 1
+      call check_product(deck, cursor, card, 1, head%r(3), head%r(5))
+      call check_product(deck, cursor, card, 2, head%r(4), head%r(6))
+      points(1, n) = head%r(3)*(card%r(1) + head%r(5))
+      points(2, n) = head%r(4)*(card%r(2) + head%r(6))
+      if (n == 1 .or. card%bad(1)) cycle
+      if (points(1, n) <= points(1, n - 1)) call report_field(deck, cursor, card, 1, &
+        'is not beyond the point before it: abscissas must increase')
+    end do
+    if (n == 0) call line_error(deck, head%line, 'the curve has no points')
+    if (head%bad(1)) return
+    if (n == 0) then
+      n = 1
+      points = 0.0_wp
+    end if
+    curve%id = head%i(1)
+    curve%abscissa = points(1, :n)
+    curve%ordinate = points(2, :n)
+    call append_curve(raw, curve, head%line)
+  end subroutine read_curve
+
+  !> A point that leaves the range of numbers when it is scaled is refused and becomes zero.
+  subroutine check_product(deck, cursor, card, k, factor, offset)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    real(wp), intent(in) :: factor, offset
+
+    if (exponent(card%r(k) + offset) + exponent(factor) < 900) return
+    call report_field(deck, cursor, card, k, 'is too large with the curve''s factor')
+    card%r(k) = -offset
+  end subroutine check_product
+
+  !> One more curve.
+  subroutine append_curve(raw, curve, line)
+    type(raw_t), intent(inout) :: raw
+    type(curve_t), intent(in) :: curve
+    integer, intent(in) :: line
+
+    raw%curves = [raw%curves, curve]
+    raw%curve_line = [raw%curve_line, line]
+  end subroutine append_curve
+
+end module deck_material_m

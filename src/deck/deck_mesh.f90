@@ -1,0 +1,201 @@
+! SPDX-License-Identifier: MIT
+!> *NODE, *ELEMENT_SHELL and *SET_ cards.
+module deck_mesh_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use deck_lines_m, only : deck_t
+  use deck_fields_m, only : card_t
+  use deck_parameters_m, only : parameters_t
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, report_field
+  use deck_raw_m, only : raw_t, raw_set_t, reserve_nodes, reserve_elements, append_set, append_member
+  implicit none
+  private
+  public :: read_nodes, read_elements, read_set, read_history_ids
+
+contains
+
+  !> *NODE: id, coordinates and boundary code.
+  subroutine read_nodes(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    logical :: found
+    integer :: n
+
+    call open_cursor(deck, i_block, cursor)
+    call reserve_nodes(raw, max(cursor%last - cursor%line + 1, 0))
+    do
+      call next_row(deck, parameters, cursor, 1, card, found)
+      if (.not. found) exit
+      if (card%i(1) < 1) call report_field(deck, cursor, card, 1, 'is not a node number (1 or more)')
+      if (card%i(5) < 0 .or. card%i(5) > 7) call report_field(deck, cursor, card, 5, &
+        'is not a boundary code (0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)')
+      if (card%bad(1)) cycle
+      n = raw%n_node + 1
+      raw%n_node = n
+      raw%node_id(n) = card%i(1)
+      raw%node_line(n) = card%line
+      raw%node_code(n) = card%i(5)
+      raw%coordinates(1, n) = card%r(2)
+      raw%coordinates(2, n) = card%r(3)
+      if (n == 1) raw%z_first = card%r(4)
+      if (raw%z_line == 0 .and. abs(card%r(4) - raw%z_first) > 0.0_wp) raw%z_line = card%line
+    end do
+  end subroutine read_nodes
+
+  !> *ELEMENT_SHELL: id, part and corner nodes; N4 = 0 or N3 makes a triangle.
+  subroutine read_elements(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    logical :: found
+    integer :: n, k
+
+    call open_cursor(deck, i_block, cursor)
+    call reserve_elements(raw, max(cursor%last - cursor%line + 1, 0))
+    do
+      call next_row(deck, parameters, cursor, 1, card, found)
+      if (.not. found) exit
+      if (card%i(1) < 1) call report_field(deck, cursor, card, 1, &
+        'is not an element number (1 or more)')
+      if (card%i(2) < 1) call report_field(deck, cursor, card, 2, 'is not a part number (1 or more)')
+      do k = 3, 5
+        if (card%i(k) < 1) call report_field(deck, cursor, card, k, &
+          'is not a node number (1 or more)')
+      end do
+      if (card%i(6) < 0) call report_field(deck, cursor, card, 6, 'is not a node number (1 or more)')
+      if (any(card%bad)) cycle
+      if (card%i(6) == 0) card%i(6) = card%i(5)
+      n = raw%n_element + 1
+      raw%n_element = n
+      raw%element_id(n) = card%i(1)
+      raw%element_part(n) = card%i(2)
+      raw%element_nodes(:, n) = card%i(3:6)
+      raw%element_line(n) = card%line
+    end do
+  end subroutine read_elements
+
+  !> A set of nodes, parts or segments: its number, then its members.
+  subroutine read_set(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: head, card
+    type(raw_set_t) :: set
+    character(:), allocatable :: title
+    logical :: found
+
+    call open_cursor(deck, i_block, cursor)
+    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call next_card(deck, parameters, cursor, 1, head)
+    if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a set number (1 or more)')
+    set%id = head%i(1)
+    set%line = head%line
+    set%generate = index(deck%blocks(i_block)%name, '_GENERATE') > 0
+    do
+      call next_row(deck, parameters, cursor, 2, card, found)
+      if (.not. found) exit
+      if (deck%blocks(i_block)%name == 'SET_SEGMENT') then
+        call take_segment(deck, cursor, card, set)
+      else
+        call take_members(deck, cursor, card, set)
+      end if
+    end do
+    if (head%bad(1)) return
+    select case (deck%blocks(i_block)%name)
+    case ('SET_SEGMENT')
+      call append_set(raw%segment_sets, raw%n_segment_set, set)
+    case ('SET_PART_LIST', 'SET_PART_LIST_GENERATE')
+      call append_set(raw%part_sets, raw%n_part_set, set)
+    case default
+      call append_set(raw%node_sets, raw%n_node_set, set)
+    end select
+  end subroutine read_set
+
+  !> Up to eight ids of a line; zeros are padding. Generated sets take them in pairs.
+  subroutine take_members(deck, cursor, card, set)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_set_t), intent(inout) :: set
+    integer :: k
+
+    do k = 1, 8
+      if (card%i(k) < 0) call report_field(deck, cursor, card, k, 'is not a number of 1 or more')
+    end do
+    if (set%generate) then
+      do k = 1, 7, 2
+        if (card%i(k) == 0 .and. card%i(k + 1) == 0) cycle
+        if (card%i(k) == 0 .or. card%i(k + 1) < card%i(k)) call report_field(deck, cursor, card, &
+          k + 1, 'is not the end of a block that begins with "'//to_text(card%i(k))//'"')
+        if (card%bad(k) .or. card%bad(k + 1)) cycle
+        call append_member(set, card%i(k), card%line, k)
+        call append_member(set, card%i(k + 1), card%line, k + 1)
+      end do
+      return
+    end if
+    do k = 1, 8
+      if (card%i(k) > 0) call append_member(set, card%i(k), card%line, k)
+    end do
+  end subroutine take_members
+
+  !> One edge: N3 and N4 may repeat N2 or be zero.
+  subroutine take_segment(deck, cursor, card, set)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_set_t), intent(inout) :: set
+
+    call check_edge(deck, cursor, card, 1)
+    if (any(card%bad(1:4))) return
+    call append_member(set, card%i(1), card%line, 1)
+    call append_member(set, card%i(2), card%line, 2)
+  end subroutine take_segment
+
+  !> Four node fields from `k` on must describe an edge.
+  subroutine check_edge(deck, cursor, card, k)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    integer :: j
+
+    do j = k, k + 1
+      if (card%i(j) < 1) call report_field(deck, cursor, card, j, 'is not a node number (1 or more)')
+    end do
+    if (card%i(k) == card%i(k + 1)) call report_field(deck, cursor, card, k + 1, &
+      'is the first node again; an edge has two nodes')
+    do j = k + 2, k + 3
+      if (card%i(j) /= 0 .and. card%i(j) /= card%i(k + 1) .and. card%i(j) /= card%i(k)) &
+        call report_field(deck, cursor, card, j, &
+        'is a further node; an edge in the plane has two (repeat N2 or leave it 0)')
+    end do
+  end subroutine check_edge
+
+  !> *DATABASE_HISTORY_NODE and _NODE_SET.
+  subroutine read_history_ids(deck, parameters, i_block, set)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_set_t), intent(inout) :: set
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    logical :: found
+
+    call open_cursor(deck, i_block, cursor)
+    do
+      call next_row(deck, parameters, cursor, 1, card, found)
+      if (.not. found) exit
+      call take_members(deck, cursor, card, set)
+    end do
+  end subroutine read_history_ids
+
+end module deck_mesh_m

@@ -1,0 +1,215 @@
+! SPDX-License-Identifier: MIT
+!> Overrides put into what was read, and into the text of the effective deck at the same time.
+module deck_override_apply_m
+  use kinds_m, only : wp
+  use text_m, only : exact_text
+  use log_m, only : to_text
+  use contacts_m, only : contact_kind_t, penalty_per_node, penalty_factor
+  use curves_m, only : curve_t
+  use deck_lines_m, only : deck_t, place_t, line_text, line_error, layout_mark
+  use deck_fields_m, only : card_t, cut_card, field_text
+  use deck_parameters_m, only : parameters_t
+  use deck_cards_m, only : cursor_t, open_cursor
+  use deck_contact_m, only : kind_names
+  use deck_overrides_m, only : overrides_t, override_text, override_real, override_integer
+  use deck_raw_m, only : raw_t, raw_contact_t
+  implicit none
+  private
+  public :: apply_overrides
+
+contains
+
+  !> Apply all overrides; `tail` is what the effective deck says besides its blocks.
+  subroutine apply_overrides(deck, kinds, overrides, raw, tail)
+    type(deck_t), intent(inout) :: deck
+    type(contact_kind_t), intent(in) :: kinds(:)
+    type(overrides_t), intent(in) :: overrides
+    type(raw_t), intent(inout) :: raw
+    character(:), allocatable, intent(out) :: tail
+    integer :: i
+    logical :: changed
+
+    tail = ''
+    changed = .false.
+    call override_real(overrides, 'ENDTIM', 0, raw%controls%end_time, changed)
+    if (changed) call replace_field(deck, 'CONTROL_TERMINATION', 1, &
+      override_text(overrides, 'ENDTIM', 0), tail)
+    changed = .false.
+    call override_real(overrides, 'TSSFAC', 0, raw%controls%dt_scale, changed)
+    if (changed) call replace_field(deck, 'CONTROL_TIMESTEP', 2, &
+      override_text(overrides, 'TSSFAC', 0), tail)
+    call override_step(deck, overrides, raw, tail)
+    do i = 1, size(raw%contacts)
+      call override_contact(deck, kinds, overrides, raw%contacts(i))
+    end do
+    do i = 1, size(overrides%items)
+      if (overrides%items(i)%interface == 0) cycle
+      if (.not. any(raw%contacts%contact%id == overrides%items(i)%interface)) call line_error(deck, &
+        0, 'the command line changes interface '//to_text(overrides%items(i)%interface) &
+        //', which the deck does not have')
+    end do
+  end subroutine apply_overrides
+
+  !> dt=: a constant curve, named as LCTM.
+  subroutine override_step(deck, overrides, raw, tail)
+    type(deck_t), intent(inout) :: deck
+    type(overrides_t), intent(in) :: overrides
+    type(raw_t), intent(inout) :: raw
+    character(:), allocatable, intent(inout) :: tail
+    type(curve_t) :: curve
+    real(wp) :: dt
+    logical :: changed
+    character(:), allocatable :: text
+
+    changed = .false.
+    call override_real(overrides, 'DT', 0, dt, changed)
+    if (.not. changed) return
+    curve%id = 1
+    do while (any(raw%curves%id == curve%id))
+      curve%id = curve%id + 1
+    end do
+    text = override_text(overrides, 'DT', 0)
+    allocate (curve%abscissa(2), curve%ordinate(2))
+    curve%abscissa = [0.0_wp, 1.0e20_wp]
+    curve%ordinate = dt
+    raw%curves = [raw%curves, curve]
+    raw%curve_line = [raw%curve_line, 0]
+    raw%dt_curve = curve%id
+    raw%dt_curve_place = place_t(line=0, card=1, field=6)
+    call replace_field(deck, 'CONTROL_TIMESTEP', 6, to_text(curve%id), tail)
+    tail = tail//'*DEFINE_CURVE'//new_line('a')//to_text(curve%id)//','//new_line('a') &
+      //'0.0,'//text//new_line('a')//'1.0e20,'//text//new_line('a')
+  end subroutine override_step
+
+  !> Give field `field` of card 1 of the last keyword of a name a new text; a new keyword goes to
+  !> the tail when there is none.
+  subroutine replace_field(deck, name, field, text, tail)
+    type(deck_t), intent(inout) :: deck
+    character(*), intent(in) :: name
+    integer, intent(in) :: field
+    character(*), intent(in) :: text
+    character(:), allocatable, intent(inout) :: tail
+    character(:), allocatable :: line
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    integer :: i, k, at, i_block
+
+    i_block = 0
+    do i = 1, deck%n_block
+      if (deck%blocks(i)%name == name .and. .not. deck%blocks(i)%dropped) i_block = i
+    end do
+    at = index(tail, '*'//name)
+    if (i_block == 0 .and. at > 0) then
+      call replace_in_tail(tail, at, field, text)
+      return
+    end if
+    line = repeat(',', field - 1)//text//','
+    if (i_block == 0) then
+      tail = tail//'*'//name//new_line('a')//line//new_line('a')
+      return
+    end if
+    call open_cursor(deck, i_block, cursor)
+    if (allocated(deck%blocks(i_block)%replacement)) then
+      at = 1
+      call replace_in_tail(deck%blocks(i_block)%replacement, at, field, text)
+      return
+    end if
+    if (cursor%line <= cursor%last) then
+      call cut_card(deck, cursor%specs(1), cursor%source, cursor%line, card)
+      line = ''
+      do k = 1, cursor%specs(1)%n
+        if (k == field) then
+          line = line//text//','
+        else
+          line = line//field_text(deck, card, k)//','
+        end if
+      end do
+    end if
+    line = '*'//name//layout_mark(deck%blocks(i_block)%layout)//new_line('a')//line//new_line('a')
+    do i = cursor%line + 1, cursor%last
+      line = line//line_text(deck, i)//new_line('a')
+    end do
+    deck%blocks(i_block)%replacement = line
+  end subroutine replace_field
+
+  !> Replace a field of the free-format card that follows the keyword at `at`.
+  subroutine replace_in_tail(tail, at, field, text)
+    character(:), allocatable, intent(inout) :: tail
+    integer, intent(in) :: at
+    integer, intent(in) :: field
+    character(*), intent(in) :: text
+    integer :: first, last, k
+
+    first = at + index(tail(at:), new_line('a'))
+    do k = 1, field - 1
+      last = first + index(tail(first:), new_line('a')) - 2
+      if (index(tail(first:last), ',') == 0) tail = tail(:last)//','//tail(last + 1:)
+      first = first + index(tail(first:), ',')
+    end do
+    last = first + scan(tail(first:), ','//new_line('a')) - 2
+    tail = tail(:first - 1)//text//tail(last + 1:)
+  end subroutine replace_in_tail
+
+  !> Overrides of one interface, which the effective deck then gives as *CONTACT_2D_SLIDELINE.
+  subroutine override_contact(deck, kinds, overrides, entry)
+    type(deck_t), intent(inout) :: deck
+    type(contact_kind_t), intent(in) :: kinds(:)
+    type(overrides_t), intent(in) :: overrides
+    type(raw_contact_t), intent(inout) :: entry
+    logical :: changed, typed, priced
+    integer :: id
+
+    id = entry%contact%id
+    changed = .false.
+    typed = .false.
+    priced = .false.
+    associate (contact => entry%contact)
+      call override_integer(overrides, 'CTYPE', id, contact%contact_type, typed)
+      if (typed) contact%chosen_by_keyword = .false.
+      if (typed .and. .not. any(kinds%number == contact%contact_type)) call line_error(deck, 0, &
+        '"'//to_text(contact%contact_type)//'" on the command line is not a contact type' &
+        //kind_names(kinds))
+      call override_integer(overrides, 'NGAUSS', id, contact%n_gauss, changed)
+      if (contact%n_gauss < 1 .or. contact%n_gauss > 10) then
+        if (changed) call line_error(deck, 0, '"'//to_text(contact%n_gauss)//'" on the command ' &
+          //'line is not a number of Gauss points from 1 to 10')
+      end if
+      if (contact%master_penalty <= contact%penalty .and. &
+        contact%master_penalty >= contact%penalty) then
+        call override_real(overrides, 'PEN', id, contact%penalty, priced)
+        contact%master_penalty = contact%penalty
+      else
+        call override_real(overrides, 'PEN', id, contact%penalty, priced)
+      end if
+      call override_real(overrides, 'PENT', id, contact%master_penalty, priced)
+      call override_integer(overrides, 'PUNIT', id, contact%penalty_unit, priced)
+      if (contact%penalty_unit < penalty_per_node .or. contact%penalty_unit > penalty_factor) then
+        if (priced) call line_error(deck, 0, '"'//to_text(contact%penalty_unit)//'" on the ' &
+          //'command line is not a unit of the penalty (0, 1 or 2)')
+      end if
+      call override_real(overrides, 'VDC', id, entry%per_cent, changed)
+      contact%damping = entry%per_cent/100.0_wp
+    end associate
+    if (changed .or. typed .or. priced) &
+      deck%blocks(entry%block)%replacement = contact_text(entry)
+  end subroutine override_contact
+
+  !> An interface as *CONTACT_2D_SLIDELINE in free format.
+  function contact_text(entry) result(text)
+    type(raw_contact_t), intent(in) :: entry
+    character(:), allocatable :: text
+    character(10) :: id
+
+    write (id, '(i10)') entry%contact%id
+    associate (c => entry%contact)
+      text = '*CONTACT_2D_SLIDELINE_TITLE'//new_line('a')//id//c%title//new_line('a') &
+        //to_text(entry%sides(1))//','//to_text(entry%sides(2))//','//to_text(c%contact_type) &
+        //','//to_text(c%n_gauss)//','//exact_text(c%penalty)//new_line('a') &
+        //exact_text(c%birth)//','//exact_text(c%death)//','//to_text(c%penalty_unit)//',' &
+        //exact_text(c%master_penalty)//','//exact_text(entry%per_cent)//',' &
+        //to_text(merge(1, 0, c%strict))//','//to_text(c%search_interval)//',' &
+        //exact_text(c%search_depth)//new_line('a')
+    end associate
+  end function contact_text
+
+end module deck_override_apply_m

@@ -1,0 +1,417 @@
+! SPDX-License-Identifier: MIT
+!> *PARAMETER and its relatives: names with values, put in place of `&name` and `-&name`.
+!> All definitions are read before any other keyword, so that a name may be used before the line
+!> that defines it. Names compare without regard to case.
+module deck_parameters_m
+  use kinds_m, only : wp
+  use text_m, only : upper_case, read_real, read_integer, exact_text, number_good
+  use log_m, only : to_text
+  use deck_lines_m, only : deck_t, line_text, line_error, line_warning, where_text
+  use deck_expression_m, only : evaluate, named_value_t
+  use deck_fields_m, only : card_t, card_spec_t, make_spec, cut_card, field_text, field_error
+  use deck_schema_m, only : keyword_cards, max_card
+  implicit none
+  private
+  public :: parameters_t, read_parameters, substitute, override_parameter, parameter_comments
+
+  !> What happens when a name is defined again (*PARAMETER_DUPLICATION DFLAG); by default a second
+  !> definition with another value is an error.
+  integer, parameter :: again_error = 0, again_warn_keep = 1, again_warn_replace = 2, &
+    again_error_keep = 3, again_replace = 4, again_keep = 5
+
+  !> One parameter.
+  type :: parameter_t
+    character(20) :: name = ''            !! upper case
+    character :: kind = 'R'               !! R real, I integer, C text
+    character(:), allocatable :: text     !! what is put in its place
+    integer :: source = 0                 !! file it is private to, 0 = the whole deck
+    logical :: fixed = .false.            !! given on the command line
+    logical :: found = .false.            !! the deck defines it
+  end type parameter_t
+
+  !> All parameters.
+  type :: parameters_t
+    type(parameter_t), allocatable :: items(:)
+    integer :: n = 0
+    integer :: again = again_error
+  end type parameters_t
+
+contains
+
+  !> A value from the command line, which wins over the deck.
+  subroutine override_parameter(parameters, name, text)
+    type(parameters_t), intent(inout) :: parameters
+    character(*), intent(in) :: name
+    character(*), intent(in) :: text
+
+    call add_parameter(parameters, upper_case(name), '?', text, 0)
+    parameters%items(parameters%n)%fixed = .true.
+  end subroutine override_parameter
+
+  !> Read all parameter keywords of the deck.
+  subroutine read_parameters(deck, parameters)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(inout) :: parameters
+    integer :: i_block, i
+
+    if (.not. allocated(parameters%items)) allocate (parameters%items(16))
+    do i_block = 1, deck%n_block
+      if (deck%blocks(i_block)%name(:9) /= 'PARAMETER') cycle
+      deck%blocks(i_block)%dropped = .true.
+      select case (deck%blocks(i_block)%name)
+      case ('PARAMETER', 'PARAMETER_LOCAL')
+        call read_values(deck, i_block, parameters)
+      case ('PARAMETER_EXPRESSION', 'PARAMETER_EXPRESSION_LOCAL')
+        call read_expressions(deck, i_block, parameters)
+      case ('PARAMETER_DUPLICATION')
+        call read_policy(deck, i_block, parameters)
+      end select
+    end do
+    do i = 1, parameters%n
+      if (parameters%items(i)%fixed .and. .not. parameters%items(i)%found) call line_error(deck, 0, &
+        'p:'//trim(parameters%items(i)%name)//' on the command line: the deck has no such parameter')
+    end do
+  end subroutine read_parameters
+
+  !> Pairs of name and value, four to a line.
+  subroutine read_values(deck, i_block, parameters)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(parameters_t), intent(inout) :: parameters
+    type(card_spec_t) :: spec
+    type(card_t) :: card
+    integer :: line, k
+    character(:), allocatable :: text
+
+    call block_spec(deck, i_block, spec)
+    do line = deck%blocks(i_block)%first, deck%blocks(i_block)%last
+      call cut_card(deck, spec, deck%blocks(i_block)%source, line, card)
+      do k = 1, 8, 2
+        if (card%blank(k) .and. card%blank(k + 1)) cycle
+        if (card%blank(k) .or. card%blank(k + 1)) then
+          call field_error(deck, spec, card, k, 'a parameter needs a name and a value')
+          cycle
+        end if
+        text = field_text(deck, card, k + 1)
+        if (index(text, '&') > 0) call look_up(parameters, text, deck%blocks(i_block)%source, text)
+        if (len(text) == 0) then
+          call field_error(deck, spec, card, k + 1, 'is not defined by *PARAMETER up to here')
+        else
+          call define(deck, parameters, spec, card, k, text, local_source(deck, i_block))
+        end if
+      end do
+    end do
+  end subroutine read_values
+
+  !> Expressions, one to a line; a line with a blank name goes on with the one before.
+  subroutine read_expressions(deck, i_block, parameters)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(parameters_t), intent(inout) :: parameters
+    type(card_spec_t) :: spec
+    type(card_t) :: card
+    character(:), allocatable :: text, formula, trouble, line_here
+    integer :: line, width, comma
+    real(wp) :: value
+
+    call block_spec(deck, i_block, spec)
+    formula = ''
+    do line = deck%blocks(i_block)%first, deck%blocks(i_block)%last
+      line_here = line_text(deck, line)
+      if (len_trim(line_here) == 0) cycle
+      width = min(spec%widths(1), len(line_here))
+      comma = index(line_here(:width), ',')
+      text = line_here(:width)
+      if (comma > 0) text = line_here(:comma - 1)
+      if (comma > 0) width = comma
+      if (len_trim(text) > 0) then
+        card%line = line
+        card%number = 1
+        card%present = .true.
+        card%bad = .false.
+        card%first(1) = verify(text, ' ')
+        card%last(1) = len_trim(text)
+        card%blank(1) = .false.
+        formula = ''
+      else if (.not. card%present) then
+        call line_error(deck, line, 'a parameter needs a name')
+        cycle
+      end if
+      formula = formula//line_here(width + 1:)
+      if (line < deck%blocks(i_block)%last) then
+        if (continues(line_text(deck, line + 1), spec%widths(1))) cycle
+      end if
+      call evaluate(formula, named_values(parameters, deck%blocks(i_block)%source), value, trouble)
+      if (allocated(trouble)) then
+        call field_error(deck, spec, card, 1, 'cannot be computed: '//trouble)
+      else
+        call define(deck, parameters, spec, card, 1, exact_text(value), local_source(deck, i_block))
+      end if
+    end do
+  end subroutine read_expressions
+
+  !> Whether a line goes on with the expression before it.
+  pure function continues(text, width) result(yes)
+    character(*), intent(in) :: text
+    integer, intent(in) :: width
+    logical :: yes
+
+    yes = len_trim(text) > 0 .and. len_trim(text(:min(width, len(text)))) == 0
+  end function continues
+
+  !> *PARAMETER_DUPLICATION.
+  subroutine read_policy(deck, i_block, parameters)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(parameters_t), intent(inout) :: parameters
+    type(card_spec_t) :: spec
+    type(card_t) :: card
+    integer :: status
+
+    call block_spec(deck, i_block, spec)
+    if (deck%blocks(i_block)%last < deck%blocks(i_block)%first) return
+    call cut_card(deck, spec, deck%blocks(i_block)%source, deck%blocks(i_block)%first, card)
+    parameters%again = again_warn_keep
+    if (card%blank(1)) return
+    call read_integer(field_text(deck, card, 1), parameters%again, status)
+    if (status == number_good .and. parameters%again >= 1 .and. parameters%again <= 5) return
+    call field_error(deck, spec, card, 1, 'is not a policy from 1 to 5')
+    parameters%again = again_error
+  end subroutine read_policy
+
+  !> The one card of a parameter keyword.
+  subroutine block_spec(deck, i_block, spec)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: i_block
+    type(card_spec_t), intent(out) :: spec
+    character(160) :: cards(max_card)
+    integer :: n_card
+
+    call keyword_cards(deck%blocks(i_block)%name, cards, n_card)
+    call make_spec(cards(1), 1, deck%blocks(i_block)%layout, spec)
+  end subroutine block_spec
+
+  !> The file that a block's definitions are private to, or 0.
+  pure function local_source(deck, i_block) result(source)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: i_block
+    integer :: source
+
+    source = 0
+    if (index(deck%blocks(i_block)%name, '_LOCAL') > 0) source = deck%blocks(i_block)%source
+  end function local_source
+
+  !> Define the parameter named in field `k` of a card (type letter first).
+  subroutine define(deck, parameters, spec, card, k, given, source)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(inout) :: parameters
+    type(card_spec_t), intent(in) :: spec
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    character(*), intent(in) :: given
+    integer, intent(in) :: source
+    character(:), allocatable :: name, text
+    character :: kind
+    integer :: status, number
+    real(wp) :: value
+
+    name = upper_case(field_text(deck, card, k))
+    kind = name(1:1)
+    name = trim(adjustl(name(2:)))
+    if (scan(kind, 'RIC') == 0 .or. len(name) == 0 .or. len(name) > 20) then
+      call field_error(deck, spec, card, k, 'is not a type letter (R, I or C) and a name')
+      return
+    end if
+    text = given
+    number = 0
+    if (kind /= 'C') then
+      call read_real(text, value, status)
+      if (status /= number_good) then
+        call field_error(deck, spec, card, min(k + 1, spec%n), 'is not a number')
+        return
+      end if
+      if (kind == 'I') then
+        ! An expression may miss a whole number by rounding; otherwise the fraction is cut off.
+        if (abs(value - anint(value)) <= 1.0e-9_wp*max(1.0_wp, abs(value))) value = anint(value)
+        if (abs(value) > real(huge(number), wp)) then
+          call field_error(deck, spec, card, k, 'is too large for an integer parameter')
+          return
+        end if
+        number = int(value)
+        text = to_text(number)
+      end if
+    end if
+    call settle(deck, parameters, card%line, name, kind, text, source)
+  end subroutine define
+
+  !> Put a definition into the table, minding one of the same name that is there.
+  subroutine settle(deck, parameters, line, name, kind, text, source)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(inout) :: parameters
+    integer, intent(in) :: line
+    character(*), intent(in) :: name
+    character, intent(in) :: kind
+    character(*), intent(in) :: text
+    integer, intent(in) :: source
+    integer :: i
+
+    do i = 1, parameters%n
+      if (parameters%items(i)%name == name .and. (parameters%items(i)%source == source &
+        .or. parameters%items(i)%fixed)) exit
+    end do
+    if (i > parameters%n) then
+      call add_parameter(parameters, name, kind, text, source)
+      parameters%items(parameters%n)%found = .true.
+      return
+    end if
+    if (.not. parameters%items(i)%found .and. kind /= 'C') call check_override(i)
+    parameters%items(i)%found = .true.
+    if (parameters%items(i)%fixed .or. parameters%items(i)%text == text) return
+    select case (parameters%again)
+    case (again_error, again_error_keep)
+      call line_error(deck, line, 'parameter '//name//' is defined again with another value ("' &
+        //text//'", before "'//parameters%items(i)%text//'")')
+    case (again_warn_keep, again_warn_replace)
+      call line_warning(deck, line, 'parameter '//name//to_text(line), 'parameter '//name &
+        //' is defined again; the '//merge('first ', 'second', &
+        parameters%again == again_warn_keep)//' value counts')
+    end select
+    if (parameters%again == again_warn_replace .or. parameters%again == again_replace) &
+      parameters%items(i)%text = text
+
+  contains
+
+    !> A value from the command line must be a number where the parameter is one.
+    subroutine check_override(k)
+      integer, intent(in) :: k
+      real(wp) :: value
+      integer :: status
+
+      call read_real(parameters%items(k)%text, value, status)
+      if (status /= number_good) call line_error(deck, 0, 'p:'//name//' on the command line: "' &
+        //parameters%items(k)%text//'" is not a number')
+    end subroutine check_override
+
+  end subroutine settle
+
+  !> Append a parameter.
+  subroutine add_parameter(parameters, name, kind, text, source)
+    type(parameters_t), intent(inout) :: parameters
+    character(*), intent(in) :: name
+    character, intent(in) :: kind
+    character(*), intent(in) :: text
+    integer, intent(in) :: source
+    type(parameter_t), allocatable :: longer(:)
+
+    if (.not. allocated(parameters%items)) allocate (parameters%items(16))
+    if (parameters%n == size(parameters%items)) then
+      allocate (longer(2*parameters%n))
+      longer(:parameters%n) = parameters%items
+      call move_alloc(longer, parameters%items)
+    end if
+    parameters%n = parameters%n + 1
+    parameters%items(parameters%n) = parameter_t(name=name, kind=kind, text=text, source=source)
+  end subroutine add_parameter
+
+  !> Names and values of the numbers that a file can see, those private to it first.
+  function named_values(parameters, source) result(names)
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: source
+    type(named_value_t), allocatable :: names(:)
+    integer :: i, n, status, pass
+
+    allocate (names(parameters%n))
+    n = 0
+    do pass = 1, 2
+      do i = 1, parameters%n
+        if (parameters%items(i)%source /= merge(source, 0, pass == 1)) cycle
+        if (parameters%items(i)%kind == 'C' .or. .not. parameters%items(i)%found) cycle
+        n = n + 1
+        names(n)%name = parameters%items(i)%name
+        call read_real(parameters%items(i)%text, names(n)%value, status)
+      end do
+    end do
+    names = names(:n)
+  end function named_values
+
+  !> Value text of a reference `&name`, `-&name` or `+&name`; empty when there is none.
+  subroutine look_up(parameters, reference, source, text)
+    type(parameters_t), intent(in) :: parameters
+    character(*), intent(in) :: reference
+    integer, intent(in) :: source
+    character(:), allocatable, intent(inout) :: text
+    character(:), allocatable :: name, value
+    integer :: i, at
+    logical :: negative
+
+    at = index(reference, '&')
+    negative = reference(1:1) == '-'
+    name = trim(adjustl(upper_case(reference(at + 1:))))
+    value = ''
+    do i = 1, parameters%n
+      if (parameters%items(i)%name /= name .or. .not. parameters%items(i)%found) cycle
+      if (parameters%items(i)%source == source) then
+        value = parameters%items(i)%text
+        exit
+      else if (parameters%items(i)%source == 0) then
+        value = parameters%items(i)%text
+      end if
+    end do
+    if (len(value) > 0 .and. negative) then
+      if (value(1:1) == '-') then
+        value = value(2:)
+      else if (value(1:1) == '+') then
+        value = '-'//value(2:)
+      else
+        value = '-'//value
+      end if
+    end if
+    text = value
+  end subroutine look_up
+
+  !> The line of a card with its references replaced, in free format.
+  subroutine substitute(deck, parameters, spec, source, card, text)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    type(card_spec_t), intent(in) :: spec
+    integer, intent(in) :: source
+    type(card_t), intent(inout) :: card
+    character(:), allocatable, intent(out) :: text
+    character(:), allocatable :: field, value
+    integer :: k, last
+
+    last = 0
+    do k = 1, spec%n
+      if (.not. card%blank(k)) last = k
+    end do
+    text = ''
+    do k = 1, last
+      field = field_text(deck, card, k)
+      if (index(field, '&') == 1 .or. index(field, '-&') == 1 .or. index(field, '+&') == 1) then
+        if (index(field, '&(') == 0) then
+          call look_up(parameters, field, source, value)
+          if (len(value) == 0) call field_error(deck, spec, card, k, &
+            'is not defined by any *PARAMETER')
+          field = value
+        end if
+      end if
+      text = text//field
+      if (k < last .or. last == 1) text = text//','
+    end do
+  end subroutine substitute
+
+  !> The parameters as comment lines for the effective deck.
+  function parameter_comments(parameters) result(text)
+    type(parameters_t), intent(in) :: parameters
+    character(:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, parameters%n
+      if (.not. parameters%items(i)%found) cycle
+      text = text//'$ parameter '//trim(parameters%items(i)%name)//' = '//parameters%items(i)%text &
+        //merge(' (command line)', '               ', parameters%items(i)%fixed)//new_line('a')
+    end do
+  end function parameter_comments
+
+end module deck_parameters_m

@@ -1,0 +1,211 @@
+! SPDX-License-Identifier: MIT
+!> *PART, *SECTION_SHELL and *HOURGLASS cards.
+module deck_part_m
+  use kinds_m, only : wp
+  use text_m, only : read_integer, number_good
+  use log_m, only : to_text
+  use parts_m, only : section_t, hourglass_t, hourglass_viscous, hourglass_stiffness
+  use deck_lines_m, only : deck_t, line_text, line_error, line_warning, flag_blank
+  use deck_fields_m, only : card_t
+  use deck_parameters_m, only : parameters_t
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, row_comes, &
+    report_field
+  use deck_raw_m, only : raw_t, raw_part_t
+  implicit none
+  private
+  public :: read_part, read_section, read_hourglass, hourglass_form, hourglass_coefficient
+
+contains
+
+  !> *PART: a heading and a card for each part.
+  subroutine read_part(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    type(raw_part_t) :: part
+    logical :: found
+    integer :: k
+
+    call open_cursor(deck, i_block, cursor)
+    do
+      call skip_separators(deck, cursor)
+      if (cursor%line > cursor%last) exit
+      call next_text(deck, cursor, part%title)
+      part%title = trim(adjustl(part%title))
+      call next_row(deck, parameters, cursor, 2, card, found)
+      if (.not. found) then
+        call line_error(deck, cursor%line - 1, 'a heading without the card of its part after it')
+        exit
+      end if
+      do k = 1, 3
+        if (card%i(k) < 1) call report_field(deck, cursor, card, k, 'is not a number of 1 or more')
+      end do
+      if (card%i(5) < 0) call report_field(deck, cursor, card, 5, 'is not a number of 0 or more')
+      part%id = card%i(1)
+      part%section = card%i(2)
+      part%material = card%i(3)
+      part%hourglass = card%i(5)
+      part%line = card%line
+      if (.not. any(card%bad(1:5))) raw%parts = [raw%parts, part]
+    end do
+  end subroutine read_part
+
+  !> Move past blank lines between parts; a blank line right before a card of numbers is a heading.
+  subroutine skip_separators(deck, cursor)
+    type(deck_t), intent(in) :: deck
+    type(cursor_t), intent(inout) :: cursor
+    character(:), allocatable :: text
+    integer :: number, status
+
+    do while (cursor%line <= cursor%last)
+      if (iand(deck%flags(cursor%line), flag_blank) == 0) return
+      if (cursor%line < cursor%last) then
+        text = line_text(deck, cursor%line + 1)
+        if (index(text, ',') > 0) text = text(:index(text, ',') - 1)
+        call read_integer(text(:min(cursor%specs(2)%widths(1), len(text))), number, status)
+        if (status == number_good) return
+      end if
+      cursor%line = cursor%line + 1
+    end do
+  end subroutine skip_separators
+
+  !> *SECTION_SHELL: two cards each; only the element form matters.
+  subroutine read_section(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card, thickness
+    type(section_t) :: section
+    character(:), allocatable :: title
+    logical :: found
+
+    call open_cursor(deck, i_block, cursor)
+    do
+      if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+      call next_card(deck, parameters, cursor, 1, card)
+      call check_section(deck, cursor, card)
+      section%id = card%i(1)
+      if (.not. card%bad(1)) then
+        raw%sections = [raw%sections, section]
+        raw%section_line = [raw%section_line, card%line]
+      end if
+      call next_card(deck, parameters, cursor, 2, thickness)
+      call row_comes(deck, cursor, found)
+      if (.not. found) exit
+    end do
+  end subroutine read_section
+
+  !> Fields of card 1 of *SECTION_SHELL.
+  subroutine check_section(deck, cursor, card)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+
+    if (card%i(1) < 1) call report_field(deck, cursor, card, 1, 'is not a number of 1 or more')
+    select case (card%i(2))
+    case (13)
+      continue
+    case (12)
+      call report_field(deck, cursor, card, 2, 'is plane stress, which this version does not have; ' &
+        //'13 (plane strain) is what it has')
+    case (14, 15)
+      call report_field(deck, cursor, card, 2, 'is axisymmetric, which this version does not have; ' &
+        //'13 (plane strain) is what it has')
+    case default
+      call report_field(deck, cursor, card, 2, &
+        'is not an element form for the plane; 13 (plane strain) is what this version has')
+    end select
+    select case (card%i(4))
+    case (0:2)
+      continue
+    case (4)
+      call report_field(deck, cursor, card, 4, 'asks for fully integrated elements; they belong ' &
+        //'to the implicit solver, which this version does not have; leave it blank (one point)')
+    case default
+      call report_field(deck, cursor, card, 4, 'is not a number of points; leave it blank (one point)')
+    end select
+  end subroutine check_section
+
+  !> *HOURGLASS: one card each.
+  subroutine read_hourglass(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    type(hourglass_t) :: hourglass
+    character(:), allocatable :: title
+    logical :: found, given(2)
+    integer :: k
+
+    call open_cursor(deck, i_block, cursor)
+    do
+      if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+      call next_row(deck, parameters, cursor, 1, card, found)
+      if (.not. found) exit
+      if (card%i(1) < 1) call report_field(deck, cursor, card, 1, 'is not a number of 1 or more')
+      hourglass%id = card%i(1)
+      call hourglass_form(deck, cursor, card, 2, hourglass%form)
+      call hourglass_coefficient(deck, cursor, card, 3, hourglass%coefficient)
+      do k = 5, 6
+        if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, 'is negative')
+      end do
+      hourglass%quadratic = card%r(5)
+      hourglass%linear = card%r(6)
+      given = .not. card%blank(5:6)
+      if (card%bad(1)) cycle
+      raw%hourglasses = [raw%hourglasses, hourglass]
+      raw%hourglass_line = [raw%hourglass_line, card%line]
+      raw%bulk_given = reshape([raw%bulk_given, given], [2, size(raw%hourglasses)])
+    end do
+  end subroutine read_hourglass
+
+  !> IHQ in field `k`.
+  subroutine hourglass_form(deck, cursor, card, k, form)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    integer, intent(out) :: form
+
+    form = hourglass_viscous
+    select case (card%i(k))
+    case (0:3)
+      continue
+    case (4, 5)
+      form = hourglass_stiffness
+    case (6, 7)
+      call report_field(deck, cursor, card, k, 'is an assumed strain form, which this version does ' &
+        //'not have (1 to 3 viscous, 4 and 5 stiffness)')
+    case default
+      call report_field(deck, cursor, card, k, &
+        'is not an hourglass form (1 to 3 viscous, 4 and 5 stiffness)')
+    end select
+  end subroutine hourglass_form
+
+  !> Hourglass coefficient in field `k`: 0 and blank are 0.1, as in LS-DYNA.
+  subroutine hourglass_coefficient(deck, cursor, card, k, coefficient)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    real(wp), intent(out) :: coefficient
+
+    coefficient = 0.1_wp
+    if (card%r(k) < 0.0_wp) then
+      call report_field(deck, cursor, card, k, 'is negative')
+    else if (card%r(k) > 0.0_wp) then
+      coefficient = card%r(k)
+    else if (.not. card%blank(k) .and. .not. card%bad(k)) then
+      call line_warning(deck, card%line, 'qh'//to_text(card%line), &
+        'an hourglass coefficient of 0 means the default 0.1; give a very small one for almost none')
+    end if
+  end subroutine hourglass_coefficient
+
+end module deck_part_m

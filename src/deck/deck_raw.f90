@@ -1,0 +1,240 @@
+! SPDX-License-Identifier: MIT
+!> What the cards say, before user ids are resolved: the model with ids, and for each entry the
+!> deck line it came from, so that a mistake found later can still be shown where it stands.
+module deck_raw_m
+  use kinds_m, only : wp
+  use curves_m, only : curve_t
+  use parts_m, only : section_t, material_t, hourglass_t
+  use contacts_m, only : contact_t
+  use controls_m, only : controls_t
+  use deck_lines_m, only : place_t
+  implicit none
+  private
+  public :: raw_t, start_raw, raw_part_t, raw_set_t, raw_contact_t, row_t, history_t, append_row, append_set, &
+    append_member, reserve_nodes, reserve_elements, &
+    row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, row_velocity_node, &
+    row_velocity_generation, row_load_node, row_load_set, row_pressure, row_pressure_set, &
+    row_body, row_damping, output_plot, output_glstat, output_matsum, output_rcforc, output_nodout
+
+  !> Kinds of `row_t`.
+  integer, parameter :: row_spc_node = 1, row_spc_set = 2, row_motion_node = 3, row_motion_set = 4, &
+    row_velocity = 5, row_velocity_node = 6, row_velocity_generation = 7, row_load_node = 8, &
+    row_load_set = 9, row_pressure = 10, row_pressure_set = 11, row_body = 12, row_damping = 13
+  !> Files of the output plan.
+  integer, parameter :: output_plot = 1, output_glstat = 2, output_matsum = 3, output_rcforc = 4, &
+    output_nodout = 5
+
+  !> One card of a condition: its fields by position.
+  type :: row_t
+    integer :: kind = 0
+    integer :: line = 0
+    integer :: direction = 0     !! of a body load
+    integer :: i(8) = 0
+    real(wp) :: r(16) = 0.0_wp
+  end type row_t
+
+  !> One *PART.
+  type :: raw_part_t
+    integer :: id = 0, section = 0, material = 0, hourglass = 0
+    integer :: line = 0
+    character(:), allocatable :: title
+  end type raw_part_t
+
+  !> One set: user ids, and of each the line and field it stands in. In a generated set
+  !> they come as pairs first, last. In a segment set they come as pairs of nodes.
+  type :: raw_set_t
+    integer :: id = 0
+    integer :: line = 0
+    logical :: generate = .false.
+    integer :: n = 0
+    integer, allocatable :: members(:), lines(:), fields(:)
+  end type raw_set_t
+
+  !> One interface.
+  type :: raw_contact_t
+    type(contact_t) :: contact
+    integer :: block = 0                !! keyword block in the deck
+    real(wp) :: per_cent = 0.0_wp       !! VDC as given
+    integer :: sides(2) = 0             !! SURFA, SURFB as in the deck: > 0 part set, < 0 node set
+    type(place_t) :: places(2)
+  end type raw_contact_t
+
+  !> Output of one file: its interval is completed when curves and ENDTIM are known.
+  type :: history_t
+    real(wp) :: dt = 0.0_wp
+    integer :: curve = 0                !! user id
+    integer :: n_state = 0              !! NPLTC
+    type(place_t) :: place              !! of the curve's field
+  end type history_t
+
+  !> Everything.
+  type :: raw_t
+    integer :: n_node = 0, n_element = 0
+    integer, allocatable :: node_id(:), node_line(:), node_code(:)
+    real(wp), allocatable :: coordinates(:, :) !! (2, n)
+    real(wp) :: z_first = 0.0_wp
+    integer :: z_line = 0                      !! first node whose z differs from the first node's
+    integer, allocatable :: element_id(:), element_part(:), element_nodes(:, :), element_line(:)
+    type(raw_part_t), allocatable :: parts(:)
+    type(section_t), allocatable :: sections(:)
+    integer, allocatable :: section_line(:)
+    type(material_t), allocatable :: materials(:)
+    integer, allocatable :: material_line(:)
+    type(hourglass_t), allocatable :: hourglasses(:)
+    integer, allocatable :: hourglass_line(:)
+    logical, allocatable :: bulk_given(:, :)   !! (2, n) Q1 and Q2 of *HOURGLASS are not blank
+    type(hourglass_t) :: hourglass_default
+    type(curve_t), allocatable :: curves(:)
+    integer, allocatable :: curve_line(:)
+    type(raw_set_t), allocatable :: node_sets(:), part_sets(:), segment_sets(:)
+    integer :: n_node_set = 0, n_part_set = 0, n_segment_set = 0
+    type(row_t), allocatable :: rows(:)
+    integer :: n_row = 0
+    type(raw_contact_t), allocatable :: contacts(:)
+    type(controls_t) :: controls
+    logical :: end_given = .false.             !! ENDTIM comes from the command line
+    logical :: terminated = .false.            !! the deck has *CONTROL_TERMINATION
+    integer :: dt_curve = 0                    !! LCTM, user id
+    type(place_t) :: dt_curve_place
+    type(history_t) :: outputs(5)
+    type(raw_set_t) :: history_nodes, history_node_sets
+  end type raw_t
+
+contains
+
+  !> Empty lists, so that nothing is left unallocated by a deck that lacks a keyword.
+  subroutine start_raw(raw)
+    type(raw_t), intent(out) :: raw
+
+    allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%materials(0), &
+      raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
+      raw%curves(0), raw%curve_line(0), raw%contacts(0), raw%rows(64), raw%node_sets(16), &
+      raw%part_sets(16), raw%segment_sets(16))
+    call reserve_nodes(raw, 0)
+    call reserve_elements(raw, 0)
+  end subroutine start_raw
+
+  !> One more row.
+  subroutine append_row(raw, row)
+    type(raw_t), intent(inout) :: raw
+    type(row_t), intent(in) :: row
+    type(row_t), allocatable :: longer(:)
+
+    if (raw%n_row == size(raw%rows)) then
+      allocate (longer(2*raw%n_row))
+      longer(:raw%n_row) = raw%rows
+      call move_alloc(longer, raw%rows)
+    end if
+    raw%n_row = raw%n_row + 1
+    raw%rows(raw%n_row) = row
+  end subroutine append_row
+
+  !> One more set in a list.
+  subroutine append_set(sets, n, set)
+    type(raw_set_t), allocatable, intent(inout) :: sets(:)
+    integer, intent(inout) :: n
+    type(raw_set_t), intent(inout) :: set   !! its members move into the list
+    type(raw_set_t), allocatable :: longer(:)
+    integer :: i
+
+    if (n == size(sets)) then
+      allocate (longer(2*n))
+      do i = 1, n
+        call move_set(sets(i), longer(i))
+      end do
+      call move_alloc(longer, sets)
+    end if
+    n = n + 1
+    call move_set(set, sets(n))
+  end subroutine append_set
+
+  !> Move a set without copying its members.
+  subroutine move_set(from, to)
+    type(raw_set_t), intent(inout) :: from
+    type(raw_set_t), intent(inout) :: to
+
+    to%id = from%id
+    to%line = from%line
+    to%generate = from%generate
+    to%n = from%n
+    if (.not. allocated(from%members)) return
+    call move_alloc(from%members, to%members)
+    call move_alloc(from%lines, to%lines)
+    call move_alloc(from%fields, to%fields)
+  end subroutine move_set
+
+  !> One more member of a set.
+  subroutine append_member(set, member, line, field)
+    type(raw_set_t), intent(inout) :: set
+    integer, intent(in) :: member, line, field
+
+    if (.not. allocated(set%members)) allocate (set%members(64), set%lines(64), set%fields(64))
+    if (set%n == size(set%members)) then
+      call lengthen(set%members, 2*set%n)
+      call lengthen(set%lines, 2*set%n)
+      call lengthen(set%fields, 2*set%n)
+    end if
+    set%n = set%n + 1
+    set%members(set%n) = member
+    set%lines(set%n) = line
+    set%fields(set%n) = field
+  end subroutine append_member
+
+  !> Give a list more room.
+  subroutine lengthen(list, n)
+    integer, allocatable, intent(inout) :: list(:)
+    integer, intent(in) :: n
+    integer, allocatable :: longer(:)
+
+    allocate (longer(n))
+    longer(:size(list)) = list
+    call move_alloc(longer, list)
+  end subroutine lengthen
+
+  !> Room for `n_more` nodes.
+  subroutine reserve_nodes(raw, n_more)
+    type(raw_t), intent(inout) :: raw
+    integer, intent(in) :: n_more
+    real(wp), allocatable :: longer(:, :)
+    integer :: n
+
+    if (.not. allocated(raw%node_id)) then
+      allocate (raw%node_id(n_more), raw%node_line(n_more), raw%node_code(n_more), &
+        raw%coordinates(2, n_more))
+      return
+    end if
+    n = raw%n_node + n_more
+    if (n <= size(raw%node_id)) return
+    n = max(n, 2*raw%n_node)
+    call lengthen(raw%node_id, n)
+    call lengthen(raw%node_line, n)
+    call lengthen(raw%node_code, n)
+    allocate (longer(2, n))
+    longer(:, :raw%n_node) = raw%coordinates(:, :raw%n_node)
+    call move_alloc(longer, raw%coordinates)
+  end subroutine reserve_nodes
+
+  !> Room for `n_more` elements.
+  subroutine reserve_elements(raw, n_more)
+    type(raw_t), intent(inout) :: raw
+    integer, intent(in) :: n_more
+    integer, allocatable :: longer(:, :)
+    integer :: n
+
+    if (.not. allocated(raw%element_id)) then
+      allocate (raw%element_id(n_more), raw%element_part(n_more), raw%element_line(n_more), &
+        raw%element_nodes(4, n_more))
+      return
+    end if
+    n = raw%n_element + n_more
+    if (n <= size(raw%element_id)) return
+    n = max(n, 2*raw%n_element)
+    call lengthen(raw%element_id, n)
+    call lengthen(raw%element_part, n)
+    call lengthen(raw%element_line, n)
+    allocate (longer(4, n))
+    longer(:, :raw%n_element) = raw%element_nodes(:, :raw%n_element)
+    call move_alloc(longer, raw%element_nodes)
+  end subroutine reserve_elements
+
+end module deck_raw_m

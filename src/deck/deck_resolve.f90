@@ -1,0 +1,89 @@
+! SPDX-License-Identifier: MIT
+!> Raw deck to model: every id becomes an index, every set its nodes.
+module deck_resolve_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use controls_m, only : interval_t
+  use model_m, only : model_t
+  use deck_lines_m, only : deck_t, line_error
+  use deck_maps_m, only : maps_t, make_maps, resolve_id
+  use deck_raw_m, only : raw_t, history_t, output_plot, output_glstat, output_matsum, &
+    output_rcforc, output_nodout
+  use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
+  use deck_resolve_sets_m, only : resolve_sets, resolve_history
+  use deck_resolve_conditions_m, only : resolve_conditions
+  use deck_resolve_velocity_m, only : resolve_velocity
+  use deck_resolve_contacts_m, only : resolve_contacts
+  implicit none
+  private
+  public :: resolve_model
+
+contains
+
+  !> Fill the model.
+  subroutine resolve_model(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(inout) :: raw
+    type(model_t), intent(inout) :: model
+    type(maps_t) :: maps
+    logical :: sound
+    integer :: i
+
+    call make_maps(deck, raw, maps)
+    model%controls = raw%controls
+    call resolve_parts(deck, raw, maps, model)
+    call resolve_mesh(deck, raw, maps, model, sound)
+    call resolve_sets(deck, raw, maps, model)
+    call resolve_history(deck, raw, maps, model)
+    if (raw%dt_curve > 0) call resolve_id(deck, maps%curves, raw%dt_curve, 'curve', &
+      raw%dt_curve_place, model%controls%dt_curve)
+    call check_step_curve(deck, raw, model)
+    associate (output => model%controls%output)
+      call take_interval(deck, maps, raw%outputs(output_plot), model, output%plot)
+      call take_interval(deck, maps, raw%outputs(output_glstat), model, output%glstat)
+      call take_interval(deck, maps, raw%outputs(output_matsum), model, output%matsum)
+      call take_interval(deck, maps, raw%outputs(output_rcforc), model, output%rcforc)
+      call take_interval(deck, maps, raw%outputs(output_nodout), model, output%nodout)
+    end associate
+    call resolve_conditions(deck, raw, maps, model)
+    call resolve_velocity(deck, raw, maps, model)
+    allocate (model%mesh%deck_node(model%mesh%n_node))
+    model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]
+    if (sound) then
+      call resolve_contacts(deck, raw, maps, model)
+    else
+      allocate (model%contacts(0))
+    end if
+  end subroutine resolve_model
+
+  !> A curve that caps the step must leave it some length.
+  subroutine check_step_curve(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+
+    if (model%controls%dt_curve == 0) return
+    if (minval(model%curves(model%controls%dt_curve)%ordinate) > 0.0_wp) return
+    call line_error(deck, raw%curve_line(model%controls%dt_curve), &
+      'curve '//to_text(raw%dt_curve)//' caps the time step (LCTM) and must be above 0 everywhere')
+  end subroutine check_step_curve
+
+  !> Interval of one output file.
+  subroutine take_interval(deck, maps, history, model, interval)
+    type(deck_t), intent(inout) :: deck
+    type(maps_t), intent(in) :: maps
+    type(history_t), intent(in) :: history
+    type(model_t), intent(in) :: model
+    type(interval_t), intent(out) :: interval
+
+    interval%dt = history%dt
+    if (history%n_state > 0) interval%dt = model%controls%end_time/real(history%n_state, wp)
+    if (history%curve == 0) return
+    call resolve_id(deck, maps%curves, history%curve, 'curve', history%place, interval%curve)
+    if (interval%curve == 0) return
+    if (.not. minval(model%curves(interval%curve)%ordinate) > 0.0_wp) call line_error(deck, &
+      history%place%line, 'curve '//to_text(history%curve) &
+      //' is an output interval and must be above 0 everywhere')
+  end subroutine take_interval
+
+end module deck_resolve_m

@@ -1,0 +1,303 @@
+! SPDX-License-Identifier: MIT
+!> Rows of *BOUNDARY_, *LOAD_ and *DAMPING_ cards to conditions on nodes.
+module deck_resolve_conditions_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use conditions_m, only : conditions_t, prescribed_motion_t, nodal_load_t, body_load_t
+  use model_m, only : model_t
+  use deck_lines_m, only : deck_t, place_t, line_warning, line_error
+  use deck_cards_m, only : reject_field
+  use deck_maps_m, only : maps_t, resolve_id
+  use deck_raw_m, only : raw_t, row_t, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
+    row_load_node, row_load_set, row_body, row_damping
+  implicit none
+  private
+  public :: resolve_conditions, row_nodes
+
+contains
+
+  !> Everything but pressures and initial velocities.
+  subroutine resolve_conditions(deck, raw, maps, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    logical, allocatable :: fixed(:, :), meshed(:)
+    integer, allocatable :: motion_lines(:)
+
+    allocate (fixed(2, model%mesh%n_node), meshed(model%mesh%n_node), source=.false.)
+    call mark_meshed(model, meshed)
+    call collect_fixed(deck, raw, maps, model, meshed, fixed)
+    call collect_motions(deck, raw, maps, model, motion_lines)
+    call check_motions(deck, model, motion_lines, fixed, meshed)
+    call collect_loads(deck, raw, maps, model, meshed)
+    call collect_global(deck, raw, maps, model)
+    call list_fixed(fixed, model%conditions)
+  end subroutine resolve_conditions
+
+  !> Nodes that belong to an element.
+  pure subroutine mark_meshed(model, meshed)
+    type(model_t), intent(in) :: model
+    logical, intent(inout) :: meshed(:)
+    integer :: i, k
+
+    do i = 1, model%mesh%n_element
+      do k = 1, 4
+        if (model%mesh%element_nodes(k, i) > 0) meshed(model%mesh%element_nodes(k, i)) = .true.
+      end do
+    end do
+  end subroutine mark_meshed
+
+  !> Nodes that a row is about: one node, or those of a set, each once. Empty when the id is wrong.
+  subroutine row_nodes(deck, maps, model, row, is_set, nodes)
+    type(deck_t), intent(inout) :: deck
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(in) :: model
+    type(row_t), intent(in) :: row
+    logical, intent(in) :: is_set
+    integer, allocatable, intent(out) :: nodes(:)
+    integer :: found
+
+    if (.not. is_set) then
+      call resolve_id(deck, maps%nodes, row%i(1), 'node', place_t(row%line, 1, 1), found)
+      nodes = pack([found], [found > 0])
+      return
+    end if
+    call resolve_id(deck, maps%node_sets, row%i(1), 'node set', place_t(row%line, 1, 1), found)
+    allocate (nodes(0))
+    if (found > 0) call unique_nodes(model%node_sets(found)%nodes, model%mesh%n_node, nodes)
+  end subroutine row_nodes
+
+  !> The nodes of a list, each once.
+  pure subroutine unique_nodes(list, n_node, nodes)
+    integer, intent(in) :: list(:)
+    integer, intent(in) :: n_node
+    integer, allocatable, intent(out) :: nodes(:)
+    logical, allocatable :: first(:), listed(:)
+    integer :: i
+
+    if (size(list) < 2) then
+      nodes = list
+      return
+    end if
+    allocate (first(size(list)), listed(n_node), source=.false.)
+    do i = 1, size(list)
+      first(i) = .not. listed(list(i))
+      listed(list(i)) = .true.
+    end do
+    nodes = pack(list, first)
+  end subroutine unique_nodes
+
+  !> Fixed degrees of freedom: codes of *NODE, *BOUNDARY_SPC_, nodes without an element.
+  subroutine collect_fixed(deck, raw, maps, model, meshed, fixed)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: meshed(:)
+    logical, intent(inout) :: fixed(:, :)
+    integer, allocatable :: nodes(:)
+    integer :: i, n_free, first_free
+    ! Codes of *NODE, TC: 0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz.
+    logical, parameter :: code_x(0:7) = [.false., .true., .false., .false., .true., .false., &
+      .true., .true.]
+    logical, parameter :: code_y(0:7) = [.false., .false., .true., .false., .true., .true., &
+      .false., .true.]
+
+    n_free = 0
+    first_free = 0
+    do i = 1, model%mesh%n_node
+      if (raw%node_code(i) >= 0 .and. raw%node_code(i) <= 7) &
+        fixed(:, i) = [code_x(raw%node_code(i)), code_y(raw%node_code(i))]
+      if (meshed(i)) cycle
+      fixed(:, i) = .true.
+      n_free = n_free + 1
+      if (n_free == 1) first_free = i
+    end do
+    if (n_free > 0 .and. model%mesh%n_element > 0) call line_warning(deck, &
+      raw%node_line(first_free), 'free', to_text(n_free)//' node(s) belong to no element and are ' &
+      //'fixed; the first is '//to_text(model%mesh%node_id(first_free)))
+    do i = 1, raw%n_row
+      if (raw%rows(i)%kind /= row_spc_node .and. raw%rows(i)%kind /= row_spc_set) cycle
+      call row_nodes(deck, maps, model, raw%rows(i), raw%rows(i)%kind == row_spc_set, nodes)
+      if (raw%rows(i)%i(3) == 1) fixed(1, nodes) = .true.
+      if (raw%rows(i)%i(4) == 1) fixed(2, nodes) = .true.
+    end do
+  end subroutine collect_fixed
+
+  !> Fixed pairs of node and direction as lists.
+  pure subroutine list_fixed(fixed, conditions)
+    logical, intent(in) :: fixed(:, :)
+    type(conditions_t), intent(inout) :: conditions
+    integer :: i, k, n
+
+    n = count(fixed)
+    allocate (conditions%fixed_nodes(n), conditions%fixed_directions(n))
+    n = 0
+    do i = 1, size(fixed, 2)
+      do k = 1, 2
+        if (.not. fixed(k, i)) cycle
+        n = n + 1
+        conditions%fixed_nodes(n) = i
+        conditions%fixed_directions(n) = k
+      end do
+    end do
+  end subroutine list_fixed
+
+  !> Prescribed motions, node by node.
+  subroutine collect_motions(deck, raw, maps, model, lines)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    integer, allocatable, intent(out) :: lines(:)  !! deck line of each motion
+    type(prescribed_motion_t), allocatable :: motions(:)
+    type(prescribed_motion_t) :: motion
+    integer, allocatable :: nodes(:), all_lines(:)
+    integer :: i, k, n
+
+    allocate (motions(64), all_lines(64))
+    n = 0
+    do i = 1, raw%n_row
+      if (raw%rows(i)%kind /= row_motion_node .and. raw%rows(i)%kind /= row_motion_set) cycle
+      call row_nodes(deck, maps, model, raw%rows(i), raw%rows(i)%kind == row_motion_set, nodes)
+      call resolve_id(deck, maps%curves, raw%rows(i)%i(4), 'curve', &
+        place_t(raw%rows(i)%line, 1, 4), motion%curve)
+      if (motion%curve == 0) cycle
+      motion%direction = raw%rows(i)%i(2)
+      motion%kind = raw%rows(i)%i(3)
+      motion%scale = raw%rows(i)%r(5)
+      motion%death = raw%rows(i)%r(7)
+      motion%birth = raw%rows(i)%r(8)
+      do k = 1, size(nodes)
+        if (n == size(motions)) then
+          motions = [motions, motions]
+          all_lines = [all_lines, all_lines]
+        end if
+        n = n + 1
+        motion%node = nodes(k)
+        motions(n) = motion
+        all_lines(n) = raw%rows(i)%line
+      end do
+    end do
+    model%conditions%motions = motions(:n)
+    lines = all_lines(:n)
+  end subroutine collect_motions
+
+  !> A moved degree of freedom may not be fixed, nor moved twice at one time, nor without mass.
+  subroutine check_motions(deck, model, lines, fixed, meshed)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: lines(:)
+    logical, intent(in) :: fixed(:, :), meshed(:)
+    integer, allocatable :: last(:, :), before(:)
+    integer :: i, j, told
+
+    allocate (last(2, model%mesh%n_node), before(size(lines)), source=0)
+    told = 0
+    do i = 1, size(lines)
+      associate (motion => model%conditions%motions(i))
+        ! Motions of one degree of freedom are chained backwards through `before`.
+        before(i) = last(motion%direction, motion%node)
+        last(motion%direction, motion%node) = i
+        if (lines(i) == told) cycle
+        if (.not. meshed(motion%node)) then
+          call complain(i, 'belongs to no element, so it has no mass to be moved')
+        else if (fixed(motion%direction, motion%node)) then
+          call complain(i, 'is fixed in this direction and cannot be moved by this card too')
+        end if
+        j = before(i)
+        do while (j > 0 .and. lines(i) /= told)
+          if (min(model%conditions%motions(j)%death, motion%death) &
+            > max(model%conditions%motions(j)%birth, motion%birth)) call complain(i, &
+            'is moved in this direction by another card at the same time (line ' &
+            //to_text(deck%number(lines(j)))//')')
+          j = before(j)
+        end do
+      end associate
+    end do
+
+  contains
+
+    !> One error for each card.
+    subroutine complain(k, message)
+      integer, intent(in) :: k
+      character(*), intent(in) :: message
+
+      told = lines(k)
+      call reject_field(deck, place_t(lines(k), 1, 1), &
+        ': node '//to_text(model%mesh%node_id(model%conditions%motions(k)%node))//' '//message)
+    end subroutine complain
+
+  end subroutine check_motions
+
+  !> Forces on nodes.
+  subroutine collect_loads(deck, raw, maps, model, meshed)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    logical, intent(in) :: meshed(:)
+    type(nodal_load_t), allocatable :: loads(:)
+    type(nodal_load_t) :: load
+    integer, allocatable :: nodes(:)
+    integer :: i, k, n
+
+    allocate (loads(64))
+    n = 0
+    do i = 1, raw%n_row
+      if (raw%rows(i)%kind /= row_load_node .and. raw%rows(i)%kind /= row_load_set) cycle
+      call row_nodes(deck, maps, model, raw%rows(i), raw%rows(i)%kind == row_load_set, nodes)
+      call resolve_id(deck, maps%curves, raw%rows(i)%i(3), 'curve', &
+        place_t(raw%rows(i)%line, 1, 3), load%curve)
+      do k = 1, size(nodes)
+        if (meshed(nodes(k))) cycle
+        call reject_field(deck, place_t(raw%rows(i)%line, 1, 1), ': node ' &
+          //to_text(model%mesh%node_id(nodes(k)))//' belongs to no element and cannot be loaded')
+        exit
+      end do
+      if (load%curve == 0) cycle
+      load%direction = raw%rows(i)%i(2)
+      load%scale = raw%rows(i)%r(4)
+      do k = 1, size(nodes)
+        if (n == size(loads)) loads = [loads, loads]
+        n = n + 1
+        load%node = nodes(k)
+        loads(n) = load
+      end do
+    end do
+    model%conditions%nodal_loads = loads(:n)
+  end subroutine collect_loads
+
+  !> Base accelerations and global damping.
+  subroutine collect_global(deck, raw, maps, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    type(body_load_t) :: load
+    integer :: i
+
+    allocate (model%conditions%body_loads(0))
+    do i = 1, raw%n_row
+      associate (row => raw%rows(i))
+        if (row%kind == row_body) then
+          call resolve_id(deck, maps%curves, row%i(1), 'curve', place_t(row%line, 1, 1), load%curve)
+          load%direction = row%direction
+          load%scale = row%r(2)
+          if (load%curve > 0) model%conditions%body_loads = [model%conditions%body_loads, load]
+        else if (row%kind == row_damping) then
+          if (allocated(model%conditions%damping)) call line_error(deck, row%line, &
+            'is given a second time')
+          if (.not. allocated(model%conditions%damping)) allocate (model%conditions%damping)
+          if (row%i(1) > 0) call resolve_id(deck, maps%curves, row%i(1), 'curve', &
+            place_t(row%line, 1, 1), model%conditions%damping%curve)
+          model%conditions%damping%coefficient = row%r(2)
+          ! All six factors zero mean one everywhere.
+          if (any(abs(row%r(3:8)) > 0.0_wp)) model%conditions%damping%factor = row%r(3:4)
+        end if
+      end associate
+    end do
+  end subroutine collect_global
+
+end module deck_resolve_conditions_m

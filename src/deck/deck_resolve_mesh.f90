@@ -1,0 +1,200 @@
+! SPDX-License-Identifier: MIT
+!> Nodes, elements, parts and sets with indices in place of ids, and the checks of the mesh.
+module deck_resolve_mesh_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use parts_m, only : hourglass_t, find_id
+  use mesh_m, only : mesh_t
+  use model_m, only : model_t
+  use deck_lines_m, only : deck_t, place_t, line_error, line_warning
+  use deck_cards_m, only : reject_field
+  use deck_ids_m, only : index_of
+  use deck_maps_m, only : maps_t, resolve_id
+  use deck_raw_m, only : raw_t
+  implicit none
+  private
+  public :: resolve_parts, resolve_mesh
+
+contains
+
+  !> Parts with their section, material and hourglass control.
+  subroutine resolve_parts(deck, raw, maps, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    type(hourglass_t) :: hourglass
+    integer :: i, k, line
+
+    model%sections = raw%sections
+    model%materials = raw%materials
+    model%curves = raw%curves
+    allocate (model%parts(size(raw%parts)))
+    do i = 1, size(raw%parts)
+      line = raw%parts(i)%line
+      model%parts(i)%id = raw%parts(i)%id
+      model%parts(i)%title = raw%parts(i)%title
+      call resolve_id(deck, maps%sections, raw%parts(i)%section, 'section', place_t(line, 2, 2), &
+        model%parts(i)%section)
+      call resolve_id(deck, maps%materials, raw%parts(i)%material, 'material', &
+        place_t(line, 2, 3), model%parts(i)%material)
+      hourglass = raw%hourglass_default
+      if (raw%parts(i)%hourglass > 0) then
+        call resolve_id(deck, maps%hourglasses, raw%parts(i)%hourglass, '*HOURGLASS', &
+          place_t(line, 2, 5), k)
+        if (k > 0) then
+          hourglass = raw%hourglasses(k)
+          if (.not. raw%bulk_given(1, k)) hourglass%quadratic = raw%hourglass_default%quadratic
+          if (.not. raw%bulk_given(2, k)) hourglass%linear = raw%hourglass_default%linear
+        end if
+      end if
+      model%parts(i)%hourglass = hourglass
+    end do
+  end subroutine resolve_parts
+
+  !> Nodes and elements. `sound` tells whether the elements may be looked at further.
+  subroutine resolve_mesh(deck, raw, maps, model, sound)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(inout) :: raw   !! its node and element arrays move into the model
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    logical, intent(out) :: sound
+    integer :: n_before
+
+    n_before = deck%report%n_error
+    if (raw%n_node == 0) call line_error(deck, 0, 'the deck has no nodes (*NODE)')
+    if (raw%n_element == 0) call line_error(deck, 0, 'the deck has no elements (*ELEMENT_SHELL)')
+    call check_plane(deck, raw)
+    model%mesh%n_node = raw%n_node
+    model%mesh%n_element = raw%n_element
+    model%mesh%node_id = raw%node_id(:raw%n_node)
+    model%mesh%coordinates = raw%coordinates(:, :raw%n_node)
+    model%mesh%element_id = raw%element_id(:raw%n_element)
+    deallocate (raw%node_id, raw%coordinates, raw%element_id)
+    call resolve_elements(deck, raw, maps, model%mesh)
+    if (deck%report%n_error == n_before) call check_shapes(deck, raw, model%mesh)
+    sound = deck%report%n_error == n_before .and. raw%n_node > 0 .and. raw%n_element > 0
+  end subroutine resolve_mesh
+
+  !> Coordinates within reach and in one plane.
+  subroutine check_plane(deck, raw)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    integer :: i, k
+
+    do i = 1, raw%n_node
+      do k = 1, 2
+        if (abs(raw%coordinates(k, i)) > 1.0e30_wp) call reject_field(deck, &
+          place_t(raw%node_line(i), 1, k + 1), 'is out of reach (1e30)')
+      end do
+    end do
+    if (raw%z_line > 0) then
+      call reject_field(deck, place_t(raw%z_line, 1, 4), &
+        'is not the z of the first node: the mesh must lie in one plane z = constant')
+    else if (raw%n_node > 0 .and. abs(raw%z_first) > 0.0_wp) then
+      call line_warning(deck, raw%node_line(1), 'z', 'z is the same for all nodes and is ignored')
+    end if
+  end subroutine check_plane
+
+  !> Node and part indices of the elements.
+  subroutine resolve_elements(deck, raw, maps, mesh)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(inout) :: raw
+    type(maps_t), intent(in) :: maps
+    type(mesh_t), intent(inout) :: mesh
+    integer :: i, k, n, line, ids(4)
+
+    n = raw%n_element
+    if (n == size(raw%element_part)) then
+      call move_alloc(raw%element_part, mesh%element_part)
+      call move_alloc(raw%element_nodes, mesh%element_nodes)
+    else
+      mesh%element_part = raw%element_part(:n)
+      mesh%element_nodes = raw%element_nodes(:, :n)
+      deallocate (raw%element_part, raw%element_nodes)
+    end if
+    do i = 1, n
+      line = raw%element_line(i)
+      call resolve_id(deck, maps%parts, mesh%element_part(i), 'part', place_t(line, 1, 2), k)
+      mesh%element_part(i) = k
+      ids = mesh%element_nodes(:, i)
+      do k = 1, 3
+        call resolve_id(deck, maps%nodes, ids(k), 'node', place_t(line, 1, k + 2), &
+          mesh%element_nodes(k, i))
+      end do
+      mesh%element_nodes(4, i) = mesh%element_nodes(3, i)
+      if (ids(4) /= ids(3)) call resolve_id(deck, maps%nodes, ids(4), 'node', &
+        place_t(line, 1, 6), mesh%element_nodes(4, i))
+    end do
+  end subroutine resolve_elements
+
+  !> Elements must have area, be convex and run counter-clockwise; clockwise ones are turned.
+  subroutine check_shapes(deck, raw, mesh)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(mesh_t), intent(inout) :: mesh
+    integer :: i, n_turned, first_turned
+    real(wp) :: corners(4), area, tolerance
+
+    n_turned = 0
+    first_turned = 0
+    do i = 1, mesh%n_element
+      corners = corner_areas(mesh, i)
+      if (mesh%element_nodes(4, i) == mesh%element_nodes(3, i)) then
+        area = 2.0_wp*corners(1)
+      else
+        area = corners(1) + corners(3)
+      end if
+      tolerance = 1.0e-10_wp*maxval(abs(corners))
+      if (repeated(mesh%element_nodes(:, i))) then
+        call reject_field(deck, place_t(raw%element_line(i), 1, 1), 'uses a node twice ' &
+          //'(a triangle repeats its third node, and no other)')
+      else if (.not. abs(area) > 2.0_wp*tolerance) then
+        call reject_field(deck, place_t(raw%element_line(i), 1, 1), 'has no area')
+      else if (minval(corners) < -tolerance .and. maxval(corners) > tolerance) then
+        call reject_field(deck, place_t(raw%element_line(i), 1, 1), &
+          'is not convex: its edges cross or a corner points inwards')
+      else if (area < 0.0_wp) then
+        mesh%element_nodes(:, i) = mesh%element_nodes([1, 4, 3, 2], i)
+        if (mesh%element_nodes(2, i) == mesh%element_nodes(3, i)) &
+          mesh%element_nodes(3:4, i) = mesh%element_nodes(4, i)
+        n_turned = n_turned + 1
+        if (n_turned == 1) first_turned = i
+      end if
+    end do
+    if (n_turned > 0) call line_warning(deck, raw%element_line(first_turned), 'clockwise', &
+      to_text(n_turned)//' element(s) were numbered clockwise and have been turned; the first is ' &
+      //to_text(mesh%element_id(first_turned)))
+  end subroutine check_shapes
+
+  !> Twice the signed area of the triangle at each corner of an element.
+  pure function corner_areas(mesh, i) result(areas)
+    type(mesh_t), intent(in) :: mesh
+    integer, intent(in) :: i
+    real(wp) :: areas(4)
+    real(wp) :: x(2, 4), before(2), after(2)
+    integer :: k
+
+    x = mesh%coordinates(:, mesh%element_nodes(:, i))
+    if (mesh%element_nodes(4, i) == mesh%element_nodes(3, i)) x(:, 4) = x(:, 1)
+    do k = 1, 4
+      before = x(:, k) - x(:, mod(k + 2, 4) + 1)
+      after = x(:, mod(k, 4) + 1) - x(:, k)
+      if (mesh%element_nodes(4, i) == mesh%element_nodes(3, i)) then
+        before = x(:, 2) - x(:, 1)
+        after = x(:, 3) - x(:, 2)
+      end if
+      areas(k) = before(1)*after(2) - before(2)*after(1)
+    end do
+  end function corner_areas
+
+  !> Whether a node comes twice, other than as the fourth node of a triangle.
+  pure function repeated(nodes) result(twice)
+    integer, intent(in) :: nodes(4)
+    logical :: twice
+
+    twice = nodes(1) == nodes(2) .or. nodes(1) == nodes(3) .or. nodes(2) == nodes(3) &
+      .or. nodes(4) == nodes(1) .or. nodes(4) == nodes(2)
+  end function repeated
+
+end module deck_resolve_mesh_m

@@ -1,0 +1,124 @@
+! SPDX-License-Identifier: MIT
+!> Initial velocities: *INITIAL_VELOCITY and _NODE in deck order, then _GENERATION in deck order.
+module deck_resolve_velocity_m
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use deck_lines_m, only : deck_t, place_t
+  use deck_maps_m, only : maps_t, resolve_id
+  use deck_raw_m, only : raw_t, row_t, row_velocity, row_velocity_node, row_velocity_generation
+  implicit none
+  private
+  public :: resolve_velocity
+
+contains
+
+  !> Fill `initial_velocity` when the deck asks for any.
+  subroutine resolve_velocity(deck, raw, maps, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    real(wp), allocatable :: velocity(:, :)
+    integer :: pass, i, found
+
+    do i = 1, raw%n_row
+      if (is_velocity(raw%rows(i)%kind)) exit
+    end do
+    if (i > raw%n_row) return
+    allocate (velocity(2, model%mesh%n_node), source=0.0_wp)
+    do pass = 1, 2
+      do i = 1, raw%n_row
+        if (.not. is_velocity(raw%rows(i)%kind)) cycle
+        if ((raw%rows(i)%kind == row_velocity_generation) .neqv. pass == 2) cycle
+        select case (raw%rows(i)%kind)
+        case (row_velocity)
+          call set_velocity(deck, maps, model, raw%rows(i), velocity)
+        case (row_velocity_node)
+          call resolve_id(deck, maps%nodes, raw%rows(i)%i(1), 'node', &
+            place_t(raw%rows(i)%line, 1, 1), found)
+          if (found > 0) velocity(:, found) = raw%rows(i)%r(2:3)
+        case default
+          call generate_velocity(deck, maps, model, raw%rows(i), velocity)
+        end select
+      end do
+    end do
+    call move_alloc(velocity, model%conditions%initial_velocity)
+  end subroutine resolve_velocity
+
+  !> Whether a row gives an initial velocity.
+  pure function is_velocity(kind) result(yes)
+    integer, intent(in) :: kind
+    logical :: yes
+
+    yes = kind == row_velocity .or. kind == row_velocity_node .or. kind == row_velocity_generation
+  end function is_velocity
+
+  !> *INITIAL_VELOCITY: a set or all nodes, less those of a second set, which have a velocity of
+  !> their own.
+  subroutine set_velocity(deck, maps, model, row, velocity)
+    type(deck_t), intent(inout) :: deck
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(in) :: model
+    type(row_t), intent(in) :: row
+    real(wp), intent(inout) :: velocity(:, :)
+    logical, allocatable :: chosen(:)
+    integer :: found, i
+
+    allocate (chosen(model%mesh%n_node), source=row%i(1) == 0)
+    if (row%i(1) > 0) then
+      call resolve_id(deck, maps%node_sets, row%i(1), 'node set', place_t(row%line, 1, 1), found)
+      if (found > 0) chosen(model%node_sets(found)%nodes) = .true.
+    end if
+    if (row%i(2) > 0) then
+      call resolve_id(deck, maps%node_sets, row%i(2), 'node set', place_t(row%line, 1, 2), found)
+      if (found > 0) then
+        chosen(model%node_sets(found)%nodes) = .false.
+        do i = 1, size(model%node_sets(found)%nodes)
+          velocity(:, model%node_sets(found)%nodes(i)) = row%r(3:4)
+        end do
+      end if
+    end if
+    do i = 1, model%mesh%n_node
+      if (chosen(i)) velocity(:, i) = row%r(1:2)
+    end do
+  end subroutine set_velocity
+
+  !> *INITIAL_VELOCITY_GENERATION: translation and spin about an axis along z.
+  subroutine generate_velocity(deck, maps, model, row, velocity)
+    type(deck_t), intent(inout) :: deck
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(in) :: model
+    type(row_t), intent(in) :: row
+    real(wp), intent(inout) :: velocity(:, :)
+    logical, allocatable :: chosen(:), chosen_part(:)
+    integer :: found, i, k
+
+    allocate (chosen(model%mesh%n_node), source=row%i(1) == 0)
+    allocate (chosen_part(0:size(model%parts)), source=.false.)
+    if (row%i(1) > 0) then
+      select case (row%i(2))
+      case (1)
+        call resolve_id(deck, maps%part_sets, row%i(1), 'part set', place_t(row%line, 1, 1), found)
+        if (found > 0) chosen_part(model%part_sets(found)%parts) = .true.
+      case (2)
+        call resolve_id(deck, maps%parts, row%i(1), 'part', place_t(row%line, 1, 1), found)
+        if (found > 0) chosen_part(found) = .true.
+      case default
+        call resolve_id(deck, maps%node_sets, row%i(1), 'node set', place_t(row%line, 1, 1), found)
+        if (found > 0) chosen(model%node_sets(found)%nodes) = .true.
+      end select
+    end if
+    do i = 1, model%mesh%n_element
+      if (.not. chosen_part(model%mesh%element_part(i))) cycle
+      do k = 1, 4
+        if (model%mesh%element_nodes(k, i) > 0) chosen(model%mesh%element_nodes(k, i)) = .true.
+      end do
+    end do
+    do i = 1, model%mesh%n_node
+      if (.not. chosen(i)) cycle
+      velocity(1, i) = row%r(2) - row%r(1)*(model%mesh%coordinates(2, i) - row%r(5))
+      velocity(2, i) = row%r(3) + row%r(1)*(model%mesh%coordinates(1, i) - row%r(4))
+    end do
+  end subroutine generate_velocity
+
+end module deck_resolve_velocity_m

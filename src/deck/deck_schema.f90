@@ -1,0 +1,229 @@
+! SPDX-License-Identifier: MIT
+!> The keywords that are known, and their cards.
+!>
+!> A line of the table that starts with a letter names a keyword, how it is treated and its
+!> options; the indented lines after it are its cards, fields in order as
+!> `NAME:kind[treatment][width][=default]`. Kinds: i integer, f real, a text, x not used. Treatments:
+!> none honoured, s silently without effect, w warning when given, r refused when given.
+!> Widths are 10 unless said. A field asks for something when it is neither 0 nor its default.
+module deck_schema_m
+  use deck_schema_tables_m, only : table_control, table_mesh, table_conditions, table_contact, &
+    table_database, table_others
+  implicit none
+  private
+  public :: keyword_cards, find_keyword, refusal_reason, max_card, &
+    known_honoured, known_ignored, known_refused, known_not
+
+  !> Cards of one keyword at most.
+  integer, parameter :: max_card = 6
+  !> How a keyword is treated.
+  integer, parameter :: known_not = 0, known_honoured = 1, known_ignored = 2, known_refused = 3
+
+contains
+
+  !> The cards of a keyword (canonical name).
+  subroutine keyword_cards(name, cards, n_card)
+    character(*), intent(in) :: name
+    character(*), intent(out) :: cards(max_card)
+    integer, intent(out) :: n_card
+
+    cards = ''
+    n_card = 0
+    call collect(table_control)
+    call collect(table_mesh)
+    call collect(table_conditions)
+    call collect(table_contact)
+    call collect(table_database)
+
+  contains
+
+    !> Look into one table.
+    subroutine collect(table)
+      character(*), intent(in) :: table(:)
+      integer :: i, k
+
+      if (n_card > 0) return
+      do i = 1, size(table)
+        if (table(i)(1:1) == ' ') cycle
+        if (table(i)(:index(table(i), ' ') - 1) /= name) cycle
+        do k = i + 1, size(table)
+          if (table(k)(1:1) /= ' ' .or. n_card == max_card) return
+          n_card = n_card + 1
+          cards(n_card) = table(k)
+        end do
+      end do
+    end subroutine collect
+
+  end subroutine keyword_cards
+
+  !> What is known of a keyword as written: its canonical name, its treatment, and for a refused one
+  !> the reason. The options _TITLE and _ID are taken off where the keyword has them.
+  subroutine find_keyword(given, name, known, titled, reason)
+    character(*), intent(in) :: given               !! upper case
+    character(*), intent(out) :: name
+    integer, intent(out) :: known                   !! one of the `known_` constants
+    logical, intent(out) :: titled
+    character(:), allocatable, intent(out) :: reason
+    character(len(given)) :: base
+    character(60) :: options
+
+    reason = ''
+    name = canonical(given)
+    titled = .false.
+    call look(name, known, options)
+    if (known == known_honoured) return
+    call take_option(given, base)
+    if (len_trim(base) > 0) then
+      name = canonical(base)
+      titled = .true.
+      call look(name, known, options)
+      if (known == known_honoured .and. index(options, 't') > 0) return
+    end if
+    known = known_not
+    titled = .false.
+    name = given
+    call look_others(given, known, reason)
+  end subroutine find_keyword
+
+  !> The name without its _TITLE or _ID; blank when it has none.
+  pure subroutine take_option(given, base)
+    character(*), intent(in) :: given
+    character(*), intent(out) :: base
+    integer :: at, i
+    character(6), parameter :: options(2) = ['_TITLE', '_ID   ']
+
+    base = ''
+    do i = 1, 2
+      at = index(given//'_', trim(options(i))//'_')
+      if (at == 0) cycle
+      base = given(:at - 1)//given(at + len_trim(options(i)):)
+      return
+    end do
+  end subroutine take_option
+
+  !> The one spelling of a keyword that the tables hold.
+  pure function canonical(given) result(name)
+    character(*), intent(in) :: given
+    character(len(given) + 12) :: name
+
+    name = given
+    select case (given)
+    case ('MAT_001')
+      name = 'MAT_ELASTIC'
+    case ('MAT_003')
+      name = 'MAT_PLASTIC_KINEMATIC'
+    case ('SET_NODE')
+      name = 'SET_NODE_LIST'
+    case ('SET_NODE_GENERATE')
+      name = 'SET_NODE_LIST_GENERATE'
+    case ('SET_PART')
+      name = 'SET_PART_LIST'
+    case ('SET_PART_GENERATE')
+      name = 'SET_PART_LIST_GENERATE'
+    case ('DATABASE_D3PLOT')
+      name = 'DATABASE_BINARY_D3PLOT'
+    case ('INCLUDE_PATH_RELATIVE')
+      name = 'INCLUDE_PATH'
+    end select
+  end function canonical
+
+  !> Whether a canonical name is honoured, and its options.
+  subroutine look(name, known, options)
+    character(*), intent(in) :: name
+    integer, intent(out) :: known
+    character(*), intent(out) :: options
+
+    known = known_not
+    options = ''
+    call search(table_control)
+    call search(table_mesh)
+    call search(table_conditions)
+    call search(table_contact)
+    call search(table_database)
+
+  contains
+
+    !> Look into one table of honoured keywords.
+    subroutine search(table)
+      character(*), intent(in) :: table(:)
+      integer :: k, m
+
+      do k = 1, size(table)
+        if (table(k)(1:1) == ' ') cycle
+        m = index(table(k), ' ')
+        if (table(k)(:m - 1) /= name) cycle
+        known = known_honoured
+        options = table(k)(m + 1:)
+        return
+      end do
+    end subroutine search
+
+  end subroutine look
+
+  !> Treatment of a name that is not honoured.
+  pure subroutine look_others(name, known, reason)
+    character(*), intent(in) :: name
+    integer, intent(out) :: known
+    character(:), allocatable, intent(out) :: reason
+    integer :: i, n
+
+    known = known_not
+    reason = ''
+    do i = 1, size(table_others)
+      n = index(table_others(i), ' ')
+      if (.not. matches(table_others(i)(:n - 1), name)) cycle
+      known = merge(known_ignored, known_refused, table_others(i)(n + 1:) == 'ignored')
+      reason = trim(table_others(i)(n + 1:))
+      return
+    end do
+  end subroutine look_others
+
+  !> Whether a name is the pattern, or starts as it does when the pattern ends with an asterisk.
+  pure function matches(pattern, name) result(yes)
+    character(*), intent(in) :: pattern, name
+    logical :: yes
+    integer :: n
+
+    n = len(pattern)
+    if (pattern(n:n) == '*') then
+      yes = index(name, pattern(:n - 1)) == 1
+    else
+      yes = name == pattern
+    end if
+  end function matches
+
+  !> Why a field with treatment r may not be used.
+  pure function refusal_reason(keyword, field) result(text)
+    character(*), intent(in) :: keyword, field
+    character(:), allocatable :: text
+
+    select case (field)
+    case ('FS', 'FD', 'DC', 'FRIC', 'FRIC_L', 'FRIC_H', 'FRIC_S', 'VC')
+      text = 'asks for friction, which this version does not have; leave it 0'
+      if (index(keyword, 'MAT_') == 1) text = &
+        'asks for failure at a plastic strain, which this version does not have; leave it 0'
+    case ('CID', 'ICID', 'VID')
+      text = 'is a local coordinate system, which this version does not have; leave it 0'
+    case ('SRC', 'SRP')
+      text = 'asks for a Cowper-Symonds strain rate effect, which this version does not have; ' &
+        //'leave it 0'
+    case ('DT2MS')
+      text = 'asks for mass scaling, which this version does not have; leave it 0'
+    case ('ERODE')
+      text = 'asks for deletion of elements, which this version does not have; leave it 0'
+    case ('IMFLAG')
+      text = 'asks for the implicit solver, which this version does not have; leave it 0'
+    case ('EOSID')
+      text = 'is an equation of state, which this version does not have; leave it 0'
+    case ('N5', 'N6', 'N7', 'N8')
+      text = 'is a mid-side node; elements and edges have corner nodes only here'
+    case ('BOXID')
+      text = 'is a box, which this version does not have; leave it 0'
+    case ('PHASE', 'SIDR')
+      text = 'asks for dynamic relaxation, which this version does not have; leave it 0'
+    case default
+      text = 'is not supported here; leave it at its default'
+    end select
+  end function refusal_reason
+
+end module deck_schema_m

@@ -1,0 +1,279 @@
+! SPDX-License-Identifier: MIT
+!> The tables of keywords and cards (`deck_schema_m` says how to read them).
+module deck_schema_tables_m
+  implicit none
+  private
+  public :: table_control, table_mesh, table_conditions, table_contact, table_database, table_others
+
+  !> Control of the deck and of the run.
+  character(84), parameter :: table_control(*) = [character(84) :: &
+    'KEYWORD', &
+    'END', &
+    'COMMENT', &
+    'TITLE', &
+    ' -:x', &
+    'INCLUDE', &
+    ' PATH:a80', &
+    'INCLUDE_PATH', &
+    ' PATH:a80', &
+    'PARAMETER', &
+    ' PRMR1:a VAL1:a PRMR2:a VAL2:a PRMR3:a VAL3:a PRMR4:a VAL4:a', &
+    'PARAMETER_LOCAL', &
+    ' PRMR1:a VAL1:a PRMR2:a VAL2:a PRMR3:a VAL3:a PRMR4:a VAL4:a', &
+    'PARAMETER_EXPRESSION', &
+    ' PRMR:a EXPRESSION:a70', &
+    'PARAMETER_EXPRESSION_LOCAL', &
+    ' PRMR:a EXPRESSION:a70', &
+    'PARAMETER_DUPLICATION', &
+    ' DFLAG:i', &
+    'CONTROL_TERMINATION', &
+    ' ENDTIM:f ENDCYC:i DTMIN:f ENDENG:f ENDMAS:fs NOSOL:i', &
+    'CONTROL_TIMESTEP', &
+    ' DTINIT:f TSSFAC:f ISDO:i TSLIMT:fw DT2MS:fr LCTM:i ERODE:ir MS1ST:iw', &
+    ' DT2MSF:fw DT2MSLC:iw IMSCL:iw -:x -:x RMSCL:fw EMSCL:fw IHDO:iw', &
+    ' -:x IGADO:iw', &
+    'CONTROL_HOURGLASS', &
+    ' IHQ:i QH:f', &
+    'CONTROL_BULK_VISCOSITY', &
+    ' Q1:f=1.5 Q2:f=0.06 TYPE:i=1 BTYPE:iw TSTYPE:iw', &
+    'CONTROL_CONTACT', &
+    ' SLSFAC:f RWPNAL:fs ISLCHK:is SHLTHK:is PENOPT:iw=1 THKCHG:is ORIEN:is ENMASS:iw', &
+    ' USRSTR:iw USRFRC:iw NSBCS:is INTERM:is XPENE:fs SSTHK:is ECDT:i TIEDPRJ:is', &
+    ' SFRIC:fr DFRIC:fr EDC:fw VFC:fw TH:fs TH_SF:fs PEN_SF:fs', &
+    ' IGNORE:iw FRCENG:is SKIPRWG:is OUTSEG:is SPOTSTP:is SPOTDEL:is SPOTHIN:fs', &
+    ' ISYM:is NSEROD:is RWGAPS:is RWGDTH:fs RWKSF:fs ICOV:is SWRADF:fs ITHOFF:is', &
+    ' SHLEDG:is PSTIFF:is ITHCNT:is TDCNOF:is FTALL:is -:x SHLTRW:fs IGACTC:is', &
+    'CONTROL_ENERGY', &
+    ' HGEN:is RWEN:is SLNTEN:is RYLEN:is IRGEN:is MATEN:is DRLEN:is DISEN:is', &
+    'CONTROL_OUTPUT', &
+    ' NPOPT:is NEECHO:is NREFUP:is IACCOP:iw OPIFS:fs IPNINT:is IKEDIT:i IFLUSH:is', &
+    ' IPRTF:is IERODE:is TET10S8:is MSGMAX:is IPCURV:is GMDT:fs IP1DBLT:is EOCS:is', &
+    ' TOLEV:is NEWLEG:is FRFREQ:is MINFO:is SOLSIG:is MSGFLG:is CDETOL:fs', &
+    ' PHSCHNG:is DEMDEN:is ICRFILE:is SPC2BND:is PENOUT:is SHLSIG:is HISNOUT:is ENGOUT:is', &
+    ' INSF:is ISOLSF:is IBSF:is ISSF:is MLKBAG:is', &
+    'CONTROL_IMPLICIT_GENERAL', &
+    ' IMFLAG:ir DT0:fs IMFORM:is NSBS:is IGS:is CNSTN:is FORM:is ZERO_V:is']
+
+  !> Mesh, parts, materials, curves, sets.
+  character(73), parameter :: table_mesh(*) = [character(73) :: &
+    'NODE', &
+    ' NID:i8 X:f16 Y:f16 Z:f16 TC:i8 RC:is8', &
+    'ELEMENT_SHELL', &
+    ' EID:i8 PID:i8 N1:i8 N2:i8 N3:i8 N4:i8 N5:ir8 N6:ir8 N7:ir8 N8:ir8', &
+    'PART t', &
+    ' HEADING:a80', &
+    ' PID:i SECID:i MID:i EOSID:ir HGID:i GRAV:iw ADPOPT:iw TMID:iw', &
+    'SECTION_SHELL t', &
+    ' SECID:i ELFORM:i=2 SHRF:fs NIP:i PROPT:fs QR_IRID:is ICOMP:ir SETYP:ir=1', &
+    ' T1:fs T2:fs T3:fs T4:fs NLOC:fs MAREA:fs IDOF:fs EDGSET:is', &
+    'HOURGLASS t', &
+    ' HGID:i IHQ:i QM:f IBQ:is Q1:f Q2:f QB_VDC:fs QW:fs', &
+    'MAT_ELASTIC t', &
+    ' MID:i RO:f E:f PR:f DA:fw DB:fw', &
+    'MAT_PLASTIC_KINEMATIC t', &
+    ' MID:i RO:f E:f PR:f SIGY:f ETAN:f BETA:f', &
+    ' SRC:fr SRP:fr FS:f VP:fw', &
+    'DEFINE_CURVE t', &
+    ' LCID:i SIDR:ir SFA:f=1 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
+    ' A1:f20 O1:f20', &
+    'SET_NODE_LIST t', &
+    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
+    ' NID1:i NID2:i NID3:i NID4:i NID5:i NID6:i NID7:i NID8:i', &
+    'SET_NODE_LIST_GENERATE t', &
+    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
+    ' B1BEG:i B1END:i B2BEG:i B2END:i B3BEG:i B3END:i B4BEG:i B4END:i', &
+    'SET_PART_LIST t', &
+    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as', &
+    ' PID1:i PID2:i PID3:i PID4:i PID5:i PID6:i PID7:i PID8:i', &
+    'SET_PART_LIST_GENERATE t', &
+    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as', &
+    ' B1BEG:i B1END:i B2BEG:i B2END:i B3BEG:i B3END:i B4BEG:i B4END:i', &
+    'SET_SEGMENT t', &
+    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
+    ' N1:i N2:i N3:i N4:i A1:fs A2:fs A3:fs A4:fs']
+
+  !> Constraints, loads, initial values.
+  character(63), parameter :: table_conditions(*) = [character(63) :: &
+    'BOUNDARY_SPC_NODE t', &
+    ' NID:i CID:ir DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
+    'BOUNDARY_SPC_SET t', &
+    ' NSID:i CID:ir DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
+    'BOUNDARY_PRESCRIBED_MOTION_NODE t', &
+    ' NID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
+    'BOUNDARY_PRESCRIBED_MOTION_SET t', &
+    ' NSID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
+    'INITIAL_VELOCITY', &
+    ' NSID:i NSIDEX:i BOXID:ir IRIGID:is ICID:ir', &
+    ' VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw', &
+    ' VXE:f VYE:f VZE:fw VXRE:fw VYRE:fw VZRE:fw', &
+    'INITIAL_VELOCITY_NODE', &
+    ' NID:i VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw ICID:ir', &
+    'INITIAL_VELOCITY_GENERATION', &
+    ' ID:i STYP:i=1 OMEGA:f VX:f VY:f VZ:fw IVATN:is ICID:ir', &
+    ' XC:f YC:f ZC:fs NX:f NY:f NZ:f PHASE:ir IRIGID:is', &
+    'LOAD_NODE_POINT', &
+    ' NID:i DOF:i LCID:i SF:f=1 CID:ir M1:is M2:is M3:is', &
+    'LOAD_NODE_SET', &
+    ' NSID:i DOF:i LCID:i SF:f=1 CID:ir M1:is M2:is M3:is', &
+    'LOAD_SEGMENT t', &
+    ' LCID:i SF:f=1 AT:f N1:i N2:i N3:i N4:i N5:ir', &
+    'LOAD_SEGMENT_SET t', &
+    ' SSID:i LCID:i SF:f=1 AT:f', &
+    'LOAD_BODY_X', &
+    ' LCID:i SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
+    'LOAD_BODY_Y', &
+    ' LCID:i SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
+    'DAMPING_GLOBAL', &
+    ' LCID:i VALDMP:f STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs']
+
+  !> Contact interfaces.
+  character(95), parameter :: table_contact(*) = [character(95) :: &
+    'CONTACT_2D_SLIDELINE t', &
+    ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2 PEN:f FS:fr FD:fr DC:fr', &
+    ' TBIRTH:f TDEATH:f=1e20 PUNIT:i PENT:f VDC:f IPF:i FREQ:i SRCH:f', &
+    'CONTACT_2D_PENALTY t', &
+    ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
+    //' FRCSCL:fw=0.1 ONEWAY:fr', &
+    'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE t', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fr FD:fr DC:fr', &
+    ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
+    ' VC:fr VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
+    'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR t', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fr FD:fr DC:fr', &
+    ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
+    ' VC:fr VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
+    'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE t', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fr FD:fr DC:fr', &
+    ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
+    ' VC:fr VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
+    'CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE t', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fr FD:fr DC:fr', &
+    ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
+    ' VC:fr VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' SLDSOA:fr SLDSOB:fr TDPEN:fw']
+
+  !> Output.
+  character(60), parameter :: table_database(*) = [character(60) :: &
+    'DATABASE_GLSTAT', &
+    ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_MATSUM', &
+    ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_RCFORC', &
+    ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_NODOUT', &
+    ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_BINARY_D3PLOT', &
+    ' DT:f LCDT:i BEAM:is NPLTC:i PSETID:iw', &
+    ' IOOPT:is RATE:fs CUTOFF:fs WINDOW:fs TYPE:is PSET:iw', &
+    'DATABASE_HISTORY_NODE', &
+    ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
+    'DATABASE_HISTORY_NODE_SET', &
+    ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i']
+
+  !> Keywords that are known but not honoured, first match counts: without effect here, or the
+  !> beginning of `... not part of this version`. An asterisk stands for any ending.
+  character(60), parameter :: table_others(*) = [character(60) :: &
+    'MAT_RIGID* rigid bodies are', &
+    'MAT_020* rigid bodies are', &
+    'MAT_PIECEWISE_LINEAR_PLASTICITY* this material is', &
+    'MAT_024* this material is', &
+    'MAT_* this material is', &
+    'EOS_* equations of state are', &
+    'ELEMENT_MASS* lumped masses are', &
+    'ELEMENT_SHELL_* shells with thickness or offset are', &
+    'ELEMENT_* this element is', &
+    'SECTION_* this kind of section is', &
+    'SET_NODE_GENERAL* general node sets are', &
+    'SET_2D_SEGMENT* boundary sets of parts are', &
+    'SET_* this kind of set is', &
+    'BOUNDARY_PRESCRIBED_MOTION_RIGID* rigid bodies are', &
+    'BOUNDARY_* this condition is', &
+    'INITIAL_VELOCITY_RIGID_BODY* rigid bodies are', &
+    'INITIAL_* this initial condition is', &
+    'LOAD_* this load is', &
+    'DAMPING_* this damping is', &
+    'RIGIDWALL_* rigid walls are', &
+    'CONSTRAINED_* this constraint is', &
+    'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE* self contact is', &
+    'CONTACT_2D_AUTOMATIC_TIED* tied contact is', &
+    'CONTACT_2D_TIED_SLIDING* tied contact is', &
+    'CONTACT_2D_PENALTY_FRICTION* friction is', &
+    'CONTACT_2D_* this kind of contact is', &
+    'CONTACT_* three-dimensional contact is', &
+    'DEFINE_* this definition is', &
+    'PART_* this option of *PART is', &
+    'INCLUDE_* this kind of include is', &
+    'NODE_* this kind of node is', &
+    'CONTROL_IMPLICIT_GENERAL* the implicit solver is', &
+    'CONTROL_SHELL ignored', &
+    'CONTROL_SOLID ignored', &
+    'CONTROL_CPU ignored', &
+    'CONTROL_PARALLEL ignored', &
+    'CONTROL_SOLUTION ignored', &
+    'CONTROL_MPP_* ignored', &
+    'CONTROL_ACCURACY ignored', &
+    'CONTROL_IMPLICIT_* ignored', &
+    'CONTROL_STRUCTURED* ignored', &
+    'CONTROL_DEBUG ignored', &
+    'CONTROL_FORMING_* ignored', &
+    'CONTROL_UNITS ignored', &
+    'CONTROL_REQUIRE_REVISION ignored', &
+    'CONTROL_SPH ignored', &
+    'CONTROL_ALE ignored', &
+    'CONTROL_RIGID ignored', &
+    'DATABASE_FORMAT ignored', &
+    'DATABASE_BINARY_D3DUMP ignored', &
+    'DATABASE_BINARY_RUNRSF ignored', &
+    'DATABASE_BINARY_D3THDT ignored', &
+    'DATABASE_BINARY_INTFOR ignored', &
+    'DATABASE_BINARY_D3DRLF ignored', &
+    'DATABASE_BINARY_D3PART ignored', &
+    'DATABASE_BINARY_D3PROP ignored', &
+    'DATABASE_BINARY_BLSTFOR ignored', &
+    'DATABASE_SECFORC ignored', &
+    'DATABASE_ABSTAT* ignored', &
+    'DATABASE_JNTFORC ignored', &
+    'DATABASE_DEFORC ignored', &
+    'DATABASE_ELOUT ignored', &
+    'DATABASE_SPCFORC ignored', &
+    'DATABASE_NCFORC ignored', &
+    'DATABASE_NODFOR ignored', &
+    'DATABASE_SLEOUT ignored', &
+    'DATABASE_BNDOUT ignored', &
+    'DATABASE_RWFORC ignored', &
+    'DATABASE_RBDOUT ignored', &
+    'DATABASE_EXTENT_BINARY ignored', &
+    'DATABASE_HISTORY_SHELL* ignored', &
+    'DATABASE_NODAL_FORCE_GROUP ignored', &
+    'DATABASE_GCEOUT ignored', &
+    'DATABASE_SPHOUT ignored', &
+    'DATABASE_TPRINT ignored', &
+    'DATABASE_SBTOUT ignored', &
+    'DATABASE_SWFORC ignored', &
+    'DATABASE_DISBOUT ignored', &
+    'DATABASE_ATDOUT ignored', &
+    'DATABASE_AVSFLT ignored', &
+    'DATABASE_MOVIE ignored', &
+    'DATABASE_MPGS ignored', &
+    'DATABASE_TRHIST ignored', &
+    'DATABASE_CURVOUT ignored', &
+    'DATABASE_PLLYOUT ignored', &
+    'DATABASE_FREQUENCY_* ignored', &
+    'DATABASE_CROSS_SECTION_* ignored', &
+    'INTERFACE_* ignored', &
+    'COMPONENT_* ignored', &
+    'CASE_* several cases in one deck are', &
+    'PERTURBATION_* perturbations are', &
+    'AIRBAG_* airbags are', &
+    'ALE_* ALE is', &
+    'DEFORMABLE_TO_RIGID* rigid bodies are', &
+    'EF_* this keyword family is', &
+    'SENSOR_* sensors are', &
+    'USER_* user interfaces are', &
+    'PARAMETER_TYPE* this kind of parameter is']
+
+end module deck_schema_tables_m

@@ -1,0 +1,195 @@
+! SPDX-License-Identifier: MIT
+!> A file read in one go and cut into lines; keyword lines taken apart.
+module deck_source_m
+  use, intrinsic :: iso_fortran_env, only : int8
+  use kinds_m, only : long
+  use text_m, only : upper_case
+  use deck_lines_m, only : deck_t, block_t, flag_comma, flag_parameter, flag_blank, &
+    format_standard, format_long, format_i10
+  implicit none
+  private
+  public :: read_file, scan_line, open_block, add_line, file_options, reserve_lines
+
+contains
+
+  !> The bytes of a file; `reason` is set when that fails.
+  subroutine read_file(path, text, reason)
+    character(*), intent(in) :: path
+    character(:), allocatable, intent(out) :: text
+    character(:), allocatable, intent(out) :: reason
+    integer :: unit, status
+    integer(long) :: n_byte
+    character(200) :: why
+
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+      action='read', iostat=status, iomsg=why)
+    if (status /= 0) then
+      reason = trim(why)
+      return
+    end if
+    inquire (unit=unit, size=n_byte)
+    if (n_byte > huge(unit) - 1024) then
+      reason = 'the file is larger than 2 GB'
+    else
+      allocate (character(max(n_byte, 0_long)) :: text, stat=status)
+      if (status /= 0) then
+        reason = 'not enough memory'
+      else if (n_byte > 0) then
+        read (unit, iostat=status, iomsg=why) text
+        if (status /= 0) reason = trim(why)
+      end if
+    end if
+    close (unit, iostat=status)
+  end subroutine read_file
+
+  !> Find the line that starts at `start`: its last character, the start of the next line, and its
+  !> flags. Tabs become blanks on the way.
+  pure subroutine scan_line(text, start, last, next, flags)
+    character(*), intent(inout) :: text
+    integer, intent(in) :: start
+    integer, intent(out) :: last !! without end-of-line characters
+    integer, intent(out) :: next
+    integer(int8), intent(out) :: flags
+    integer :: i
+
+    flags = flag_blank
+    do i = start, len(text)
+      select case (text(i:i))
+      case (' ', achar(13))
+        cycle
+      case (achar(10))
+        exit
+      case (achar(9))
+        text(i:i) = ' '
+      case (',')
+        flags = iand(ior(flags, flag_comma), not(flag_blank))
+      case ('&')
+        flags = iand(ior(flags, flag_parameter), not(flag_blank))
+      case default
+        flags = iand(flags, not(flag_blank))
+      end select
+    end do
+    next = i + 1
+    last = i - 1
+    do while (last >= start)
+      if (text(last:last) /= achar(13)) exit
+      last = last - 1
+    end do
+  end subroutine scan_line
+
+  !> Make room for `n_more` lines.
+  subroutine reserve_lines(deck, n_more)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: n_more
+    integer :: n_room
+
+    if (.not. allocated(deck%first)) then
+      allocate (deck%first(n_more), deck%last(n_more), deck%number(n_more), deck%flags(n_more))
+      return
+    end if
+    if (deck%n_line + n_more <= size(deck%first)) return
+    n_room = deck%n_line + max(n_more, deck%n_line/2)
+    call grow(deck%first)
+    call grow(deck%last)
+    call grow(deck%number)
+    call grow_bytes(deck%flags)
+
+  contains
+
+    !> Lengthen a list.
+    subroutine grow(list)
+      integer, allocatable, intent(inout) :: list(:)
+      integer, allocatable :: longer(:)
+
+      allocate (longer(n_room))
+      longer(:deck%n_line) = list(:deck%n_line)
+      call move_alloc(longer, list)
+    end subroutine grow
+
+    !> Lengthen a list of bytes.
+    subroutine grow_bytes(list)
+      integer(int8), allocatable, intent(inout) :: list(:)
+      integer(int8), allocatable :: longer(:)
+
+      allocate (longer(n_room))
+      longer(:deck%n_line) = list(:deck%n_line)
+      call move_alloc(longer, list)
+    end subroutine grow_bytes
+
+  end subroutine reserve_lines
+
+  !> One more line.
+  subroutine add_line(deck, first, last, number, flags)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: first, last, number
+    integer(int8), intent(in) :: flags
+
+    if (deck%n_line == size(deck%first)) call reserve_lines(deck, 64)
+    deck%n_line = deck%n_line + 1
+    deck%first(deck%n_line) = first
+    deck%last(deck%n_line) = last
+    deck%number(deck%n_line) = number
+    deck%flags(deck%n_line) = flags
+  end subroutine add_line
+
+  !> A new block from its keyword line (already the last line of the deck).
+  subroutine open_block(deck, source, text)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: source
+    character(*), intent(in) :: text !! the line without its asterisk
+    type(block_t), allocatable :: longer(:)
+    integer :: n_name, i
+
+    if (.not. allocated(deck%blocks)) allocate (deck%blocks(64))
+    if (deck%n_block == size(deck%blocks)) then
+      allocate (longer(2*deck%n_block))
+      do i = 1, deck%n_block
+        longer(i) = deck%blocks(i)
+      end do
+      call move_alloc(longer, deck%blocks)
+    end if
+    deck%n_block = deck%n_block + 1
+    n_name = verify(text//' ', 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_') - 1
+    associate (block => deck%blocks(deck%n_block))
+      block%given = upper_case(text(:n_name))
+      block%name = block%given
+      block%rest = ''
+      if (n_name < len(text)) block%rest = adjustl(text(n_name + 1:))
+      block%source = source
+      block%keyword = deck%n_line
+      block%first = deck%n_line + 1
+      block%last = deck%n_line
+      block%layout = deck%sources(source)%layout
+      if (len_trim(block%rest) == 1 .or. block%rest(2:2) == ' ') then
+        select case (block%rest(1:1))
+        case ('+')
+          block%layout = format_long
+        case ('-')
+          block%layout = format_standard
+        case ('%')
+          block%layout = format_i10
+        end select
+      end if
+    end associate
+  end subroutine open_block
+
+  !> Options of a *KEYWORD line: LONG=Y|S|K|N and I10=Y; the others say nothing about the deck.
+  pure subroutine file_options(rest, layout)
+    character(*), intent(in) :: rest
+    integer, intent(inout) :: layout
+    character(len(rest) + 1) :: upper
+    integer :: at
+
+    upper = upper_case(rest)
+    at = index(upper, 'LONG=')
+    if (at > 0) then
+      layout = format_standard
+      if (scan(upper(at + 5:at + 5), 'YK') == 1) layout = format_long
+    end if
+    at = index(upper, 'I10=')
+    if (at > 0) then
+      if (upper(at + 4:at + 4) == 'Y') layout = format_i10
+    end if
+  end subroutine file_options
+
+end module deck_source_m

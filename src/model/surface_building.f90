@@ -1,0 +1,359 @@
+! SPDX-License-Identifier: MIT
+!> Surfaces from the mesh: exterior edges, the boundary of a set of elements as chains, and the
+!> chain that a list of nodes describes.
+module surface_building_m
+  use surfaces_m, only : surface_t, link_segments
+  implicit none
+  private
+  public :: boundary_t, find_boundary, find_edge, boundary_surface, chain_surface, &
+    chain_good, chain_turned, chain_ordered, chain_broken, chain_repeated, chain_short
+
+  !> How a list of nodes became a chain: as given, walked the other way, put into order; or why not:
+  !> two neighbours in the list share no exterior edge, a node comes twice, fewer than two nodes.
+  integer, parameter :: chain_good = 0, chain_turned = 1, chain_ordered = 2, chain_broken = 3, &
+    chain_repeated = 4, chain_short = 5
+
+  !> Exterior edges (of exactly one element), each walked counter-clockwise round its element, sorted
+  !> by the node they leave.
+  type :: boundary_t
+    integer :: n_edge = 0
+    integer, allocatable :: nodes(:, :)  !! (2, n_edge)
+    integer, allocatable :: elements(:)  !! (n_edge) the element behind
+    integer, allocatable :: start(:)     !! (n_node + 1) first edge leaving each node
+  end type boundary_t
+
+  !> All edges of the chosen elements, filed under the lower of their nodes.
+  type :: edge_table_t
+    integer, allocatable :: start(:)   !! (n_node + 1) first edge of each node
+    integer, allocatable :: far(:)     !! the other node, negative when the edge runs from it
+    integer, allocatable :: owner(:)   !! the element, 0 once the edge is known to be shared
+  end type edge_table_t
+
+contains
+
+  !> Edges that exactly one of the chosen elements has. Only edges with both nodes in `among` are
+  !> looked at. Linear in elements and nodes.
+  pure subroutine find_boundary(element_nodes, chosen, among, boundary)
+    integer, intent(in) :: element_nodes(:, :) !! (4, n) counter-clockwise; triangles repeat node 3
+    logical, intent(in) :: chosen(:)           !! (n)
+    logical, intent(in) :: among(:)            !! (n_node)
+    type(boundary_t), intent(out) :: boundary
+    type(edge_table_t) :: table
+    integer :: node, i, n_node, leaving
+
+    n_node = size(among)
+    call file_edges(element_nodes, chosen, among, table)
+    call strike_shared(table, n_node)
+    ! Sort by the node that each edge leaves: count, sum up, put in place.
+    allocate (boundary%start(n_node + 1), source=0)
+    do node = 1, n_node
+      do i = table%start(node), table%start(node + 1) - 1
+        if (table%owner(i) == 0) cycle
+        leaving = merge(node, -table%far(i), table%far(i) > 0)
+        boundary%start(leaving) = boundary%start(leaving) + 1
+      end do
+    end do
+    boundary%n_edge = sum(boundary%start)
+    boundary%start(n_node + 1) = boundary%n_edge + 1
+    do node = n_node, 1, -1
+      boundary%start(node) = boundary%start(node + 1) - boundary%start(node)
+    end do
+    allocate (boundary%nodes(2, boundary%n_edge), boundary%elements(boundary%n_edge))
+    call put_edges(table, n_node, boundary)
+  end subroutine find_boundary
+
+  !> File the edges of the chosen elements.
+  pure subroutine file_edges(element_nodes, chosen, among, table)
+    integer, intent(in) :: element_nodes(:, :)
+    logical, intent(in) :: chosen(:)
+    logical, intent(in) :: among(:)
+    type(edge_table_t), intent(out) :: table
+    integer, allocatable :: next(:)
+    integer :: i, k, a, b, node
+
+    allocate (next(size(among) + 1), source=0)
+    do i = 1, size(element_nodes, 2)
+      if (.not. chosen(i)) cycle
+      do k = 1, 4
+        a = element_nodes(k, i)
+        b = element_nodes(mod(k, 4) + 1, i)
+        if (a /= b .and. among(a) .and. among(b)) next(min(a, b)) = next(min(a, b)) + 1
+      end do
+    end do
+    allocate (table%start(size(next)))
+    table%start(1) = 1
+    do node = 1, size(among)
+      table%start(node + 1) = table%start(node) + next(node)
+    end do
+    allocate (table%far(table%start(size(next)) - 1), table%owner(table%start(size(next)) - 1))
+    next = table%start
+    do i = 1, size(element_nodes, 2)
+      if (.not. chosen(i)) cycle
+      do k = 1, 4
+        a = element_nodes(k, i)
+        b = element_nodes(mod(k, 4) + 1, i)
+        if (a == b .or. .not. (among(a) .and. among(b))) cycle
+        node = min(a, b)
+        table%far(next(node)) = merge(b, -a, a < b)
+        table%owner(next(node)) = i
+        next(node) = next(node) + 1
+      end do
+    end do
+  end subroutine file_edges
+
+  !> Strike out (owner 0) every edge that more than one element has.
+  pure subroutine strike_shared(table, n_node)
+    type(edge_table_t), intent(inout) :: table
+    integer, intent(in) :: n_node
+    integer, allocatable :: n_use(:)
+    integer :: node, i, first, last
+
+    allocate (n_use(n_node), source=0)
+    do node = 1, n_node
+      first = table%start(node)
+      last = table%start(node + 1) - 1
+      do i = first, last
+        n_use(abs(table%far(i))) = n_use(abs(table%far(i))) + 1
+      end do
+      do i = first, last
+        if (n_use(abs(table%far(i))) > 1) table%owner(i) = 0
+      end do
+      do i = first, last
+        n_use(abs(table%far(i))) = 0
+      end do
+    end do
+  end subroutine strike_shared
+
+  !> Put the edges that are left into the boundary.
+  pure subroutine put_edges(table, n_node, boundary)
+    type(edge_table_t), intent(in) :: table
+    integer, intent(in) :: n_node
+    type(boundary_t), intent(inout) :: boundary
+    integer, allocatable :: next(:)
+    integer :: node, i, ends(2)
+
+    allocate (next(size(boundary%start)), source=boundary%start)
+    do node = 1, n_node
+      do i = table%start(node), table%start(node + 1) - 1
+        if (table%owner(i) == 0) cycle
+        ends = [node, table%far(i)]
+        if (table%far(i) < 0) ends = [-table%far(i), node]
+        boundary%nodes(:, next(ends(1))) = ends
+        boundary%elements(next(ends(1))) = table%owner(i)
+        next(ends(1)) = next(ends(1)) + 1
+      end do
+    end do
+  end subroutine put_edges
+
+  !> The exterior edge from node `a` to node `b`, or 0.
+  pure function find_edge(boundary, a, b) result(edge)
+    type(boundary_t), intent(in) :: boundary
+    integer, intent(in) :: a, b
+    integer :: edge
+
+    do edge = boundary%start(a), boundary%start(a + 1) - 1
+      if (boundary%nodes(2, edge) == b) return
+    end do
+    edge = 0
+  end function find_edge
+
+  !> The whole boundary as chains, open ones first. `crossing` is a node where the boundary touches
+  !> itself (no chains can be made then), or 0.
+  pure subroutine boundary_surface(boundary, surface, crossing)
+    type(boundary_t), intent(in) :: boundary
+    type(surface_t), intent(out) :: surface
+    integer, intent(out) :: crossing
+    integer, allocatable :: n_incoming(:)
+    logical, allocatable :: used(:)
+    integer :: node, n_node, i, n, s
+
+    n_node = size(boundary%start) - 1
+    allocate (n_incoming(n_node), source=0)
+    crossing = 0
+    do i = 1, boundary%n_edge
+      n_incoming(boundary%nodes(2, i)) = n_incoming(boundary%nodes(2, i)) + 1
+    end do
+    do node = 1, n_node
+      if (boundary%start(node + 1) - boundary%start(node) > 1 .or. n_incoming(node) > 1) then
+        crossing = node
+        return
+      end if
+    end do
+    allocate (surface%nodes(2*boundary%n_edge), surface%segments(2, boundary%n_edge), &
+      surface%segment_element(boundary%n_edge))
+    allocate (used(boundary%n_edge), source=.false.)
+    n = 0
+    s = 0
+    do node = 1, n_node
+      if (n_incoming(node) == 0) call walk(boundary, node, used, surface, n, s)
+    end do
+    do node = 1, n_node
+      call walk(boundary, node, used, surface, n, s)
+    end do
+    surface%nodes = surface%nodes(:n)
+    call link_segments(surface)
+  end subroutine boundary_surface
+
+  !> Follow unused edges from a node to the end of its chain, or round to its start.
+  pure subroutine walk(boundary, first_node, used, surface, n, s)
+    type(boundary_t), intent(in) :: boundary
+    integer, intent(in) :: first_node
+    logical, intent(inout) :: used(:)
+    type(surface_t), intent(inout) :: surface
+    integer, intent(inout) :: n, s    !! nodes and segments so far
+    integer :: node, edge, first_local
+
+    edge = boundary%start(first_node)
+    if (edge == boundary%start(first_node + 1)) return
+    if (used(edge)) return
+    n = n + 1
+    first_local = n
+    surface%nodes(n) = first_node
+    node = first_node
+    do
+      edge = boundary%start(node)
+      if (edge == boundary%start(node + 1)) exit
+      if (used(edge)) exit
+      used(edge) = .true.
+      node = boundary%nodes(2, edge)
+      s = s + 1
+      surface%segment_element(s) = boundary%elements(edge)
+      if (node == first_node) then
+        surface%segments(:, s) = [n, first_local]
+        exit
+      end if
+      n = n + 1
+      surface%nodes(n) = node
+      surface%segments(:, s) = [n - 1, n]
+    end do
+  end subroutine walk
+
+  !> The chain that a list of nodes describes; its first node repeated at the end makes it closed.
+  !> The list may be walked backwards, or in no order as long as its exterior edges form one
+  !> chain; `outcome` says which. When it fails `trouble` holds the two nodes of the first break, or
+  !> the repeated node.
+  pure subroutine chain_surface(boundary, given, surface, outcome, trouble)
+    type(boundary_t), intent(in) :: boundary
+    integer, intent(in) :: given(:)        !! node indices
+    type(surface_t), intent(out) :: surface
+    integer, intent(out) :: outcome        !! one of the `chain_` constants
+    integer, intent(out) :: trouble(2)
+    integer, allocatable :: chain(:), position(:)
+    logical :: closed
+    integer :: n, i, n_forward, n_backward
+
+    trouble = 0
+    outcome = chain_short
+    n = size(given)
+    closed = .false.
+    if (n > 2) closed = given(n) == given(1)
+    if (closed) n = n - 1
+    if (n < 2) return
+    chain = given(:n)
+    allocate (position(size(boundary%start) - 1), source=0)
+    do i = 1, n
+      outcome = chain_repeated
+      trouble = chain(i)
+      if (position(chain(i)) > 0) return
+      position(chain(i)) = i
+    end do
+    trouble = 0
+    n_forward = 0
+    n_backward = 0
+    do i = 1, merge(n, n - 1, closed)
+      if (find_edge(boundary, chain(i), chain(mod(i, n) + 1)) > 0) n_forward = n_forward + 1
+      if (find_edge(boundary, chain(mod(i, n) + 1), chain(i)) > 0) n_backward = n_backward + 1
+    end do
+    outcome = chain_good
+    if (n_forward < merge(n, n - 1, closed)) then
+      if (n_backward == merge(n, n - 1, closed)) then
+        outcome = chain_turned
+        chain = chain(n:1:-1)
+      else
+        call order_chain(boundary, position, chain, closed, outcome)
+        if (outcome == chain_broken) call find_break(boundary, chain, closed, &
+          n_forward >= n_backward, trouble)
+      end if
+    end if
+    if (outcome /= chain_broken) call build_chain(boundary, chain, closed, surface)
+  end subroutine chain_surface
+
+  !> Put the nodes into the one order that their exterior edges allow.
+  pure subroutine order_chain(boundary, position, chain, closed, outcome)
+    type(boundary_t), intent(in) :: boundary
+    integer, intent(in) :: position(:)      !! place of each node in the list, or 0
+    integer, intent(inout) :: chain(:)
+    logical, intent(inout) :: closed
+    integer, intent(out) :: outcome
+    integer, allocatable :: next(:), n_incoming(:), ordered(:)
+    integer :: i, edge, first, n
+
+    outcome = chain_broken
+    n = size(chain)
+    allocate (next(n), n_incoming(n), source=0)
+    do i = 1, n
+      do edge = boundary%start(chain(i)), boundary%start(chain(i) + 1) - 1
+        if (position(boundary%nodes(2, edge)) == 0) cycle
+        if (next(i) > 0) return
+        next(i) = position(boundary%nodes(2, edge))
+        n_incoming(next(i)) = n_incoming(next(i)) + 1
+      end do
+    end do
+    if (any(n_incoming > 1) .or. count(n_incoming == 0) > 1) return
+    first = 1
+    do i = n, 1, -1
+      if (n_incoming(i) == 0) first = i
+    end do
+    allocate (ordered(n))
+    i = first
+    do edge = 1, n
+      if (i == 0) return
+      if (edge > 1 .and. i == first) return
+      ordered(edge) = chain(i)
+      i = next(i)
+    end do
+    closed = i == first
+    chain = ordered
+    outcome = chain_ordered
+  end subroutine order_chain
+
+  !> The first two neighbours of the list that no exterior edge joins in the walking direction.
+  pure subroutine find_break(boundary, chain, closed, forward, trouble)
+    type(boundary_t), intent(in) :: boundary
+    integer, intent(in) :: chain(:)
+    logical, intent(in) :: closed, forward
+    integer, intent(out) :: trouble(2)
+    integer :: i, n
+
+    n = size(chain)
+    do i = 1, merge(n, n - 1, closed)
+      trouble = [chain(i), chain(mod(i, n) + 1)]
+      if (forward) then
+        if (find_edge(boundary, trouble(1), trouble(2)) == 0) return
+      else
+        if (find_edge(boundary, trouble(2), trouble(1)) == 0) return
+      end if
+    end do
+  end subroutine find_break
+
+  !> Fill a surface from a chain whose edges are all there.
+  pure subroutine build_chain(boundary, chain, closed, surface)
+    type(boundary_t), intent(in) :: boundary
+    integer, intent(in) :: chain(:)
+    logical, intent(in) :: closed
+    type(surface_t), intent(inout) :: surface
+    integer :: i, n, n_segment
+
+    n = size(chain)
+    n_segment = merge(n, n - 1, closed)
+    surface%nodes = chain
+    allocate (surface%segments(2, n_segment), surface%segment_element(n_segment))
+    do i = 1, n_segment
+      surface%segments(:, i) = [i, mod(i, n) + 1]
+      surface%segment_element(i) = boundary%elements(find_edge(boundary, chain(i), &
+        chain(mod(i, n) + 1)))
+    end do
+    call link_segments(surface)
+  end subroutine build_chain
+
+end module surface_building_m
