@@ -40,7 +40,8 @@ contains
     mistakes = ''
     do i = 1, command_argument_count()
       call get_command_argument(i, word)
-      arguments%line = arguments%line//merge(' ', '', i > 1)//trim(word)
+      if (i > 1) arguments%line = arguments%line//' '
+      arguments%line = arguments%line//trim(word)
       call read_word(trim(word), arguments, mistakes)
     end do
     if (arguments%help .or. arguments%version) return
