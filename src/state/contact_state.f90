@@ -4,28 +4,35 @@
 !> A contact point is the only thing that a formulation makes. Whoever places points promises:
 !> P1: the weights sum to one on each side;
 !> P2: x_slave - x_master = gap * normal, with positions taken by those weights, normal pointing from
-!>     master to slave and gap < 0 in penetration (type 4 keeps P2 up to a parallel shift only).
+!>     master to slave and gap < 0 in penetration.
 !> Balance of momentum follows from P1, balance of angular momentum from P2.
+!>
+!> Node numbers here are local to the interface: 1 .. n_slave for slave nodes, then
+!> n_slave + 1 .. n_slave + n_master for master nodes. A place is (X, Y, u_x, u_y).
+!>
+!> A tracking follows spots (the nodes of one surface) over the chain of the other. It measures time in
+!> `travel`: the sum over all steps of a bound on how far any two nodes of the interface have
+!> moved relative to each other. A spot at distance d from everything cannot touch before the
+!> travel has grown by d: until then it sleeps.
 module contact_state_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: contact_state_t, contact_points_t, allocate_points, n_side, &
-    pressure_at_point, pressure_at_nodes
+  public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
+    allocate_points, allocate_tracking, n_side, is_free, is_in_front, is_touching, is_behind
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
-  !> Where the pressure is formed: from the gap of each point, or averaged at the slave nodes.
-  integer, parameter :: pressure_at_point = 1, pressure_at_nodes = 2
+  !> What a tracked spot is doing: free (no face is known that it stands before), in front of its
+  !> segment, touching it, or behind it without contact because it was never caught.
+  integer, parameter :: is_free = 0, is_in_front = 1, is_touching = 2, is_behind = 3
 
-  !> The list, one column per point; node numbers are local to the interface:
-  !> 1 .. n_slave for slave nodes, n_slave + 1 .. n_slave + n_master for master nodes.
+  !> The list, one column per point.
   type :: contact_points_t
     integer :: n = 0                           !! points in use
-    integer :: pressure_rule = pressure_at_point
-    integer, allocatable :: slave_nodes(:, :)  !! (n_side, capacity)
+    integer, allocatable :: slave_nodes(:, :)  !! (n_side, capacity) local numbers
     real(wp), allocatable :: slave_weights(:, :)
-    integer, allocatable :: master_nodes(:, :)
+    integer, allocatable :: master_nodes(:, :) !! (n_side, capacity) local numbers
     real(wp), allocatable :: master_weights(:, :)
     real(wp), allocatable :: normal(:, :)      !! (2, capacity) unit, from master to slave
     real(wp), allocatable :: gap(:)            !! m, negative = penetration
@@ -34,21 +41,54 @@ module contact_state_m
     real(wp), allocatable :: pressure(:)       !! N/m (N for type 1), >= 0
   end type contact_points_t
 
-  !> Memory of one interface. Positions of nodes, forces and results are by local number.
+  !> Segments sorted into square cells by hashing; tells which segments are near a place.
+  type :: bucket_grid_t
+    real(wp) :: cell = 0.0_wp         !! side of a cell, m; 0 = never filled
+    real(wp) :: filled_at = 0.0_wp    !! travel when it was filled
+    real(wp) :: low(2) = 0.0_wp       !! corners of the box of the chain, relative to its first node
+    real(wp) :: high(2) = 0.0_wp
+    integer, allocatable :: first(:)  !! (n_bucket + 1) where each bucket starts ...
+    integer, allocatable :: items(:)  !! ... in this list of segments
+  end type bucket_grid_t
+
+  !> Spots followed over a chain.
+  type :: tracking_t
+    integer :: n = 0                         !! spots
+    integer :: n_touching = 0
+    real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot can change
+    real(wp) :: reach = 0.0_wp               !! spots farther away than this are unpaired, m
+    integer, allocatable :: touching(:)      !! (n) the first n_touching: spots in contact
+    integer, allocatable :: segment(:)       !! (n) segment of the chain, 0 = unpaired
+    integer, allocatable :: status(:)        !! (n) one of the constants above
+    real(wp), allocatable :: xi(:)           !! (n) 0 to 1 along the segment (a little more at ends)
+    real(wp), allocatable :: gap(:)          !! (n) m; up to date while touching
+    real(wp), allocatable :: normal(:, :)    !! (2, n) from the chain to the spot's side
+    real(wp), allocatable :: wake(:)         !! (n) travel at which the spot must be looked at again
+    real(wp), allocatable :: recheck(:)      !! (n) travel at which another segment may be reached
+    real(wp), allocatable :: spot_depth(:)   !! (n) deepest first contact of a spot, m
+    real(wp), allocatable :: segment_depth(:) !! (n_segment) deepest first contact of a segment, m
+    integer, allocatable :: chord(:, :)      !! (2, n) neighbours along the spot's own surface
+    type(bucket_grid_t) :: grid
+  end type tracking_t
+
+  !> Memory of one interface.
   type :: contact_state_t
     integer :: n_slave = 0, n_master = 0
-    integer, allocatable :: nodes(:)       !! (n_slave + n_master) node indices in the mesh
-    integer, allocatable :: pair(:)        !! (n_slave) master segment a slave node is on, 0 = none
-    integer, allocatable :: master_pair(:) !! (n_master) the same for the master pass of two-pass types
-    integer :: next_search = 0             !! cycle at which the next global search is due
+    integer, allocatable :: nodes(:)        !! (n_slave + n_master) node indices in the mesh
+    real(wp), allocatable :: places(:, :)   !! (4, n_slave + n_master) X, Y, u_x, u_y of the last call
+    real(wp) :: travel = 0.0_wp             !! bound on relative motion since the start, m
+    logical :: is_stale = .false.           !! tracking has been left alone outside birth .. death
+    integer :: next_search = 0              !! cycle at which FREQ asks for a global search
+    type(tracking_t) :: slave_tracking      !! slave nodes over the master chain
+    type(tracking_t) :: master_tracking     !! master nodes over the slave chain; empty for one pass
     type(contact_points_t) :: points
-    real(wp), allocatable :: force(:, :)   !! (2, n_slave + n_master) contact forces of the last call
-    real(wp) :: slave_penalty = 0.0_wp     !! distributed penalty eps_hat of the slave pass, N/m^2
-    real(wp) :: master_penalty = 0.0_wp    !! of the master pass
-    real(wp) :: node_penalty = 0.0_wp      !! eps of type 1, N/m
-    real(wp) :: energy = 0.0_wp            !! minus the accumulated work of the contact forces
-    integer :: n_active = 0                !! points that carry pressure
-    integer :: n_released = 0              !! first contacts deeper than the limit that were let go
+    real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last call
+    real(wp) :: slave_penalty = 0.0_wp      !! distributed penalty eps_hat of the slave pass, N/m^2
+    real(wp) :: master_penalty = 0.0_wp     !! of the master pass
+    real(wp) :: node_penalty = 0.0_wp       !! eps of type 1, N/m
+    real(wp) :: energy = 0.0_wp             !! minus the accumulated work of the contact forces
+    integer :: n_active = 0                 !! points that carry pressure
+    integer :: n_released = 0               !! first contacts deeper than the limit that were let go
   end type contact_state_t
 
 contains
@@ -64,5 +104,25 @@ contains
     allocate (points%gap(capacity), points%area(capacity), points%stiffness(capacity), &
       points%pressure(capacity), source=0.0_wp)
   end subroutine allocate_points
+
+  !> Allocate for `n` spots over `n_segment` segments. A segment lies in few cells: cells are at least as
+  !> long as the mean segment, so that all together fill at most 8 items per segment.
+  pure subroutine allocate_tracking(tracking, n, n_segment)
+    type(tracking_t), intent(inout) :: tracking
+    integer, intent(in) :: n, n_segment
+    integer :: n_bucket
+
+    tracking%n = n
+    allocate (tracking%touching(n), tracking%segment(n), tracking%status(n), tracking%chord(2, n), &
+      source=0)
+    allocate (tracking%xi(n), tracking%gap(n), tracking%normal(2, n), tracking%spot_depth(n), &
+      tracking%segment_depth(n_segment), source=0.0_wp)
+    allocate (tracking%wake(n), tracking%recheck(n), source=-huge(1.0_wp))
+    n_bucket = 16
+    do while (n_bucket < 2*n_segment)
+      n_bucket = 2*n_bucket
+    end do
+    allocate (tracking%grid%first(n_bucket + 1), tracking%grid%items(8*n_segment + 8), source=0)
+  end subroutine allocate_tracking
 
 end module contact_state_m

@@ -1,0 +1,85 @@
+! SPDX-License-Identifier: MIT
+!> How a point lies to a segment: closest point, gap and normal.
+!> Places are given as (X, Y, u_x, u_y): coordinates at time zero and displacement. Everything is
+!> formed from differences of X plus differences of u, never from positions, so that no digit is lost
+!> far from the origin (doc/theory/contact.md, section 2).
+module geometry_m
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: sight_t, sight_of_segment, separation, closest_distance, sight_gap, sight_normal, &
+    segment_length
+
+  !> A point seen from a segment a-b with the vector t = b - a and the outward normal (t_y, -t_x)/|t|.
+  type :: sight_t
+    real(wp) :: t(2) = 0.0_wp    !! vector of the segment, m
+    real(wp) :: d(2) = 0.0_wp    !! vector from a to the point, m
+    real(wp) :: square = 0.0_wp  !! t.t, m^2 (never zero)
+    real(wp) :: along = 0.0_wp   !! d.t: xi times `square`
+    real(wp) :: across = 0.0_wp  !! gap times length
+  end type sight_t
+
+contains
+
+  !> Vector from place q to place p.
+  pure function separation(p, q) result(d)
+    real(wp), intent(in) :: p(4), q(4) !! X, Y, u_x, u_y
+    real(wp) :: d(2)
+
+    d(1) = (p(1) - q(1)) + (p(3) - q(3))
+    d(2) = (p(2) - q(2)) + (p(4) - q(4))
+  end function separation
+
+  !> See `point` from the segment a-b.
+  pure function sight_of_segment(point, a, b) result(sight)
+    real(wp), intent(in) :: point(4), a(4), b(4)
+    type(sight_t) :: sight
+
+    sight%t(1) = (b(1) - a(1)) + (b(3) - a(3))
+    sight%t(2) = (b(2) - a(2)) + (b(4) - a(4))
+    sight%d(1) = (point(1) - a(1)) + (point(3) - a(3))
+    sight%d(2) = (point(2) - a(2)) + (point(4) - a(4))
+    sight%square = max(sight%t(1)**2 + sight%t(2)**2, tiny(1.0_wp))
+    sight%along = sight%d(1)*sight%t(1) + sight%d(2)*sight%t(2)
+    sight%across = sight%d(1)*sight%t(2) - sight%d(2)*sight%t(1)
+  end function sight_of_segment
+
+  !> Square of the distance from the point to the segment, ends included.
+  pure function closest_distance(sight) result(square)
+    type(sight_t), intent(in) :: sight
+    real(wp) :: square !! m^2
+
+    if (sight%along < 0.0_wp) then
+      square = sight%d(1)**2 + sight%d(2)**2
+    else if (sight%along > sight%square) then
+      square = (sight%d(1) - sight%t(1))**2 + (sight%d(2) - sight%t(2))**2
+    else
+      square = sight%across**2/sight%square
+    end if
+  end function closest_distance
+
+  !> Signed distance to the line of the segment, negative behind it.
+  pure function sight_gap(sight) result(gap)
+    type(sight_t), intent(in) :: sight
+    real(wp) :: gap
+
+    gap = sight%across/sqrt(sight%square)
+  end function sight_gap
+
+  !> Outward unit normal of the segment.
+  pure function sight_normal(sight) result(normal)
+    type(sight_t), intent(in) :: sight
+    real(wp) :: normal(2)
+
+    normal = [sight%t(2), -sight%t(1)]/sqrt(sight%square)
+  end function sight_normal
+
+  !> Length of the segment between two places.
+  pure function segment_length(a, b) result(length)
+    real(wp), intent(in) :: a(4), b(4)
+    real(wp) :: length
+
+    length = sqrt(((b(1) - a(1)) + (b(3) - a(3)))**2 + ((b(2) - a(2)) + (b(4) - a(4)))**2)
+  end function segment_length
+
+end module geometry_m

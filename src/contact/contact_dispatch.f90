@@ -1,0 +1,61 @@
+! SPDX-License-Identifier: MIT
+!> The one place that knows the contact types: their numbers, names, needs and placements.
+!> Adding one is a row of `formulations`, a `use` and a `case` (doc/add_a_formulation.md).
+module contact_dispatch_m
+  use contact_state_m, only : contact_state_t
+  use contacts_m, only : contact_t, contact_kind_t
+  use points_nts_m, only : place_nts
+  use points_nts_ar_m, only : place_nts_ar
+  use points_two_pass_ar_m, only : place_two_pass_ar
+  implicit none
+  private
+  public :: contact_kinds, formulation_t, formulation_of, place_points
+
+  !> What the frame must know of a formulation before it places points.
+  type :: formulation_t
+    type(contact_kind_t) :: kind          !! number and name
+    logical :: has_two_passes = .false.   !! master nodes are tracked over the slave chain too
+    logical :: has_unit_area = .false.    !! the penalty is N/m per node
+    integer :: points_per_slave_node = 1  !! most points, for the allocation
+    integer :: points_per_master_node = 0
+  end type formulation_t
+
+  integer, parameter :: type_nts = 1, type_nts_ar = 2, type_two_pass_ar = 3
+
+  !> All formulations.
+  type(formulation_t), parameter :: formulations(*) = [ &
+    formulation_t(contact_kind_t(type_nts, 'classical NTS'), has_unit_area=.true.), &
+    formulation_t(contact_kind_t(type_nts_ar, 'NTS-AR')), &
+    formulation_t(contact_kind_t(type_two_pass_ar, 'two-pass NTS-AR'), has_two_passes=.true., &
+      points_per_master_node=1)]
+
+  !> The same as the deck layer wants them.
+  type(contact_kind_t), parameter :: contact_kinds(*) = formulations%kind
+
+contains
+
+  !> The formulation of a contact.
+  pure function formulation_of(contact) result(formulation)
+    type(contact_t), intent(in) :: contact
+    type(formulation_t) :: formulation
+    integer :: i
+
+    do i = 1, size(formulations)
+      if (formulations(i)%kind%number == contact%contact_type) formulation = formulations(i)
+    end do
+  end function formulation_of
+
+  !> Place the contact points of one interface for the places and pairs in its memory.
+  pure subroutine place_points(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%points%n = 0
+    select case (contact%contact_type)
+    case (type_nts); call place_nts(contact, memory)
+    case (type_nts_ar); call place_nts_ar(contact, memory)
+    case (type_two_pass_ar); call place_two_pass_ar(contact, memory)
+    end select
+  end subroutine place_points
+
+end module contact_dispatch_m

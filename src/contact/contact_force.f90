@@ -1,0 +1,168 @@
+! SPDX-License-Identifier: MIT
+!> One interface, one step: gather, search, place, press, scatter.
+module contact_force_m
+  use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_force
+  use contact_dispatch_m, only : formulation_t, formulation_of, place_points
+  use contact_initial_m, only : start_tracking
+  use contact_log_m, only : log_contact
+  use contact_penalty_m, only : set_penalties, press_points, damp_points
+  use contact_scatter_m, only : scatter_points
+  use contact_search_m, only : update_tracking, wake_all
+  use contact_state_m, only : contact_state_t, allocate_points
+  use contacts_m, only : contact_t
+  use kinds_m, only : wp
+  use log_m, only : log_t
+  use model_m, only : model_t
+  implicit none
+  private
+  public :: start_contact, apply_contact
+
+contains
+
+  !> Set up the memory of one interface at time zero and tell the log what was understood.
+  subroutine start_contact(contact, model, log, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    type(contact_state_t), intent(out) :: memory
+    type(formulation_t) :: formulation
+    integer :: n_slave, n_master
+
+    n_slave = contact%slave%n_node
+    n_master = contact%master%n_node
+    memory%n_slave = n_slave
+    memory%n_master = n_master
+    memory%nodes = [contact%slave%nodes, contact%master%nodes]
+    allocate (memory%force(2, n_slave + n_master), memory%places(4, n_slave + n_master), &
+      source=0.0_wp)
+    memory%places(1:2, :) = model%mesh%coordinates(:, memory%nodes)
+    formulation = formulation_of(contact)
+    call allocate_points(memory%points, n_slave*formulation%points_per_slave_node &
+      + n_master*formulation%points_per_master_node)
+    call set_penalties(contact, model, memory)
+    call start_tracking(memory%slave_tracking, contact, model, contact%slave, contact%master, &
+      memory%places)
+    if (formulation%has_two_passes) call start_tracking(memory%master_tracking, contact, model, &
+      contact%master, contact%slave, cshift(memory%places, n_slave, 2))
+    call log_contact(contact, model, formulation%kind, memory, log)
+  end subroutine start_contact
+
+  !> Contact forces of one interface at the present u, added to `force`, and their work since the
+  !> previous call (trapezoidal rule). Laps the phases of the clock.
+  subroutine apply_contact(contact, coordinates, motion, mass, time, dt, cycle, clock, memory, force)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: coordinates(:, :) !! (2, n_node) at time zero
+    real(wp), intent(in), contiguous :: motion(:, :)      !! (4, n_node) u(n), v(n-1/2)
+    real(wp), intent(in), contiguous :: mass(:)           !! (n_node) kg/m
+    real(wp), intent(in) :: time                          !! of u, s
+    real(wp), intent(in) :: dt                            !! step that led to u, 0 at the start
+    integer, intent(in) :: cycle
+    type(clock_t), intent(inout) :: clock
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
+    real(wp) :: power
+
+    if (time < contact%birth .or. time > contact%death) then
+      if (memory%n_active > 0) call gather_motion(motion, memory, power)
+      if (memory%n_active > 0) memory%energy = memory%energy - 0.5_wp*dt*power
+      memory%points%n = 0
+      memory%n_active = 0
+      memory%is_stale = .true.
+      return
+    end if
+    if (memory%is_stale) call refresh_memory(coordinates, motion, memory)
+    call gather_motion(motion, memory, power)
+    call search_pairs(contact, cycle, memory)
+    call lap(clock, phase_contact_search)
+    call place_points(contact, memory)
+    memory%n_active = 0
+    if (memory%points%n > 0) then
+      call press_points(memory%points)
+      if (contact%damping > 0.0_wp) &
+        call damp_points(memory%points, contact%damping, memory%nodes, motion, mass)
+      call scatter_points(memory%points, memory%force, memory%n_active)
+      call add_force(motion, memory, force, power)
+    end if
+    memory%energy = memory%energy - 0.5_wp*dt*power
+    call lap(clock, phase_contact_force)
+  end subroutine apply_contact
+
+  !> Take the present motion into `places`, bound how far any two nodes have moved relative to each
+  !> other since the last call, find the power of the last forces and set them to zero.
+  pure subroutine gather_motion(motion, memory, power)
+    real(wp), intent(in), contiguous :: motion(:, :)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(out) :: power !! of the previous forces with the present velocity, W/m
+    real(wp) :: low(2), high(2), step(2)
+    integer :: i, node
+
+    low = huge(1.0_wp)
+    high = -huge(1.0_wp)
+    power = 0.0_wp
+    do i = 1, size(memory%nodes)
+      node = memory%nodes(i)
+      step = motion(1:2, node) - memory%places(3:4, i)
+      low = min(low, step)
+      high = max(high, step)
+      memory%places(3:4, i) = motion(1:2, node)
+      power = power + (motion(3, node)*memory%force(1, i) + motion(4, node)*memory%force(2, i))
+      memory%force(:, i) = 0.0_wp
+    end do
+    memory%travel = memory%travel + sqrt((high(1) - low(1))**2 + (high(2) - low(2))**2)
+  end subroutine gather_motion
+
+  !> After a time without contact: take the present places and search all anew.
+  pure subroutine refresh_memory(coordinates, motion, memory)
+    real(wp), intent(in), contiguous :: coordinates(:, :), motion(:, :)
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%places(1:2, :) = coordinates(:, memory%nodes)
+    memory%places(3:4, :) = motion(1:2, memory%nodes)
+    memory%slave_tracking%segment = 0
+    memory%slave_tracking%status = 0
+    memory%slave_tracking%grid%cell = 0.0_wp
+    call wake_all(memory%slave_tracking)
+    if (memory%master_tracking%n > 0) then
+      memory%master_tracking%segment = 0
+      memory%master_tracking%status = 0
+      memory%master_tracking%grid%cell = 0.0_wp
+      call wake_all(memory%master_tracking)
+    end if
+    memory%is_stale = .false.
+  end subroutine refresh_memory
+
+  !> Pairs of the slave nodes, and of the master nodes where there are two passes.
+  pure subroutine search_pairs(contact, cycle, memory)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: cycle
+    type(contact_state_t), intent(inout) :: memory
+
+    if (contact%search_interval > 0 .and. cycle >= memory%next_search) then
+      memory%next_search = cycle + contact%search_interval
+      call wake_all(memory%slave_tracking)
+      if (memory%master_tracking%n > 0) call wake_all(memory%master_tracking)
+    end if
+    call update_tracking(memory%slave_tracking, contact%master, &
+      memory%places(:, memory%n_slave + 1:), memory%places(:, :memory%n_slave), memory%travel, &
+      memory%n_released)
+    if (memory%master_tracking%n > 0) call update_tracking(memory%master_tracking, contact%slave, &
+      memory%places(:, :memory%n_slave), memory%places(:, memory%n_slave + 1:), memory%travel, &
+      memory%n_released)
+  end subroutine search_pairs
+
+  !> Add the forces of the interface to those of the mesh, and their power to `power`.
+  pure subroutine add_force(motion, memory, force, power)
+    real(wp), intent(in), contiguous :: motion(:, :)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(inout), contiguous :: force(:, :)
+    real(wp), intent(inout) :: power
+    integer :: i, node
+
+    do i = 1, size(memory%nodes)
+      node = memory%nodes(i)
+      force(:, node) = force(:, node) + memory%force(:, i)
+      power = power + (motion(3, node)*memory%force(1, i) + motion(4, node)*memory%force(2, i))
+    end do
+  end subroutine add_force
+
+end module contact_force_m

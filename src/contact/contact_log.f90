@@ -1,0 +1,73 @@
+! SPDX-License-Identifier: MIT
+!> What the log says about an interface.
+module contact_log_m
+  use contact_penalty_m, only : mean_length
+  use contact_state_m, only : contact_state_t
+  use contacts_m, only : contact_t, contact_kind_t
+  use kinds_m, only : wp
+  use log_m, only : log_t, write_log, to_text
+  use model_m, only : model_t
+  implicit none
+  private
+  public :: log_contact, report_initial_contact, report_released
+
+contains
+
+  !> Type, surfaces, all equivalents of the penalty and what the search will catch.
+  subroutine log_contact(contact, model, kind, memory, log)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_kind_t), intent(in) :: kind
+    type(contact_state_t), intent(in) :: memory
+    type(log_t), intent(inout) :: log
+    real(wp) :: slave_length, master_length
+
+    slave_length = mean_length(contact%slave, model)
+    master_length = mean_length(contact%master, model)
+    call write_log(log, 'interface '//to_text(contact%id)//': '//trim(kind%name)//' (type ' &
+      //to_text(kind%number)//')'//trim(merge(', chosen by keyword', '                   ', &
+      contact%chosen_by_keyword)))
+    call write_log(log, '  slave: '//to_text(contact%slave%n_node)//' nodes, ' &
+      //to_text(contact%slave%n_segment)//' segments of mean length '//to_text(slave_length)//' m')
+    call write_log(log, '  master: '//to_text(contact%master%n_node)//' nodes, ' &
+      //to_text(contact%master%n_segment)//' segments of mean length '//to_text(master_length) &
+      //' m')
+    call write_log(log, '  penalty: '//to_text(memory%node_penalty)//' N/m per slave node = ' &
+      //to_text(memory%slave_penalty)//' N/m^2; master pass '//to_text(memory%master_penalty &
+      *master_length)//' N/m per master node = '//to_text(memory%master_penalty)//' N/m^2')
+    if (contact%damping > 0.0_wp) call write_log(log, '  damping: ' &
+      //to_text(contact%damping)//' of critical')
+    call write_log(log, '  deepest first contact: '//to_text(minval( &
+      memory%slave_tracking%spot_depth))//' m or less')
+  end subroutine log_contact
+
+  !> The deepest penetration at time zero and the force that it causes; nothing when there is none.
+  !> Initial penetrations are taken as they are.
+  subroutine report_initial_contact(contact, model, memory, log)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(in) :: memory
+    type(log_t), intent(inout) :: log
+    integer :: p
+
+    if (memory%points%n == 0) return
+    p = minloc(memory%points%gap(:memory%points%n), 1)
+    call write_log(log, 'interface '//to_text(contact%id)//': initial penetration at ' &
+      //to_text(memory%points%n)//' points, deepest at node ' &
+      //to_text(model%mesh%node_id(memory%nodes(memory%points%slave_nodes(1, p))))//': ' &
+      //to_text(-memory%points%gap(p))//' m, force ' &
+      //to_text(memory%points%pressure(p)*memory%points%area(p))//' N/m')
+  end subroutine report_initial_contact
+
+  !> First contacts that were too deep and were let go, at the end of the run.
+  subroutine report_released(contact, memory, log)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(log_t), intent(inout) :: log
+
+    if (memory%n_released == 0) return
+    call write_log(log, 'interface '//to_text(contact%id)//': '//to_text(memory%n_released) &
+      //' first contacts were deeper than the limit and were released')
+  end subroutine report_released
+
+end module contact_log_m

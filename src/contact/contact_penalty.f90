@@ -1,0 +1,143 @@
+! SPDX-License-Identifier: MIT
+!> From the penalty of the deck to the pressure of each point.
+module contact_penalty_m
+  use contact_state_m, only : contact_points_t, contact_state_t
+  use contacts_m, only : contact_t, penalty_per_node, penalty_distributed, penalty_factor
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: set_penalties, mean_length, press_points, damp_points
+
+contains
+
+  !> All equivalents of the penalty. The seed's rule eps_hat = eps/l with the mean segment length of the
+  !> initial mesh converts; l is that of the slave surface for eps_hat of the slave pass and for
+  !> eps of type 1, that of the master surface for eps_hat of the master pass.
+  pure subroutine set_penalties(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: master_value, estimate
+
+    master_value = contact%master_penalty
+    if (.not. master_value > 0.0_wp) master_value = contact%penalty
+    select case (contact%penalty_unit)
+    case (penalty_per_node)
+      memory%slave_penalty = contact%penalty/mean_length(contact%slave, model)
+      memory%master_penalty = master_value/mean_length(contact%master, model)
+    case (penalty_distributed)
+      memory%slave_penalty = contact%penalty
+      memory%master_penalty = master_value
+    case (penalty_factor)
+      estimate = model%controls%penalty_scale*min(side_stiffness(contact%slave, model), &
+        side_stiffness(contact%master, model))
+      memory%slave_penalty = contact%penalty*estimate
+      memory%master_penalty = master_value*estimate
+    end select
+    memory%node_penalty = memory%slave_penalty*mean_length(contact%slave, model)
+  end subroutine set_penalties
+
+  !> Mean length of the segments of a surface at time zero, m.
+  pure function mean_length(surface, model) result(length)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    real(wp) :: length
+    integer :: i
+
+    length = 0.0_wp
+    do i = 1, surface%n_segment
+      length = length + initial_length(surface, model, i)
+    end do
+    length = length/surface%n_segment
+  end function mean_length
+
+  !> Length of one segment at time zero, m.
+  pure function initial_length(surface, model, segment) result(length)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: segment
+    real(wp) :: length
+
+    associate (ends => surface%nodes(surface%segments(:, segment)))
+      length = norm2(model%mesh%coordinates(:, ends(2)) - model%mesh%coordinates(:, ends(1)))
+    end associate
+  end function initial_length
+
+  !> K L/A of one side, N/m^2: bulk modulus and area of the element behind each segment, mean over the
+  !> length of the surface.
+  pure function side_stiffness(surface, model) result(stiffness)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    real(wp) :: stiffness
+    real(wp) :: total, length
+    integer :: i, element
+
+    stiffness = 0.0_wp
+    total = 0.0_wp
+    do i = 1, surface%n_segment
+      element = surface%segment_element(i)
+      length = initial_length(surface, model, i)
+      associate (part => model%parts(model%mesh%element_part(element)))
+        stiffness = stiffness + length*model%materials(part%material)%bulk*length &
+          /element_area(model, element)
+      end associate
+      total = total + length
+    end do
+    stiffness = stiffness/total
+  end function side_stiffness
+
+  !> Area of an element at time zero, m^2.
+  pure function element_area(model, element) result(area)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: element
+    real(wp) :: area
+    real(wp) :: x(2, 4)
+
+    x = model%mesh%coordinates(:, model%mesh%element_nodes(:, element))
+    area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+  end function element_area
+
+  !> p = stiffness * max(0, -gap).
+  pure subroutine press_points(points)
+    type(contact_points_t), intent(inout) :: points
+    integer :: p
+
+    do p = 1, points%n
+      points%pressure(p) = points%stiffness(p)*max(0.0_wp, -points%gap(p))
+    end do
+  end subroutine press_points
+
+  !> Add the damping of points in contact: `fraction` of the critical damping 2 sqrt(k m) of the point's
+  !> spring k = stiffness*area and its effective mass, 1/m = sum of w^2/m_node over both sides. The
+  !> total never pulls.
+  pure subroutine damp_points(points, fraction, nodes, motion, mass)
+    type(contact_points_t), intent(inout) :: points
+    real(wp), intent(in) :: fraction
+    integer, intent(in), contiguous :: nodes(:)      !! mesh index of each local node
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u and v
+    real(wp), intent(in), contiguous :: mass(:)      !! (n_node) kg/m
+    real(wp) :: rate, softness, weight
+    integer :: p, k, node
+
+    do p = 1, points%n
+      if (.not. points%pressure(p) > 0.0_wp) cycle
+      rate = 0.0_wp
+      softness = 0.0_wp
+      do k = 1, size(points%slave_nodes, 1)
+        node = nodes(points%slave_nodes(k, p))
+        weight = points%slave_weights(k, p)
+        rate = rate + weight*dot_product(points%normal(:, p), motion(3:4, node))
+        softness = softness + weight**2/mass(node)
+        node = nodes(points%master_nodes(k, p))
+        weight = points%master_weights(k, p)
+        rate = rate - weight*dot_product(points%normal(:, p), motion(3:4, node))
+        softness = softness + weight**2/mass(node)
+      end do
+      points%pressure(p) = max(0.0_wp, points%pressure(p) - 2.0_wp*fraction*rate &
+        *sqrt(points%stiffness(p)/(points%area(p)*softness)))
+    end do
+  end subroutine damp_points
+
+end module contact_penalty_m

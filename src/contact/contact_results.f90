@@ -1,0 +1,120 @@
+! SPDX-License-Identifier: MIT
+!> What the writers want to know of an interface.
+module contact_results_m
+  use contact_placing_m, only : competence_length
+  use contact_projection_m, only : foot_t, closest_foot, walk_to_closest
+  use contact_state_m, only : contact_state_t, is_touching, n_side
+  use contacts_m, only : contact_t
+  use geometry_m, only : segment_length
+  use kinds_m, only : wp
+  use snapshot_m, only : interface_result_t, slave_result_t
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: interface_resultants, slave_rows
+
+contains
+
+  !> Resultants of both sides.
+  pure subroutine interface_resultants(memory, resultants)
+    type(contact_state_t), intent(in) :: memory
+    type(interface_result_t), intent(out) :: resultants
+
+    resultants%slave_force = sum(memory%force(:, :memory%n_slave), 2)
+    resultants%master_force = sum(memory%force(:, memory%n_slave + 1:), 2)
+    resultants%n_active = memory%n_active
+  end subroutine interface_resultants
+
+  !> Rows of all slave nodes in walking order.
+  pure subroutine slave_rows(contact, coordinates, motion, memory, rows)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: coordinates(:, :) !! (2, n_node) at time zero
+    real(wp), intent(in), contiguous :: motion(:, :)      !! (4, n_node) u, v
+    type(contact_state_t), intent(in) :: memory
+    type(slave_result_t), intent(inout) :: rows
+    real(wp), allocatable :: places(:, :)
+    integer :: i, n
+
+    n = memory%n_slave
+    if (.not. allocated(rows%node)) then
+      rows%node = contact%slave%nodes
+      allocate (rows%arc_length(n), rows%gap(n), rows%pressure(n), rows%force(2, n), &
+        rows%length(n))
+    end if
+    allocate (places(4, size(memory%nodes)))
+    places(1:2, :) = coordinates(:, memory%nodes)
+    places(3:4, :) = motion(1:2, memory%nodes)
+    rows%force = memory%force(:, :n)
+    call fill_arc_lengths(contact%slave, places(:, :n), rows%arc_length)
+    call fill_normal_forces(memory, rows%pressure)
+    do i = 1, n
+      rows%length(i) = competence_length(contact%slave, places(:, :n), i)
+      rows%pressure(i) = rows%pressure(i)/max(rows%length(i), tiny(1.0_wp))
+      rows%gap(i) = present_gap(contact%master, places(:, n + 1:), places(:, i), memory, i)
+    end do
+  end subroutine slave_rows
+
+  !> Distance along each chain from its first node, in the present shape.
+  pure subroutine fill_arc_lengths(surface, places, arc_length)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(out) :: arc_length(:)
+    integer :: i
+
+    arc_length = 0.0_wp
+    do i = 2, surface%n_node
+      if (surface%incoming(i) == 0) cycle
+      associate (before => surface%segments(1, surface%incoming(i)))
+        if (before == i - 1) arc_length(i) = arc_length(before) &
+          + segment_length(places(:, before), places(:, i))
+      end associate
+    end do
+  end subroutine fill_arc_lengths
+
+  !> Normal force on each slave node from all points, N/m.
+  pure subroutine fill_normal_forces(memory, normal_force)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(out) :: normal_force(:) !! (n_slave)
+    real(wp), allocatable :: share(:)
+    real(wp) :: total
+    integer :: p, k
+
+    allocate (share(memory%n_slave + memory%n_master), source=0.0_wp)
+    associate (points => memory%points)
+      do p = 1, points%n
+        total = points%pressure(p)*points%area(p)
+        do k = 1, n_side
+          share(points%slave_nodes(k, p)) = share(points%slave_nodes(k, p)) &
+            + points%slave_weights(k, p)*total
+          share(points%master_nodes(k, p)) = share(points%master_nodes(k, p)) &
+            + points%master_weights(k, p)*total
+        end do
+      end do
+    end associate
+    normal_force = share(:memory%n_slave)
+  end subroutine fill_normal_forces
+
+  !> Gap of a slave node at the present places; 0 when it is unpaired.
+  pure function present_gap(master, chain, spot, memory, i) result(gap)
+    type(surface_t), intent(in) :: master
+    real(wp), intent(in), contiguous :: chain(:, :)
+    real(wp), intent(in) :: spot(4)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: i
+    real(wp) :: gap
+    type(foot_t) :: foot
+
+    gap = 0.0_wp
+    associate (tracking => memory%slave_tracking)
+      if (memory%is_stale .or. tracking%segment(i) == 0) return
+      if (tracking%status(i) == is_touching) then
+        gap = tracking%gap(i)
+        return
+      end if
+      foot = closest_foot(master, chain, spot, &
+        walk_to_closest(master, chain, spot, tracking%segment(i)))
+      if (foot%is_on) gap = foot%gap
+    end associate
+  end function present_gap
+
+end module contact_results_m

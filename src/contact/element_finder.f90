@@ -1,0 +1,133 @@
+! SPDX-License-Identifier: MIT
+!> Whether a node lies inside an element of certain parts at time zero.
+!> Elements are sorted into the cells of a uniform grid by their boxes; used once, at the start.
+module element_finder_m
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  implicit none
+  private
+  public :: element_finder_t, start_finder, finds_element
+
+  !> Part of the longest side by which a node must lie within each edge to be inside.
+  real(wp), parameter :: margin = 1.0e-6_wp
+
+  !> The grid; `cells = 0` when there is no element.
+  type :: element_finder_t
+    real(wp) :: low(2) = 0.0_wp       !! lower corner
+    real(wp) :: high(2) = 0.0_wp      !! upper corner
+    real(wp) :: cell(2) = 1.0_wp      !! sides of a cell, m
+    integer :: cells(2) = 0           !! number of cells along x and y
+    integer, allocatable :: first(:)  !! (cells + 1) where each cell starts ...
+    integer, allocatable :: items(:)  !! ... in this list of elements
+  end type element_finder_t
+
+contains
+
+  !> Sort the elements of those parts that hold any of `members`.
+  pure subroutine start_finder(model, members, finder)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: members(:) !! element indices
+    type(element_finder_t), intent(out) :: finder
+    logical, allocatable :: is_wanted(:)
+    integer, allocatable :: elements(:)
+    real(wp) :: size_of_box(2)
+    integer :: i
+
+    allocate (is_wanted(size(model%parts)), source=.false.)
+    is_wanted(model%mesh%element_part(members)) = .true.
+    elements = pack([(i, i=1, model%mesh%n_element)], is_wanted(model%mesh%element_part))
+    finder%low = huge(1.0_wp)
+    finder%high = -huge(1.0_wp)
+    do i = 1, size(elements)
+      associate (x => model%mesh%coordinates(:, model%mesh%element_nodes(:, elements(i))))
+        finder%low = min(finder%low, minval(x, 2))
+        finder%high = max(finder%high, maxval(x, 2))
+      end associate
+    end do
+    size_of_box = max(finder%high - finder%low, tiny(1.0_wp))
+    finder%cell = max(sqrt(product(size_of_box)/size(elements)), maxval(size_of_box)/30000)
+    finder%cells = int(size_of_box/finder%cell) + 1
+    call sort_elements(model, elements, finder)
+  end subroutine start_finder
+
+  !> Counting sort of the elements into the cells that their boxes touch.
+  pure subroutine sort_elements(model, elements, finder)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: elements(:)
+    type(element_finder_t), intent(inout) :: finder
+    integer :: i, ix, iy, cell, pass, low(2), high(2)
+
+    allocate (finder%first(product(finder%cells) + 1), source=0)
+    do pass = 1, 2
+      do i = 1, size(elements)
+        associate (x => model%mesh%coordinates(:, model%mesh%element_nodes(:, elements(i))))
+          low = cell_of(finder, minval(x, 2))
+          high = cell_of(finder, maxval(x, 2))
+        end associate
+        do iy = low(2), high(2)
+          do ix = low(1), high(1)
+            cell = 1 + ix + iy*finder%cells(1)
+            if (pass == 2) finder%items(finder%first(cell)) = elements(i)
+            finder%first(cell) = finder%first(cell) + merge(1, -1, pass == 1)
+          end do
+        end do
+      end do
+      if (pass == 2) exit
+      do cell = 2, size(finder%first)
+        finder%first(cell) = finder%first(cell) + finder%first(cell - 1)
+      end do
+      allocate (finder%items(finder%first(size(finder%first))))
+    end do
+  end subroutine sort_elements
+
+  !> Cell that holds x, counted from 0; the nearest one for places outside.
+  pure function cell_of(finder, x) result(cell)
+    type(element_finder_t), intent(in) :: finder
+    real(wp), intent(in) :: x(2)
+    integer :: cell(2)
+
+    cell = max(0, min(finder%cells - 1, int((x - finder%low)/finder%cell)))
+  end function cell_of
+
+  !> Whether the node lies inside one of the elements that it does not belong to.
+  pure function finds_element(finder, model, node) result(found)
+    type(element_finder_t), intent(in) :: finder
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: node
+    logical :: found
+    integer :: cell(2), k, i
+
+    found = .false.
+    associate (x => model%mesh%coordinates(:, node))
+      if (any(x < finder%low) .or. any(x > finder%high)) return
+      cell = cell_of(finder, x)
+      k = 1 + cell(1) + cell(2)*finder%cells(1)
+      do i = finder%first(k) + 1, finder%first(k + 1)
+        if (any(model%mesh%element_nodes(:, finder%items(i)) == node)) cycle
+        found = is_inside(model, finder%items(i), x)
+        if (found) return
+      end do
+    end associate
+  end function finds_element
+
+  !> Whether x lies inside an element, by more than the margin.
+  pure function is_inside(model, element, x) result(inside)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: element
+    real(wp), intent(in) :: x(2)
+    logical :: inside
+    real(wp) :: a(2), t(2), square
+    integer :: k
+
+    inside = .false.
+    do k = 1, 4
+      a = model%mesh%coordinates(:, model%mesh%element_nodes(k, element))
+      t = model%mesh%coordinates(:, model%mesh%element_nodes(1 + modulo(k, 4), element)) - a
+      square = t(1)**2 + t(2)**2
+      if (.not. square > 0.0_wp) cycle
+      if (t(1)*(x(2) - a(2)) - t(2)*(x(1) - a(1)) <= margin*square) return
+    end do
+    inside = .true.
+  end function is_inside
+
+end module element_finder_m
