@@ -35,15 +35,17 @@ contains
     call reserve_memories(model, elements)
   end subroutine start_elements
 
-  !> Diagonals and h.X of one slot; padding repeats the slot before it, so that it divides by no zero.
+  !> Diagonals and h.X of one slot; padding is the first element of its chunk, much larger: it divides by no
+  !> zero and its stable step never counts.
   subroutine fill_reference(model, i_slot, reference)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_slot
     real(wp), intent(inout) :: reference(:, :)
+    real(wp), parameter :: much = 1.0e6_wp
     real(wp) :: x(2, 4)
 
     if (model%layout%slot_element(i_slot) == 0) then
-      reference(i_slot, :) = reference(i_slot - 1, :)
+      reference(i_slot, :) = much*reference(i_slot - mod(i_slot - 1, chunk_size), :)
       return
     end if
     x = model%mesh%coordinates(:, model%layout%slot_nodes(:, i_slot))
