@@ -4,6 +4,7 @@
 module cycle_m
   use clock_m, only : lap, phase_nodes
   use constraints_m, only : update_activity
+  use contact_check_m, only : report_contact_start, report_contact_end
   use contact_force_m, only : apply_contact
   use energies_m, only : energy_ratio, total_energy
   use errors_m, only : error_t
@@ -153,6 +154,7 @@ contains
         cycle%finished = .true.
         return
       end if
+      call report_contact_start(model, state, monitor%log)
       call prepare_leap(model, state, cycle)
       call start_prescribed(model, cycle%velocity, state)
     end if
@@ -174,6 +176,7 @@ contains
     if (.not. allocated(cycle%error) .and. cycle%due%glstat) call check_energy(model%controls, &
       monitor%snapshot%energies, cycle%error)
     cycle%finished = cycle%last .or. allocated(cycle%error)
+    if (cycle%finished) call report_contact_end(model, state, monitor%log)
   end subroutine report_cycle
 
   !> Prescribed nodes to their places, health, and on to the next instant.
