@@ -3,7 +3,7 @@
 module deck_echo_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
-  use parts_m, only : hourglass_stiffness, law_plastic
+  use parts_m, only : hourglass_stiffness
   use contacts_m, only : contact_t, contact_kind_t
   use controls_m, only : interval_t
   use model_m, only : model_t
@@ -93,7 +93,7 @@ contains
         //to_text(material%young)//', nu '//to_text(material%poisson)//', K ' &
         //to_text(material%bulk)//', G '//to_text(material%shear)//', c ' &
         //to_text(material%sound_speed)
-      if (material%law == law_plastic) text = text//', yield '//to_text(material%yield) &
+      if (material%yield > 0.0_wp) text = text//', yield '//to_text(material%yield) &
         //', plastic modulus '//to_text(material%hardening)//', beta '//to_text(material%beta)
     end associate
     call write_log(log, text)
