@@ -267,7 +267,8 @@ def report(args, mass, load, history, every):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("nx", type=int)
     parser.add_argument("ny", type=int)
     parser.add_argument("law", choices=sorted(LAWS))
@@ -281,7 +282,8 @@ def main():
     ids, table, mass, load, left, pin, watch = build(args.nx, args.ny)
     dx, dy = LENGTH / args.nx, HEIGHT / args.ny
     gauss = 1 / np.sqrt(3)
-    slope = np.array([shapes(x, y)[1] * (2 / dx, 2 / dy) for x in (-gauss, gauss) for y in (-gauss, gauss)])
+    slope = np.array([shapes(x, y)[1] * (2 / dx, 2 / dy)
+                      for x in (-gauss, gauss) for y in (-gauss, gauss)])
     limit = np.full(args.nx * args.ny, args.limit)
     limit[round(args.nx * ELASTIC_FROM / LENGTH) * args.ny:] = 1.0e30
     speed = np.sqrt((BULK + 4 * SHEAR / 3) / DENSITY)

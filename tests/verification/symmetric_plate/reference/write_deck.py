@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
 """Write a CalculiX deck of the symmetric plate (half model) and turn its results into a CSV.
 
-  make_deck.py deck NX NY svk|neohooke|elastoplastic DT OUT.inp [--type C3D20R] [--alpha -0.05] [--end 0.6]
-  make_deck.py csv JOB.dat OUT.csv [--step 1e-3]
+  write_deck.py deck NX NY svk|neohooke|elastoplastic DT OUT.inp
+                [--type C3D20R] [--alpha -0.05] [--end 0.6]
+  write_deck.py csv JOB.dat OUT.csv [--step 1e-3]
 
+`deck` writes OUT.inp and, beside it, the mesh mesh_NXxNY.inp that OUT.inp includes.
 The plate is a layer of 3D elements one element thick with u_z = 0 on every node, which is plane
 strain. 20-node and 8-node bricks and 8-node plane-strain quads (CPE8, CPE8R) are known.
 """
 import argparse
+import pathlib
 
 import numpy as np
 
@@ -34,58 +37,77 @@ def top_weights(kind):
     return {(0, 0): 0.5, (2, 0): 0.5}
 
 
-def write_lines(out, ids, per_line=12):
-    ids = list(ids)
-    for start in range(0, len(ids), per_line):
-        out.write(", ".join(str(i) for i in ids[start:start + per_line]) + ",\n")
+def write_lines(out, numbers, per_line):
+    """A list of numbers in lines; a comma at the end of a line continues it."""
+    for start in range(0, len(numbers), per_line):
+        last = start + per_line >= len(numbers)
+        out.write(",".join(map(str, numbers[start:start + per_line])) + ("\n" if last else ",\n"))
+
+
+def grid_mesh(nx, ny, kind):
+    """Node numbers by half-cell index (i, j, k), and the node numbers of each element."""
+    ids, elements = {}, []
+    for i in range(nx):
+        for j in range(ny):
+            elements.append([ids.setdefault((2 * i + a, 2 * j + b, c), len(ids) + 1)
+                             for a, b, c in CORNERS[kind]])
+    return ids, elements
+
+
+def write_mesh(args, ids, elements, thick, name):
+    """Nodes, elements (sets BODY and TIP) and node sets."""
+    nx, ny = args.nx, args.ny
+    plastic = round(nx * ELASTIC_FROM / LENGTH) * ny
+    with open(name, "w", encoding="ascii") as out:
+        out.write(f"** Symmetric plate, {nx} x {ny} {args.type}\n*NODE,NSET=ALL\n")
+        for (i, j, k), node in ids.items():
+            out.write(f"{node},{i*LENGTH/(2*nx):.9g},{j*HEIGHT/(2*ny):.9g},{k*thick/2:.9g}\n")
+        for group, first, last in (("BODY", 0, plastic), ("TIP", plastic, nx * ny)):
+            out.write(f"*ELEMENT,TYPE={args.type},ELSET={group}\n")
+            for number in range(first, last):
+                write_lines(out, [number + 1] + elements[number], 15)
+        for group, test in (("SYMMETRY", lambda i, j: i == 0),
+                            ("PIN", lambda i, j: i == 2 * nx and j == ny),
+                            ("MID", lambda i, j: i == 0 and j == ny)):
+            out.write(f"*NSET,NSET={group}\n")
+            write_lines(out, [n for (i, j, k), n in ids.items() if test(i, j)], 12)
+
+
+def write_material(out, args, group, solid):
+    out.write(f"*MATERIAL,NAME={group}\n*ELASTIC\n1.e9,0.3\n*DENSITY\n1000.\n")
+    if args.law == "elastoplastic" and group == "BODY":
+        out.write("*PLASTIC\n1.e7,0.\n")
+    elif args.law != "svk":
+        out.write("*PLASTIC\n1.e15,0.\n")      # finite-strain law that never yields
+    out.write(f"*SOLID SECTION,ELSET={group},MATERIAL={group}\n")
+    out.write("" if solid else "1.\n")
 
 
 def write_deck(args):
     nx, ny, kind = args.nx, args.ny, args.type
     solid = kind.startswith("C3D")
     thick = HEIGHT / ny if solid else 1.0
-    ids, elements = {}, []
-    for i in range(nx):
-        for j in range(ny):
-            elements.append([ids.setdefault((2 * i + a, 2 * j + b, c), len(ids) + 1)
-                             for a, b, c in CORNERS[kind]])
+    ids, elements = grid_mesh(nx, ny, kind)
+    mesh = pathlib.Path(args.out).with_name(f"mesh_{nx}x{ny}.inp")
+    write_mesh(args, ids, elements, thick, mesh)
     force = {}
     for i in range(nx):
         for (a, c), weight in top_weights(kind).items():
             node = ids[(2 * i + a, 2 * ny, c)]
             force[node] = force.get(node, 0.0) + weight * LOAD * thick * LENGTH / nx
-    plastic_columns = round(nx * ELASTIC_FROM / LENGTH)
     with open(args.out, "w", encoding="ascii") as out:
-        out.write(f"** Symmetric plate, {nx} x {ny} {kind}, {args.law}, time step {args.dt:g} s\n*NODE, NSET=ALL\n")
-        for (i, j, k), node in ids.items():
-            out.write(f"{node}, {i*LENGTH/(2*nx):.9g}, {j*HEIGHT/(2*ny):.9g}, {k*thick/2:.9g}\n")
-        for name, first, last in (("BODY", 0, plastic_columns * ny), ("TIP", plastic_columns * ny, nx * ny)):
-            out.write(f"*ELEMENT, TYPE={kind}, ELSET={name}\n")
-            for number in range(first, last):
-                line = [number + 1] + elements[number]
-                if len(line) > 16:
-                    out.write(", ".join(map(str, line[:16])) + ",\n" + ", ".join(map(str, line[16:])) + "\n")
-                else:
-                    out.write(", ".join(map(str, line)) + "\n")
-        for name, test in (("SYMMETRY", lambda i, j: i == 0), ("PIN", lambda i, j: i == 2 * nx and j == ny),
-                           ("MID", lambda i, j: i == 0 and j == ny)):
-            out.write(f"*NSET, NSET={name}\n")
-            write_lines(out, [n for (i, j, k), n in ids.items() if test(i, j)])
-        for name in ("BODY", "TIP"):
-            out.write(f"*MATERIAL, NAME={name}\n*ELASTIC\n1.e9, 0.3\n*DENSITY\n1000.\n")
-            if args.law == "neohooke":
-                out.write("*PLASTIC\n1.e15, 0.\n")
-            elif args.law == "elastoplastic":
-                out.write("*PLASTIC\n1.e7, 0.\n" if name == "BODY" else "*PLASTIC\n1.e15, 0.\n")
-            out.write(f"*SOLID SECTION, ELSET={name}, MATERIAL={name}\n")
-            out.write("1.\n" if not solid else "")
-        out.write("*AMPLITUDE, NAME=ON\n0., 1., 10., 1.\n")
-        out.write("*BOUNDARY\nSYMMETRY, 1, 1\nPIN, 1, 2\n" + ("ALL, 3, 3\n" if solid else ""))
-        out.write(f"*STEP, NLGEOM, INC=100000\n*DYNAMIC, DIRECT, ALPHA={args.alpha:g}\n{args.dt:.6g}, {args.end:.6g}\n")
-        out.write("*CLOAD, AMPLITUDE=ON\n")
+        out.write(f"** Symmetric plate, {args.law}, time step {args.dt:g} s\n")
+        out.write(f"*INCLUDE,INPUT={mesh.name}\n")
+        for group in ("BODY", "TIP"):
+            write_material(out, args, group, solid)
+        out.write("*AMPLITUDE,NAME=ON\n0.,1.,10.,1.\n")
+        out.write("*BOUNDARY\nSYMMETRY,1,1\nPIN,1,2\n" + ("ALL,3,3\n" if solid else ""))
+        out.write(f"*STEP,NLGEOM,INC=100000\n*DYNAMIC,DIRECT,ALPHA={args.alpha:g}\n")
+        out.write(f"{args.dt:.6g},{args.end:.6g}\n")
+        out.write("*CLOAD,AMPLITUDE=ON\n")
         for node, value in force.items():
-            out.write(f"{node}, 2, {value:.12g}\n")
-        out.write("*NODE PRINT, NSET=MID\nU\n*END STEP\n")
+            out.write(f"{node},2,{value:.12g}\n")
+        out.write("*NODE PRINT,NSET=MID\nU\n*END STEP\n")
 
 
 def read_history(name):
@@ -114,7 +136,8 @@ def write_csv(args):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True)
     deck = commands.add_parser("deck")
     deck.add_argument("nx", type=int)
