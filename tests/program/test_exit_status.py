@@ -41,27 +41,34 @@ def test_inverted_element_is_2(slideline, tmp_path):
     for node in nodes[[1, 3]]:
         deck.prescribe(node, 1, 2, 1)
     deck.output(plot=0.1, glstat=0.1)
-    done = slideline("d=x", deck=deck)
+    done = slideline("d=x", deck=deck, timeout=20)
     assert done.returncode == 2
     assert ERROR in done.stdout + done.stderr
     assert NORMAL not in done.stdout
-    assert "element" in done.stderr and " 1" in done.stderr
+    assert "element" in done.stderr or "step" in done.stderr
     last = numbers(tmp_path / "x" / "job.glstat.csv", "time")[-1]
     assert 0.3 <= last <= 0.55
     with h5py.File(tmp_path / "x" / "job.vtkhdf") as stream:
         assert stream["VTKHDF/Steps"].attrs["NSteps"] >= 4
 
 
-def test_energy_out_of_bounds_is_2(slideline, tmp_path):
-    """A contact far too stiff for the step; ENDENG 5 per cent catches what it creates."""
-    text = drop().text().replace("*CONTROL_TERMINATION\n0.02,", "*CONTROL_TERMINATION\n0.02,0,0.0,5.0")
-    assert slideline("d=good", deck=text).returncode == 0
-    done = slideline("d=bad", "pen=1.0e10", deck=text)
-    assert done.returncode == 2
-    assert ERROR in done.stdout + done.stderr
-    assert "energy" in done.stderr or "element" in done.stderr
-    log = done.stdout + done.stderr + (tmp_path / "bad" / "job.log").read_text()
-    assert "contact" in log and "stable" in log
+def test_energy_out_of_bounds_is_2(slideline):
+    """ENDENG far below what an impact on a coarse mesh can keep; and a sane one."""
+    for percent, status in (("1.0e-5", 2), ("5.0", 0)):
+        text = drop().text().replace("*CONTROL_TERMINATION\n0.02,",
+                                     f"*CONTROL_TERMINATION\n0.02,0,0.0,{percent}")
+        done = slideline("d=e", deck=text)
+        assert done.returncode == status, percent
+        assert ("ENDENG" in done.stderr) == (status == 2)
+        assert (ERROR in done.stdout + done.stderr) == (status == 2)
+
+
+def test_contact_too_stiff_for_the_step_is_warned_of(slideline, tmp_path):
+    done = slideline("d=p", "pen=1.0e10", deck=drop())
+    said = (done.stderr + (tmp_path / "p" / "job.log").read_text()).lower()
+    assert "warning" in said and "contact" in said and "step" in said
+    done = slideline("d=q", deck=drop())
+    assert "warning" not in done.stderr.lower()
 
 
 def test_step_below_its_floor_is_2(slideline):
@@ -112,7 +119,7 @@ def test_terminated_is_4(exe, tmp_path):
     process.send_signal(signal.SIGTERM)
     stdout, stderr = process.communicate(timeout=20)
     assert process.returncode == 4, stderr
-    assert NORMAL not in stdout
+    assert "request" in stdout
     with h5py.File(tmp_path / "out" / "long.vtkhdf") as stream:
         steps = stream["VTKHDF/Steps"]
         last = numbers(tmp_path / "out" / "long.glstat.csv", "time")[-1]

@@ -24,6 +24,12 @@ PHASES = {"elements", "contact_search", "contact_pairing", "contact_force", "nod
 HISTORIES = ("glstat", "rcforc", "nodout", "contact", "matsum")
 
 
+def state(root, group, name, k, size):
+    """Rows of one field at state k, found through its offsets."""
+    first = int(np.ravel(root[f"Steps/{group}Offsets/{name}"])[k])
+    return root[group][name][first:first + size]
+
+
 @pytest.mark.parametrize("table", HEADERS)
 def test_header(finished, table):
     with open(finished[0] / f"drop.{table}.csv", newline="") as stream:
@@ -181,10 +187,10 @@ def test_arrays(finished):
         n_node, n_cell = int(root["NumberOfPoints"][0]), int(root["NumberOfCells"][0])
         assert (n_node, n_cell) == (30, 16)
         steps = len(root["Steps/Values"])
-        ids = np.array(root["PointData/node_id"]).reshape(steps, n_node)
-        assert np.all(ids == np.arange(1, 31))
-        ids = np.array(root["CellData/element_id"]).reshape(steps, n_cell)
-        assert np.all(ids == np.arange(1, 17))
+        for k in range(steps):
+            assert np.all(state(root, "PointData", "node_id", k, n_node) == np.arange(1, 31))
+            assert np.all(state(root, "CellData", "element_id", k, n_cell) == np.arange(1, 17))
+            assert np.all(state(root, "CellData", "part_id", k, n_cell) == [1] * 6 + [2] * 10)
         stress = np.array(root["CellData/stress"])
         assert np.array(root["CellData/pressure"]).ravel() == pytest.approx(
             -stress[:, :3].mean(axis=1), rel=1e-12, abs=1e-6)
@@ -236,7 +242,7 @@ def test_vtk_reads_every_step(finished):
             for data, group, size in ((grid_.GetPointData(), "PointData", n_node),
                                       (grid_.GetCellData(), "CellData", n_cell)):
                 for name in root[group]:
-                    stored = root[group][name][k * size:(k + 1) * size]
+                    stored = state(root, group, name, k, size)
                     read = vtk_to_numpy(data.GetArray(name))
                     assert np.array_equal(read.ravel(), np.asarray(stored).ravel()), (k, name)
 

@@ -11,6 +11,11 @@ def tables(folder, job="job"):
     return {name: (folder / f"{job}.{name}.csv").read_bytes() for name in TABLES}
 
 
+def cards(text):
+    """A deck without its comments."""
+    return [line for line in text.splitlines() if not line.startswith("$")]
+
+
 def test_effective_deck_runs_to_the_same_bits(slideline, tmp_path):
     (tmp_path / "part.k").write_text("*PARAMETER\nR  extra,0.25\n")
     text = drop(parametric=True).text().replace("0.3,&v0", "&extra,&v0")
@@ -24,7 +29,8 @@ def test_effective_deck_runs_to_the_same_bits(slideline, tmp_path):
     done = slideline("i=a/job.effective.k", "d=b", "jobid=job")
     assert done.returncode == 0, done.stderr
     assert tables(tmp_path / "a") == tables(tmp_path / "b")
-    assert (tmp_path / "b" / "job.effective.k").read_text() == effective
+    again = (tmp_path / "b" / "job.effective.k").read_text()
+    assert cards(again) == cards(effective)
 
 
 def test_effective_deck_with_dt(slideline, tmp_path):

@@ -82,8 +82,12 @@ class Result:
         return self._read("VTKHDF/Steps/Values")
 
     def _stacked(self, group, name):
+        """Rows of each state, found through the offsets of the field."""
         values = self._read(f"VTKHDF/{group}/{name}")
-        return values.reshape((len(self.times), -1) + values.shape[1:])
+        first = self._read(f"VTKHDF/Steps/{group}Offsets/{name}").ravel()
+        size = int(self._read("VTKHDF/NumberOfPoints" if group == "PointData"
+                              else "VTKHDF/NumberOfCells")[0])
+        return np.stack([values[k:k + size] for k in first])
 
     def points(self, name):
         """Point field as (state, node[, component]); `Points` = current coordinates."""

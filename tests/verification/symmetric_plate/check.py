@@ -56,8 +56,10 @@ def check_law(run, law, deck_law):
     run.check(f"{law}: last refinement changes less than the one before",
               abs(fine - middle) / abs(middle - coarse), 1.0, 0.0, "max", "convergence")
     for (form, mesh), (_, energy) in found.items():
-        ratio = energy["energy_ratio"][energy["time"] > 0.01]
-        run.check(f"{law}, {form}, {mesh}: energy ratio", ratio, 1.0, 0.01, "abs", "balance")
+        # the plate swings back to where the load has done no work, so the ratio itself says little
+        missing = (energy["total"] - energy["external_work"]) / energy["external_work"].max()
+        run.check(f"{law}, {form}, {mesh}: energy missing / largest work", missing, 0.0, 1e-3, "abs",
+                  "balance")
     early = history["time"] <= 0.004
     run.check(f"{law}: early acceleration of the middle", np.polyfit(
         history["time"][early] ** 2, history["uy"][early], 1)[0] * 2.0, 80.0, 0.1,
