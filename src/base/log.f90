@@ -15,9 +15,10 @@ module log_m
     module procedure real_to_text
   end interface to_text
 
-  !> One log. `unit = -1` while no file is open.
+  !> One log.
   type :: log_t
-    integer :: unit = -1                  !! Fortran unit of the open file
+    logical :: is_open = .false.
+    integer :: unit = 0                   !! Fortran unit of the open file (newunit gives negative ones)
     integer :: n_warning = 0              !! warnings so far
     character(:), allocatable :: waiting  !! lines from before the file was open
   end type log_t
@@ -35,10 +36,10 @@ contains
     open (newunit=log%unit, file=path, status='replace', action='write', iostat=status, &
       iomsg=reason)
     if (status /= 0) then
-      log%unit = -1
       call raise(error, 'cannot write the log '//path//': '//trim(reason), status_files)
       return
     end if
+    log%is_open = .true.
     if (allocated(log%waiting)) then
       write (log%unit, '(a)', advance='no') log%waiting
       deallocate (log%waiting)
@@ -50,7 +51,7 @@ contains
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
 
-    if (log%unit >= 0) then
+    if (log%is_open) then
       write (log%unit, '(a)') text
     else if (allocated(log%waiting)) then
       log%waiting = log%waiting//text//new_line('a')
@@ -73,8 +74,8 @@ contains
   subroutine close_log(log)
     type(log_t), intent(inout) :: log
 
-    if (log%unit >= 0) close (log%unit)
-    log%unit = -1
+    if (log%is_open) close (log%unit)
+    log%is_open = .false.
   end subroutine close_log
 
   !> Integer as text.
