@@ -35,8 +35,8 @@ contains
     call reserve_memories(model, elements)
   end subroutine start_elements
 
-  !> Diagonals and h.X of one slot; padding is the first element of its chunk, much larger: it divides by no
-  !> zero and its stable step never counts.
+  !> Diagonals and h.X of one slot; padding is the first element of its chunk, much larger: it divides by
+  !> no zero and its stable step never counts.
   subroutine fill_reference(model, i_slot, reference)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_slot
