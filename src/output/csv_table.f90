@@ -117,8 +117,9 @@ contains
     text = buffer(:n)
   end function row_text
 
-  !> Append a row and its line end behind `n` bytes of the buffer. What a row costs is the conversion
-  !> of its reals: all go through one internal write, and zeros, which are many, through none.
+  !> Append a row and its line end behind `n` bytes of the buffer. What a row costs is the
+  !> conversion of its reals: all go through one internal write, and zeros, which are many, through
+  !> none.
   pure subroutine append_line(buffer, n, values, kinds)
     character(*), intent(inout) :: buffer
     integer, intent(inout) :: n        !! bytes in use
@@ -129,7 +130,7 @@ contains
     logical :: is_converted(size(values))
     integer :: i, i_real
 
-    is_converted = kinds == kind_real .and. values /= 0.0_wp ! true of NaN
+    is_converted = kinds == kind_real .and. values /= 0.0_wp ! so NaN is
     if (any(is_converted)) write (reals(:count(is_converted)), '(es24.16e3)') &
       pack(values, is_converted)
     i_real = 0

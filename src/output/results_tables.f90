@@ -11,7 +11,7 @@ module results_tables_m
     write_string_attribute, write_text
   implicit none
   private
-  public :: run_info_t, write_run, write_histories
+  public :: run_info_t, write_run, write_histories, utf8_text
 
   !> What the file says of the run.
   type :: run_info_t
@@ -36,14 +36,24 @@ contains
     call make_group(id, 'run', error)
     if (allocated(error)) return
     call h5gopen_f(id, 'run', group, status)
-    call write_string_attribute(group, 'deck', text_of(run_info%deck), .false., error)
-    call write_string_attribute(group, 'title', text_of(run_info%title), .false., error)
-    call write_string_attribute(group, 'version', text_of(run_info%version), .false., error)
-    call write_string_attribute(group, 'build', text_of(run_info%build), .false., error)
-    call write_string_attribute(group, 'options', text_of(run_info%options), .false., error)
+    call write_known(group, 'deck', run_info%deck, error)
+    call write_known(group, 'title', run_info%title, error)
+    call write_known(group, 'version', run_info%version, error)
+    call write_known(group, 'build', run_info%build, error)
+    call write_known(group, 'options', run_info%options, error)
     call write_text(group, 'effective_deck', text_of(run_info%effective_deck), error)
     call h5gclose_f(group, status)
   end subroutine write_run
+
+  !> Write a text that may be missing as an attribute.
+  subroutine write_known(group, name, text, error)
+    integer(hid_t), intent(in) :: group                !! open group
+    character(*), intent(in) :: name
+    character(:), allocatable, intent(in) :: text
+    type(error_t), allocatable, intent(inout) :: error
+
+    call write_string_attribute(group, name, utf8_text(text_of(text)), .false., error)
+  end subroutine write_known
 
   !> A text that may be missing.
   pure function text_of(text) result(known)
@@ -53,6 +63,48 @@ contains
     known = ''
     if (allocated(text)) known = text
   end function text_of
+
+  !> The text in UTF-8: as it is, or taken for Latin-1 where it is not UTF-8 (decks are either).
+  pure function utf8_text(text) result(utf8)
+    character(*), intent(in) :: text
+    character(:), allocatable :: utf8
+    integer :: i, code
+
+    if (is_utf8(text)) then
+      utf8 = text
+      return
+    end if
+    utf8 = ''
+    do i = 1, len(text)
+      code = ichar(text(i:i))
+      if (code < 128) then
+        utf8 = utf8//text(i:i)
+      else
+        utf8 = utf8//char(192 + code/64)//char(128 + mod(code, 64))
+      end if
+    end do
+  end function utf8_text
+
+  !> Whether the bytes form UTF-8: every leading byte has its number of continuation bytes.
+  pure function is_utf8(text) result(valid)
+    character(*), intent(in) :: text
+    logical :: valid
+    integer :: i, code, n_to_come
+
+    valid = .true.
+    n_to_come = 0
+    do i = 1, len(text)
+      code = ichar(text(i:i))
+      if (n_to_come > 0) then
+        valid = valid .and. code/64 == 2
+        n_to_come = n_to_come - 1
+      else if (code >= 128) then
+        valid = valid .and. code >= 194 .and. code < 245
+        n_to_come = merge(1, merge(2, 3, code < 240), code < 224)
+      end if
+    end do
+    valid = valid .and. n_to_come == 0
+  end function is_utf8
 
   !> Write all tables below /history, which is there.
   subroutine write_histories(id, histories, error)
