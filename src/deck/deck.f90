@@ -18,7 +18,7 @@ module deck_m
   use deck_overrides_m, only : overrides_t, read_overrides, override_text
   use deck_override_apply_m, only : apply_overrides
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
-  use deck_raw_m, only : raw_t, start_raw
+  use deck_raw_m, only : raw_t, lost_t, start_raw
   use deck_mesh_m, only : read_nodes, read_elements, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
   use deck_material_m, only : read_elastic, read_plastic_kinematic, read_curve
@@ -36,7 +36,8 @@ module deck_m
   !> What is to be read.
   type :: deck_request_t
     character(:), allocatable :: path
-    character(:), allocatable :: overrides(:) !! `name=value`, `name.interface=value`, `p:NAME=value`
+    character(:), allocatable :: overrides(:) !! `name=value`, `name.interface=value`,
+                                              !! `p:NAME=value`
   end type deck_request_t
 
 contains
@@ -60,14 +61,18 @@ contains
 
     call read_blocks(request%path, deck, error)
     if (allocated(error)) return
-    call know_blocks(deck, known)
+    call start_raw(raw)
+    call know_blocks(deck, raw, known)
+    if (deck%n_block == 0) then
+      call emit_errors(deck%report, request%path, error)
+      return
+    end if
     if (allocated(request%overrides)) then
       call read_overrides(request%overrides, deck, parameters, overrides)
     else
       allocate (overrides%items(0))
     end if
     call read_parameters(deck, parameters)
-    call start_raw(raw)
     raw%end_given = len(override_text(overrides, 'ENDTIM', 0)) > 0
     raw%controls%title = ''
     do i = 1, deck%n_block
@@ -86,8 +91,9 @@ contains
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
   !> those without effect one warning each.
-  subroutine know_blocks(deck, known)
+  subroutine know_blocks(deck, raw, known)
     type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(inout) :: raw
     integer, allocatable, intent(out) :: known(:)
     character(:), allocatable :: reason
     character(100) :: name
@@ -109,12 +115,28 @@ contains
           call line_warning(deck, block%keyword, 'ignored'//trim(block%given), 'has no effect here')
         case (known_refused)
           call line_error(deck, block%keyword, reason//' not part of this version')
+          call note_lost(block%given, raw%lost)
         case default
           call line_error(deck, block%keyword, 'is not a keyword that this version knows')
+          call note_lost(block%given, raw%lost)
         end select
       end associate
     end do
   end subroutine know_blocks
+
+  !> What a refused keyword would have defined.
+  pure subroutine note_lost(name, lost)
+    character(*), intent(in) :: name
+    type(lost_t), intent(inout) :: lost
+
+    lost%nodes = lost%nodes .or. index(name, 'NODE') == 1 .or. index(name, 'INCLUDE') == 1
+    lost%elements = lost%elements .or. index(name, 'ELEMENT') == 1
+    lost%parts = lost%parts .or. index(name, 'PART') == 1
+    lost%sections = lost%sections .or. index(name, 'SECTION') == 1
+    lost%materials = lost%materials .or. index(name, 'MAT') == 1
+    lost%curves = lost%curves .or. index(name, 'DEFINE') == 1
+    lost%sets = lost%sets .or. index(name, 'SET') == 1
+  end subroutine note_lost
 
   !> Read one block by its keyword.
   subroutine read_block(deck, parameters, i, kinds, overrides, raw)

@@ -185,7 +185,7 @@ contains
 
     call row_comes(deck, cursor, found)
     if (found) call line_warning(deck, cursor%line, 'rest'//to_text(cursor%line), &
-      'this and what follows up to the next keyword is ignored: more lines than the keyword has cards')
+      'from here to the next keyword ignored: more lines than the keyword has cards')
   end subroutine check_rest
 
   !> An error of field `k` of a card just read.

@@ -177,7 +177,8 @@ contains
     integer :: k
 
     do k = 4, 5
-      if (card%i(k) < 1) call report_field(deck, cursor, card, k, 'is not a node number (1 or more)')
+      if (card%i(k) < 1) call report_field(deck, cursor, card, k, &
+        'is not a node number (1 or more)')
     end do
     if (card%i(4) == card%i(5)) call report_field(deck, cursor, card, 5, &
       'is the first node again; an edge has two nodes')
@@ -234,7 +235,8 @@ contains
     type(card_t), intent(inout) :: cards(:)
     integer :: k
 
-    if (cards(1)%i(1) < 0) call report_field(deck, cursor, cards(1), 1, 'is not a number of 0 or more')
+    if (cards(1)%i(1) < 0) call report_field(deck, cursor, cards(1), 1, &
+      'is not a number of 0 or more')
     if (cards(1)%i(2) < 1 .or. cards(1)%i(2) > 3) call report_field(deck, cursor, cards(1), 2, &
       'is not a kind of set (1 part set, 2 part, 3 node set)')
     if (abs(cards(1)%r(3)) > 1.0e30_wp) call report_field(deck, cursor, cards(1), 3, 'is too large')

@@ -127,8 +127,8 @@ contains
 
     associate (contact => entry%contact)
       contact%contact_type = cards(1)%i(3)
-      if (.not. (typed .or. any(kinds%number == cards(1)%i(3)))) call report_field(deck, cursor, cards(1), 3, &
-        'is not a contact type'//kind_names(kinds))
+      if (.not. (typed .or. any(kinds%number == cards(1)%i(3)))) call report_field(deck, cursor, &
+        cards(1), 3, 'is not a contact type'//kind_names(kinds))
       contact%n_gauss = cards(1)%i(4)
       if (cards(1)%blank(4) .or. cards(1)%i(4) == 0) contact%n_gauss = 2
       if (contact%n_gauss < 1 .or. contact%n_gauss > 10) call report_field(deck, cursor, cards(1), &

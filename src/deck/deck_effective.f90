@@ -8,10 +8,10 @@ module deck_effective_m
   private
   public :: write_effective
 
-  !> A text that grows.
+  !> A text that is first counted, then written.
   type :: buffer_t
     character(:), allocatable :: text
-    integer :: n = 0
+    integer :: n = 0                   !! characters so far
   end type buffer_t
 
 contains
@@ -23,10 +23,22 @@ contains
     character(*), intent(in) :: tail  !! keywords besides those of the deck
     character(:), allocatable, intent(out) :: effective
     type(buffer_t) :: buffer
-    integer :: i, line, source, n
 
-    n = expected_length(deck)
-    allocate (character(n) :: buffer%text)
+    call compose(deck, parameters, tail, buffer)
+    allocate (character(buffer%n) :: buffer%text)
+    buffer%n = 0
+    call compose(deck, parameters, tail, buffer)
+    call move_alloc(buffer%text, effective)
+  end subroutine write_effective
+
+  !> Put the deck together; only counted while the buffer has no text.
+  subroutine compose(deck, parameters, tail, buffer)
+    type(deck_t), intent(in) :: deck
+    type(parameters_t), intent(in) :: parameters
+    character(*), intent(in) :: tail
+    type(buffer_t), intent(inout) :: buffer
+    integer :: i, line, source
+
     call put(buffer, '$ The deck as run: includes, parameters and command line resolved.')
     call put_text(buffer, parameter_comments(parameters))
     call put(buffer, '*KEYWORD')
@@ -48,21 +60,7 @@ contains
     end do
     call put_text(buffer, tail)
     call put(buffer, '*END')
-    effective = buffer%text(:buffer%n)
-  end subroutine write_effective
-
-  !> Characters that the effective deck has at most, but for changed lines (the buffer grows).
-  pure function expected_length(deck) result(n)
-    type(deck_t), intent(in) :: deck
-    integer :: n
-    integer :: i
-
-    n = 4096
-    do i = 1, deck%n_line
-      n = n + 1 + max(deck%last(i) - abs(deck%first(i)) + 1, 0)
-    end do
-    n = n + 4*deck%n_block
-  end function expected_length
+  end subroutine compose
 
   !> Append a line.
   subroutine put(buffer, line)
@@ -77,14 +75,8 @@ contains
   subroutine put_text(buffer, text)
     type(buffer_t), intent(inout) :: buffer
     character(*), intent(in) :: text
-    character(:), allocatable :: larger
 
-    if (buffer%n + len(text) > len(buffer%text)) then
-      allocate (character(buffer%n + buffer%n/2 + len(text)) :: larger)
-      larger(:buffer%n) = buffer%text(:buffer%n)
-      call move_alloc(larger, buffer%text)
-    end if
-    buffer%text(buffer%n + 1:buffer%n + len(text)) = text
+    if (allocated(buffer%text)) buffer%text(buffer%n + 1:buffer%n + len(text)) = text
     buffer%n = buffer%n + len(text)
   end subroutine put_text
 

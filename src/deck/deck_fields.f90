@@ -274,10 +274,11 @@ contains
     text = where_text(deck, card%line)//' card '//to_text(spec%number)//' field '//to_text(k) &
       //' ('//trim(spec%names(k))//'): '
     if (card%present .and. .not. card%blank(k)) then
-      text = text//'"'//printable(field_text(deck, card, k))//'" '
+      text = text//'"'//printable(field_text(deck, card, k))//'"'
     else
-      text = text//'blank '
+      text = text//'blank'
     end if
+    if (message(1:1) /= ':') text = text//' '
     text = text//message
     if (card%present) text = text//new_line('a')//marked_line(line_text(deck, card%line), &
       card%first(k), max(card%last(k), card%first(k)))

@@ -8,6 +8,7 @@ module deck_ids_m
 
   !> Index of every id of one kind.
   type :: id_map_t
+    logical :: incomplete = .false.          !! some definitions were refused: others may be meant
     integer :: low = 1                       !! smallest id of the table
     integer, allocatable :: table(:)         !! index of id low, low + 1, ..., 0 where there is none
     integer, allocatable :: sorted(:)        !! ids in increasing order ...

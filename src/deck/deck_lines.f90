@@ -62,6 +62,7 @@ module deck_lines_m
     integer :: n_block = 0
     character(:), allocatable :: patch        !! text of changed lines
     integer :: n_patch = 0                    !! characters of it in use
+    logical :: incomplete = .false.           !! an included file could not be read
     type(report_t) :: report
   end type deck_t
 

@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Id maps of every kind of thing in a deck; ids given twice are errors.
 module deck_maps_m
-  use log_m, only : to_text
   use deck_lines_m, only : deck_t, place_t, where_text
   use deck_cards_m, only : reject_field
   use deck_ids_m, only : id_map_t, map_ids, index_of
@@ -23,6 +22,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(out) :: maps
+    logical :: all_lost
 
     call map_kind(deck, 'node', raw%node_id(:raw%n_node), raw%node_line(:raw%n_node), 1, maps%nodes)
     call map_kind(deck, 'element', raw%element_id(:raw%n_element), &
@@ -39,6 +39,16 @@ contains
       [raw%part_sets(:raw%n_part_set)%line], 1, maps%part_sets)
     call map_kind(deck, 'segment set', [raw%segment_sets(:raw%n_segment_set)%id], &
       [raw%segment_sets(:raw%n_segment_set)%line], 1, maps%segment_sets)
+    all_lost = deck%incomplete
+    maps%nodes%incomplete = raw%lost%nodes .or. raw%n_node == 0 .or. all_lost
+    maps%parts%incomplete = raw%lost%parts .or. all_lost
+    maps%sections%incomplete = raw%lost%sections .or. all_lost
+    maps%materials%incomplete = raw%lost%materials .or. all_lost
+    maps%hourglasses%incomplete = raw%lost%hourglasses .or. all_lost
+    maps%curves%incomplete = raw%lost%curves .or. all_lost
+    maps%node_sets%incomplete = raw%lost%sets .or. all_lost
+    maps%part_sets%incomplete = raw%lost%sets .or. all_lost
+    maps%segment_sets%incomplete = raw%lost%sets .or. all_lost
   end subroutine make_maps
 
   !> One map, with an error for each id that comes again.
@@ -70,7 +80,7 @@ contains
     integer, intent(out) :: found
 
     found = index_of(map, id)
-    if (found == 0) call reject_field(deck, place, 'there is no '//what//' '//to_text(id))
+    if (found == 0 .and. .not. map%incomplete) call reject_field(deck, place, 'is no '//what//' of this deck')
   end subroutine resolve_id
 
 end module deck_maps_m

@@ -109,6 +109,7 @@ contains
     type(material_t), intent(in) :: material
     type(card_t), intent(in) :: card
 
+    if (card%bad(1)) raw%lost%materials = .true.
     if (card%bad(1)) return
     raw%materials = [raw%materials, material]
     raw%material_line = [raw%material_line, card%line]
@@ -151,6 +152,7 @@ contains
         'is not beyond the point before it: abscissas must increase')
     end do
     if (n == 0) call line_error(deck, head%line, 'the curve has no points')
+    if (head%bad(1)) raw%lost%curves = .true.
     if (head%bad(1)) return
     if (n == 0) then
       n = 1

@@ -7,7 +7,8 @@ module deck_mesh_m
   use deck_fields_m, only : card_t
   use deck_parameters_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, report_field
-  use deck_raw_m, only : raw_t, raw_set_t, reserve_nodes, reserve_elements, append_set, append_member
+  use deck_raw_m, only : raw_t, raw_set_t, reserve_nodes, reserve_elements, append_set, &
+    append_member
   implicit none
   private
   public :: read_nodes, read_elements, read_set, read_history_ids
@@ -30,9 +31,11 @@ contains
     do
       call next_row(deck, parameters, cursor, 1, card, found)
       if (.not. found) exit
-      if (card%i(1) < 1) call report_field(deck, cursor, card, 1, 'is not a node number (1 or more)')
+      if (card%i(1) < 1) call report_field(deck, cursor, card, 1, &
+        'is not a node number (1 or more)')
       if (card%i(5) < 0 .or. card%i(5) > 7) call report_field(deck, cursor, card, 5, &
         'is not a boundary code (0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)')
+      if (card%bad(1)) raw%lost%nodes = .true.
       if (card%bad(1)) cycle
       n = raw%n_node + 1
       raw%n_node = n
@@ -64,12 +67,15 @@ contains
       if (.not. found) exit
       if (card%i(1) < 1) call report_field(deck, cursor, card, 1, &
         'is not an element number (1 or more)')
-      if (card%i(2) < 1) call report_field(deck, cursor, card, 2, 'is not a part number (1 or more)')
+      if (card%i(2) < 1) call report_field(deck, cursor, card, 2, &
+        'is not a part number (1 or more)')
       do k = 3, 5
         if (card%i(k) < 1) call report_field(deck, cursor, card, k, &
           'is not a node number (1 or more)')
       end do
-      if (card%i(6) < 0) call report_field(deck, cursor, card, 6, 'is not a node number (1 or more)')
+      if (card%i(6) < 0) call report_field(deck, cursor, card, 6, &
+        'is not a node number (1 or more)')
+      if (any(card%bad)) raw%lost%elements = .true.
       if (any(card%bad)) cycle
       if (card%i(6) == 0) card%i(6) = card%i(5)
       n = raw%n_element + 1
@@ -108,7 +114,9 @@ contains
       else
         call take_members(deck, cursor, card, set)
       end if
+      set%damaged = set%damaged .or. any(card%bad)
     end do
+    if (head%bad(1)) raw%lost%sets = .true.
     if (head%bad(1)) return
     select case (deck%blocks(i_block)%name)
     case ('SET_SEGMENT')
@@ -169,11 +177,13 @@ contains
     integer :: j
 
     do j = k, k + 1
-      if (card%i(j) < 1) call report_field(deck, cursor, card, j, 'is not a node number (1 or more)')
+      if (card%i(j) < 1) call report_field(deck, cursor, card, j, &
+        'is not a node number (1 or more)')
     end do
     if (card%i(k) == card%i(k + 1)) call report_field(deck, cursor, card, k + 1, &
       'is the first node again; an edge has two nodes')
     do j = k + 2, k + 3
+      if (any(card%bad)) exit
       if (card%i(j) /= 0 .and. card%i(j) /= card%i(k + 1) .and. card%i(j) /= card%i(k)) &
         call report_field(deck, cursor, card, j, &
         'is a further node; an edge in the plane has two (repeat N2 or leave it 0)')

@@ -44,8 +44,8 @@ contains
     end do
     do i = 1, size(overrides%items)
       if (overrides%items(i)%interface == 0) cycle
-      if (.not. any(raw%contacts%contact%id == overrides%items(i)%interface)) call line_error(deck, &
-        0, 'the command line changes interface '//to_text(overrides%items(i)%interface) &
+      if (.not. any(raw%contacts%contact%id == overrides%items(i)%interface)) call line_error( &
+        deck, 0, 'the command line changes interface '//to_text(overrides%items(i)%interface) &
         //', which the deck does not have')
     end do
   end subroutine apply_overrides

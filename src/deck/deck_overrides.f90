@@ -100,7 +100,8 @@ contains
         if (value > 0.0_wp .and. value < 1.0e100_wp) return
         if (item%name == 'VDC' .and. .not. abs(value) > 0.0_wp) return
       end if
-      call line_error(deck, 0, '"'//text//'" on the command line: the value is not a number above 0')
+      call line_error(deck, 0, '"'//text//'" on the command line: the value is not a number ' &
+        //'above 0')
       item%text = ''
     end select
   end subroutine check_number

@@ -68,8 +68,9 @@ contains
       end select
     end do
     do i = 1, parameters%n
-      if (parameters%items(i)%fixed .and. .not. parameters%items(i)%found) call line_error(deck, 0, &
-        'p:'//trim(parameters%items(i)%name)//' on the command line: the deck has no such parameter')
+      if (parameters%items(i)%fixed .and. .not. parameters%items(i)%found) call line_error( &
+        deck, 0, 'p:'//trim(parameters%items(i)%name)//' on the command line: the deck has no ' &
+        //'such parameter')
     end do
   end subroutine read_parameters
 
@@ -410,7 +411,7 @@ contains
     do i = 1, parameters%n
       if (.not. parameters%items(i)%found) cycle
       text = text//'$ parameter '//trim(parameters%items(i)%name)//' = '//parameters%items(i)%text &
-        //merge(' (command line)', '               ', parameters%items(i)%fixed)//new_line('a')
+        //new_line('a')
     end do
   end function parameter_comments
 

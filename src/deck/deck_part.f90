@@ -49,7 +49,11 @@ contains
       part%material = card%i(3)
       part%hourglass = card%i(5)
       part%line = card%line
-      if (.not. any(card%bad(1:5))) raw%parts = [raw%parts, part]
+      if (card%bad(1)) then
+        raw%lost%parts = .true.
+      else
+        raw%parts = [raw%parts, part]
+      end if
     end do
   end subroutine read_part
 
@@ -90,7 +94,9 @@ contains
       call next_card(deck, parameters, cursor, 1, card)
       call check_section(deck, cursor, card)
       section%id = card%i(1)
-      if (.not. card%bad(1)) then
+      if (card%bad(1)) then
+        raw%lost%sections = .true.
+      else
         raw%sections = [raw%sections, section]
         raw%section_line = [raw%section_line, card%line]
       end if
@@ -111,11 +117,11 @@ contains
     case (13)
       continue
     case (12)
-      call report_field(deck, cursor, card, 2, 'is plane stress, which this version does not have; ' &
-        //'13 (plane strain) is what it has')
+      call report_field(deck, cursor, card, 2, 'is plane stress, which this version does not ' &
+        //'have; 13 (plane strain) is what it has')
     case (14, 15)
-      call report_field(deck, cursor, card, 2, 'is axisymmetric, which this version does not have; ' &
-        //'13 (plane strain) is what it has')
+      call report_field(deck, cursor, card, 2, 'is axisymmetric, which this version does not ' &
+        //'have; 13 (plane strain) is what it has')
     case default
       call report_field(deck, cursor, card, 2, &
         'is not an element form for the plane; 13 (plane strain) is what this version has')
@@ -127,7 +133,8 @@ contains
       call report_field(deck, cursor, card, 4, 'asks for fully integrated elements; they belong ' &
         //'to the implicit solver, which this version does not have; leave it blank (one point)')
     case default
-      call report_field(deck, cursor, card, 4, 'is not a number of points; leave it blank (one point)')
+      call report_field(deck, cursor, card, 4, 'is not a number of points; leave it blank (one ' &
+        //'point)')
     end select
   end subroutine check_section
 
@@ -159,6 +166,7 @@ contains
       hourglass%quadratic = card%r(5)
       hourglass%linear = card%r(6)
       given = .not. card%blank(5:6)
+      if (card%bad(1)) raw%lost%hourglasses = .true.
       if (card%bad(1)) cycle
       raw%hourglasses = [raw%hourglasses, hourglass]
       raw%hourglass_line = [raw%hourglass_line, card%line]
@@ -181,8 +189,8 @@ contains
     case (4, 5)
       form = hourglass_stiffness
     case (6, 7)
-      call report_field(deck, cursor, card, k, 'is an assumed strain form, which this version does ' &
-        //'not have (1 to 3 viscous, 4 and 5 stiffness)')
+      call report_field(deck, cursor, card, k, 'is an assumed strain form, which this version ' &
+        //'does not have (1 to 3 viscous, 4 and 5 stiffness)')
     case default
       call report_field(deck, cursor, card, k, &
         'is not an hourglass form (1 to 3 viscous, 4 and 5 stiffness)')
@@ -204,7 +212,8 @@ contains
       coefficient = card%r(k)
     else if (.not. card%blank(k) .and. .not. card%bad(k)) then
       call line_warning(deck, card%line, 'qh'//to_text(card%line), &
-        'an hourglass coefficient of 0 means the default 0.1; give a very small one for almost none')
+        'an hourglass coefficient of 0 means the default 0.1; give a very small one for almost ' &
+        //'none')
     end if
   end subroutine hourglass_coefficient
 

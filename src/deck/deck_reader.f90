@@ -172,6 +172,7 @@ contains
     call find_file(deck%sources(source)%path, folders, name, path)
     if (len(path) == 0) then
       call line_error(deck, line, 'the file "'//name//'" was not found')
+      deck%incomplete = .true.
       return
     end if
     above = source
@@ -185,6 +186,7 @@ contains
     if (depth >= max_depth .or. deck%n_source >= max_source) then
       call line_error(deck, line, 'more than '//to_text(max_source)//' included files, or ' &
         //to_text(max_depth)//' inside each other')
+      deck%incomplete = .true.
       return
     end if
     i = deck%n_source + 1
@@ -199,6 +201,7 @@ contains
     if (allocated(reason)) then
       deck%sources(i)%text = ''
       call line_error(deck, line, 'cannot read "'//name//'": '//reason)
+      deck%incomplete = .true.
       return
     end if
     call cut_source(deck, i, depth + 1, folders)

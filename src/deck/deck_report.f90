@@ -5,7 +5,8 @@ module deck_report_m
   use log_m, only : log_t, warn, to_text
   implicit none
   private
-  public :: report_t, note_t, add_error, add_warning, has_warning, is_full, emit_warnings, emit_errors
+  public :: report_t, note_t, add_error, add_warning, has_warning, is_full, emit_warnings, &
+    emit_errors
 
   !> Messages kept of each kind; what comes later is counted.
   integer, parameter :: max_kept = 400

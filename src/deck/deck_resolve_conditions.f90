@@ -27,6 +27,7 @@ contains
 
     allocate (fixed(2, model%mesh%n_node), meshed(model%mesh%n_node), source=.false.)
     call mark_meshed(model, meshed)
+    if (raw%lost%elements .or. deck%incomplete) meshed = .true.
     call collect_fixed(deck, raw, maps, model, meshed, fixed)
     call collect_motions(deck, raw, maps, model, motion_lines)
     call check_motions(deck, model, motion_lines, fixed, meshed)

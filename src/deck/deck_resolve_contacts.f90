@@ -6,7 +6,7 @@ module deck_resolve_contacts_m
   use conditions_m, only : pressure_load_t
   use model_m, only : model_t
   use surface_building_m, only : boundary_t, find_boundary, find_edge, boundary_surface, &
-    chain_surface, chain_good, chain_turned, chain_ordered, chain_broken, chain_repeated, chain_short
+    chain_surface, chain_turned, chain_ordered, chain_broken, chain_repeated, chain_short
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
   use deck_maps_m, only : maps_t, resolve_id
@@ -137,7 +137,8 @@ contains
       else
         call reject_field(deck, place_t(row%line, 1, merge(4, 1, k_curve == 1)), ': nodes ' &
           //to_text(model%mesh%node_id(edges(1, i)))//' and ' &
-          //to_text(model%mesh%node_id(edges(2, i)))//' are not the ends of an outer edge of the mesh')
+          //to_text(model%mesh%node_id(edges(2, i)))//' are not the ends of an outer edge of ' &
+          //'the mesh')
         return
       end if
       if (n == size(loads)) loads = [loads, loads]
@@ -158,7 +159,8 @@ contains
     integer :: found
 
     if (entry%sides(side) > 0) then
-      call resolve_id(deck, maps%part_sets, entry%sides(side), 'part set', entry%places(side), found)
+      call resolve_id(deck, maps%part_sets, entry%sides(side), 'part set', entry%places(side), &
+        found)
       if (found > 0) call surface_of_parts(deck, model%part_sets(found)%parts, entry%places(side), &
         model, surface)
     else if (entry%sides(side) < 0) then
@@ -211,20 +213,21 @@ contains
     select case (outcome)
     case (chain_turned)
       call line_warning(deck, place%line, 'turned'//to_text(place%line)//side_names(side), &
-        'the '//trim(side_names(side))//' surface was walked clockwise round its body and has been ' &
-        //'turned')
+        'the '//trim(side_names(side))//' surface was walked clockwise round its body and ' &
+        //'has been turned')
     case (chain_ordered)
       call line_warning(deck, place%line, 'ordered'//to_text(place%line)//side_names(side), &
-        'the nodes of the '//trim(side_names(side))//' surface were not in walking order and have ' &
-        //'been put in order')
+        'the nodes of the '//trim(side_names(side))//' surface were not in walking order and ' &
+        //'have been put in order')
     case (chain_short)
       call reject_field(deck, place, 'is a set with fewer than two nodes, which is no surface')
     case (chain_repeated)
-      call reject_field(deck, place, 'is a set with node '//to_text(model%mesh%node_id(trouble(1))) &
-        //' in it twice')
+      call reject_field(deck, place, 'is a set with node ' &
+        //to_text(model%mesh%node_id(trouble(1)))//' in it twice')
     case (chain_broken)
-      call reject_field(deck, place, 'is a set whose nodes do not follow an outer edge of the mesh: ' &
-        //'the first break is between nodes '//to_text(model%mesh%node_id(trouble(1)))//' and ' &
+      call reject_field(deck, place, 'is a set whose nodes do not follow an outer edge of the ' &
+        //'mesh: the first break is between nodes ' &
+        //to_text(model%mesh%node_id(trouble(1)))//' and ' &
         //to_text(model%mesh%node_id(trouble(2))))
     end select
   end subroutine surface_of_nodes

@@ -34,9 +34,10 @@ contains
       line = raw%parts(i)%line
       model%parts(i)%id = raw%parts(i)%id
       model%parts(i)%title = raw%parts(i)%title
-      call resolve_id(deck, maps%sections, raw%parts(i)%section, 'section', place_t(line, 2, 2), &
+      ! A bad field has been reported; its number is then not looked for.
+      if (raw%parts(i)%section > 0) call resolve_id(deck, maps%sections, raw%parts(i)%section, 'section', place_t(line, 2, 2), &
         model%parts(i)%section)
-      call resolve_id(deck, maps%materials, raw%parts(i)%material, 'material', &
+      if (raw%parts(i)%material > 0) call resolve_id(deck, maps%materials, raw%parts(i)%material, 'material', &
         place_t(line, 2, 3), model%parts(i)%material)
       hourglass = raw%hourglass_default
       if (raw%parts(i)%hourglass > 0) then
@@ -62,8 +63,8 @@ contains
     integer :: n_before
 
     n_before = deck%report%n_error
-    if (raw%n_node == 0) call line_error(deck, 0, 'the deck has no nodes (*NODE)')
-    if (raw%n_element == 0) call line_error(deck, 0, 'the deck has no elements (*ELEMENT_SHELL)')
+    if (raw%n_node == 0 .and. .not. raw%lost%nodes) call line_error(deck, 0, 'the deck has no nodes (*NODE)')
+    if (raw%n_element == 0 .and. .not. raw%lost%elements) call line_error(deck, 0, 'the deck has no elements (*ELEMENT_SHELL)')
     call check_plane(deck, raw)
     model%mesh%n_node = raw%n_node
     model%mesh%n_element = raw%n_element
@@ -73,7 +74,8 @@ contains
     deallocate (raw%node_id, raw%coordinates, raw%element_id)
     call resolve_elements(deck, raw, maps, model%mesh)
     if (deck%report%n_error == n_before) call check_shapes(deck, raw, model%mesh)
-    sound = deck%report%n_error == n_before .and. raw%n_node > 0 .and. raw%n_element > 0
+    sound = deck%report%n_error == n_before .and. raw%n_node > 0 .and. raw%n_element > 0 &
+      .and. .not. (raw%lost%nodes .or. raw%lost%elements .or. deck%incomplete)
   end subroutine resolve_mesh
 
   !> Coordinates within reach and in one plane.
@@ -149,11 +151,11 @@ contains
       if (repeated(mesh%element_nodes(:, i))) then
         call reject_field(deck, place_t(raw%element_line(i), 1, 1), 'uses a node twice ' &
           //'(a triangle repeats its third node, and no other)')
-      else if (.not. abs(area) > 2.0_wp*tolerance) then
-        call reject_field(deck, place_t(raw%element_line(i), 1, 1), 'has no area')
       else if (minval(corners) < -tolerance .and. maxval(corners) > tolerance) then
         call reject_field(deck, place_t(raw%element_line(i), 1, 1), &
           'is not convex: its edges cross or a corner points inwards')
+      else if (.not. abs(area) > 2.0_wp*tolerance) then
+        call reject_field(deck, place_t(raw%element_line(i), 1, 1), 'has no area')
       else if (area < 0.0_wp) then
         mesh%element_nodes(:, i) = mesh%element_nodes([1, 4, 3, 2], i)
         if (mesh%element_nodes(2, i) == mesh%element_nodes(3, i)) &

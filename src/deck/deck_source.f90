@@ -149,7 +149,7 @@ contains
       call move_alloc(longer, deck%blocks)
     end if
     deck%n_block = deck%n_block + 1
-    n_name = verify(text//' ', 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_') - 1
+    n_name = verify(upper_case(text)//' ', 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_') - 1
     associate (block => deck%blocks(deck%n_block))
       block%given = upper_case(text(:n_name))
       block%name = block%given
