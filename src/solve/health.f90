@@ -5,7 +5,6 @@ module health_m
   use energies_m, only : energies_t, energy_ratio, total_energy
   use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
-  use layout_m, only : chunk_size
   use log_m, only : to_text
   use model_m, only : model_t
   use state_m, only : state_t
@@ -30,37 +29,50 @@ contains
     call name_bad_chunk(model, state, error)
   end subroutine check_elements
 
-  !> Find the element at fault.
+  !> Find the element at fault. The nodes have moved on since its forces were formed: a stress that is
+  !> not finite has spoilt the corners that neighbours share, so stresses are looked at before areas.
   subroutine name_bad_chunk(model, state, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(error_t), allocatable, intent(out) :: error
-    character(:), allocatable :: what
-    integer :: i_chunk, slot, element
+    integer :: slot, element
     real(wp) :: x(2, 4), area
 
-    do i_chunk = 1, model%layout%n_chunk
-      do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
-        element = model%layout%slot_element(slot)
-        if (element == 0) cycle
-        associate (nodes => model%mesh%element_nodes(:, element))
-          x = model%mesh%coordinates(:, nodes) + state%motion(1:2, nodes)
-        end associate
-        area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
-          - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
-        if (area > 0.0_wp .and. area <= huge(area) .and. &
-          all(abs(state%elements%deviator(slot, :)) <= huge(area))) cycle
-        what = 'negative area'
-        if (.not. area <= 0.0_wp) what = 'values that are not finite'
-        call raise(error, what//' in element '//to_text(model%mesh%element_id(element))//' of part ' &
-          //to_text(model%parts(model%mesh%element_part(element))%id)//' at cycle ' &
-          //to_text(state%cycle)//', time '//to_text(state%time), status_run)
-        return
-      end do
+    do slot = 1, model%layout%n_slot
+      element = model%layout%slot_element(slot)
+      if (element == 0 .or. all(abs(state%elements%deviator(slot, :)) <= huge(area))) cycle
+      call blame(model, state, element, 'values that are not finite', error)
+      return
+    end do
+    do slot = 1, model%layout%n_slot
+      element = model%layout%slot_element(slot)
+      if (element == 0) cycle
+      associate (nodes => model%mesh%element_nodes(:, element))
+        x = model%mesh%coordinates(:, nodes) + state%motion(1:2, nodes)
+      end associate
+      area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
+        - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+      if (area > 0.0_wp .and. area <= huge(area)) cycle
+      call blame(model, state, element, merge('negative area             ', &
+        'values that are not finite', area <= 0.0_wp), error)
+      return
     end do
     call raise(error, 'negative area or values that are not finite at cycle ' &
       //to_text(state%cycle)//', time '//to_text(state%time), status_run)
   end subroutine name_bad_chunk
+
+  !> The error that names an element.
+  subroutine blame(model, state, element, what, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: element
+    character(*), intent(in) :: what
+    type(error_t), allocatable, intent(out) :: error
+
+    call raise(error, trim(what)//' in element '//to_text(model%mesh%element_id(element)) &
+      //' of part '//to_text(model%parts(model%mesh%element_part(element))%id)//' at cycle ' &
+      //to_text(state%cycle)//', time '//to_text(state%time), status_run)
+  end subroutine blame
 
   !> The step must stay above its floor (DTMIN of *CONTROL_TERMINATION).
   subroutine check_step(controls, first_dt, dt, error)
