@@ -11,12 +11,13 @@ module geometry_m
     segment_length
 
   !> A point seen from a segment a-b with the vector t = b - a and the outward normal (t_y, -t_x)/|t|.
+  !> Without default values, which would be written before each use.
   type :: sight_t
-    real(wp) :: t(2) = 0.0_wp    !! vector of the segment, m
-    real(wp) :: d(2) = 0.0_wp    !! vector from a to the point, m
-    real(wp) :: square = 0.0_wp  !! t.t, m^2 (never zero)
-    real(wp) :: along = 0.0_wp   !! d.t: xi times `square`
-    real(wp) :: across = 0.0_wp  !! gap times length
+    real(wp) :: t(2)    !! vector of the segment, m
+    real(wp) :: d(2)    !! vector from a to the point, m
+    real(wp) :: square  !! t.t, m^2 (never zero)
+    real(wp) :: along   !! d.t: xi times `square`
+    real(wp) :: across  !! gap times length
   end type sight_t
 
 contains

@@ -81,35 +81,74 @@ contains
       if (contact%damping > 0.0_wp) &
         call damp_points(memory%points, contact%damping, memory%nodes, motion, mass)
       call scatter_points(memory%points, memory%force, memory%n_active)
-      call add_force(motion, memory, force, power)
+      call add_force(memory%nodes, memory%force, motion, force, power)
     end if
     memory%energy = memory%energy - 0.5_wp*dt*power
     call lap(clock, phase_contact_force)
   end subroutine apply_contact
 
-  !> Take the present motion into `places`, bound how far any two nodes have moved relative to each
-  !> other since the last call, find the power of the last forces and set them to zero.
+  !> Take the present motion into the memory, let its travel grow by a bound on how far any two nodes have
+  !> moved relative to each other since the last call, find the power of the last forces and forget these.
   pure subroutine gather_motion(motion, memory, power)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(out) :: power !! of the previous forces with the present velocity, W/m
-    real(wp) :: low(2), high(2), step(2)
-    integer :: i, node
+    real(wp) :: spread
 
-    low = huge(1.0_wp)
-    high = -huge(1.0_wp)
     power = 0.0_wp
-    do i = 1, size(memory%nodes)
-      node = memory%nodes(i)
-      step = motion(1:2, node) - memory%places(3:4, i)
-      low = min(low, step)
-      high = max(high, step)
-      memory%places(3:4, i) = motion(1:2, node)
-      power = power + (motion(3, node)*memory%force(1, i) + motion(4, node)*memory%force(2, i))
-      memory%force(:, i) = 0.0_wp
-    end do
-    memory%travel = memory%travel + sqrt((high(1) - low(1))**2 + (high(2) - low(2))**2)
+    if (memory%n_active > 0) then
+      power = power_of(memory%nodes, motion, memory%force)
+      memory%force = 0.0_wp
+    end if
+    call take_places(memory%nodes, motion, memory%places, spread)
+    memory%travel = memory%travel + spread
   end subroutine gather_motion
+
+  !> Power of nodal forces with the velocities of the nodes, W/m.
+  pure function power_of(nodes, motion, force) result(power)
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in), contiguous :: motion(:, :)
+    real(wp), intent(in), contiguous :: force(:, :)
+    real(wp) :: power
+    real(wp) :: power_x, power_y
+    integer :: i
+
+    power_x = 0.0_wp
+    power_y = 0.0_wp
+    do i = 1, size(nodes)
+      power_x = power_x + motion(3, nodes(i))*force(1, i)
+      power_y = power_y + motion(4, nodes(i))*force(2, i)
+    end do
+    power = power_x + power_y
+  end function power_of
+
+  !> Copy u of the nodes; the diagonal of the box of their changes bounds the relative motion.
+  pure subroutine take_places(nodes, motion, places, spread)
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in), contiguous :: motion(:, :)
+    real(wp), intent(inout), contiguous :: places(:, :)
+    real(wp), intent(out) :: spread !! m
+    real(wp) :: low_x, low_y, high_x, high_y, ux, uy, dx, dy
+    integer :: i
+
+    low_x = huge(1.0_wp)
+    low_y = huge(1.0_wp)
+    high_x = -huge(1.0_wp)
+    high_y = -huge(1.0_wp)
+    do i = 1, size(nodes)
+      ux = motion(1, nodes(i))
+      uy = motion(2, nodes(i))
+      dx = ux - places(3, i)
+      dy = uy - places(4, i)
+      low_x = merge(dx, low_x, dx < low_x)
+      low_y = merge(dy, low_y, dy < low_y)
+      high_x = merge(dx, high_x, dx > high_x)
+      high_y = merge(dy, high_y, dy > high_y)
+      places(3, i) = ux
+      places(4, i) = uy
+    end do
+    spread = sqrt((high_x - low_x)**2 + (high_y - low_y)**2)
+  end subroutine take_places
 
   !> After a time without contact: take the present places and search all anew.
   pure subroutine refresh_memory(coordinates, motion, memory)
@@ -151,18 +190,24 @@ contains
   end subroutine search_pairs
 
   !> Add the forces of the interface to those of the mesh, and their power to `power`.
-  pure subroutine add_force(motion, memory, force, power)
-    real(wp), intent(in), contiguous :: motion(:, :)
-    type(contact_state_t), intent(in) :: memory
+  pure subroutine add_force(nodes, contact_force, motion, force, power)
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in), contiguous :: contact_force(:, :), motion(:, :)
     real(wp), intent(inout), contiguous :: force(:, :)
     real(wp), intent(inout) :: power
+    real(wp) :: power_x, power_y
     integer :: i, node
 
-    do i = 1, size(memory%nodes)
-      node = memory%nodes(i)
-      force(:, node) = force(:, node) + memory%force(:, i)
-      power = power + (motion(3, node)*memory%force(1, i) + motion(4, node)*memory%force(2, i))
+    power_x = 0.0_wp
+    power_y = 0.0_wp
+    do i = 1, size(nodes)
+      node = nodes(i)
+      force(1, node) = force(1, node) + contact_force(1, i)
+      force(2, node) = force(2, node) + contact_force(2, i)
+      power_x = power_x + motion(3, node)*contact_force(1, i)
+      power_y = power_y + motion(4, node)*contact_force(2, i)
     end do
+    power = power + (power_x + power_y)
   end subroutine add_force
 
 end module contact_force_m

@@ -18,19 +18,23 @@ contains
     type(surface_t), intent(in) :: chain_surface
     integer, intent(in) :: spot_offset, chain_offset !! local number before the first node of each
     type(contact_points_t), intent(inout) :: points
-    integer :: k, i, p
+    integer :: k, i, p, segment
 
     p = points%n
     do k = 1, tracking%n_touching
       i = tracking%touching(k)
       p = p + 1
-      points%slave_nodes(:, p) = spot_offset + i
+      segment = tracking%segment(i)
+      points%slave_nodes(1, p) = spot_offset + i
+      points%slave_nodes(2, p) = spot_offset + i
       points%slave_weights(1, p) = 1.0_wp
       points%slave_weights(2, p) = 0.0_wp
-      points%master_nodes(:, p) = chain_offset + chain_surface%segments(:, tracking%segment(i))
+      points%master_nodes(1, p) = chain_offset + chain_surface%segments(1, segment)
+      points%master_nodes(2, p) = chain_offset + chain_surface%segments(2, segment)
       points%master_weights(1, p) = 1.0_wp - tracking%xi(i)
       points%master_weights(2, p) = tracking%xi(i)
-      points%normal(:, p) = tracking%normal(:, i)
+      points%normal(1, p) = tracking%normal(1, i)
+      points%normal(2, p) = tracking%normal(2, i)
       points%gap(p) = tracking%gap(i)
     end do
     points%n = p

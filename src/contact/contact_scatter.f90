@@ -15,18 +15,21 @@ contains
     type(contact_points_t), intent(in) :: points
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, local nodes) N/m
     integer, intent(out) :: n_active
-    real(wp) :: total(2)
-    integer :: p, k
+    real(wp) :: fx, fy
+    integer :: p, k, node
 
     n_active = 0
     do p = 1, points%n
       if (points%pressure(p) > 0.0_wp) n_active = n_active + 1
-      total = points%pressure(p)*points%area(p)*points%normal(:, p)
+      fx = points%pressure(p)*points%area(p)*points%normal(1, p)
+      fy = points%pressure(p)*points%area(p)*points%normal(2, p)
       do k = 1, n_side
-        force(:, points%slave_nodes(k, p)) = force(:, points%slave_nodes(k, p)) &
-          + points%slave_weights(k, p)*total
-        force(:, points%master_nodes(k, p)) = force(:, points%master_nodes(k, p)) &
-          - points%master_weights(k, p)*total
+        node = points%slave_nodes(k, p)
+        force(1, node) = force(1, node) + points%slave_weights(k, p)*fx
+        force(2, node) = force(2, node) + points%slave_weights(k, p)*fy
+        node = points%master_nodes(k, p)
+        force(1, node) = force(1, node) - points%master_weights(k, p)*fx
+        force(2, node) = force(2, node) - points%master_weights(k, p)*fy
       end do
     end do
   end subroutine scatter_points

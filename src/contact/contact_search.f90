@@ -25,7 +25,7 @@ contains
     integer, intent(inout) :: n_released              !! deep first contacts let go
     real(wp) :: next_wake
     integer :: i, n_touching
-    logical :: is_followed
+    logical :: is_kept
 
     tracking%n_touching = 0
     if (travel < tracking%next_wake) return
@@ -36,42 +36,48 @@ contains
         next_wake = min(next_wake, tracking%wake(i))
         cycle
       end if
-      is_followed = .false.
-      if (tracking%status(i) == is_touching) &
-        call keep_contact(tracking, surface, chain, spots(:, i), i, is_followed)
-      if (.not. is_followed) &
+      is_kept = .false.
+      if (tracking%status(i) == is_touching) call keep_contact(spots(:, i), chain, &
+        surface%segments(:, tracking%segment(i)), tracking%xi(i), tracking%gap(i), &
+        tracking%normal(:, i), is_kept)
+      if (.not. is_kept) &
         call update_spot(tracking, surface, chain, spots, i, travel, n_released)
-      if (tracking%status(i) == is_touching) then
-        n_touching = n_touching + 1
-        tracking%touching(n_touching) = i
-      end if
       next_wake = min(next_wake, tracking%wake(i))
+      if (tracking%status(i) /= is_touching) cycle
+      n_touching = n_touching + 1
+      tracking%touching(n_touching) = i
     end do
     tracking%n_touching = n_touching
     tracking%next_wake = next_wake
   end subroutine update_tracking
 
   !> The common case of a spot in contact: still over its segment, behind it, and no nearer to a
-  !> neighbour than to it. Otherwise nothing is changed.
-  pure subroutine keep_contact(tracking, surface, chain, spot, i, is_followed)
-    type(tracking_t), intent(inout) :: tracking
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :)
+  !> neighbour than to it. Otherwise nothing is changed. In scalars, since this runs for every spot and step.
+  pure subroutine keep_contact(spot, chain, ends, xi, gap, normal, is_kept)
     real(wp), intent(in) :: spot(4)
-    integer, intent(in) :: i
-    logical, intent(out) :: is_followed
-    type(sight_t) :: sight
-    real(wp) :: inverse
+    real(wp), intent(in), contiguous :: chain(:, :)
+    integer, intent(in) :: ends(2) !! nodes of the segment
+    real(wp), intent(inout) :: xi, gap, normal(2)
+    logical, intent(out) :: is_kept
+    real(wp) :: tx, ty, dx, dy, square, along, across, inverse
+    integer :: a, b
 
-    sight = see_segment(surface, chain, spot, tracking%segment(i))
-    is_followed = sight%across < 0.0_wp .and. &
-      -sight%across <= min(sight%along, sight%square - sight%along)
-    if (.not. is_followed) return
-    inverse = 1.0_wp/sqrt(sight%square)
-    tracking%xi(i) = sight%along*inverse**2
-    tracking%gap(i) = sight%across*inverse
-    tracking%normal(1, i) = sight%t(2)*inverse
-    tracking%normal(2, i) = -sight%t(1)*inverse
+    a = ends(1)
+    b = ends(2)
+    tx = (chain(1, b) - chain(1, a)) + (chain(3, b) - chain(3, a))
+    ty = (chain(2, b) - chain(2, a)) + (chain(4, b) - chain(4, a))
+    dx = (spot(1) - chain(1, a)) + (spot(3) - chain(3, a))
+    dy = (spot(2) - chain(2, a)) + (spot(4) - chain(4, a))
+    square = tx*tx + ty*ty
+    along = dx*tx + dy*ty
+    across = dx*ty - dy*tx
+    is_kept = across < 0.0_wp .and. -across <= min(along, square - along)
+    if (.not. is_kept) return
+    inverse = 1.0_wp/sqrt(square)
+    xi = along*inverse**2
+    gap = across*inverse
+    normal(1) = ty*inverse
+    normal(2) = -tx*inverse
   end subroutine keep_contact
 
   !> Any other case, by what the spot was doing.
