@@ -5,8 +5,11 @@ import stat
 import subprocess
 import sys
 
+import conftest
 import pytest
 
+from slideline_tools.compare import compare
+from slideline_tools.histories import read_csv
 from slideline_tools.regression import Case, CaseError, repository_root, run_case
 
 STAND_IN = """#!{python}
@@ -127,3 +130,17 @@ def test_runner_script(world, slideline, tmp_path):
                               check=False)
     assert finished.returncode == 2 and "case.toml" in finished.stdout
     assert pathlib.Path(slideline).exists()
+
+
+CASES = sorted((conftest.ROOT / "tests" / "regression").glob("*/case.toml"))
+
+
+@pytest.mark.parametrize("file", CASES, ids=lambda file: file.parent.name)
+def test_kept_case_is_complete(file):
+    """Deck and references exist, agree with themselves, and somebody said why."""
+    case = Case(file.parent, conftest.ROOT)
+    assert (conftest.ROOT / case.content["deck"]).is_file()
+    assert all(note["reason"].strip() for note in case.content["blessed"])
+    for entry in case.content["table"]:
+        reference = read_csv(case.reference_file(entry))
+        assert compare(reference, reference, entry["columns"]).passed
