@@ -12,7 +12,7 @@ module run_m
   use files_m, only : make_directory, join_path
   use log_m, only : open_log, close_log, write_log, to_text
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, start_monitor, finish_monitor
+  use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use progress_m, only : show_end
   use renumber_m, only : renumber_model
   use results_file_m, only : run_info_t
@@ -33,21 +33,26 @@ contains
     type(model_t) :: model
     type(state_t) :: state
     type(monitor_t) :: monitor
-    character(:), allocatable :: effective, prefix
+    type(run_info_t) :: info
+    character(:), allocatable :: prefix
 
     call start_clock(monitor%clock)
     call catch_stop_signals()
     call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
-    call read_deck(request_of(arguments), contact_kinds, monitor%log, model, effective, error)
+    call read_deck(request_of(arguments), contact_kinds, monitor%log, model, &
+      info%effective_deck, error)
     if (allocated(error)) return
     call renumber_model(model)
     prefix = join_path(arguments%directory, arguments%job)
-    call open_outputs(arguments, prefix, effective, monitor, error)
+    call open_outputs(arguments, prefix, info%effective_deck, monitor, error)
     if (allocated(error)) return
+    call describe_run(arguments, model, info)
+    call open_files(model, prefix, info, monitor, error)
+    if (allocated(error)) return
+    deallocate (info%effective_deck)
     call start_state(model, monitor%log, state)
-    call start_monitor(model, prefix, info_of(arguments, model, effective), monitor, error)
-    if (allocated(error)) return
+    call start_monitor(model, monitor)
     call lap(monitor%clock, phase_input)
     call drive(arguments, model, prefix, state, monitor, error)
     call close_log(monitor%log)
@@ -62,21 +67,18 @@ contains
     request%overrides = arguments%overrides
   end function request_of
 
-  !> What the results file keeps about the run.
-  pure function info_of(arguments, model, effective) result(info)
+  !> What the results file keeps about the run, beside the effective deck.
+  pure subroutine describe_run(arguments, model, info)
     type(arguments_t), intent(in) :: arguments
     type(model_t), intent(in) :: model
-    character(*), intent(in) :: effective
-    type(run_info_t) :: info
+    type(run_info_t), intent(inout) :: info
 
-    info%title = ''
     if (allocated(model%controls%title)) info%title = model%controls%title
     info%deck = arguments%deck
     info%version = version
     info%build = build_type//', '//compiler//', '//flags
     info%options = arguments%line
-    info%effective_deck = effective
-  end function info_of
+  end subroutine describe_run
 
   !> Make the directory, the log and the effective deck.
   subroutine open_outputs(arguments, prefix, effective, monitor, error)

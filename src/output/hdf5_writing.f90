@@ -268,18 +268,16 @@ contains
     character(*), intent(in) :: name                   !! path below `parent`
     character(*), intent(in), target :: text
     type(error_t), allocatable, intent(inout) :: error
-    character(:), allocatable, target :: bytes
     integer(hid_t) :: space, dataset, type_id
     integer :: status(6)
 
     if (allocated(error)) return
-    bytes = text
-    if (len(bytes) == 0) bytes = ' '
+    if (len(text) == 0) return
     call h5tcopy_f(H5T_FORTRAN_S1, type_id, status(1))
-    call h5tset_size_f(type_id, int(len(bytes), size_t), status(2))
+    call h5tset_size_f(type_id, int(len(text), size_t), status(2))
     call h5screate_f(H5S_SCALAR_F, space, status(3))
     call h5dcreate_f(parent, name, type_id, space, dataset, status(4))
-    call h5dwrite_f(dataset, type_id, c_loc(bytes), status(5))
+    call h5dwrite_f(dataset, type_id, c_loc(text), status(5))
     call h5dclose_f(dataset, status(6))
     call check_status(minval(status), name, error)
     call h5tclose_f(type_id, status(1))

@@ -41,7 +41,8 @@ contains
     call write_known(group, 'version', run_info%version, error)
     call write_known(group, 'build', run_info%build, error)
     call write_known(group, 'options', run_info%options, error)
-    call write_text(group, 'effective_deck', text_of(run_info%effective_deck), error)
+    if (allocated(run_info%effective_deck)) &
+      call write_text(group, 'effective_deck', run_info%effective_deck, error)
     call h5gclose_f(group, status)
   end subroutine write_run
 

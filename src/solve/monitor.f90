@@ -2,6 +2,7 @@
 !> Watches a run for the files: what is due, and writing it.
 module monitor_m
   use clock_m, only : clock_t
+  use controls_m, only : interval_t
   use errors_m, only : error_t
   use history_file_m, only : histories_t, open_histories, append_glstat, append_rcforc, &
     append_nodout, append_matsum, append_contact, flush_histories, close_histories
@@ -15,7 +16,7 @@ module monitor_m
   use snapshot_filling_m, only : start_snapshot
   implicit none
   private
-  public :: monitor_t, start_monitor, find_due, any_due, write_due, finish_monitor, due_t
+  public :: monitor_t, open_files, start_monitor, find_due, any_due, write_due, finish_monitor, due_t
 
   !> What is due in one cycle.
   type :: due_t
@@ -37,28 +38,49 @@ module monitor_m
 
 contains
 
-  !> Open the files of this run. `prefix` is directory and job name.
-  subroutine start_monitor(model, prefix, run_info, monitor, error)
+  !> Open the files that the deck asks for. `prefix` is directory and job name.
+  subroutine open_files(model, prefix, run_info, monitor, error)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: prefix
     type(run_info_t), intent(in) :: run_info
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
 
+    monitor%has_plot = is_asked(model%controls%output%plot)
+    call open_histories(monitor%histories, prefix, model, error)
+    if (allocated(error)) return
+    if (monitor%has_plot) &
+      call open_results(monitor%results, prefix//'.vtkhdf', model, run_info, error)
+  end subroutine open_files
+
+  !> Schedules, progress lines and the snapshot. Energies go with the plot states where the deck gives
+  !> them no interval of their own, since every run has an energy history.
+  subroutine start_monitor(model, monitor)
+    type(model_t), intent(in) :: model
+    type(monitor_t), intent(inout) :: monitor
+
     associate (plan => model%controls%output, end_time => model%controls%end_time)
       call start_schedule(monitor%plot, plan%plot, model%curves, end_time)
-      call start_schedule(monitor%glstat, plan%glstat, model%curves, end_time)
+      if (is_asked(plan%glstat)) then
+        call start_schedule(monitor%glstat, plan%glstat, model%curves, end_time)
+      else
+        call start_schedule(monitor%glstat, plan%plot, model%curves, end_time)
+      end if
       call start_schedule(monitor%rcforc, plan%rcforc, model%curves, end_time)
       call start_schedule(monitor%nodout, plan%nodout, model%curves, end_time)
       call start_schedule(monitor%matsum, plan%matsum, model%curves, end_time)
-      monitor%has_plot = plan%plot%dt > 0.0_wp .or. plan%plot%curve > 0
       call start_progress(monitor%progress, end_time, plan%status_interval)
     end associate
     call start_snapshot(model, monitor%snapshot)
-    call open_histories(monitor%histories, prefix, model, error)
-    if (allocated(error)) return
-    call open_results(monitor%results, prefix//'.vtkhdf', model, run_info, error)
   end subroutine start_monitor
+
+  !> Whether the deck asks for this output.
+  pure function is_asked(interval) result(asked)
+    type(interval_t), intent(in) :: interval
+    logical :: asked
+
+    asked = interval%dt > 0.0_wp .or. interval%curve > 0
+  end function is_asked
 
   !> What is due at `time`; `everything` for the first and the last state.
   pure function find_due(monitor, time, dt, everything) result(due)
