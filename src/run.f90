@@ -52,7 +52,10 @@ contains
     if (allocated(error)) return
     deallocate (info%effective_deck)
     call start_state(model, monitor%log, state)
-    call start_monitor(model, monitor)
+    ! Used up: the state holds it now.
+    if (allocated(model%conditions%initial_velocity)) &
+      deallocate (model%conditions%initial_velocity)
+    call start_monitor(model, size(state%elements%history) > 0, monitor)
     call lap(monitor%clock, phase_input)
     call drive(arguments, model, prefix, state, monitor, error)
     call close_log(monitor%log)
@@ -74,7 +77,7 @@ contains
     type(run_info_t), intent(inout) :: info
 
     if (allocated(model%controls%title)) info%title = model%controls%title
-    info%deck = arguments%deck
+    info%deck = arguments%deck(index(arguments%deck, '/', back=.true.) + 1:)
     info%version = version
     info%build = build_type//', '//compiler//', '//flags
     info%options = arguments%line

@@ -98,12 +98,12 @@ contains
     end do
   end subroutine lump_mass
 
-  !> Cauchy stress of all elements, xx yy zz xy, in deck order.
+  !> Cauchy stress of all elements in deck order: xx yy zz xy (yz and xz stay zero in plane strain).
   subroutine element_stresses(model, motion, elements, stress)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
     type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: stress(:, :) !! (4, n_element)
+    real(wp), intent(inout) :: stress(:, :) !! (6, n_element)
     real(wp) :: volumetric
     integer :: i, slot
 

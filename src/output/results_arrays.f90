@@ -64,7 +64,6 @@ module results_arrays_m
     type(growing_t) :: steps(n_step_array)
     real(wp), allocatable :: point_rows(:, :)   !! (3, n_node) work space
     real(wp), allocatable :: point_values(:)    !! (n_node) work space
-    real(wp), allocatable :: cell_rows(:, :)    !! (6, n_element) work space
     real(wp), allocatable :: cell_values(:)     !! (n_element) work space
   end type results_file_t
 

@@ -60,8 +60,7 @@ contains
     call make_group(file%id, 'history', error)
     call publish(file, error)
     call h5gclose_f(group, status)
-    allocate (file%point_rows(3, model%mesh%n_node), file%cell_rows(6, model%mesh%n_element), &
-      source=0.0_wp)
+    allocate (file%point_rows(3, model%mesh%n_node), source=0.0_wp)
     allocate (file%point_values(model%mesh%n_node), file%cell_values(model%mesh%n_element))
     call note_failure(file, error)
   end subroutine open_results
@@ -70,7 +69,7 @@ contains
   subroutine append_state(file, model, snapshot, error)
     type(results_file_t), intent(inout), target :: file
     type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: snapshot
+    type(snapshot_t), intent(in), target :: snapshot
     type(error_t), allocatable, intent(out) :: error
     real(wp), target :: time(1)
     integer(long), target :: numbers(4)
@@ -144,13 +143,12 @@ contains
   !> Append the fields of the elements: stress (xx yy zz xy yz xz), plastic strain, pressure, mises.
   subroutine append_cell_fields(file, snapshot, error)
     type(results_file_t), intent(inout), target :: file
-    type(snapshot_t), intent(in) :: snapshot
+    type(snapshot_t), intent(in), target :: snapshot
     type(error_t), allocatable, intent(inout) :: error
     integer :: n
 
     n = size(file%cell_values)
-    file%cell_rows(:4, :) = snapshot%stress
-    call append_rows(file%cell_fields(1), n, c_loc(file%cell_rows), error)
+    call append_rows(file%cell_fields(1), n, c_loc(snapshot%stress), error)
     file%cell_values = 0.0_wp
     if (allocated(snapshot%plastic_strain)) file%cell_values = snapshot%plastic_strain
     call append_rows(file%cell_fields(2), n, c_loc(file%cell_values), error)

@@ -55,8 +55,9 @@ contains
 
   !> Schedules, progress lines and the snapshot. Energies go with the plot states where the deck gives
   !> them no interval of their own, since every run has an energy history.
-  subroutine start_monitor(model, monitor)
+  subroutine start_monitor(model, has_history, monitor)
     type(model_t), intent(in) :: model
+    logical, intent(in) :: has_history !! some part keeps a plastic strain
     type(monitor_t), intent(inout) :: monitor
 
     associate (plan => model%controls%output, end_time => model%controls%end_time)
@@ -71,7 +72,7 @@ contains
       call start_schedule(monitor%matsum, plan%matsum, model%curves, end_time)
       call start_progress(monitor%progress, end_time, plan%status_interval)
     end associate
-    call start_snapshot(model, monitor%snapshot)
+    call start_snapshot(model, has_history, monitor%snapshot)
   end subroutine start_monitor
 
   !> Whether the deck asks for this output.

@@ -17,8 +17,9 @@ module snapshot_filling_m
 contains
 
   !> Allocate what this run can ask for.
-  subroutine start_snapshot(model, snapshot)
+  subroutine start_snapshot(model, has_history, snapshot)
     type(model_t), intent(in) :: model
+    logical, intent(in) :: has_history !! some part keeps a plastic strain
     type(snapshot_t), intent(out) :: snapshot
     integer :: n_node, n_element
 
@@ -30,9 +31,11 @@ contains
     allocate (snapshot%interfaces(size(model%contacts)), snapshot%slaves(size(model%contacts)))
     if (.not. (model%controls%output%plot%dt > 0.0_wp .or. model%controls%output%plot%curve > 0)) &
       return
-    allocate (snapshot%contact_force(2, n_node), snapshot%contact_pressure(n_node), &
-      snapshot%gap(n_node), snapshot%stress(4, n_element), snapshot%plastic_strain(n_element), &
-      source=0.0_wp)
+    allocate (snapshot%stress(6, n_element), source=0.0_wp)
+    if (has_history) &
+      allocate (snapshot%plastic_strain(n_element), source=0.0_wp)
+    if (size(model%contacts) > 0) allocate (snapshot%contact_force(2, n_node), &
+      snapshot%contact_pressure(n_node), snapshot%gap(n_node), source=0.0_wp)
   end subroutine start_snapshot
 
   !> Displacement, velocity and acceleration of the present instant. `velocity_next` is v(n+1/2) of the
@@ -168,7 +171,9 @@ contains
     integer :: i, k
 
     call element_stresses(model, state%motion, state%elements, snapshot%stress)
-    call element_plastic_strains(model, state%elements, snapshot%plastic_strain)
+    if (allocated(snapshot%plastic_strain)) &
+      call element_plastic_strains(model, state%elements, snapshot%plastic_strain)
+    if (size(model%contacts) == 0) return
     snapshot%contact_force = 0.0_wp
     snapshot%contact_pressure = 0.0_wp
     snapshot%gap = 0.0_wp

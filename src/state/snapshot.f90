@@ -47,7 +47,7 @@ module snapshot_m
     real(wp), allocatable :: contact_force(:, :) !! (2, n_node)
     real(wp), allocatable :: contact_pressure(:) !! (n_node)
     real(wp), allocatable :: gap(:)              !! (n_node)
-    real(wp), allocatable :: stress(:, :)        !! (4, n_element) xx yy zz xy
+    real(wp), allocatable :: stress(:, :)        !! (6, n_element) xx yy zz xy yz xz
     real(wp), allocatable :: plastic_strain(:)   !! (n_element)
     type(interface_result_t), allocatable :: interfaces(:)
     type(part_result_t), allocatable :: parts(:)
