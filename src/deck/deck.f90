@@ -14,7 +14,8 @@ module deck_m
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text
   use deck_reader_m, only : read_blocks
   use deck_schema_m, only : find_keyword, known_honoured, known_ignored, known_refused
-  use deck_parameters_m, only : parameters_t, read_parameters
+  use deck_parameter_table_m, only : parameters_t
+  use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : overrides_t, read_overrides, override_text
   use deck_override_apply_m, only : apply_overrides
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
@@ -31,7 +32,7 @@ module deck_m
   use deck_echo_m, only : echo_model
   implicit none
   private
-  public :: deck_request_t, read_deck
+  public :: deck_request_t, read_deck, interpret_deck
 
   !> What is to be read.
   type :: deck_request_t
@@ -52,6 +53,21 @@ contains
     character(:), allocatable, intent(out) :: effective      !! the deck as run
     type(error_t), allocatable, intent(out) :: error
     type(deck_t) :: deck
+
+    call read_blocks(request%path, deck, error)
+    if (allocated(error)) return
+    call interpret_deck(deck, request, kinds, log, model, effective, error)
+  end subroutine read_deck
+
+  !> As `read_deck`, of a deck that has been cut into blocks.
+  subroutine interpret_deck(deck, request, kinds, log, model, effective, error)
+    type(deck_t), intent(inout) :: deck
+    type(deck_request_t), intent(in) :: request
+    type(contact_kind_t), intent(in) :: kinds(:)
+    type(log_t), intent(inout) :: log
+    type(model_t), intent(out) :: model
+    character(:), allocatable, intent(out) :: effective
+    type(error_t), allocatable, intent(out) :: error
     type(parameters_t) :: parameters
     type(overrides_t) :: overrides
     type(raw_t) :: raw
@@ -59,8 +75,6 @@ contains
     integer, allocatable :: known(:)
     integer :: i
 
-    call read_blocks(request%path, deck, error)
-    if (allocated(error)) return
     call start_raw(raw)
     call know_blocks(deck, raw, known)
     if (deck%n_block == 0) then
@@ -87,7 +101,7 @@ contains
     if (allocated(error)) return
     call echo_model(model, kinds, request%path, log)
     call write_effective(deck, parameters, tail, effective)
-  end subroutine read_deck
+  end subroutine interpret_deck
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
   !> those without effect one warning each.

@@ -9,7 +9,8 @@ module deck_cards_m
   use deck_fields_m, only : card_t, card_spec_t, make_spec, cut_card, read_numbers, field_text, &
     field_error, place_error, max_field
   use deck_schema_m, only : keyword_cards, refusal_reason, max_card
-  use deck_parameters_m, only : parameters_t, substitute
+  use deck_parameter_table_m, only : parameters_t
+  use deck_parameters_m, only : substitute
   implicit none
   private
   public :: cursor_t, open_cursor, next_card, next_row, next_text, check_rest, report_field, &

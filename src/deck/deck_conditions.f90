@@ -5,7 +5,7 @@ module deck_conditions_m
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
-  use deck_parameters_m, only : parameters_t
+  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, check_rest, &
     report_field
   use deck_raw_m, only : raw_t, row_t, append_row, row_spc_node, row_spc_set, row_motion_node, &

@@ -8,7 +8,7 @@ module deck_contact_m
   use contacts_m, only : contact_kind_t, penalty_per_node, penalty_factor
   use deck_lines_m, only : deck_t, place_t, line_error
   use deck_fields_m, only : card_t
-  use deck_parameters_m, only : parameters_t
+  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, check_rest, report_field
   use deck_raw_m, only : raw_t, raw_contact_t
   use deck_overrides_m, only : overrides_t, override_text

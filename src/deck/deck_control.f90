@@ -6,7 +6,7 @@ module deck_control_m
   use controls_m, only : length_by_side, length_by_diagonal
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_fields_m, only : card_t
-  use deck_parameters_m, only : parameters_t
+  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field
   use deck_raw_m, only : raw_t
   use deck_part_m, only : hourglass_form, hourglass_coefficient

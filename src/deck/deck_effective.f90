@@ -3,7 +3,7 @@
 !> model to the last bit. Lines that nothing changed are copied as they were written.
 module deck_effective_m
   use deck_lines_m, only : deck_t, layout_mark
-  use deck_parameters_m, only : parameters_t, parameter_comments
+  use deck_parameter_table_m, only : parameters_t, parameter_comments
   implicit none
   private
   public :: write_effective

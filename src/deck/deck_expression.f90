@@ -5,6 +5,7 @@
 module deck_expression_m
   use kinds_m, only : wp, pi
   use text_m, only : upper_case, read_real, number_good
+  use deck_functions_m, only : raise_power, apply_function
   implicit none
   private
   public :: evaluate, named_value_t
@@ -164,6 +165,7 @@ contains
     type(named_value_t), intent(in) :: names(:)
     real(wp), intent(out) :: value
     real(wp) :: power
+    character(:), allocatable :: trouble
 
     call take_primary(scanner, names, value)
     if (allocated(scanner%trouble)) return
@@ -173,39 +175,9 @@ contains
     call take_signed(scanner, names, power)
     scanner%depth = scanner%depth - 1
     if (allocated(scanner%trouble)) return
-    call raise_power(scanner, power, value)
+    call raise_power(power, value, trouble)
+    if (len(trouble) > 0) call complain(scanner, trouble)
   end subroutine take_power
-
-  !> value = value ** power where that is defined and not too large.
-  subroutine raise_power(scanner, power, value)
-    type(scanner_t), intent(inout) :: scanner
-    real(wp), intent(in) :: power
-    real(wp), intent(inout) :: value
-    logical :: whole
-
-    whole = abs(power) < 1.0e6_wp
-    if (whole) whole = abs(power - anint(power)) <= 0.0_wp
-    if (.not. abs(value) > 0.0_wp) then
-      if (power < 0.0_wp) call complain(scanner, 'division by zero')
-      if (abs(power) > 0.0_wp) then
-        value = 0.0_wp
-      else
-        value = 1.0_wp
-      end if
-    else if (value < 0.0_wp .and. .not. whole) then
-      call complain(scanner, 'a negative number to a power that is not whole')
-    else if (exponent(power) > 60 .or. exponent(value) > 1000) then
-      call complain(scanner, 'the value is too large')
-    else if (power*log(abs(value)) > 690.0_wp) then
-      call complain(scanner, 'the value is too large')
-    else if (power*log(abs(value)) < -700.0_wp) then
-      value = 0.0_wp
-    else if (whole) then
-      value = value**nint(power)
-    else
-      value = value**power
-    end if
-  end subroutine raise_power
 
   !> A number, a name, a function or an expression in parentheses.
   recursive subroutine take_primary(scanner, names, value)
@@ -276,6 +248,7 @@ contains
     character(*), intent(in) :: word
     real(wp), intent(out) :: value
     real(wp) :: arguments(10)
+    character(:), allocatable :: trouble
     integer :: n
 
     value = 0.0_wp
@@ -290,62 +263,8 @@ contains
     if (allocated(scanner%trouble)) return
     if (.not. take(scanner, ')')) call complain(scanner, 'a ")" is missing after '//word)
     if (allocated(scanner%trouble)) return
-    call apply_function(scanner, word, arguments(:n), value)
+    call apply_function(word, arguments(:n), value, trouble)
+    if (len(trouble) > 0) call complain(scanner, trouble)
   end subroutine take_function
-
-  !> Value of a function.
-  subroutine apply_function(scanner, word, a, value)
-    type(scanner_t), intent(inout) :: scanner
-    character(*), intent(in) :: word
-    real(wp), intent(in) :: a(:)
-    real(wp), intent(out) :: value
-    logical :: inside
-
-    value = 0.0_wp
-    inside = abs(a(1)) < 1.0e15_wp
-    select case (word)
-    case ('MIN', 'MAX', 'MOD', 'SIGN', 'ATAN2')
-      if (size(a) < 2) call complain(scanner, word//' needs two arguments')
-    case default
-      if (size(a) /= 1) call complain(scanner, word//' takes one argument')
-    end select
-    if (allocated(scanner%trouble)) return
-    select case (word)
-    case ('SIN'); if (inside) value = sin(a(1))
-    case ('COS'); if (inside) value = cos(a(1))
-    case ('TAN'); if (inside) value = tan(a(1))
-    case ('ASIN', 'ACOS')
-      inside = abs(a(1)) <= 1.0_wp
-      if (inside .and. word == 'ASIN') value = asin(a(1))
-      if (inside .and. word == 'ACOS') value = acos(a(1))
-    case ('ATAN'); value = atan(a(1)); inside = .true.
-    case ('ATAN2')
-      inside = abs(a(1)) > 0.0_wp .or. abs(a(2)) > 0.0_wp
-      if (inside) value = atan2(a(1), a(2))
-    case ('SQRT')
-      inside = a(1) >= 0.0_wp
-      if (inside) value = sqrt(a(1))
-    case ('EXP')
-      inside = a(1) <= 690.0_wp
-      if (inside .and. a(1) > -700.0_wp) value = exp(a(1))
-    case ('LOG', 'LOG10')
-      inside = a(1) > 0.0_wp
-      if (inside .and. word == 'LOG') value = log(a(1))
-      if (inside .and. word == 'LOG10') value = log10(a(1))
-    case ('ABS'); value = abs(a(1)); inside = .true.
-    case ('INT'); if (inside) value = aint(a(1))
-    case ('NINT'); if (inside) value = anint(a(1))
-    case ('MOD')
-      inside = abs(a(2)) > 0.0_wp .and. exponent(a(1)) - exponent(a(2)) < 52
-      if (inside) value = mod(a(1), a(2))
-    case ('SIGN'); value = sign(a(1), a(2)); inside = .true.
-    case ('MIN'); value = minval(a); inside = .true.
-    case ('MAX'); value = maxval(a); inside = .true.
-    case default
-      call complain(scanner, 'there is no function '//word)
-      return
-    end select
-    if (.not. inside) call complain(scanner, word//' is not defined there')
-  end subroutine apply_function
 
 end module deck_expression_m

@@ -7,7 +7,7 @@ module deck_material_m
   use curves_m, only : curve_t
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
-  use deck_parameters_m, only : parameters_t
+  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, check_rest, &
     report_field
   use deck_raw_m, only : raw_t

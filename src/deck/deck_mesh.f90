@@ -5,7 +5,7 @@ module deck_mesh_m
   use log_m, only : to_text
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameters_m, only : parameters_t
+  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, report_field
   use deck_raw_m, only : raw_t, raw_set_t, reserve_nodes, reserve_elements, append_set, &
     append_member

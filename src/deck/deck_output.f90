@@ -4,7 +4,7 @@ module deck_output_m
   use kinds_m, only : wp
   use deck_lines_m, only : deck_t, place_t
   use deck_fields_m, only : card_t
-  use deck_parameters_m, only : parameters_t
+  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field
   use deck_raw_m, only : raw_t, history_t, output_plot, output_glstat, output_matsum, &
     output_rcforc, output_nodout

@@ -8,7 +8,6 @@ module deck_override_apply_m
   use curves_m, only : curve_t
   use deck_lines_m, only : deck_t, place_t, line_text, line_error, layout_mark
   use deck_fields_m, only : card_t, cut_card, field_text
-  use deck_parameters_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor
   use deck_contact_m, only : kind_names
   use deck_overrides_m, only : overrides_t, override_text, override_real, override_integer

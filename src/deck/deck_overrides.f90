@@ -4,7 +4,7 @@ module deck_overrides_m
   use kinds_m, only : wp
   use text_m, only : upper_case, read_real, read_integer, number_good
   use deck_lines_m, only : deck_t, line_error
-  use deck_parameters_m, only : parameters_t, override_parameter
+  use deck_parameter_table_m, only : parameters_t, override_parameter
   implicit none
   private
   public :: overrides_t, read_overrides, override_text, override_real, override_integer, &

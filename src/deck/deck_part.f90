@@ -7,7 +7,7 @@ module deck_part_m
   use parts_m, only : section_t, hourglass_t, hourglass_viscous, hourglass_stiffness
   use deck_lines_m, only : deck_t, line_text, line_error, line_warning, flag_blank
   use deck_fields_m, only : card_t
-  use deck_parameters_m, only : parameters_t
+  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, row_comes, &
     report_field
   use deck_raw_m, only : raw_t, raw_part_t

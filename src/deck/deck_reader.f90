@@ -9,7 +9,7 @@ module deck_reader_m
   use deck_source_m, only : read_file, scan_line, open_block, add_line, file_options, reserve_lines
   implicit none
   private
-  public :: read_blocks
+  public :: read_blocks, cut_deck
 
   !> Includes inside includes.
   integer, parameter :: max_depth = 32
@@ -24,19 +24,29 @@ contains
     character(*), intent(in) :: path
     type(deck_t), intent(inout) :: deck
     type(error_t), allocatable, intent(out) :: error
-    character(:), allocatable :: reason
+    character(:), allocatable :: reason, text
+
+    call read_file(path, text, reason)
+    if (allocated(reason)) then
+      call raise(error, 'cannot read the deck '//path//': '//reason, status_input)
+      return
+    end if
+    call cut_deck(path, text, deck)
+  end subroutine read_blocks
+
+  !> Cut the text of a deck into blocks, its includes in their place.
+  subroutine cut_deck(path, text, deck)
+    character(*), intent(in) :: path
+    character(:), allocatable, intent(inout) :: text !! moves into the deck
+    type(deck_t), intent(inout) :: deck
     character(1000) :: folders(0)
 
     allocate (deck%sources(max_source), deck%blocks(64))
     deck%n_source = 1
     deck%sources(1)%path = path
-    call read_file(path, deck%sources(1)%text, reason)
-    if (allocated(reason)) then
-      call raise(error, 'cannot read the deck '//path//': '//reason, status_input)
-      return
-    end if
+    call move_alloc(text, deck%sources(1)%text)
     call cut_source(deck, 1, 1, folders)
-  end subroutine read_blocks
+  end subroutine cut_deck
 
   !> Cut a file into lines and blocks, its includes in their place.
   recursive subroutine cut_source(deck, source, depth, folders_above)
