@@ -11,6 +11,9 @@ module contact_log_m
   private
   public :: log_contact, report_initial_contact, report_released
 
+  !> Part of the search reach below which a penetration at time zero is round-off.
+  real(wp), parameter :: round_off = 1.0e-10_wp
+
 contains
 
   !> Type, surfaces, all equivalents of the penalty and what the search will catch.
@@ -52,6 +55,7 @@ contains
 
     if (memory%points%n == 0) return
     p = minloc(memory%points%gap(:memory%points%n), 1)
+    if (-memory%points%gap(p) <= round_off*memory%slave_tracking%reach) return
     call write_log(log, 'interface '//to_text(contact%id)//': initial penetration at ' &
       //to_text(memory%points%n)//' points, deepest at node ' &
       //to_text(model%mesh%node_id(memory%nodes(memory%points%slave_nodes(1, p))))//': ' &

@@ -29,17 +29,15 @@ contains
     real(wp), intent(out) :: limit  !! s; huge without any spring
     integer, intent(out) :: node    !! index in the mesh
     type(formulation_t) :: formulation
-    real(wp) :: slave_areas(memory%n_slave), master_areas(memory%n_master)
-    real(wp) :: slave_ratio(memory%n_slave), master_ratio(memory%n_master), slave_penalty
+    real(wp), allocatable :: slave_areas(:), master_areas(:), slave_ratio(:), master_ratio(:)
     integer :: n, worst(2)
 
     n = memory%n_slave
     formulation = formulation_of(contact)
     slave_areas = areas(contact%slave, memory%places(:, :n))
     master_areas = areas(contact%master, memory%places(:, n + 1:))
-    slave_penalty = memory%slave_penalty
-    slave_ratio = slave_penalty*slave_areas
-    master_ratio = slave_penalty*max(worst_sampling*master_areas, maxval(slave_areas))
+    slave_ratio = memory%slave_penalty*slave_areas
+    master_ratio = memory%slave_penalty*max(worst_sampling*master_areas, maxval(slave_areas))
     if (formulation%has_unit_area) then
       slave_ratio = memory%node_penalty
       master_ratio = memory%node_penalty &
