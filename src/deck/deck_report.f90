@@ -117,7 +117,7 @@ contains
     call raise(error, trim(text), status_input)
   end subroutine emit_errors
 
-  !> Order of the notes by line, equal lines as they came.
+  !> Order of the notes by line, equal lines as they came, those of no line (0) last.
   pure function deck_order(notes) result(order)
     type(note_t), intent(in) :: notes(:)
     integer :: order(size(notes))
@@ -126,7 +126,8 @@ contains
     do i = 1, size(notes)
       order(i) = i
       do j = i - 1, 1, -1
-        if (notes(order(j))%line <= notes(i)%line) exit
+        if (notes(i)%line < 1 .or. (notes(order(j))%line > 0 .and. &
+          notes(order(j))%line <= notes(i)%line)) exit
         moved = order(j)
         order(j) = order(j + 1)
         order(j + 1) = moved
