@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Run one regression case: `run_case.py CASE --program EXE --work DIR`.
 
-CASE is a folder beside this file (see slideline_tools.regression for its case.toml). The exit
-status is 0 only if the run ended normally and every column agrees with its reference.
+CASE is a folder beside this file (see slideline_tools.regression for its case.toml); the run
+goes to DIR/CASE, so that cases may share DIR and run at the same time. The exit status is 0 only
+if the run ended normally and every column agrees with its reference.
 """
 import argparse
 import pathlib
@@ -25,7 +26,8 @@ def main():
     except CaseError as problem:
         print(problem)
         return 2
-    return run_case(case, options.program, options.work, sys.stdout)
+    work = pathlib.Path(options.work) / options.case
+    return run_case(case, options.program, work, sys.stdout)
 
 
 if __name__ == "__main__":

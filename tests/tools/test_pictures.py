@@ -80,7 +80,7 @@ def test_default_field(results_file):
 def test_two_panels_in_the_report_picture(results_file):
     results = read(results_file)
     assert [title for _, title in plots.report_requests(results)] == [
-        "energy", "contact force in y, slave side"]
+        "energy", "contact force in y"]
     with pytest.raises(ResultsError):
         plots.report_figure(results, state="9")
 

@@ -242,7 +242,7 @@ def contact_figure(results, states=("-1",)):
             axes.set_title(f"interface {interface}", loc="left")
             axes.set_xlabel("arc length s along the slave surface")
             axes.set_ylabel("contact pressure")
-            axes.set_ylim(bottom=0.0)
+            axes.set_ylim(0.0, 1.08 * axes.dataLim.ymax or 1.0)
             axes.grid(True, linewidth=0.3, color="#bbbbbb")
             axes.legend()
         figure.suptitle(run_title(results), fontsize=9)
@@ -285,7 +285,7 @@ def report_requests(results):
                                          or np.any(glstat[name] != 0.0))]
         panels.append(("glstat:" + ",".join(wanted), "energy"))
     if "rcforc" in results.histories and len(results.history("rcforc")):
-        panels.append(("rcforc:fy@side=slave", "contact force in y, slave side"))
+        panels.append(("rcforc:fy@side=slave", "contact force in y"))
     elif "nodout" in results.histories and len(results.history("nodout")):
         panels.append(("nodout:uy", "displacement in y"))
     return panels

@@ -140,7 +140,7 @@ def run_case(case, program, work, out):
             print(report.text(), file=out)
             passed = passed and report.passed
         return 0 if passed else 1
-    except (CaseError, HistoryError, Unusable) as problem:
+    except (CaseError, HistoryError, Unusable, OSError) as problem:
         print(f"{case.folder.name}: {problem}", file=out)
         return 2
 
