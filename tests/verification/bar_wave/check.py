@@ -10,11 +10,13 @@ STRESS = RHO * SOUND * SPEED
 END_TIME = 0.8 * LENGTH / SOUND
 
 
-def bar_deck(n, load):
+def bar_deck(n, load, viscosity=None):
     """n square elements along the bar; the left end gets a velocity or a pressure step."""
     height = LENGTH / n
     deck = Deck(f"bar of {n} elements, {load}")
     deck.control(END_TIME, dt=0.8 * height / SOUND).part().elastic(RHO, YOUNG, 0.0)
+    if viscosity:
+        deck.add("*CONTROL_BULK_VISCOSITY", viscosity)
     nodes = deck.mesh(*grid(n, 1, LENGTH, height))
     left = nodes[[0, n + 1]]
     if load == "velocity":
@@ -76,6 +78,28 @@ def check_load(run, load):
                   STRESS * area * momentum["time"], 1e-11, source="p A t, central difference")
 
 
+def check_viscosity(run):
+    """Bulk viscosity takes the ringing out, keeps front and plateau, and is in the balance."""
+    n = 100
+    plain = run.program(bar_deck(n, "velocity")[0], name="plain")
+    viscous = run.program(bar_deck(n, "velocity", (1.5, 0.3))[0], name="viscous")
+    peaks = [np.max(-result.cells("stress")[..., 0]) / STRESS for result in (plain, viscous)]
+    run.report("bulk viscosity off: largest stress / rho c v", peaks[0])
+    run.report("bulk viscosity Q2 0.3: largest stress / rho c v", peaks[1])
+    run.check("bulk viscosity: overshoot left / overshoot without", (peaks[1] - 1.0)
+              / (peaks[0] - 1.0), 0.5, 0.0, "max", "that is what it is for")
+    behind = (np.arange(n) + 0.5) * LENGTH / n < 0.6 * LENGTH
+    run.check("bulk viscosity: stress behind the front", viscous.cells("stress")[-1, behind, 0].mean(),
+              -STRESS, 1e-2, source="rho c v")
+    energy = viscous.table("glstat")
+    run.check("bulk viscosity: energy ratio", energy["energy_ratio"][40:], 1.0, 1e-2, "abs", "balance")
+    run.check("bulk viscosity: dissipated energy never falls", np.diff(energy["viscous"]), 0.0, 0.0,
+              "min", "second law")
+    run.check("bulk viscosity: dissipated / total energy", energy["viscous"][-1] / energy["total"][-1],
+              1e-3, 0.0, "min", "so that the balance means something")
+
+
 def check(run):
     check_load(run, "velocity")
     check_load(run, "pressure")
+    check_viscosity(run)

@@ -61,12 +61,12 @@ def check_stretch(run, stretch, tolerance):
                   (BULK + 4.0 * SHEAR / 3.0) * internal, 1e-3, source="integral of sigma d lambda")
 
 
-def check_patch(run):
+def check_patch(run, name, quads):
     """Affine motion of the boundary, the middle node free: F = I + t A."""
     rate = np.array([[0.2, 0.0], [0.0, 0.0]])
-    coordinates, quads = distorted_patch()
-    deck = Deck("distorted patch, uniaxial strain")
-    deck.control(1.0, dt=0.005).part().elastic(RHO, YOUNG, POISSON)
+    coordinates, _ = distorted_patch()
+    deck = Deck(f"distorted patch of {name}, uniaxial strain")
+    deck.control(1.0, dt=0.002).part().elastic(RHO, YOUNG, POISSON)
     nodes = deck.mesh(coordinates, quads)
     deck.curve(1, [(0.0, 1.0), (2.0, 1.0)])
     velocity = coordinates @ rate.T
@@ -75,22 +75,28 @@ def check_patch(run):
         if k == 4:
             continue
         deck.prescribe(node, 1, 0, 1, velocity[k, 0]).prescribe(node, 2, 0, 1, velocity[k, 1])
-    deck.output(plot=0.1, glstat=0.1)
-    result = run.program(deck)
+    deck.output(plot=0.1, glstat=0.1, matsum=0.1)
+    result = run.program(deck, name=name.replace(" ", "_"))
     expected = log_strain_stress(1.0 + rate[0, 0] * result.times)
     found = result.cells("stress")
-    run.check("patch: stress of all elements", found, expected[:, None, :] + 0.0 * found, 1e-5,
-              source="uniform field")
+    run.check(f"patch of {name}: stress of all elements", found, expected[:, None, :] + 0.0 * found,
+              1e-5, source="uniform field")
     spread = np.max(np.abs(found - found.mean(axis=1, keepdims=True)))
-    run.check("patch: spread between elements / stress", spread / np.max(np.abs(expected)), 0.0,
-              1e-11, "abs", "patch test")
+    run.check(f"patch of {name}: spread between elements / stress", spread / np.max(np.abs(expected)),
+              0.0, 1e-11, "abs", "patch test")
     moved = result.points("displacement")[-1, 4, :2]
-    run.check("patch: displacement of the free node", moved, velocity[4], 1e-11,
+    run.check(f"patch of {name}: displacement of the free node", moved, velocity[4], 1e-11,
               source="affine motion")
+    run.check(f"patch of {name}: mass", result.table("matsum")["mass"], RHO, 1e-13,
+              source="rho times the unit square")
 
 
 def check(run):
     check_stretch(run, 1.001, 1e-8)
     check_stretch(run, 1.5, 1e-5)
     check_stretch(run, 0.6, 2e-5)
-    check_patch(run)
+    quads = distorted_patch()[1]
+    halves = [half for a, b, c, d in quads for half in ((a, b, c, c), (a, c, d, d))]
+    check_patch(run, "quads", quads)
+    check_patch(run, "triangles", halves)
+    check_patch(run, "quads and triangles", quads[:2] + halves[4:])

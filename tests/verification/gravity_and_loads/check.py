@@ -159,6 +159,36 @@ def check_prescribed(run):
               source="curve x factor")
 
 
+def check_birth_and_death(run):
+    """Motion that begins and ends during the run; the body flies on with what it has."""
+    deck, nodes, mass = block("birth and death of a motion")
+    deck.curve(1, [(0.0, 3.0), (1.0, 3.0)])
+    deck.add("*BOUNDARY_PRESCRIBED_MOTION_SET", (1, 1, 0, 1, 1.0, 0, 0.15, 0.05))
+    history = run.program(deck).node(5)
+    cycle = np.rint(history["time"] / DT)
+    # steps from cycle 50 on carry the velocity, also those after the death
+    run.check("birth and death: displacement", history["ux"], 3.0 * DT * np.maximum(0, cycle - 50),
+              1e-11, source="rest, then 3 m/s, then free flight")
+    deck, nodes, mass = block("arrival of a pressure", shape=grid(1, 1))
+    deck.curve(1, [(0.0, 20.0), (1.0, 20.0)])
+    deck.add("*LOAD_SEGMENT", (1, 1.0, 0.1, nodes[1], nodes[3], nodes[3], nodes[3]))
+    part = run.program(deck).table("matsum")
+    late = np.maximum(0.0, part["time"] - 0.1)
+    run.check("arrival time: momentum", part["momentum_x"], -20.0 * late, 6e-3,
+              source="p L (t - AT), half a step for the jump")
+
+
+def check_one_direction(run):
+    """Damping in x alone."""
+    deck, nodes, mass = block("damping in x")
+    deck.add("*INITIAL_VELOCITY", (1,), (2.0, -1.0))
+    deck.add("*DAMPING_GLOBAL", (0, 10.0, 1.0, 0.0))
+    history = run.program(deck).node(5)
+    run.check("damping in x alone: velocity x", history["vx"], 2.0 * np.exp(-10.0 * history["time"]),
+              1e-2, source="v0 exp(-D t)")
+    run.check("damping in x alone: velocity y", history["vy"], -1.0, 1e-12, source="not damped")
+
+
 def check_reaction_work(run):
     """Slow stretch by prescribed displacement: the reactions' work is the energy stored."""
     deck, nodes, mass = block("slow stretch", dt=0.005, end_time=2.0, shape=grid(1, 1))
@@ -182,3 +212,5 @@ def check(run):
     check_damping(run)
     check_prescribed(run)
     check_reaction_work(run)
+    check_birth_and_death(run)
+    check_one_direction(run)
