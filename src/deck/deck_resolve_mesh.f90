@@ -62,6 +62,7 @@ contains
     logical, intent(out) :: sound
     integer :: n_before
 
+    sound = .false.
     n_before = deck%report%n_error
     if (raw%n_node == 0 .and. .not. raw%lost%nodes) call line_error(deck, 0, 'the deck has no nodes (*NODE)')
     if (raw%n_element == 0 .and. .not. raw%lost%elements) call line_error(deck, 0, 'the deck has no elements (*ELEMENT_SHELL)')
@@ -73,6 +74,7 @@ contains
     model%mesh%element_id = raw%element_id(:raw%n_element)
     deallocate (raw%node_id, raw%coordinates, raw%element_id)
     call resolve_elements(deck, raw, maps, model%mesh)
+    if (any(model%mesh%element_nodes < 1) .or. any(model%mesh%element_part < 1)) return
     if (deck%report%n_error == n_before) call check_shapes(deck, raw, model%mesh)
     sound = deck%report%n_error == n_before .and. raw%n_node > 0 .and. raw%n_element > 0 &
       .and. .not. (raw%lost%nodes .or. raw%lost%elements .or. deck%incomplete)
