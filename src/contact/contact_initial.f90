@@ -8,7 +8,7 @@ module contact_initial_m
   use contact_search_m, only : update_tracking, most_facing, begin_contact
   use contact_state_m, only : tracking_t, allocate_tracking, is_touching
   use contacts_m, only : contact_t
-  use element_finder_m, only : element_finder_t, start_finder, finds_element
+  use element_finder_m, only : element_finder_t, start_finder, is_inside_body
   use geometry_m, only : closest_distance
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -129,7 +129,7 @@ contains
     call start_finder(model, surface%segment_element, finder)
     do i = 1, tracking%n
       if (tracking%status(i) == is_touching) cycle
-      if (.not. finds_element(finder, model, own%nodes(i))) cycle
+      if (.not. is_inside_body(finder, model, own%nodes(i))) cycle
       segment = 0
       nearest = huge(1.0_wp)
       do k = 1, surface%n_segment

@@ -1,15 +1,17 @@
 ! SPDX-License-Identifier: MIT
-!> Whether a node lies inside an element of certain parts at time zero.
+!> Whether a node lies inside the elements of certain parts at time zero, and not just on their boundary.
 !> Elements are sorted into the cells of a uniform grid by their boxes; used once, at the start.
 module element_finder_m
   use kinds_m, only : wp
   use model_m, only : model_t
   implicit none
   private
-  public :: element_finder_t, start_finder, finds_element
+  public :: element_finder_t, start_finder, is_inside_body
 
-  !> Part of the longest side by which a node must lie within each edge to be inside.
+  !> Part of a cell by which a node must lie within the boundary.
   real(wp), parameter :: margin = 1.0e-6_wp
+  !> Part of an edge by which a place may lie outside of an element and still count as in it.
+  real(wp), parameter :: round_off = 1.0e-9_wp
 
   !> The grid; `cells = 0` when there is no element.
   type :: element_finder_t
@@ -89,45 +91,59 @@ contains
     cell = max(0, min(finder%cells - 1, int((x - finder%low)/finder%cell)))
   end function cell_of
 
-  !> Whether the node lies inside one of the elements that it does not belong to.
-  pure function finds_element(finder, model, node) result(found)
+  !> Whether four places round the node, a hair away, are all in elements that it does not belong to. (The
+  !> node alone would not tell an edge between two elements from the boundary.)
+  pure function is_inside_body(finder, model, node) result(inside)
     type(element_finder_t), intent(in) :: finder
     type(model_t), intent(in) :: model
     integer, intent(in) :: node
-    logical :: found
+    logical :: inside
+    real(wp) :: x(2), hair(2)
+
+    x = model%mesh%coordinates(:, node)
+    hair = margin*finder%cell
+    inside = is_covered(finder, model, node, x + hair)
+    if (inside) inside = is_covered(finder, model, node, x - hair)
+    if (inside) inside = is_covered(finder, model, node, x + [hair(1), -hair(2)])
+    if (inside) inside = is_covered(finder, model, node, x + [-hair(1), hair(2)])
+  end function is_inside_body
+
+  !> Whether x is in an element that does not belong to `node`.
+  pure function is_covered(finder, model, node, x) result(covered)
+    type(element_finder_t), intent(in) :: finder
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: node
+    real(wp), intent(in) :: x(2)
+    logical :: covered
     integer :: cell(2), k, i
 
-    found = .false.
-    associate (x => model%mesh%coordinates(:, node))
-      if (any(x < finder%low) .or. any(x > finder%high)) return
-      cell = cell_of(finder, x)
-      k = 1 + cell(1) + cell(2)*finder%cells(1)
-      do i = finder%first(k) + 1, finder%first(k + 1)
-        if (any(model%mesh%element_nodes(:, finder%items(i)) == node)) cycle
-        found = is_inside(model, finder%items(i), x)
-        if (found) return
-      end do
-    end associate
-  end function finds_element
+    covered = .false.
+    if (any(x < finder%low) .or. any(x > finder%high)) return
+    cell = cell_of(finder, x)
+    k = 1 + cell(1) + cell(2)*finder%cells(1)
+    do i = finder%first(k) + 1, finder%first(k + 1)
+      if (any(model%mesh%element_nodes(:, finder%items(i)) == node)) cycle
+      covered = is_in_element(model, finder%items(i), x)
+      if (covered) return
+    end do
+  end function is_covered
 
-  !> Whether x lies inside an element, by more than the margin.
-  pure function is_inside(model, element, x) result(inside)
+  !> Whether x is in an element, edges included.
+  pure function is_in_element(model, element, x) result(is_in)
     type(model_t), intent(in) :: model
     integer, intent(in) :: element
     real(wp), intent(in) :: x(2)
-    logical :: inside
-    real(wp) :: a(2), t(2), square
+    logical :: is_in
+    real(wp) :: a(2), t(2)
     integer :: k
 
-    inside = .false.
+    is_in = .false.
     do k = 1, 4
       a = model%mesh%coordinates(:, model%mesh%element_nodes(k, element))
       t = model%mesh%coordinates(:, model%mesh%element_nodes(1 + modulo(k, 4), element)) - a
-      square = t(1)**2 + t(2)**2
-      if (.not. square > 0.0_wp) cycle
-      if (t(1)*(x(2) - a(2)) - t(2)*(x(1) - a(1)) <= margin*square) return
+      if (t(1)*(x(2) - a(2)) - t(2)*(x(1) - a(1)) < -round_off*dot_product(t, t)) return
     end do
-    inside = .true.
-  end function is_inside
+    is_in = .true.
+  end function is_in_element
 
 end module element_finder_m
