@@ -16,8 +16,8 @@ from slideline_tools.results import ResultsError  # noqa: E402
 STYLE = {
     "figure.dpi": 150, "savefig.dpi": 150, "font.size": 9, "axes.titlesize": 9,
     "axes.grid": False, "legend.framealpha": 0.85, "legend.edgecolor": "none",
-    "lines.linewidth": 1.2, "axes.spines.top": False, "axes.spines.right": False, "axes.formatter.limits": (-3, 4),
-    "axes.formatter.use_mathtext": True, "legend.fontsize": 8,
+    "lines.linewidth": 1.2, "axes.spines.top": False, "axes.spines.right": False,
+    "axes.formatter.limits": (-3, 4), "axes.formatter.use_mathtext": True, "legend.fontsize": 8,
 }
 PAGE_WIDTH = 7.0
 COLOURS = ("#0b559f", "#c23b22", "#2e7d32", "#7b3f99", "#b8860b", "#00838f", "#5d4037", "#555555")
