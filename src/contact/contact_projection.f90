@@ -169,7 +169,8 @@ contains
       if (is_before(other, sight%along < 0.0_wp)) then
         foot = corner_foot(sight, other, segment)
         return
-      else if (other%across >= 0.0_wp) then
+      else if (other%across >= 0.0_wp .or. (is_over_segment(sight) .and. &
+        dot_product(sight%t, other%t) < gentle_turn*sqrt(sight%square*other%square))) then
         foot = face_foot(sight, segment)
         return
       end if
