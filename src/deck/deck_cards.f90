@@ -4,6 +4,7 @@
 module deck_cards_m
   use kinds_m, only : wp
   use log_m, only : to_text
+  use deck_report_m, only : is_full
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
     flag_parameter, block_of_line
   use deck_fields_m, only : card_t, card_spec_t, make_spec, cut_card, read_numbers, field_text, &
@@ -209,6 +210,10 @@ contains
     type(card_t) :: card
     integer :: n_card, i_block
 
+    if (is_full(deck%report)) then
+      deck%report%n_error = deck%report%n_error + 1
+      return
+    end if
     i_block = block_of_line(deck, place%line)
     call get_specs(deck, i_block, specs, n_card)
     if (place%line > deck%blocks(i_block)%keyword) then

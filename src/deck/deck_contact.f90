@@ -40,6 +40,9 @@ contains
       call next_text(deck, cursor, title)
       call take_title(title, entry)
     end if
+    if (any(raw%contacts%contact%id == entry%contact%id)) call line_error(deck, &
+      deck%blocks(i_block)%keyword, 'the interface number '//to_text(entry%contact%id) &
+      //' belongs to an earlier interface (without a number it is the position in the deck)')
     do k = 1, cursor%n_card
       call next_card(deck, parameters, cursor, k, cards(k))
     end do

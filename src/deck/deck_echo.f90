@@ -6,6 +6,7 @@ module deck_echo_m
   use parts_m, only : hourglass_stiffness
   use contacts_m, only : contact_t, contact_kind_t
   use controls_m, only : interval_t
+  use curves_m, only : curve_is_constant
   use model_m, only : model_t
   implicit none
   private
@@ -37,6 +38,7 @@ contains
     end do
     call write_log(log, 'end: time '//to_text(model%controls%end_time)//', step scale ' &
       //to_text(model%controls%dt_scale))
+    call echo_short_curves(model, log)
     if (model%controls%dt_curve > 0) call write_log(log, 'step capped by curve ' &
       //to_text(model%curves(model%controls%dt_curve)%id))
     call echo_interval('states', model%controls%output%plot)
@@ -61,6 +63,23 @@ contains
     end subroutine echo_interval
 
   end subroutine echo_model
+
+  !> Curves that end before the run does: what holds after their end.
+  subroutine echo_short_curves(model, log)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    integer :: i
+
+    do i = 1, size(model%curves)
+      associate (curve => model%curves(i))
+        if (curve_is_constant(curve)) cycle
+        if (curve%abscissa(size(curve%abscissa)) >= model%controls%end_time) cycle
+        call write_log(log, 'curve '//to_text(curve%id)//' ends at ' &
+          //to_text(curve%abscissa(size(curve%abscissa)))//', before the end time: its last ' &
+          //'value is held')
+      end associate
+    end do
+  end subroutine echo_short_curves
 
   !> One part.
   subroutine echo_part(model, i, log)

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: MIT
+"""doc/keywords.md says of every keyword and field what the reader's table says."""
+import re
+
+import pytest
+
+from fortran_source import ROOT
+
+SOURCE = (ROOT / "src/deck/deck_schema_tables.f90").read_text(encoding="utf-8")
+KINDS = {"i": "integer", "f": "real", "a": "text"}
+TREATMENTS = {"": "honoured", "s": "no effect", "w": "warning", "r": "refused"}
+
+
+def table_lines(name):
+    """The lines of one table of the reader."""
+    body = re.search(rf":: {name}\(\*\) = \[character\(\d+\) :: &\n(.*?)\]\n", SOURCE, re.S).group(1)
+    return re.findall(r"'([^']*)'", re.sub(r"' &\n\s*//'", "", body))
+
+
+def keywords_of_the_reader():
+    """keyword -> rows (card, field, columns, kind, default, treatment)."""
+    found, rows = {}, None
+    names = re.findall(r":: (table_\w+)\(\*\)", SOURCE)
+    for line in (line for name in names if name != "table_others" for line in table_lines(name)):
+        if not line.startswith(" "):
+            rows = found.setdefault(line.split()[0], [])
+            card = 0
+            continue
+        card, column = card + 1, 1
+        for word in line.split():
+            name, kind, treatment, width, default = re.fullmatch(
+                r"([^:]+):([ifax])([swr]?)(\d*)(?:=(\S+))?", word).groups()
+            width = int(width or 10)
+            if name != "-":
+                rows.append((str(card), name, f"{column}-{column + width - 1}", KINDS[kind],
+                             default or "", TREATMENTS[treatment]))
+            column += width
+    return found
+
+
+def keywords_of_the_page():
+    """The same, as doc/keywords.md has it."""
+    text = (ROOT / "doc/keywords.md").read_text(encoding="utf-8")
+    found = {}
+    for section in re.split(r"^### \*", text, flags=re.M)[1:]:
+        keyword = section.split()[0]
+        found[keyword] = [tuple(cell.strip() for cell in line.split("|")[1:7])
+                          for line in section.split("\n## ")[0].splitlines()
+                          if re.match(r"\| \d", line)]
+    return found
+
+
+READER, PAGE = keywords_of_the_reader(), keywords_of_the_page()
+
+
+def test_page_has_the_keywords_of_the_reader():
+    assert set(READER) == set(PAGE)
+
+
+@pytest.mark.parametrize("keyword", sorted(READER))
+def test_page_has_the_fields_of(keyword):
+    assert PAGE[keyword] == READER[keyword]
+
+
+def test_page_names_what_is_ignored_and_refused():
+    text = (ROOT / "doc/keywords.md").read_text(encoding="utf-8")
+    ignored, refused = text.split("## Known, without effect")[1].split("## Known, refused")
+    for line in table_lines("table_others"):
+        keyword, reason = line.split(maxsplit=1)
+        assert f"`*{keyword}`" in (ignored if reason.strip() == "ignored" else refused)
