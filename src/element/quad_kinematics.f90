@@ -43,11 +43,13 @@ contains
     real(wp), intent(in) :: dt                      !! step that led here
     type(element_chunk_t), intent(inout) :: chunk
     type(stress_chunk_t), intent(inout) :: stress   !! increments and rotation out
-    real(wp) :: x31, y31, x42, y42, back, factor, lxx, lxy, lyx, lyy, tangent, inverse, cosine, sine
+    real(wp) :: x31, y31, x42, y42, back, factor, lxx, lxy, lyx, lyy, tangent, inverse, cosine, &
+      sine, mean, half, shear
     integer :: i
 
     back = 0.5_wp*dt
-    !$omp simd private(x31, y31, x42, y42, factor, lxx, lxy, lyx, lyy, tangent, inverse, cosine, sine)
+    !$omp simd private(x31, y31, x42, y42, factor, lxx, lxy, lyx, lyy, tangent, inverse, cosine, &
+    !$omp& sine, mean, half, shear)
     do i = 1, chunk_size
       x31 = chunk%x31(i) - back*chunk%v31(1, i)
       y31 = chunk%y31(i) - back*chunk%v31(2, i)
@@ -60,9 +62,6 @@ contains
       lyx = factor*(chunk%v31(2, i)*y42 - chunk%v42(2, i)*y31)
       lyy = factor*(x31*chunk%v42(2, i) - x42*chunk%v31(2, i))
       chunk%trace(i) = lxx + lyy
-      stress%dxx(i) = dt*lxx
-      stress%dyy(i) = dt*lyy
-      stress%dxy(i) = back*(lxy + lyx)
       tangent = 0.5_wp*back*(lyx - lxy)
       inverse = 1.0_wp/(1.0_wp + tangent*tangent)
       cosine = (1.0_wp - tangent*tangent)*inverse
@@ -71,6 +70,13 @@ contains
       stress%sine(i) = sine
       stress%cos2(i) = cosine*cosine - sine*sine
       stress%sin2(i) = 2.0_wp*cosine*sine
+      ! Mid-step increments turn by half the rotation to stand beside the rotated stress.
+      mean = back*(lxx + lyy)
+      half = back*(lxx - lyy)
+      shear = back*(lxy + lyx)
+      stress%dxx(i) = mean + (cosine*half - sine*shear)
+      stress%dyy(i) = mean - (cosine*half - sine*shear)
+      stress%dxy(i) = cosine*shear + sine*half
       x31 = chunk%hx(i) - back*chunk%hv(1, i)
       y31 = chunk%hy(i) - back*chunk%hv(2, i)
       chunk%gx(i) = chunk%hv(1, i) - (lxx*x31 + lxy*y31)

@@ -3,13 +3,13 @@
 !> step and health after them.
 module cycle_m
   use clock_m, only : lap, phase_nodes
-  use constraints_m, only : update_activity
+  use constraints_m, only : fix_nodes, update_activity
   use contact_check_m, only : report_contact_start, report_contact_end
   use contact_force_m, only : apply_contact
   use energies_m, only : energy_ratio, total_energy
   use errors_m, only : error_t
   use external_force_m, only : form_external_force, body_acceleration, damping_rate
-  use health_m, only : check_elements, check_step, check_energy
+  use health_m, only : check_elements, check_step, check_energy, judge_energies
   use kinds_m, only : wp
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
@@ -132,7 +132,10 @@ contains
     integer :: i
 
     cycle%leap = make_leap(state%dt_before, state%dt, cycle%damping, state%body_acceleration)
-    if (cycle%timed_motions) call update_activity(model, state%time, state%mass, state%inverse_mass)
+    if (cycle%timed_motions) then
+      call update_activity(model, state%time, state%mass, state%inverse_mass)
+      call fix_nodes(model, state%inverse_mass)
+    end if
     do i = 1, size(cycle%displacement)
       associate (prescribed => model%conditions%motions(i))
         cycle%displacement(i) = state%motion(prescribed%direction, prescribed%node)
@@ -141,19 +144,21 @@ contains
     call find_prescribed_velocities(model, state, cycle%velocity)
   end subroutine prepare_leap
 
-  !> Write what is due; the first cycle first finds its step.
+  !> Write what is due, unless the state has gone wrong; the first cycle first finds its step.
   subroutine report_cycle(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(cycle_t), intent(inout) :: cycle
 
-    if (state%cycle == 0) then
+    call check_elements(model, state, cycle%error)
+    if (state%cycle == 0 .and. .not. allocated(cycle%error)) &
       call first_step(model, state%elements, monitor%log, cycle%steps, state%dt, cycle%error)
-      if (allocated(cycle%error)) then
-        cycle%finished = .true.
-        return
-      end if
+    if (allocated(cycle%error)) then
+      cycle%finished = .true.
+      return
+    end if
+    if (state%cycle == 0) then
       call report_contact_start(model, state, monitor%log)
       call prepare_leap(model, state, cycle)
       call start_prescribed(model, cycle%velocity, state)
@@ -176,7 +181,9 @@ contains
     if (.not. allocated(cycle%error) .and. cycle%due%glstat) call check_energy(model%controls, &
       monitor%snapshot%energies, cycle%error)
     cycle%finished = cycle%last .or. allocated(cycle%error)
-    if (cycle%finished) call report_contact_end(model, state, monitor%log)
+    if (.not. cycle%finished) return
+    call report_contact_end(model, state, monitor%log)
+    if (.not. allocated(cycle%error)) call judge_energies(monitor%snapshot%energies, monitor%log)
   end subroutine report_cycle
 
   !> Prescribed nodes to their places, health, and on to the next instant.
@@ -188,7 +195,7 @@ contains
     real(wp) :: before
 
     if (cycle%finished) return
-    call check_elements(model, state, cycle%error)
+    if (.not. cycle%writes) call check_elements(model, state, cycle%error)
     if (size(cycle%velocity) > 0) then
       before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
       state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
@@ -199,7 +206,7 @@ contains
     state%dt_before = state%dt
     call next_step(model, state%elements, monitor%log, state%cycle, cycle%steps, state%time, state%dt)
     if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
-      state%dt, cycle%error)
+      state%time, state%dt, cycle%error)
     if (allocated(cycle%error)) cycle%finished = .true.
     if (stop_requested() .and. .not. cycle%last) then
       cycle%last = .true.

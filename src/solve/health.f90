@@ -5,12 +5,12 @@ module health_m
   use energies_m, only : energies_t, energy_ratio, total_energy
   use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
-  use log_m, only : to_text
+  use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use state_m, only : state_t
   implicit none
   private
-  public :: check_elements, check_step, check_energy
+  public :: check_elements, check_step, check_energy, judge_energies
 
 contains
 
@@ -74,15 +74,19 @@ contains
       //to_text(state%cycle)//', time '//to_text(state%time), status_run)
   end subroutine blame
 
-  !> The step must stay above its floor (DTMIN of *CONTROL_TERMINATION).
-  subroutine check_step(controls, first_dt, dt, error)
+  !> The step must stay above its floor: DTMIN of *CONTROL_TERMINATION, and in any case a millionth of the
+  !> first step (such a run would never end) and what the time can still resolve.
+  subroutine check_step(controls, first_dt, time, dt, error)
     type(controls_t), intent(in) :: controls
-    real(wp), intent(in) :: first_dt, dt
+    real(wp), intent(in) :: first_dt, time, dt
     type(error_t), allocatable, intent(out) :: error
+    real(wp) :: floor_dt
 
-    if (dt > 0.0_wp .and. dt >= controls%dt_floor*first_dt) return
-    call raise(error, 'the time step '//to_text(dt)//' fell below its floor '// &
-      to_text(controls%dt_floor*first_dt)//' (DTMIN times the first step)', status_run)
+    floor_dt = max(controls%dt_floor, 1.0e-6_wp)*first_dt
+    if (dt >= floor_dt .and. dt > 4.0_wp*spacing(time)) return
+    call raise(error, 'the time step '//to_text(dt)//' at time '//to_text(time) &
+      //' fell below its floor '//to_text(floor_dt)//' (DTMIN times the first step, at least a ' &
+      //'millionth of it)', status_run)
   end subroutine check_step
 
   !> The energy ratio must stay within ENDENG per cent of one where the deck sets it, and energies finite.
@@ -99,5 +103,20 @@ contains
         //to_text(controls%energy_limit)//' per cent (ENDENG)', status_run)
     end if
   end subroutine check_energy
+
+  !> Warnings at the end of a run whose figures deserve a second look.
+  subroutine judge_energies(energies, log)
+    type(energies_t), intent(in) :: energies
+    type(log_t), intent(inout) :: log
+    real(wp) :: largest
+
+    largest = max(abs(energies%initial), abs(energies%external_work), energies%internal)
+    if (energies%contact < -0.05_wp*largest) call warn(log, 'the contact forces created energy: ' &
+      //to_text(energies%contact)//' of '//to_text(largest) &
+      //'; the penalty or the time step is too large')
+    if (energies%hourglass > 0.1_wp*max(energies%internal, 1.0e-6_wp*largest)) call warn(log, &
+      'the hourglass energy '//to_text(energies%hourglass)//' is more than 10 % of the internal ' &
+      //'energy '//to_text(energies%internal))
+  end subroutine judge_energies
 
 end module health_m

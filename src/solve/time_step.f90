@@ -86,7 +86,7 @@ contains
     else if (.not. steps%warned .and. curve_is_constant(model%curves(model%controls%dt_curve))) then
       call warn(log, 'the constant time step '//to_text(cap)//' at time '//to_text(time) &
         //' lies above the stable step '//to_text(limit)//' of the elements; using TSSFAC times ' &
-        //'the stable step from here on')
+        //'the stable step while it does')
       steps%warned = .true.
     end if
   end function choose_step
