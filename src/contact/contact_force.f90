@@ -96,20 +96,17 @@ contains
     real(wp) :: spread
 
     power = 0.0_wp
-    if (memory%n_active > 0) then
-      power = power_of(memory%nodes, motion, memory%force)
-      memory%force = 0.0_wp
-    end if
+    if (memory%n_active > 0) call take_force(memory%nodes, motion, memory%force, power)
     call take_places(memory%nodes, motion, memory%places, spread)
     memory%travel = memory%travel + spread
   end subroutine gather_motion
 
-  !> Power of nodal forces with the velocities of the nodes, W/m.
-  pure function power_of(nodes, motion, force) result(power)
+  !> Power of nodal forces with the velocities of the nodes; the forces are zero afterwards.
+  pure subroutine take_force(nodes, motion, force, power)
     integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in), contiguous :: motion(:, :)
-    real(wp), intent(in), contiguous :: force(:, :)
-    real(wp) :: power
+    real(wp), intent(in) :: motion(4, *)
+    real(wp), intent(inout) :: force(2, *)
+    real(wp), intent(out) :: power
     real(wp) :: power_x, power_y
     integer :: i
 
@@ -118,15 +115,17 @@ contains
     do i = 1, size(nodes)
       power_x = power_x + motion(3, nodes(i))*force(1, i)
       power_y = power_y + motion(4, nodes(i))*force(2, i)
+      force(1, i) = 0.0_wp
+      force(2, i) = 0.0_wp
     end do
     power = power_x + power_y
-  end function power_of
+  end subroutine take_force
 
   !> Copy u of the nodes; the diagonal of the box of their changes bounds the relative motion.
   pure subroutine take_places(nodes, motion, places, spread)
     integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in), contiguous :: motion(:, :)
-    real(wp), intent(inout), contiguous :: places(:, :)
+    real(wp), intent(in) :: motion(4, *)
+    real(wp), intent(inout) :: places(4, *)
     real(wp), intent(out) :: spread !! m
     real(wp) :: low_x, low_y, high_x, high_y, ux, uy, dx, dy
     integer :: i
@@ -158,11 +157,13 @@ contains
     memory%places(1:2, :) = coordinates(:, memory%nodes)
     memory%places(3:4, :) = motion(1:2, memory%nodes)
     memory%slave_tracking%segment = 0
+    memory%slave_tracking%n_touching = 0
     memory%slave_tracking%status = 0
     memory%slave_tracking%grid%cell = 0.0_wp
     call wake_all(memory%slave_tracking)
     if (memory%master_tracking%n > 0) then
       memory%master_tracking%segment = 0
+      memory%master_tracking%n_touching = 0
       memory%master_tracking%status = 0
       memory%master_tracking%grid%cell = 0.0_wp
       call wake_all(memory%master_tracking)
@@ -192,8 +193,8 @@ contains
   !> Add the forces of the interface to those of the mesh, and their power to `power`.
   pure subroutine add_force(nodes, contact_force, motion, force, power)
     integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in), contiguous :: contact_force(:, :), motion(:, :)
-    real(wp), intent(inout), contiguous :: force(:, :)
+    real(wp), intent(in) :: contact_force(2, *), motion(4, *)
+    real(wp), intent(inout) :: force(2, *)
     real(wp), intent(inout) :: power
     real(wp) :: power_x, power_y
     integer :: i, node

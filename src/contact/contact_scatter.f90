@@ -13,23 +13,24 @@ contains
   !> plus and master side with minus. Counts the points that carry pressure.
   pure subroutine scatter_points(points, force, n_active)
     type(contact_points_t), intent(in) :: points
-    real(wp), intent(inout), contiguous :: force(:, :) !! (2, local nodes) N/m
+    real(wp), intent(inout) :: force(2, *) !! by local node, N/m
     integer, intent(out) :: n_active
-    real(wp) :: fx, fy
+    real(wp) :: total, fx, fy
     integer :: p, k, node
 
-    n_active = 0
+    n_active = count(points%pressure(:points%n) > 0.0_wp)
     do p = 1, points%n
-      if (points%pressure(p) > 0.0_wp) n_active = n_active + 1
-      fx = points%pressure(p)*points%area(p)*points%normal(1, p)
-      fy = points%pressure(p)*points%area(p)*points%normal(2, p)
+      total = points%pressure(p)*points%area(p)
+      fx = total*points%normal(1, p)
+      fy = total*points%normal(2, p)
       do k = 1, n_side
-        node = points%slave_nodes(k, p)
-        force(1, node) = force(1, node) + points%slave_weights(k, p)*fx
-        force(2, node) = force(2, node) + points%slave_weights(k, p)*fy
         node = points%master_nodes(k, p)
         force(1, node) = force(1, node) - points%master_weights(k, p)*fx
         force(2, node) = force(2, node) - points%master_weights(k, p)*fy
+        if (.not. abs(points%slave_weights(k, p)) > 0.0_wp) cycle
+        node = points%slave_nodes(k, p)
+        force(1, node) = force(1, node) + points%slave_weights(k, p)*fx
+        force(2, node) = force(2, node) + points%slave_weights(k, p)*fy
       end do
     end do
   end subroutine scatter_points

@@ -58,6 +58,7 @@ module contact_state_m
     real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot can change
     real(wp) :: reach = 0.0_wp               !! spots farther away than this are unpaired, m
     integer, allocatable :: touching(:)      !! (n) the first n_touching: spots in contact
+    logical, allocatable :: is_kept(:)       !! (n) scratch, false between steps
     integer, allocatable :: segment(:)       !! (n) segment of the chain, 0 = unpaired
     integer, allocatable :: status(:)        !! (n) one of the constants above
     real(wp), allocatable :: xi(:)           !! (n) 0 to 1 along the segment (a little more at ends)
@@ -117,6 +118,7 @@ contains
       source=0)
     allocate (tracking%xi(n), tracking%gap(n), tracking%normal(2, n), tracking%spot_depth(n), &
       tracking%segment_depth(n_segment), source=0.0_wp)
+    allocate (tracking%is_kept(n), source=.false.)
     allocate (tracking%wake(n), tracking%recheck(n), source=-huge(1.0_wp))
     n_bucket = 16
     do while (n_bucket < 2*n_segment)
