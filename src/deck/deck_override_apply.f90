@@ -155,13 +155,14 @@ contains
     type(contact_kind_t), intent(in) :: kinds(:)
     type(overrides_t), intent(in) :: overrides
     type(raw_contact_t), intent(inout) :: entry
-    logical :: changed, typed, priced
+    logical :: changed, typed, priced, damped
     integer :: id
 
     id = entry%contact%id
     changed = .false.
     typed = .false.
     priced = .false.
+    damped = .false.
     associate (contact => entry%contact)
       call override_integer(overrides, 'CTYPE', id, contact%contact_type, typed)
       if (typed) contact%chosen_by_keyword = .false.
@@ -186,10 +187,10 @@ contains
         if (priced) call line_error(deck, 0, '"'//to_text(contact%penalty_unit)//'" on the ' &
           //'command line is not a unit of the penalty (0, 1 or 2)')
       end if
-      call override_real(overrides, 'VDC', id, entry%per_cent, changed)
-      contact%damping = entry%per_cent/100.0_wp
+      call override_real(overrides, 'VDC', id, entry%per_cent, damped)
+      if (damped) contact%damping = entry%per_cent/100.0_wp
     end associate
-    if (changed .or. typed .or. priced) &
+    if (changed .or. typed .or. priced .or. damped) &
       deck%blocks(entry%block)%replacement = contact_text(entry)
   end subroutine override_contact
 
