@@ -55,7 +55,9 @@ contains
       total = total + segment_length(chain(:, surface%segments(1, i)), &
         chain(:, surface%segments(2, i)))
     end do
-    grid%cell = max(total/surface%n_segment, sqrt(tiny(1.0_wp)))
+    grid%cell = total/surface%n_segment
+    ! A run that has blown up ends by its own checks, not in here.
+    if (.not. (grid%cell > 1.0_wp/widest**2 .and. grid%cell < widest**2)) grid%cell = widest**2
     grid%filled_at = travel
     grid%low = huge(1.0_wp)
     grid%high = -huge(1.0_wp)
@@ -187,7 +189,7 @@ contains
       if (any(kept%segment == segment)) cycle
       square = closest_distance(sight_of_segment(spot, chain(:, surface%segments(1, segment)), &
         chain(:, surface%segments(2, segment))))
-      if (square >= kept%square(n_kept)) cycle
+      if (.not. square < kept%square(n_kept)) cycle
       k = n_kept
       do while (k > 1)
         if (kept%square(k - 1) <= square) exit

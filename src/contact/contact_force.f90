@@ -63,11 +63,7 @@ contains
     real(wp) :: power
 
     if (time < contact%birth .or. time > contact%death) then
-      if (memory%n_active > 0) call gather_motion(motion, memory, power)
-      if (memory%n_active > 0) memory%energy = memory%energy - 0.5_wp*dt*power
-      memory%points%n = 0
-      memory%n_active = 0
-      memory%is_stale = .true.
+      call suspend_contact(motion, dt, memory)
       return
     end if
     if (memory%is_stale) call refresh_memory(coordinates, motion, memory)
@@ -86,6 +82,21 @@ contains
     memory%energy = memory%energy - 0.5_wp*dt*power
     call lap(clock, phase_contact_force)
   end subroutine apply_contact
+
+  !> Outside birth .. death: no forces; those of the last call have done their last half step of work.
+  pure subroutine suspend_contact(motion, dt, memory)
+    real(wp), intent(in), contiguous :: motion(:, :)
+    real(wp), intent(in) :: dt
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: power
+
+    memory%is_stale = .true.
+    if (memory%n_active == 0) return
+    call take_force(memory%nodes, motion, memory%force, power)
+    memory%energy = memory%energy - 0.5_wp*dt*power
+    memory%points%n = 0
+    memory%n_active = 0
+  end subroutine suspend_contact
 
   !> Take the present motion into the memory, let its travel grow by a bound on how far any two nodes have
   !> moved relative to each other since the last call, find the power of the last forces and forget these.

@@ -68,7 +68,7 @@ contains
       do i = 1, 2
         if (candidates(i) == 0) cycle
         nearer = closest_distance(see_segment(surface, chain, spot, candidates(i)))
-        if (nearer >= square) cycle
+        if (.not. nearer < square) cycle
         square = nearer
         best = candidates(i)
       end do
