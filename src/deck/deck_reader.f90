@@ -179,7 +179,7 @@ contains
     character(:), allocatable :: path, reason
     integer :: above, i
 
-    call find_file(deck%sources(source)%path, folders, name, path)
+    call find_file(deck%sources(1)%path, deck%sources(source)%path, folders, name, path)
     if (len(path) == 0) then
       call line_error(deck, line, 'the file "'//name//'" was not found')
       deck%incomplete = .true.
@@ -229,8 +229,10 @@ contains
     end do
   end function total_length
 
-  !> Where an included file is: as given, in the *INCLUDE_PATH folders, beside the including file.
-  subroutine find_file(including, folders, name, path)
+  !> Where an included file is: as given, in the *INCLUDE_PATH folders (which may be meant from
+  !> where the deck is), beside the including file.
+  subroutine find_file(main, including, folders, name, path)
+    character(*), intent(in) :: main       !! the deck itself
     character(*), intent(in) :: including
     character(*), intent(in) :: folders(:)
     character(*), intent(in) :: name
@@ -244,6 +246,9 @@ contains
     if (name(1:1) /= '/') then
       do i = 1, size(folders)
         path = trim(folders(i))//'/'//name
+        inquire (file=path, exist=exists)
+        if (exists) return
+        path = main(:index(main, '/', back=.true.))//trim(folders(i))//'/'//name
         inquire (file=path, exist=exists)
         if (exists) return
       end do
