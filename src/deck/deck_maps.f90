@@ -80,7 +80,8 @@ contains
     integer, intent(out) :: found
 
     found = index_of(map, id)
-    if (found == 0 .and. .not. map%incomplete) call reject_field(deck, place, 'is no '//what//' of this deck')
+    if (found == 0 .and. .not. map%incomplete) call reject_field(deck, place, &
+      'is no '//what//' of this deck')
   end subroutine resolve_id
 
 end module deck_maps_m

@@ -10,8 +10,8 @@ module deck_raw_m
   use deck_lines_m, only : place_t
   implicit none
   private
-  public :: raw_t, lost_t, start_raw, raw_part_t, raw_set_t, raw_contact_t, row_t, history_t, append_row, &
-    append_set,     append_member, reserve_nodes, reserve_elements, &
+  public :: raw_t, lost_t, start_raw, raw_part_t, raw_set_t, raw_contact_t, row_t, history_t, &
+    append_row, append_set, append_member, reserve_nodes, reserve_elements, &
     row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, row_velocity_node, &
     row_velocity_generation, row_load_node, row_load_set, row_pressure, row_pressure_set, &
     row_body, row_damping, output_plot, output_glstat, output_matsum, output_rcforc, output_nodout
@@ -19,7 +19,8 @@ module deck_raw_m
   !> Kinds of `row_t`.
   integer, parameter :: row_spc_node = 1, row_spc_set = 2, row_motion_node = 3, &
     row_motion_set = 4, row_velocity = 5, row_velocity_node = 6, row_velocity_generation = 7, &
-    row_load_node = 8, row_load_set = 9, row_pressure = 10, row_pressure_set = 11, row_body = 12, row_damping = 13
+    row_load_node = 8, row_load_set = 9, row_pressure = 10, row_pressure_set = 11, &
+    row_body = 12, row_damping = 13
   !> Files of the output plan.
   integer, parameter :: output_plot = 1, output_glstat = 2, output_matsum = 3, output_rcforc = 4, &
     output_nodout = 5

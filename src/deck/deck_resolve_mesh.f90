@@ -35,10 +35,10 @@ contains
       model%parts(i)%id = raw%parts(i)%id
       model%parts(i)%title = raw%parts(i)%title
       ! A bad field has been reported; its number is then not looked for.
-      if (raw%parts(i)%section > 0) call resolve_id(deck, maps%sections, raw%parts(i)%section, 'section', place_t(line, 2, 2), &
-        model%parts(i)%section)
-      if (raw%parts(i)%material > 0) call resolve_id(deck, maps%materials, raw%parts(i)%material, 'material', &
-        place_t(line, 2, 3), model%parts(i)%material)
+      if (raw%parts(i)%section > 0) call resolve_id(deck, maps%sections, &
+        raw%parts(i)%section, 'section', place_t(line, 2, 2), model%parts(i)%section)
+      if (raw%parts(i)%material > 0) call resolve_id(deck, maps%materials, &
+        raw%parts(i)%material, 'material', place_t(line, 2, 3), model%parts(i)%material)
       hourglass = raw%hourglass_default
       if (raw%parts(i)%hourglass > 0) then
         call resolve_id(deck, maps%hourglasses, raw%parts(i)%hourglass, '*HOURGLASS', &
@@ -64,8 +64,10 @@ contains
 
     sound = .false.
     n_before = deck%report%n_error
-    if (raw%n_node == 0 .and. .not. raw%lost%nodes) call line_error(deck, 0, 'the deck has no nodes (*NODE)')
-    if (raw%n_element == 0 .and. .not. raw%lost%elements) call line_error(deck, 0, 'the deck has no elements (*ELEMENT_SHELL)')
+    if (raw%n_node == 0 .and. .not. raw%lost%nodes) call line_error(deck, 0, &
+      'the deck has no nodes (*NODE)')
+    if (raw%n_element == 0 .and. .not. raw%lost%elements) call line_error(deck, 0, &
+      'the deck has no elements (*ELEMENT_SHELL)')
     call check_plane(deck, raw)
     model%mesh%n_node = raw%n_node
     model%mesh%n_element = raw%n_element

@@ -59,8 +59,8 @@ contains
       allocate (members(0))
       do i = 1, set%n, 2
         call ids_between(map, set%members(i), set%members(i + 1), block)
-        if (size(block) == 0 .and. .not. map%incomplete) call reject_field(deck, place_t(set%lines(i), card, set%fields(i)), &
-          'to "'//to_text(set%members(i + 1))//'": there is no '//what//' in this block')
+        if (size(block) == 0 .and. .not. map%incomplete) call reject_field(deck, &
+          place_t(set%lines(i), card, set%fields(i)), 'to "'//to_text(set%members(i + 1))//'": there is no '//what//' in this block')
         members = [members, block]
       end do
     else
@@ -75,7 +75,8 @@ contains
       end do
       if (n < set%n) members = members(:n)
     end if
-    if (set%n == 0 .and. set%line > 0 .and. .not. set%damaged) call line_error(deck, set%line, 'the set is empty')
+    if (set%n == 0 .and. set%line > 0 .and. .not. set%damaged) call line_error(deck, &
+      set%line, 'the set is empty')
   end subroutine resolve_members
 
   !> Nodes of *DATABASE_HISTORY_NODE and _NODE_SET, each once, in deck order.

@@ -3,8 +3,8 @@
 !>
 !> A line of the table that starts with a letter names a keyword, how it is treated and its
 !> options; the indented lines after it are its cards, fields in order as
-!> `NAME:kind[treatment][width][=default]`. Kinds: i integer, f real, a text, x not used. Treatments:
-!> none honoured, s silently without effect, w warning when given, r refused when given.
+!> `NAME:kind[treatment][width][=default]`. Kinds: i integer, f real, a text, x not used.
+!> Treatments: none honoured, s silently without effect, w warning when given, r refused when given.
 !> Widths are 10 unless said. A field asks for something when it is neither 0 nor its default.
 module deck_schema_m
   use deck_schema_tables_m, only : table_control, table_mesh, table_conditions, table_contact, &

@@ -13,8 +13,8 @@ module surface_building_m
   integer, parameter :: chain_good = 0, chain_turned = 1, chain_ordered = 2, chain_broken = 3, &
     chain_repeated = 4, chain_short = 5
 
-  !> Exterior edges (of exactly one element), each walked counter-clockwise round its element, sorted
-  !> by the node they leave.
+  !> Exterior edges (of exactly one element), each walked counter-clockwise round its element,
+  !> sorted by the node they leave.
   type :: boundary_t
     integer :: n_edge = 0
     integer, allocatable :: nodes(:, :)  !! (2, n_edge)
