@@ -60,7 +60,8 @@ contains
       do i = 1, set%n, 2
         call ids_between(map, set%members(i), set%members(i + 1), block)
         if (size(block) == 0 .and. .not. map%incomplete) call reject_field(deck, &
-          place_t(set%lines(i), card, set%fields(i)), 'to "'//to_text(set%members(i + 1))//'": there is no '//what//' in this block')
+          place_t(set%lines(i), card, set%fields(i)), 'to "' &
+          //to_text(set%members(i + 1))//'": there is no '//what//' in this block')
         members = [members, block]
       end do
     else
