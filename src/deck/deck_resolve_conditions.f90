@@ -117,7 +117,8 @@ contains
     end do
     if (n_free > 0 .and. model%mesh%n_element > 0 .and. deck%report%n_error == 0) &
       call line_warning(deck, raw%node_line(first_free), 'free', to_text(n_free) &
-      //' node(s) belong to no element and are fixed; the first is '//to_text(model%mesh%node_id(first_free)))
+      //' node(s) belong to no element and are fixed; the first is ' &
+      //to_text(model%mesh%node_id(first_free)))
     do i = 1, raw%n_row
       if (raw%rows(i)%kind /= row_spc_node .and. raw%rows(i)%kind /= row_spc_set) cycle
       call row_nodes(deck, maps, model, raw%rows(i), raw%rows(i)%kind == row_spc_set, nodes)
