@@ -55,9 +55,8 @@ contains
       total = total + segment_length(chain(:, surface%segments(1, i)), &
         chain(:, surface%segments(2, i)))
     end do
-    grid%cell = total/surface%n_segment
-    ! A run that has blown up ends by its own checks, not in here.
-    if (.not. (grid%cell > 1.0_wp/widest**2 .and. grid%cell < widest**2)) grid%cell = widest**2
+    grid%cell = max(total/surface%n_segment, grid%least_cell)
+    if (.not. grid%cell <= huge(1.0_wp)) grid%cell = grid%least_cell
     grid%filled_at = travel
     grid%low = huge(1.0_wp)
     grid%high = -huge(1.0_wp)
@@ -143,7 +142,8 @@ contains
   end function box_distance
 
   !> Nearest segment to `spot`, if there is one within `reach`: rings of cells round the spot, until
-  !> no cell farther out can hold a nearer segment.
+  !> no cell farther out can hold a nearer segment. (The last ring is there for runs that have blown up: these
+  !> end by their own checks, not in here.)
   pure subroutine find_nearest(grid, surface, chain, spot, travel, reach, nearest)
     type(bucket_grid_t), intent(in) :: grid
     type(surface_t), intent(in) :: surface
@@ -154,12 +154,12 @@ contains
     type(nearest_t), intent(out) :: nearest
     type(kept_t) :: kept
     real(wp) :: bound, slip
-    integer :: centre(2), ring, ix, iy, step
+    integer :: centre(2), ring, last_ring, ix, iy, step
 
     slip = travel - grid%filled_at
     centre = cell_of(grid, separation(spot, chain(:, 1)))
-    ring = 0
-    do
+    last_ring = ceiling(reach/grid%cell) + 2
+    do ring = 0, last_ring
       do iy = centre(2) - ring, centre(2) + ring
         step = max(1, merge(1, 2*ring, abs(iy - centre(2)) == ring))
         do ix = centre(1) - ring, centre(1) + ring, step
@@ -168,7 +168,6 @@ contains
       end do
       bound = max(0.0_wp, ring*grid%cell - slip)
       if (ring >= 1 .and. bound >= min(sqrt(kept%square(1)), reach + grid%cell)) exit
-      ring = ring + 1
     end do
     call conclude(surface, kept, bound, reach, nearest)
   end subroutine find_nearest

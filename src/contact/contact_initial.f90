@@ -17,6 +17,9 @@ module contact_initial_m
   private
   public :: start_tracking
 
+  !> Smallest cell of the grid, as a part of the search reach.
+  real(wp), parameter :: least_cell = 0.01_wp
+
 contains
 
   !> Track the nodes of `own` over the chain `surface`, at time zero.
@@ -78,6 +81,7 @@ contains
       tracking%segment_depth = contact%search_depth
     end if
     tracking%reach = max(longest, 2.0_wp*maxval(tracking%segment_depth))
+    tracking%grid%least_cell = least_cell*tracking%reach
 
   contains
 

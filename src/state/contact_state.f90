@@ -44,6 +44,7 @@ module contact_state_m
   !> Segments sorted into square cells by hashing; tells which segments are near a place.
   type :: bucket_grid_t
     real(wp) :: cell = 0.0_wp         !! side of a cell, m; 0 = never filled
+    real(wp) :: least_cell = 0.0_wp   !! smallest side, m: cells that much smaller than the reach cost more
     real(wp) :: filled_at = 0.0_wp    !! travel when it was filled
     real(wp) :: low(2) = 0.0_wp       !! corners of the box of the chain, relative to its first node
     real(wp) :: high(2) = 0.0_wp
