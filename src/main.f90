@@ -19,6 +19,7 @@ program slideline
 
   type(arguments_t) :: arguments
   type(error_t), allocatable :: error
+  integer(c_int) :: status
 
   call read_arguments(arguments, error)
   if (.not. allocated(error)) then
@@ -35,6 +36,8 @@ program slideline
     write (error_unit, '(a)') error%message
     flush (output_unit)
     flush (error_unit)
-    call c_exit(int(error%status, c_int))
+    status = int(error%status, c_int)
+    deallocate (error)
+    call c_exit(status)
   end if
 end program slideline

@@ -26,7 +26,7 @@ module contact_dispatch_m
   type(formulation_t), parameter :: formulations(*) = [ &
     formulation_t(contact_kind_t(type_nts, 'classical NTS'), has_unit_area=.true.), &
     formulation_t(contact_kind_t(type_nts_ar, 'NTS-AR')), &
-    formulation_t(contact_kind_t(type_two_pass_ar, 'two-pass NTS-AR'), has_two_passes=.true., &
+    formulation_t(contact_kind_t(type_two_pass_ar, 'NTS-AR two-pass'), has_two_passes=.true., &
       points_per_master_node=1)]
 
   !> The same as the deck layer wants them.

@@ -24,10 +24,14 @@ contains
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
     real(wp) :: slave_length, master_length
+    character(:), allocatable :: title
 
     slave_length = mean_length(contact%slave, model)
     master_length = mean_length(contact%master, model)
-    call write_log(log, 'interface '//to_text(contact%id)//': '//trim(kind%name)//' (type ' &
+    title = ''
+    if (allocated(contact%title)) title = contact%title
+    if (len(title) > 0) title = ' "'//title//'"'
+    call write_log(log, 'interface '//to_text(contact%id)//title//': '//trim(kind%name)//' (type ' &
       //to_text(kind%number)//')'//trim(merge(', chosen by keyword', '                   ', &
       contact%chosen_by_keyword)))
     call write_log(log, '  slave: '//to_text(contact%slave%n_node)//' nodes, ' &

@@ -99,7 +99,7 @@ contains
     call emit_warnings(deck%report, log)
     call emit_errors(deck%report, request%path, error)
     if (allocated(error)) return
-    call echo_model(model, kinds, request%path, log)
+    call echo_model(model, request%path, log)
     call write_effective(deck, parameters, tail, effective)
   end subroutine interpret_deck
 

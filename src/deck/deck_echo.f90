@@ -4,7 +4,6 @@ module deck_echo_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
   use parts_m, only : hourglass_stiffness
-  use contacts_m, only : contact_t, contact_kind_t
   use controls_m, only : interval_t
   use curves_m, only : curve_is_constant
   use model_m, only : model_t
@@ -14,10 +13,9 @@ module deck_echo_m
 
 contains
 
-  !> Parts, materials, controls, conditions and interfaces.
-  subroutine echo_model(model, kinds, path, log)
+  !> Parts, materials, controls and conditions (the contact layer tells its interfaces itself).
+  subroutine echo_model(model, path, log)
     type(model_t), intent(in) :: model
-    type(contact_kind_t), intent(in) :: kinds(:)
     character(*), intent(in) :: path
     type(log_t), intent(inout) :: log
     integer :: i
@@ -33,9 +31,6 @@ contains
       call echo_material(model, i, log)
     end do
     call echo_conditions(model, log)
-    do i = 1, size(model%contacts)
-      call echo_contact(model%contacts(i), kinds, log)
-    end do
     call write_log(log, 'end: time '//to_text(model%controls%end_time)//', step scale ' &
       //to_text(model%controls%dt_scale))
     call echo_short_curves(model, log)
@@ -131,26 +126,5 @@ contains
         //to_text(size(conditions%body_loads))//' body loads')
     end associate
   end subroutine echo_conditions
-
-  !> One interface.
-  subroutine echo_contact(contact, kinds, log)
-    type(contact_t), intent(in) :: contact
-    type(contact_kind_t), intent(in) :: kinds(:)
-    type(log_t), intent(inout) :: log
-    character(:), allocatable :: name, title
-    integer :: i
-
-    name = 'type '//to_text(contact%contact_type)
-    do i = 1, size(kinds)
-      if (kinds(i)%number == contact%contact_type) name = trim(kinds(i)%name)//' ('//name//')'
-    end do
-    if (contact%chosen_by_keyword) name = name//', chosen by keyword'
-    title = ''
-    if (len(contact%title) > 0) title = ' "'//contact%title//'"'
-    call write_log(log, 'interface '//to_text(contact%id)//title//': '//name//'; slave ' &
-      //to_text(contact%slave%n_node)//' nodes, '//to_text(contact%slave%n_segment) &
-      //' segments; master '//to_text(contact%master%n_node)//' nodes, ' &
-      //to_text(contact%master%n_segment)//' segments')
-  end subroutine echo_contact
 
 end module deck_echo_m

@@ -71,6 +71,7 @@ contains
     cycle%due = find_due(monitor, state%time, state%dt, state%cycle == 0 .or. cycle%last)
     cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
     call apply_loads(model, state, cycle)
+    call lap(monitor%clock, phase_nodes)
     do i = 1, size(model%contacts)
       call apply_contact(model%contacts(i), model%mesh%coordinates, state%motion, state%mass, &
         state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
