@@ -46,12 +46,17 @@ def layer_of(source):
 
 
 def tracked_files():
-    """The files of the repository."""
-    done = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True,
-                          check=False)
-    if done.returncode != 0:
-        pytest.skip("not a git repository")
-    return [name for name in done.stdout.split("\0") if name and (ROOT / name).exists()]
+    """The files of the repository; all that are there where there is no git to ask."""
+    try:
+        done = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True,
+                              check=True)
+        names = done.stdout.split("\0")
+    except (OSError, subprocess.CalledProcessError):
+        made = {".git", "build", "results", "__pycache__", ".pytest_cache"}
+        paths = [path.relative_to(ROOT) for path in ROOT.rglob("*") if path.is_file()]
+        names = [str(path) for path in paths
+                 if not made & set(path.parts) and ".egg-info" not in str(path)]
+    return [name for name in names if name and (ROOT / name).exists()]
 
 
 def report(capsys, text):
