@@ -17,6 +17,7 @@ module element_chunk_m
     real(wp), dimension(chunk_size) :: hx, hy             !! present h.x, h.y
     real(wp), dimension(chunk_size) :: gx, gy             !! hourglass velocity gamma.v
     real(wp), dimension(chunk_size) :: area, mid_area     !! now, and half a step ago
+    real(wp), dimension(chunk_size) :: inverse_area       !! 1/A now
     real(wp), dimension(chunk_size) :: stretch            !! A/A0 - 1
     real(wp), dimension(chunk_size) :: trace              !! volumetric strain rate D_xx + D_yy
     real(wp), dimension(chunk_size) :: pressure           !! tension positive: K ln(J), bulk viscosity added

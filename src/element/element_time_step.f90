@@ -21,7 +21,7 @@ contains
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(out) :: limit             !! s
     real(wp), intent(out) :: volume            !! smallest A/A0
-    real(wp) :: squared(chunk_size), smallest
+    real(wp) :: squared(chunk_size), largest
     integer :: i
 
     if (length_rule == length_by_diagonal) then
@@ -29,17 +29,17 @@ contains
     else
       call longest_sides(chunk, squared)
     end if
-    smallest = huge(1.0_wp)
+    largest = 0.0_wp
     volume = huge(1.0_wp)
-    !$omp simd reduction(min : smallest, volume)
+    !$omp simd reduction(max : largest) reduction(min : volume)
     do i = 1, chunk_size
-      squared(i) = chunk%area(i)*chunk%area(i)/squared(i)
-      smallest = min(smallest, squared(i))
+      squared(i) = squared(i)*(chunk%inverse_area(i)*chunk%inverse_area(i))
+      largest = max(largest, squared(i))
       volume = min(volume, 1.0_wp + chunk%stretch(i))
     end do
-    limit = sqrt(smallest)/sound_speed
+    limit = 1.0_wp/(sound_speed*sqrt(largest))
     if (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp) &
-      limit = minval(viscous_limit(sqrt(squared), sound_speed, viscosity%quadratic, &
+      limit = minval(viscous_limit(1.0_wp/sqrt(squared), sound_speed, viscosity%quadratic, &
       viscosity%linear, chunk%trace))
   end subroutine stable_step
 

@@ -48,7 +48,7 @@ contains
     !$omp simd private(stiffness, old_x, old_y) reduction(+ : work)
     do i = 1, chunk_size
       stiffness = 0.5_wp*factor*(chunk%x31(i)**2 + chunk%y31(i)**2 + chunk%x42(i)**2 &
-        + chunk%y42(i)**2)/chunk%area(i)
+        + chunk%y42(i)**2)*chunk%inverse_area(i)
       old_x = stress%cosine(i)*strain_x(i) - stress%sine(i)*strain_y(i)
       old_y = stress%sine(i)*strain_x(i) + stress%cosine(i)*strain_y(i)
       strain_x(i) = old_x + dt*chunk%gx(i)

@@ -19,10 +19,10 @@ contains
     integer, intent(in) :: stride                 !! length of one stream
     real(wp), intent(in) :: reference(stride, *)  !! first slot of this chunk; X31 Y31 X42 Y42 h.X h.Y
     type(element_chunk_t), intent(inout) :: chunk
-    real(wp) :: growth, start
+    real(wp) :: growth, start, both
     integer :: i
 
-    !$omp simd private(growth, start)
+    !$omp simd private(growth, start, both)
     do i = 1, chunk_size
       chunk%x31(i) = reference(i, 1) + chunk%u31(1, i)
       chunk%y31(i) = reference(i, 2) + chunk%u31(2, i)
@@ -34,7 +34,10 @@ contains
       growth = 0.5_wp*((reference(i, 1)*chunk%u42(2, i) + chunk%u31(1, i)*chunk%y42(i)) &
         - (reference(i, 3)*chunk%u31(2, i) + chunk%u42(1, i)*chunk%y31(i)))
       chunk%area(i) = start + growth
-      chunk%stretch(i) = growth/start
+      ! One division for two: divisions are what the loops wait for.
+      both = 1.0_wp/(start*(start + growth))
+      chunk%inverse_area(i) = both*start
+      chunk%stretch(i) = growth*(both*(start + growth))
     end do
   end subroutine form_present_shape
 
@@ -43,29 +46,34 @@ contains
     real(wp), intent(in) :: dt                      !! step that led here
     type(element_chunk_t), intent(inout) :: chunk
     type(stress_chunk_t), intent(inout) :: stress   !! increments and rotation out
-    real(wp) :: x31, y31, x42, y42, back, factor, lxx, lxy, lyx, lyy, tangent, inverse, cosine, &
-      sine, mean, half, shear
+    real(wp) :: x31, y31, x42, y42, back, factor, lxx, lxy, lyx, lyy, area, turn, square, &
+      both, inverse, cosine, sine, mean, half, shear
     integer :: i
 
     back = 0.5_wp*dt
-    !$omp simd private(x31, y31, x42, y42, factor, lxx, lxy, lyx, lyy, tangent, inverse, cosine, &
-    !$omp& sine, mean, half, shear)
+    !$omp simd private(x31, y31, x42, y42, factor, lxx, lxy, lyx, lyy, area, turn, square, &
+    !$omp& both, inverse, cosine, sine, mean, half, shear)
     do i = 1, chunk_size
       x31 = chunk%x31(i) - back*chunk%v31(1, i)
       y31 = chunk%y31(i) - back*chunk%v31(2, i)
       x42 = chunk%x42(i) - back*chunk%v42(1, i)
       y42 = chunk%y42(i) - back*chunk%v42(2, i)
-      chunk%mid_area(i) = 0.5_wp*(x31*y42 - x42*y31)
-      factor = 0.5_wp/chunk%mid_area(i)
+      area = 0.5_wp*(x31*y42 - x42*y31)
+      chunk%mid_area(i) = area
+      ! tan(half the rotation) = turn/A; one division gives 1/A and 1/(A^2 + turn^2).
+      turn = 0.125_wp*dt*((chunk%v31(2, i)*y42 - chunk%v42(2, i)*y31) &
+        - (x31*chunk%v42(1, i) - x42*chunk%v31(1, i)))
+      square = area*area + turn*turn
+      both = 1.0_wp/(area*square)
+      factor = 0.5_wp*(both*square)
+      inverse = both*area
       lxx = factor*(chunk%v31(1, i)*y42 - chunk%v42(1, i)*y31)
       lxy = factor*(x31*chunk%v42(1, i) - x42*chunk%v31(1, i))
       lyx = factor*(chunk%v31(2, i)*y42 - chunk%v42(2, i)*y31)
       lyy = factor*(x31*chunk%v42(2, i) - x42*chunk%v31(2, i))
       chunk%trace(i) = lxx + lyy
-      tangent = 0.5_wp*back*(lyx - lxy)
-      inverse = 1.0_wp/(1.0_wp + tangent*tangent)
-      cosine = (1.0_wp - tangent*tangent)*inverse
-      sine = 2.0_wp*tangent*inverse
+      cosine = (area*area - turn*turn)*inverse
+      sine = 2.0_wp*area*turn*inverse
       stress%cosine(i) = cosine
       stress%sine(i) = sine
       stress%cos2(i) = cosine*cosine - sine*sine
@@ -94,8 +102,8 @@ contains
 
     !$omp simd private(wx, wy, txx, txy, tyx, tyy)
     do i = 1, chunk_size
-      wx = chunk%hx(i)/chunk%area(i)
-      wy = chunk%hy(i)/chunk%area(i)
+      wx = chunk%hx(i)*chunk%inverse_area(i)
+      wy = chunk%hy(i)*chunk%inverse_area(i)
       txx = 0.5_wp*((stress%sxx(i) + chunk%pressure(i)) - chunk%qx(i)*wx)
       txy = 0.5_wp*(stress%sxy(i) - chunk%qx(i)*wy)
       tyx = 0.5_wp*(stress%sxy(i) - chunk%qy(i)*wx)
