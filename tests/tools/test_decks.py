@@ -216,9 +216,9 @@ def test_make_deck_of_the_other_scenes(tmp_path, tool, scene):
 
 
 def test_hourglass_choice():
-    given = Model(scenes.symmetric_plate(8, 4, hourglass="stiffness")).parameters
+    given = Model(scenes.symmetric_plate(8, 4)).parameters
     assert (given["ihq"], given["qh"]) == (4, 0.05)
-    given = Model(scenes.symmetric_plate(8, 4, coefficient=0.07)).parameters
+    given = Model(scenes.symmetric_plate(8, 4, hourglass="viscous", coefficient=0.07)).parameters
     assert (given["ihq"], given["qh"]) == (1, 0.07)
 
 

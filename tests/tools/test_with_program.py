@@ -30,7 +30,7 @@ def run(tmp_path_factory):
 def test_mesh_and_states(run):
     results = read(run / "collision.vtkhdf")
     plate, projectile = scenes.collision_grids(1)
-    np.testing.assert_allclose(results.times, [0.0, 2.0e-5, 4.0e-5], rtol=1e-12)
+    np.testing.assert_allclose(results.times, [0.0, 1.0e-5, 2.0e-5, 3.0e-5, 4.0e-5], rtol=1e-12)
     start = np.vstack([plate.points.reshape(-1, 2), projectile.points.reshape(-1, 2)])
     np.testing.assert_allclose(results.points[0][:, :2], start, atol=1e-14)
     ids = np.concatenate([plate.node.ravel(), projectile.node.ravel()])

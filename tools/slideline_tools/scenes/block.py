@@ -14,14 +14,14 @@ def block(ctype=2, ngauss=4):
         "The upper of two soft blocks is pressed upon the lower one at 50 mm/s; their meshes "
         "do not match. SI units (m, kg, s, N, Pa), plane strain, per metre of depth.",
         "",
-        "Dimensions not given by the seed's text, so ours: each block 10 m x 0.5 m.",
+        "Dimensions not given by the text of Kang, Lee & Shin (2023), so ours: each block 10 m x 0.5 m.",
         "",
         "Result: contact pressure along the slave surface at 0.2 s.",
     ])
     deck.block("The numbers to play with.")
     deck.parameters(
         ("ctype", ctype, "contact type: " + CONTACT_TYPES),
-        ("ngauss", ngauss, "Gauss points of a slave segment (type 6 only; others ignore it)"),
+        ("ngauss", ngauss, "Gauss points of a slave segment: no effect on types 1 to 3"),
         ("pen", 1.0e6, "penalty of a contact node in N/m"),
         ("v0", -0.05, "velocity of the upper face in y in m/s"),
         ("dt", 1.0e-3, "time step in s"),

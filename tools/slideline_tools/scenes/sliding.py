@@ -50,14 +50,14 @@ def sliding(level=1, ctype=2, ngauss=6):
         f"Refinement level N_r = {level}: all cell and step counts times N_r, time step and "
         "penalty divided by it.",
         "",
-        "Dimensions and motion not given by the seed's text, so ours: plate 36 mm x 4 mm, die "
+        "Dimensions and motion not given by the text of Kang, Lee & Shin (2023), so ours: plate 36 mm x 4 mm, die "
         "9 mm wide and 2 mm high with a crown of radius 20 mm, 0.15 mm down in 1.5 ms, "
         "then 8 mm along in 4.5 ms.",
     ])
     deck.block("The numbers to play with.")
     deck.parameters(
         ("ctype", ctype, "contact type: " + CONTACT_TYPES),
-        ("ngauss", ngauss, "Gauss points of a slave segment (type 6 only; others ignore it)"),
+        ("ngauss", ngauss, "Gauss points of a slave segment: no effect on types 1 to 3"),
         ("pen", 10.0e9 / level, "penalty of a contact node in N/m: 10 GN/m over N_r"),
         ("dt", 40.0e-9 / level, "time step in s: 40 ns over N_r"),
         ("endtim", 6.0e-3, f"end time in s: {steps} steps"),
