@@ -55,26 +55,32 @@ contains
     end do
   end subroutine gather_chunk
 
-  !> Add the nodal forces of a chunk to the tile's own nodes, in pairs (x, y).
+  !> Add the nodal forces of a chunk to the tile's own nodes, x and y of a node at a time (told to the
+  !> compiler in so many words: left alone it takes them one by one, half as fast again).
   pure subroutine scatter_chunk(local, chunk, force)
     integer, intent(in) :: local(4, chunk_size)  !! local numbers in the tile
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes
-    real(wp) :: first(2), second(2), third(2), fourth(2)
-    integer :: i, k
+    integer :: i, k, n(4)
 
-    !GCC$ NOVECTOR
     do i = 1, chunk_size
+      n = local(:, i)
+      !$omp simd simdlen(2)
       do k = 1, 2
-        first(k) = chunk%swing(k, i) - chunk%force(k, i)
-        third(k) = chunk%swing(k, i) + chunk%force(k, i)
-        second(k) = chunk%swing(k, i) + chunk%force(k + 2, i)
-        fourth(k) = chunk%swing(k, i) - chunk%force(k + 2, i)
+        force(k, n(1)) = force(k, n(1)) + (chunk%swing(k, i) - chunk%force(k, i))
       end do
-      force(:, local(1, i)) = force(:, local(1, i)) + first
-      force(:, local(2, i)) = force(:, local(2, i)) - second
-      force(:, local(3, i)) = force(:, local(3, i)) + third
-      force(:, local(4, i)) = force(:, local(4, i)) - fourth
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(2)) = force(k, n(2)) - (chunk%swing(k, i) + chunk%force(k + 2, i))
+      end do
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(3)) = force(k, n(3)) + (chunk%swing(k, i) + chunk%force(k, i))
+      end do
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(4)) = force(k, n(4)) - (chunk%swing(k, i) - chunk%force(k + 2, i))
+      end do
     end do
   end subroutine scatter_chunk
 

@@ -70,6 +70,7 @@ contains
     integer :: i, k
 
     do i = first, last
+      !$omp simd simdlen(2)
       do k = 1, 2
         motion(2 + k, i) = leap%keep(k)*motion(2 + k, i) + leap%half(k) &
           *(merge(leap%body(k), 0.0_wp, inverse_mass(k, i) > 0.0_wp) - force(k, i)*inverse_mass(k, i))
