@@ -8,7 +8,7 @@ module contact_force_m
   use contact_penalty_m, only : set_penalties, press_points, damp_points
   use contact_scatter_m, only : scatter_points
   use contact_search_m, only : update_tracking, wake_all
-  use contact_state_m, only : contact_state_t, allocate_points
+  use contact_state_m, only : contact_points_t, contact_state_t, allocate_points
   use contacts_m, only : contact_t
   use kinds_m, only : wp
   use log_m, only : log_t
@@ -74,6 +74,8 @@ contains
     memory%n_active = 0
     if (memory%points%n > 0) then
       call press_points(memory%points)
+      ! Springs loaded at time zero hold energy that no force has put in.
+      if (cycle == 0) memory%energy = stored_energy(memory%points)
       if (contact%damping > 0.0_wp) &
         call damp_points(memory%points, contact%damping, memory%nodes, motion, mass)
       call scatter_points(memory%points, memory%force, memory%n_active)
@@ -221,5 +223,15 @@ contains
     end do
     power = power + (power_x + power_y)
   end subroutine add_force
+
+  !> Energy of the springs of all points, J/m.
+  pure function stored_energy(points) result(energy)
+    type(contact_points_t), intent(in) :: points
+    real(wp) :: energy
+    integer :: n
+
+    n = points%n
+    energy = 0.5_wp*sum(points%area(:n)*points%stiffness(:n)*min(0.0_wp, points%gap(:n))**2)
+  end function stored_energy
 
 end module contact_force_m

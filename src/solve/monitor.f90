@@ -67,8 +67,11 @@ contains
       else
         call start_schedule(monitor%glstat, plan%plot, model%curves, end_time)
       end if
-      call start_schedule(monitor%rcforc, plan%rcforc, model%curves, end_time)
-      call start_schedule(monitor%nodout, plan%nodout, model%curves, end_time)
+      ! Rows that no file receives must not make a cycle write.
+      if (size(model%contacts) > 0) &
+        call start_schedule(monitor%rcforc, plan%rcforc, model%curves, end_time)
+      if (size(plan%history_nodes) > 0) &
+        call start_schedule(monitor%nodout, plan%nodout, model%curves, end_time)
       call start_schedule(monitor%matsum, plan%matsum, model%curves, end_time)
       call start_progress(monitor%progress, end_time, plan%status_interval)
     end associate

@@ -3,7 +3,8 @@
 !> DYNA manner in a pipe, and the summary at the end.
 module progress_m
   use, intrinsic :: iso_fortran_env, only : output_unit
-  use clock_m, only : clock_t, elapsed_seconds, phase_seconds, phase_names, n_phase
+  use clock_m, only : clock_t, elapsed_seconds, phase_seconds, phase_names, n_phase, phase_input, &
+    phase_output
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log
   use signals_m, only : output_is_terminal
@@ -101,7 +102,7 @@ contains
     seconds = phase_seconds(clock)
     elapsed = elapsed_seconds(clock)
     cost = 0.0_wp
-    if (cycle > 0) cost = 1.0e9_wp*(sum(seconds) - sum(seconds([6, 7])))/real(cycle, wp)/n_element
+    if (cycle > 0) cost = 1.0e9_wp*(sum(seconds) - sum(seconds([phase_output, phase_input])))/real(cycle, wp)/n_element
     call say(log, '')
     call say(log, ' *** '//reason//' ***')
     if (normal) then

@@ -188,7 +188,8 @@ contains
         do k = 1, memory%n_slave
           snapshot%contact_pressure(rows%node(k)) = snapshot%contact_pressure(rows%node(k)) &
             + rows%pressure(k)
-          if (abs(rows%gap(k)) > 0.0_wp) snapshot%gap(rows%node(k)) = rows%gap(k)
+          if (rows%pressure(k) > 0.0_wp) snapshot%gap(rows%node(k)) = &
+            min(snapshot%gap(rows%node(k)), rows%gap(k))
         end do
       end associate
     end do
