@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+"""What all studies share: the list of contact types, tables in Markdown, small pictures."""
+import io
+
+from PIL import Image
+
+from slideline_tools import UserError
+from slideline_tools.plots import COLOURS, plt
+
+TYPES = {1: "NTS", 2: "NTS-AR", 3: "two-pass NTS-AR", 4: "VTS-PPT", 5: "NTS-mAR", 6: "mortar",
+         7: "segmented mortar"}
+LARGEST_PICTURE = 100_000
+
+
+def label(ctype):
+    """Text for a contact type, for example '5 NTS-mAR'."""
+    return f"{ctype} {TYPES[ctype]}"
+
+
+def colour(ctype):
+    """The colour of a contact type, the same in every picture."""
+    return COLOURS[ctype - 1]
+
+
+def markdown_table(names, rows):
+    """Lines of a Markdown table; a number is printed with 4 digits, any other value as it is."""
+    lines = ["| " + " | ".join(names) + " |", "|" + "---|" * len(names)]
+    lines += ["| " + " | ".join(cell(value) for value in row) + " |" for row in rows]
+    return "\n".join(lines)
+
+
+def cell(value):
+    """Text of one value: text and integers as they are, other numbers with 4 digits."""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def save_small(figure, path, colours=64):
+    """Write a PNG with a palette of few colours; raises UserError if it is over 100 kB."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png")
+    plt.close(figure)
+    buffer.seek(0)
+    picture = Image.open(buffer).convert("RGB").quantize(colours)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    picture.save(path, optimize=True)
+    if path.stat().st_size > LARGEST_PICTURE:
+        raise UserError(f"{path}: {path.stat().st_size} bytes, more than {LARGEST_PICTURE}")
