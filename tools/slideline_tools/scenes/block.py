@@ -5,11 +5,20 @@ from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, 
                                            plane_strain, slideline)
 
 
-def block(ctype=2, ngauss=4):
-    """The block-to-block scene with the explicit method, 200 steps of 1 ms."""
-    lower = Grid(spaced((0.0, 10.0, 50)), spaced((-0.5, 0.0, 2)))
-    upper = Grid(spaced((0.0, 10.0, 51)), spaced((0.0, 0.5, 2)),
+def block_grids(n_slave=51, n_master=50):
+    """Lower (master) and upper (slave) block, so many quads wide."""
+    lower = Grid(spaced((0.0, 10.0, n_master)), spaced((-0.5, 0.0, 2)))
+    upper = Grid(spaced((0.0, 10.0, n_slave)), spaced((0.0, 0.5, 2)),
                  first_node=10001, first_element=10001)
+    return lower, upper
+
+
+def block(ctype=2, ngauss=4, n_slave=51, n_master=50):
+    """The block-to-block scene with the explicit method, 200 steps of 1 ms.
+
+    `n_slave`, `n_master`: quads along each block, 51 and 50 in the seed.
+    """
+    lower, upper = block_grids(n_slave, n_master)
     deck = Deck("block-to-block contact", [
         "The upper of two soft blocks is pressed upon the lower one at 50 mm/s; their meshes "
         "do not match. SI units (m, kg, s, N, Pa), plane strain, per metre of depth.",
@@ -50,8 +59,8 @@ def block(ctype=2, ngauss=4):
     deck.node_set(3, "slave: lower face of the upper block", upper.lower)
     deck.node_set(4, "master: upper face of the lower block", lower.upper)
     slideline(deck, 3, 4)
-    deck.block("Mesh of the lower block: 50 x 2 quads.")
+    deck.block(f"Mesh of the lower block: {n_master} x 2 quads.")
     lower.write(deck, 1)
-    deck.block("Mesh of the upper block: 51 x 2 quads.")
+    deck.block(f"Mesh of the upper block: {n_slave} x 2 quads.")
     upper.write(deck, 2)
     return deck.text()

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""Two soft blocks with non-matching meshes pressed together, explicit: all contact types."""
+import dataclasses
+import pathlib
+import sys
+
+import numpy as np
+
+from contact_types import PASS_PATCH, TYPES
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[2] / "tools")]
+
+from chain import Blocks, solve  # noqa: E402
+from slideline_tools.scenes import block, block_grids  # noqa: E402
+
+WIDTH, PENALTY, N_SLAVE, N_MASTER = 10.0, 1.0e6, 51, 50
+TOLERANCE = 1.0e-8
+
+
+def chain_of(*springs):
+    """The chain whose interface is as stiff as these springs (N/m) spread over the width."""
+    return solve(dataclasses.replace(Blocks(), penalty=sum(springs) / WIDTH))
+
+
+class Scene:
+    """One run of the scene: pressures of both sides as (state, node from left to right)."""
+
+    def __init__(self, run, kind, n_slave=N_SLAVE, n_master=N_MASTER):
+        self.grids = block_grids(n_slave, n_master)
+        self.result = run.program(block(kind, 4, n_slave, n_master),
+                                  name=f"type{kind}_{n_slave}_{n_master}")
+        contact = self.result.table("contact")
+        states = len(self.result.times)
+        self.slave = contact["pressure"].reshape(states, -1)
+        self.gap = contact["gap"].reshape(states, -1)
+        self.step = np.rint(self.result.times / Blocks.step).astype(int)
+        sides = self.result.table("rcforc")
+        self.force = sides.where(side="slave")["fy"]
+        self.reaction = sides.where(side="master")["fy"]
+        ids = self.result.points("node_id")[0].astype(int)
+        self.row = {node: row for row, node in enumerate(ids)}
+        upper = self.rows(self.grids[0].upper[::-1])
+        x = self.result.points("Points")[:, upper, 0]
+        self.master = -self.result.points("contact_force")[:, upper, 1] / half_segments(x)
+
+    def rows(self, nodes):
+        """Places of deck nodes (any shape) in the arrays of the results."""
+        return np.vectorize(self.row.get)(nodes)
+
+    def motion(self, layers):
+        """Displacement in y at the end as (body, node over the height, node along the width)."""
+        u = self.result.points("displacement")[-1, :, 1]
+        return [u[self.rows(grid.node)].T for grid in self.grids]
+
+    def stress(self):
+        """Stress sigma_yy at the end as (body, layer, element along the width)."""
+        values = self.result.cells("stress")[-1, :, 1]
+        ids = self.result.cells("element_id")[0].astype(int)
+        place = {element: row for row, element in enumerate(ids)}
+        return [values[np.vectorize(place.get)(grid.element)].T for grid in self.grids]
+
+
+def half_segments(x):
+    """Half of the neighbouring segments of each node of a chain with abscissae x (..., n)."""
+    length = np.abs(np.diff(x))
+    lumped = np.zeros_like(x)
+    lumped[..., :-1] += 0.5 * length
+    lumped[..., 1:] += 0.5 * length
+    return lumped
+
+
+def check_uniform(run, name, scene, chain):
+    """The run is the chain: pressure on both sides at every state, force at every step."""
+    scale = chain.pressure.max()
+    for side, pressure in (("slave", scene.slave), ("master", scene.master)):
+        run.check(f"{name}: pressure along the {side} surface, all states", pressure / scale,
+                  np.broadcast_to(chain.pressure[scene.step, None] / scale, pressure.shape),
+                  TOLERANCE, source="chain")
+        run.check(f"{name}: spread of the pressure on the {side} side at 0.2 s",
+                  np.ptp(pressure[-1]) / chain.pressure[-1], 0.0, TOLERANCE, "abs")
+    run.check(f"{name}: total force, every step", scene.force, WIDTH * chain.pressure, TOLERANCE,
+              source="chain")
+    for body, (u, stress) in enumerate(zip(scene.motion(2), scene.stress())):
+        where = ("lower", "upper")[body]
+        run.check(f"{name}: displacement at 0.2 s, all nodes of the {where} block", u,
+                  np.broadcast_to(chain.displacement[-1, body][:, None], u.shape), TOLERANCE,
+                  source="chain")
+        run.check(f"{name}: stress at 0.2 s, all elements of the {where} block", stress,
+                  np.broadcast_to(chain.stress[-1, body][:, None], stress.shape), TOLERANCE,
+                  source="chain")
+
+
+def check_deviating(run, name, kind, scene):
+    """What a type that fails the patch test still owes."""
+    chain = {1: chain_of(PENALTY * (N_SLAVE + 1)), 3: chain_of(PENALTY * (N_SLAVE + N_MASTER))
+             }.get(kind, chain_of(PENALTY * N_SLAVE))
+    run.check(f"{name}: total force, every step", scene.force, WIDTH * chain.pressure, 1e-2,
+              source="chain with all springs of the interface")
+    final = chain.pressure[-1]
+    for side, pressure in (("slave", scene.slave[-1]), ("master", scene.master[-1])):
+        run.report(f"{name}: largest deviation from uniform pressure, {side} side",
+                   np.max(np.abs(pressure / final - 1.0)))
+        run.report(f"{name}: end node over chain - 1, {side} side", pressure[0] / final - 1.0)
+        run.check(f"{name}: left and right end alike, {side} side", pressure[::-1], pressure, 1e-6,
+                  source="symmetry of the scene")
+
+
+def check(run):
+    matching = Scene(run, 2, N_MASTER, N_MASTER)
+    check_uniform(run, "matching meshes, NTS-AR", matching, chain_of(PENALTY * N_MASTER))
+    for kind, name in TYPES.items():
+        scene = Scene(run, kind)
+        run.check(f"{name}: forces of the two sides cancel", scene.reaction, -scene.force, 1e-12)
+        if kind in PASS_PATCH:
+            check_uniform(run, name, scene, chain_of(PENALTY * N_SLAVE))
+        else:
+            check_deviating(run, name, kind, scene)
