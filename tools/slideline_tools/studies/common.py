@@ -5,7 +5,9 @@ import io
 from PIL import Image
 
 from slideline_tools import UserError
-from slideline_tools.plots import COLOURS, plt
+from slideline_tools.fields import scalar_field
+from slideline_tools.plots import (COLOURS, PAGE_WIDTH, STYLE, colour_bar, draw_field,
+                                   panel_height, plt)
 
 TYPES = {1: "NTS", 2: "NTS-AR", 3: "two-pass NTS-AR", 4: "VTS-PPT", 5: "NTS-mAR", 6: "mortar",
          7: "segmented mortar"}
@@ -45,3 +47,26 @@ def save_small(figure, path, colours=64):
     picture.save(path, optimize=True)
     if path.stat().st_size > LARGEST_PICTURE:
         raise UserError(f"{path}: {path.stat().st_size} bytes, more than {LARGEST_PICTURE}")
+
+
+def field_panels(results, name, limits, zoom, time=None):
+    """A figure with the same field of several runs side by side, on one colour range.
+
+    `results` is a dict of Results by contact type; `limits` = (lowest, highest) colour; `zoom` =
+    (x0, x1, y0, y1); the state nearest to `time`, the last without it.
+    """
+    columns, rows = 2, (len(results) + 1) // 2
+    with plt.rc_context({**STYLE, "figure.dpi": 110, "savefig.dpi": 110}):
+        height = panel_height(zoom, 0.45 * PAGE_WIDTH)
+        figure, panels = plt.subplots(rows, columns, squeeze=False, layout="constrained",
+                                      figsize=(PAGE_WIDTH + 1.0, rows * (height + 0.3) + 0.2))
+        for axes in panels.flat:
+            axes.set_axis_off()
+        for axes, (ctype, result) in zip(panels.flat, results.items()):
+            state = -1 if time is None else result.state_index(repr(float(time)))
+            artist = draw_field(axes, result, scalar_field(result, name), state, 1.0, limits)
+            axes.set_xlim(zoom[:2])
+            axes.set_ylim(zoom[2:])
+            axes.set_title(label(ctype), loc="left")
+        colour_bar(artist, list(panels.flat), scalar_field(result, name).label)
+        return figure
