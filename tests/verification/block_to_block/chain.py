@@ -4,7 +4,7 @@
 
 Where the contact pressure is uniform, every column of the two blocks moves alike: 2 + 2 layers,
 each a spring, between masses per unit width, and one penalty spring at the interface. As a script
-it prints `time,pressure` of each step: `chain.py [PENALTY]`, PENALTY in N/m^2.
+it prints the pressure of each step: `chain.py PENALTY...`, with PENALTY in N/m^2.
 """
 import dataclasses
 import sys
@@ -75,12 +75,12 @@ def uniaxial_stress(young, stretch, deviatoric_strain):
     return young / 3.0 * np.log1p(stretch) + 2.0 / 3.0 * young * deviatoric_strain
 
 
-def main(arguments):
-    blocks = Blocks(penalty=float(arguments[0])) if arguments else Blocks()
-    chain = solve(blocks)
-    print("time,pressure")
-    for time, pressure in zip(chain.time, chain.pressure):
-        print(f"{time:.17g},{pressure:.17g}")
+def main(penalties):
+    print("penalty,time,pressure")
+    for penalty in map(float, penalties):
+        chain = solve(Blocks(penalty=penalty))
+        for time, pressure in zip(chain.time, chain.pressure):
+            print(f"{penalty:.17g},{time:.17g},{pressure:.17g}")
 
 
 if __name__ == "__main__":

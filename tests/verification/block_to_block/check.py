@@ -11,6 +11,7 @@ from contact_types import PASS_PATCH, TYPES
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[2] / "tools")]
 
+import plane  # noqa: E402
 from chain import Blocks, solve  # noqa: E402
 from slideline_tools.scenes import block, block_grids  # noqa: E402
 
@@ -92,27 +93,57 @@ def check_uniform(run, name, scene, chain):
 
 
 def check_deviating(run, name, kind, scene):
-    """What a type that fails the patch test still owes."""
-    chain = {1: chain_of(PENALTY * (N_SLAVE + 1)), 3: chain_of(PENALTY * (N_SLAVE + N_MASTER))
-             }.get(kind, chain_of(PENALTY * N_SLAVE))
+    """A type that fails the patch test deviates as the linearised plane model says."""
+    total = {1: N_SLAVE + 1, 3: N_SLAVE + N_MASTER}.get(kind, N_SLAVE)
+    chain = chain_of(PENALTY * total)
     run.check(f"{name}: total force, every step", scene.force, WIDTH * chain.pressure, 1e-2,
               source="chain with all springs of the interface")
-    final = chain.pressure[-1]
-    for side, pressure in (("slave", scene.slave[-1]), ("master", scene.master[-1])):
+    mean = scene.force[-1] / WIDTH
+    expected = plane.solve(kind, N_SLAVE, N_MASTER, WIDTH, PENALTY, Blocks())
+    deviation = [pressure[-1] / mean - 1.0 for pressure in (scene.slave, scene.master)]
+    for side, found, linear in zip(("slave", "master"), deviation, expected):
+        length = plane.lumped(np.linspace(0.0, WIDTH, len(linear)))
+        run.check(f"{name}: deviation from uniform pressure, {side} side", found,
+                  WIDTH * linear / np.sum(length * linear) - 1.0, 0.1, source="linear plane model")
         run.report(f"{name}: largest deviation from uniform pressure, {side} side",
-                   np.max(np.abs(pressure / final - 1.0)))
-        run.report(f"{name}: end node over chain - 1, {side} side", pressure[0] / final - 1.0)
-        run.check(f"{name}: left and right end alike, {side} side", pressure[::-1], pressure, 1e-6,
+                   np.max(np.abs(found)))
+        run.check(f"{name}: left and right end alike, {side} side", found[::-1], found, 1e-6,
                   source="symmetry of the scene")
+    return deviation
+
+
+def check_signs(run, deviation, depth):
+    """Which end nodes are pressed too much or too little, from the weights alone."""
+    ends = {kind: (slave[0], master[0]) for kind, (slave, master) in deviation.items()}
+    run.true("NTS: end nodes carry too much on both sides", min(ends[1]) > 0.0,
+             "a whole spring on half a length")
+    run.true("NTS-AR: the slave's end nodes carry too little, the master's too much",
+             ends[2][0] < 0.0 < ends[2][1], "half of the second slave node's hat hangs on them")
+    run.true("two-pass NTS-AR: end nodes carry too much on both sides", min(ends[3]) > 0.0,
+             "each pass overloads the ends of its chain")
+    run.true("two-pass NTS-AR: penetration of the slave's end nodes is too small",
+             depth[0] < np.mean(depth), "both ends are overloaded")
+    run.true("two-pass NTS-AR: nearer to uniform than NTS-AR, and that than NTS",
+             largest(deviation[3]) < largest(deviation[2]) < largest(deviation[1]))
+    run.check("two-pass NTS-AR: mean pressure over mean penetration", 1.0 / np.mean(depth),
+              PENALTY * (N_SLAVE + N_MASTER) / WIDTH, 1e-3, source="springs of both passes")
+
+
+def largest(deviation):
+    return max(np.max(np.abs(side)) for side in deviation)
 
 
 def check(run):
     matching = Scene(run, 2, N_MASTER, N_MASTER)
     check_uniform(run, "matching meshes, NTS-AR", matching, chain_of(PENALTY * N_MASTER))
+    deviation = {}
     for kind, name in TYPES.items():
         scene = Scene(run, kind)
         run.check(f"{name}: forces of the two sides cancel", scene.reaction, -scene.force, 1e-12)
         if kind in PASS_PATCH:
             check_uniform(run, name, scene, chain_of(PENALTY * N_SLAVE))
         else:
-            check_deviating(run, name, kind, scene)
+            deviation[kind] = check_deviating(run, name, kind, scene)
+        if kind == 3:
+            depth = -scene.gap[-1] * WIDTH / scene.force[-1]
+    check_signs(run, deviation, depth)

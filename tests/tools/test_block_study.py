@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""The block-to-block study: numbers of its table from known pressures, and the page of a run."""
+import subprocess
+import sys
+
+import conftest
+import numpy as np
+import pytest
+
+from slideline_tools import UserError, scenes
+from slideline_tools.histories import History
+from slideline_tools.studies import block
+
+CHAIN = conftest.ROOT / "tests" / "verification" / "block_to_block" / "chain.py"
+
+
+def test_half_segments_add_up_and_ends_have_one_half():
+    np.testing.assert_allclose(block.half_segments(np.array([0.0, 1.0, 3.0])), [0.5, 1.5, 1.0])
+
+
+@pytest.mark.parametrize("ctype, springs", [(1, 4), (2, 3), (3, 5), (4, 3), (5, 3), (6, 3), (7, 3)])
+def test_springs_of_the_interface(ctype, springs):
+    assert block.interface_stiffness(ctype, 3, 2) == pytest.approx(springs * 1.0e5)
+
+
+def test_chain_of_another_stiffness_is_refused():
+    chain = History("chain", {"penalty": np.array([1.0, 1.0, 2.0]), "pressure": np.array([3, 4, 5])})
+    assert block.chain_pressure(chain, 1.0) == 4.0
+    with pytest.raises(UserError, match="1.5"):
+        block.chain_pressure(chain, 1.5)
+
+
+@pytest.mark.parametrize("worst, verdict", [(1.0e-3, "no"), (1.0e-10, "yes")])
+def test_row_judges_both_sides(worst, verdict):
+    x = np.arange(3.0)
+    level, bent = np.full(3, 50.0), 50.0 * np.array([1.0, 1.0 - worst, 1.0])
+    row = dict(zip(block.COLUMNS, block.table_row(
+        2, block.Pressures(x, level, x, bent, 0.25, 100.0), 50.0)))
+    assert row["type"] == "2 NTS-AR"
+    assert row["master: min"] == pytest.approx(-worst, rel=1e-4)
+    assert row["uniform to 1e-08"] == verdict
+
+
+def test_page_of_a_run(slideline, tmp_path):
+    deck = tmp_path / "block.k"
+    deck.write_text(scenes.block(2), encoding="ascii")
+    folder = tmp_path / "type_2"
+    finished = subprocess.run([slideline, f"i={deck}", f"d={folder}", "jobid=block"],
+                              capture_output=True, text=True, check=False)
+    assert finished.returncode == 0, finished.stdout + finished.stderr
+    with open(tmp_path / "chain.csv", "w", encoding="ascii") as stream:
+        subprocess.run([sys.executable, CHAIN, "5.1e6"], stdout=stream, check=True)
+    assert block.main([str(tmp_path), str(tmp_path / "doc"), "--types", "2"]) == 0
+    page = (tmp_path / "doc" / "studies" / "block_to_block.md").read_text()
+    assert "| 2 NTS-AR |" in page
+    assert (tmp_path / "doc" / "pictures" / "block_pressure.png").exists()
+    # Forces of both sides, each pressure times length, are the same total.
+    run = block.read_pressures(folder, scenes.block_grids())
+    for x, p in ((run.slave_x, run.slave), (run.master_x, run.master)):
+        assert np.sum(p * block.half_segments(x)) == pytest.approx(run.force, rel=1e-6)
+    assert block.main([str(tmp_path), str(tmp_path / "doc"), "--types", "1"]) == 2
