@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What all studies share: the list of contact types, tables in Markdown, small pictures."""
+import argparse
 import io
+import pathlib
+import sys
 
 from PIL import Image
 
@@ -36,7 +39,7 @@ def cell(value):
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def save_small(figure, path, colours=64):
+def save_small(figure, path, colours=256):
     """Write a PNG with a palette of few colours; raises UserError if it is over 100 kB."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png")
@@ -70,3 +73,37 @@ def field_panels(results, name, limits, zoom, time=None):
             axes.set_title(label(ctype), loc="left")
         colour_bar(artist, list(panels.flat), scalar_field(result, name).label)
         return figure
+
+
+def study_main(text, write):
+    """Command line `FOLDER DOC --levels ... --types ...` of a study; returns the exit status.
+
+    `write(folder, doc, levels, types)` reads the runs below FOLDER and writes below DOC.
+    """
+    parser = argparse.ArgumentParser(description=text.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("doc", type=pathlib.Path)
+    parser.add_argument("--levels", type=int, nargs="+", required=True)
+    parser.add_argument("--types", type=int, nargs="+", required=True, choices=TYPES)
+    options = parser.parse_args()
+    try:
+        write(options.folder, options.doc, options.levels, options.types)
+    except UserError as problem:
+        print(problem, file=sys.stderr)
+        return 2
+    return 0
+
+
+def write_page(doc, name, text):
+    """Write DOC/studies/NAME.md."""
+    path = doc / "studies" / f"{name}.md"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    print(f"wrote {path}")
+
+
+def by_level(runs, table):
+    """One table of runs per refinement level, each under its level."""
+    levels = sorted({run.level for run in runs})
+    return "\n\n".join(f"N_r = {level}:\n\n" + table([run for run in runs if run.level == level])
+                       for level in levels)

@@ -6,8 +6,6 @@
 FOLDER holds the runs as level_L_type_T/sliding.*; the page goes to DOC/studies, its pictures
 to DOC/pictures.
 """
-import argparse
-import pathlib
 import sys
 
 import numpy as np
@@ -18,8 +16,8 @@ from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.results import read
 from slideline_tools.scenes.sliding import DRAW
 from slideline_tools.studies import peaks
-from slideline_tools.studies.common import (colour, field_panels, label, markdown_table,
-                                            save_small)
+from slideline_tools.studies.common import (by_level, colour, field_panels, label,
+                                            markdown_table, save_small, study_main, write_page)
 
 JOB = "sliding"
 PLATE = 1
@@ -210,12 +208,6 @@ bursts ring with a period of several microseconds.
 """
 
 
-def by_level(runs, table):
-    levels = sorted({run.level for run in runs})
-    return "\n\n".join(f"N_r = {level}:\n\n" + table([run for run in runs if run.level == level])
-                       for level in levels)
-
-
 def page(runs, pictured):
     first, last = judged_interval()
     moved = 1e3 * travel(np.array([first, last]))
@@ -235,26 +227,8 @@ def write(folder, doc, levels, types):
     save_small(field_panels({run.ctype: run.results for run in shown}, "plastic_strain",
                             (0.1, 0.3), (0.008, 0.026, -0.0042, 0.0022)),
                doc / "pictures" / "sliding_plastic_strain.png")
-    path = doc / "studies" / "sliding.md"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page(runs, pictured), encoding="utf-8")
-    print(f"wrote {path}")
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("doc", type=pathlib.Path)
-    parser.add_argument("--levels", type=int, nargs="+", required=True)
-    parser.add_argument("--types", type=int, nargs="+", required=True)
-    options = parser.parse_args()
-    try:
-        write(options.folder, options.doc, options.levels, options.types)
-    except UserError as problem:
-        print(problem, file=sys.stderr)
-        return 2
-    return 0
+    write_page(doc, "sliding", page(runs, pictured))
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(study_main(__doc__, write))
