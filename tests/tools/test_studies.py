@@ -27,7 +27,8 @@ def test_travel_of_the_die_is_the_integral_of_the_deck_s_curve():
     velocity = np.interp(time, curve[:, 0], curve[:, 1])
     summed = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1])
                                               * np.diff(time))])
-    assert np.abs(moved - summed).max() < 1e-5 * distance
+    # Linear between 200 points: (2 pi)^2 / 12 / 200^2 / (2 pi) = 1.3e-5 of the distance is lost.
+    assert np.abs(moved - summed).max() < 1.6e-5 * distance
 
 
 def sliding_curve():
