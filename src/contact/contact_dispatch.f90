@@ -2,11 +2,16 @@
 !> The one place that knows the contact types: their numbers, names, needs and placements.
 !> Adding one is a row of `formulations`, a `use` and a `case` (doc/add_a_formulation.md).
 module contact_dispatch_m
+  use contact_spots_m, only : spots_at_nodes, spots_at_quarters, spots_at_gauss_points
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, contact_kind_t
+  use points_mortar_m, only : place_mortar
   use points_nts_m, only : place_nts
   use points_nts_ar_m, only : place_nts_ar
+  use points_nts_mar_m, only : place_nts_mar
+  use points_segmented_mortar_m, only : place_segmented_mortar
   use points_two_pass_ar_m, only : place_two_pass_ar
+  use points_vts_ppt_m, only : place_vts_ppt
   implicit none
   private
   public :: contact_kinds, formulation_t, formulation_of, place_points
@@ -14,20 +19,32 @@ module contact_dispatch_m
   !> What the frame must know of a formulation before it places points.
   type :: formulation_t
     type(contact_kind_t) :: kind          !! number and name
+    integer :: spots = spots_at_nodes     !! what the search follows over the master chain
     logical :: has_two_passes = .false.   !! master nodes are tracked over the slave chain too
     logical :: has_unit_area = .false.    !! the penalty is N/m per node
-    integer :: points_per_slave_node = 1  !! most points, for the allocation
-    integer :: points_per_master_node = 0
+    logical :: covers_segments = .false.  !! goes along both chains, slave segment by slave segment
+    logical :: averages_pressure = .false. !! pressure of slave nodes, from averaged gaps
+    integer :: points_per_slave = 1       !! usual most of points for each spot, for the allocation
+    integer :: points_per_master = 0      !! and for each master node
   end type formulation_t
 
-  integer, parameter :: type_nts = 1, type_nts_ar = 2, type_two_pass_ar = 3
+  integer, parameter :: type_nts = 1, type_nts_ar = 2, type_two_pass_ar = 3, type_vts_ppt = 4, &
+    type_nts_mar = 5, type_mortar = 6, type_segmented_mortar = 7
 
   !> All formulations.
   type(formulation_t), parameter :: formulations(*) = [ &
     formulation_t(contact_kind_t(type_nts, 'classical NTS'), has_unit_area=.true.), &
     formulation_t(contact_kind_t(type_nts_ar, 'NTS-AR')), &
     formulation_t(contact_kind_t(type_two_pass_ar, 'NTS-AR two-pass'), has_two_passes=.true., &
-      points_per_master_node=1)]
+      points_per_master=1), &
+    formulation_t(contact_kind_t(type_vts_ppt, 'VTS-PPT'), spots=spots_at_quarters, &
+      points_per_master=1), &
+    formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR'), covers_segments=.true., &
+      points_per_master=1), &
+    formulation_t(contact_kind_t(type_mortar, 'mortar', uses_gauss_points=.true.), &
+      spots=spots_at_gauss_points, averages_pressure=.true.), &
+    formulation_t(contact_kind_t(type_segmented_mortar, 'segmented mortar'), &
+      covers_segments=.true., averages_pressure=.true., points_per_slave=2, points_per_master=2)]
 
   !> The same as the deck layer wants them.
   type(contact_kind_t), parameter :: contact_kinds(*) = formulations%kind
@@ -55,6 +72,10 @@ contains
     case (type_nts); call place_nts(contact, memory)
     case (type_nts_ar); call place_nts_ar(contact, memory)
     case (type_two_pass_ar); call place_two_pass_ar(contact, memory)
+    case (type_vts_ppt); call place_vts_ppt(contact, memory)
+    case (type_nts_mar); call place_nts_mar(contact, memory)
+    case (type_mortar); call place_mortar(contact, memory)
+    case (type_segmented_mortar); call place_segmented_mortar(contact, memory)
     end select
   end subroutine place_points
 

@@ -1,14 +1,16 @@
 ! SPDX-License-Identifier: MIT
 !> One interface, one step: gather, search, place, press, scatter.
 module contact_force_m
-  use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_force
+  use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_pairing, &
+    phase_contact_force
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
-  use contact_initial_m, only : start_tracking
+  use contact_initial_m, only : start_slave_tracking, start_master_tracking, start_cover
   use contact_log_m, only : log_contact
-  use contact_penalty_m, only : set_penalties, press_points, damp_points
+  use contact_penalty_m, only : set_penalties, press_points, stored_energy, damp_points
   use contact_scatter_m, only : scatter_points
   use contact_search_m, only : update_tracking, wake_all
-  use contact_state_m, only : contact_points_t, contact_state_t, allocate_points
+  use contact_spots_m, only : spots_at_quarters, start_spots, move_spots
+  use contact_state_m, only : contact_state_t, tracking_t, allocate_points, is_free
   use contacts_m, only : contact_t
   use kinds_m, only : wp
   use log_m, only : log_t
@@ -26,7 +28,7 @@ contains
     type(log_t), intent(inout) :: log
     type(contact_state_t), intent(out) :: memory
     type(formulation_t) :: formulation
-    integer :: n_slave, n_master
+    integer :: n_slave, n_master, i
 
     n_slave = contact%slave%n_node
     n_master = contact%master%n_node
@@ -35,23 +37,29 @@ contains
     memory%nodes = [contact%slave%nodes, contact%master%nodes]
     allocate (memory%force(2, n_slave + n_master), memory%places(4, n_slave + n_master), &
       source=0.0_wp)
-    memory%places(1:2, :) = model%mesh%coordinates(:, memory%nodes)
+    do i = 1, size(memory%nodes)
+      memory%places(1:2, i) = model%mesh%coordinates(:, memory%nodes(i)) &
+        - model%mesh%coordinates(:, memory%nodes(1))
+    end do
     formulation = formulation_of(contact)
-    call allocate_points(memory%points, n_slave*formulation%points_per_slave_node &
-      + n_master*formulation%points_per_master_node)
     call set_penalties(contact, model, memory)
-    call start_tracking(memory%slave_tracking, contact, model, contact%slave, contact%master, &
-      memory%places)
-    if (formulation%has_two_passes) call start_tracking(memory%master_tracking, contact, model, &
-      contact%master, contact%slave, cshift(memory%places, n_slave, 2))
+    call start_spots(formulation%spots, contact%n_gauss, contact%slave, memory)
+    call start_slave_tracking(contact, model, memory)
+    if (formulation%has_two_passes) call start_master_tracking(contact, model, memory)
+    if (formulation%covers_segments) call start_cover(contact, model, memory)
+    call allocate_points(memory%points, formulation%points_per_slave*memory%slave_tracking%n &
+      + formulation%points_per_master*n_master)
+    memory%averages_pressure = formulation%averages_pressure
+    memory%laps_pairing = formulation%covers_segments .or. formulation%spots == spots_at_quarters
+    allocate (memory%mark(n_slave), source=0)
+    if (memory%averages_pressure) allocate (memory%nodal(2, n_slave), source=0.0_wp)
     call log_contact(contact, model, formulation%kind, memory, log)
   end subroutine start_contact
 
   !> Contact forces of one interface at the present u, added to `force`, and their work since the
   !> previous call (trapezoidal rule). Laps the phases of the clock.
-  subroutine apply_contact(contact, coordinates, motion, mass, time, dt, cycle, clock, memory, force)
+  subroutine apply_contact(contact, motion, mass, time, dt, cycle, clock, memory, force)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: coordinates(:, :) !! (2, n_node) at time zero
     real(wp), intent(in), contiguous :: motion(:, :)      !! (4, n_node) u(n), v(n-1/2)
     real(wp), intent(in), contiguous :: mass(:)           !! (n_node) kg/m
     real(wp), intent(in) :: time                          !! of u, s
@@ -66,14 +74,17 @@ contains
       call suspend_contact(motion, dt, memory)
       return
     end if
-    if (memory%is_stale) call refresh_memory(coordinates, motion, memory)
+    if (memory%is_stale) call refresh_memory(motion, memory)
     call gather_motion(motion, memory, power)
+    if (allocated(memory%spots)) &
+      call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
     call search_pairs(contact, cycle, memory)
     call lap(clock, phase_contact_search)
     call place_points(contact, memory)
+    if (memory%laps_pairing) call lap(clock, phase_contact_pairing)
     memory%n_active = 0
     if (memory%points%n > 0) then
-      call press_points(memory%points)
+      call press_points(memory)
       ! Springs loaded at time zero hold energy that no force has put in.
       if (cycle == 0) memory%energy = stored_energy(memory%points)
       if (contact%damping > 0.0_wp) &
@@ -163,26 +174,31 @@ contains
   end subroutine take_places
 
   !> After a time without contact: take the present places and search all anew.
-  pure subroutine refresh_memory(coordinates, motion, memory)
-    real(wp), intent(in), contiguous :: coordinates(:, :), motion(:, :)
+  pure subroutine refresh_memory(motion, memory)
+    real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
 
-    memory%places(1:2, :) = coordinates(:, memory%nodes)
     memory%places(3:4, :) = motion(1:2, memory%nodes)
-    memory%slave_tracking%segment = 0
-    memory%slave_tracking%n_touching = 0
-    memory%slave_tracking%status = 0
-    memory%slave_tracking%grid%cell = 0.0_wp
-    call wake_all(memory%slave_tracking)
-    if (memory%master_tracking%n > 0) then
-      memory%master_tracking%segment = 0
-      memory%master_tracking%n_touching = 0
-      memory%master_tracking%status = 0
-      memory%master_tracking%grid%cell = 0.0_wp
-      call wake_all(memory%master_tracking)
+    call forget_pairs(memory%slave_tracking)
+    if (memory%master_tracking%n > 0) call forget_pairs(memory%master_tracking)
+    if (allocated(memory%cover%status)) then
+      memory%cover%status = is_free
+      memory%cover%wake = -huge(1.0_wp)
+      memory%cover%next_wake = -huge(1.0_wp)
     end if
     memory%is_stale = .false.
   end subroutine refresh_memory
+
+  !> Start a tracking anew, knowing nothing.
+  pure subroutine forget_pairs(tracking)
+    type(tracking_t), intent(inout) :: tracking
+
+    tracking%segment = 0
+    tracking%n_touching = 0
+    tracking%status = is_free
+    tracking%grid%cell = 0.0_wp
+    call wake_all(tracking)
+  end subroutine forget_pairs
 
   !> Pairs of the slave nodes, and of the master nodes where there are two passes.
   pure subroutine search_pairs(contact, cycle, memory)
@@ -195,9 +211,15 @@ contains
       call wake_all(memory%slave_tracking)
       if (memory%master_tracking%n > 0) call wake_all(memory%master_tracking)
     end if
-    call update_tracking(memory%slave_tracking, contact%master, &
-      memory%places(:, memory%n_slave + 1:), memory%places(:, :memory%n_slave), memory%travel, &
-      memory%n_released)
+    associate (chain => memory%places(:, memory%n_slave + 1:))
+      if (allocated(memory%spots)) then
+        call update_tracking(memory%slave_tracking, contact%master, chain, memory%spots, &
+          memory%travel, memory%n_released)
+      else
+        call update_tracking(memory%slave_tracking, contact%master, chain, &
+          memory%places(:, :memory%n_slave), memory%travel, memory%n_released)
+      end if
+    end associate
     if (memory%master_tracking%n > 0) call update_tracking(memory%master_tracking, contact%slave, &
       memory%places(:, :memory%n_slave), memory%places(:, memory%n_slave + 1:), memory%travel, &
       memory%n_released)
@@ -223,15 +245,5 @@ contains
     end do
     power = power + (power_x + power_y)
   end subroutine add_force
-
-  !> Energy of the springs of all points, J/m.
-  pure function stored_energy(points) result(energy)
-    type(contact_points_t), intent(in) :: points
-    real(wp) :: energy
-    integer :: n
-
-    n = points%n
-    energy = 0.5_wp*sum(points%area(:n)*points%stiffness(:n)*min(0.0_wp, points%gap(:n))**2)
-  end function stored_energy
 
 end module contact_force_m

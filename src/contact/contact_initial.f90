@@ -6,7 +6,8 @@
 module contact_initial_m
   use contact_projection_m, only : foot_t, see_segment, closest_foot, follow_contact
   use contact_search_m, only : update_tracking, most_facing, begin_contact
-  use contact_state_m, only : tracking_t, allocate_tracking, is_touching
+  use contact_spots_m, only : list_owners, list_chords
+  use contact_state_m, only : contact_state_t, tracking_t, allocate_tracking, is_free, is_touching
   use contacts_m, only : contact_t
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
   use geometry_m, only : closest_distance
@@ -15,57 +16,112 @@ module contact_initial_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: start_tracking
+  public :: start_slave_tracking, start_master_tracking, start_cover
 
   !> Smallest cell of the grid, as a part of the search reach.
   real(wp), parameter :: least_cell = 0.01_wp
 
 contains
 
-  !> Track the nodes of `own` over the chain `surface`, at time zero.
-  subroutine start_tracking(tracking, contact, model, own, surface, places)
+  !> Follow the slave nodes, or the spots of slave segments, over the master chain.
+  subroutine start_slave_tracking(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+    integer :: n
+
+    associate (tracking => memory%slave_tracking, chain => memory%places(:, memory%n_slave + 1:))
+      if (allocated(memory%spots)) then
+        n = size(memory%spot_xi)
+        tracking%chord = list_chords(contact%slave, n)
+        call start_tracking(tracking, contact, model, contact%slave, contact%master, memory%spots, &
+          chain, list_owners(contact%slave, n))
+      else
+        tracking%chord = list_chords(contact%slave, 0)
+        call start_tracking(tracking, contact, model, contact%slave, contact%master, &
+          memory%places(:, :memory%n_slave), chain, list_owners(contact%slave, 0))
+      end if
+    end associate
+  end subroutine start_slave_tracking
+
+  !> Follow the master nodes over the slave chain.
+  subroutine start_master_tracking(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%master_tracking%chord = list_chords(contact%master, 0)
+    call start_tracking(memory%master_tracking, contact, model, contact%master, contact%slave, &
+      memory%places(:, memory%n_slave + 1:), memory%places(:, :memory%n_slave), &
+      list_owners(contact%master, 0))
+  end subroutine start_master_tracking
+
+  !> Memory of slave segments. Those with a master node deep inside the body behind them are in
+  !> contact from the start.
+  subroutine start_cover(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+    type(element_finder_t) :: finder
+    integer :: i, segment
+
+    allocate (memory%cover%status(contact%slave%n_segment), source=is_free)
+    allocate (memory%cover%wake(contact%slave%n_segment), source=-huge(1.0_wp))
+    if (contact%birth > 0.0_wp) return
+    call start_finder(model, contact%slave%segment_element, finder)
+    do i = 1, contact%master%n_node
+      associate (node => contact%master%nodes(i))
+        if (.not. is_inside_body(finder, model, model%mesh%coordinates(:, node), [node])) cycle
+      end associate
+      segment = nearest_segment(contact%slave, memory%places(:, :memory%n_slave), &
+        memory%places(:, memory%n_slave + i))
+      memory%cover%status(segment) = is_touching
+    end do
+  end subroutine start_cover
+
+  !> Track spots of the surface `own` over the chain `surface`, at time zero.
+  subroutine start_tracking(tracking, contact, model, own, surface, spots, chain, owners)
     type(tracking_t), intent(inout) :: tracking
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, nodes of own then of surface)
-    integer :: i, n_ignored
+    real(wp), intent(in), contiguous :: spots(:, :) !! (4, n_spot)
+    real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node of `surface`)
+    integer, intent(in) :: owners(:, :)             !! (2, n_spot) segments of `own` at a spot
+    integer :: n_ignored
 
-    call allocate_tracking(tracking, own%n_node, surface%n_segment)
-    do i = 1, own%n_node
-      tracking%chord(:, i) = i
-      if (own%incoming(i) > 0) tracking%chord(1, i) = own%segments(1, own%incoming(i))
-      if (own%outgoing(i) > 0) tracking%chord(2, i) = own%segments(2, own%outgoing(i))
-    end do
-    call set_depths(tracking, contact, model, own, surface)
+    call allocate_tracking(tracking, size(spots, 2), surface%n_segment)
+    call set_depths(tracking, contact, model, own, surface, owners)
     if (contact%birth > 0.0_wp) return
     n_ignored = 0
-    call update_tracking(tracking, surface, places(:, own%n_node + 1:), places(:, :own%n_node), &
-      0.0_wp, n_ignored)
-    call catch_edges(tracking, surface, places(:, own%n_node + 1:), places(:, :own%n_node))
-    call catch_deep_nodes(tracking, model, own, surface, places)
+    call update_tracking(tracking, surface, chain, spots, 0.0_wp, n_ignored)
+    call catch_edges(tracking, surface, chain, spots)
+    call catch_deep_spots(tracking, model, own, surface, spots, chain, owners)
     tracking%next_wake = -huge(1.0_wp)
   end subroutine start_tracking
 
-  !> Deepest first contact: SRCH, or half of the shortest of the tracked node's segments, the segment that it
-  !> meets, and the thickness of the element behind that. All from the initial mesh.
-  subroutine set_depths(tracking, contact, model, own, surface)
+  !> Deepest first contact: SRCH, or half of the shortest of the spot's own segments, the segment that it
+  !> meets, and the thickness of the element behind that. All from the initial mesh. The reach also is the longest
+  !> segment of both sides: what faces any part of a segment is within reach of one of its ends.
+  subroutine set_depths(tracking, contact, model, own, surface, owners)
     type(tracking_t), intent(inout) :: tracking
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, surface
+    integer, intent(in) :: owners(:, :) !! (2, n_spot) segments of `own` at each spot
     real(wp) :: length, longest, area
-    integer :: i
+    integer :: i, k
 
     tracking%spot_depth = huge(1.0_wp)
-    do i = 1, own%n_segment
-      length = length_of(own, i)
-      associate (ends => own%segments(:, i))
-        tracking%spot_depth(ends(1)) = min(tracking%spot_depth(ends(1)), 0.5_wp*length)
-        tracking%spot_depth(ends(2)) = min(tracking%spot_depth(ends(2)), 0.5_wp*length)
-      end associate
-    end do
     longest = 0.0_wp
+    do i = 1, tracking%n
+      do k = 1, 2
+        if (owners(k, i) == 0) cycle
+        length = length_of(own, owners(k, i))
+        longest = max(longest, length)
+        tracking%spot_depth(i) = min(tracking%spot_depth(i), 0.5_wp*length)
+      end do
+    end do
     do i = 1, surface%n_segment
       length = length_of(surface, i)
       longest = max(longest, length)
@@ -119,36 +175,61 @@ contains
     end do
   end subroutine catch_edges
 
-  !> Nodes that lie inside an element behind the chain, deeper than a first contact may be.
-  subroutine catch_deep_nodes(tracking, model, own, surface, places)
+  !> Spots that lie inside an element behind the chain, deeper than a first contact may be.
+  subroutine catch_deep_spots(tracking, model, own, surface, spots, chain, owners)
     type(tracking_t), intent(inout) :: tracking
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, surface
-    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in), contiguous :: spots(:, :), chain(:, :)
+    integer, intent(in) :: owners(:, :)
     type(element_finder_t) :: finder
     type(foot_t) :: foot
-    real(wp) :: square, nearest
-    integer :: i, k, segment
+    integer :: i
 
     call start_finder(model, surface%segment_element, finder)
     do i = 1, tracking%n
       if (tracking%status(i) == is_touching) cycle
-      if (.not. is_inside_body(finder, model, own%nodes(i))) cycle
-      segment = 0
-      nearest = huge(1.0_wp)
-      do k = 1, surface%n_segment
-        square = closest_distance(see_segment(surface, places(:, own%n_node + 1:), &
-          places(:, i), k))
-        if (square >= nearest) cycle
-        nearest = square
-        segment = k
-      end do
-      foot = closest_foot(surface, places(:, own%n_node + 1:), places(:, i), segment)
+      if (.not. is_inside_body(finder, model, model%mesh%coordinates(:, surface%nodes(1)) &
+        + (spots(1:2, i) - chain(1:2, 1)), own%nodes(own_nodes(own, owners(:, i))))) cycle
+      foot = closest_foot(surface, chain, spots(:, i), nearest_segment(surface, chain, spots(:, i)))
       if (.not. foot%is_on .or. foot%gap >= 0.0_wp) cycle
       tracking%segment(i) = foot%segment
       tracking%status(i) = is_touching
       tracking%wake(i) = -huge(1.0_wp)
     end do
-  end subroutine catch_deep_nodes
+  end subroutine catch_deep_spots
+
+  !> Nodes that carry a spot: those of its segment, or the node between two.
+  pure function own_nodes(own, owners) result(nodes)
+    type(surface_t), intent(in) :: own
+    integer, intent(in) :: owners(2) !! segments
+    integer :: nodes(2)
+
+    if (owners(1) == owners(2)) then
+      nodes = own%segments(:, owners(1))
+    else if (owners(1) > 0) then
+      nodes = own%segments(2, owners(1))
+    else
+      nodes = own%segments(1, owners(2))
+    end if
+  end function own_nodes
+
+  !> Segment of a chain that is nearest to a place, by looking at all.
+  pure function nearest_segment(surface, chain, place) result(segment)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :)
+    real(wp), intent(in) :: place(4)
+    integer :: segment, k
+    real(wp) :: square, nearest
+
+    segment = 0
+    nearest = huge(1.0_wp)
+    do k = 1, surface%n_segment
+      square = closest_distance(see_segment(surface, chain, place, k))
+      if (square >= nearest) cycle
+      nearest = square
+      segment = k
+    end do
+  end function nearest_segment
 
 end module contact_initial_m

@@ -1,14 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> From the penalty of the deck to the pressure of each point.
 module contact_penalty_m
-  use contact_state_m, only : contact_points_t, contact_state_t
+  use contact_state_m, only : contact_points_t, contact_state_t, n_side
   use contacts_m, only : contact_t, penalty_per_node, penalty_distributed, penalty_factor
   use kinds_m, only : wp
   use model_m, only : model_t
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: set_penalties, mean_length, press_points, damp_points
+  public :: set_penalties, mean_length, press_points, stored_energy, damp_points
 
 contains
 
@@ -99,15 +99,63 @@ contains
     area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
   end function element_area
 
-  !> p = stiffness * max(0, -gap).
-  pure subroutine press_points(points)
-    type(contact_points_t), intent(inout) :: points
+  !> Pressure of all points before damping: p = stiffness * max(0, -gap) at the point, or shared out from the
+  !> slave nodes.
+  pure subroutine press_points(memory)
+    type(contact_state_t), intent(inout) :: memory
     integer :: p
 
-    do p = 1, points%n
-      points%pressure(p) = points%stiffness(p)*max(0.0_wp, -points%gap(p))
-    end do
+    associate (points => memory%points)
+      if (memory%averages_pressure) then
+        call press_nodes(points, memory%nodal)
+      else
+        do p = 1, points%n
+          points%pressure(p) = points%stiffness(p)*max(0.0_wp, -points%gap(p))
+        end do
+      end if
+    end associate
   end subroutine press_points
+
+  !> Pressure at slave nodes from averaged gaps, p_A = stiffness * max(0, -sum(N_A a g)/sum(N_A a)), and at the points
+  !> by the slave shape functions (Fischer & Wriggers 2005). The forces that follow are the derivative of
+  !> the energy sum of p_A^2 sum(N_A a)/(2 stiffness) at frozen weights.
+  pure subroutine press_nodes(points, nodal)
+    type(contact_points_t), intent(inout) :: points
+    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave) scratch
+    real(wp) :: share
+    integer :: p, k, node
+
+    do p = 1, points%n
+      nodal(:, points%slave_nodes(:, p)) = 0.0_wp
+    end do
+    do p = 1, points%n
+      do k = 1, n_side
+        share = points%slave_weights(k, p)*points%area(p)
+        node = points%slave_nodes(k, p)
+        nodal(1, node) = nodal(1, node) + share*points%gap(p)
+        nodal(2, node) = nodal(2, node) + share
+      end do
+    end do
+    do p = 1, points%n
+      points%pressure(p) = 0.0_wp
+      do k = 1, n_side
+        node = points%slave_nodes(k, p)
+        if (.not. nodal(1, node) < 0.0_wp) cycle
+        points%pressure(p) = points%pressure(p) &
+          - points%stiffness(p)*points%slave_weights(k, p)*nodal(1, node)/nodal(2, node)
+      end do
+    end do
+  end subroutine press_nodes
+
+  !> Energy of the springs of all points as pressed, J/m; holds for both rules of pressure.
+  pure function stored_energy(points) result(energy)
+    type(contact_points_t), intent(in) :: points
+    real(wp) :: energy
+    integer :: n
+
+    n = points%n
+    energy = -0.5_wp*sum(points%area(:n)*points%pressure(:n)*points%gap(:n))
+  end function stored_energy
 
   !> Add the damping of points in contact: `fraction` of the critical damping 2 sqrt(k m) of the point's
   !> spring k = stiffness*area and its effective mass, 1/m = sum of w^2/m_node over both sides. The

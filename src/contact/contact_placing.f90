@@ -1,13 +1,15 @@
 ! SPDX-License-Identifier: MIT
-!> What the placements share: points at tracked nodes and competence lengths.
+!> What the placements share: points at tracked nodes, points on slave segments, competence lengths.
 module contact_placing_m
+  use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_points_t, tracking_t
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: add_touching_nodes, competence_length
+  public :: add_touching_nodes, add_segment_point, tracked_foot, place_on_segment, &
+    competence_length
 
 contains
 
@@ -39,6 +41,51 @@ contains
     end do
     points%n = p
   end subroutine add_touching_nodes
+
+  !> Append a point between the nodes of a slave segment; area and stiffness are left to the formulation.
+  pure subroutine add_segment_point(master, n_slave, ends, xi, foot, points)
+    type(surface_t), intent(in) :: master
+    integer, intent(in) :: n_slave    !! local number before the first master node
+    integer, intent(in) :: ends(2)    !! nodes of the slave segment
+    real(wp), intent(in) :: xi        !! place on it, 0 to 1
+    type(foot_t), intent(in) :: foot  !! segment, xi, gap and normal on the master
+    type(contact_points_t), intent(inout) :: points
+
+    points%n = points%n + 1
+    associate (p => points%n)
+      points%slave_nodes(:, p) = ends
+      points%slave_weights(1, p) = 1.0_wp - xi
+      points%slave_weights(2, p) = xi
+      points%master_nodes(:, p) = n_slave + master%segments(:, foot%segment)
+      points%master_weights(1, p) = 1.0_wp - foot%xi
+      points%master_weights(2, p) = foot%xi
+      points%normal(:, p) = foot%normal
+      points%gap(p) = foot%gap
+    end associate
+  end subroutine add_segment_point
+
+  !> Foot of a spot in contact as the tracking knows it.
+  pure function tracked_foot(tracking, i) result(foot)
+    type(tracking_t), intent(in) :: tracking
+    integer, intent(in) :: i !! spot
+    type(foot_t) :: foot
+
+    foot%segment = tracking%segment(i)
+    foot%is_on = .true.
+    foot%xi = tracking%xi(i)
+    foot%gap = tracking%gap(i)
+    foot%normal = tracking%normal(:, i)
+  end function tracked_foot
+
+  !> Place at `xi` between two nodes.
+  pure function place_on_segment(places, ends, xi) result(place)
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n)
+    integer, intent(in) :: ends(2)
+    real(wp), intent(in) :: xi
+    real(wp) :: place(4)
+
+    place = (1.0_wp - xi)*places(:, ends(1)) + xi*places(:, ends(2))
+  end function place_on_segment
 
   !> Half of the neighbouring segments of a node at their present length, m.
   pure function competence_length(surface, places, i_node) result(length)

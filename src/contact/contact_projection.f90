@@ -9,7 +9,7 @@ module contact_projection_m
   implicit none
   private
   public :: foot_t, see_segment, closest_foot, follow_contact, walk_to_closest, is_over_segment, &
-    end_tolerance
+    turns_gently, end_tolerance
 
   !> Overshoot accepted beyond the end of a chain, as a part of the segment; not clamped.
   real(wp), parameter :: end_tolerance = 0.01_wp
@@ -169,14 +169,22 @@ contains
       if (is_before(other, sight%along < 0.0_wp)) then
         foot = corner_foot(sight, other, segment)
         return
-      else if (other%across >= 0.0_wp .or. (is_over_segment(sight) .and. &
-        dot_product(sight%t, other%t) < gentle_turn*sqrt(sight%square*other%square))) then
+      else if (other%across >= 0.0_wp .or. &
+        (is_over_segment(sight) .and. .not. turns_gently(sight, other))) then
         foot = face_foot(sight, segment)
         return
       end if
       segment = neighbour
     end do
   end function follow_contact
+
+  !> Whether two segments meet at a gentle corner.
+  pure function turns_gently(sight, other)
+    type(sight_t), intent(in) :: sight, other
+    logical :: turns_gently
+
+    turns_gently = dot_product(sight%t, other%t) >= gentle_turn*sqrt(sight%square*other%square)
+  end function turns_gently
 
   !> Whether the spot has not yet reached the segment it is walking to (backwards or forwards).
   pure function is_before(sight, backwards) result(before)
@@ -207,7 +215,7 @@ contains
       other = see_segment(surface, chain, spot, candidates(i))
       if (other%along < 0.0_wp .or. other%along > other%square) cycle
       if (other%across >= 0.0_wp) cycle
-      if (dot_product(sight%t, other%t) < gentle_turn*sqrt(sight%square*other%square)) cycle
+      if (.not. turns_gently(sight, other)) cycle
       if (other%across**2*sight%square >= sight%across**2*other%square) cycle
       neighbour = candidates(i)
       return

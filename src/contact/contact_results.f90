@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> What the writers want to know of an interface.
 module contact_results_m
-  use contact_placing_m, only : competence_length
-  use contact_projection_m, only : foot_t, closest_foot, walk_to_closest
+  use contact_placing_m, only : competence_length, tracked_foot
+  use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
   use contact_state_m, only : contact_state_t, is_touching, n_side
   use contacts_m, only : contact_t
   use geometry_m, only : segment_length
@@ -26,10 +26,9 @@ contains
   end subroutine interface_resultants
 
   !> Rows of all slave nodes in walking order.
-  pure subroutine slave_rows(contact, coordinates, motion, memory, rows)
+  pure subroutine slave_rows(contact, motion, memory, rows)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: coordinates(:, :) !! (2, n_node) at time zero
-    real(wp), intent(in), contiguous :: motion(:, :)      !! (4, n_node) u, v
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
     real(wp), allocatable :: places(:, :)
@@ -41,8 +40,7 @@ contains
       allocate (rows%arc_length(n), rows%gap(n), rows%pressure(n), rows%force(2, n), &
         rows%length(n))
     end if
-    allocate (places(4, size(memory%nodes)))
-    places(1:2, :) = coordinates(:, memory%nodes)
+    places = memory%places
     places(3:4, :) = motion(1:2, memory%nodes)
     rows%force = memory%force(:, :n)
     call fill_arc_lengths(contact%slave, places(:, :n), rows%arc_length)
@@ -50,7 +48,7 @@ contains
     do i = 1, n
       rows%length(i) = competence_length(contact%slave, places(:, :n), i)
       rows%pressure(i) = rows%pressure(i)/max(rows%length(i), tiny(1.0_wp))
-      rows%gap(i) = present_gap(contact%master, places(:, n + 1:), places(:, i), memory, i)
+      rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
   end subroutine slave_rows
 
@@ -95,26 +93,47 @@ contains
   end subroutine fill_normal_forces
 
   !> Gap of a slave node at the present places; 0 when it is unpaired.
-  pure function present_gap(master, chain, spot, memory, i) result(gap)
-    type(surface_t), intent(in) :: master
-    real(wp), intent(in), contiguous :: chain(:, :)
-    real(wp), intent(in) :: spot(4)
+  pure function present_gap(contact, chain, place, memory, i) result(gap)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_master) present places
+    real(wp), intent(in) :: place(4)                !! of the node
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: i
+    integer, intent(in) :: i                        !! node of the slave surface
     real(wp) :: gap
     type(foot_t) :: foot
+    integer :: spot
 
     gap = 0.0_wp
-    associate (tracking => memory%slave_tracking)
-      if (memory%is_stale .or. tracking%segment(i) == 0) return
-      if (tracking%status(i) == is_touching) then
-        gap = tracking%gap(i)
-        return
+    spot = spot_at_node(contact%slave, memory, i)
+    associate (tracking => memory%slave_tracking, segment => memory%slave_tracking%segment(spot))
+      if (memory%is_stale .or. segment == 0) return
+      if (tracking%status(spot) /= is_touching) then
+        foot = closest_foot(contact%master, chain, place, &
+          walk_to_closest(contact%master, chain, place, segment))
+      else if (allocated(memory%spots)) then
+        foot = follow_contact(contact%master, chain, place, segment)
+      else
+        foot = tracked_foot(tracking, spot)
       end if
-      foot = closest_foot(master, chain, spot, &
-        walk_to_closest(master, chain, spot, tracking%segment(i)))
       if (foot%is_on) gap = foot%gap
     end associate
   end function present_gap
+
+  !> The spot at a slave node, or of those on its segments the one next to it that is in contact, if any.
+  pure function spot_at_node(slave, memory, i) result(spot)
+    type(surface_t), intent(in) :: slave
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: i
+    integer :: spot, n, other
+
+    spot = i
+    if (.not. allocated(memory%spots)) return
+    n = size(memory%spot_xi)
+    other = n*slave%incoming(i)
+    spot = n*(slave%outgoing(i) - 1) + 1
+    if (slave%outgoing(i) == 0) spot = other
+    if (other == 0) return
+    if (memory%slave_tracking%status(spot) /= is_touching) spot = other
+  end function spot_at_node
 
 end module contact_results_m

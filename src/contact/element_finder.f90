@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Whether a node lies inside the elements of certain parts at time zero, and not just on their boundary.
+!> Whether a place lies inside the elements of certain parts at time zero, and not just on their boundary.
 !> Elements are sorted into the cells of a uniform grid by their boxes; used once, at the start.
 module element_finder_m
   use kinds_m, only : wp
@@ -91,28 +91,28 @@ contains
     cell = max(0, min(finder%cells - 1, int((x - finder%low)/finder%cell)))
   end function cell_of
 
-  !> Whether four places round the node, a hair away, are all in elements that it does not belong to. (The
-  !> node alone would not tell an edge between two elements from the boundary.)
-  pure function is_inside_body(finder, model, node) result(inside)
+  !> Whether four places round `x`, a hair away, are all in elements that do not have the nodes which carry
+  !> the place. (x alone would not tell an edge between two elements from the boundary.)
+  pure function is_inside_body(finder, model, x, carriers) result(inside)
     type(element_finder_t), intent(in) :: finder
     type(model_t), intent(in) :: model
-    integer, intent(in) :: node
+    real(wp), intent(in) :: x(2)        !! m
+    integer, intent(in) :: carriers(:)  !! node indices
     logical :: inside
-    real(wp) :: x(2), hair(2)
+    real(wp) :: hair(2)
 
-    x = model%mesh%coordinates(:, node)
     hair = margin*finder%cell
-    inside = is_covered(finder, model, node, x + hair)
-    if (inside) inside = is_covered(finder, model, node, x - hair)
-    if (inside) inside = is_covered(finder, model, node, x + [hair(1), -hair(2)])
-    if (inside) inside = is_covered(finder, model, node, x + [-hair(1), hair(2)])
+    inside = is_covered(finder, model, carriers, x + hair)
+    if (inside) inside = is_covered(finder, model, carriers, x - hair)
+    if (inside) inside = is_covered(finder, model, carriers, x + [hair(1), -hair(2)])
+    if (inside) inside = is_covered(finder, model, carriers, x + [-hair(1), hair(2)])
   end function is_inside_body
 
   !> Whether x is in an element that does not belong to `node`.
-  pure function is_covered(finder, model, node, x) result(covered)
+  pure function is_covered(finder, model, carriers, x) result(covered)
     type(element_finder_t), intent(in) :: finder
     type(model_t), intent(in) :: model
-    integer, intent(in) :: node
+    integer, intent(in) :: carriers(:)
     real(wp), intent(in) :: x(2)
     logical :: covered
     integer :: cell(2), k, i
@@ -122,11 +122,24 @@ contains
     cell = cell_of(finder, x)
     k = 1 + cell(1) + cell(2)*finder%cells(1)
     do i = finder%first(k) + 1, finder%first(k + 1)
-      if (any(model%mesh%element_nodes(:, finder%items(i)) == node)) cycle
+      if (has_all(model%mesh%element_nodes(:, finder%items(i)), carriers)) cycle
       covered = is_in_element(model, finder%items(i), x)
       if (covered) return
     end do
   end function is_covered
+
+  !> Whether an element has all of the given nodes.
+  pure function has_all(nodes, wanted)
+    integer, intent(in) :: nodes(4), wanted(:)
+    logical :: has_all
+    integer :: k
+
+    has_all = .false.
+    do k = 1, size(wanted)
+      if (all(nodes /= wanted(k))) return
+    end do
+    has_all = .true.
+  end function has_all
 
   !> Whether x is in an element, edges included.
   pure function is_in_element(model, element, x) result(is_in)

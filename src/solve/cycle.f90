@@ -73,7 +73,7 @@ contains
     call apply_loads(model, state, cycle)
     call lap(monitor%clock, phase_nodes)
     do i = 1, size(model%contacts)
-      call apply_contact(model%contacts(i), model%mesh%coordinates, state%motion, state%mass, &
+      call apply_contact(model%contacts(i), state%motion, state%mass, &
         state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
         state%force_special)
     end do

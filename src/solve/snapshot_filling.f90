@@ -178,7 +178,7 @@ contains
     snapshot%contact_pressure = 0.0_wp
     snapshot%gap = 0.0_wp
     do i = 1, size(model%contacts)
-      call slave_rows(model%contacts(i), model%mesh%coordinates, state%motion, state%contacts(i), &
+      call slave_rows(model%contacts(i), state%motion, state%contacts(i), &
         snapshot%slaves(i))
       associate (memory => state%contacts(i), rows => snapshot%slaves(i))
         do k = 1, size(memory%nodes)

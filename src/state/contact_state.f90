@@ -8,9 +8,10 @@
 !> Balance of momentum follows from P1, balance of angular momentum from P2.
 !>
 !> Node numbers here are local to the interface: 1 .. n_slave for slave nodes, then
-!> n_slave + 1 .. n_slave + n_master for master nodes. A place is (X, Y, u_x, u_y).
+!> n_slave + 1 .. n_slave + n_master for master nodes. A place is (X, Y, u_x, u_y), X and Y relative to the
+!> first slave node, so that places between nodes lose no digit far from the origin.
 !>
-!> A tracking follows spots (the nodes of one surface) over the chain of the other. It measures time in
+!> A tracking follows spots (nodes of one surface, or places between them) over the chain of the other. It measures time in
 !> `travel`: the sum over all steps of a bound on how far any two nodes of the interface have
 !> moved relative to each other. A spot at distance d from everything cannot touch before the
 !> travel has grown by d: until then it sleeps.
@@ -19,7 +20,8 @@ module contact_state_m
   implicit none
   private
   public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
-    allocate_points, allocate_tracking, n_side, is_free, is_in_front, is_touching, is_behind
+    cover_memory_t, allocate_points, make_room, allocate_tracking, n_side, is_free, is_in_front, &
+    is_touching, is_behind
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
@@ -73,6 +75,13 @@ module contact_state_m
     type(bucket_grid_t) :: grid
   end type tracking_t
 
+  !> What formulations that go along both chains remember of each slave segment; empty for others.
+  type :: cover_memory_t
+    integer, allocatable :: status(:)     !! (n_segment) is_free, is_touching (may be deep) or is_behind
+    real(wp), allocatable :: wake(:)      !! (n_segment) travel before which it can not touch
+    real(wp) :: next_wake = -huge(1.0_wp) !! travel before which none can touch
+  end type cover_memory_t
+
   !> Memory of one interface.
   type :: contact_state_t
     integer :: n_slave = 0, n_master = 0
@@ -81,9 +90,17 @@ module contact_state_m
     real(wp) :: travel = 0.0_wp             !! bound on relative motion since the start, m
     logical :: is_stale = .false.           !! tracking has been left alone outside birth .. death
     integer :: next_search = 0              !! cycle at which FREQ asks for a global search
-    type(tracking_t) :: slave_tracking      !! slave nodes over the master chain
+    real(wp), allocatable :: spots(:, :)    !! (4, n_spot) places of spots that are not nodes
+    real(wp), allocatable :: spot_xi(:)     !! (spots of a segment) where on the segment they are
+    real(wp), allocatable :: spot_share(:)  !! (spots of a segment) part of its length they stand for
+    type(tracking_t) :: slave_tracking      !! slave nodes, or `spots`, over the master chain
     type(tracking_t) :: master_tracking     !! master nodes over the slave chain; empty for one pass
+    type(cover_memory_t) :: cover
     type(contact_points_t) :: points
+    logical :: laps_pairing = .false.       !! placing the points is work of its own for the clock
+    logical :: averages_pressure = .false.  !! pressure comes from slave nodes, not from each point
+    real(wp), allocatable :: nodal(:, :)    !! (2, n_slave) scratch of such a pressure
+    integer, allocatable :: mark(:)         !! (n_slave) scratch of placements, 0 between steps
     real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last call
     real(wp) :: slave_penalty = 0.0_wp      !! distributed penalty eps_hat of the slave pass, N/m^2
     real(wp) :: master_penalty = 0.0_wp     !! of the master pass
@@ -107,6 +124,29 @@ contains
       points%pressure(capacity), source=0.0_wp)
   end subroutine allocate_points
 
+  !> Make room for `n_more` points. The capacity of the start serves chains that face each other once; only where
+  !> slave segments lie upon each other is more needed, and the list then doubles.
+  pure subroutine make_room(points, n_more)
+    type(contact_points_t), intent(inout) :: points
+    integer, intent(in) :: n_more
+    type(contact_points_t) :: larger
+    integer :: n
+
+    if (points%n + n_more <= size(points%gap)) return
+    n = points%n
+    call allocate_points(larger, 2*(n + n_more))
+    larger%n = n
+    larger%slave_nodes(:, :n) = points%slave_nodes(:, :n)
+    larger%slave_weights(:, :n) = points%slave_weights(:, :n)
+    larger%master_nodes(:, :n) = points%master_nodes(:, :n)
+    larger%master_weights(:, :n) = points%master_weights(:, :n)
+    larger%normal(:, :n) = points%normal(:, :n)
+    larger%gap(:n) = points%gap(:n)
+    larger%area(:n) = points%area(:n)
+    larger%stiffness(:n) = points%stiffness(:n)
+    points = larger
+  end subroutine make_room
+
   !> Allocate for `n` spots over `n_segment` segments. A segment lies in few cells: cells are at least as
   !> long as the mean segment, so that all together fill at most 8 items per segment.
   pure subroutine allocate_tracking(tracking, n, n_segment)
@@ -115,8 +155,7 @@ contains
     integer :: n_bucket
 
     tracking%n = n
-    allocate (tracking%touching(n), tracking%segment(n), tracking%status(n), tracking%chord(2, n), &
-      source=0)
+    allocate (tracking%touching(n), tracking%segment(n), tracking%status(n), source=0)
     allocate (tracking%xi(n), tracking%gap(n), tracking%normal(2, n), tracking%spot_depth(n), &
       tracking%segment_depth(n_segment), source=0.0_wp)
     allocate (tracking%is_kept(n), source=.false.)

@@ -1,0 +1,178 @@
+! SPDX-License-Identifier: MIT
+!> Which part of a slave segment faces which master segments. Both chains are ordered and run against
+!> each other: walking the master chain from the foot of one end of a slave segment to that of the other
+!> meets every master node in between. Projected on the slave segment these nodes cut it into
+!> pieces, each facing one master segment; there is no search (doc/theory/contact.md, section 3.5).
+module contact_overlap_m
+  use contact_placing_m, only : tracked_foot
+  use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
+  use contact_state_m, only : contact_state_t, is_touching
+  use contacts_m, only : contact_t
+  use geometry_m, only : sight_t, sight_of_segment, sight_normal
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: cover_t, piece_t, find_cover, first_piece, next_piece, see_master_node, faces, local_foot
+
+  !> Cosine of the angle between two outward normals above which surfaces do not face each other: a block's
+  !> side that stands on a surface at right angles has no part in its contact.
+  real(wp), parameter :: side_on = -0.25_wp
+
+  !> A slave segment over the master chain.
+  type :: cover_t
+    integer :: segment = 0         !! the slave segment
+    integer :: ends(2) = 0         !! its nodes
+    logical :: exists = .false.    !! some master segment is near
+    type(foot_t) :: feet(2)        !! of its two ends
+  end type cover_t
+
+  !> A stretch of slave segment over one master segment.
+  type :: piece_t
+    integer :: segment = 0         !! master segment
+    integer :: next_segment = 0    !! where the walk goes on
+    integer :: n_step = 0          !! master segments passed
+    integer :: low_node = 0        !! master node that cuts at `low`, 0: none
+    integer :: high_node = 0       !! master node that cuts at `high`, 0: none
+    real(wp) :: low = 0.0_wp       !! where it starts on the slave segment, 0 to 1
+    real(wp) :: high = 0.0_wp      !! where it ends
+    logical :: is_last = .false.
+  end type piece_t
+
+contains
+
+  !> Feet of both ends of a slave segment. Ends in contact are where the tracking has them; others are
+  !> looked for from the foot of the other end, so that both are on the same stretch of the chain.
+  pure subroutine find_cover(contact, memory, segment, cover)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: segment !! of the slave surface
+    type(cover_t), intent(out) :: cover
+    integer :: k, start
+
+    cover%segment = segment
+    cover%ends = contact%slave%segments(:, segment)
+    associate (tracking => memory%slave_tracking)
+      start = 0
+      do k = 2, 1, -1
+        if (tracking%segment(cover%ends(k)) > 0) start = tracking%segment(cover%ends(k))
+      end do
+      if (start == 0) return
+      cover%exists = .true.
+      do k = 1, 2
+        if (tracking%status(cover%ends(k)) /= is_touching) cycle
+        cover%feet(k) = tracked_foot(tracking, cover%ends(k))
+        start = cover%feet(k)%segment
+      end do
+      do k = 1, 2
+        if (cover%feet(k)%segment == 0) cover%feet(k) = free_foot(contact, memory, &
+          memory%places(:, cover%ends(k)), start)
+        start = cover%feet(1)%segment
+      end do
+    end associate
+  end subroutine find_cover
+
+  !> Closest foot of a place on the master chain, found by walking.
+  pure function free_foot(contact, memory, place, start) result(foot)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in) :: place(4)
+    integer, intent(in) :: start !! master segment
+    type(foot_t) :: foot
+
+    associate (chain => memory%places(:, memory%n_slave + 1:))
+      foot = closest_foot(contact%master, chain, place, &
+        walk_to_closest(contact%master, chain, place, start))
+    end associate
+  end function free_foot
+
+  !> Foot of a place that is known to be near a master segment: behind the surface it belongs to the face that it
+  !> came through, outside to the closest one.
+  pure function local_foot(contact, memory, place, start) result(foot)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in) :: place(4)
+    integer, intent(in) :: start !! master segment
+    type(foot_t) :: foot
+
+    foot = follow_contact(contact%master, memory%places(:, memory%n_slave + 1:), place, start)
+    if (foot%is_on .and. foot%gap < 0.0_wp) return
+    foot = free_foot(contact, memory, place, start)
+  end function local_foot
+
+  !> Where the walk along a covered segment starts: at its first end, or at the end of the master chain.
+  pure subroutine first_piece(contact, memory, cover, piece)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(cover_t), intent(in) :: cover
+    type(piece_t), intent(out) :: piece !! empty; next_piece makes the first one
+    type(sight_t) :: sight
+    integer :: node
+
+    piece%is_last = .not. cover%exists
+    if (piece%is_last) return
+    piece%next_segment = cover%feet(1)%segment
+    ! Both ends beyond the same end of the master chain: nothing faces the segment.
+    if (.not. cover%feet(1)%is_on) piece%is_last = cover%feet(1)%xi < 0.5_wp
+    if (.not. cover%feet(2)%is_on) piece%is_last = piece%is_last .or. cover%feet(2)%xi > 0.5_wp
+    if (piece%is_last .or. cover%feet(1)%is_on) return
+    node = contact%master%segments(2, piece%next_segment)
+    sight = see_master_node(memory, cover, node)
+    if (sight%along <= 0.0_wp) return
+    piece%is_last = sight%along >= sight%square
+    piece%high = sight%along/sight%square
+    piece%high_node = node
+  end subroutine first_piece
+
+  !> The next piece along the slave segment; it may be empty (high = low) where the chain is bent back.
+  pure subroutine next_piece(contact, memory, cover, piece)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(cover_t), intent(in) :: cover
+    type(piece_t), intent(inout) :: piece
+    type(sight_t) :: sight
+    logical :: is_over_end
+
+    piece%low = piece%high
+    piece%low_node = piece%high_node
+    piece%segment = piece%next_segment
+    piece%next_segment = contact%master%previous(piece%segment)
+    piece%n_step = piece%n_step + 1
+    is_over_end = cover%feet(2)%is_on .and. piece%segment == cover%feet(2)%segment
+    if (.not. is_over_end) then
+      sight = see_master_node(memory, cover, contact%master%segments(1, piece%segment))
+      is_over_end = sight%along >= sight%square
+    end if
+    if (is_over_end) then
+      piece%high = 1.0_wp
+      piece%high_node = 0
+      piece%is_last = .true.
+      return
+    end if
+    piece%is_last = piece%next_segment == 0 .or. piece%n_step >= contact%master%n_segment &
+      .or. sight%along < -sight%square
+    if (sight%along <= piece%low*sight%square) return
+    piece%high = sight%along/sight%square
+    piece%high_node = contact%master%segments(1, piece%segment)
+  end subroutine next_piece
+
+  !> A master node seen from a slave segment.
+  pure function see_master_node(memory, cover, node) result(sight)
+    type(contact_state_t), intent(in) :: memory
+    type(cover_t), intent(in) :: cover
+    integer, intent(in) :: node !! of the master surface
+    type(sight_t) :: sight
+
+    sight = sight_of_segment(memory%places(:, memory%n_slave + node), &
+      memory%places(:, cover%ends(1)), memory%places(:, cover%ends(2)))
+  end function see_master_node
+
+  !> Whether a slave segment faces the master where this has the given normal.
+  pure function faces(slave_sight, master_normal)
+    type(sight_t), intent(in) :: slave_sight !! anything seen from the slave segment
+    real(wp), intent(in) :: master_normal(2)
+    logical :: faces
+
+    faces = dot_product(sight_normal(slave_sight), master_normal) < side_on
+  end function faces
+
+end module contact_overlap_m

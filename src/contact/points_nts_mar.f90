@@ -1,0 +1,164 @@
+! SPDX-License-Identifier: MIT
+!> Type 5, NTS-mAR: type 2 with a modified competence length, and in addition the master nodes between the
+!> feet of the two ends of a slave segment, projected on that segment
+!> (doc/theory/contact.md, section 5.5).
+module points_nts_mar_m
+  use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
+  use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
+    see_master_node, faces
+  use contact_placing_m, only : add_touching_nodes, competence_length
+  use contact_state_m, only : contact_state_t, make_room
+  use contacts_m, only : contact_t
+  use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: place_nts_mar
+
+contains
+
+  !> Place the points: slave nodes first; then, segment by segment, their areas and the master nodes.
+  pure subroutine place_nts_mar(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer :: s, n_before
+
+    if (all_asleep(memory)) return
+    n_before = memory%points%n
+    call add_touching_nodes(memory%slave_tracking, contact%master, 0, memory%n_slave, &
+      memory%points)
+    call mark_points(memory, n_before)
+    do s = 1, contact%slave%n_segment
+      if (is_asleep(memory, s, contact%slave%segments(:, s))) cycle
+      call share_segment(contact, memory, s)
+    end do
+    call note_next_wake(memory)
+    call finish_nodes(contact, memory, n_before)
+  end subroutine place_nts_mar
+
+  !> Remember which point stands at which slave node; areas start at zero.
+  pure subroutine mark_points(memory, n_before)
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: n_before
+    integer :: p
+
+    do p = n_before + 1, memory%points%n
+      memory%mark(memory%points%slave_nodes(1, p)) = p
+      memory%points%area(p) = 0.0_wp
+      memory%points%stiffness(p) = memory%slave_penalty
+    end do
+  end subroutine mark_points
+
+  !> Forget that. Nodes at a tip, neither of whose segments faces the master, keep their whole competence length.
+  pure subroutine finish_nodes(contact, memory, n_before)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: n_before
+    integer :: k, p, node
+
+    do k = 1, memory%slave_tracking%n_touching
+      p = n_before + k
+      node = memory%points%slave_nodes(1, p)
+      memory%mark(node) = 0
+      if (.not. memory%points%area(p) > 0.0_wp) memory%points%area(p) = competence_length( &
+        contact%slave, memory%places(:, :memory%n_slave), node)
+    end do
+  end subroutine finish_nodes
+
+  !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
+  !> ends. The strict rule adds no node where an end of the segment has no foot; otherwise the part
+  !> beyond the last master node carries nothing.
+  pure subroutine share_segment(contact, memory, s)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: s
+    type(cover_t) :: cover
+    type(piece_t) :: piece
+    type(sight_t) :: sight
+    real(wp) :: half, before, deepest
+    logical :: counts
+    integer :: n_before
+
+    n_before = memory%points%n
+    call find_cover(contact, memory, s, cover)
+    sight = sight_of_segment(memory%places(:, cover%ends(2)), memory%places(:, cover%ends(1)), &
+      memory%places(:, cover%ends(2)))
+    call first_piece(contact, memory, cover, piece)
+    if (contact%strict .and. .not. (cover%feet(1)%is_on .and. cover%feet(2)%is_on)) then
+      call add_area(memory, cover%ends, 0.5_wp*sqrt(sight%square))
+      piece%is_last = .true.
+    else if (.not. contact%strict .and. .not. is_facing(cover, sight)) then
+      piece%is_last = .true.
+    end if
+    before = 0.0_wp
+    do while (.not. piece%is_last)
+      call next_piece(contact, memory, cover, piece)
+      half = 0.5_wp*(piece%high - piece%low)*sqrt(sight%square)
+      if (piece%low_node > 0) then
+        call add_master_node(memory, cover, piece%low_node, before + half)
+      else
+        call add_area(memory, cover%ends(1:1), half)
+      end if
+      before = half
+    end do
+    if (piece%high_node > 0) then
+      call add_master_node(memory, cover, piece%high_node, before)
+    else
+      call add_area(memory, cover%ends(2:2), before)
+    end if
+    deepest = minval(memory%points%gap(n_before + 1:memory%points%n))
+    call judge_segment(memory, s, cover%ends, deepest, counts)
+    if (.not. counts) memory%points%n = n_before
+  end subroutine share_segment
+
+  !> Whether the segment faces the master at the foot of either end.
+  pure function is_facing(cover, sight)
+    type(cover_t), intent(in) :: cover
+    type(sight_t), intent(in) :: sight !! from the slave segment
+    logical :: is_facing
+
+    is_facing = .false.
+    if (.not. cover%exists) return
+    is_facing = faces(sight, cover%feet(1)%normal) .or. faces(sight, cover%feet(2)%normal)
+  end function is_facing
+
+  !> Give length to the points at slave nodes, where there are any.
+  pure subroutine add_area(memory, nodes, length)
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: nodes(:)
+    real(wp), intent(in) :: length
+    integer :: k, p
+
+    do k = 1, size(nodes)
+      p = memory%mark(nodes(k))
+      if (p > 0) memory%points%area(p) = memory%points%area(p) + length
+    end do
+  end subroutine add_area
+
+  !> A point at a master node behind the slave segment, with the normal of that segment.
+  pure subroutine add_master_node(memory, cover, node, area)
+    type(contact_state_t), intent(inout) :: memory
+    type(cover_t), intent(in) :: cover
+    integer, intent(in) :: node
+    real(wp), intent(in) :: area
+    type(sight_t) :: sight
+    real(wp) :: xi
+
+    sight = see_master_node(memory, cover, node)
+    if (sight%across >= 0.0_wp) return
+    xi = sight%along/sight%square
+    call make_room(memory%points, 1)
+    associate (points => memory%points, p => memory%points%n)
+      p = p + 1
+      points%slave_nodes(:, p) = cover%ends
+      points%slave_weights(:, p) = [1.0_wp - xi, xi]
+      points%master_nodes(:, p) = memory%n_slave + node
+      points%master_weights(:, p) = [1.0_wp, 0.0_wp]
+      points%normal(:, p) = -sight_normal(sight)
+      points%gap(p) = sight_gap(sight)
+      points%area(p) = area
+      points%stiffness(p) = memory%slave_penalty
+    end associate
+  end subroutine add_master_node
+
+end module points_nts_mar_m

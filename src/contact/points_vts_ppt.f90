@@ -1,0 +1,89 @@
+! SPDX-License-Identifier: MIT
+!> Type 4, VTS-PPT (virtual-slave-node-to-segment): the gap of a virtual slave node in the middle of each half of a slave
+!> segment, its force handed to the master by the portions that the half covers, at the centre of each
+!> (Zavarise & De Lorenzis 2009; doc/theory/contact.md, section 5.4).
+!> All portions have the gap and the normal of the virtual node, so P2 holds for directions only in parallel: the net
+!> moment is not exactly zero on a kinked master.
+module points_vts_ppt_m
+  use contact_placing_m, only : add_segment_point, place_on_segment, tracked_foot
+  use contact_portions_m, only : mark_t, walk_to_mark
+  use contact_projection_m, only : foot_t
+  use contact_state_m, only : contact_state_t, make_room
+  use contacts_m, only : contact_t
+  use geometry_m, only : segment_length
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: place_vts_ppt
+
+contains
+
+  !> Place the points.
+  pure subroutine place_vts_ppt(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer :: k
+
+    do k = 1, memory%slave_tracking%n_touching
+      call add_portions(contact, memory, memory%slave_tracking%touching(k))
+    end do
+  end subroutine place_vts_ppt
+
+  !> The points of one virtual node.
+  pure subroutine add_portions(contact, memory, spot)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: spot
+    type(mark_t) :: marks(2)
+    type(foot_t) :: foot
+    real(wp) :: xi, half, low, high
+    integer :: ends(2), segment, n_before, k
+
+    ends = contact%slave%segments(:, (spot + 1)/2)
+    xi = memory%spot_xi(2 - mod(spot, 2))
+    half = 0.5_wp*segment_length(memory%places(:, ends(1)), memory%places(:, ends(2)))
+    foot = tracked_foot(memory%slave_tracking, spot)
+    do k = 1, 2
+      ! The slave runs against the master: its later end has the earlier mark.
+      marks(k) = walk_to_mark(contact%master, memory%places(:, memory%n_slave + 1:), &
+        place_on_segment(memory%places, ends, xi + (1.5_wp - k)*0.5_wp), foot%segment)
+    end do
+    n_before = memory%points%n
+    segment = marks(1)%segment
+    do k = 0, marks(2)%n_step - marks(1)%n_step
+      low = merge(marks(1)%xi, 0.0_wp, k == 0)
+      high = merge(marks(2)%xi, 1.0_wp, segment == marks(2)%segment)
+      if (high > low) call add_portion(contact, memory, ends, xi, foot, segment, low, high)
+      segment = contact%master%next(segment)
+    end do
+    if (memory%points%n == n_before) call add_portion(contact, memory, ends, xi, foot, &
+      foot%segment, foot%xi - 0.5_wp, foot%xi + 0.5_wp)
+    associate (area => memory%points%area(n_before + 1:memory%points%n))
+      area = area*(half/sum(area))
+    end associate
+  end subroutine add_portions
+
+  !> One portion: from `low` to `high` on a master segment, whose centre takes the force; area = its length until all are known.
+  pure subroutine add_portion(contact, memory, ends, xi, foot, segment, low, high)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: ends(2)     !! nodes of the slave segment
+    real(wp), intent(in) :: xi         !! where the virtual node is on it
+    type(foot_t), intent(in) :: foot   !! of the virtual node: gap and normal
+    integer, intent(in) :: segment     !! of the master
+    real(wp), intent(in) :: low, high
+    type(foot_t) :: centre
+
+    centre = foot
+    centre%segment = segment
+    centre%xi = 0.5_wp*(low + high)
+    call make_room(memory%points, 1)
+    call add_segment_point(contact%master, memory%n_slave, ends, xi, centre, memory%points)
+    associate (p => memory%points%n, nodes => contact%master%segments(:, segment))
+      memory%points%area(p) = (high - low)*segment_length( &
+        memory%places(:, memory%n_slave + nodes(1)), memory%places(:, memory%n_slave + nodes(2)))
+      memory%points%stiffness(p) = memory%slave_penalty
+    end associate
+  end subroutine add_portion
+
+end module points_vts_ppt_m
