@@ -27,10 +27,10 @@ def chain_of(*springs):
 class Scene:
     """One run of the scene: pressures of both sides as (state, node from left to right)."""
 
-    def __init__(self, run, kind, n_slave=N_SLAVE, n_master=N_MASTER):
+    def __init__(self, run, kind, n_slave=N_SLAVE, n_master=N_MASTER, n_gauss=4):
         self.grids = block_grids(n_slave, n_master)
-        self.result = run.program(block(kind, 4, n_slave, n_master),
-                                  name=f"type{kind}_{n_slave}_{n_master}")
+        self.result = run.program(block(kind, n_gauss, n_slave, n_master),
+                                  name=f"type{kind}_{n_slave}_{n_master}_{n_gauss}")
         contact = self.result.table("contact")
         states = len(self.result.times)
         self.slave = contact["pressure"].reshape(states, -1)
@@ -92,14 +92,14 @@ def check_uniform(run, name, scene, chain):
                   source="chain")
 
 
-def check_deviating(run, name, kind, scene):
+def check_deviating(run, name, kind, scene, n_gauss=4):
     """A type that fails the patch test deviates as the linearised plane model says."""
     total = {1: N_SLAVE + 1, 3: N_SLAVE + N_MASTER}.get(kind, N_SLAVE)
     chain = chain_of(PENALTY * total)
     run.check(f"{name}: total force, every step", scene.force, WIDTH * chain.pressure, 1e-2,
               source="chain with all springs of the interface")
     mean = scene.force[-1] / WIDTH
-    expected = plane.solve(kind, N_SLAVE, N_MASTER, WIDTH, PENALTY, Blocks())
+    expected = plane.solve(kind, N_SLAVE, N_MASTER, WIDTH, PENALTY, Blocks(), n_gauss)
     deviation = [pressure[-1] / mean - 1.0 for pressure in (scene.slave, scene.master)]
     for side, found, linear in zip(("slave", "master"), deviation, expected):
         length = plane.lumped(np.linspace(0.0, WIDTH, len(linear)))
@@ -125,6 +125,11 @@ def check_signs(run, deviation, depth):
              depth[0] < np.mean(depth), "both ends are overloaded")
     run.true("two-pass NTS-AR: nearer to uniform than NTS-AR, and that than NTS",
              largest(deviation[3]) < largest(deviation[2]) < largest(deviation[1]))
+    run.true("mortar: nearer to uniform than NTS-AR", largest(deviation[6]) < largest(deviation[2]),
+             "quadrature of the kinked master functions is its only error")
+    fine = check_deviating(run, "mortar, 10 points", 6, Scene(run, 6, n_gauss=10), 10)
+    run.true("mortar: 10 points are nearer to uniform than 4, both sides",
+             all(np.ptp(a) < np.ptp(b) for a, b in zip(fine, deviation[6])))
     run.check("two-pass NTS-AR: mean pressure over mean penetration", 1.0 / np.mean(depth),
               PENALTY * (N_SLAVE + N_MASTER) / WIDTH, 1e-3, source="springs of both passes")
 
