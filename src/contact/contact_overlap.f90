@@ -12,11 +12,13 @@ module contact_overlap_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: cover_t, piece_t, find_cover, first_piece, next_piece, see_master_node, faces, local_foot
+  public :: cover_t, piece_t, find_cover, first_piece, next_piece, see_master_node, facing_share, &
+    local_foot
 
-  !> Cosine of the angle between two outward normals above which surfaces do not face each other: a block's
-  !> side that stands on a surface at right angles has no part in its contact.
-  real(wp), parameter :: side_on = -0.25_wp
+  !> Cosines of the angle between two outward normals from which on surfaces do not face each other (a block's
+  !> side that stands on a surface has no part in its contact), and up to which they do entirely (60 degrees
+  !> between the surfaces). In between the share falls smoothly: a jump would create energy when a body turns.
+  real(wp), parameter :: side_on = -0.1_wp, face_on = -0.5_wp
 
   !> A slave segment over the master chain.
   type :: cover_t
@@ -166,13 +168,15 @@ contains
       memory%places(:, cover%ends(1)), memory%places(:, cover%ends(2)))
   end function see_master_node
 
-  !> Whether a slave segment faces the master where this has the given normal.
-  pure function faces(slave_sight, master_normal)
+  !> Share of a slave segment that counts as facing the master where this has the given normal, 0 to 1.
+  pure function facing_share(slave_sight, master_normal) result(share)
     type(sight_t), intent(in) :: slave_sight !! anything seen from the slave segment
     real(wp), intent(in) :: master_normal(2)
-    logical :: faces
+    real(wp) :: share
 
-    faces = dot_product(sight_normal(slave_sight), master_normal) < side_on
-  end function faces
+    share = (side_on - dot_product(sight_normal(slave_sight), master_normal))/(side_on - face_on)
+    share = max(0.0_wp, min(1.0_wp, share))
+    share = share*share*(3.0_wp - 2.0_wp*share)
+  end function facing_share
 
 end module contact_overlap_m

@@ -196,19 +196,21 @@ contains
     type(foot_t), intent(in) :: foot
     real(wp), intent(in) :: travel
     integer, intent(inout) :: n_released
-    integer :: face, not_counted
+    integer :: face, n_deep
+    logical :: is_new
 
     if (foot%segment == 0 .or. foot%distance > tracking%reach) then
       tracking%status(i) = is_free
       tracking%segment(i) = 0
       tracking%wake(i) = travel + (foot%distance - tracking%reach)
     else if (foot%is_on .and. foot%gap < 0.0_wp) then
-      not_counted = 0
-      if (tracking%segment(i) > 0) then
-        call begin_contact(tracking, i, foot, n_released)
-      else
-        call begin_contact(tracking, i, foot, not_counted)
-      end if
+      n_deep = 0
+      is_new = tracking%segment(i) == 0
+      call begin_contact(tracking, i, foot, n_deep)
+      ! What is found behind at first sight is a deep contact only within the first row of elements; beyond
+      ! that it may as well be the far side of a body.
+      if (.not. is_new .or. -foot%gap < 2.0_wp*tracking%segment_depth(foot%segment)) &
+        n_released = n_released + n_deep
     else
       call store_foot(tracking, i, foot)
       face = most_facing(tracking, surface, chain, spots, i, foot, .false.)

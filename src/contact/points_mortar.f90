@@ -2,7 +2,7 @@
 !> Type 6, mortar: Gauss points on each whole slave segment, pressure from the slave nodes
 !> (doc/theory/contact.md, section 5.6).
 module points_mortar_m
-  use contact_overlap_m, only : local_foot, faces
+  use contact_overlap_m, only : local_foot, facing_share
   use contact_placing_m, only : add_segment_point, tracked_foot
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t, make_room, is_touching, is_behind
@@ -43,6 +43,7 @@ contains
     integer, intent(in) :: s, near
     type(foot_t) :: foot
     type(sight_t) :: sight
+    real(wp) :: share
     integer :: q, i, start, ends(2)
 
     call make_room(memory%points, size(memory%spot_xi))
@@ -61,10 +62,12 @@ contains
           foot = local_foot(contact, memory, memory%spots(:, i), start)
         end if
       end associate
-      if (.not. foot%is_on .or. .not. faces(sight, foot%normal)) cycle
+      if (.not. foot%is_on) cycle
+      share = facing_share(sight, foot%normal)
+      if (.not. share > 0.0_wp) cycle
       call add_segment_point(contact%master, memory%n_slave, ends, memory%spot_xi(q), foot, &
         memory%points)
-      memory%points%area(memory%points%n) = memory%spot_share(q)*sqrt(sight%square)
+      memory%points%area(memory%points%n) = share*memory%spot_share(q)*sqrt(sight%square)
       memory%points%stiffness(memory%points%n) = memory%slave_penalty
     end do
   end subroutine add_gauss_points

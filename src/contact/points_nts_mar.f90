@@ -5,7 +5,7 @@
 module points_nts_mar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
-    see_master_node, faces
+    see_master_node, facing_share
   use contact_placing_m, only : add_touching_nodes, competence_length
   use contact_state_m, only : contact_state_t, make_room
   use contacts_m, only : contact_t
@@ -67,7 +67,7 @@ contains
 
   !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
   !> ends. The strict rule adds no node where an end of the segment has no foot; otherwise the part
-  !> beyond the last master node carries nothing.
+  !> beyond the last master node carries nothing, nor does a segment that does not face the master.
   pure subroutine share_segment(contact, memory, s)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -75,7 +75,7 @@ contains
     type(cover_t) :: cover
     type(piece_t) :: piece
     type(sight_t) :: sight
-    real(wp) :: half, before, deepest
+    real(wp) :: length, half, before, deepest
     logical :: counts
     integer :: n_before
 
@@ -83,17 +83,20 @@ contains
     call find_cover(contact, memory, s, cover)
     sight = sight_of_segment(memory%places(:, cover%ends(2)), memory%places(:, cover%ends(1)), &
       memory%places(:, cover%ends(2)))
+    length = sqrt(sight%square)
     call first_piece(contact, memory, cover, piece)
-    if (contact%strict .and. .not. (cover%feet(1)%is_on .and. cover%feet(2)%is_on)) then
-      call add_area(memory, cover%ends, 0.5_wp*sqrt(sight%square))
-      piece%is_last = .true.
-    else if (.not. contact%strict .and. .not. is_facing(cover, sight)) then
+    if (.not. contact%strict) then
+      length = length*segment_share(cover, sight)
+      piece%is_last = piece%is_last .or. .not. length > 0.0_wp
+    else if (.not. (cover%feet(1)%is_on .and. cover%feet(2)%is_on)) then
+      call add_area(memory, cover%ends, 0.5_wp*length)
       piece%is_last = .true.
     end if
     before = 0.0_wp
     do while (.not. piece%is_last)
       call next_piece(contact, memory, cover, piece)
-      half = 0.5_wp*(piece%high - piece%low)*sqrt(sight%square)
+      if (.not. piece%high > piece%low) cycle
+      half = 0.5_wp*(piece%high - piece%low)*length
       if (piece%low_node > 0) then
         call add_master_node(memory, cover, piece%low_node, before + half)
       else
@@ -101,7 +104,7 @@ contains
       end if
       before = half
     end do
-    if (piece%high_node > 0) then
+    if (before > 0.0_wp .and. piece%high_node > 0) then
       call add_master_node(memory, cover, piece%high_node, before)
     else
       call add_area(memory, cover%ends(2:2), before)
@@ -111,16 +114,17 @@ contains
     if (.not. counts) memory%points%n = n_before
   end subroutine share_segment
 
-  !> Whether the segment faces the master at the foot of either end.
-  pure function is_facing(cover, sight)
+  !> Share of the segment that faces the master, by the foot of the end where it is larger.
+  pure function segment_share(cover, sight) result(share)
     type(cover_t), intent(in) :: cover
     type(sight_t), intent(in) :: sight !! from the slave segment
-    logical :: is_facing
+    real(wp) :: share
 
-    is_facing = .false.
+    share = 0.0_wp
     if (.not. cover%exists) return
-    is_facing = faces(sight, cover%feet(1)%normal) .or. faces(sight, cover%feet(2)%normal)
-  end function is_facing
+    share = max(facing_share(sight, cover%feet(1)%normal), &
+      facing_share(sight, cover%feet(2)%normal))
+  end function segment_share
 
   !> Give length to the points at slave nodes, where there are any.
   pure subroutine add_area(memory, nodes, length)

@@ -3,7 +3,8 @@
 !> segment, pressure from the slave nodes (doc/theory/contact.md, section 5.7).
 module points_segmented_mortar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
-  use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, local_foot, faces
+  use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
+    local_foot, facing_share
   use contact_placing_m, only : add_segment_point, place_on_segment
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t, make_room
@@ -54,7 +55,7 @@ contains
     type(piece_t) :: piece
     type(sight_t) :: sight
     type(foot_t) :: foot
-    real(wp) :: xi, place(4)
+    real(wp) :: xi, share, place(4)
     integer :: q
 
     call first_piece(contact, memory, cover, piece)
@@ -68,11 +69,13 @@ contains
         foot = local_foot(contact, memory, place, piece%segment)
         sight = sight_of_segment(place, memory%places(:, cover%ends(1)), &
           memory%places(:, cover%ends(2)))
-        if (.not. foot%is_on .or. .not. faces(sight, foot%normal)) cycle
+        if (.not. foot%is_on) cycle
+        share = facing_share(sight, foot%normal)
+        if (.not. share > 0.0_wp) cycle
         call add_segment_point(contact%master, memory%n_slave, cover%ends, xi, foot, &
           memory%points)
         associate (p => memory%points%n)
-          memory%points%area(p) = 0.5_wp*(piece%high - piece%low)*sqrt(sight%square)
+          memory%points%area(p) = 0.5_wp*share*(piece%high - piece%low)*sqrt(sight%square)
           memory%points%stiffness(p) = memory%slave_penalty
         end associate
       end do
