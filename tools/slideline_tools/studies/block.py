@@ -35,7 +35,7 @@ Written by `tools/batch/block.sh`: do not edit.
 
 At the top the pressure along the slave surface (nodal force over half the neighbouring segments); below
 enlarged, as deviation from the one-dimensional pressure of the type, on both sides: the left end at 1.5 %, and the
-whole surface at 0.15 %.
+whole surface at 0.2 %.
 
 ## Deviation from the one-dimensional pressure at 0.2 s
 
@@ -46,22 +46,29 @@ those of `p/p_1D - 1`, spread is its largest magnitude; end penetration is that 
 """
 
 TAIL = """
-- **Types 4, 5 and 7** give the chain's pressure on both sides, in every node.
+- **Types 4, 5 and 7** give the chain's pressure on both sides, in every node; they lie on one line in the picture. The 1e-10
+  that is left is the elements' own: a lateral stress of third order in the strain increment of a step.
 - **Type 1** gives each node the same spring. An end node has half the length, so that its pressure is too high; if the
   blocks could not give way it would be twice the others'. The disturbance fades over a few elements on both sides.
-- **Type 2** weights a slave node with its length, and looks good on the slave side. But the half segment of an end node acts
-  in one place, the very end of the master, with part of the next node's hat in addition: the master's end nodes are
-  pressed too much, give way, and leave the slave's end nodes with too little. Along the surface the master's
-  pressure beats, since the nodes of the two meshes drift past each other.
-- **Type 3** adds both passes, hence about twice the stiffness (`p_1D` differs). The errors of the passes nearly cancel
-  on the inside. What is left at the ends is of one sign: the nodal force is too high on both sides, and
-  the end nodes sink in less. Whoever reads pressure as penalty times penetration sees the end underestimated, as the
-  source reports for its two-pass method; read from nodal forces it is slightly overestimated.
-- **Type 6** errs only by its quadrature: Gauss points of a whole slave segment do not see the kinks of the master's functions.
-  It is not a matter of the ends but of where the nodes of the meshes fall.
+- **Type 2** weights a slave node with its length, but the half segment of an end node acts in one place, the very end of
+  the master, with part of the next node's force in addition: the master's end nodes are pressed too much, give way, and
+  leave the slave's end nodes with too little.
+- **Type 3** adds both passes, hence about twice the springs (`p_1D` differs). The errors of the two passes nearly cancel.
+  What is left at the ends has one sign: the nodal force is too high on both sides, and the end nodes sink in less.
+- **Type 6** errs only by its quadrature: the Gauss points of a slave segment do not see the kinks of the master's
+  functions. Its peaks stand where a master node passes a Gauss point (x = 0.7 m, 3.3 m, 6.7 m, 9.3 m), not at the ends.
 
-The deviations of types 1, 2, 3 and 6 are reproduced within 10 % by a linear plane model that shares no code with the
+The deviations of types 1, 2, 3 and 6 are reproduced within 10 % of the largest by a linear plane model that shares no code with the
 program (`tests/verification/block_to_block`).
+
+## What the source says of it
+
+| claim (Figs. 18 to 22) | answer |
+|---|---|
+| classical NTS: anomalously large pressure at the ends | yes, on both sides |
+| two-pass NTS-AR: mitigated, but the pressure decreases at the ends | mitigated, yes; decreasing only if pressure is read as penalty times penetration (column end penetration); the nodal forces are slightly too high |
+| mortar: relatively uniform | yes, to about 0.1 % |
+| VTS-PPT and NTS-mAR: perfectly uniform | yes, to 1e-10 |
 """
 
 
@@ -138,7 +145,7 @@ def pressure_figure(runs, exact):
         whole.set_ylim(0.0, 1.05 * whole.dataLim.ymax)
         whole.legend(ncols=4, loc="lower center")
         whole.grid(True, linewidth=0.3, color="#bbbbbb")
-        for row, (reach, percent) in enumerate(((3.0, 1.5), (10.0, 0.15)), start=1):
+        for row, (reach, percent) in enumerate(((3.0, 1.5), (10.0, 0.2)), start=1):
             for column, side in enumerate(("slave", "master")):
                 axes = figure.add_subplot(grid[row, column])
                 draw_deviation(axes, runs, exact, side)
@@ -184,7 +191,8 @@ def write_study(folder, doc, types):
     page = doc / "studies" / "block_to_block.md"
     page.parent.mkdir(parents=True, exist_ok=True)
     page.write_text(f"{HEAD}\n{table}\n{TAIL}", encoding="ascii")
-    save_small(pressure_figure(runs, exact), doc / "pictures" / "block_pressure.png")
+    save_small(pressure_figure(runs, exact), doc / "pictures" / "block_pressure.png",
+               colours=256)
     print(table)
 
 
