@@ -67,7 +67,7 @@ program (`tests/verification/block_to_block`).
 |---|---|
 | classical NTS: anomalously large pressure at the ends | yes, on both sides |
 | two-pass NTS-AR: mitigated, but the pressure decreases at the ends | mitigated, yes; decreasing only if pressure is read as penalty times penetration (column end penetration); the nodal forces are slightly too high |
-| mortar: relatively uniform | yes, to about 0.1 % |
+| mortar: relatively uniform | yes, to 0.2 % |
 | VTS-PPT and NTS-mAR: perfectly uniform | yes, to 1e-10 |
 """
 
