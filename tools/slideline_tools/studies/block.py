@@ -192,7 +192,7 @@ def write_study(folder, doc, types):
     page.parent.mkdir(parents=True, exist_ok=True)
     page.write_text(f"{HEAD}\n{table}\n{TAIL}", encoding="ascii")
     save_small(pressure_figure(runs, exact), doc / "pictures" / "block_pressure.png",
-               colours=256)
+               lines=True)
     print(table)
 
 

@@ -45,7 +45,8 @@ def save_small(figure, path, colours=256):
     figure.savefig(buffer, format="png")
     plt.close(figure)
     buffer.seek(0)
-    picture = Image.open(buffer).convert("RGB").quantize(colours)
+    method = Image.Quantize.MAXCOVERAGE if lines else Image.Quantize.MEDIANCUT
+    picture = Image.open(buffer).convert("RGB").quantize(colours, method=method)
     path.parent.mkdir(parents=True, exist_ok=True)
     picture.save(path, optimize=True)
     if path.stat().st_size > LARGEST_PICTURE:
