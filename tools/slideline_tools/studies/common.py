@@ -39,8 +39,11 @@ def cell(value):
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def save_small(figure, path, colours=256):
-    """Write a PNG with a palette of few colours; raises UserError if it is over 100 kB."""
+def save_small(figure, path, colours=256, lines=False):
+    """Write a PNG with a palette of few colours; raises UserError if it is over 100 kB.
+
+    `lines`: a chart of thin lines, whose rare colours must stay true.
+    """
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png")
     plt.close(figure)
