@@ -10,6 +10,7 @@ import pytest
 from slideline_tools import UserError, scenes
 from slideline_tools.histories import History
 from slideline_tools.studies import block
+from slideline_tools.studies.common import study_main
 
 CHAIN = conftest.ROOT / "tests" / "verification" / "block_to_block" / "chain.py"
 
@@ -50,7 +51,7 @@ def test_page_of_a_run(slideline, tmp_path):
     assert finished.returncode == 0, finished.stdout + finished.stderr
     with open(tmp_path / "chain.csv", "w", encoding="ascii") as stream:
         subprocess.run([sys.executable, CHAIN, "5.1e6"], stdout=stream, check=True)
-    assert block.main([str(tmp_path), str(tmp_path / "doc"), "--types", "2"]) == 0
+    assert study_main("block", block.write, [str(tmp_path), str(tmp_path / "doc"), "--types", "2"]) == 0
     page = (tmp_path / "doc" / "studies" / "block_to_block.md").read_text()
     assert "| 2 NTS-AR |" in page
     assert (tmp_path / "doc" / "pictures" / "block_pressure.png").exists()
@@ -58,4 +59,4 @@ def test_page_of_a_run(slideline, tmp_path):
     run = block.read_pressures(folder, scenes.block_grids())
     for x, p in ((run.slave_x, run.slave), (run.master_x, run.master)):
         assert np.sum(p * block.half_segments(x)) == pytest.approx(run.force, rel=1e-6)
-    assert block.main([str(tmp_path), str(tmp_path / "doc"), "--types", "1"]) == 2
+    assert study_main("block", block.write, [str(tmp_path), str(tmp_path / "doc"), "--types", "1"]) == 2

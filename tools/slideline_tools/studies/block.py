@@ -7,9 +7,7 @@ RUNS holds a folder type_<n> for each type (job `block`) and chain.csv, the pres
 one-dimensional chain for each stiffness of the interface. Writes DOC/studies/block_to_block.md
 and DOC/pictures/block_pressure.png.
 """
-import argparse
 import dataclasses
-import pathlib
 import sys
 
 import numpy as np
@@ -19,7 +17,8 @@ from slideline_tools.histories import read_csv
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.results import read
 from slideline_tools.scenes import block_grids
-from slideline_tools.studies.common import TYPES, colour, label, markdown_table, save_small
+from slideline_tools.studies.common import (colour, label, markdown_table, save_small,
+                                            study_main, write_page)
 
 WIDTH, PENALTY, N_SLAVE, N_MASTER = 10.0, 1.0e6, 51, 50
 UNIFORM = 1.0e-8
@@ -166,35 +165,18 @@ def line_style(ctype):
     return dict(color=colour(ctype), marker="o", markersize=1.6, linewidth=0.8)
 
 
-def main(arguments=None):
+def write(folder, doc, _levels, types):
     """Read the runs; write the page and its picture."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("runs", type=pathlib.Path)
-    parser.add_argument("doc", type=pathlib.Path)
-    parser.add_argument("--types", type=int, nargs="+", default=list(TYPES))
-    options = parser.parse_args(arguments)
-    try:
-        write_study(options.runs, options.doc, options.types)
-    except UserError as problem:
-        print(problem, file=sys.stderr)
-        return 2
-    return 0
-
-
-def write_study(folder, doc, types):
     chain = read_csv(folder / "chain.csv")
     grids = block_grids(N_SLAVE, N_MASTER)
     runs = {ctype: read_pressures(folder / f"type_{ctype}", grids) for ctype in types}
     exact = {ctype: chain_pressure(chain, interface_stiffness(ctype)) for ctype in types}
     table = markdown_table(COLUMNS, [table_row(ctype, run, exact[ctype])
                                      for ctype, run in runs.items()])
-    page = doc / "studies" / "block_to_block.md"
-    page.parent.mkdir(parents=True, exist_ok=True)
-    page.write_text(f"{HEAD}\n{table}\n{TAIL}", encoding="ascii")
-    save_small(pressure_figure(runs, exact), doc / "pictures" / "block_pressure.png",
-               lines=True)
+    write_page(doc, "block_to_block", f"{HEAD}\n{table}\n{TAIL}")
+    save_small(pressure_figure(runs, exact), doc / "pictures" / "block_pressure.png", lines=True)
     print(table)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(study_main(__doc__, write))

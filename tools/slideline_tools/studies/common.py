@@ -79,17 +79,18 @@ def field_panels(results, name, limits, zoom, time=None):
         return figure
 
 
-def study_main(text, write):
+def study_main(text, write, arguments=None):
     """Command line `FOLDER DOC --levels ... --types ...` of a study; returns the exit status.
 
+    A scene without refinement levels needs no --levels.
     `write(folder, doc, levels, types)` reads the runs below FOLDER and writes below DOC.
     """
     parser = argparse.ArgumentParser(description=text.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("doc", type=pathlib.Path)
-    parser.add_argument("--levels", type=int, nargs="+", required=True)
+    parser.add_argument("--levels", type=int, nargs="+", default=[1])
     parser.add_argument("--types", type=int, nargs="+", required=True, choices=TYPES)
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     try:
         write(options.folder, options.doc, options.levels, options.types)
     except UserError as problem:
