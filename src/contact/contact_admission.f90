@@ -4,11 +4,16 @@
 !> (doc/theory/contact.md, sections 3.3 and 4).
 module contact_admission_m
   use contact_state_m, only : contact_state_t, is_free, is_touching, is_behind
-  use geometry_m, only : segment_length
+  use contacts_m, only : contact_t
+  use geometry_m, only : segment_length, closest_distance, sight_of_segment
   use kinds_m, only : wp
   implicit none
   private
   public :: all_asleep, is_asleep, judge_segment, note_next_wake
+
+  !> The tracked segment of a spot is its closest one or next to it, and what the search knows of
+  !> other segments leaves out the closest and its neighbours: so many on either side.
+  integer, parameter :: n_around = 2
 
 contains
 
@@ -34,7 +39,8 @@ contains
 
   !> Whether the points on a segment count. One that is in contact, or has an end that is, stays; a new one must not be deeper
   !> than a first contact may be, and otherwise is let go until it has been outside.
-  pure subroutine judge_segment(memory, segment, ends, deepest, counts)
+  pure subroutine judge_segment(contact, memory, segment, ends, deepest, counts)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: segment
     integer, intent(in) :: ends(2)     !! its nodes
@@ -45,7 +51,7 @@ contains
     counts = .true.
     if (deepest >= 0.0_wp) then
       memory%cover%status(segment) = is_free
-      memory%cover%wake(segment) = memory%travel + safe_travel(memory, ends)
+      memory%cover%wake(segment) = memory%travel + safe_travel(contact, memory, ends)
       return
     end if
     memory%cover%wake(segment) = -huge(1.0_wp)
@@ -81,23 +87,69 @@ contains
     end associate
   end function deepest_first_contact
 
-  !> Travel during which nothing can touch a segment of length L with ends at distances d_1 and d_2: a place on
-  !> it is at least (d_1 + d_2 - L)/2 away, and each of the three can change by the travel.
-  pure function safe_travel(memory, ends)
+  !> Travel during which nothing can touch a segment of length L. Chains come nearest to each other at a node of one of
+  !> them: at an end of the segment, at a master node near the tracked feet of its ends, or at one farther
+  !> along the chain; from that a place on the segment is at least (o_1 + o_2 - L)/2 away when its
+  !> ends are o_1 and o_2 away. The last can shrink by 3/2 of the travel, the others by the travel.
+  pure function safe_travel(contact, memory, ends) result(travel)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)
-    real(wp) :: safe_travel
+    real(wp) :: travel, others
     integer :: k
 
-    safe_travel = -segment_length(memory%places(:, ends(1)), memory%places(:, ends(2)))
+    travel = huge(1.0_wp)
+    others = -segment_length(memory%places(:, ends(1)), memory%places(:, ends(2)))
     associate (tracking => memory%slave_tracking)
       do k = 1, 2
-        safe_travel = safe_travel + max(0.0_wp, tracking%wake(ends(k)) - memory%travel)
-        if (tracking%segment(ends(k)) == 0) safe_travel = safe_travel + tracking%reach
+        if (tracking%segment(ends(k)) == 0) then
+          others = others + tracking%reach + max(0.0_wp, tracking%wake(ends(k)) - memory%travel)
+        else
+          others = others + tracking%recheck(ends(k)) - memory%travel
+          travel = min(travel, tracking%wake(ends(k)) - memory%travel)
+          if (travel <= 0.0_wp) exit
+          travel = min(travel, distance_of_nodes(contact, memory, ends, &
+            tracking%segment(ends(k))))
+        end if
       end do
     end associate
-    safe_travel = max(0.0_wp, safe_travel/3.0_wp)
+    travel = max(0.0_wp, min(travel, others/1.5_wp))
   end function safe_travel
+
+  !> Distance from a slave segment to the nodes of the master segments round a given one.
+  pure function distance_of_nodes(contact, memory, ends, segment) result(distance)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)
+    integer, intent(in) :: segment !! of the master
+    real(wp) :: distance, square
+    integer :: k, i_step
+
+    k = segment
+    do i_step = 1, n_around
+      if (contact%master%previous(k) == 0) exit
+      k = contact%master%previous(k)
+    end do
+    square = huge(1.0_wp)
+    do i_step = 0, 2*n_around
+      square = min(square, square_to(contact%master%segments(1, k)))
+      if (contact%master%next(k) == 0) exit
+      k = contact%master%next(k)
+    end do
+    distance = sqrt(min(square, square_to(contact%master%segments(2, k))))
+
+  contains
+
+    !> Square of the distance to a master node.
+    pure function square_to(node) result(square)
+      integer, intent(in) :: node
+      real(wp) :: square
+
+      square = closest_distance(sight_of_segment(memory%places(:, memory%n_slave + node), &
+        memory%places(:, ends(1)), memory%places(:, ends(2))))
+    end function square_to
+
+  end function distance_of_nodes
 
   !> After all segments have been looked at.
   pure subroutine note_next_wake(memory)

@@ -67,6 +67,7 @@ contains
 
     allocate (memory%cover%status(contact%slave%n_segment), source=is_free)
     allocate (memory%cover%wake(contact%slave%n_segment), source=-huge(1.0_wp))
+    allocate (memory%cover%is_placed(contact%slave%n_segment), source=.false.)
     if (contact%birth > 0.0_wp) return
     call start_finder(model, contact%slave%segment_element, finder)
     do i = 1, contact%master%n_node

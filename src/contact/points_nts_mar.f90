@@ -110,7 +110,7 @@ contains
       call add_area(memory, cover%ends(2:2), before)
     end if
     deepest = minval(memory%points%gap(n_before + 1:memory%points%n))
-    call judge_segment(memory, s, cover%ends, deepest, counts)
+    call judge_segment(contact, memory, s, cover%ends, deepest, counts)
     if (.not. counts) memory%points%n = n_before
   end subroutine share_segment
 

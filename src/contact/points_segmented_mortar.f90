@@ -22,30 +22,54 @@ module points_segmented_mortar_m
 
 contains
 
-  !> Place the points.
+  !> Place the points: of all segments that may touch, then of their neighbours that can not, since these have a
+  !> part in the averaged gaps of common nodes.
   pure subroutine place_segmented_mortar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(cover_t) :: cover
-    real(wp) :: deepest
-    logical :: counts, any_contact
-    integer :: s, n_before
+    integer :: s
 
     if (all_asleep(memory)) return
-    any_contact = .false.
     do s = 1, contact%slave%n_segment
-      if (is_asleep(memory, s, contact%slave%segments(:, s))) cycle
-      n_before = memory%points%n
-      call find_cover(contact, memory, s, cover)
-      call add_pieces(contact, memory, cover)
-      deepest = minval(memory%points%gap(n_before + 1:memory%points%n))
-      call judge_segment(memory, s, cover%ends, deepest, counts)
-      if (.not. counts) memory%points%n = n_before
-      any_contact = any_contact .or. (counts .and. deepest < 0.0_wp)
+      memory%cover%is_placed(s) = .not. is_asleep(memory, s, contact%slave%segments(:, s))
+      if (memory%cover%is_placed(s)) call place_segment(contact, memory, s)
     end do
     call note_next_wake(memory)
-    if (.not. any_contact) memory%points%n = 0
+    if (.not. any(memory%mark > 0)) then
+      memory%points%n = 0
+      return
+    end if
+    do s = 1, contact%slave%n_segment
+      if (memory%cover%is_placed(s)) cycle
+      if (.not. any(memory%mark(contact%slave%segments(:, s)) > 0)) cycle
+      call find_cover(contact, memory, s, cover)
+      call add_pieces(contact, memory, cover)
+    end do
+    memory%mark = 0
   end subroutine place_segmented_mortar
+
+  !> The points of a segment that may touch; marks its nodes if it does.
+  pure subroutine place_segment(contact, memory, s)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: s
+    type(cover_t) :: cover
+    real(wp) :: deepest
+    logical :: counts
+    integer :: n_before
+
+    n_before = memory%points%n
+    call find_cover(contact, memory, s, cover)
+    call add_pieces(contact, memory, cover)
+    deepest = minval(memory%points%gap(n_before + 1:memory%points%n))
+    call judge_segment(contact, memory, s, cover%ends, deepest, counts)
+    if (.not. counts) then
+      memory%points%n = n_before
+    else if (deepest < 0.0_wp) then
+      memory%mark(cover%ends) = 1
+    end if
+  end subroutine place_segment
 
   !> The points of one segment.
   pure subroutine add_pieces(contact, memory, cover)

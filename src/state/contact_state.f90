@@ -79,6 +79,7 @@ module contact_state_m
   type :: cover_memory_t
     integer, allocatable :: status(:)     !! (n_segment) is_free, is_touching (may be deep) or is_behind
     real(wp), allocatable :: wake(:)      !! (n_segment) travel before which it can not touch
+    logical, allocatable :: is_placed(:)  !! (n_segment) scratch of placements
     real(wp) :: next_wake = -huge(1.0_wp) !! travel before which none can touch
   end type cover_memory_t
 
