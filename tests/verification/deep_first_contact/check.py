@@ -140,7 +140,7 @@ def check_birth(run, kind):
         if depth > (search or 0.5 * CELL):
             run.check(f"{label}: largest force", np.max(np.abs(force["fy"])), 0.0, 0.0, "abs",
                       "released")
-            run.report(f"{label}: released by the log", n_released(result))
+            run.check(f"{label}: released by the log", n_released(result), 1, 0, "min", "counted")
         else:
             run.check(f"{label}: force at birth", at_birth,
                       uniform_force(kind, 100.0, depth, 0.6, 7, CELL), 1e-9, source="caught, k g")

@@ -6,7 +6,8 @@ from contact_types import MOMENT_FREE, TYPES
 from meshes import Deck, angular_momentum, grid, lumped_mass, rotate
 
 RHO, YOUNG, POISSON = (2000.0, 1000.0), (2.0e6, 1.0e6), 0.3
-ANGLES = (10.0, 30.0)
+MIDDLE, STIFF = 5.0e5, 8.0e6
+SCENES = ((10.0, MIDDLE, 0.4), (10.0, STIFF, 0.1), (30.0, MIDDLE, 0.4))  # angle, penalty, TSSFAC
 CELLS, SIZE = (7, 5), (0.7, 0.5)
 VELOCITY = np.array([0.4, -1.0])
 INTERVAL = 1.0e-3
@@ -28,17 +29,17 @@ def lower_and_sides(ids):
     return [*rows[:0:-1, 0], *rows[0], *rows[1:, -1]]
 
 
-def oblique_impact(kind, angle):
+def oblique_impact(kind, angle, penalty=MIDDLE, scale=0.4):
     upper, lower = blocks(angle)
     deck = Deck(f"oblique impact at {angle:g} degrees, type {kind}")
-    deck.control(END, scale=0.4)
+    deck.control(END, scale=scale)
     for part in (1, 2):
         deck.part(part).elastic(RHO[part - 1], YOUNG[part - 1], POISSON, part)
     top = deck.mesh(*upper, part=1)
     bottom = deck.mesh(*lower, part=2)
     deck.node_set(1, top).node_set(2, lower_and_sides(top)).node_set(3, bottom[-17:][::-1])
     deck.add("*INITIAL_VELOCITY", (1,), VELOCITY.tolist())
-    deck.contact(2, 3, kind, 5.0e5)
+    deck.contact(2, 3, kind, penalty)
     return deck.output(plot=INTERVAL, glstat=INTERVAL, matsum=INTERVAL, rcforc=INTERVAL)
 
 
@@ -118,7 +119,7 @@ def check_energy(run, name, result):
     run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0, 0.005, "abs",
               "total with contact and hourglass energy over the initial energy")
     run.check(f"{name}: contact energy left / initial energy",
-              energy["contact"][-1] / energy["total"][0], 0.0, 0.02, "abs",
+              energy["contact"][-1] / energy["total"][0], 0.0, 0.03, "abs",
               "springs give back what they took: what is left was lost or created")
     run.report(f"{name}: energy ratio furthest from 1",
                1.0 + max(energy["energy_ratio"] - 1.0, key=abs))
@@ -127,13 +128,13 @@ def check_energy(run, name, result):
 
 
 def check(run):
-    for angle in ANGLES:
+    for angle, penalty, scale in SCENES:
         (above, above_quads), (below, below_quads) = blocks(angle)
         mass = np.concatenate([lumped_mass(above, above_quads, RHO[0]),
                                lumped_mass(below, below_quads, RHO[1])])
         for kind, title in TYPES.items():
-            name = f"{title}, {angle:g} degrees"
-            result = run.program(oblique_impact(kind, angle), name=f"type{kind}_{angle:g}")
+            name = f"{title}, {angle:g} degrees, eps {penalty:.0e}"
+            result = run.program(oblique_impact(kind, angle, penalty, scale))
             check_conservation(run, name, kind, result, mass, len(above))
             check_motion(run, name, angle, result, mass, len(above))
             check_energy(run, name, result)
