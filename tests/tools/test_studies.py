@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from slideline_tools import UserError
-from slideline_tools.studies import collision, common, sliding
+from slideline_tools.studies import claims, collision, common, sliding
 
 
 @pytest.mark.parametrize("force, expected", [
@@ -57,3 +57,58 @@ def test_a_run_that_stopped_early_is_refused(study, job, tmp_path):
         "time,interface,side,fx,fy,n_active\n0,1,slave,0,0,0\n1e-5,1,slave,0,0,0\n")
     with pytest.raises(UserError, match="did not reach its end"):
         study.Run(tmp_path, 1, 2)
+
+
+@pytest.mark.parametrize("answers, expected", [
+    ([True, True], "yes"), ([True, False], "partly"), ([False, False], "no")])
+def test_verdict(answers, expected):
+    assert claims.verdict(answers) == expected
+
+
+def test_added_points_are_the_active_ones_beyond_the_touching_nodes(tmp_path):
+    (tmp_path / "sliding.contact.csv").write_text(
+        "time,interface,node,gap\n0,1,1,0.1\n0,1,2,0.1\n"
+        "1,1,1,-0.1\n1,1,2,0.1\n2,1,1,-0.1\n2,1,2,-0.2\n")
+    (tmp_path / "sliding.rcforc.csv").write_text(
+        "time,interface,side,n_active\n0,1,slave,0\n0,1,master,0\n"
+        "1,1,slave,1\n1,1,master,1\n2,1,slave,5\n2,1,master,5\n")
+    assert claims.added_points(tmp_path).tolist() == [[1, 0], [2, 3]]
+
+
+def test_phase_times_are_medians_over_the_rounds(tmp_path):
+    folder = tmp_path / "sliding" / "level_2_type_4"
+    folder.mkdir(parents=True)
+    for repeat, (a, m, b) in enumerate(((1.0, 4.0, 2.0), (9.0, 5.0, 2.5), (2.0, 3.0, 3.0)), 1):
+        (folder / f"timing_{repeat}.csv").write_text(
+            f"phase,seconds,calls,share\nelements,7,1,0\ncontact_search,{a},1,0\n"
+            f"contact_pairing,{m},1,0\ncontact_force,{b},1,0\ntotal,30,1,1\n")
+    median, low, high = claims.phase_times(tmp_path, "sliding", 2, 4, 3)
+    assert median.tolist() == [2.0, 4.0, 2.5]
+    assert (low, high) == (7.0, 16.5)
+    with pytest.raises(UserError):
+        claims.phase_times(tmp_path, "sliding", 2, 4, 4)
+
+
+def peak_figures(count):
+    figures = claims.PeakFigures.__new__(claims.PeakFigures)
+    figures.count = figures.largest = figures.rms = figures.waviness = {
+        level: dict(zip(range(1, 8), count)) for level in (1, 2, 3)}
+    return figures
+
+
+@pytest.mark.parametrize("count, fewest, larger, smooth", [
+    ((9, 9, 9, 9, 1, 2, 0), "yes", "no", "no"),
+    ((9, 9, 9, 9, 3, 2, 0), "partly", "no", "yes"),
+    ((9, 9, 2, 4, 5, 1, 0), "no", "yes", "yes")])
+def test_peak_claims_follow_the_figures(count, fewest, larger, smooth):
+    texts = claims.peak_texts(peak_figures(count))
+    assert (texts["fewest"], texts["larger"], texts["smooth"]) == (fewest, larger, smooth)
+
+
+@pytest.mark.parametrize("nts, two_pass, expected", [
+    ((0.1, 0.1), (-0.1, -0.1), "yes"), ((0.1, 0.1), (0.1, -0.1), "partly"),
+    ((-0.1, 0.1), (0.1, 0.1), "no")])
+def test_end_claim_follows_the_figures(nts, two_pass, expected):
+    ends = dict.fromkeys(range(1, 8), (0.0, 0.0))
+    ends.update({1: nts, 3: two_pass})
+    assert claims.end_texts(ends)["end"] == expected

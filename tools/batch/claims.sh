@@ -1,0 +1,51 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# usage: tools/batch/claims.sh [REPEATS]
+# Answers the claims of Kang, Lee & Shin (2023) from runs: writes doc/studies/claims.md. Wants the
+# results of block.sh, sliding.sh and collision.sh; runs sliding and collision again without output
+# to time them, each REPEATS times (default 3) on one thread, all variants in turn, so that
+# a busy machine hits all alike. About 15 minutes; keep the machine quiet.
+set -eu
+
+root=$(cd "$(dirname "$0")/../.." && pwd)
+repeats=${1:-3}
+out=$root/results/batch/claims
+types="1 2 3 4 5 6 7"
+
+# timed SCENE DECK LEVEL: all contact types once; keeps the timing tables.
+timed() {
+  for type in $types; do
+    run=$out/$1/level_${3}_type_$type
+    mkdir -p "$run"
+    "$root/build/release/slideline" i="$2" d="$run" jobid="$1" ctype="$type" ncpu=1 \
+      p:dtplot=1 p:dthist=1 p:dtforc=1 >"$run/progress.txt"
+    cp "$run/$1.timing.csv" "$run/timing_$repeat.csv"
+  done
+}
+
+"$root/tools/build.sh" release
+rm -f "$out"/*/level_*/timing_*.csv
+repeat=1
+while [ "$repeat" -le "$repeats" ]; do
+  echo "== timing, round $repeat of $repeats"
+  for level in 1 2 3 4; do
+    suffix=
+    [ "$level" = 1 ] || suffix=_$level
+    timed collision "$root/input/collision/collision$suffix.k" "$level"
+  done
+  for level in 1 2 3; do
+    timed sliding "$root/results/batch/sliding/sliding_$level.k" "$level"
+  done
+  repeat=$((repeat + 1))
+done
+
+# Sliding with slave and master exchanged: how many points does type 5 add when the master is finer?
+run=$out/exchanged
+mkdir -p "$run"
+sed 's/^\( *\)-3\( *\)-4\( *&ctype\)/\1-4\2-3\3/' "$root/results/batch/sliding/sliding_1.k" \
+  >"$run/sliding.k"
+"$root/build/release/slideline" i="$run/sliding.k" d="$run" jobid=sliding ctype=5 \
+  >"$run/progress.txt"
+
+"$root/build/venv/bin/python" -m slideline_tools.studies.claims "$root/results/batch" "$root/doc" \
+  "$repeats"

@@ -1,0 +1,381 @@
+# SPDX-License-Identifier: MIT
+"""The claims of Kang, Lee & Shin (2023) about the contact types, answered from runs.
+
+    python -m slideline_tools.studies.claims RUNS DOC REPEATS
+
+RUNS holds the folders block, sliding, collision and claims of the batch jobs; the page goes to
+DOC/studies. REPEATS is the number of timing tables of each run.
+"""
+import argparse
+import pathlib
+import sys
+
+import numpy as np
+
+from slideline_tools import UserError
+from slideline_tools.histories import read_csv
+from slideline_tools.scenes import block_grids
+from slideline_tools.studies import block, sliding
+from slideline_tools.studies.common import TYPES, label, markdown_table, write_page
+
+SEARCH, PAIRING, FORCE = "contact_search", "contact_pairing", "contact_force"
+LEVELS = {"sliding": (1, 2, 3), "collision": (1, 2, 3, 4)}
+# Contact time over that of the classical one-pass NTS, by type and level.
+SEED_RATIOS = {
+    "sliding": {3: (2.25, 2.26, 2.26), 4: (2.09, 2.09, 2.20), 5: (1.22, 1.09, 1.12),
+                6: (4.98, 5.49, 5.85)},
+    "collision": {3: (1.92, 1.97, 1.95, 1.93), 4: (2.06, 2.05, 2.04, 2.05),
+                  5: (1.20, 1.09, 1.06, 1.06), 6: (3.41, 3.76, 3.82, 3.78)}}
+
+
+def verdict(answers):
+    """'yes' if all answers hold, 'no' if none does, else 'partly'."""
+    answers = list(answers)
+    return "yes" if all(answers) else "partly" if any(answers) else "no"
+
+
+def least(values, among):
+    """The key among `among` with the smallest value."""
+    return min(among, key=lambda key: values[key])
+
+
+# ---- force peaks -------------------------------------------------------------------------------
+
+class PeakFigures:
+    """Peaks of the sliding runs: dicts by level, of dicts by type."""
+
+    def __init__(self, folder):
+        runs = {level: [sliding.Run(folder, level, ctype) for ctype in TYPES]
+                for level in LEVELS["sliding"]}
+        found = {level: {run.ctype: run.peaks() for run in row} for level, row in runs.items()}
+        self.count = self.of(found, lambda peaks: peaks.count)
+        self.largest = self.of(found, lambda peaks: 100.0 * peaks.largest)
+        self.rms = self.of(found, lambda peaks: 100.0 * peaks.rms)
+        self.waviness = {level: {run.ctype: 100.0 * run.waviness() for run in row}
+                         for level, row in runs.items()}
+
+    @staticmethod
+    def of(found, figure):
+        """The same nesting with one figure of each Peaks."""
+        return {level: {ctype: figure(peaks) for ctype, peaks in row.items()}
+                for level, row in found.items()}
+
+
+def level_table(figures):
+    """Table of {level: {type: figure}}."""
+    return markdown_table(["type"] + [f"N_r = {level}" for level in figures],
+                          [[label(ctype)] + [row[ctype] for row in figures.values()]
+                           for ctype in TYPES])
+
+
+def fewest_peaks(peaks):
+    """Answers whether type 5 has the fewest peaks, of the seed's types and of its NTS types."""
+    every = [row[5] < min(row[k] for k in (1, 3, 4, 6)) for row in peaks.count.values()]
+    nts = [row[5] < min(row[k] for k in (1, 3, 4)) for row in peaks.count.values()]
+    return every, nts
+
+
+# ---- pressure at the end -----------------------------------------------------------------------
+
+def end_pressures(folder):
+    """{type: (slave end node, penetration of the end)}, each over the chain's or mean value - 1."""
+    chain = read_csv(folder / "chain.csv")
+    grids = block_grids(block.N_SLAVE, block.N_MASTER)
+    figures = {}
+    for ctype in TYPES:
+        run = block.read_pressures(folder / f"type_{ctype}", grids)
+        exact = block.chain_pressure(chain, block.interface_stiffness(ctype))
+        figures[ctype] = (float(run.slave[0] / exact - 1.0), float(run.end_depth))
+    return figures
+
+
+# ---- master-to-slave points --------------------------------------------------------------------
+
+def added_points(folder):
+    """(touching slave nodes, master-to-slave points) of type 5 at each state with contact."""
+    contact = read_csv(folder / "sliding.contact.csv")
+    force = read_csv(folder / "sliding.rcforc.csv").where(side="slave")
+    counts = []
+    for time in np.unique(contact["time"]):
+        touching = int(np.sum(contact.where(time=time)["gap"] < 0.0))
+        row = int(np.argmin(np.abs(force["time"] - time)))
+        if touching:
+            counts.append((touching, int(force["n_active"][row]) - touching))
+    if not counts:
+        raise UserError(f"{folder}: no contact")
+    return np.array(counts)
+
+
+# ---- time --------------------------------------------------------------------------------------
+
+def phase_times(folder, scene, level, ctype, repeats):
+    """(3,) median seconds of steps A, M and B, and lowest and highest of their sum."""
+    rounds = []
+    for repeat in range(1, repeats + 1):
+        table = read_csv(folder / scene / f"level_{level}_type_{ctype}" / f"timing_{repeat}.csv")
+        seconds = dict(zip(table["phase"].tolist(), table["seconds"].tolist()))
+        rounds.append([seconds[phase] for phase in (SEARCH, PAIRING, FORCE)])
+    total = np.sum(rounds, axis=1)
+    return np.median(rounds, axis=0), float(total.min()), float(total.max())
+
+
+class Times:
+    """Median phase times of one scene: `steps[level][type]` = (3,) seconds of A, M, B."""
+
+    def __init__(self, folder, scene, repeats):
+        self.scene = scene
+        measured = {level: {ctype: phase_times(folder, scene, level, ctype, repeats)
+                            for ctype in TYPES} for level in LEVELS[scene]}
+        self.steps = {level: {k: value[0] for k, value in row.items()}
+                      for level, row in measured.items()}
+        self.spread = max((high - low) / median.sum() for row in measured.values()
+                          for median, low, high in row.values())
+
+    def ratio(self, level, ctype):
+        """Contact time over that of type 1."""
+        return float(self.steps[level][ctype].sum() / self.steps[level][1].sum())
+
+    def ratio_table(self):
+        """Ratios to type 1 by level, the seed's behind them."""
+        seed = SEED_RATIOS[self.scene]
+        rows = []
+        for ctype in TYPES:
+            theirs = seed.get(ctype)
+            row = [label(ctype)]
+            for place, level in enumerate(LEVELS[self.scene]):
+                row.append(f"{self.ratio(level, ctype):.2f}"
+                           + (f" ({theirs[place]:.2f})" if theirs else ""))
+            rows.append(row)
+        return markdown_table(["type"] + [f"N_r = {level}" for level in LEVELS[self.scene]], rows)
+
+    def phase_table(self, level):
+        """Time of each step over all of type 1, and the share of step A."""
+        base = self.steps[level][1].sum()
+        rows = []
+        for ctype, steps in self.steps[level].items():
+            a, m, b = (f"{value / base:.2f}" for value in steps)
+            rows.append([label(ctype), a, m, b, f"{steps.sum() / base:.2f}",
+                         f"{100.0 * steps[0] / steps.sum():.0f} %"])
+        return markdown_table(["type", "A search", "M pairing", "B force", "sum", "share of A"],
+                              rows)
+
+
+# ---- the page ----------------------------------------------------------------------------------
+
+PAGE = """# The claims about the contact types, answered
+
+This page is written by `tools/batch/claims.sh` from runs: do not edit it. The verdicts follow from
+the figures by the rules stated here. The claims are those of Kang, Lee & Shin (2023), the seed;
+its text compares types 1, 3, 4, 5 and 6. Dimensions that it does not give are ours, and
+its program and machine are others: compare ratios.
+
+| claim | answer |
+|---|---|
+{summary}
+
+## 1. NTS-mAR has the fewest force peaks: {fewest}
+
+Abrupt peaks of the sliding scene, as defined in [sliding.md](sliding.md). Yes means: type 5 has fewer
+than types 1, 3, 4 and 6 at every level. Fewer than types 1, 3 and 4, the NTS family, at
+{nts_levels}.
+
+{counts}
+
+## 2. Its peaks are larger: {larger}
+
+Largest |r| of the sliding scene in % of the mean force, as defined there. Yes means: that of type 5
+exceeds those of types 3, 4 and 6 at every level. It does at {larger_levels}.
+
+{largest}
+
+## 3. The mortar history is the smoothest: {smooth}
+
+Yes means: of types 1, 3, 4, 5 and 6, type 6 has the smallest rms of r (fast roughness) and the
+smallest waviness (slow swing over a master segment) at every level. Smallest rms at {rms_levels},
+smallest waviness at {wave_levels}. Both in % of the mean force.
+
+The seed also finds NTS-mAR smoother than VTS-PPT: {smoother}. Its rms is smaller at
+{calm_levels}, its waviness at {still_levels}.
+
+rms:
+
+{rms}
+
+waviness:
+
+{waviness}
+
+## 4. NTS overestimates and two-pass NTS-AR underestimates the pressure at the end: {end}
+
+Block-to-block, end node of the slave surface at 0.2 s, see [block_to_block.md](block_to_block.md):
+pressure (nodal force over its length) against the chain, and penetration of the end against the
+mean one, both in %. Yes means: the pressure of type 1 is above and that of type 3 below the
+chain's; partly: one of them, or type 3 by its penetration only.
+
+{ends}
+
+## 5. At most N - 1 master-to-slave points for N touching slave nodes: {points}
+
+The seed says so where the master is not finer than the slave. In the sliding scene the master is
+twice as coarse: {states} states with contact, at most {most} such points with {most_of} touching
+slave nodes, {above} states above N - 1. With slave and master exchanged, the master twice as
+fine, there are up to {exchanged_most} with {exchanged_of} touching slave nodes, and {exchanged_above} of
+{exchanged_states} states are above N - 1: the bound needs its condition.
+
+## 6. Step M is cheaper than steps A and B: {pairing}
+
+The timing has no M of its own for types 1, 2, 3 and 6. Yes means: in types 4 and 5, M takes less
+time than A and less than B in every run; M over A and M over B:
+
+{pairings}
+
+Here A is cheap because a touching node keeps its segment from step to step and is not searched
+for again, and nodes far from the other body sleep. What is called M here places the points:
+portions of the master and their shares in type 4, pieces of the slave segments and projected
+master nodes in type 5.
+
+## 7. The contact cost of the collision is mostly detection: {detection}
+
+Yes means: step A takes more than half of the contact time of the collision in types 1, 3, 4, 5 and
+6 at every level. It does in {detections} of {n_detections} runs. Time of the steps over all of type 1,
+N_r = 1 and 4:
+
+{collision_1}
+
+{collision_4}
+
+## 8. Contact time over that of the classical one-pass NTS
+
+Steps A + M + B; the seed's ratios in brackets. The median of {repeats} rounds, all variants in turn,
+one thread; the largest spread of a run (highest less lowest, over the median) was {spread} %.
+
+Sliding:
+
+{sliding_ratios}
+
+Collision:
+
+{collision_ratios}
+
+Is NTS-mAR the cheapest remedy (of types 3, 4, 5, 6)? {cheapest}. Sliding, time of the steps
+over all of type 1, N_r = 1 and 3:
+
+{sliding_1}
+
+{sliding_3}
+"""
+
+
+def levels_text(answers, levels):
+    """'N_r = 1, 3' for the levels at which the answer is true."""
+    held = [str(level) for level, answer in zip(levels, answers) if answer]
+    return "N_r = " + ", ".join(held) if held else "no level"
+
+
+def peak_texts(peaks):
+    """The texts of claims 1 to 3."""
+    levels = LEVELS["sliding"]
+    every, nts = fewest_peaks(peaks)
+    larger = [row[5] > max(row[k] for k in (3, 4, 6)) for row in peaks.largest.values()]
+    rms, wave = ([least(row, (1, 3, 4, 5, 6)) == 6 for row in figures.values()]
+                 for figures in (peaks.rms, peaks.waviness))
+    calm, still = ([row[5] < row[4] for row in figures.values()]
+                   for figures in (peaks.rms, peaks.waviness))
+    return {
+        "fewest": "yes" if all(every) else verdict(every + nts),
+        "nts_levels": levels_text(nts, levels), "counts": level_table(peaks.count),
+        "larger": verdict(larger), "larger_levels": levels_text(larger, levels),
+        "largest": level_table(peaks.largest), "smooth": verdict(rms + wave),
+        "smoother": verdict(calm + still),
+        "calm_levels": levels_text(calm, levels), "still_levels": levels_text(still, levels),
+        "rms_levels": levels_text(rms, levels), "wave_levels": levels_text(wave, levels),
+        "rms": level_table(peaks.rms), "waviness": level_table(peaks.waviness)}
+
+
+def end_texts(ends):
+    """The texts of claim 4."""
+    over, under, shallow = ends[1][0] > 0.0, ends[3][0] < 0.0, ends[3][1] < 0.0
+    return {"end": "yes" if over and under else "partly" if over or under or shallow else "no",
+            "ends": markdown_table(
+                ["type", "pressure of the end node, %", "penetration of the end node, %"],
+                [[label(k), *(f"{100.0 * value:+.3f}" for value in pair)]
+                 for k, pair in ends.items()])}
+
+
+def point_texts(normal, exchanged):
+    """The texts of claim 5."""
+    texts = {}
+    for prefix, counts in (("", normal), ("exchanged_", exchanged)):
+        top = counts[np.argmax(counts[:, 1])]
+        texts.update({prefix + "states": len(counts), prefix + "most": top[1],
+                      prefix + "most_of" if not prefix else prefix + "of": top[0],
+                      prefix + "above": int(np.sum(counts[:, 1] > counts[:, 0] - 1))})
+    texts["points"] = "yes" if texts["above"] == 0 else "no"
+    return texts
+
+
+def time_texts(slide, crash, repeats):
+    """The texts of claims 6 to 8."""
+    rows, cheaper = [], []
+    for times in (slide, crash):
+        for level, row in times.steps.items():
+            ratios = [row[k][1] / row[k][step] for k in (4, 5) for step in (0, 2)]
+            cheaper += [ratio < 1.0 for ratio in ratios]
+            rows.append([f"{times.scene}, N_r = {level}", *(f"{ratio:.2f}" for ratio in ratios)])
+    detected = [row[k][0] > 0.5 * row[k].sum() for row in crash.steps.values()
+                for k in (1, 3, 4, 5, 6)]
+    cheapest = [least({k: row[k].sum() for k in row}, (3, 4, 5, 6)) == 5
+                for times in (slide, crash) for row in times.steps.values()]
+    return {
+        "pairing": verdict(cheaper),
+        "pairings": markdown_table(["run", "type 4: M/A", "M/B", "type 5: M/A", "M/B"], rows),
+        "detection": verdict(detected), "detections": sum(detected),
+        "n_detections": len(detected), "collision_1": crash.phase_table(1),
+        "collision_4": crash.phase_table(4), "repeats": repeats,
+        "spread": f"{100.0 * max(slide.spread, crash.spread):.0f}",
+        "sliding_ratios": slide.ratio_table(), "collision_ratios": crash.ratio_table(),
+        "cheapest": f"{verdict(cheapest)}: in {sum(cheapest)} of {len(cheapest)} cases",
+        "sliding_1": slide.phase_table(1), "sliding_3": slide.phase_table(3)}
+
+
+CLAIMS = (("NTS-mAR has the fewest force peaks", "fewest"),
+          ("... but larger ones", "larger"),
+          ("the mortar history is the smoothest", "smooth"),
+          ("NTS-mAR is smoother than VTS-PPT", "smoother"),
+          ("NTS over- and two-pass NTS-AR underestimates the pressure at the end", "end"),
+          ("at most N - 1 master-to-slave points", "points"),
+          ("step M is cheaper than A and B", "pairing"),
+          ("the collision's contact cost is mostly detection", "detection"),
+          ("NTS-mAR is the cheapest remedy", "cheapest"))
+
+
+def write(folder, doc, repeats):
+    """Read the runs below `folder`, write the page below `doc`."""
+    texts = peak_texts(PeakFigures(folder / "sliding"))
+    texts.update(end_texts(end_pressures(folder / "block")))
+    normal = [added_points(folder / "sliding" / f"level_{level}_type_5")
+              for level in LEVELS["sliding"]]
+    texts.update(point_texts(np.concatenate(normal),
+                             added_points(folder / "claims" / "exchanged")))
+    texts.update(time_texts(Times(folder / "claims", "sliding", repeats),
+                            Times(folder / "claims", "collision", repeats), repeats))
+    texts["summary"] = "\n".join(f"| {text} | {texts[name]} |" for text, name in CLAIMS)
+    write_page(doc, "claims", PAGE.format(**texts))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("doc", type=pathlib.Path)
+    parser.add_argument("repeats", type=int)
+    options = parser.parse_args()
+    try:
+        write(options.folder, options.doc, options.repeats)
+    except UserError as problem:
+        print(problem, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
