@@ -30,7 +30,7 @@ def block(ctype=2, ngauss=4, n_slave=51, n_master=50):
     deck.block("The numbers to play with.")
     deck.parameters(
         ("ctype", ctype, "contact type: " + CONTACT_TYPES),
-        ("ngauss", ngauss, "Gauss points of a slave segment: no effect on types 1 to 3"),
+        ("ngauss", ngauss, "Gauss points of a slave segment: type 6 only"),
         ("pen", 1.0e6, "penalty of a contact node in N/m"),
         ("v0", -0.05, "velocity of the upper face in y in m/s"),
         ("dt", 1.0e-3, "time step in s"),

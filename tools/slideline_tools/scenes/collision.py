@@ -45,7 +45,7 @@ def collision(level=1, ctype=2, ngauss=4):
     deck.block("The numbers to play with.")
     deck.parameters(
         ("ctype", ctype, "contact type: " + CONTACT_TYPES),
-        ("ngauss", ngauss, "Gauss points of a slave segment: no effect on types 1 to 3"),
+        ("ngauss", ngauss, "Gauss points of a slave segment: type 6 only"),
         ("pen", 1.0e9 / level, "penalty of a contact node in N/m: 1 GN/m over N_r"),
         ("v0", -80.0, "velocity of the projectile in y in m/s"),
         ("dt", step, "time step in s: 100 ns over N_r"),

@@ -57,7 +57,7 @@ def sliding(level=1, ctype=2, ngauss=6):
     deck.block("The numbers to play with.")
     deck.parameters(
         ("ctype", ctype, "contact type: " + CONTACT_TYPES),
-        ("ngauss", ngauss, "Gauss points of a slave segment: no effect on types 1 to 3"),
+        ("ngauss", ngauss, "Gauss points of a slave segment: type 6 only"),
         ("pen", 10.0e9 / level, "penalty of a contact node in N/m: 10 GN/m over N_r"),
         ("dt", 40.0e-9 / level, "time step in s: 40 ns over N_r"),
         ("endtim", 6.0e-3, f"end time in s: {steps} steps"),
