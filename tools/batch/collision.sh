@@ -2,14 +2,17 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/collision.sh [LEVELS [TYPES]]
 # Runs the collision scene for every refinement level and contact type (default "1 2 3 4" and
-# "1 2 3") into results/batch/collision, prints a table and compares it with the reference.
-# RENEW=1 makes the table the new reference.
+# "1 2 3 4 5 6 7") into results/batch/collision and writes doc/studies/collision.md with its
+# pictures; with arguments, the page goes to results/batch/collision/doc instead. Then prints a
+# table and compares it with the reference. RENEW=1 makes the table the new reference.
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
 levels=${1:-1 2 3 4}
-types=${2:-1 2 3}
+types=${2:-1 2 3 4 5 6 7}
 out=$root/results/batch/collision
+doc=$root/doc
+[ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release
 runs=
@@ -25,6 +28,10 @@ for level in $levels; do
       d="$out/$run" jobid=collision ctype="$type" >"$out/$run/progress.txt"
   done
 done
+
+# shellcheck disable=SC2086  # levels and types are words
+"$root/build/venv/bin/python" -m slideline_tools.studies.collision "$out" "$doc" \
+  --levels $levels --types $types
 
 # shellcheck disable=SC2086  # the names of the runs are words
 "$root/build/venv/bin/python" "$root/tools/batch/table.py" collision "$out" \

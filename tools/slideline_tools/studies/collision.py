@@ -142,7 +142,7 @@ def write(folder, doc, levels, types):
     runs = [Run(folder, level, ctype) for level in levels for ctype in types]
     pictured = min(levels)
     shown = [run for run in runs if run.level == pictured]
-    save_small(force_figure(shown), doc / "pictures" / "collision_force.png")
+    save_small(force_figure(shown), doc / "pictures" / "collision_force.png", lines=True)
     save_small(field_panels({run.ctype: run.results for run in shown}, "plastic_strain",
                             (0.0, 0.25), (-0.001, 0.066, -0.022, 0.007), SNAPSHOT_TIME),
                doc / "pictures" / "collision_plastic_strain.png")

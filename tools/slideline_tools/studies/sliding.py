@@ -224,7 +224,7 @@ def write(folder, doc, levels, types):
     runs = [Run(folder, level, ctype) for level in levels for ctype in types]
     pictured = min(levels)
     shown = [run for run in runs if run.level == pictured]
-    save_small(force_figure(shown), doc / "pictures" / "sliding_force.png")
+    save_small(force_figure(shown), doc / "pictures" / "sliding_force.png", lines=True)
     save_small(field_panels({run.ctype: run.results for run in shown}, "plastic_strain",
                             (0.1, 0.3), (0.008, 0.026, -0.0042, 0.0022)),
                doc / "pictures" / "sliding_plastic_strain.png")
