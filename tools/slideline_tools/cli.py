@@ -22,18 +22,21 @@ def add_make_deck(commands):
         description="Write the keyword deck of a scene.")
     scenes = parser.add_subparsers(dest="scene", required=True, metavar="SCENE")
     for name, levels, points, text in (
-            ("collision", "1 to 4", 4, "projectile on a plate, half model"),
-            ("sliding", "1 to 3", 6, "die pressed into a plate and drawn along it"),
-            ("block", None, 4, "two soft blocks, explicit")):
+            ("collision", "1 to 4 in the seed", 4, "projectile on a plate, half model"),
+            ("sliding", "1 to 3 in the seed", 6, "die pressed into a plate and drawn along it"),
+            ("block", None, 4, "two soft blocks, explicit"),
+            ("hertz", "1 to 8", 4, "elastic cylinder on an elastic block")):
         scene = scenes.add_parser(name, help=text)
         if levels:
             scene.add_argument("--level", type=int, default=1,
-                               help=f"refinement N_r, {levels} in the seed")
+                               help=f"refinement N_r, {levels}")
         scene.add_argument("--ctype", type=int, default=2, help="contact type in the deck (2)")
         scene.add_argument("--ngauss", type=int, default=points,
                            help=f"Gauss points of type 6 ({points})")
+        if name == "hertz":
+            scene.add_argument("--exchanged", action="store_true", help="the block is the slave")
         scene.add_argument("--output", "-o", required=True, help="deck file to write")
-        scene.set_defaults(run=make_contact_scene)
+        scene.set_defaults(run=make_contact_scene, exchanged=False)
     scene = scenes.add_parser("symmetric_plate", help="plate on two pins under a step load")
     scene.add_argument("--nx", type=int, default=8, help="elements along 8 m, a multiple of 8")
     scene.add_argument("--ny", type=int, default=4, help="elements through 1 m, even")
@@ -48,8 +51,9 @@ def add_make_deck(commands):
 def make_contact_scene(options):
     from slideline_tools import scenes
     level = () if options.scene == "block" else (options.level,)
+    last = (options.exchanged,) if options.scene == "hertz" else ()
     return write_deck(options, getattr(scenes, options.scene), *level, options.ctype,
-                      options.ngauss)
+                      options.ngauss, *last)
 
 
 def make_symmetric_plate(options):

@@ -2,11 +2,12 @@
 """The scenes: each function returns the text of one complete deck (SI units, plane strain)."""
 from slideline_tools.scenes.block import block, block_grids
 from slideline_tools.scenes.collision import collision, collision_grids
+from slideline_tools.scenes.hertz import hertz, hertz_grids
 from slideline_tools.scenes.sliding import sliding, sliding_grids
 from slideline_tools.scenes.symmetric_plate import symmetric_plate, symmetric_plate_grid
 
-__all__ = ["block", "block_grids", "collision", "collision_grids", "committed_decks", "sliding",
-           "sliding_grids", "symmetric_plate", "symmetric_plate_grid"]
+__all__ = ["block", "block_grids", "collision", "collision_grids", "committed_decks", "hertz",
+           "hertz_grids", "sliding", "sliding_grids", "symmetric_plate", "symmetric_plate_grid"]
 
 
 def committed_decks():
