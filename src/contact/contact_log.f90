@@ -42,6 +42,10 @@ contains
     call write_log(log, '  penalty: '//to_text(memory%node_penalty)//' N/m per slave node = ' &
       //to_text(memory%slave_penalty)//' N/m^2; master pass '//to_text(memory%master_penalty &
       *master_length)//' N/m per master node = '//to_text(memory%master_penalty)//' N/m^2')
+    if (kind%uses_gauss_points) call write_log(log, '  Gauss points of a slave segment: ' &
+      //to_text(contact%n_gauss))
+    if (contact%strict) call write_log(log, '  strict rule where a slave segment hangs over the end ' &
+      //'of the master (IPF = 1)')
     if (contact%damping > 0.0_wp) call write_log(log, '  damping: ' &
       //to_text(contact%damping)//' of critical')
     call write_log(log, '  deepest first contact: '//to_text(minval( &
