@@ -37,7 +37,8 @@ contains
     label = 'type '//to_text(types(1, i))//', '//trim(scenes(k))
   end function label
 
-  !> Scene k for the i-th type, turned by an angle; start_contact is the caller's. Slave below y = 0 by `depth`, unevenly if `is_uneven`.
+  !> Scene k for the i-th type, turned by an angle; start_contact is the caller's. Slave below y = 0 by
+  !> `depth`, unevenly if `is_uneven`.
   subroutine make_scene(problem, i, k, angle, is_uneven, n_gauss)
     type(problem_t), intent(out) :: problem
     integer, intent(in) :: i, k
