@@ -31,23 +31,27 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
-    real(wp), allocatable :: places(:, :)
+    real(wp), allocatable :: places(:, :), share(:)
     integer :: i, n
 
     n = memory%n_slave
     if (.not. allocated(rows%node)) then
       rows%node = contact%slave%nodes
       allocate (rows%arc_length(n), rows%gap(n), rows%pressure(n), rows%force(2, n), &
-        rows%length(n))
+        rows%length(n), rows%master_pressure(memory%n_master))
     end if
     places = memory%places
     places(3:4, :) = motion(1:2, memory%nodes)
     rows%force = memory%force(:, :n)
     call fill_arc_lengths(contact%slave, places(:, :n), rows%arc_length)
-    call fill_normal_forces(memory, rows%pressure)
+    share = normal_forces(memory)
+    do i = 1, memory%n_master
+      rows%master_pressure(i) = share(n + i)/max(tiny(1.0_wp), &
+        competence_length(contact%master, places(:, n + 1:), i))
+    end do
     do i = 1, n
       rows%length(i) = competence_length(contact%slave, places(:, :n), i)
-      rows%pressure(i) = rows%pressure(i)/max(rows%length(i), tiny(1.0_wp))
+      rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
       rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
   end subroutine slave_rows
@@ -69,11 +73,10 @@ contains
     end do
   end subroutine fill_arc_lengths
 
-  !> Normal force on each slave node from all points, N/m.
-  pure subroutine fill_normal_forces(memory, normal_force)
+  !> Normal force on each node of the interface from all points, N/m.
+  pure function normal_forces(memory) result(share)
     type(contact_state_t), intent(in) :: memory
-    real(wp), intent(out) :: normal_force(:) !! (n_slave)
-    real(wp), allocatable :: share(:)
+    real(wp), allocatable :: share(:) !! (n_slave + n_master)
     real(wp) :: total
     integer :: p, k
 
@@ -89,8 +92,7 @@ contains
         end do
       end do
     end associate
-    normal_force = share(:memory%n_slave)
-  end subroutine fill_normal_forces
+  end function normal_forces
 
   !> Gap of a slave node at the present places; 0 when it is unpaired.
   pure function present_gap(contact, chain, place, memory, i) result(gap)

@@ -185,6 +185,12 @@ contains
           snapshot%contact_force(:, memory%nodes(k)) = snapshot%contact_force(:, memory%nodes(k)) &
             + memory%force(:, k)
         end do
+        do k = 1, memory%n_master
+          associate (node => memory%nodes(memory%n_slave + k))
+            snapshot%contact_pressure(node) = snapshot%contact_pressure(node) &
+              + rows%master_pressure(k)
+          end associate
+        end do
         do k = 1, memory%n_slave
           snapshot%contact_pressure(rows%node(k)) = snapshot%contact_pressure(rows%node(k)) &
             + rows%pressure(k)

@@ -24,7 +24,7 @@ module snapshot_m
     real(wp) :: mass = 0.0_wp
   end type part_result_t
 
-  !> Slave nodes of one interface in walking order; all arrays (n_slave).
+  !> Slave nodes of one interface in walking order; all arrays (n_slave) but the last.
   type :: slave_result_t
     integer, allocatable :: node(:)        !! node indices
     real(wp), allocatable :: arc_length(:) !! along the slave chain
@@ -32,6 +32,7 @@ module snapshot_m
     real(wp), allocatable :: pressure(:)   !! normal force / competence length, 0 where inactive
     real(wp), allocatable :: force(:, :)   !! (2, n_slave) contact force from all points
     real(wp), allocatable :: length(:)     !! competence length, current
+    real(wp), allocatable :: master_pressure(:) !! (n_master) as `pressure`, on the other side
   end type slave_result_t
 
   !> The instant. Node arrays are in model order (the writer maps through mesh%deck_node); element
