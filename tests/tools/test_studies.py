@@ -112,3 +112,11 @@ def test_end_claim_follows_the_figures(nts, two_pass, expected):
     ends = dict.fromkeys(range(1, 8), (0.0, 0.0))
     ends.update({1: nts, 3: two_pass})
     assert claims.end_texts(ends)["end"] == expected
+
+
+@pytest.mark.parametrize("above, expected", [(0, "yes"), (4, "partly"), (5, "no")])
+def test_point_claim_follows_the_counts(above, expected):
+    counts = np.array([(1, 1)] * above + [(6, 5)] * (100 - above))
+    texts = claims.point_texts(counts, np.array([(4, 10), (3, 2)]))
+    assert (texts["points"], texts["above"], texts["above_of"]) == (expected, above, above > 0)
+    assert (texts["most"], texts["of"], texts["exchanged_above"]) == (5, 6, 1)
