@@ -25,6 +25,10 @@ timed() {
 
 "$root/tools/build.sh" release
 rm -f "$out"/*/level_*/timing_*.csv
+for level in 1 2 3; do
+  "$root/build/venv/bin/slideline-tools" make-deck sliding --level "$level" \
+    --output "$out/sliding_$level.k"
+done
 repeat=1
 while [ "$repeat" -le "$repeats" ]; do
   echo "== timing, round $repeat of $repeats"
@@ -34,16 +38,14 @@ while [ "$repeat" -le "$repeats" ]; do
     timed collision "$root/input/collision/collision$suffix.k" "$level"
   done
   for level in 1 2 3; do
-    timed sliding "$root/results/batch/sliding/sliding_$level.k" "$level"
+    timed sliding "$out/sliding_$level.k" "$level"
   done
   repeat=$((repeat + 1))
 done
 
 # Sliding with slave and master exchanged: how many points does type 5 add when the master is finer?
 run=$out/exchanged
-mkdir -p "$run"
-sed 's/^\( *\)-3\( *\)-4\( *&ctype\)/\1-4\2-3\3/' "$root/results/batch/sliding/sliding_1.k" \
-  >"$run/sliding.k"
+"$root/build/venv/bin/slideline-tools" make-deck sliding --exchanged --output "$run/sliding.k"
 "$root/build/release/slideline" i="$run/sliding.k" d="$run" jobid=sliding ctype=5 \
   >"$run/progress.txt"
 
