@@ -25,18 +25,19 @@ def add_make_deck(commands):
             ("collision", "1 to 4 in the seed", 4, "projectile on a plate, half model"),
             ("sliding", "1 to 3 in the seed", 6, "die pressed into a plate and drawn along it"),
             ("block", None, 4, "two soft blocks, explicit"),
+            ("patch", None, 4, "contact patch test, damped to rest"),
+            ("oblique", None, 4, "oblique impact of a turned block on a free one"),
             ("hertz", "1 to 8", 4, "elastic cylinder on an elastic block")):
         scene = scenes.add_parser(name, help=text)
+        scene.set_defaults(run=make_contact_scene, level=None)
         if levels:
-            scene.add_argument("--level", type=int, default=1,
-                               help=f"refinement N_r, {levels}")
+            scene.add_argument("--level", type=int, help=f"refinement N_r, {levels} (1)")
         scene.add_argument("--ctype", type=int, default=2, help="contact type in the deck (2)")
         scene.add_argument("--ngauss", type=int, default=points,
                            help=f"Gauss points of type 6 ({points})")
-        if name == "hertz":
-            scene.add_argument("--exchanged", action="store_true", help="the block is the slave")
+        scene.add_argument("--exchanged", action="store_true",
+                           help="slave and master surface exchanged")
         scene.add_argument("--output", "-o", required=True, help="deck file to write")
-        scene.set_defaults(run=make_contact_scene, exchanged=False)
     scene = scenes.add_parser("symmetric_plate", help="plate on two pins under a step load")
     scene.add_argument("--nx", type=int, default=8, help="elements along 8 m, a multiple of 8")
     scene.add_argument("--ny", type=int, default=4, help="elements through 1 m, even")
@@ -50,10 +51,9 @@ def add_make_deck(commands):
 
 def make_contact_scene(options):
     from slideline_tools import scenes
-    level = () if options.scene == "block" else (options.level,)
-    last = (options.exchanged,) if options.scene == "hertz" else ()
-    return write_deck(options, getattr(scenes, options.scene), *level, options.ctype,
-                      options.ngauss, *last)
+    level = {} if options.level is None else {"level": options.level}
+    return write_deck(options, getattr(scenes, options.scene), ctype=options.ctype,
+                      ngauss=options.ngauss, exchanged=options.exchanged, **level)
 
 
 def make_symmetric_plate(options):
@@ -62,9 +62,9 @@ def make_symmetric_plate(options):
                       options.elastoplastic, options.hourglass, options.coefficient)
 
 
-def write_deck(options, scene, *arguments):
+def write_deck(options, scene, *arguments, **named):
     try:
-        text = scene(*arguments)
+        text = scene(*arguments, **named)
     except ValueError as problem:
         raise ToolError(str(problem)) from problem
     path = pathlib.Path(options.output)

@@ -3,11 +3,14 @@
 from slideline_tools.scenes.block import block, block_grids
 from slideline_tools.scenes.collision import collision, collision_grids
 from slideline_tools.scenes.hertz import hertz, hertz_grids
+from slideline_tools.scenes.oblique import oblique, oblique_grids
+from slideline_tools.scenes.patch import patch, patch_grids
 from slideline_tools.scenes.sliding import sliding, sliding_grids
 from slideline_tools.scenes.symmetric_plate import symmetric_plate, symmetric_plate_grid
 
 __all__ = ["block", "block_grids", "collision", "collision_grids", "committed_decks", "hertz",
-           "hertz_grids", "sliding", "sliding_grids", "symmetric_plate", "symmetric_plate_grid"]
+           "hertz_grids", "oblique", "oblique_grids", "patch", "patch_grids", "sliding",
+           "sliding_grids", "symmetric_plate", "symmetric_plate_grid"]
 
 
 def committed_decks():

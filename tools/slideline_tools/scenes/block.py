@@ -2,7 +2,7 @@
 """Block-to-block: two soft blocks with non-matching meshes are pressed together."""
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, part,
-                                           plane_strain, slideline)
+                                           plane_strain, roles, slideline)
 
 
 def block_grids(n_slave=51, n_master=50):
@@ -13,13 +13,14 @@ def block_grids(n_slave=51, n_master=50):
     return lower, upper
 
 
-def block(ctype=2, ngauss=4, n_slave=51, n_master=50):
+def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False):
     """The block-to-block scene with the explicit method, 200 steps of 1 ms.
 
-    `n_slave`, `n_master`: quads along each block, 51 and 50 in the seed.
+    `n_slave`, `n_master`: quads along each block, 51 and 50 in the seed. `exchanged`: the lower
+    block is the slave; its number of quads is still `n_master`.
     """
     lower, upper = block_grids(n_slave, n_master)
-    deck = Deck("block-to-block contact", [
+    deck = Deck("block-to-block contact" + (" exchanged" if exchanged else ""), [
         "The upper of two soft blocks is pressed upon the lower one at 50 mm/s; their meshes "
         "do not match. SI units (m, kg, s, N, Pa), plane strain, per metre of depth.",
         "",
@@ -56,9 +57,10 @@ def block(ctype=2, ngauss=4, n_slave=51, n_master=50):
     deck.curve(2, "velocity of the upper face", [(0.0, "&v0"), (10.0, "&v0")])
     deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
                "so a lower face runs from left to right, an upper face from right to left.")
-    deck.node_set(3, "slave: lower face of the upper block", upper.lower)
-    deck.node_set(4, "master: upper face of the lower block", lower.upper)
-    slideline(deck, 3, 4)
+    first, second = roles(exchanged)
+    deck.node_set(3, f"{first}: lower face of the upper block", upper.lower)
+    deck.node_set(4, f"{second}: upper face of the lower block", lower.upper)
+    slideline(deck, 3, 4, exchanged)
     deck.block(f"Mesh of the lower block: {n_master} x 2 quads.")
     lower.write(deck, 1)
     deck.block(f"Mesh of the upper block: {n_slave} x 2 quads.")

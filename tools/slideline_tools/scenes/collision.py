@@ -4,7 +4,8 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (ALUMINIUM, CONTACT_TYPES, STEEL, elastic, energies_on,
-                                           part, perfectly_plastic, plane_strain, slideline)
+                                           part, perfectly_plastic, plane_strain, roles,
+                                           slideline)
 
 
 def collision_grids(level):
@@ -18,17 +19,19 @@ def collision_grids(level):
     return plate, projectile
 
 
-def collision(level=1, ctype=2, ngauss=4):
+def collision(level=1, ctype=2, ngauss=4, exchanged=False):
     """A steel projectile hits an aluminium plate; half model.
 
     `level` = N_r >= 1 (1 to 4 in the seed): cells and steps times N_r, step and penalty over N_r.
+    `exchanged`: the plate is the slave.
     """
     if level < 1 or level > 8:
         raise ValueError("level of the collision scene: 1 to 8")
     plate, projectile = collision_grids(level)
     steps = 10000 * level
     step = 100.0e-9 / level
-    deck = Deck(f"collision of a projectile with a plate N_r = {level}", [
+    deck = Deck(f"collision of a projectile with a plate N_r = {level}"
+                + (" exchanged" if exchanged else ""), [
         "A steel block 40 mm wide and 5 mm high hits the middle of a clamped aluminium "
         "plate at 80 m/s. Half model: x = 0 is the plane of symmetry. SI units (m, kg, "
         "s, N, Pa), plane strain, per metre of depth.",
@@ -90,11 +93,12 @@ def collision(level=1, ctype=2, ngauss=4):
     deck.spc_set(2, True, True)
     deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
                "so a lower face runs from left to right, an upper face from right to left.")
-    deck.node_set(3, "slave: lower face of the projectile", projectile.lower)
-    deck.node_set(4, "master: upper face of the plate (0 to 25 mm)",
+    first, second = roles(exchanged)
+    deck.node_set(3, f"{first}: lower face of the projectile", projectile.lower)
+    deck.node_set(4, f"{second}: upper face of the plate (0 to 25 mm)",
                   plate.upper[-(20 * level + 1):])
     deck.comment("A negative SURFA or SURFB is a node set. PEN is in N/m per contact node.")
-    slideline(deck, 3, 4)
+    slideline(deck, 3, 4, exchanged)
     deck.block(f"Mesh of the plate: {36 * level} x {4 * level} quads.")
     plate.write(deck, 1)
     deck.block(f"Mesh of the projectile: {24 * level} x {4 * level} quads.")

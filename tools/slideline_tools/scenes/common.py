@@ -37,8 +37,18 @@ def energies_on(deck):
     return deck.card("hgen rwen slnten rylen", 2, 2, 2, 2)
 
 
-def slideline(deck, slave, master):
-    """*CONTACT_2D_SLIDELINE between two node sets; type, points and penalty are parameters."""
+def roles(exchanged):
+    """What the surface that is the slave of a scene and the other one are."""
+    return ("master", "slave") if exchanged else ("slave", "master")
+
+
+def slideline(deck, slave, master, exchanged=False):
+    """*CONTACT_2D_SLIDELINE between two node sets; type, points and penalty are parameters.
+
+    `exchanged`: the node set `slave` becomes the master and the other way round.
+    """
+    if exchanged:
+        slave, master = master, slave
     deck.keyword("CONTACT_2D_SLIDELINE")
     return deck.card("surfa surfb ctype ngauss pen fs fd dc",
                      -slave, -master, "&ctype", "&ngauss", "&pen", 0.0, 0.0, 0.0)

@@ -4,7 +4,8 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (ALUMINIUM, CONTACT_TYPES, STEEL, elastic, energies_on,
-                                           part, perfectly_plastic, plane_strain, slideline)
+                                           part, perfectly_plastic, plane_strain, roles,
+                                           slideline)
 
 CENTRE, CROWN_RADIUS, TOP = 0.010, 0.020, 0.002
 PRESS = (0.0, 1.5e-3, -0.15e-3)
@@ -37,13 +38,16 @@ def stroke(start, end, distance):
     return ([(0.0, 0.0)] if start > 0.0 else []) + points + [(1.0, 0.0)]
 
 
-def sliding(level=1, ctype=2, ngauss=6):
-    """The sliding scene ("ironing"); `level` = N_r >= 1 (1 to 3 in the seed)."""
+def sliding(level=1, ctype=2, ngauss=6, exchanged=False):
+    """The sliding scene ("ironing"); `level` = N_r >= 1 (1 to 3 in the seed).
+
+    `exchanged`: the plate is the slave.
+    """
     if level < 1 or level > 8:
         raise ValueError("level of the sliding scene: 1 to 8")
     plate, die = sliding_grids(level)
     steps = 150000 * level
-    deck = Deck(f"sliding contact N_r = {level}", [
+    deck = Deck(f"sliding contact N_r = {level}" + (" exchanged" if exchanged else ""), [
         "A steel die with a crowned lower face is pressed 0.15 mm into an aluminium plate and "
         "drawn 8 mm along it. SI units (m, kg, s, N, Pa), plane strain, per metre of depth.",
         "",
@@ -91,10 +95,11 @@ def sliding(level=1, ctype=2, ngauss=6):
     write_motion(deck, die)
     deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
                "so a lower face runs from left to right, an upper face from right to left.")
-    deck.node_set(3, "slave: lower face of the die", die.lower)
-    deck.node_set(4, "master: upper face of the plate", plate.upper)
+    first, second = roles(exchanged)
+    deck.node_set(3, f"{first}: lower face of the die", die.lower)
+    deck.node_set(4, f"{second}: upper face of the plate", plate.upper)
     deck.comment("A negative SURFA or SURFB is a node set. PEN is in N/m per contact node.")
-    slideline(deck, 3, 4)
+    slideline(deck, 3, 4, exchanged)
     deck.block(f"Mesh of the plate: {36 * level} x {4 * level} quads.")
     plate.write(deck, 1)
     deck.block(f"Mesh of the die: {18 * level} x {3 * level} quads.")
