@@ -28,8 +28,9 @@ contains
 
     matrix%n = n
     matrix%n_entry = 0
+    ! Four quads at a node, eight columns for each of them: 32 entries an equation, and some contact.
     if (.not. allocated(matrix%rows)) &
-      allocate (matrix%rows(64*n + 64), matrix%columns(64*n + 64), matrix%values(64*n + 64))
+      allocate (matrix%rows(40*n + 64), matrix%columns(40*n + 64), matrix%values(40*n + 64))
   end subroutine start_matrix
 
   !> Add a dense block; equation number 0 leaves a row or column out.
@@ -53,23 +54,30 @@ contains
     end do
   end subroutine add_block
 
-  !> Double the capacity until `n_more` entries fit.
+  !> Double the capacity where `n_more` entries do not fit.
   pure subroutine make_room(matrix, n_more)
     type(sparse_t), intent(inout) :: matrix
     integer, intent(in) :: n_more
+    integer, allocatable :: numbers(:)
+    real(wp), allocatable :: values(:)
     integer :: n, capacity
 
-    capacity = size(matrix%rows)
-    if (matrix%n_entry + n_more <= capacity) return
     n = matrix%n_entry
-    capacity = max(2*capacity, n + n_more)
-    matrix%rows = [matrix%rows(:n), spread(0, 1, capacity - n)]
-    matrix%columns = [matrix%columns(:n), spread(0, 1, capacity - n)]
-    matrix%values = [matrix%values(:n), spread(0.0_wp, 1, capacity - n)]
+    if (n + n_more <= size(matrix%rows)) return
+    capacity = max(2*size(matrix%rows), n + n_more)
+    allocate (numbers(capacity))
+    numbers(:n) = matrix%rows(:n)
+    call move_alloc(numbers, matrix%rows)
+    allocate (numbers(capacity))
+    numbers(:n) = matrix%columns(:n)
+    call move_alloc(numbers, matrix%columns)
+    allocate (values(capacity))
+    values(:n) = matrix%values(:n)
+    call move_alloc(values, matrix%values)
   end subroutine make_room
 
-  !> Rows from the collected entries: two counting sorts (by column, then stably by row) and one pass that sums
-  !> duplicates, in an order that depends on the entries alone.
+  !> Rows from the collected entries: two counting sorts (by column, then stably by row) and one pass
+  !> that sums duplicates in the order in which they were added.
   pure subroutine compress_matrix(matrix)
     type(sparse_t), intent(inout) :: matrix
     integer, allocatable :: as_entered(:), by_column(:), by_row(:)

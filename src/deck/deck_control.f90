@@ -8,6 +8,8 @@ module deck_control_m
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field
+  use deck_implicit_m, only : take_implicit, take_dynamics, take_spectral_radius, take_solution, &
+    take_automatic
   use deck_raw_m, only : raw_t
   use deck_part_m, only : hourglass_form, hourglass_coefficient
   implicit none
@@ -44,6 +46,16 @@ contains
       call take_bulk_viscosity(deck, cursor, cards(1), raw)
     case ('CONTROL_CONTACT')
       call take_contact(deck, cursor, cards, raw)
+    case ('CONTROL_IMPLICIT_GENERAL')
+      call take_implicit(deck, cursor, cards(1), raw)
+    case ('CONTROL_IMPLICIT_DYNAMICS')
+      call take_dynamics(deck, cursor, cards(1), raw)
+    case ('CONTROL_IMPLICIT_SPECTRAL_RADIUS')
+      call take_spectral_radius(deck, cursor, cards(1), raw)
+    case ('CONTROL_IMPLICIT_SOLUTION')
+      call take_solution(deck, cursor, cards(1), raw)
+    case ('CONTROL_IMPLICIT_AUTO')
+      call take_automatic(deck, cursor, cards(1), raw)
     case ('CONTROL_OUTPUT')
       if (cards(1)%i(7) < 0) call report_field(deck, cursor, cards(1), 7, 'is negative')
       raw%controls%output%status_interval = cards(1)%i(7)

@@ -103,6 +103,9 @@ module deck_raw_m
     type(controls_t) :: controls
     logical :: end_given = .false.             !! ENDTIM comes from the command line
     logical :: terminated = .false.            !! the deck has *CONTROL_TERMINATION
+    real(wp) :: newmark(2) = 0.0_wp            !! GAMMA and BETA of the implicit method, 0 = blank
+    real(wp) :: hht = 0.0_wp                   !! minus ALPHA of the implicit method
+    real(wp) :: spectral_radius = -1.0_wp      !! of the implicit method, negative = not given
     integer :: dt_curve = 0                    !! LCTM, user id
     type(place_t) :: dt_curve_place
     type(history_t) :: outputs(5)

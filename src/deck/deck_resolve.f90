@@ -4,6 +4,7 @@ module deck_resolve_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use controls_m, only : interval_t
+  use deck_implicit_m, only : settle_scheme
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, line_error
   use deck_maps_m, only : maps_t, make_maps, resolve_id
@@ -31,6 +32,8 @@ contains
 
     call make_maps(deck, raw, maps)
     model%controls = raw%controls
+    if (model%controls%implicit%is_on) call settle_scheme(raw%newmark, raw%hht, &
+      raw%spectral_radius, model%controls%implicit)
     call resolve_parts(deck, raw, maps, model)
     call resolve_mesh(deck, raw, maps, model, sound)
     call resolve_sets(deck, raw, maps, model)

@@ -6,7 +6,7 @@ module deck_schema_tables_m
   public :: table_control, table_mesh, table_conditions, table_contact, table_database, table_others
 
   !> Control of the deck and of the run.
-  character(84), parameter :: table_control(*) = [character(84) :: &
+  character(86), parameter :: table_control(*) = [character(86) :: &
     'KEYWORD', &
     'END', &
     'COMMENT', &
@@ -52,7 +52,21 @@ module deck_schema_tables_m
     ' PHSCHNG:is DEMDEN:is ICRFILE:is SPC2BND:is PENOUT:is SHLSIG:is HISNOUT:is ENGOUT:is', &
     ' INSF:is ISOLSF:is IBSF:is ISSF:is MLKBAG:is', &
     'CONTROL_IMPLICIT_GENERAL', &
-    ' IMFLAG:ir DT0:fs IMFORM:is NSBS:is IGS:is CNSTN:is FORM:is ZERO_V:is']
+    ' IMFLAG:i DT0:f IMFORM:is NSBS:is IGS:is CNSTN:iw FORM:is ZERO_V:iw', &
+    'CONTROL_IMPLICIT_DYNAMICS', &
+    ' IMASS:i GAMMA:f BETA:f TDYBIR:fr TDYDTH:fr=1e28 TDYBUR:fr=1e28 IRATE:iw ALPHA:f', &
+    ' PSID:ir ANGLE:fs', &
+    'CONTROL_IMPLICIT_SPECTRAL_RADIUS', &
+    ' RHO:f', &
+    'CONTROL_IMPLICIT_SOLUTION', &
+    ' NSOLVR:i=12 ILIMIT:is MAXREF:i=15 DCTOL:f ECTOL:f RCTOL:f=1e10 LSTOL:f=0.9 ABSTOL:fw', &
+    ' DNORM:is DIVERG:is ISTIF:is NLPRINT:is NLNORM:fs D3ITCTL:iw CPCHK:is', &
+    ' DMTOL:fw EMTOL:fw RMTOL:fw -:x NTTOL:fw NRTOL:fw RTTOL:fw RRTOL:fw', &
+    ' ARCCTL:ir ARCDIR:is ARCLEN:fs ARCMTH:is ARCDMP:is ARCPSI:fs ARCALF:fs ARCTIM:fs', &
+    ' LSMTD:is LSDIR:is IRAD:fs SRAD:fs AWGT:fs SRED:fs', &
+    'CONTROL_IMPLICIT_AUTO', &
+    ' IAUTO:i ITEOPT:i=11 ITEWIN:i=5 DTMIN:f DTMAX:f DTEXP:fw KFAIL:iw KCYCLE:iw', &
+    ' HCMIN:fw HCMAX:fw HMMIN:fw HMMAX:fw HNTMAX:fw HNRMAX:fw HRTMAX:fw HRRMAX:fw']
 
   !> Mesh, parts, materials, curves, sets.
   character(73), parameter :: table_mesh(*) = [character(73) :: &
@@ -208,7 +222,11 @@ module deck_schema_tables_m
     'PART_* this option of *PART is', &
     'INCLUDE_* this kind of include is', &
     'NODE_* this kind of node is', &
-    'CONTROL_IMPLICIT_GENERAL* the implicit solver is', &
+    'CONTROL_IMPLICIT_EIGENVALUE* an eigenvalue analysis is', &
+    'CONTROL_IMPLICIT_BUCKLE* a buckling analysis is', &
+    'CONTROL_IMPLICIT_MODES* a modal analysis is', &
+    'CONTROL_IMPLICIT_FORMING* this implicit option is', &
+    'CONTROL_IMPLICIT_INERTIA_RELIEF* this implicit option is', &
     'CONTROL_SHELL ignored', &
     'CONTROL_SOLID ignored', &
     'CONTROL_CPU ignored', &

@@ -4,7 +4,7 @@ module controls_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: controls_t, output_plan_t, interval_t, length_by_side, length_by_diagonal
+  public :: controls_t, implicit_t, output_plan_t, interval_t, length_by_side, length_by_diagonal
 
   !> Element length of the stable step (ISDO): area over longest side, or over longest diagonal.
   integer, parameter :: length_by_side = 0, length_by_diagonal = 1
@@ -26,6 +26,30 @@ module controls_m
     integer :: status_interval = 0 !! cycles between progress lines (IKEDIT); 0 = the program's choice
   end type output_plan_t
 
+  !> The implicit method (*CONTROL_IMPLICIT_...). Time integration is the generalised-alpha family (Chung &
+  !> Hulbert 1993); alpha_m = alpha_f = 0 is Newmark's.
+  type :: implicit_t
+    logical :: is_on = .false.         !! IMFLAG = 1
+    logical :: is_dynamic = .false.    !! IMASS = 1
+    real(wp) :: dt = 0.0_wp            !! DT0, first step
+    real(wp) :: alpha_m = 0.0_wp       !! weight of the old instant in the inertia forces
+    real(wp) :: alpha_f = 0.0_wp       !! weight of the old instant in the other forces
+    real(wp) :: gamma = 0.5_wp
+    real(wp) :: beta = 0.25_wp
+    character(:), allocatable :: scheme !! in words, for the log
+    logical :: is_linear = .false.     !! NSOLVR = 1: one iteration
+    integer :: max_iteration = 15      !! MAXREF: iterations of a step at most
+    real(wp) :: energy_tolerance = 1.0e-20_wp  !! ECTOL: |dU.R|/|dU0.R0|
+    real(wp) :: step_tolerance = 0.0_wp        !! DCTOL: |dU|/|U(n+1) - U(n)|, 0 = off
+    real(wp) :: residual_tolerance = 0.0_wp    !! RCTOL: |R|/|R0|, 0 = off
+    real(wp) :: search_tolerance = 0.9_wp      !! LSTOL: line search until |dU.R| falls below this part
+    logical :: is_automatic = .false.  !! IAUTO = 1: steps grow and shrink
+    integer :: best_iterations = 11    !! ITEOPT
+    integer :: iteration_window = 5    !! ITEWIN
+    real(wp) :: dt_least = 0.0_wp      !! DTMIN, 0 = a thousandth of DT0
+    real(wp) :: dt_most = 0.0_wp       !! DTMAX, 0 = ten times DT0
+  end type implicit_t
+
   !> All controls.
   type :: controls_t
     character(:), allocatable :: title       !! *TITLE
@@ -40,6 +64,7 @@ module controls_m
     integer :: dt_curve = 0                  !! LCTM: index of the curve that caps the step
     real(wp) :: penalty_scale = 0.1_wp       !! SLSFAC
     logical :: contact_limits_step = .true.  !! ECDT = 1 switches the contact warning off
+    type(implicit_t) :: implicit
     type(output_plan_t) :: output
   end type controls_t
 

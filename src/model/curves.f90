@@ -4,7 +4,7 @@ module curves_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: curve_t, curve_value, curve_is_constant
+  public :: curve_t, curve_value, curve_integral, curve_is_constant
 
   !> One *DEFINE_CURVE, its scale factors and offsets already applied.
   type :: curve_t
@@ -42,6 +42,25 @@ contains
     y = curve%ordinate(low) + (curve%ordinate(high) - curve%ordinate(low)) &
       *((x - curve%abscissa(low))/(curve%abscissa(high) - curve%abscissa(low)))
   end function curve_value
+
+  !> Integral of the curve from a to b, exact (trapezoids from point to point).
+  pure function curve_integral(curve, a, b) result(total)
+    type(curve_t), intent(in) :: curve
+    real(wp), intent(in) :: a, b !! a <= b
+    real(wp) :: total
+    real(wp) :: x, next
+    integer :: i
+
+    total = 0.0_wp
+    x = a
+    do i = 1, size(curve%abscissa)
+      next = min(curve%abscissa(i), b)
+      if (next <= x) cycle
+      total = total + 0.5_wp*(next - x)*(curve_value(curve, x) + curve_value(curve, next))
+      x = next
+    end do
+    total = total + (b - x)*curve_value(curve, b)
+  end function curve_integral
 
   !> Whether the curve has one value everywhere.
   pure function curve_is_constant(curve) result(constant)

@@ -29,6 +29,8 @@ module state_m
     real(wp), allocatable :: internal_force(:, :) !! (2, n_node) divergence of stress; of interior nodes
                                                !! only in cycles that write
     real(wp), allocatable :: prescribed_velocity(:) !! (n_motion) v(n-1/2), v(n+1/2) once the cycle knows it
+    real(wp), allocatable :: acceleration(:, :) !! (2, n_node) of the implicit driver, whose v and a belong
+                                                !! to the instant of u
     real(wp) :: body_acceleration(2) = 0.0_wp  !! of *LOAD_BODY at `time`
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)

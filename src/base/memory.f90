@@ -1,0 +1,48 @@
+! SPDX-License-Identifier: MIT
+!> How much memory there is. Linux hands out more than it has and ends the program that uses it, so
+!> that asking for memory is no test of whether it is there.
+module memory_m
+  use kinds_m, only : long
+  implicit none
+  private
+  public :: available_bytes
+
+contains
+
+  !> Bytes that can still be had, as far as the system says; otherwise the largest number.
+  function available_bytes() result(bytes)
+    integer(long) :: bytes
+    integer(long) :: limit, used
+
+    bytes = huge(bytes)
+    limit = number_in('/proc/meminfo', 'MemAvailable:')
+    if (limit >= 0) bytes = 1024*limit
+    ! The limit of a container, where there is one ("max" otherwise, which is no number).
+    limit = number_in('/sys/fs/cgroup/memory.max', '')
+    used = number_in('/sys/fs/cgroup/memory.current', '')
+    if (limit >= 0 .and. used >= 0) bytes = min(bytes, max(limit - used, 0_long))
+  end function available_bytes
+
+  !> The number behind a label at the start of a line; -1 without file, label or number.
+  function number_in(file, label) result(number)
+    character(*), intent(in) :: file
+    character(*), intent(in) :: label
+    integer(long) :: number
+    character(100) :: line
+    integer :: unit, status
+
+    number = -1
+    open (newunit=unit, file=file, status='old', action='read', iostat=status)
+    if (status /= 0) return
+    do
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0) exit
+      if (index(line, label) /= 1) cycle
+      read (line(len(label) + 1:), *, iostat=status) number
+      if (status /= 0) number = -1
+      exit
+    end do
+    close (unit)
+  end function number_in
+
+end module memory_m

@@ -1,0 +1,123 @@
+! SPDX-License-Identifier: MIT
+!> Ordering of equations for a small bandwidth: reverse Cuthill-McKee (Cuthill & McKee 1969, George
+!> 1971) from a pseudo-peripheral equation (George & Liu 1979).
+module bandwidth_m
+  use sparse_m, only : sparse_t
+  implicit none
+  private
+  public :: reverse_cuthill_mckee, bandwidth
+
+contains
+
+  !> order(k) is the equation that comes k-th. The pattern of the matrix has to be symmetric.
+  pure function reverse_cuthill_mckee(matrix) result(order)
+    type(sparse_t), intent(in) :: matrix
+    integer :: order(matrix%n)
+    integer :: level(matrix%n) !! 0: not reached yet
+    integer :: root, start, n_done, n_found
+
+    level = 0
+    n_done = 0
+    do root = 1, matrix%n
+      if (level(root) /= 0) cycle
+      call find_end(matrix, root, level, order(n_done + 1:), start)
+      call walk_from(matrix, start, level, order(n_done + 1:), n_found)
+      n_done = n_done + n_found
+    end do
+    order = order(matrix%n:1:-1)
+  end function reverse_cuthill_mckee
+
+  !> An equation at one end of the connected part that holds `root`: from there the walk has the most,
+  !> and so the narrowest, levels.
+  pure subroutine find_end(matrix, root, level, found, start)
+    type(sparse_t), intent(in) :: matrix
+    integer, intent(in) :: root
+    integer, intent(inout) :: level(:) !! 0 for all equations of the part, now and afterwards
+    integer, intent(inout) :: found(:) !! room for its equations
+    integer, intent(out) :: start
+    integer :: n_found, depth, deepest, candidate
+
+    deepest = 0
+    candidate = root
+    do
+      call walk_from(matrix, candidate, level, found, n_found)
+      depth = level(found(n_found))
+      level(found(:n_found)) = 0
+      if (depth <= deepest) exit
+      deepest = depth
+      start = candidate
+      candidate = found(n_found)
+    end do
+  end subroutine find_end
+
+  !> Breadth-first walk, the neighbours of each equation by their number of neighbours.
+  pure subroutine walk_from(matrix, start, level, found, n_found)
+    type(sparse_t), intent(in) :: matrix
+    integer, intent(in) :: start
+    integer, intent(inout) :: level(:) !! 0: not reached; else one more than steps from the start
+    integer, intent(inout) :: found(:) !! equations in the order reached
+    integer, intent(out) :: n_found
+    integer :: next, equation, i, k, n_old
+
+    found(1) = start
+    level(start) = 1
+    n_found = 1
+    next = 1
+    do while (next <= n_found)
+      equation = found(next)
+      next = next + 1
+      n_old = n_found
+      do k = matrix%first(equation), matrix%first(equation + 1) - 1
+        i = matrix%column(k)
+        if (level(i) /= 0) cycle
+        level(i) = level(equation) + 1
+        n_found = n_found + 1
+        found(n_found) = i
+      end do
+      call sort_by_degree(matrix, found(n_old + 1:n_found))
+    end do
+  end subroutine walk_from
+
+  !> Insertion sort, stable; lists are short.
+  pure subroutine sort_by_degree(matrix, equations)
+    type(sparse_t), intent(in) :: matrix
+    integer, intent(inout) :: equations(:)
+    integer :: i, j, moved
+
+    do i = 2, size(equations)
+      moved = equations(i)
+      do j = i - 1, 1, -1
+        if (degree(matrix, equations(j)) <= degree(matrix, moved)) exit
+        equations(j + 1) = equations(j)
+      end do
+      equations(j + 1) = moved
+    end do
+  end subroutine sort_by_degree
+
+  !> Entries of a row.
+  pure integer function degree(matrix, row)
+    type(sparse_t), intent(in) :: matrix
+    integer, intent(in) :: row
+
+    degree = matrix%first(row + 1) - matrix%first(row)
+  end function degree
+
+  !> Largest distance of an entry from the diagonal when the equations are ordered so.
+  pure function bandwidth(matrix, order) result(width)
+    type(sparse_t), intent(in) :: matrix
+    integer, intent(in) :: order(:) !! (n)
+    integer :: width
+    integer :: place(matrix%n), i, k
+
+    do i = 1, matrix%n
+      place(order(i)) = i
+    end do
+    width = 0
+    do i = 1, matrix%n
+      do k = matrix%first(i), matrix%first(i + 1) - 1
+        width = max(width, abs(place(matrix%column(k)) - place(i)))
+      end do
+    end do
+  end function bandwidth
+
+end module bandwidth_m

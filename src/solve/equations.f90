@@ -1,0 +1,181 @@
+! SPDX-License-Identifier: MIT
+!> Equations of the implicit driver: free degrees of freedom first, then those with a prescribed motion;
+!> fixed ones, and nodes that no element has, get none.
+module equations_m
+  use kinds_m, only : wp
+  use conditions_m, only : prescribed_motion_t, motion_velocity, motion_acceleration, &
+    motion_displacement
+  use constraints_m, only : is_active
+  use curves_m, only : curve_value, curve_integral
+  use model_m, only : model_t
+  use sparse_m, only : sparse_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: equations_t, number_equations, prescribed_increments, find_equation, move_prescribed, &
+    take_free
+
+  !> Numbering for one step.
+  type :: equations_t
+    integer :: n_free = 0
+    integer :: n = 0                        !! with the prescribed ones
+    integer, allocatable :: number(:, :)    !! (2, n_node), 0 = none
+    integer, allocatable :: motion_of(:)    !! (n - n_free) which prescribed motion
+  end type equations_t
+
+contains
+
+  !> Number the equations for a step that ends at `time`.
+  pure subroutine number_equations(model, state, time, equations)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: time
+    type(equations_t), intent(out) :: equations
+    integer :: i, k, n
+
+    allocate (equations%number(2, model%mesh%n_node), source=0)
+    do i = 1, model%mesh%n_node
+      if (state%mass(i) > 0.0_wp) equations%number(:, i) = 1
+    end do
+    do i = 1, size(model%conditions%fixed_nodes)
+      equations%number(model%conditions%fixed_directions(i), model%conditions%fixed_nodes(i)) = 0
+    end do
+    do i = 1, size(model%conditions%motions)
+      associate (prescribed => model%conditions%motions(i))
+        if (is_active(prescribed, time) .and. equations%number(prescribed%direction, &
+          prescribed%node) /= 0) equations%number(prescribed%direction, prescribed%node) = -i
+      end associate
+    end do
+    n = 0
+    do i = 1, model%mesh%n_node
+      do k = 1, 2
+        if (equations%number(k, i) <= 0) cycle
+        n = n + 1
+        equations%number(k, i) = n
+      end do
+    end do
+    equations%n_free = n
+    allocate (equations%motion_of(count(equations%number < 0)))
+    do i = 1, model%mesh%n_node
+      do k = 1, 2
+        if (equations%number(k, i) >= 0) cycle
+        n = n + 1
+        equations%motion_of(n - equations%n_free) = -equations%number(k, i)
+        equations%number(k, i) = n
+      end do
+    end do
+    equations%n = n
+  end subroutine number_equations
+
+  !> What the prescribed degrees of freedom move from `state` to `time`.
+  pure function prescribed_increments(model, state, time, equations) result(increments)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: time
+    type(equations_t), intent(in) :: equations
+    real(wp) :: increments(equations%n - equations%n_free)
+    integer :: i
+
+    do i = 1, size(increments)
+      associate (prescribed => model%conditions%motions(equations%motion_of(i)))
+        increments(i) = motion_increment(model, prescribed, state%time, time, &
+          state%motion(prescribed%direction, prescribed%node), &
+          state%motion(2 + prescribed%direction, prescribed%node))
+      end associate
+    end do
+  end function prescribed_increments
+
+  !> Displacement of one prescribed degree of freedom between two times: the integral of a velocity
+  !> curve, the distance to a displacement curve, twice the integral of an acceleration (to second order).
+  pure function motion_increment(model, prescribed, start, end_time, displacement, velocity) &
+    result(increment)
+    type(model_t), intent(in) :: model
+    type(prescribed_motion_t), intent(in) :: prescribed
+    real(wp), intent(in) :: start, end_time
+    real(wp), intent(in) :: displacement, velocity !! at the start
+    real(wp) :: increment
+
+    associate (curve => model%curves(prescribed%curve))
+      select case (prescribed%kind)
+      case (motion_velocity)
+        increment = prescribed%scale*curve_integral(curve, start, end_time)
+      case (motion_acceleration)
+        increment = (end_time - start)*(velocity + 0.5_wp*(end_time - start)*prescribed%scale &
+          *curve_value(curve, 0.5_wp*(start + end_time)))
+      case (motion_displacement)
+        increment = prescribed%scale*curve_value(curve, end_time) - displacement
+      case default
+        increment = 0.0_wp
+      end select
+    end associate
+  end function motion_increment
+
+  !> Node and direction of an equation.
+  pure subroutine find_equation(equations, number, node, direction)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: number
+    integer, intent(out) :: node, direction !! 0 when there is none
+    integer :: place(2)
+
+    place = findloc_2(equations%number, number)
+    direction = place(1)
+    node = place(2)
+  end subroutine find_equation
+
+  !> Place of a value in an array of rank 2.
+  pure function findloc_2(array, value) result(place)
+    integer, intent(in) :: array(:, :)
+    integer, intent(in) :: value
+    integer :: place(2)
+    integer :: i, k
+
+    place = 0
+    do i = 1, size(array, 2)
+      do k = 1, size(array, 1)
+        if (array(k, i) == value) place = [k, i]
+      end do
+    end do
+  end function findloc_2
+
+  !> Move prescribed columns of the collected matrix to the right-hand side: b(free) -= K(free, prescribed) *
+  !> increments. What is left in the matrix are the free rows and columns.
+  pure subroutine move_prescribed(n_free, increments, matrix, b)
+    integer, intent(in) :: n_free
+    real(wp), intent(in) :: increments(:)
+    type(sparse_t), intent(inout) :: matrix
+    real(wp), intent(inout) :: b(:) !! (n_free)
+    integer :: i, n
+
+    n = 0
+    do i = 1, matrix%n_entry
+      if (matrix%rows(i) > n_free) cycle
+      if (matrix%columns(i) > n_free) then
+        b(matrix%rows(i)) = b(matrix%rows(i)) - matrix%values(i) &
+          *increments(matrix%columns(i) - n_free)
+        cycle
+      end if
+      n = n + 1
+      matrix%rows(n) = matrix%rows(i)
+      matrix%columns(n) = matrix%columns(i)
+      matrix%values(n) = matrix%values(i)
+    end do
+    matrix%n_entry = n
+    matrix%n = n_free
+  end subroutine move_prescribed
+
+  !> The free entries of a nodal field.
+  pure function take_free(equations, field) result(vector)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: field(:, :) !! (2, n_node)
+    real(wp) :: vector(equations%n_free)
+    integer :: i, k
+
+    do i = 1, size(field, 2)
+      do k = 1, 2
+        if (equations%number(k, i) > 0 .and. equations%number(k, i) <= equations%n_free) &
+          vector(equations%number(k, i)) = field(k, i)
+      end do
+    end do
+  end function take_free
+
+end module equations_m

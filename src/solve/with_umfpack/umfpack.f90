@@ -1,0 +1,157 @@
+! SPDX-License-Identifier: MIT
+!> Sparse LU factorisation by UMFPACK (SuiteSparse), for systems too large for a band. This file is
+!> compiled where CMake finds the library; `without_umfpack` holds its counterpart.
+!>
+!> UMFPACK takes columns, sparse_t has rows: it is given the transpose and solves with that.
+module umfpack_m
+  use, intrinsic :: iso_c_binding, only : c_double, c_int, c_null_ptr, c_ptr
+  use kinds_m, only : long, wp
+  use memory_m, only : available_bytes
+  use sparse_m, only : sparse_t
+  implicit none
+  private
+  public :: umfpack_t, has_umfpack, factor_umfpack, solve_umfpack, free_umfpack
+
+  !> Whether this program holds UMFPACK.
+  logical, parameter :: has_umfpack = .true.
+
+  !> Lengths of UMFPACK's arrays of settings and of results, and the places used in them: the numbers
+  !> in umfpack.h plus one.
+  integer, parameter :: n_control = 20, n_info = 90
+  integer, parameter :: control_strategy = 6, control_refinement = 8, control_ordering = 11, &
+    control_scale = 17
+  integer, parameter :: info_factor_entries = 37, info_smallest_pivot = 72
+  !> Values of settings: pivots on the diagonal where they are good, nested dissection, rows as given.
+  real(c_double), parameter :: strategy_symmetric = 3, ordering_metis = 3, scale_none = 0
+  !> What umfpack_di_solve solves with.
+  integer(c_int), parameter :: as_given = 0, transposed_system = 1
+  integer(c_int), parameter :: status_good = 0, status_singular = 1
+  !> Bytes for each entry of the factors, measured at the peak of the factorisation.
+  real(wp), parameter :: bytes_per_entry = 14.0_wp
+
+  !> A factorised matrix. Holds memory of the C library: give it to free_umfpack in the end.
+  type :: umfpack_t
+    type(c_ptr) :: numeric = c_null_ptr            !! the factors
+    integer(c_int), allocatable :: start(:)        !! (n + 1) where each row starts, from 0
+    integer(c_int), allocatable :: index(:)        !! columns, from 0
+    real(c_double), allocatable :: entry(:)        !! entries
+    real(c_double) :: control(n_control) = 0.0_wp  !! settings
+    real(wp) :: smallest_pivot = 0.0_wp            !! absolute value
+    integer(long) :: bytes = 0                     !! memory of the factors, estimated beforehand
+  end type umfpack_t
+
+  interface
+    !> Default settings.
+    subroutine umfpack_di_defaults(control) bind(c, name='umfpack_di_defaults')
+      import :: c_double
+      real(c_double), intent(out) :: control(*)
+    end subroutine umfpack_di_defaults
+
+    !> Ordering and symbolic factorisation.
+    function umfpack_di_symbolic(n_row, n_column, start, index, entry, symbolic, control, info) &
+      result(status) bind(c, name='umfpack_di_symbolic')
+      import :: c_double, c_int, c_ptr
+      integer(c_int), value :: n_row, n_column
+      integer(c_int), intent(in) :: start(*), index(*)
+      real(c_double), intent(in) :: entry(*), control(*)
+      type(c_ptr), intent(out) :: symbolic
+      real(c_double), intent(out) :: info(*)
+      integer(c_int) :: status
+    end function umfpack_di_symbolic
+
+    !> Numerical factorisation.
+    function umfpack_di_numeric(start, index, entry, symbolic, numeric, control, info) &
+      result(status) bind(c, name='umfpack_di_numeric')
+      import :: c_double, c_int, c_ptr
+      integer(c_int), intent(in) :: start(*), index(*)
+      real(c_double), intent(in) :: entry(*), control(*)
+      type(c_ptr), value :: symbolic
+      type(c_ptr), intent(out) :: numeric
+      real(c_double), intent(inout) :: info(*)
+      integer(c_int) :: status
+    end function umfpack_di_numeric
+
+    !> Solve with the factors.
+    function umfpack_di_solve(system, start, index, entry, x, b, numeric, control, info) &
+      result(status) bind(c, name='umfpack_di_solve')
+      import :: c_double, c_int, c_ptr
+      integer(c_int), value :: system
+      integer(c_int), intent(in) :: start(*), index(*)
+      real(c_double), intent(in) :: entry(*), b(*), control(*)
+      real(c_double), intent(out) :: x(*)
+      type(c_ptr), value :: numeric
+      real(c_double), intent(inout) :: info(*)
+      integer(c_int) :: status
+    end function umfpack_di_solve
+
+    !> Give the memory of a symbolic factorisation back.
+    subroutine umfpack_di_free_symbolic(symbolic) bind(c, name='umfpack_di_free_symbolic')
+      import :: c_ptr
+      type(c_ptr), intent(inout) :: symbolic
+    end subroutine umfpack_di_free_symbolic
+
+    !> Give the memory of a numerical factorisation back.
+    subroutine umfpack_di_free_numeric(numeric) bind(c, name='umfpack_di_free_numeric')
+      import :: c_ptr
+      type(c_ptr), intent(inout) :: numeric
+    end subroutine umfpack_di_free_numeric
+  end interface
+
+contains
+
+  !> Factorise a compressed matrix with every row holding an entry. `factored` is false where memory
+  !> does not suffice; a zero pivot is no failure, but nothing may be solved with it.
+  subroutine factor_umfpack(matrix, factor, factored)
+    type(sparse_t), intent(in) :: matrix
+    type(umfpack_t), intent(inout) :: factor !! earlier factors in it are freed
+    logical, intent(out) :: factored
+    real(c_double) :: info(n_info)
+    type(c_ptr) :: symbolic
+    integer(c_int) :: status
+
+    call free_umfpack(factor)
+    factored = .false.
+    call umfpack_di_defaults(factor%control)
+    factor%control(control_strategy) = strategy_symmetric
+    factor%control(control_ordering) = ordering_metis
+    factor%control(control_scale) = scale_none
+    factor%control(control_refinement) = 0
+    factor%start = matrix%first - 1
+    factor%index = matrix%column - 1
+    factor%entry = matrix%value
+    status = umfpack_di_symbolic(matrix%n, matrix%n, factor%start, factor%index, factor%entry, &
+      symbolic, factor%control, info)
+    if (status /= status_good .and. status /= status_singular) return
+    factor%bytes = int(bytes_per_entry*info(info_factor_entries), long)
+    if (factor%bytes < available_bytes()) then
+      status = umfpack_di_numeric(factor%start, factor%index, factor%entry, symbolic, &
+        factor%numeric, factor%control, info)
+      factored = status == status_good .or. status == status_singular
+      factor%smallest_pivot = info(info_smallest_pivot)
+    end if
+    call umfpack_di_free_symbolic(symbolic)
+  end subroutine factor_umfpack
+
+  !> x := A^-1 b, or A^-T b.
+  subroutine solve_umfpack(factor, transposed, b, x)
+    type(umfpack_t), intent(in) :: factor
+    logical, intent(in) :: transposed !! solve with the transpose
+    real(wp), intent(in) :: b(:)      !! (n)
+    real(wp), intent(out) :: x(:)     !! (n)
+    real(c_double) :: info(n_info)
+    integer(c_int) :: status
+
+    status = umfpack_di_solve(merge(as_given, transposed_system, transposed), factor%start, &
+      factor%index, factor%entry, x, b, factor%numeric, factor%control, info)
+    if (status /= status_good) x = 0.0_wp
+  end subroutine solve_umfpack
+
+  !> Give the memory back.
+  subroutine free_umfpack(factor)
+    type(umfpack_t), intent(inout) :: factor
+
+    call umfpack_di_free_numeric(factor%numeric)
+    factor%numeric = c_null_ptr
+  end subroutine free_umfpack
+
+end module umfpack_m
