@@ -1,0 +1,106 @@
+! SPDX-License-Identifier: MIT
+!> All nodal forces of one instant for the implicit driver: the explicit kernels from a committed state to a
+!> trial displacement (doc/theory/implicit.md, section 1).
+module forces_m
+  use kinds_m, only : wp
+  use block_state_m, only : block_state_t
+  use clock_m, only : clock_t, lap, phase_elements, phase_contact_force, phase_nodes
+  use contact_force_m, only : evaluate_contact
+  use contact_state_m, only : contact_state_t
+  use element_dispatch_m, only : add_tile_forces
+  use element_stiffness_m, only : mass_times
+  use external_force_m, only : form_external_force, body_acceleration
+  use model_m, only : model_t
+  use node_motion_m, only : share_tile_forces, keep_tile_forces, sum_special_force
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: trial_t, start_trial, assemble_forces, is_sound
+
+  !> What a trial displacement makes of a committed state.
+  type :: trial_t
+    real(wp), allocatable :: motion(:, :)   !! (4, n_node) u, and u minus the committed u
+    type(block_state_t) :: elements
+    type(contact_state_t), allocatable :: contacts(:)
+    real(wp), allocatable :: internal(:, :) !! (2, n_node) divergence of stress
+    real(wp), allocatable :: contact(:, :)  !! (2, n_node)
+    real(wp), allocatable :: external(:, :) !! (2, n_node) loads and gravity
+    real(wp), allocatable :: slots(:, :)    !! forces of tiles on their special nodes
+  end type trial_t
+
+contains
+
+  !> A trial at the committed state.
+  subroutine start_trial(model, state, trial)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(trial_t), intent(out) :: trial
+
+    allocate (trial%motion(4, model%mesh%n_node), trial%internal(2, model%mesh%n_node), &
+      trial%contact(2, model%mesh%n_node), trial%external(2, model%mesh%n_node), source=0.0_wp)
+    allocate (trial%slots, source=state%force_slots)
+    trial%motion(1:2, :) = state%motion(1:2, :)
+  end subroutine start_trial
+
+  !> Forces at the displacement in `trial%motion(1:2)`, loads at `time`.
+  subroutine assemble_forces(model, state, time, is_first, clock, trial)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state      !! committed
+    real(wp), intent(in) :: time
+    logical, intent(in) :: is_first         !! touching counts as closed
+    type(clock_t), intent(inout) :: clock
+    type(trial_t), intent(inout) :: trial
+    real(wp) :: body(2)
+    integer :: i
+
+    trial%motion(3:4, :) = trial%motion(1:2, :) - state%motion(1:2, :)
+    call assemble_internal(model, state, trial)
+    call lap(clock, phase_elements)
+    trial%contact = 0.0_wp
+    trial%contacts = state%contacts
+    do i = 1, size(model%contacts)
+      call evaluate_contact(model%contacts(i), trial%motion, time, is_first, trial%contacts(i), &
+        trial%contact)
+    end do
+    call lap(clock, phase_contact_force)
+    trial%external = 0.0_wp
+    call form_external_force(model, trial%motion, time, trial%external)
+    if (size(model%conditions%body_loads) > 0) then
+      body = body_acceleration(model%conditions, model%curves, time)
+      trial%external = trial%external + mass_times(model, spread(body, 2, model%mesh%n_node))
+    end if
+    call lap(clock, phase_nodes)
+  end subroutine assemble_forces
+
+  !> Element forces from the committed history.
+  subroutine assemble_internal(model, state, trial)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(trial_t), intent(inout) :: trial
+    real(wp), allocatable :: force(:, :)
+    integer :: i_tile, node
+
+    trial%elements = state%elements
+    allocate (force(2, model%layout%n_local))
+    do i_tile = 1, size(model%layout%tiles)
+      associate (tile => model%layout%tiles(i_tile))
+        call add_tile_forces(model, tile, trial%motion, 1.0_wp, trial%elements, force)
+        call share_tile_forces(tile, force, trial%slots)
+        call keep_tile_forces(tile, force, trial%internal)
+      end associate
+    end do
+    do node = 1, model%layout%n_special
+      trial%internal(:, node) = sum_special_force(model%layout, trial%slots, node)
+    end do
+  end subroutine assemble_internal
+
+  !> Whether all volumes are positive and all forces finite.
+  pure function is_sound(trial) result(sound)
+    type(trial_t), intent(in) :: trial
+    logical :: sound
+
+    sound = minval(trial%elements%volume_limit) > 0.0_wp
+    if (sound) sound = sum(abs(trial%internal)) + sum(abs(trial%contact)) <= huge(1.0_wp)
+  end function is_sound
+
+end module forces_m

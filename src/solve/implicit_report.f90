@@ -1,0 +1,79 @@
+! SPDX-License-Identifier: MIT
+!> What the implicit driver writes: motion, velocity and acceleration of one instant, energies with the consistent
+!> mass.
+module implicit_report_m
+  use kinds_m, only : wp
+  use clock_m, only : lap, phase_output
+  use element_stiffness_m, only : mass_times
+  use energies_m, only : energy_ratio, total_energy
+  use equations_m, only : equations_t
+  use errors_m, only : error_t
+  use forces_m, only : trial_t
+  use health_m, only : check_energy, judge_energies
+  use model_m, only : model_t
+  use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
+  use progress_m, only : show_progress
+  use snapshot_filling_m, only : fill_energies, fill_parts, fill_interfaces, fill_plot
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: report_step, reactions_work
+
+contains
+
+  !> Write what is due.
+  subroutine report_step(model, state, trial, last, monitor, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(trial_t), intent(in) :: trial
+    logical, intent(in) :: last
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+    type(due_t) :: due
+
+    due = find_due(monitor, state%time, state%dt, state%cycle == 0 .or. last)
+    if (.not. (any_due(due) .or. state%cycle == 0 .or. last)) return
+    associate (shot => monitor%snapshot)
+      shot%time = state%time
+      shot%cycle = state%cycle
+      shot%dt = state%dt
+      shot%displacement = state%motion(1:2, :)
+      shot%velocity = state%motion(3:4, :)
+      shot%acceleration = state%acceleration
+      call fill_energies(model, state, shot)
+      shot%energies%kinetic = 0.5_wp*sum(shot%velocity*mass_times(model, shot%velocity))
+      if (state%cycle == 0) then
+        state%initial_energy = total_energy(shot%energies)
+        shot%energies%initial = state%initial_energy
+      end if
+      if (due%matsum) call fill_parts(model, shot)
+      if (due%rcforc) call fill_interfaces(model, state, shot)
+      if (due%plot) call fill_plot(model, state, shot)
+      call write_due(model, due, state%dt, monitor, error)
+      if (due%plot) call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, &
+        state%dt, energy_ratio(shot%energies), 'write vtkhdf state')
+      if (.not. allocated(error)) call check_energy(model%controls, shot%energies, error)
+      if (last .and. .not. allocated(error)) call judge_energies(shot%energies, monitor%log)
+    end associate
+    call lap(monitor%clock, phase_output)
+  end subroutine report_step
+
+  !> Work of the forces that hold prescribed degrees of freedom to their curves, trapezoidal rule.
+  function reactions_work(model, equations, state, before, after, acceleration) result(work)
+    type(model_t), intent(in) :: model
+    type(equations_t), intent(in) :: equations
+    type(state_t), intent(in) :: state                    !! at the start of the step
+    type(trial_t), intent(in) :: before, after
+    real(wp), intent(in), optional :: acceleration(:, :)  !! a(n+1); absent: static
+    real(wp) :: work
+    real(wp), allocatable :: reaction(:, :)
+
+    work = 0.0_wp
+    if (equations%n == equations%n_free) return
+    reaction = (before%internal - before%contact - before%external) &
+      + (after%internal - after%contact - after%external)
+    if (present(acceleration)) reaction = reaction + mass_times(model, acceleration + state%acceleration)
+    work = 0.5_wp*sum(reaction*after%motion(3:4, :), equations%number > equations%n_free)
+  end function reactions_work
+
+end module implicit_report_m

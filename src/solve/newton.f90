@@ -1,0 +1,233 @@
+! SPDX-License-Identifier: MIT
+!> One step of the implicit method: equilibrium at its end by Newton's method with line search
+!> (doc/theory/implicit.md, section 3).
+module newton_m
+  use kinds_m, only : wp
+  use clock_m, only : clock_t, lap, phase_solver
+  use controls_m, only : implicit_t
+  use equations_m, only : equations_t, take_free, move_prescribed
+  use forces_m, only : trial_t, assemble_forces, is_sound
+  use linear_solver_m, only : report_t, solve_linear
+  use log_m, only : log_t, write_log, to_text
+  use model_m, only : model_t
+  use sparse_m, only : sparse_t, compress_matrix
+  use state_m, only : state_t
+  use tangent_m, only : step_t, assemble_tangent, assemble_residual
+  implicit none
+  private
+  public :: outcome_t, find_equilibrium
+
+  !> Halvings of an iteration that leaves the range of sound elements, and steps of a line search.
+  integer, parameter :: most_halvings = 8, most_searches = 6
+  !> How far above the estimate of the round-off in the residual it counts as reached.
+  real(wp), parameter :: floor_margin = 4.0_wp
+
+  !> How a step ended.
+  type :: outcome_t
+    logical :: converged = .false.
+    integer :: iterations = 0
+    integer :: singular_equation = 0       !! free motion found, 0 = none
+    character(:), allocatable :: reason    !! why it did not converge
+  end type outcome_t
+
+  !> Measures of one iteration.
+  type :: measure_t
+    real(wp) :: energy = 0.0_wp   !! |dU.R|
+    real(wp) :: residual = 0.0_wp !! norm of R
+    real(wp) :: floor = 0.0_wp    !! round-off in it
+    real(wp) :: step = 0.0_wp     !! norm of dU
+    real(wp) :: factor = 1.0_wp   !! of the line search
+  end type measure_t
+
+contains
+
+  !> Iterate from the committed state to equilibrium at `step%time`; `trial` is that state when converged.
+  subroutine find_equilibrium(model, state, step, equations, increments, log, clock, trial, outcome)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: increments(:) !! of the prescribed degrees of freedom
+    type(log_t), intent(inout) :: log
+    type(clock_t), intent(inout) :: clock
+    type(trial_t), intent(inout) :: trial
+    type(outcome_t), intent(out) :: outcome
+    type(sparse_t) :: matrix
+    type(measure_t) :: first, now
+    real(wp), allocatable :: b(:), x(:), moved(:)
+    type(report_t) :: report
+    integer :: iteration
+
+    moved = increments
+    allocate (x(equations%n_free))
+    trial%motion(1:2, :) = state%motion(1:2, :)
+    call assemble_forces(model, state, step%time, .true., clock, trial)
+    do iteration = 1, model%controls%implicit%max_iteration
+      outcome%iterations = iteration
+      b = -take_free(equations, assemble_residual(model, state, step, trial))
+      call assemble_tangent(model, state, step, equations, trial, matrix)
+      call move_prescribed(equations%n_free, moved, matrix, b)
+      call compress_matrix(matrix)
+      call solve_linear(matrix, b, x, report)
+      call lap(clock, phase_solver)
+      if (.not. is_solved(report, outcome)) return
+      now%energy = abs(dot_product(x, b))
+      now%step = norm2(x)
+      call move_nodes(model, state, step, equations, x, moved, log, clock, trial, now, outcome)
+      if (allocated(outcome%reason)) return
+      moved = 0.0_wp
+      call measure_residual(model, state, step, equations, trial, matrix, now)
+      if (iteration == 1) first = now
+      call write_log(log, iteration_line(step, iteration, first, now, report))
+      outcome%converged = is_converged(model%controls%implicit, first, now, &
+        norm2(trial%motion(3:4, :)))
+      if (outcome%converged) return
+    end do
+    outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations'
+  end subroutine find_equilibrium
+
+  !> Whether the linear system had a solution.
+  pure function is_solved(report, outcome) result(solved)
+    type(report_t), intent(in) :: report
+    type(outcome_t), intent(inout) :: outcome
+    logical :: solved
+
+    solved = .false.
+    if (report%is_singular) outcome%singular_equation = report%equation
+    if (report%is_solved) then
+      solved = .true.
+    else
+      outcome%reason = report%message
+    end if
+  end function is_solved
+
+  !> Move the trial by `x`, shortened where elements would turn inside out or where the residual along x would not
+  !> fall; prescribed degrees of freedom by all of `moved`.
+  subroutine move_nodes(model, state, step, equations, x, moved, log, clock, trial, now, outcome)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: x(:), moved(:)
+    type(log_t), intent(inout) :: log
+    type(clock_t), intent(inout) :: clock
+    type(trial_t), intent(inout) :: trial
+    type(measure_t), intent(inout) :: now
+    type(outcome_t), intent(inout) :: outcome
+    real(wp), allocatable :: start(:, :)
+    real(wp) :: slope, low, high, slope_low, slope_high
+    logical :: is_straight
+    integer :: i
+
+    start = trial%motion(1:2, :)
+    now%factor = 1.0_wp
+    is_straight = .not. any(abs(moved) > 0.0_wp)
+    do i = 1, most_halvings
+      call put_nodes(now%factor)
+      if (is_sound(trial)) exit
+      if (i == most_halvings .or. .not. is_straight) then
+        outcome%reason = 'an element has turned inside out'
+        return
+      end if
+      now%factor = 0.5_wp*now%factor
+    end do
+    if (.not. is_straight) return
+    low = 0.0_wp
+    slope_low = -now%energy
+    high = now%factor
+    slope_high = slope_at()
+    do i = 1, most_searches
+      slope = slope_high
+      if (abs(slope) <= model%controls%implicit%search_tolerance*now%energy) exit
+      if (slope < 0.0_wp) exit
+      now%factor = max(low + 0.1_wp*(high - low), low - slope_low*(high - low)/(slope_high - slope_low))
+      call put_nodes(now%factor)
+      high = now%factor
+      slope_high = slope_at()
+    end do
+
+  contains
+
+    !> The trial at a part of the way.
+    subroutine put_nodes(factor)
+      real(wp), intent(in) :: factor
+      integer :: j, k, n
+
+      do j = 1, size(start, 2)
+        do k = 1, 2
+          n = equations%number(k, j)
+          if (n == 0) cycle
+          if (n <= equations%n_free) then
+            trial%motion(k, j) = start(k, j) + factor*x(n)
+          else
+            trial%motion(k, j) = start(k, j) + moved(n - equations%n_free)
+          end if
+        end do
+      end do
+      call assemble_forces(model, state, step%time, .false., clock, trial)
+    end subroutine put_nodes
+
+    !> dU.R at the trial; below zero while the way leads down.
+    function slope_at() result(slope)
+      real(wp) :: slope
+
+      slope = dot_product(x, take_free(equations, assemble_residual(model, state, step, trial)))
+    end function slope_at
+
+  end subroutine move_nodes
+
+  !> Norm of the residual and of the round-off that it must hold: that of forces, and of displacements times stiffness.
+  subroutine measure_residual(model, state, step, equations, trial, matrix, now)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(equations_t), intent(in) :: equations
+    type(trial_t), intent(in) :: trial
+    type(sparse_t), intent(in) :: matrix
+    type(measure_t), intent(inout) :: now
+    real(wp) :: u(equations%n_free), total(equations%n_free)
+    integer :: i, k
+
+    now%residual = norm2(take_free(equations, assemble_residual(model, state, step, trial)))
+    u = abs(take_free(equations, trial%motion(1:2, :)))
+    total = take_free(equations, abs(trial%internal) + abs(trial%contact) + abs(trial%external))
+    do i = 1, matrix%n
+      do k = matrix%first(i), matrix%first(i + 1) - 1
+        total(i) = total(i) + abs(matrix%value(k))*u(matrix%column(k))
+      end do
+    end do
+    now%floor = epsilon(1.0_wp)*norm2(total)
+  end subroutine measure_residual
+
+  !> The seed's energy criterion or the round-off floor of the residual; the other criteria where the deck sets them.
+  pure function is_converged(implicit, first, now, step) result(converged)
+    type(implicit_t), intent(in) :: implicit
+    type(measure_t), intent(in) :: first, now
+    real(wp), intent(in) :: step !! norm of the displacement of the whole step
+    logical :: converged
+
+    converged = now%residual <= floor_margin*now%floor
+    if (converged) return
+    converged = now%energy <= implicit%energy_tolerance*first%energy .or. implicit%is_linear
+    if (implicit%step_tolerance > 0.0_wp) converged = converged .and. now%step &
+      <= implicit%step_tolerance*step
+    if (implicit%residual_tolerance > 0.0_wp) converged = converged .and. now%residual &
+      <= implicit%residual_tolerance*first%residual
+  end function is_converged
+
+  !> One line of the account.
+  function iteration_line(step, iteration, first, now, report) result(line)
+    type(step_t), intent(in) :: step
+    integer, intent(in) :: iteration
+    type(measure_t), intent(in) :: first, now
+    type(report_t), intent(in) :: report
+    character(:), allocatable :: line
+
+    line = 'step to '//to_text(step%time)//' iteration '//to_text(iteration)//': energy ratio ' &
+      //to_text(now%energy/max(first%energy, tiny(1.0_wp)))//', |R| '//to_text(now%residual) &
+      //' (round-off '//to_text(now%floor)//'), |dU| '//to_text(now%step)//', factor ' &
+      //to_text(now%factor)//', '//report%method//', residual of the solution ' &
+      //to_text(report%residual)
+  end function iteration_line
+
+end module newton_m
