@@ -3,7 +3,6 @@
 module deck_echo_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
-  use parts_m, only : hourglass_stiffness
   use controls_m, only : interval_t
   use curves_m, only : curve_is_constant
   use model_m, only : model_t
@@ -13,7 +12,7 @@ module deck_echo_m
 
 contains
 
-  !> Parts, materials, controls and conditions (the contact layer tells its interfaces itself).
+  !> Parts, materials, controls and conditions (elements and interfaces are told by their layers).
   subroutine echo_model(model, path, log)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: path
@@ -81,17 +80,12 @@ contains
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
     type(log_t), intent(inout) :: log
-    character(:), allocatable :: form
 
     associate (part => model%parts(i))
-      form = 'viscous'
-      if (part%hourglass%form == hourglass_stiffness) form = 'stiffness'
       call write_log(log, 'part '//to_text(part%id)//' "'//part%title//'": ' &
         //to_text(count(model%mesh%element_part == i))//' elements, section ' &
         //to_text(model%sections(part%section)%id)//', material ' &
-        //to_text(model%materials(part%material)%id)//', '//form//' hourglass control ' &
-        //to_text(part%hourglass%coefficient)//', bulk viscosity Q1 ' &
-        //to_text(part%hourglass%quadratic)//' Q2 '//to_text(part%hourglass%linear))
+        //to_text(model%materials(part%material)%id))
     end associate
   end subroutine echo_part
 

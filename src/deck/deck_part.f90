@@ -4,7 +4,8 @@ module deck_part_m
   use kinds_m, only : wp
   use text_m, only : read_integer, number_good
   use log_m, only : to_text
-  use parts_m, only : section_t, hourglass_t, hourglass_viscous, hourglass_stiffness
+  use parts_m, only : section_t, hourglass_t, hourglass_viscous, hourglass_stiffness, &
+    form_one_point, form_full
   use deck_lines_m, only : deck_t, line_text, line_error, line_warning, flag_blank
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
@@ -94,6 +95,7 @@ contains
       call next_card(deck, parameters, cursor, 1, card)
       call check_section(deck, cursor, card)
       section%id = card%i(1)
+      section%element_form = merge(form_full, form_one_point, card%i(4) == 4)
       if (card%bad(1)) then
         raw%lost%sections = .true.
       else
@@ -127,14 +129,11 @@ contains
         'is not an element form for the plane; 13 (plane strain) is what this version has')
     end select
     select case (card%i(4))
-    case (0:2)
+    case (0:2, 4)
       continue
-    case (4)
-      call report_field(deck, cursor, card, 4, 'asks for fully integrated elements; they belong ' &
-        //'to the implicit solver, which this version does not have; leave it blank (one point)')
     case default
-      call report_field(deck, cursor, card, 4, 'is not a number of points; leave it blank (one ' &
-        //'point)')
+      call report_field(deck, cursor, card, 4, 'is not a number of points (0, 1, 2 or blank: one ' &
+        //'point; 4: two by two, full integration)')
     end select
   end subroutine check_section
 

@@ -6,13 +6,27 @@ module element_dispatch_m
   use element_chunk_m, only : element_chunk_t, scatter_chunk
   use layout_m, only : chunk_size, tile_t
   use model_m, only : model_t
-  use parts_m, only : form_one_point
+  use parts_m, only : section_t, form_one_point, form_full
+  use quad_full_m, only : advance_full
   use quad_one_point_m, only : advance_one_point
   implicit none
   private
-  public :: add_tile_forces
+  public :: add_tile_forces, point_count
 
 contains
+
+  !> Integration points of an element of this section.
+  pure function point_count(section) result(n)
+    type(section_t), intent(in) :: section
+    integer :: n
+
+    select case (section%element_form)
+    case (form_full)
+      n = 4
+    case default
+      n = 1
+    end select
+  end function point_count
 
   !> Advance all elements of one tile by the step `dt` that led here and sum their internal forces on the tile's
   !> local nodes.
@@ -35,8 +49,11 @@ contains
           call advance_one_point(i_chunk, model%layout%slot_nodes(1, first), motion, &
             model%materials(part%material), part%hourglass, model%controls%length_rule, dt, &
             elements, chunk)
-          call scatter_chunk(model%layout%slot_local(1, first), chunk, force)
+        case (form_full)
+          call advance_full(i_chunk, model%layout%slot_nodes(1, first), motion, &
+            model%materials(part%material), part%hourglass, dt, elements, chunk)
         end select
+        call scatter_chunk(model%layout%slot_local(1, first), chunk, force)
       end associate
     end do
   end subroutine add_tile_forces

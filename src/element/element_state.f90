@@ -3,15 +3,18 @@
 module element_state_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
+  use element_dispatch_m, only : point_count
   use layout_m, only : chunk_size
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
   use parts_m, only : hourglass_stiffness
+  use quad_full_m, only : has_mean_dilatation
+  use quad_points_m, only : n_point, point_ratios
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
   public :: start_elements, lump_mass, element_stresses, element_plastic_strains, &
-    add_part_energies
+    add_part_energies, smallest_ratio
 
 contains
 
@@ -54,28 +57,35 @@ contains
     reference(i_slot, 5:6) = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
   end subroutine fill_reference
 
-  !> Where each chunk's history and hourglass memory start.
+  !> Where each chunk's points, history and hourglass memory start.
   subroutine reserve_memories(model, elements)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(inout) :: elements
-    integer :: i_chunk, n_history, n_hourglass, n
+    integer :: i_chunk, n_history, n_hourglass, n_deviator, n_points, n
 
     allocate (elements%history_start(model%layout%n_chunk), &
-      elements%hourglass_start(model%layout%n_chunk), source=0)
+      elements%hourglass_start(model%layout%n_chunk), &
+      elements%point_start(model%layout%n_chunk), source=0)
+    n_deviator = 0
     n_history = 0
     n_hourglass = 0
     do i_chunk = 1, model%layout%n_chunk
       associate (part => model%parts(model%layout%chunk_part(i_chunk)))
-        n = history_size(model%materials(part%material))
+        n_points = point_count(model%sections(part%section))
+        n = n_points*history_size(model%materials(part%material))
         if (n > 0) elements%history_start(i_chunk) = n_history + 1
         n_history = n_history + n*chunk_size
-        if (part%hourglass%form == hourglass_stiffness) then
+        if (n_points > 1) then
+          elements%point_start(i_chunk) = n_deviator + 1
+          n_deviator = n_deviator + 3*n_points*chunk_size
+        else if (part%hourglass%form == hourglass_stiffness) then
           elements%hourglass_start(i_chunk) = n_hourglass + 1
           n_hourglass = n_hourglass + 2*chunk_size
         end if
       end associate
     end do
-    allocate (elements%history(n_history), elements%hourglass_strain(n_hourglass), source=0.0_wp)
+    allocate (elements%history(n_history), elements%hourglass_strain(n_hourglass), &
+      elements%point_deviator(n_deviator), source=0.0_wp)
   end subroutine reserve_memories
 
   !> Lumped mass: a quarter of each quad, a third of each triangle to its nodes.
@@ -98,19 +108,23 @@ contains
     end do
   end subroutine lump_mass
 
-  !> Cauchy stress of all elements in deck order: xx yy zz xy (yz and xz stay zero in plane strain).
+  !> Cauchy stress of all elements in deck order: xx yy zz xy (yz and xz stay zero in plane strain); the mean
+  !> over the present volume where an element has several points.
   subroutine element_stresses(model, motion, elements, stress)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout) :: stress(:, :) !! (6, n_element)
-    real(wp) :: volumetric
-    integer :: i, slot
+    real(wp) :: volumetric, stretch(n_point), start(n_point)
+    integer :: i, n, slot
 
     do i = 1, model%mesh%n_element
       slot = model%layout%element_slot(i)
-      volumetric = model%materials(model%parts(model%mesh%element_part(i))%material)%bulk &
-        *log_ratio(slot_stretch(model, motion, elements, slot))
+      call volume_ratios(model, motion, elements, slot, n, stretch, start)
+      associate (bulk => model%materials(model%parts(model%mesh%element_part(i))%material)%bulk, &
+        volume => start(:n)*(1.0_wp + stretch(:n)))
+        volumetric = bulk*(sum(volume*log_ratio(stretch(:n)))/sum(volume))
+      end associate
       stress(1, i) = elements%deviator(slot, 1) + volumetric
       stress(2, i) = elements%deviator(slot, 2) + volumetric
       stress(3, i) = volumetric - (elements%deviator(slot, 1) + elements%deviator(slot, 2))
@@ -118,39 +132,82 @@ contains
     end do
   end subroutine element_stresses
 
-  !> Effective plastic strain of all elements in deck order, 0 in elastic parts.
+  !> Effective plastic strain of all elements in deck order, 0 in elastic parts; the mean over the initial
+  !> volume where an element has several points.
   subroutine element_plastic_strains(model, elements, plastic_strain)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout) :: plastic_strain(:) !! (n_element)
-    integer :: i, slot, i_chunk
+    real(wp) :: stretch(n_point), start(n_point)
+    integer :: i, k, slot, i_chunk, first, stride
 
     plastic_strain = 0.0_wp
     do i = 1, model%mesh%n_element
       slot = model%layout%element_slot(i)
       i_chunk = (slot - 1)/chunk_size + 1
       if (elements%history_start(i_chunk) == 0) cycle
-      plastic_strain(i) = elements%history(elements%history_start(i_chunk) &
-        + mod(slot - 1, chunk_size))
+      first = elements%history_start(i_chunk) + mod(slot - 1, chunk_size)
+      if (elements%point_start(i_chunk) == 0) then
+        plastic_strain(i) = elements%history(first)
+      else
+        call point_ratios(elements%reference(slot, :), spread([0.0_wp, 0.0_wp], 2, 4), stretch, start)
+        stride = chunk_size*history_size(model%materials(model%parts(model%mesh%element_part(i)) &
+          %material))
+        plastic_strain(i) = sum([(start(k)*elements%history(first + (k - 1)*stride), &
+          k = 1, n_point)])/sum(start)
+      end if
     end do
   end subroutine element_plastic_strains
 
-  !> J - 1 of the element in a slot.
-  pure function slot_stretch(model, motion, elements, slot) result(stretch)
+  !> J - 1 where the volumetric stress of the element in a slot is formed: once for the element, or at
+  !> each of its points, and the initial area that each stands for.
+  pure subroutine volume_ratios(model, motion, elements, slot, n, stretch, start)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
-    real(wp) :: stretch
+    integer, intent(out) :: n                                !! how many
+    real(wp), intent(out) :: stretch(n_point), start(n_point)
+    integer :: i_chunk
     real(wp) :: d31(2), d42(2)
 
-    associate (nodes => model%layout%slot_nodes(:, slot), r => elements%reference(slot, :))
-      d31 = motion(1:2, nodes(3)) - motion(1:2, nodes(1))
-      d42 = motion(1:2, nodes(4)) - motion(1:2, nodes(2))
-      stretch = ((r(1)*d42(2) + d31(1)*(r(4) + d42(2))) - (r(3)*d31(2) + d42(1)*(r(2) + d31(2)))) &
-        /(r(1)*r(4) - r(3)*r(2))
+    i_chunk = (slot - 1)/chunk_size + 1
+    stretch = 0.0_wp
+    start = 0.0_wp
+    associate (nodes => model%layout%slot_nodes(:, slot), r => elements%reference(slot, :), &
+      material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+      n = 1
+      if (elements%point_start(i_chunk) > 0 .and. .not. has_mean_dilatation(material)) n = n_point
+      if (n > 1) then
+        call point_ratios(r, motion(1:2, nodes), stretch, start)
+      else
+        d31 = motion(1:2, nodes(3)) - motion(1:2, nodes(1))
+        d42 = motion(1:2, nodes(4)) - motion(1:2, nodes(2))
+        start(1) = 0.5_wp*(r(1)*r(4) - r(3)*r(2))
+        stretch(1) = 0.5_wp*((r(1)*d42(2) + d31(1)*(r(4) + d42(2))) &
+          - (r(3)*d31(2) + d42(1)*(r(2) + d31(2))))/start(1)
+      end if
     end associate
-  end function slot_stretch
+  end subroutine volume_ratios
+
+  !> Smallest J of the element in a slot: of the element, and of its points where it has several.
+  pure function smallest_ratio(model, motion, elements, slot) result(smallest)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: motion(:, :)
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: slot
+    real(wp) :: smallest
+    real(wp) :: stretch(n_point), start(n_point)
+    integer :: n
+
+    call volume_ratios(model, motion, elements, slot, n, stretch, start)
+    if (elements%point_start((slot - 1)/chunk_size + 1) > 0) then
+      n = n_point
+      call point_ratios(elements%reference(slot, :), motion(1:2, model%layout%slot_nodes(:, slot)), &
+        stretch, start)
+    end if
+    smallest = 1.0_wp + minval(stretch(:n))
+  end function smallest_ratio
 
   !> Energies per part. The volumetric part of the internal energy is a potential and is evaluated
   !> here; only the work of the deviator is accumulated in the step.
@@ -159,7 +216,8 @@ contains
     real(wp), intent(in) :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout), dimension(:) :: internal, hourglass, viscous !! (n_part)
-    integer :: i_chunk, part, slot
+    real(wp) :: stretch(n_point), start(n_point)
+    integer :: i_chunk, n, part, slot
 
     do i_chunk = 1, model%layout%n_chunk
       part = model%layout%chunk_part(i_chunk)
@@ -168,11 +226,9 @@ contains
       viscous(part) = viscous(part) + elements%viscous_work(i_chunk)
       do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
         if (model%layout%slot_element(slot) == 0) cycle
-        associate (r => elements%reference(slot, :))
-          internal(part) = internal(part) + 0.5_wp*(r(1)*r(4) - r(3)*r(2)) &
-            *volumetric_energy(model%materials(model%parts(part)%material)%bulk, &
-            slot_stretch(model, motion, elements, slot))
-        end associate
+        call volume_ratios(model, motion, elements, slot, n, stretch, start)
+        internal(part) = internal(part) + sum(start(:n) &
+          *volumetric_energy(model%materials(model%parts(part)%material)%bulk, stretch(:n)))
       end do
     end do
   end subroutine add_part_energies

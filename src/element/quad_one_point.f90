@@ -11,7 +11,7 @@ module quad_one_point_m
   use material_dispatch_m, only : update_stress
   use parts_m, only : hourglass_t, material_t, hourglass_viscous
   use quad_kinematics_m, only : form_present_shape, form_increments, form_forces
-  use stress_chunk_m, only : stress_chunk_t
+  use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use volumetric_m, only : volumetric_stress
   implicit none
   private
@@ -84,47 +84,5 @@ contains
     end if
     elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
   end subroutine resist
-
-  !> Deviator of a chunk out of its streams.
-  pure subroutine load_deviator(stream, stride, stress)
-    integer, intent(in) :: stride
-    real(wp), intent(in) :: stream(stride, *)
-    type(stress_chunk_t), intent(inout) :: stress
-    integer :: i
-
-    do i = 1, chunk_size
-      stress%sxx(i) = stream(i, 1)
-      stress%syy(i) = stream(i, 2)
-      stress%sxy(i) = stream(i, 3)
-    end do
-  end subroutine load_deviator
-
-  !> Deviator of a chunk into its streams.
-  pure subroutine store_deviator(stress, stride, stream)
-    type(stress_chunk_t), intent(in) :: stress
-    integer, intent(in) :: stride
-    real(wp), intent(inout) :: stream(stride, *)
-    integer :: i
-
-    do i = 1, chunk_size
-      stream(i, 1) = stress%sxx(i)
-      stream(i, 2) = stress%syy(i)
-      stream(i, 3) = stress%sxy(i)
-    end do
-  end subroutine store_deviator
-
-  !> Work of the deviator over a chunk; padding has no strain and adds nothing.
-  pure function work_of_deviator(density, area) result(work)
-    real(wp), intent(in) :: density(chunk_size) !! per volume
-    real(wp), intent(in) :: area(chunk_size)    !! mid-step
-    real(wp) :: work
-    integer :: i
-
-    work = 0.0_wp
-    !$omp simd reduction(+ : work)
-    do i = 1, chunk_size
-      work = work + density(i)*area(i)
-    end do
-  end function work_of_deviator
 
 end module quad_one_point_m

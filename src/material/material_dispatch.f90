@@ -5,11 +5,12 @@ module material_dispatch_m
   use layout_m, only : chunk_size
   use parts_m, only : material_t, law_elastic, law_plastic
   use stress_chunk_m, only : stress_chunk_t
-  use material_elastic_m, only : update_elastic
-  use material_j2_m, only : update_j2_isotropic, update_j2_mixed
+  use stress_point_m, only : stress_point_t
+  use material_elastic_m, only : update_elastic, tangent_elastic
+  use material_j2_m, only : update_j2_isotropic, update_j2_mixed, tangent_j2
   implicit none
   private
-  public :: update_stress, history_size
+  public :: update_stress, form_tangent, history_size
 
 contains
 
@@ -46,6 +47,19 @@ contains
       end if
     end select
   end subroutine update_stress
+
+  !> Deviator at the end of a step and its derivative, at one point.
+  pure subroutine form_tangent(material, point)
+    type(material_t), intent(in) :: material
+    type(stress_point_t), intent(inout) :: point !! back stress 0 for a law without
+
+    select case (material%law)
+    case (law_elastic)
+      call tangent_elastic(material%shear, point)
+    case (law_plastic)
+      call tangent_j2(material, point)
+    end select
+  end subroutine form_tangent
 
   !> Isotropic or perfect plasticity moves no yield surface.
   pure function has_no_back_stress(material) result(none)

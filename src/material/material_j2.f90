@@ -8,9 +8,10 @@ module material_j2_m
   use layout_m, only : chunk_size
   use parts_m, only : material_t
   use stress_chunk_m, only : stress_chunk_t, rotate_deviator
+  use stress_point_m, only : stress_point_t, turn, turn_rate
   implicit none
   private
-  public :: update_j2_isotropic, update_j2_mixed
+  public :: update_j2_isotropic, update_j2_mixed, tangent_j2
 
 contains
 
@@ -87,5 +88,37 @@ contains
         + 2.0_wp*chunk%sxy(i)*exy)
     end do
   end subroutine update_j2_mixed
+
+  !> The same at one point, with its derivative: xi* = Q s Q^T + 2G dev(e) - Q alpha Q^T is scaled by
+  !> f = 1 - 3G/(3G + E_p) (1 - R/xi_v), R = sigma_Y + beta E_p eps_p, d(xi_v) = 3 (3 m, h, q).d(xi*)/xi_v.
+  pure subroutine tangent_j2(material, point)
+    type(material_t), intent(in) :: material
+    type(stress_point_t), intent(inout) :: point !! `stress` and `tangent` out
+    real(wp) :: turned(3), back(3), moduli(3), xi(3), ratio, radius, mises, factor, slope, scaling(3, 3)
+    integer :: i
+
+    moduli = 2.0_wp*material%shear*[1.0_wp/3.0_wp, 1.0_wp, 1.0_wp]
+    turned = turn(point, point%old)
+    back = turn(point, point%back)
+    xi = turned + moduli*point%strain - back
+    mises = sqrt(3.0_wp*(3.0_wp*xi(1)**2 + xi(2)**2 + xi(3)**2))
+    radius = material%yield + material%beta*material%hardening*point%plastic_strain
+    factor = 1.0_wp
+    scaling = 0.0_wp
+    if (mises > radius) then
+      ratio = 3.0_wp*material%shear/(3.0_wp*material%shear + material%hardening)
+      factor = 1.0_wp - ratio*(1.0_wp - radius/mises)
+      slope = -3.0_wp*ratio*radius/mises**3
+      scaling(:, 1) = 3.0_wp*slope*xi(1)*xi
+      scaling(:, 2) = slope*xi(2)*xi
+      scaling(:, 3) = slope*xi(3)*xi
+    end if
+    do i = 1, 3
+      scaling(i, i) = scaling(i, i) + factor
+      point%tangent(:, i) = scaling(:, i)*moduli(i)
+    end do
+    point%stress = factor*xi + back
+    point%tangent(:, 4) = matmul(scaling, turn_rate(turned - back)) + turn_rate(back)
+  end subroutine tangent_j2
 
 end module material_j2_m

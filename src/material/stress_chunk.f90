@@ -5,7 +5,7 @@ module stress_chunk_m
   use layout_m, only : chunk_size
   implicit none
   private
-  public :: stress_chunk_t, rotate_deviator
+  public :: stress_chunk_t, rotate_deviator, load_deviator, store_deviator, work_of_deviator
 
   !> Strain increments of the step in the mid-step geometry, and the deviatoric stress.
   type :: stress_chunk_t
@@ -38,5 +38,47 @@ contains
       yy(i) = mean - half
     end do
   end subroutine rotate_deviator
+
+  !> Deviator of a chunk out of its streams.
+  pure subroutine load_deviator(stream, stride, stress)
+    integer, intent(in) :: stride
+    real(wp), intent(in) :: stream(stride, *)
+    type(stress_chunk_t), intent(inout) :: stress
+    integer :: i
+
+    do i = 1, chunk_size
+      stress%sxx(i) = stream(i, 1)
+      stress%syy(i) = stream(i, 2)
+      stress%sxy(i) = stream(i, 3)
+    end do
+  end subroutine load_deviator
+
+  !> Deviator of a chunk into its streams.
+  pure subroutine store_deviator(stress, stride, stream)
+    type(stress_chunk_t), intent(in) :: stress
+    integer, intent(in) :: stride
+    real(wp), intent(inout) :: stream(stride, *)
+    integer :: i
+
+    do i = 1, chunk_size
+      stream(i, 1) = stress%sxx(i)
+      stream(i, 2) = stress%syy(i)
+      stream(i, 3) = stress%sxy(i)
+    end do
+  end subroutine store_deviator
+
+  !> Work of the deviator over a chunk; padding has no strain and adds nothing.
+  pure function work_of_deviator(density, area) result(work)
+    real(wp), intent(in) :: density(chunk_size) !! per volume
+    real(wp), intent(in) :: area(chunk_size)    !! mid-step
+    real(wp) :: work
+    integer :: i
+
+    work = 0.0_wp
+    !$omp simd reduction(+ : work)
+    do i = 1, chunk_size
+      work = work + density(i)*area(i)
+    end do
+  end function work_of_deviator
 
 end module stress_chunk_m

@@ -5,11 +5,11 @@ module parts_m
   implicit none
   private
   public :: part_t, section_t, material_t, hourglass_t, find_id, &
-    form_one_point, law_elastic, law_plastic, &
+    form_one_point, form_full, law_elastic, law_plastic, &
     hourglass_viscous, hourglass_stiffness
 
   !> Element forms. Only the element dispatcher asks for them.
-  integer, parameter :: form_one_point = 1
+  integer, parameter :: form_one_point = 1, form_full = 2
   !> Material laws. Only the material dispatcher asks for them.
   integer, parameter :: law_elastic = 1, law_plastic = 2
   !> Hourglass control: viscous (IHQ 1 to 3 and blank) or stiffness (IHQ 4 and 5).

@@ -3,6 +3,7 @@
 module health_m
   use controls_m, only : controls_t
   use energies_m, only : energies_t, energy_ratio, total_energy
+  use element_state_m, only : smallest_ratio
   use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
@@ -36,25 +37,21 @@ contains
     type(state_t), intent(in) :: state
     type(error_t), allocatable, intent(out) :: error
     integer :: slot, element
-    real(wp) :: x(2, 4), area
+    real(wp) :: ratio
 
     do slot = 1, model%layout%n_slot
       element = model%layout%slot_element(slot)
-      if (element == 0 .or. all(abs(state%elements%deviator(slot, :)) <= huge(area))) cycle
+      if (element == 0 .or. all(abs(state%elements%deviator(slot, :)) <= huge(ratio))) cycle
       call blame(model, state, element, 'values that are not finite', error)
       return
     end do
     do slot = 1, model%layout%n_slot
       element = model%layout%slot_element(slot)
       if (element == 0) cycle
-      associate (nodes => model%mesh%element_nodes(:, element))
-        x = model%mesh%coordinates(:, nodes) + state%motion(1:2, nodes)
-      end associate
-      area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
-        - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
-      if (area > 0.0_wp .and. area <= huge(area)) cycle
+      ratio = smallest_ratio(model, state%motion, state%elements, slot)
+      if (ratio > 0.0_wp .and. ratio <= huge(ratio)) cycle
       call blame(model, state, element, merge('negative area             ', &
-        'values that are not finite', area <= 0.0_wp), error)
+        'values that are not finite', ratio <= 0.0_wp), error)
       return
     end do
     call raise(error, 'negative area or values that are not finite at cycle ' &

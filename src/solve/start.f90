@@ -4,6 +4,7 @@ module start_m
   use kinds_m, only : wp
   use constraints_m, only : fix_nodes, update_activity
   use contact_force_m, only : start_contact
+  use element_log_m, only : log_elements
   use element_state_m, only : start_elements, lump_mass
   use initial_values_m, only : start_motion
   use log_m, only : log_t
@@ -41,6 +42,7 @@ contains
         state%prescribed_velocity(i) = state%motion(2 + prescribed%direction, prescribed%node)
       end associate
     end do
+    call log_elements(model, log)
     call start_elements(model, state%elements)
     allocate (state%contacts(size(model%contacts)))
     do i = 1, size(model%contacts)

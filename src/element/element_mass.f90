@@ -1,0 +1,72 @@
+! SPDX-License-Identifier: MIT
+!> Consistent mass: rho times the integral of N_a N_b over the initial shape, which 2x2 Gauss points
+!> integrate exactly for quads and triangles.
+module element_mass_m
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use quad_points_m, only : n_point, point_areas, shape_at_points
+  use sparse_m, only : sparse_t, add_block
+  implicit none
+  private
+  public :: add_mass, mass_times
+
+contains
+
+  !> Add `factor` times the mass matrix.
+  pure subroutine add_mass(model, factor, equation, matrix)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: factor
+    integer, intent(in) :: equation(:, :)   !! (2, n_node) equation numbers, 0 = none
+    type(sparse_t), intent(inout) :: matrix !! started, not compressed
+    real(wp) :: mass(4, 4)
+    integer :: i, k
+
+    do i = 1, model%mesh%n_element
+      mass = factor*element_mass(model, i)
+      associate (nodes => model%mesh%element_nodes(:, i))
+        do k = 1, 2
+          call add_block(matrix, equation(k, nodes), equation(k, nodes), mass)
+        end do
+      end associate
+    end do
+  end subroutine add_mass
+
+  !> The mass matrix times a nodal vector.
+  pure function mass_times(model, vector) result(product)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: vector(:, :) !! (2, n_node)
+    real(wp) :: product(2, size(vector, 2))
+    real(wp) :: mass(4, 4), part(2, 4)
+    integer :: i, k
+
+    product = 0.0_wp
+    do i = 1, model%mesh%n_element
+      mass = element_mass(model, i)
+      associate (nodes => model%mesh%element_nodes(:, i))
+        part = matmul(vector(:, nodes), mass)
+        do k = 1, 4
+          product(:, nodes(k)) = product(:, nodes(k)) + part(:, k)
+        end do
+      end associate
+    end do
+  end function mass_times
+
+  !> Mass matrix of one element, one direction.
+  pure function element_mass(model, i) result(mass)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    real(wp) :: mass(4, 4)
+    real(wp) :: areas(n_point)
+    integer :: b, k
+
+    areas = point_areas(model%mesh%coordinates(:, model%mesh%element_nodes(:, i)))
+    mass = 0.0_wp
+    do k = 1, n_point
+      do b = 1, 4
+        mass(:, b) = mass(:, b) + areas(k)*shape_at_points(b, k)*shape_at_points(:, k)
+      end do
+    end do
+    mass = model%materials(model%parts(model%mesh%element_part(i))%material)%density*mass
+  end function element_mass
+
+end module element_mass_m

@@ -1,0 +1,80 @@
+! SPDX-License-Identifier: MIT
+!> Derivative of the internal force of all elements, for implicit solutions.
+module element_stiffness_m
+  use kinds_m, only : wp
+  use block_state_m, only : block_state_t
+  use layout_m, only : chunk_size
+  use material_dispatch_m, only : history_size
+  use model_m, only : model_t
+  use quad_points_m, only : n_point
+  use quad_tangent_m, only : quad_tangent
+  use sparse_m, only : sparse_t, add_block
+  use stress_point_m, only : stress_point_t
+  implicit none
+  private
+  public :: add_stiffness
+
+contains
+
+  !> Add the exact derivative of the internal force with respect to the displacement. The step `dt` goes
+  !> from the committed state to `motion`, with velocity (u - u_committed)/dt. All parts must have fully
+  !> integrated elements (`point_count`).
+  pure subroutine add_stiffness(model, motion, dt, committed, equation, matrix)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
+    real(wp), intent(in) :: dt
+    type(block_state_t), intent(in) :: committed
+    integer, intent(in) :: equation(:, :)            !! (2, n_node) equation numbers, 0 = none
+    type(sparse_t), intent(inout) :: matrix          !! started, not compressed
+    type(stress_point_t) :: points(n_point)
+    real(wp) :: block(8, 8)
+    integer :: equations(8), i_chunk, slot
+
+    do i_chunk = 1, model%layout%n_chunk
+      associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+        do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
+          if (model%layout%slot_element(slot) == 0) cycle
+          associate (nodes => model%layout%slot_nodes(:, slot))
+            equations = reshape(equation(:, nodes), [8])
+            if (all(equations == 0)) cycle
+            call load_points(i_chunk, mod(slot - 1, chunk_size), history_size(material), committed, &
+              points)
+            call quad_tangent(material, committed%reference(slot, :), motion(1:2, nodes), &
+              dt*motion(3:4, nodes), points, block)
+            call add_block(matrix, equations, equations, block)
+          end associate
+        end do
+      end associate
+    end do
+  end subroutine add_stiffness
+
+  !> State of the points of one element out of the streams.
+  pure subroutine load_points(i_chunk, place, n_history, elements, points)
+    integer, intent(in) :: i_chunk
+    integer, intent(in) :: place     !! in the chunk, from 0
+    integer, intent(in) :: n_history !! values at each point
+    type(block_state_t), intent(in) :: elements
+    type(stress_point_t), intent(inout) :: points(n_point)
+    integer :: first, k
+
+    do k = 1, n_point
+      first = elements%point_start(i_chunk) + 3*(k - 1)*chunk_size + place
+      points(k)%old = plane_parts(elements%point_deviator(first:first + 2*chunk_size:chunk_size))
+      if (n_history == 0) cycle
+      first = elements%history_start(i_chunk) + n_history*(k - 1)*chunk_size + place
+      points(k)%plastic_strain = elements%history(first)
+      points(k)%back = 0.0_wp
+      if (n_history > 1) points(k)%back = plane_parts( &
+        elements%history(first + chunk_size:first + 3*chunk_size:chunk_size))
+    end do
+  end subroutine load_points
+
+  !> (xx, yy, xy) as (mean, half difference, shear).
+  pure function plane_parts(tensor) result(parts)
+    real(wp), intent(in) :: tensor(3)
+    real(wp) :: parts(3)
+
+    parts = [0.5_wp*(tensor(1) + tensor(2)), 0.5_wp*(tensor(1) - tensor(2)), tensor(3)]
+  end function plane_parts
+
+end module element_stiffness_m
