@@ -38,6 +38,7 @@ contains
     integer :: n_found, depth, deepest, candidate
 
     deepest = 0
+    start = root
     candidate = root
     do
       call walk_from(matrix, candidate, level, found, n_found)

@@ -1,0 +1,50 @@
+! SPDX-License-Identifier: MIT
+!> The program without UMFPACK: compiled where CMake does not find the library (or is told not to look).
+!> Nothing is ever factorised here, and `has_umfpack` says so.
+module umfpack_m
+  use kinds_m, only : long, wp
+  use sparse_m, only : sparse_t
+  implicit none
+  private
+  public :: umfpack_t, has_umfpack, factor_umfpack, solve_umfpack, free_umfpack
+
+  !> Whether this program holds UMFPACK.
+  logical, parameter :: has_umfpack = .false.
+
+  !> A factorised matrix; here only what others look at.
+  type :: umfpack_t
+    real(wp) :: smallest_pivot = 0.0_wp !! absolute value
+    integer(long) :: bytes = 0          !! memory of the factors
+  end type umfpack_t
+
+contains
+
+  !> Refuses.
+  subroutine factor_umfpack(matrix, factor, factored)
+    type(sparse_t), intent(in) :: matrix
+    type(umfpack_t), intent(inout) :: factor
+    logical, intent(out) :: factored
+
+    factor%bytes = 0
+    factored = matrix%n == 0
+  end subroutine factor_umfpack
+
+  !> Copies b, the solution of the empty system.
+  subroutine solve_umfpack(factor, transposed, b, x)
+    type(umfpack_t), intent(in) :: factor
+    logical, intent(in) :: transposed !! solve with the transpose
+    real(wp), intent(in) :: b(:)      !! (n)
+    real(wp), intent(out) :: x(:)     !! (n)
+
+    x = b
+    if (transposed .and. factor%bytes > 0) x = 0.0_wp
+  end subroutine solve_umfpack
+
+  !> Nothing to give back.
+  subroutine free_umfpack(factor)
+    type(umfpack_t), intent(inout) :: factor
+
+    factor%bytes = 0
+  end subroutine free_umfpack
+
+end module umfpack_m
