@@ -13,8 +13,8 @@ module equilibration_m
 
 contains
 
-  !> scaled(i, j) = row_scale(i)*matrix(i, j)*column_scale(j). The scales are powers of two, so that
-  !> nothing is rounded. No row and no column may be empty or zero.
+  !> scaled(i, j) = row_scale(i)*matrix(i, j)*column_scale(j), with the largest entries from 1/4 to about 1.
+  !> The scales are powers of two, so that nothing is rounded. No row and no column may be empty or zero.
   pure subroutine equilibrate(matrix, row_scale, column_scale, scaled)
     type(sparse_t), intent(in) :: matrix
     real(wp), intent(out) :: row_scale(:)    !! (n)
@@ -31,8 +31,8 @@ contains
       row_scale = row_scale/sqrt(row_largest)
       column_scale = column_scale/sqrt(column_largest)
     end do
-    row_scale = scale(1.0_wp, exponent(row_scale))
-    column_scale = scale(1.0_wp, exponent(column_scale))
+    row_scale = scale(1.0_wp, exponent(row_scale) - 1)
+    column_scale = scale(1.0_wp, exponent(column_scale) - 1)
     call scale_entries(matrix, row_scale, column_scale, scaled)
   end subroutine equilibrate
 

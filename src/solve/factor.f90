@@ -56,7 +56,7 @@ contains
   end subroutine factor_matrix
 
   !> Sparse factors. A matrix with a zero pivot is factorised again with its diagonal changed in the
-  !> last digit: singular still, but to be solved with.
+  !> last digit of one, which no entry exceeds by much: singular still, but to be solved with.
   subroutine factor_sparse(matrix, factor, factored)
     type(sparse_t), intent(in) :: matrix
     type(factor_t), intent(inout) :: factor
@@ -73,7 +73,7 @@ contains
     shifted%value = matrix%value
     do i = 1, matrix%n
       do k = matrix%first(i), matrix%first(i + 1) - 1
-        if (matrix%column(k) == i) shifted%value(k) = matrix%value(k) + epsilon(1.0_wp)
+        if (matrix%column(k) == i) shifted%value(k) = matrix%value(k) + 2.0_wp*epsilon(1.0_wp)
       end do
     end do
     call factor_umfpack(shifted, factor%sparse, factored)
