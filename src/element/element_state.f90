@@ -115,16 +115,15 @@ contains
     real(wp), intent(in) :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout) :: stress(:, :) !! (6, n_element)
-    real(wp) :: volumetric, stretch(n_point), start(n_point)
+    real(wp) :: volumetric, bulk, stretch(n_point), start(n_point), now(n_point)
     integer :: i, n, slot
 
     do i = 1, model%mesh%n_element
       slot = model%layout%element_slot(i)
       call volume_ratios(model, motion, elements, slot, n, stretch, start)
-      associate (bulk => model%materials(model%parts(model%mesh%element_part(i))%material)%bulk, &
-        volume => start(:n)*(1.0_wp + stretch(:n)))
-        volumetric = bulk*(sum(volume*log_ratio(stretch(:n)))/sum(volume))
-      end associate
+      bulk = model%materials(model%parts(model%mesh%element_part(i))%material)%bulk
+      now = start*(1.0_wp + stretch)
+      volumetric = bulk*(sum(now(:n)*log_ratio(stretch(:n)))/sum(now(:n)))
       stress(1, i) = elements%deviator(slot, 1) + volumetric
       stress(2, i) = elements%deviator(slot, 2) + volumetric
       stress(3, i) = volumetric - (elements%deviator(slot, 1) + elements%deviator(slot, 2))
@@ -169,12 +168,13 @@ contains
     integer, intent(out) :: n                                !! how many
     real(wp), intent(out) :: stretch(n_point), start(n_point)
     integer :: i_chunk
-    real(wp) :: d31(2), d42(2)
+    real(wp) :: r(6), d31(2), d42(2)
 
     i_chunk = (slot - 1)/chunk_size + 1
+    r = elements%reference(slot, :)
     stretch = 0.0_wp
     start = 0.0_wp
-    associate (nodes => model%layout%slot_nodes(:, slot), r => elements%reference(slot, :), &
+    associate (nodes => model%layout%slot_nodes(:, slot), &
       material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
       n = 1
       if (elements%point_start(i_chunk) > 0 .and. .not. has_mean_dilatation(material)) n = n_point

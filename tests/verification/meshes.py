@@ -49,11 +49,12 @@ class Deck:
         self.n_element += len(quads)
         return ids
 
-    def part(self, part=1, material=None, section=None, hourglass=0):
+    def part(self, part=1, material=None, section=None, hourglass=0, points=None):
+        """points: NIP of the section (4: full integration)."""
         self.add("*PART", f"part {part}",
                  (part, section or 1, material or part, 0, hourglass))
         if section is None and "*SECTION_SHELL" not in self.lines:
-            self.add("*SECTION_SHELL", (1, 13), (1.0,))
+            self.add("*SECTION_SHELL", (1, 13, None, points), (1.0,))
         return self
 
     def elastic(self, rho, young, poisson, material=1):

@@ -12,11 +12,11 @@ LAWS = {"perfect": (0.0, 1.0), "isotropic": (TANGENT, 1.0), "kinematic": (TANGEN
         "mixed": (TANGENT, 0.5)}
 
 
-def element(displacements, dof_nodes, tangent, beta, n_step=200):
+def element(displacements, dof_nodes, tangent, beta, points=None, n_step=200):
     """One unit square; the curve's ordinates at times 0, 1, 2 ... are `displacements`."""
     deck = Deck("plastic element")
     deck.control(float(len(displacements) - 1), dt=1.0 / n_step)
-    deck.part().plastic(RHO, YOUNG, POISSON, YIELD, tangent, beta)
+    deck.part(points=points).plastic(RHO, YOUNG, POISSON, YIELD, tangent, beta)
     nodes = deck.mesh(*grid(1, 1))
     deck.curve(1, list(enumerate(map(float, displacements))))
     deck.fix(nodes, y=1)
@@ -51,10 +51,12 @@ def cyclic_uniaxial(strain, hardening, beta):
     return np.array(path)
 
 
-def check_cycle(run, name):
+def check_cycle(run, name, points=None):
     tangent, beta = LAWS[name]
     hardening = YOUNG * tangent / (YOUNG - tangent)
-    result = run.program(element(CYCLE, (1, 3), tangent, beta), name=f"cycle_{name}")
+    result = run.program(element(CYCLE, (1, 3), tangent, beta, points),
+                         name=f"cycle_{name}_{points or 1}")
+    name += ", full integration" if points else ""
     time = result.times
     strain = np.log1p(np.interp(time, np.arange(len(CYCLE)), CYCLE))
     q, p = cyclic_uniaxial(strain, hardening, beta).T
@@ -113,3 +115,4 @@ def check(run):
     check_shear(run, "perfect")
     check_shear(run, "isotropic")
     check_shear(run, "kinematic")
+    check_cycle(run, "mixed", 4)

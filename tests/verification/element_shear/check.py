@@ -8,10 +8,10 @@ RHO, YOUNG, POISSON = 1.0e4, 1.0e6, 0.3
 BULK, SHEAR, _ = moduli(YOUNG, POISSON)
 
 
-def sheared_element(shear, n_step):
+def sheared_element(shear, n_step, points=None):
     """Unit square, upper side moved along x by `shear` in one second."""
     deck = Deck(f"simple shear to {shear}")
-    deck.control(1.0, dt=1.0 / n_step).part().elastic(RHO, YOUNG, POISSON)
+    deck.control(1.0, dt=1.0 / n_step).part(points=points).elastic(RHO, YOUNG, POISSON)
     nodes = deck.mesh(*grid(1, 1))
     deck.curve(1, [(0.0, 0.0), (1.0, shear)])
     deck.fix(nodes[:2], x=1, y=1).fix(nodes[2:], y=1)
@@ -55,3 +55,11 @@ def check(run):
               source="extrapolated from 400 and 800 steps")
     run.check("mean stress at shear 3 / G", found[:, :3].mean(axis=1) / SHEAR, 0.0, 1e-12, "abs",
               "simple shear keeps the area")
+    check_full(run, found)
+
+
+def check_full(run, expected):
+    """With full integration all four points shear alike: the stress is that of one point."""
+    result = run.program(sheared_element(3.0, 800, 4))
+    run.check("full integration: stress to shear 3", result.cells("stress")[:, 0, :], expected,
+              1e-12, source="one point")

@@ -9,12 +9,12 @@ BULK, SHEAR, _ = moduli(YOUNG, POISSON)
 N_LOAD = 20
 
 
-def spun_element(n_turn):
+def spun_element(n_turn, points=None):
     """Uniaxial strain in N_LOAD steps, then one turn in n_turn steps of 1 ms."""
     dt = 1.0e-3
     start, quads = grid(1, 1)
     deck = Deck(f"one turn in {n_turn} steps")
-    deck.control((N_LOAD + n_turn) * dt, dt=dt).part().elastic(RHO, YOUNG, POISSON)
+    deck.control((N_LOAD + n_turn) * dt, dt=dt).part(points=points).elastic(RHO, YOUNG, POISSON)
     nodes = deck.mesh(start, quads)
     places = [start * (1.0 + (STRETCH - 1.0) * k / N_LOAD, 1.0) for k in range(N_LOAD + 1)]
     places += [rotate(places[-1], 2.0 * np.pi * k / n_turn) for k in range(1, n_turn + 1)]
@@ -59,4 +59,19 @@ def check(run):
     run.check("quarter turn swaps xx and yy", stress[N_LOAD + quarter, 0], first[1], 1e-9)
     energy = result.table("glstat")["internal"]
     run.check("internal energy does not change in the turn", energy[-1],
+              energy[N_LOAD], 1e-10, source="no work in a rigid turn")
+    check_full(run)
+
+
+def check_full(run, n_turn=90):
+    """Full integration turns as exactly as one point does."""
+    result = run.program(spun_element(n_turn, 4))
+    stress = result.cells("stress")[N_LOAD:, 0, :4]
+    expected = turned(stress[0], 2.0 * np.pi * np.arange(n_turn + 1) / n_turn)
+    run.check("full integration: stress before the turn, xx - yy", stress[0, 0] - stress[0, 1],
+              2.0 * SHEAR * np.log(STRETCH), 1e-5, source="logarithmic strain")
+    run.check("full integration: stress over the turn", stress, expected, 1e-10,
+              source="sigma = R sigma_0 R^T")
+    energy = result.table("glstat")["internal"]
+    run.check("full integration: internal energy does not change in the turn", energy[-1],
               energy[N_LOAD], 1e-10, source="no work in a rigid turn")
