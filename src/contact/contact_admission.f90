@@ -49,7 +49,7 @@ contains
     logical :: end_touches
 
     counts = .true.
-    if (deepest >= 0.0_wp) then
+    if (deepest >= memory%closed_gap) then
       memory%cover%status(segment) = is_free
       memory%cover%wake(segment) = memory%travel + safe_travel(contact, memory, ends)
       return

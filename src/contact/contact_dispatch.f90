@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The one place that knows the contact types: their numbers, names, needs and placements.
-!> Adding one is a row of `formulations`, a `use` and a `case` (doc/add_a_formulation.md).
+!> The one place that knows the contact types: their numbers, names, needs, placements and tangents.
+!> Adding one is a row of `formulations`, and a `use` and a `case` for either (doc/add_a_formulation.md).
 module contact_dispatch_m
   use contact_spots_m, only : spots_at_nodes, spots_at_quarters, spots_at_gauss_points
   use contact_state_m, only : contact_state_t
@@ -12,9 +12,15 @@ module contact_dispatch_m
   use points_segmented_mortar_m, only : place_segmented_mortar
   use points_two_pass_ar_m, only : place_two_pass_ar
   use points_vts_ppt_m, only : place_vts_ppt
+  use sparse_m, only : sparse_t
+  use tangent_mortar_m, only : add_mortar_tangent, add_segmented_mortar_tangent
+  use tangent_nts_m, only : add_nts_tangent, add_nts_ar_tangent
+  use tangent_nts_mar_m, only : add_nts_mar_tangent
+  use tangent_vts_ppt_m, only : add_vts_ppt_tangent
   implicit none
   private
-  public :: contact_kinds, formulation_t, formulation_of, place_points
+  public :: contact_kinds, formulation_t, formulation_of, place_points, &
+    add_tangent
 
   !> What the frame must know of a formulation before it places points.
   type :: formulation_t
@@ -78,5 +84,24 @@ contains
     case (type_segmented_mortar); call place_segmented_mortar(contact, memory)
     end select
   end subroutine place_points
+
+  !> Add the derivative of minus the forces of the points in the memory.
+  pure subroutine add_tangent(contact, memory, equations, matrix)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
+    type(sparse_t), intent(inout) :: matrix
+
+    select case (contact%contact_type)
+    case (type_nts); call add_nts_tangent(memory, equations, matrix)
+    case (type_nts_ar, type_two_pass_ar)
+      call add_nts_ar_tangent(contact, memory, equations, matrix)
+    case (type_vts_ppt); call add_vts_ppt_tangent(contact, memory, equations, matrix)
+    case (type_nts_mar); call add_nts_mar_tangent(contact, memory, equations, matrix)
+    case (type_mortar); call add_mortar_tangent(contact, memory, equations, matrix)
+    case (type_segmented_mortar)
+      call add_segmented_mortar_tangent(contact, memory, equations, matrix)
+    end select
+  end subroutine add_tangent
 
 end module contact_dispatch_m

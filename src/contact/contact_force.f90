@@ -3,6 +3,7 @@
 module contact_force_m
   use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_pairing, &
     phase_contact_force
+  use contact_closing_m, only : close_contacts, closed_gap_of
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
   use contact_initial_m, only : start_slave_tracking, start_master_tracking, start_cover
   use contact_log_m, only : log_contact
@@ -17,7 +18,7 @@ module contact_force_m
   use model_m, only : model_t
   implicit none
   private
-  public :: start_contact, apply_contact
+  public :: start_contact, apply_contact, evaluate_contact
 
 contains
 
@@ -95,6 +96,42 @@ contains
     memory%energy = memory%energy - 0.5_wp*dt*power
     call lap(clock, phase_contact_force)
   end subroutine apply_contact
+
+  !> Contact forces of one interface at the given u, added to `force`; no damping, no energy, no clock. The memory
+  !> is taken from the last converged step: give a copy of it to each trial, so that forces are a function of u.
+  pure subroutine evaluate_contact(contact, motion, time, is_first, memory, force)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u and v
+    real(wp), intent(in) :: time                       !! of u, s
+    logical, intent(in) :: is_first                    !! of a step: gaps of zero count as contact
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
+    real(wp) :: spread
+    integer :: i
+
+    memory%points%n = 0
+    memory%n_active = 0
+    memory%force = 0.0_wp
+    memory%closed_gap = 0.0_wp
+    memory%is_stale = memory%is_stale .or. time < contact%birth .or. time > contact%death
+    if (time < contact%birth .or. time > contact%death) return
+    if (memory%is_stale) call refresh_memory(motion, memory)
+    call take_places(memory%nodes, motion, memory%places, spread)
+    memory%travel = memory%travel + spread
+    if (allocated(memory%spots)) &
+      call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
+    call search_pairs(contact, 0, memory)
+    if (is_first) call close_contacts(contact, closed_gap_of(contact, memory), memory)
+    call place_points(contact, memory)
+    if (memory%points%n == 0) return
+    call press_points(memory)
+    call scatter_points(memory%points, memory%force, memory%n_active)
+    do i = 1, size(memory%nodes)
+      associate (node => memory%nodes(i))
+        force(:, node) = force(:, node) + memory%force(:, i)
+      end associate
+    end do
+  end subroutine evaluate_contact
 
   !> Outside birth .. death: no forces; those of the last call have done their last half step of work.
   pure subroutine suspend_contact(motion, dt, memory)

@@ -13,7 +13,7 @@ module contact_overlap_m
   implicit none
   private
   public :: cover_t, piece_t, find_cover, first_piece, next_piece, see_master_node, facing_share, &
-    local_foot
+    local_foot, side_on, face_on
 
   !> Cosines of the angle between two outward normals from which on surfaces do not face each other (a block's
   !> side that stands on a surface has no part in its contact), and up to which they do entirely (60 degrees

@@ -149,7 +149,7 @@ contains
     real(wp) :: xi
 
     sight = see_master_node(memory, cover, node)
-    if (sight%across >= 0.0_wp) return
+    if (sight%across >= 0.0_wp .and. sight_gap(sight) >= memory%closed_gap) return
     xi = sight%along/sight%square
     call make_room(memory%points, 1)
     associate (points => memory%points, p => memory%points%n)

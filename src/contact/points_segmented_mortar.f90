@@ -13,7 +13,7 @@ module points_segmented_mortar_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: place_segmented_mortar
+  public :: place_segmented_mortar, gauss_xi
 
   !> Gauss points of a piece on 0 .. 1; both have weight one half. They integrate the product of shape
   !> functions and a linear gap exactly up to the curvature of the chain.
@@ -66,7 +66,7 @@ contains
     call judge_segment(contact, memory, s, cover%ends, deepest, counts)
     if (.not. counts) then
       memory%points%n = n_before
-    else if (deepest < 0.0_wp) then
+    else if (deepest < memory%closed_gap) then
       memory%mark(cover%ends) = 1
     end if
   end subroutine place_segment

@@ -102,6 +102,8 @@ module contact_state_m
     logical :: averages_pressure = .false.  !! pressure comes from slave nodes, not from each point
     real(wp), allocatable :: nodal(:, :)    !! (2, n_slave) scratch of such a pressure
     integer, allocatable :: mark(:)         !! (n_slave) scratch of placements, 0 between steps
+    real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where a tangent
+                                            !! of touching bodies is wanted
     real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last call
     real(wp) :: slave_penalty = 0.0_wp      !! distributed penalty eps_hat of the slave pass, N/m^2
     real(wp) :: master_penalty = 0.0_wp     !! of the master pass

@@ -1,0 +1,174 @@
+! SPDX-License-Identifier: MIT
+!> Tangent of type 5: half of each piece of slave segment is the area of a point of its own at either of the piece's
+!> ends, so that each depends on few nodes (doc/theory/contact.md, section 9.4).
+module tangent_nts_mar_m
+  use contact_assembly_m, only : add_spring_point
+  use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, facing_share
+  use contact_state_m, only : contact_state_t, is_touching
+  use contact_variation_m, only : varied_point_t, varied_foot_t, apart, length_between, project, &
+    spot_foot, take_foot, piece_ends, vary_share
+  use contacts_m, only : contact_t
+  use dual_m, only : dual_t, constant, operator(-), operator(*)
+  use geometry_m, only : sight_of_segment
+  use kinds_m, only : wp
+  use sparse_m, only : sparse_t
+  use tangent_nts_m, only : vary_node, vary_competence
+  implicit none
+  private
+  public :: add_nts_mar_tangent
+
+contains
+
+  !> All pieces; then the nodes at a tip, which have none.
+  pure subroutine add_nts_mar_tangent(contact, memory, equations, matrix)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
+    type(sparse_t), intent(inout) :: matrix
+    type(varied_point_t) :: point
+    logical :: has_area(memory%n_slave)
+    integer :: s, p
+
+    has_area = .false.
+    do s = 1, contact%slave%n_segment
+      if (memory%cover%status(s) == is_touching .or. any(memory%slave_tracking%status( &
+        contact%slave%segments(:, s)) == is_touching)) &
+        call add_segment(contact, memory, s, equations, matrix, has_area)
+    end do
+    do p = 1, memory%slave_tracking%n_touching
+      if (has_area(memory%slave_tracking%touching(p))) cycle
+      if (.not. memory%points%gap(p) < memory%closed_gap) cycle
+      point = vary_node(memory, p)
+      call vary_competence(contact%slave, 0, memory, point)
+      call add_spring_point(point, memory%slave_penalty, equations, matrix)
+    end do
+  end subroutine add_nts_mar_tangent
+
+  !> The pieces of one slave segment, as the placement divides it.
+  pure subroutine add_segment(contact, memory, s, equations, matrix, has_area)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    integer, intent(in), contiguous :: equations(:, :)
+    type(sparse_t), intent(inout) :: matrix
+    logical, intent(inout) :: has_area(:)
+    type(varied_point_t) :: point
+    type(dual_t) :: share
+    type(cover_t) :: cover
+    type(piece_t) :: piece
+
+    call find_cover(contact, memory, s, cover)
+    point%nodes(1:2) = cover%ends
+    share = constant(1.0_wp)
+    call first_piece(contact, memory, cover, piece)
+    if (.not. contact%strict) then
+      call vary_larger_share(contact, memory, cover, point, share)
+      piece%is_last = piece%is_last .or. .not. share%value > 0.0_wp
+    else if (.not. (cover%feet(1)%is_on .and. cover%feet(2)%is_on)) then
+      piece%high = 1.0_wp
+      piece%is_last = .true.
+      call add_piece(contact, memory, cover, piece, point, share, equations, matrix, has_area)
+    end if
+    do while (.not. piece%is_last)
+      call next_piece(contact, memory, cover, piece)
+      if (piece%high > piece%low) call add_piece(contact, memory, cover, piece, point, share, &
+        equations, matrix, has_area)
+    end do
+  end subroutine add_segment
+
+  !> Share of the segment that faces the master, by the foot of the end where it is larger; the master segment of
+  !> that end goes into slots 7, 8 where the share changes with it.
+  pure subroutine vary_larger_share(contact, memory, cover, point, share)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(cover_t), intent(in) :: cover
+    type(varied_point_t), intent(inout) :: point
+    type(dual_t), intent(out) :: share
+    type(varied_point_t) :: spot
+    type(varied_foot_t) :: foot
+    real(wp) :: shares(2)
+    integer :: k
+
+    share = constant(0.0_wp)
+    if (.not. cover%exists) return
+    do k = 1, 2
+      shares(k) = facing_share(sight_of_segment(memory%places(:, cover%ends(2)), &
+        memory%places(:, cover%ends(1)), memory%places(:, cover%ends(2))), cover%feet(k)%normal)
+    end do
+    share = constant(maxval(shares))
+    if (.not. (share%value > 0.0_wp .and. share%value < 1.0_wp)) return
+    k = maxloc(shares, 1)
+    point%nodes(7:8) = memory%n_slave + contact%master%segments(:, cover%feet(k)%segment)
+    spot = point
+    spot%slave_xi = constant(k - 1.0_wp)
+    foot = spot_foot(memory%places, spot, 7, cover%feet(k)%xi, cover%feet(k)%gap, memory%closed_gap)
+    share = vary_share(memory%places, point%nodes, 1, foot%normal)
+  end subroutine vary_larger_share
+
+  !> Half of a piece to whatever stands at either of its ends. `origin` has the slave segment in slots 1, 2 and what
+  !> `share` depends on in slots 7, 8.
+  pure subroutine add_piece(contact, memory, cover, piece, origin, share, equations, matrix, has_area)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(cover_t), intent(in) :: cover
+    type(piece_t), intent(in) :: piece
+    type(varied_point_t), intent(in) :: origin
+    type(dual_t), intent(in) :: share
+    integer, intent(in), contiguous :: equations(:, :)
+    type(sparse_t), intent(inout) :: matrix
+    logical, intent(inout) :: has_area(:)
+    type(varied_point_t) :: point
+    type(dual_t) :: xi(2)
+    integer :: k, cuts(2)
+
+    cuts = [piece%low_node, piece%high_node]
+    point = origin
+    where (cuts > 0) point%nodes(5:6) = memory%n_slave + cuts
+    xi = piece_ends(memory%places, point%nodes, piece)
+    point%area = 0.5_wp*((xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2)*share)
+    do k = 1, 2
+      if (cuts(k) > 0) then
+        call stand_at_master_node(memory, memory%n_slave + cuts(k), point)
+        if (memory%cover%status(cover%segment) /= is_touching) cycle
+      else
+        if (memory%slave_tracking%status(cover%ends(k)) /= is_touching) cycle
+        has_area(cover%ends(k)) = .true.
+        call stand_at_end(contact, memory, cover, k, point)
+      end if
+      if (point%gap%value < memory%closed_gap) &
+        call add_spring_point(point, memory%slave_penalty, equations, matrix)
+    end do
+  end subroutine add_piece
+
+  !> Let the point stand at a master node behind the slave segment, with the normal of that.
+  pure subroutine stand_at_master_node(memory, node, point)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: node !! local number
+    type(varied_point_t), intent(inout) :: point
+    type(varied_foot_t) :: foot
+
+    point%nodes(3:4) = [node, 0]
+    foot = project(apart(memory%places, point%nodes, 3, 1), &
+      apart(memory%places, point%nodes, 2, 1))
+    point%slave_xi = foot%xi
+    point%master_xi = constant(0.0_wp)
+    point%gap = foot%gap
+    point%normal = -foot%normal
+  end subroutine stand_at_master_node
+
+  !> Let the point stand at the k-th end of the slave segment, which is in contact.
+  pure subroutine stand_at_end(contact, memory, cover, k, point)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(cover_t), intent(in) :: cover
+    integer, intent(in) :: k
+    type(varied_point_t), intent(inout) :: point
+
+    point%slave_xi = constant(k - 1.0_wp)
+    associate (foot => cover%feet(k))
+      point%nodes(3:4) = memory%n_slave + contact%master%segments(:, foot%segment)
+      call take_foot(point, spot_foot(memory%places, point, 3, foot%xi, foot%gap, memory%closed_gap))
+    end associate
+  end subroutine stand_at_end
+
+end module tangent_nts_mar_m
