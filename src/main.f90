@@ -4,7 +4,7 @@ program slideline
   use, intrinsic :: iso_c_binding, only : c_int
   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
   use arguments_m, only : arguments_t, read_arguments, help_text
-  use build_info_m, only : version, build_type, compiler, flags
+  use build_info_m, only : version, build_type, compiler, flags, solvers
   use errors_m, only : error_t
   use run_m, only : run_deck
   implicit none
@@ -27,7 +27,7 @@ program slideline
       write (output_unit, '(a)') help_text()
     else if (arguments%version) then
       write (output_unit, '(a)') 'slideline '//version, 'build '//build_type//', '//compiler, &
-        'flags '//flags
+        'flags '//flags, 'linear solvers '//solvers
     else
       call run_deck(arguments, error)
     end if

@@ -50,6 +50,14 @@ lacking() {
   fi
 }
 
+# useful: as `lacking`, for what the program is better with but does without.
+useful() {
+  if command -v gfortran >/dev/null && echo end | gfortran -x f95 - -lumfpack -o /dev/null 2>/dev/null; then
+    return 0
+  fi
+  echo "libsuitesparse-dev: UMFPACK, for large implicit systems"
+}
+
 cmake_is_new() {
   local version major minor
   version=$(cmake --version | sed -n 's/^cmake version \([0-9]*\.[0-9]*\).*/\1/p')
@@ -72,11 +80,14 @@ package_names() {
   printf '%s\n' "$1" | sed 's/:.*//' | tr '\n' ' ' | sed 's/ $//'
 }
 
-# Install the system packages that are missing.
+# Install the system packages that are missing, then those that are only useful.
 install_packages() {
-  local missing as_root packages
+  local missing as_root
   missing=$(lacking)
-  [ -n "$missing" ] || return 0
+  if [ -z "$missing" ]; then
+    install_useful
+    return 0
+  fi
   command -v apt-get >/dev/null || give_up "Something is missing and there is no apt-get here." "$missing"
   as_root=()
   if [ "$(id -u)" -ne 0 ]; then
@@ -87,18 +98,40 @@ install_packages() {
     fi
     as_root=(sudo)
   fi
-  packages=$(package_names "$missing")
-  say "installing system packages: $packages"
-  mkdir -p "$root/build"
-  # shellcheck disable=SC2086  # package names are words
-  if ! { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update &&
-         "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y \
-           --no-install-recommends $packages; } >"$root/build/packages.log" 2>&1; then
+  if ! apt_install packages.log "$missing"; then
     tail -n 5 "$root/build/packages.log" >&2
     give_up "apt-get failed; its output is in build/packages.log." "$missing"
   fi
   missing=$(lacking)
   [ -z "$missing" ] || give_up "Still missing after apt-get:" "$missing"
+  install_useful
+}
+
+# Install what the program does without: once, where that needs no questions; a failure is no error.
+install_useful() {
+  local extra as_root
+  [ ! -e "$root/build/useful.log" ] || return 0
+  extra=$(useful)
+  [ -n "$extra" ] && command -v apt-get >/dev/null || return 0
+  as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null && sudo -n true 2>/dev/null || return 0
+    as_root=(sudo)
+  fi
+  apt_install useful.log "$extra" ||
+    complain "apt-get failed (build/useful.log); going on without $(package_names "$extra")"
+}
+
+# apt_install LOG LINES: install the packages of these lines, as the words of `as_root` say.
+apt_install() {
+  local packages
+  packages=$(package_names "$2")
+  say "installing system packages: $packages"
+  mkdir -p "$root/build"
+  # shellcheck disable=SC2086  # package names are words
+  { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update &&
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y \
+      --no-install-recommends $packages; } >"$root/build/$1" 2>&1
 }
 
 # install_tools [EXTRA]: the Python package of tools/ in the private environment, with an extra.
