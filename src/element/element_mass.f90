@@ -56,10 +56,11 @@ contains
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
     real(wp) :: mass(4, 4)
-    real(wp) :: areas(n_point)
+    real(wp) :: x(2, 4), areas(n_point)
     integer :: b, k
 
-    areas = point_areas(model%mesh%coordinates(:, model%mesh%element_nodes(:, i)))
+    x = model%mesh%coordinates(:, model%mesh%element_nodes(:, i))
+    areas = point_areas(x)
     mass = 0.0_wp
     do k = 1, n_point
       do b = 1, 4

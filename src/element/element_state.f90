@@ -137,7 +137,8 @@ contains
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout) :: plastic_strain(:) !! (n_element)
-    real(wp) :: stretch(n_point), start(n_point)
+    real(wp) :: reference(6), stretch(n_point), start(n_point)
+    real(wp), parameter :: none(2, 4) = 0.0_wp
     integer :: i, k, slot, i_chunk, first, stride
 
     plastic_strain = 0.0_wp
@@ -149,7 +150,8 @@ contains
       if (elements%point_start(i_chunk) == 0) then
         plastic_strain(i) = elements%history(first)
       else
-        call point_ratios(elements%reference(slot, :), spread([0.0_wp, 0.0_wp], 2, 4), stretch, start)
+        reference = elements%reference(slot, :)
+        call point_ratios(reference, none, stretch, start)
         stride = chunk_size*history_size(model%materials(model%parts(model%mesh%element_part(i)) &
           %material))
         plastic_strain(i) = sum([(start(k)*elements%history(first + (k - 1)*stride), &
@@ -168,7 +170,7 @@ contains
     integer, intent(out) :: n                                !! how many
     real(wp), intent(out) :: stretch(n_point), start(n_point)
     integer :: i_chunk
-    real(wp) :: r(6), d31(2), d42(2)
+    real(wp) :: r(6), u(2, 4), d31(2), d42(2)
 
     i_chunk = (slot - 1)/chunk_size + 1
     r = elements%reference(slot, :)
@@ -179,7 +181,8 @@ contains
       n = 1
       if (elements%point_start(i_chunk) > 0 .and. .not. has_mean_dilatation(material)) n = n_point
       if (n > 1) then
-        call point_ratios(r, motion(1:2, nodes), stretch, start)
+        u = motion(1:2, nodes)
+        call point_ratios(r, u, stretch, start)
       else
         d31 = motion(1:2, nodes(3)) - motion(1:2, nodes(1))
         d42 = motion(1:2, nodes(4)) - motion(1:2, nodes(2))
@@ -197,14 +200,15 @@ contains
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
     real(wp) :: smallest
-    real(wp) :: stretch(n_point), start(n_point)
+    real(wp) :: reference(6), u(2, 4), stretch(n_point), start(n_point)
     integer :: n
 
     call volume_ratios(model, motion, elements, slot, n, stretch, start)
     if (elements%point_start((slot - 1)/chunk_size + 1) > 0) then
       n = n_point
-      call point_ratios(elements%reference(slot, :), motion(1:2, model%layout%slot_nodes(:, slot)), &
-        stretch, start)
+      reference = elements%reference(slot, :)
+      u = motion(1:2, model%layout%slot_nodes(:, slot))
+      call point_ratios(reference, u, stretch, start)
     end if
     smallest = 1.0_wp + minval(stretch(:n))
   end function smallest_ratio

@@ -27,7 +27,7 @@ contains
     integer, intent(in) :: equation(:, :)            !! (2, n_node) equation numbers, 0 = none
     type(sparse_t), intent(inout) :: matrix          !! started, not compressed
     type(stress_point_t) :: points(n_point)
-    real(wp) :: block(8, 8)
+    real(wp) :: block(8, 8), reference(6), u(2, 4), du(2, 4)
     integer :: equations(8), i_chunk, slot
 
     do i_chunk = 1, model%layout%n_chunk
@@ -39,8 +39,10 @@ contains
             if (all(equations == 0)) cycle
             call load_points(i_chunk, mod(slot - 1, chunk_size), history_size(material), committed, &
               points)
-            call quad_tangent(material, committed%reference(slot, :), motion(1:2, nodes), &
-              dt*motion(3:4, nodes), points, block)
+            reference = committed%reference(slot, :)
+            u = motion(1:2, nodes)
+            du = dt*motion(3:4, nodes)
+            call quad_tangent(material, reference, u, du, points, block)
             call add_block(matrix, equations, equations, block)
           end associate
         end do
@@ -59,22 +61,26 @@ contains
 
     do k = 1, n_point
       first = elements%point_start(i_chunk) + 3*(k - 1)*chunk_size + place
-      points(k)%old = plane_parts(elements%point_deviator(first:first + 2*chunk_size:chunk_size))
+      points(k)%old = plane_parts(elements%point_deviator, first)
       if (n_history == 0) cycle
       first = elements%history_start(i_chunk) + n_history*(k - 1)*chunk_size + place
       points(k)%plastic_strain = elements%history(first)
       points(k)%back = 0.0_wp
-      if (n_history > 1) points(k)%back = plane_parts( &
-        elements%history(first + chunk_size:first + 3*chunk_size:chunk_size))
+      if (n_history > 1) points(k)%back = plane_parts(elements%history, first + chunk_size)
     end do
   end subroutine load_points
 
-  !> (xx, yy, xy) as (mean, half difference, shear).
-  pure function plane_parts(tensor) result(parts)
-    real(wp), intent(in) :: tensor(3)
+  !> (mean, half difference, shear) of a tensor whose xx stands at `first` and whose yy and xy follow a chunk
+  !> further each.
+  pure function plane_parts(stream, first) result(parts)
+    real(wp), intent(in) :: stream(:)
+    integer, intent(in) :: first
     real(wp) :: parts(3)
 
-    parts = [0.5_wp*(tensor(1) + tensor(2)), 0.5_wp*(tensor(1) - tensor(2)), tensor(3)]
+    associate (xx => stream(first), yy => stream(first + chunk_size), &
+      xy => stream(first + 2*chunk_size))
+      parts = [0.5_wp*(xx + yy), 0.5_wp*(xx - yy), xy]
+    end associate
   end function plane_parts
 
 end module element_stiffness_m
