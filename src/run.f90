@@ -9,6 +9,7 @@ module run_m
   use deck_m, only : deck_request_t, read_deck
   use errors_m, only : error_t, raise, status_stopped, status_files
   use explicit_m, only : advance_explicit
+  use implicit_m, only : advance_implicit
   use files_m, only : make_directory, join_path
   use log_m, only : open_log, close_log, write_log, to_text
   use model_m, only : model_t
@@ -118,6 +119,8 @@ contains
 
     if (model%controls%check_only) then
       reason = 'model checked, no solution asked for (NOSOL)'
+    else if (model%controls%implicit%is_on) then
+      call advance_implicit(model, state, monitor, reason, error)
     else
       call advance_explicit(model, arguments%n_thread, state, monitor, reason, error)
     end if

@@ -6,6 +6,7 @@ module deck_resolve_m
   use controls_m, only : interval_t
   use deck_implicit_m, only : settle_scheme
   use model_m, only : model_t
+  use parts_m, only : form_full
   use deck_lines_m, only : deck_t, line_error
   use deck_maps_m, only : maps_t, make_maps, resolve_id
   use deck_raw_m, only : raw_t, history_t, output_plot, output_glstat, output_matsum, &
@@ -20,6 +21,22 @@ module deck_resolve_m
   public :: resolve_model
 
 contains
+
+  !> What the implicit method asks of the rest of the deck.
+  subroutine check_implicit(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+    integer :: i
+
+    do i = 1, size(model%parts)
+      if (model%parts(i)%section == 0) cycle
+      if (model%sections(model%parts(i)%section)%element_form == form_full) cycle
+      call line_error(deck, raw%section_line(model%parts(i)%section), 'part ' &
+        //to_text(model%parts(i)%id)//' has one-point quads; the implicit method needs fully ' &
+        //'integrated ones (NIP 4)')
+    end do
+  end subroutine check_implicit
 
   !> Fill the model.
   subroutine resolve_model(deck, raw, model)
@@ -48,6 +65,7 @@ contains
       call take_interval(deck, maps, raw%outputs(output_rcforc), model, output%rcforc)
       call take_interval(deck, maps, raw%outputs(output_nodout), model, output%nodout)
     end associate
+    if (model%controls%implicit%is_on) call check_implicit(deck, raw, model)
     call resolve_conditions(deck, raw, maps, model)
     call resolve_velocity(deck, raw, maps, model)
     allocate (model%mesh%deck_node(model%mesh%n_node))

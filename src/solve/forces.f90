@@ -8,7 +8,7 @@ module forces_m
   use contact_force_m, only : evaluate_contact
   use contact_state_m, only : contact_state_t
   use element_dispatch_m, only : add_tile_forces
-  use element_stiffness_m, only : mass_times
+  use element_mass_m, only : mass_times
   use external_force_m, only : form_external_force, body_acceleration
   use model_m, only : model_t
   use node_motion_m, only : share_tile_forces, keep_tile_forces, sum_special_force

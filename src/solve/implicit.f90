@@ -5,7 +5,7 @@ module implicit_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_nodes, phase_output, phase_solver
   use contact_check_m, only : report_contact_end
-  use element_stiffness_m, only : add_mass
+  use element_mass_m, only : add_mass
   use equations_m, only : equations_t, number_equations, prescribed_increments, find_equation, take_free
   use errors_m, only : error_t, raise, status_run
   use forces_m, only : trial_t, start_trial, assemble_forces
@@ -47,7 +47,7 @@ contains
     control = start_step_control(model%controls)
     last = .false.
     state%dt = control%dt
-    call report_step(model, state, trial, .false., monitor, error)
+    call report_step(model, state, .false., monitor, error)
     do while (.not. last .and. .not. allocated(error))
       call take_step(model, state, monitor, control, step, trial, error)
       if (allocated(error)) exit
@@ -55,7 +55,7 @@ contains
       last = control%is_last .or. stopped
       if (stopped) reason = 'stopped on request'
       state%dt = control%dt
-      call report_step(model, state, trial, last, monitor, error)
+      call report_step(model, state, last, monitor, error)
       if (wants_line(monitor%progress, state%cycle, monitor%clock%last)) call show_progress( &
         monitor%progress, monitor%clock, state%cycle, state%time, state%dt_before, 1.0_wp, '')
     end do

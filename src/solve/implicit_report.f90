@@ -4,7 +4,7 @@
 module implicit_report_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_output
-  use element_stiffness_m, only : mass_times
+  use element_mass_m, only : mass_times
   use energies_m, only : energy_ratio, total_energy
   use equations_m, only : equations_t
   use errors_m, only : error_t
@@ -22,10 +22,9 @@ module implicit_report_m
 contains
 
   !> Write what is due.
-  subroutine report_step(model, state, trial, last, monitor, error)
+  subroutine report_step(model, state, last, monitor, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    type(trial_t), intent(in) :: trial
     logical, intent(in) :: last
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error

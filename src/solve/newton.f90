@@ -57,6 +57,7 @@ contains
     real(wp), allocatable :: b(:), x(:), moved(:)
     type(report_t) :: report
     integer :: iteration
+    logical :: solved
 
     moved = increments
     allocate (x(equations%n_free))
@@ -70,7 +71,8 @@ contains
       call compress_matrix(matrix)
       call solve_linear(matrix, b, x, report)
       call lap(clock, phase_solver)
-      if (.not. is_solved(report, outcome)) return
+      call judge_solution(report, outcome, solved)
+      if (.not. solved) return
       now%energy = abs(dot_product(x, b))
       now%step = norm2(x)
       call move_nodes(model, state, step, equations, x, moved, log, clock, trial, now, outcome)
@@ -87,10 +89,10 @@ contains
   end subroutine find_equilibrium
 
   !> Whether the linear system had a solution.
-  pure function is_solved(report, outcome) result(solved)
+  subroutine judge_solution(report, outcome, solved)
     type(report_t), intent(in) :: report
     type(outcome_t), intent(inout) :: outcome
-    logical :: solved
+    logical, intent(out) :: solved
 
     solved = .false.
     if (report%is_singular) outcome%singular_equation = report%equation
@@ -99,7 +101,7 @@ contains
     else
       outcome%reason = report%message
     end if
-  end function is_solved
+  end subroutine judge_solution
 
   !> Move the trial by `x`, shortened where elements would turn inside out or where the residual along x would not
   !> fall; prescribed degrees of freedom by all of `moved`.

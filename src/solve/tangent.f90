@@ -5,7 +5,8 @@ module tangent_m
   use conditions_m, only : pressure_load_t
   use contact_stiffness_m, only : add_contact_stiffness
   use curves_m, only : curve_value
-  use element_stiffness_m, only : add_stiffness, add_mass, mass_times
+  use element_mass_m, only : add_mass, mass_times
+  use element_stiffness_m, only : add_stiffness
   use equations_m, only : equations_t
   use forces_m, only : trial_t
   use model_m, only : model_t
