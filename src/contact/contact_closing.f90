@@ -3,11 +3,11 @@
 !> with two bodies that touch as free ones: for its first tangent, gaps that are zero but for round-off count
 !> as contact, without any pressure (doc/theory/contact.md, section 9.6).
 module contact_closing_m
-  use contact_projection_m, only : foot_t, closest_foot, face_foot, see_segment
+  use contact_projection_m, only : foot_t, closest_foot, face_foot, see_segment, turns_gently
   use contact_search_m, only : most_facing, begin_contact
   use contact_state_m, only : contact_state_t, tracking_t, is_touching, is_behind
   use contacts_m, only : contact_t
-  use geometry_m, only : segment_length
+  use geometry_m, only : sight_t, segment_length, sight_gap
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
@@ -79,7 +79,8 @@ contains
     end do
   end subroutine close_spots
 
-  !> Foot of a spot that touches a face without gap, on the face that its own surface faces most; segment 0: none.
+  !> Foot of a spot that touches a face without gap, unless it has one already. Beside a sharp corner it is on the face
+  !> that the spot's own surface faces most. Segment 0: none.
   pure function closed_foot(tracking, surface, chain, spots, i, gap) result(foot)
     type(tracking_t), intent(in) :: tracking
     type(surface_t), intent(in) :: surface
@@ -87,16 +88,18 @@ contains
     integer, intent(in) :: i
     real(wp), intent(in) :: gap
     type(foot_t) :: foot, other
+    type(sight_t) :: sight, facing
     integer :: face
 
     other = closest_foot(surface, chain, spots(:, i), tracking%segment(i))
     if (.not. other%is_on .or. abs(other%gap) >= gap) return
-    if (tracking%status(i) /= is_touching) foot = face_foot(see_segment(surface, chain, &
-      spots(:, i), other%segment), other%segment)
+    sight = see_segment(surface, chain, spots(:, i), other%segment)
+    if (tracking%status(i) /= is_touching) foot = face_foot(sight, other%segment)
     face = most_facing(tracking, surface, chain, spots, i, other, .true.)
-    if (face == 0) return
-    other = face_foot(see_segment(surface, chain, spots(:, i), face), face)
-    if (abs(other%gap) < gap) foot = other
+    if (face == 0 .or. face == other%segment) return
+    facing = see_segment(surface, chain, spots(:, i), face)
+    if (turns_gently(sight, facing)) return
+    if (abs(sight_gap(facing)) < gap) foot = face_foot(facing, face)
   end function closed_foot
 
 end module contact_closing_m

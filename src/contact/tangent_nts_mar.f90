@@ -65,8 +65,7 @@ contains
       call vary_larger_share(contact, memory, cover, point, share)
       piece%is_last = piece%is_last .or. .not. share%value > 0.0_wp
     else if (.not. (cover%feet(1)%is_on .and. cover%feet(2)%is_on)) then
-      piece%high = 1.0_wp
-      piece%is_last = .true.
+      piece = piece_t(high=1.0_wp, is_last=.true.)
       call add_piece(contact, memory, cover, piece, point, share, equations, matrix, has_area)
     end if
     do while (.not. piece%is_last)
