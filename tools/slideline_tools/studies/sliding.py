@@ -138,7 +138,7 @@ def force_figure(runs):
                               100 * (THRESHOLD - spacing * place), color="#00000012", linewidth=0)
         panels[0].set_title("vertical contact force", loc="left")
         panels[1].set_title("the same, enlarged", loc="left")
-        panels[2].set_title("force without its trend, each type shifted by 1.5 %; grey: below the "
+        panels[2].set_title("force without its trend, each type shifted by 1.5 %; shaded: below the "
                             "threshold of a peak", loc="left")
         panels[2].set_xlim(1e3 * np.array(judged_interval()))
         for axes, text in zip(panels, ("MN/m", "MN/m", "% of the mean force")):
