@@ -21,7 +21,7 @@ from slideline_tools.studies.common import TYPES, label, markdown_table, write_p
 SEARCH, PAIRING, FORCE = "contact_search", "contact_pairing", "contact_force"
 LEVELS = {"sliding": (1, 2, 3), "collision": (1, 2, 3, 4)}
 # Contact time over that of the classical one-pass NTS, by type and level.
-SEED_RATIOS = {
+SOURCE_RATIOS = {
     "sliding": {3: (2.25, 2.26, 2.26), 4: (2.09, 2.09, 2.20), 5: (1.22, 1.09, 1.12),
                 6: (4.98, 5.49, 5.85)},
     "collision": {3: (1.92, 1.97, 1.95, 1.93), 4: (2.06, 2.05, 2.04, 2.05),
@@ -69,7 +69,7 @@ def level_table(figures):
 
 
 def fewest_peaks(peaks):
-    """Answers whether type 5 has the fewest peaks, of the seed's types and of its NTS types."""
+    """Answers whether type 5 has the fewest peaks, of the source's types and of its NTS types."""
     every = [row[5] < min(row[k] for k in (1, 3, 4, 6)) for row in peaks.count.values()]
     nts = [row[5] < min(row[k] for k in (1, 3, 4)) for row in peaks.count.values()]
     return every, nts
@@ -136,11 +136,11 @@ class Times:
         return float(self.steps[level][ctype].sum() / self.steps[level][1].sum())
 
     def ratio_table(self):
-        """Ratios to type 1 by level, the seed's behind them."""
-        seed = SEED_RATIOS[self.scene]
+        """Ratios to type 1 by level, those of the source behind them."""
+        source = SOURCE_RATIOS[self.scene]
         rows = []
         for ctype in TYPES:
-            theirs = seed.get(ctype)
+            theirs = source.get(ctype)
             row = [label(ctype)]
             for place, level in enumerate(LEVELS[self.scene]):
                 row.append(f"{self.ratio(level, ctype):.2f}"
@@ -165,7 +165,7 @@ class Times:
 PAGE = """# The claims about the contact types, answered
 
 This page is written by `tools/batch/claims.sh` from runs: do not edit it. The verdicts follow from
-the figures by the rules stated here. The claims are those of Kang, Lee & Shin (2023), the seed;
+the figures by the rules stated here. The claims are those of Kang, Lee & Shin (2023), the source;
 its text compares types 1, 3, 4, 5 and 6. Dimensions that it does not give are ours, and
 its program and machine are others: compare ratios.
 
@@ -175,8 +175,8 @@ its program and machine are others: compare ratios.
 
 ## 1. NTS-mAR has the fewest force peaks: {fewest}
 
-Abrupt peaks of the sliding scene, as defined in [sliding.md](sliding.md). Yes means: type 5 has fewer
-than types 1, 3, 4 and 6 at every level. Fewer than types 1, 3 and 4, the NTS family, at
+Abrupt peaks of the sliding scene, as defined in [sliding.md](sliding.md). Yes means: type 5 has
+fewer than types 1, 3, 4 and 6 at every level. Fewer than types 1, 3 and 4, the NTS family, at
 {nts_levels}.
 
 {counts}
@@ -194,7 +194,7 @@ Yes means: of types 1, 3, 4, 5 and 6, type 6 has the smallest rms of r (fast rou
 smallest waviness (slow swing over a master segment) at every level. Smallest rms at {rms_levels},
 smallest waviness at {wave_levels}. Both in % of the mean force.
 
-The seed also finds NTS-mAR smoother than VTS-PPT: {smoother}. Its rms is smaller at
+The source also finds NTS-mAR smoother than VTS-PPT: {smoother}. Its rms is smaller at
 {calm_levels}, its waviness at {still_levels}.
 
 rms:
@@ -216,19 +216,19 @@ chain's; partly: one of them, or type 3 by its penetration only.
 
 ## 5. At most N - 1 master-to-slave points for N touching slave nodes: {points}
 
-The seed says so where the master is not finer than the slave. In the sliding scene the master is
+The source says so where the master is not finer than the slave. In the sliding scene the master is
 twice as coarse: {states} states with contact over all levels, at most {most} such points with
 {of} touching slave nodes. Yes means: never above N - 1; partly: in less than 5 % of
-the states. It is above in {above} states, which have at most {above_of} touching slave nodes: a segment
-of which only one end touches can have a master node that touches too. With slave and
+the states. It is above in {above} states, which have at most {above_of} touching slave nodes: a
+segment of which only one end touches can have a master node that touches too. With slave and
 master exchanged, the master twice as fine, there are up to {exchanged_most} such points with
 {exchanged_of} touching slave nodes, and {exchanged_above} of {exchanged_states} states are above
 N - 1: the bound needs its condition.
 
 ## 6. Step M is cheaper than steps A and B: {pairing}
 
-The timing has no M of its own for types 1, 2, 3 and 6, whose placing counts as B. Yes means: in types 4 and 5, M takes less
-time than A and less than B in every run; M over A and M over B:
+The timing has no M of its own for types 1, 2, 3 and 6, whose placing counts as B. Yes
+means: in types 4 and 5, M takes less time than A and less than B in every run; M over A and M over B:
 
 {pairings}
 
@@ -240,8 +240,8 @@ master nodes in type 5.
 ## 7. The contact cost of the collision is mostly detection: {detection}
 
 Yes means: step A takes more than half of the contact time of the collision in types 1, 3, 4, 5 and
-6 at every level. It does in {detections} of {n_detections} runs. Time of the steps over all of type 1,
-N_r = 1 and 4:
+6 at every level. It does in {detections} of {n_detections} runs. Time of the steps over all of
+type 1, N_r = 1 and 4:
 
 {collision_1}
 
@@ -249,8 +249,8 @@ N_r = 1 and 4:
 
 ## 8. Contact time over that of the classical one-pass NTS
 
-Steps A + M + B; the seed's ratios in brackets. The median of {repeats} rounds, all variants in turn,
-one thread; the largest spread of a run (highest less lowest, over the median) was {spread} %.
+Steps A + M + B; the ratios of the source in brackets. The median of {repeats} rounds, all
+variants in turn, one thread; the largest spread of a run (highest less lowest, over the median) was {spread} %.
 
 Sliding:
 
