@@ -78,9 +78,10 @@ def test_added_points_are_the_active_ones_beyond_the_touching_nodes(tmp_path):
 def test_phase_times_are_medians_over_the_rounds(tmp_path):
     folder = tmp_path / "sliding" / "level_2_type_4"
     folder.mkdir(parents=True)
-    for repeat, (a, m, b) in enumerate(((1.0, 4.0, 2.0), (9.0, 5.0, 2.5), (2.0, 3.0, 3.0)), 1):
+    rounds = ((7, 7.0, 28.0, 14.0), (7, 63.0, 35.0, 17.5), (14, 28.0, 42.0, 42.0))
+    for repeat, (elements, a, m, b) in enumerate(rounds, 1):
         (folder / f"timing_{repeat}.csv").write_text(
-            f"phase,seconds,calls,share\nelements,7,1,0\ncontact_search,{a},1,0\n"
+            f"phase,seconds,calls,share\nelements,{elements},1,0\ncontact_search,{a},1,0\n"
             f"contact_pairing,{m},1,0\ncontact_force,{b},1,0\ntotal,30,1,1\n")
     median, low, high = claims.phase_times(tmp_path, "sliding", 2, 4, 3)
     assert median.tolist() == [2.0, 4.0, 2.5]
