@@ -113,9 +113,9 @@ This page and its pictures are written by `tools/batch/collision.sh`: do not edi
 An elastic steel block (slave) hits a clamped, elastic and perfectly plastic aluminium plate
 (master) at 80 m/s (Kang, Lee & Shin 2023, section 4.3, the source; dimensions and velocity that
 its text does not give are ours, see the decks `input/collision/collision*.k`). Type 6 has 4 Gauss
-points. The largest plastic strain of all sits at the clamped end of the plate and grows with refinement (a
-clamped corner of a plastic plate has no limit), so compare it within a level only; the largest
-below the projectile (0 to 25 mm) stands beside it.
+points. The largest plastic strain of all sits at the clamped end of the plate and grows with
+refinement (a clamped corner of a plastic plate has no limit), so compare it within a level only;
+the largest below the projectile (0 to 25 mm) stands beside it.
 
 The force is written every microsecond; an episode is a stretch of rows with a force, from its first
 to its last row. The rebound velocity is the mean vertical velocity of the projectile at the end.
