@@ -165,9 +165,10 @@ the viscous form (0.1). Type 6 has 6 Gauss points.
 
 Node passing shows as bursts: the contact force jumps and the two bodies ring for some tens of
 microseconds. (In the undeformed meshes some slave node passes a master node every half master
-segment: {passes:.0f} times N_r in the time judged below.) Between the bursts the force swings slowly, with the passage of the master segments.
-The measure (`tools/slideline_tools/studies/peaks.py`, tested on made histories in
-`tests/tools/test_peaks.py`) tells the two apart:
+segment: {passes:.0f} times N_r in the time judged below.) Between the bursts the force swings
+slowly, with the passage of the master segments. The measure
+(`tools/slideline_tools/studies/peaks.py`, tested on made histories in `tests/tools/test_peaks.py`)
+tells the two apart:
 
 - The force F is written every {rows} steps and judged between {first:.4g} ms and {last:.4g} ms,
   while the die moves from {from_mm:.3g} mm to {to_mm:.3g} mm.
