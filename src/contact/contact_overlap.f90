@@ -71,7 +71,28 @@ contains
         start = cover%feet(1)%segment
       end do
     end associate
+    call take_nodes_in(contact, cover%feet)
   end subroutine find_cover
+
+  !> A foot on a master node belongs to two segments; it takes the outer one, so that the node lies between the
+  !> feet whatever round-off decided.
+  pure subroutine take_nodes_in(contact, feet)
+    type(contact_t), intent(in) :: contact
+    type(foot_t), intent(inout) :: feet(2)
+
+    associate (next => contact%master%next(feet(1)%segment))
+      if (.not. abs(feet(1)%xi - 1.0_wp) > 0.0_wp .and. next > 0) then
+        feet(1)%segment = next
+        feet(1)%xi = 0.0_wp
+      end if
+    end associate
+    associate (previous => contact%master%previous(feet(2)%segment))
+      if (.not. abs(feet(2)%xi) > 0.0_wp .and. previous > 0) then
+        feet(2)%segment = previous
+        feet(2)%xi = 1.0_wp
+      end if
+    end associate
+  end subroutine take_nodes_in
 
   !> Closest foot of a place on the master chain, found by walking.
   pure function free_foot(contact, memory, place, start) result(foot)

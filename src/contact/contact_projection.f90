@@ -169,8 +169,8 @@ contains
       if (is_before(other, sight%along < 0.0_wp)) then
         foot = corner_foot(sight, other, segment)
         return
-      else if (other%across >= 0.0_wp .or. &
-        (is_over_segment(sight) .and. .not. turns_gently(sight, other))) then
+      else if (.not. turns_gently(sight, other) .and. &
+        (other%across >= 0.0_wp .or. is_over_segment(sight))) then
         foot = face_foot(sight, segment)
         return
       end if

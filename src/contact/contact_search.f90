@@ -4,7 +4,7 @@
 module contact_search_m
   use contact_buckets_m, only : nearest_t, fill_grid, slip_limit, box_distance, find_nearest
   use contact_projection_m, only : foot_t, see_segment, closest_foot, follow_contact, &
-    walk_to_closest, is_over_segment, end_tolerance
+    walk_to_closest, is_over_segment, turns_gently, end_tolerance
   use contact_state_m, only : tracking_t, is_free, is_in_front, is_touching, is_behind
   use geometry_m, only : sight_t, separation
   use kinds_m, only : wp
@@ -250,7 +250,7 @@ contains
     tracking%normal(:, i) = foot%normal
   end subroutine store_foot
 
-  !> Face that a spot stands before: its own segment, but next to a corner the one that the spot's own
+  !> Face that a spot stands before: its own segment, but next to a sharp corner the one that the spot's own
   !> surface faces most, among those it is over. 0 when it stands before none. Without this a node at a
   !> flush edge belongs to the top or to the side of the other body by round-off.
   pure function most_facing(tracking, surface, chain, spots, i, foot, is_any_side) result(face)
@@ -261,7 +261,7 @@ contains
     type(foot_t), intent(in) :: foot
     logical, intent(in) :: is_any_side !! faces that the spot is behind count too
     integer :: face
-    type(sight_t) :: sight
+    type(sight_t) :: sight, own
     real(wp) :: t(2), facing, best
     integer :: candidates(3), k, n
 
@@ -273,6 +273,8 @@ contains
     do k = 1, n
       if (candidates(k) == 0) cycle
       sight = see_segment(surface, chain, spots(:, i), candidates(k))
+      if (k == 1) own = sight
+      if (k > 1 .and. turns_gently(own, sight)) cycle
       if (.not. is_over_segment(sight)) cycle
       if (sight%across < 0.0_wp .and. .not. is_any_side) cycle
       facing = dot_product(t, sight%t)/sqrt(sight%square)
