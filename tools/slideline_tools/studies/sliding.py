@@ -219,7 +219,8 @@ def page(runs, pictured):
     moved = 1e3 * travel(np.array([first, last]))
     return PAGE.format(
         passes=(moved[1] - moved[0]) / (500 * SEGMENT), rows=STEPS_PER_ROW, first=1e3 * first,
-        last=1e3 * last, from_mm=moved[0], to_mm=moved[1], share=1.0 / WINDOW_SHARE, window=1e6 * WINDOW_SHARE * crossing_time(1),
+        last=1e3 * last, from_mm=moved[0], to_mm=moved[1], share=1.0 / WINDOW_SHARE,
+        window=1e6 * WINDOW_SHARE * crossing_time(1),
         threshold=100 * THRESHOLD, pictured=pictured, tables=by_level(runs, peak_table),
         robustness=by_level(runs, robustness_table))
 
