@@ -5,7 +5,7 @@
 !> pieces, each facing one master segment; there is no search (doc/theory/contact.md, section 3.5).
 module contact_overlap_m
   use contact_placing_m, only : tracked_foot
-  use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
+  use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest, side_on
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, sight_normal
@@ -15,10 +15,9 @@ module contact_overlap_m
   public :: cover_t, piece_t, find_cover, first_piece, next_piece, see_master_node, facing_share, &
     local_foot
 
-  !> Cosines of the angle between two outward normals from which on surfaces do not face each other (a block's
-  !> side that stands on a surface has no part in its contact), and up to which they do entirely (60 degrees
-  !> between the surfaces). In between the share falls smoothly: a jump would create energy when a body turns.
-  real(wp), parameter :: side_on = -0.1_wp, face_on = -0.5_wp
+  !> Cosine of the angle between two outward normals up to which surfaces face each other entirely (60 degrees between
+  !> the surfaces). From there to `side_on` the share falls smoothly: a jump would create energy when a body turns.
+  real(wp), parameter :: face_on = -0.5_wp
 
   !> A slave segment over the master chain.
   type :: cover_t
