@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The claims of Kang, Lee & Shin (2023) about the contact types, answered from runs.
 
-    python -m slideline_tools.studies.claims RUNS DOC REPEATS
+    python -m slideline_tools.studies.claims RUNS DOC
 
-RUNS holds the folders block, sliding, collision and claims of the batch jobs; the page goes to
-DOC/studies. REPEATS is the number of timing tables of each run.
+RUNS holds the folders block, sliding, collision and claims of the batch jobs, the last with
+<scene>/level_L_type_T/timing_*.csv, one table a round; the page goes to DOC/studies.
 """
 import argparse
 import pathlib
@@ -109,32 +109,39 @@ def added_points(folder):
 
 # ---- time --------------------------------------------------------------------------------------
 
-def phase_times(folder, scene, level, ctype, repeats):
-    """(3,) median times of steps A, M and B, and lowest and highest of their sum.
+def phase_times(folder):
+    """(n_round, 3) times of steps A, M and B from the timing tables of one run.
 
     In units of the element loop of the same run, which is the same work for all types: on a busy
     machine both wait alike.
     """
     rounds = []
-    for repeat in range(1, repeats + 1):
-        table = read_csv(folder / scene / f"level_{level}_type_{ctype}" / f"timing_{repeat}.csv")
+    for path in sorted(folder.glob("timing_*.csv")):
+        table = read_csv(path)
         seconds = dict(zip(table["phase"].tolist(), table["seconds"].tolist()))
         rounds.append([seconds[phase] / seconds[ELEMENTS] for phase in (SEARCH, PAIRING, FORCE)])
-    total = np.sum(rounds, axis=1)
-    return np.median(rounds, axis=0), float(total.min()), float(total.max())
+    if not rounds:
+        raise UserError(f"{folder}: no timing tables")
+    return np.array(rounds)
 
 
 class Times:
-    """Median phase times of one scene: `steps[level][type]` = (3,) times of A, M, B."""
+    """Phase times of one scene: `steps[level][type]` = (3,) medians of A, M, B over the rounds.
 
-    def __init__(self, folder, scene, repeats):
+    `rounds`: fewest rounds of a run; `spread`: largest distance of the quartiles of the sum over
+    its median.
+    """
+
+    def __init__(self, folder, scene):
         self.scene = scene
-        measured = {level: {ctype: phase_times(folder, scene, level, ctype, repeats)
+        measured = {level: {ctype: phase_times(folder / scene / f"level_{level}_type_{ctype}")
                             for ctype in TYPES} for level in LEVELS[scene]}
-        self.steps = {level: {k: value[0] for k, value in row.items()}
+        self.steps = {level: {ctype: np.median(rounds, axis=0) for ctype, rounds in row.items()}
                       for level, row in measured.items()}
-        self.spread = max((high - low) / median.sum() for row in measured.values()
-                          for median, low, high in row.values())
+        every = [rounds.sum(axis=1) for row in measured.values() for rounds in row.values()]
+        self.rounds = min(len(sums) for sums in every)
+        self.spread = max(float(np.subtract(*np.percentile(sums, (75, 25))) / np.median(sums))
+                          for sums in every)
 
     def ratio(self, level, ctype):
         """Contact time over that of type 1."""
@@ -255,10 +262,11 @@ type 1, N_r = 1 and 4:
 
 ## 8. Contact time over that of the classical one-pass NTS
 
-Steps A + M + B; the ratios of the source in brackets. The median of {repeats} rounds, all
-variants in turn, one thread. Times count in units of the element loop of the same run, which is the
-same work for all types: what slows the machine for a while slows both. The largest spread of a run
-(highest less lowest, over the median) was {spread} %.
+Steps A + M + B; the ratios of the source in brackets. Medians of {slide_rounds} rounds of the
+sliding and {crash_rounds} of the collision, all variants in turn, one thread. Times count in units
+of the element loop of the same run, which is the same work for all types: what slows the machine
+for a while slows both. The quartiles of the rounds lie at most {slide_spread} % of the median apart
+in the sliding and {crash_spread} % in the collision.
 
 Sliding:
 
@@ -327,7 +335,7 @@ def point_texts(normal, exchanged):
     return texts
 
 
-def time_texts(slide, crash, repeats):
+def time_texts(slide, crash):
     """The texts of claims 6 to 8."""
     rows, cheaper = [], []
     for times in (slide, crash):
@@ -344,8 +352,10 @@ def time_texts(slide, crash, repeats):
         "pairings": markdown_table(["run", "type 4: M/A", "M/B", "type 5: M/A", "M/B"], rows),
         "detection": verdict(detected), "detections": sum(detected),
         "n_detections": len(detected), "collision_1": crash.phase_table(1),
-        "collision_4": crash.phase_table(4), "repeats": repeats,
-        "spread": f"{100.0 * max(slide.spread, crash.spread):.0f}",
+        "collision_4": crash.phase_table(4),
+        "slide_rounds": slide.rounds, "crash_rounds": crash.rounds,
+        "slide_spread": f"{100.0 * slide.spread:.0f}",
+        "crash_spread": f"{100.0 * crash.spread:.0f}",
         "sliding_ratios": slide.ratio_table(), "collision_ratios": crash.ratio_table(),
         "cheapest": f"{verdict(cheapest)}: in {sum(cheapest)} of {len(cheapest)} cases",
         "sliding_1": slide.phase_table(1), "sliding_3": slide.phase_table(3)}
@@ -362,7 +372,7 @@ CLAIMS = (("NTS-mAR has the fewest force peaks", "fewest"),
           ("NTS-mAR is the cheapest remedy", "cheapest"))
 
 
-def write(folder, doc, repeats):
+def write(folder, doc):
     """Read the runs below `folder`, write the page below `doc`."""
     texts = peak_texts(PeakFigures(folder / "sliding"))
     texts.update(end_texts(end_pressures(folder / "block")))
@@ -370,8 +380,7 @@ def write(folder, doc, repeats):
               for level in LEVELS["sliding"]]
     texts.update(point_texts(np.concatenate(normal),
                              added_points(folder / "claims" / "exchanged")))
-    texts.update(time_texts(Times(folder / "claims", "sliding", repeats),
-                            Times(folder / "claims", "collision", repeats), repeats))
+    texts.update(time_texts(*(Times(folder / "claims", scene) for scene in LEVELS)))
     texts["summary"] = "\n".join(f"| {text} | {texts[name]} |" for text, name in CLAIMS)
     write_page(doc, "claims", PAGE.format(**texts))
 
@@ -380,10 +389,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("doc", type=pathlib.Path)
-    parser.add_argument("repeats", type=int)
     options = parser.parse_args()
     try:
-        write(options.folder, options.doc, options.repeats)
+        write(options.folder, options.doc)
     except UserError as problem:
         print(problem, file=sys.stderr)
         return 2
