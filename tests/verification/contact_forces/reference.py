@@ -279,8 +279,8 @@ def facing(slave_normal, master_normal):
 
 def segment_facing(slave, k, feet):
     """The larger share of the two ends; with both off the master there is no foot to judge by."""
-    return max((facing(slave.normal[k], feet[node].normal) for node in slave.nodes[k] if feet[node]),
-               default=1.0)
+    found = [feet[node].normal for node in slave.nodes[k] if feet[node]]
+    return max((facing(slave.normal[k], normal) for normal in found), default=1.0)
 
 
 def nts_mar(slave, master, penalty, strict=False):
@@ -343,7 +343,8 @@ def nodal_pressure(slave, master, penalty, spots):
 
 def mortar(slave, master, penalty, n_gauss):
     """Type 6."""
-    spots = [(k, at, w * slave.length[k]) for k in range(len(slave)) for at, w in zip(*gauss(n_gauss))]
+    spots = [(k, at, w * slave.length[k])
+             for k in range(len(slave)) for at, w in zip(*gauss(n_gauss))]
     return nodal_pressure(slave, master, penalty, spots)
 
 

@@ -37,7 +37,7 @@ class Pair:
 
 @dataclass
 class Interface:
-    """What is needed to evaluate one interface: initial nodes (X) and where they are in the deck."""
+    """What is needed to evaluate one interface, and where its nodes are in the deck."""
     pair: Pair
     rule: Rule
     slave: np.ndarray   # rows of the deck's node list, in walking order
@@ -47,7 +47,8 @@ class Interface:
     def chains(self, initial, displacement=None):
         """Slave and master chain at time zero and now."""
         near = initial[self.slave[0]]
-        start = [Chain(initial[side] - near, self.pair.closed) for side in (self.slave, self.master)]
+        start = [Chain(initial[side] - near, self.pair.closed)
+                 for side in (self.slave, self.master)]
         now = start
         if displacement is not None:
             now = [Chain(chain.x + displacement[side], self.pair.closed)
@@ -153,9 +154,14 @@ def spaced(n, left, right, uneven, rng):
 
 
 def random_pair(rng, number, name=None, closed=False, far=0.0):
-    """A slave line a little under (or over) the master's: facing it in full or in part."""
+    """A slave line a little under (or over) the master's: facing it in full or in part.
+
+    Closed chains are kept flat enough for the edges of the bodies to be sharp, and shallow.
+    """
     name = name or SHAPES[rng.integers(len(SHAPES))]
-    line = shape(name, rng)
+    surface_line = shape(name, rng)
+    flatten = 0.3 if closed else 1.0
+    line = lambda x: flatten * surface_line(x)  # noqa: E731
     n_slave, n_master = rng.integers(1, 11, 2)
     uneven = rng.choice([0.0, 0.7])
     left, right = rng.uniform(-0.25, 0.25, 2) * rng.integers(0, 2, 2)
@@ -163,12 +169,13 @@ def random_pair(rng, number, name=None, closed=False, far=0.0):
     x_slave = spaced(n_slave, left, 1.0 + right, uneven, rng)
     y_master = line(x_master)
     surface = line(x_slave)
-    if rng.integers(2):  # nodes under the master's polygon rather than under the line through it
+    if rng.integers(2) or closed:  # under the master's polygon rather than the line through it
         inside = np.clip(x_slave, 0.0, 1.0)
         surface = np.interp(inside, x_master, y_master) + line(x_slave) - line(inside)
-    depth = 0.02 / max(n_slave, n_master) * rng.uniform(-0.5, 1.0, len(x_slave))
+    depth = 0.02 * flatten / max(n_slave, n_master) * rng.uniform(-0.5, 1.0, len(x_slave))
     if rng.integers(2):
         depth = np.full(len(x_slave), abs(depth[0]) + 1.0e-3 / max(n_slave, n_master))
-    return Pair(f"{number} {name} {n_slave}/{n_master}", np.stack([x_slave, surface - depth], axis=1),
-                np.stack([x_master, y_master], axis=1), rng.uniform(-np.pi, np.pi),
+    sides = (x_slave, surface - depth), (x_master, y_master)
+    lines = (np.stack(side, axis=1) for side in sides)
+    return Pair(f"{number} {name} {n_slave}/{n_master}", *lines, rng.uniform(-np.pi, np.pi),
                 tuple(far * rng.uniform(-1.0, 1.0, 2)), closed)
