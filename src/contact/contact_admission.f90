@@ -90,7 +90,8 @@ contains
   !> Travel during which nothing can touch a segment of length L. Chains come nearest to each other at a node of one of
   !> them: at an end of the segment, at a master node near the tracked feet of its ends, or at one farther
   !> along the chain; from that a place on the segment is at least (o_1 + o_2 - L)/2 away when its
-  !> ends are o_1 and o_2 away. The last can shrink by 3/2 of the travel, the others by the travel.
+  !> ends are o_1 and o_2 away. The last shrinks by 3/2 of the travel at most, so that it takes a third of
+  !> o_1 + o_2 - L; the others shrink by the travel.
   pure function safe_travel(contact, memory, ends) result(travel)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -113,7 +114,7 @@ contains
         end if
       end do
     end associate
-    travel = max(0.0_wp, min(travel, others/1.5_wp))
+    travel = max(0.0_wp, min(travel, others/3.0_wp))
   end function safe_travel
 
   !> Distance from a slave segment to the nodes of the master segments round a given one.

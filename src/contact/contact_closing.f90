@@ -3,7 +3,7 @@
 !> with two bodies that touch as free ones: for its first tangent, gaps that are zero but for round-off count
 !> as contact, without any pressure (doc/theory/contact.md, section 9.6).
 module contact_closing_m
-  use contact_projection_m, only : foot_t, closest_foot, face_foot, see_segment, turns_gently
+  use contact_projection_m, only : foot_t, closest_foot, face_foot, see_segment
   use contact_search_m, only : most_facing, begin_contact
   use contact_state_m, only : contact_state_t, tracking_t, is_touching, is_behind
   use contacts_m, only : contact_t
@@ -98,7 +98,6 @@ contains
     face = most_facing(tracking, surface, chain, spots, i, other, .true.)
     if (face == 0 .or. face == other%segment) return
     facing = see_segment(surface, chain, spots(:, i), face)
-    if (turns_gently(sight, facing)) return
     if (abs(sight_gap(facing)) < gap) foot = face_foot(facing, face)
   end function closed_foot
 

@@ -9,13 +9,17 @@ module contact_projection_m
   implicit none
   private
   public :: foot_t, see_segment, closest_foot, face_foot, follow_contact, walk_to_closest, &
-    is_over_segment, turns_gently, end_tolerance
+    is_over_segment, turns_gently, end_tolerance, side_on
 
   !> Overshoot accepted beyond the end of a chain, as a part of the segment; not clamped.
   real(wp), parameter :: end_tolerance = 0.01_wp
   !> Cosine of the turn between two segments up to which their corner is gentle: a spot in
   !> contact changes over to the nearer one. At sharper corners it stays on its face until the face ends.
   real(wp), parameter :: gentle_turn = 0.5_wp
+
+  !> Cosine of the angle between two outward normals from which on surfaces do not face each other (a block's
+  !> side that stands on a surface has no part in its contact).
+  real(wp), parameter :: side_on = -0.1_wp
 
   !> The foot of a spot: the place weights (1 - xi, xi) on `segment`; spot - foot = gap * normal.
   type :: foot_t
@@ -169,8 +173,8 @@ contains
       if (is_before(other, sight%along < 0.0_wp)) then
         foot = corner_foot(sight, other, segment)
         return
-      else if (other%across >= 0.0_wp .or. &
-        (is_over_segment(sight) .and. .not. turns_gently(sight, other))) then
+      else if (.not. turns_gently(sight, other) .and. &
+        (other%across >= 0.0_wp .or. is_over_segment(sight))) then
         foot = face_foot(sight, segment)
         return
       end if

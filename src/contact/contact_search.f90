@@ -4,7 +4,8 @@
 module contact_search_m
   use contact_buckets_m, only : nearest_t, fill_grid, slip_limit, box_distance, find_nearest
   use contact_projection_m, only : foot_t, see_segment, closest_foot, follow_contact, &
-    walk_to_closest, is_over_segment, end_tolerance
+    walk_to_closest, is_over_segment, turns_gently, end_tolerance, &
+    side_on
   use contact_state_m, only : tracking_t, is_free, is_in_front, is_touching, is_behind
   use geometry_m, only : sight_t, separation
   use kinds_m, only : wp
@@ -250,32 +251,43 @@ contains
     tracking%normal(:, i) = foot%normal
   end subroutine store_foot
 
-  !> Face that a spot stands before: its own segment, but next to a corner the one that the spot's own
+  !> Face that a spot stands before: its own segment, but next to a sharp corner the one that the spot's own
   !> surface faces most, among those it is over. 0 when it stands before none. Without this a node at a
-  !> flush edge belongs to the top or to the side of the other body by round-off.
-  pure function most_facing(tracking, surface, chain, spots, i, foot, is_any_side) result(face)
+  !> flush edge belongs to the top or to the side of the other body by round-off. At time zero (`is_start`) faces that the spot is
+  !> behind count too, and any depth is next to the corner where the spot's own surface faces the other face only.
+  pure function most_facing(tracking, surface, chain, spots, i, foot, is_start) result(face)
     type(tracking_t), intent(in) :: tracking
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
     integer, intent(in) :: i
     type(foot_t), intent(in) :: foot
-    logical, intent(in) :: is_any_side !! faces that the spot is behind count too
+    logical, intent(in) :: is_start
     integer :: face
-    type(sight_t) :: sight
+    type(sight_t) :: sight, own
     real(wp) :: t(2), facing, best
-    integer :: candidates(3), k, n
+    integer :: candidates(3), k
+    logical :: is_next_to_corner
 
     candidates = [foot%segment, surface%previous(foot%segment), surface%next(foot%segment)]
-    n = merge(1, 3, foot%xi > end_tolerance .and. foot%xi < 1.0_wp - end_tolerance)
+    is_next_to_corner = foot%xi <= end_tolerance .or. foot%xi >= 1.0_wp - end_tolerance
     t = separation(spots(:, tracking%chord(2, i)), spots(:, tracking%chord(1, i)))
     face = 0
     best = huge(1.0_wp)
-    do k = 1, n
+    do k = 1, 3
+      if (k > 1 .and. .not. is_next_to_corner) exit
       if (candidates(k) == 0) cycle
       sight = see_segment(surface, chain, spots(:, i), candidates(k))
-      if (.not. is_over_segment(sight)) cycle
-      if (sight%across < 0.0_wp .and. .not. is_any_side) cycle
       facing = dot_product(t, sight%t)/sqrt(sight%square)
+      if (k == 1) then
+        own = sight
+        if (is_start) is_next_to_corner = is_next_to_corner .or. facing >= 0.0_wp
+      else if (turns_gently(own, sight)) then
+        cycle
+      else if (is_start .and. facing > side_on*norm2(t)) then
+        cycle
+      end if
+      if (.not. is_over_segment(sight)) cycle
+      if (sight%across < 0.0_wp .and. .not. is_start) cycle
       if (facing >= best) cycle
       best = facing
       face = candidates(k)

@@ -2,21 +2,21 @@
 !> The step that the penalty springs of an interface alone allow.
 !> With springs k_p between weighted means of slave and master nodes, (s - m)^2 <= (1 + c) s^2 + (1 + 1/c) m^2
 !> and the convexity of the square give omega^2 <= max_s K_s/m_s + max_m K_m/m_m, where K is the sum of
-!> k_p times weight at a node. It is exact for two masses and one spring (doc/theory/contact.md, section 7).
+!> k_p times weight at a node. It is exact for two masses and one spring. Averaging the gaps of points over slave
+!> nodes only lowers omega: by convexity again the energy is no more than that of springs at the points.
+!> A node of the tracked side carries at most its competence length in all formulations, for a node of the other side
+!> see `most_on_nodes` (doc/theory/contact.md, section 7).
 module contact_step_limit_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_placing_m, only : competence_length
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
+  use geometry_m, only : segment_length
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
   public :: find_step_limit
-
-  !> Most that nodes at equal spacing, each with its spacing as weight, can put on a hat function, relative
-  !> to its area: reached where the spacing is 3/4 of the segment.
-  real(wp), parameter :: worst_sampling = 1.125_wp
 
 contains
 
@@ -29,25 +29,29 @@ contains
     real(wp), intent(out) :: limit  !! s; huge without any spring
     integer, intent(out) :: node    !! index in the mesh
     type(formulation_t) :: formulation
-    real(wp), allocatable :: slave_areas(:), master_areas(:), slave_ratio(:), master_ratio(:)
+    real(wp), allocatable :: slave_ratio(:), master_ratio(:)
+    real(wp) :: spacing, overhang
     integer :: n, worst(2)
 
     n = memory%n_slave
     formulation = formulation_of(contact)
-    slave_areas = areas(contact%slave, memory%places(:, :n))
-    master_areas = areas(contact%master, memory%places(:, n + 1:))
-    slave_ratio = memory%slave_penalty*slave_areas
-    master_ratio = memory%slave_penalty*max(worst_sampling*master_areas, maxval(slave_areas))
-    if (formulation%has_unit_area) then
-      slave_ratio = memory%node_penalty
-      master_ratio = memory%node_penalty &
-        *max(worst_sampling*master_areas*contact%slave%n_segment/sum(slave_areas), 1.0_wp)
-    end if
-    if (formulation%has_two_passes) then
-      master_ratio = master_ratio + memory%master_penalty*master_areas
-      slave_ratio = slave_ratio + memory%master_penalty &
-        *max(worst_sampling*slave_areas, maxval(master_areas))
-    end if
+    overhang = merge(0.0_wp, 0.5_wp, formulation%covers_segments .and. .not. contact%strict)
+    associate (slave => memory%places(:, :n), master => memory%places(:, n + 1:))
+      slave_ratio = memory%slave_penalty*areas(contact%slave, slave)
+      master_ratio = memory%slave_penalty*most_on_nodes(contact%master, master, &
+        maxval(lengths(contact%slave, slave)), overhang, .false.)
+      if (formulation%has_unit_area) then
+        slave_ratio = memory%node_penalty
+        spacing = minval(lengths(contact%slave, slave))
+        master_ratio = memory%node_penalty/spacing &
+          *most_on_nodes(contact%master, master, spacing, overhang, .true.)
+      end if
+      if (formulation%has_two_passes) then
+        master_ratio = master_ratio + memory%master_penalty*areas(contact%master, master)
+        slave_ratio = slave_ratio + memory%master_penalty*most_on_nodes(contact%slave, slave, &
+          maxval(lengths(contact%master, master)), overhang, .false.)
+      end if
+    end associate
     slave_ratio = slave_ratio/mass(memory%nodes(:n))
     master_ratio = master_ratio/mass(memory%nodes(n + 1:))
     worst = [maxloc(slave_ratio, 1), maxloc(master_ratio, 1)]
@@ -67,5 +71,47 @@ contains
       areas(i) = competence_length(surface, places, i)
     end do
   end function areas
+
+  !> Lengths of all segments of a surface, m.
+  pure function lengths(surface, places)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp) :: lengths(surface%n_segment)
+    integer :: i
+
+    do i = 1, surface%n_segment
+      lengths(i) = segment_length(places(:, surface%segments(1, i)), &
+        places(:, surface%segments(2, i)))
+    end do
+  end function lengths
+
+  !> Most length that points of the other side can put on each node, by its hat function over segments of
+  !> length h. At equal distances s, each with the length s: with a point at the node, s/2 and
+  !> sum(s (1 - i s/h), i s < h) for each neighbouring segment. At distances up to s, or integrating segments of up to s: h/2, and
+  !> the largest error of the trapezoidal rule at the foot of the hat, s^2/(8h), or (s - h)/2 when s > 2h (the midpoint
+  !> rule errs as much at the top, Gauss rules less). Points at a chain's end may stand for a part `overhang` of s beyond it.
+  pure function most_on_nodes(surface, places, s, overhang, at_equal_distances) result(most)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in) :: s        !! m
+    real(wp), intent(in) :: overhang
+    logical, intent(in) :: at_equal_distances
+    real(wp) :: most(surface%n_node)
+    real(wp) :: h(surface%n_segment), share
+    integer :: i, n
+
+    most = overhang*s*(merge(1, 0, surface%incoming == 0) + merge(1, 0, surface%outgoing == 0))
+    h = lengths(surface, places)
+    do i = 1, surface%n_segment
+      if (at_equal_distances) then
+        n = int(h(i)/s)
+        share = s*(0.5_wp + n*(1.0_wp - 0.5_wp*(n + 1)*s/h(i)))
+      else
+        share = 0.5_wp*h(i) &
+          + merge(s**2/(8.0_wp*h(i)), 0.5_wp*(s - h(i)), s <= 2.0_wp*h(i))
+      end if
+      most(surface%segments(:, i)) = most(surface%segments(:, i)) + share
+    end do
+  end function most_on_nodes
 
 end module contact_step_limit_m

@@ -3,15 +3,16 @@
 !> formulations are made (doc/theory/contact.md, section 9). The placements decide which segments and nodes a
 !> point depends on; here the same geometry is gone through once more in dual numbers.
 module contact_variation_m
-  use contact_overlap_m, only : piece_t, side_on, face_on
+  use contact_overlap_m, only : cover_t, piece_t, see_master_node, side_on, face_on
+  use contact_state_m, only : contact_state_t
   use dual_m, only : dual_t, n_partial, constant, operator(+), operator(-), operator(*), &
     operator(/), sqrt
-  use geometry_m, only : separation
+  use geometry_m, only : sight_t, separation
   use kinds_m, only : wp
   implicit none
   private
   public :: varied_point_t, varied_foot_t, n_slot, round_off, apart, length_between, project, &
-    spot_foot, take_foot, see_from, piece_ends, vary_share
+    spot_foot, take_foot, see_from, take_piece, piece_ends, vary_share
 
   !> Nodes that a point depends on, at most.
   integer, parameter :: n_slot = n_partial/2
@@ -131,6 +132,26 @@ contains
     point%gap = foot%gap
     point%normal = foot%normal
   end subroutine take_foot
+
+  !> Put a slave segment into slots 1, 2 and the nodes that cut off a piece of it into slots 5 and 6. Where the walk
+  !> has gone over to another chain that begins behind the last cut, this still is where the piece starts.
+  pure subroutine take_piece(memory, cover, before, piece, point)
+    type(contact_state_t), intent(in) :: memory
+    type(cover_t), intent(in) :: cover
+    type(piece_t), intent(in) :: before !! the piece before
+    type(piece_t), intent(in) :: piece
+    type(varied_point_t), intent(out) :: point
+    type(sight_t) :: sight
+    integer :: cuts(2)
+
+    cuts = [piece%low_node, piece%high_node]
+    if (piece%low_node /= before%high_node) then
+      sight = see_master_node(memory, cover, piece%low_node)
+      if (sight%along < (piece%low - round_off)*sight%square) cuts(1) = before%high_node
+    end if
+    point%nodes(1:2) = cover%ends
+    where (cuts > 0) point%nodes(5:6) = memory%n_slave + cuts
+  end subroutine take_piece
 
   !> Where a piece of the slave segment in slots 1, 2 starts and ends on it; its cuts are the nodes in slots 5
   !> and 6, where there are any.

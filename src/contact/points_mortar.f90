@@ -7,7 +7,7 @@ module points_mortar_m
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t, make_room, is_touching, is_behind
   use contacts_m, only : contact_t
-  use geometry_m, only : sight_t, sight_of_segment
+  use geometry_m, only : sight_t, sight_of_segment, sight_normal
   use kinds_m, only : wp
   implicit none
   private
@@ -63,7 +63,7 @@ contains
         end if
       end associate
       if (.not. foot%is_on) cycle
-      share = facing_share(sight, foot%normal)
+      share = facing_share(dot_product(sight_normal(sight), foot%normal))
       if (.not. share > 0.0_wp) cycle
       call add_segment_point(contact%master, memory%n_slave, ends, memory%spot_xi(q), foot, &
         memory%points)

@@ -5,7 +5,7 @@
 module points_nts_mar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
-    see_master_node, facing_share
+    see_master_node
   use contact_placing_m, only : add_touching_nodes, competence_length
   use contact_state_m, only : contact_state_t, make_room
   use contacts_m, only : contact_t
@@ -67,7 +67,7 @@ contains
 
   !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
   !> ends. The strict rule adds no node where an end of the segment has no foot; otherwise the part
-  !> beyond the last master node carries nothing, nor does a segment that does not face the master.
+  !> beyond the last master node carries nothing, nor do pieces that do not face the master.
   pure subroutine share_segment(contact, memory, s)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -77,7 +77,7 @@ contains
     type(sight_t) :: sight
     real(wp) :: length, half, before, deepest
     logical :: counts
-    integer :: n_before
+    integer :: n_before, node_before
 
     n_before = memory%points%n
     call find_cover(contact, memory, s, cover)
@@ -85,24 +85,30 @@ contains
       memory%places(:, cover%ends(2)))
     length = sqrt(sight%square)
     call first_piece(contact, memory, cover, piece)
-    if (.not. contact%strict) then
-      length = length*segment_share(cover, sight)
-      piece%is_last = piece%is_last .or. .not. length > 0.0_wp
-    else if (.not. (cover%feet(1)%is_on .and. cover%feet(2)%is_on)) then
+    if (contact%strict .and. (piece%is_last .or. .not. all(cover%feet%is_on))) then
       call add_area(memory, cover%ends, 0.5_wp*length)
       piece%is_last = .true.
     end if
     before = 0.0_wp
+    node_before = 0
     do while (.not. piece%is_last)
       call next_piece(contact, memory, cover, piece)
       if (.not. piece%high > piece%low) cycle
+      if (before > 0.0_wp .and. piece%low_node /= node_before) then
+        ! Between two chains of the master.
+        call add_master_node(memory, cover, node_before, before)
+        before = 0.0_wp
+      end if
       half = 0.5_wp*(piece%high - piece%low)*length
+      if (.not. contact%strict) half = half*piece%share
       if (piece%low_node > 0) then
-        call add_master_node(memory, cover, piece%low_node, before + half)
+        if (before + half > 0.0_wp) &
+          call add_master_node(memory, cover, piece%low_node, before + half)
       else
         call add_area(memory, cover%ends(1:1), half)
       end if
       before = half
+      node_before = piece%high_node
     end do
     if (before > 0.0_wp .and. piece%high_node > 0) then
       call add_master_node(memory, cover, piece%high_node, before)
@@ -113,18 +119,6 @@ contains
     call judge_segment(contact, memory, s, cover%ends, deepest, counts)
     if (.not. counts) memory%points%n = n_before
   end subroutine share_segment
-
-  !> Share of the segment that faces the master, by the foot of the end where it is larger.
-  pure function segment_share(cover, sight) result(share)
-    type(cover_t), intent(in) :: cover
-    type(sight_t), intent(in) :: sight !! from the slave segment
-    real(wp) :: share
-
-    share = 0.0_wp
-    if (.not. cover%exists) return
-    share = max(facing_share(sight, cover%feet(1)%normal), &
-      facing_share(sight, cover%feet(2)%normal))
-  end function segment_share
 
   !> Give length to the points at slave nodes, where there are any.
   pure subroutine add_area(memory, nodes, length)

@@ -9,7 +9,7 @@ module points_segmented_mortar_m
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t, make_room
   use contacts_m, only : contact_t
-  use geometry_m, only : sight_t, sight_of_segment
+  use geometry_m, only : sight_t, sight_of_segment, sight_normal
   use kinds_m, only : wp
   implicit none
   private
@@ -85,7 +85,7 @@ contains
     call first_piece(contact, memory, cover, piece)
     do while (.not. piece%is_last)
       call next_piece(contact, memory, cover, piece)
-      if (.not. piece%high > piece%low) cycle
+      if (.not. (piece%high > piece%low .and. piece%share > 0.0_wp)) cycle
       call make_room(memory%points, size(gauss_xi))
       do q = 1, size(gauss_xi)
         xi = piece%low + gauss_xi(q)*(piece%high - piece%low)
@@ -94,7 +94,7 @@ contains
         sight = sight_of_segment(place, memory%places(:, cover%ends(1)), &
           memory%places(:, cover%ends(2)))
         if (.not. foot%is_on) cycle
-        share = facing_share(sight, foot%normal)
+        share = facing_share(dot_product(sight_normal(sight), foot%normal))
         if (.not. share > 0.0_wp) cycle
         call add_segment_point(contact%master, memory%n_slave, cover%ends, xi, foot, &
           memory%points)

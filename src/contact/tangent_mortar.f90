@@ -8,7 +8,7 @@ module tangent_mortar_m
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t
   use contact_variation_m, only : varied_point_t, spot_foot, take_foot, length_between, &
-    piece_ends, vary_share
+    take_piece, piece_ends, vary_share
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
   use kinds_m, only : wp
@@ -54,7 +54,7 @@ contains
     type(sparse_t), intent(inout) :: matrix
     type(varied_list_t) :: list
     type(cover_t) :: cover
-    type(piece_t) :: piece
+    type(piece_t) :: piece, before
     logical :: is_placed(contact%slave%n_segment)
     integer :: s
 
@@ -66,28 +66,29 @@ contains
       call find_cover(contact, memory, s, cover)
       call first_piece(contact, memory, cover, piece)
       do while (.not. piece%is_last)
+        before = piece
         call next_piece(contact, memory, cover, piece)
-        if (piece%high > piece%low) call vary_piece(contact, memory, cover, piece, list)
+        if (piece%high > piece%low .and. piece%share > 0.0_wp) &
+          call vary_piece(contact, memory, cover, before, piece, list)
       end do
     end do
     call add_nodal_tangent(contact, memory, list, equations, matrix)
   end subroutine add_segmented_mortar_tangent
 
   !> Append the points of one piece.
-  pure subroutine vary_piece(contact, memory, cover, piece, list)
+  pure subroutine vary_piece(contact, memory, cover, before, piece, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(cover_t), intent(in) :: cover
-    type(piece_t), intent(in) :: piece
+    type(piece_t), intent(in) :: before, piece
     type(varied_list_t), intent(inout) :: list
     type(varied_point_t) :: point
     type(dual_t) :: xi(2), share, length
     type(foot_t) :: foot
     integer :: q
 
-    point%nodes(1:2) = cover%ends
-    if (piece%low_node > 0) point%nodes(5) = memory%n_slave + piece%low_node
-    if (piece%high_node > 0) point%nodes(6) = memory%n_slave + piece%high_node
+    if (.not. piece%share > 0.0_wp) return
+    call take_piece(memory, cover, before, piece, point)
     xi = piece_ends(memory%places, point%nodes, piece)
     length = (xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2)
     do q = 1, size(gauss_xi)

@@ -3,13 +3,12 @@
 !> ends, so that each depends on few nodes (doc/theory/contact.md, section 9.4).
 module tangent_nts_mar_m
   use contact_assembly_m, only : add_spring_point
-  use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, facing_share
+  use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece
   use contact_state_m, only : contact_state_t, is_touching
   use contact_variation_m, only : varied_point_t, varied_foot_t, apart, length_between, project, &
-    spot_foot, take_foot, piece_ends, vary_share
+    spot_foot, take_foot, take_piece, piece_ends, vary_share
   use contacts_m, only : contact_t
-  use dual_m, only : dual_t, constant, operator(-), operator(*)
-  use geometry_m, only : sight_of_segment
+  use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
   use kinds_m, only : wp
   use sparse_m, only : sparse_t
   use tangent_nts_m, only : vary_node, vary_competence
@@ -53,91 +52,74 @@ contains
     type(sparse_t), intent(inout) :: matrix
     logical, intent(inout) :: has_area(:)
     type(varied_point_t) :: point
-    type(dual_t) :: share
     type(cover_t) :: cover
-    type(piece_t) :: piece
+    type(piece_t) :: piece, before
 
     call find_cover(contact, memory, s, cover)
-    point%nodes(1:2) = cover%ends
-    share = constant(1.0_wp)
     call first_piece(contact, memory, cover, piece)
-    if (.not. contact%strict) then
-      call vary_larger_share(contact, memory, cover, point, share)
-      piece%is_last = piece%is_last .or. .not. share%value > 0.0_wp
-    else if (.not. (cover%feet(1)%is_on .and. cover%feet(2)%is_on)) then
+    if (contact%strict .and. (piece%is_last .or. .not. all(cover%feet%is_on))) then
       piece = piece_t(high=1.0_wp, is_last=.true.)
-      call add_piece(contact, memory, cover, piece, point, share, equations, matrix, has_area)
+      point%nodes(1:2) = cover%ends
+      point%area = 0.5_wp*length_between(memory%places, point%nodes, 1, 2)
+      call add_both_ends(contact, memory, cover, piece, point, equations, matrix, has_area)
     end if
     do while (.not. piece%is_last)
+      before = piece
       call next_piece(contact, memory, cover, piece)
-      if (piece%high > piece%low) call add_piece(contact, memory, cover, piece, point, share, &
-        equations, matrix, has_area)
+      if (.not. (piece%high > piece%low .and. (contact%strict .or. piece%share > 0.0_wp))) cycle
+      point = vary_half(contact, memory, cover, before, piece)
+      call add_both_ends(contact, memory, cover, piece, point, equations, matrix, has_area)
     end do
   end subroutine add_segment
 
-  !> Share of the segment that faces the master, by the foot of the end where it is larger; the master segment of
-  !> that end goes into slots 7, 8 where the share changes with it.
-  pure subroutine vary_larger_share(contact, memory, cover, point, share)
+  !> Half of a piece as area: slave segment in slots 1, 2, cuts in slots 5, 6, and the master segment in slots 7, 8
+  !> where the share that faces it is not all of the piece.
+  pure function vary_half(contact, memory, cover, before, piece) result(point)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(cover_t), intent(in) :: cover
-    type(varied_point_t), intent(inout) :: point
-    type(dual_t), intent(out) :: share
-    type(varied_point_t) :: spot
-    type(varied_foot_t) :: foot
-    real(wp) :: shares(2)
-    integer :: k
+    type(piece_t), intent(in) :: before, piece
+    type(varied_point_t) :: point
+    type(dual_t) :: xi(2), t(2), length
 
-    share = constant(0.0_wp)
-    if (.not. cover%exists) return
-    do k = 1, 2
-      shares(k) = facing_share(sight_of_segment(memory%places(:, cover%ends(2)), &
-        memory%places(:, cover%ends(1)), memory%places(:, cover%ends(2))), cover%feet(k)%normal)
-    end do
-    share = constant(maxval(shares))
-    if (.not. (share%value > 0.0_wp .and. share%value < 1.0_wp)) return
-    k = maxloc(shares, 1)
-    point%nodes(7:8) = memory%n_slave + contact%master%segments(:, cover%feet(k)%segment)
-    spot = point
-    spot%slave_xi = constant(k - 1.0_wp)
-    foot = spot_foot(memory%places, spot, 7, cover%feet(k)%xi, cover%feet(k)%gap, memory%closed_gap)
-    share = vary_share(memory%places, point%nodes, 1, foot%normal)
-  end subroutine vary_larger_share
+    call take_piece(memory, cover, before, piece, point)
+    xi = piece_ends(memory%places, point%nodes, piece)
+    point%area = 0.5_wp*((xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2))
+    if (contact%strict .or. piece%share >= 1.0_wp) return
+    point%nodes(7:8) = memory%n_slave + contact%master%segments(:, piece%segment)
+    t = apart(memory%places, point%nodes, 8, 7)
+    length = sqrt(t(1)*t(1) + t(2)*t(2))
+    point%area = point%area*vary_share(memory%places, point%nodes, 1, [t(2)/length, -(t(1)/length)])
+  end function vary_half
 
-  !> Half of a piece to whatever stands at either of its ends. `origin` has the slave segment in slots 1, 2 and what
-  !> `share` depends on in slots 7, 8.
-  pure subroutine add_piece(contact, memory, cover, piece, origin, share, equations, matrix, has_area)
+  !> Give the area of `origin` to whatever stands at either end of a piece.
+  pure subroutine add_both_ends(contact, memory, cover, piece, origin, equations, matrix, has_area)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(cover_t), intent(in) :: cover
     type(piece_t), intent(in) :: piece
     type(varied_point_t), intent(in) :: origin
-    type(dual_t), intent(in) :: share
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
     logical, intent(inout) :: has_area(:)
     type(varied_point_t) :: point
-    type(dual_t) :: xi(2)
     integer :: k, cuts(2)
 
     cuts = [piece%low_node, piece%high_node]
     point = origin
-    where (cuts > 0) point%nodes(5:6) = memory%n_slave + cuts
-    xi = piece_ends(memory%places, point%nodes, piece)
-    point%area = 0.5_wp*((xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2)*share)
     do k = 1, 2
       if (cuts(k) > 0) then
-        call stand_at_master_node(memory, memory%n_slave + cuts(k), point)
         if (memory%cover%status(cover%segment) /= is_touching) cycle
+        call stand_at_master_node(memory, memory%n_slave + cuts(k), point)
       else
         if (memory%slave_tracking%status(cover%ends(k)) /= is_touching) cycle
         has_area(cover%ends(k)) = .true.
-        call stand_at_end(contact, memory, cover, k, point)
+        call stand_at_end(contact, memory, cover%ends(k), k, point)
       end if
       if (point%gap%value < memory%closed_gap) &
         call add_spring_point(point, memory%slave_penalty, equations, matrix)
     end do
-  end subroutine add_piece
+  end subroutine add_both_ends
 
   !> Let the point stand at a master node behind the slave segment, with the normal of that.
   pure subroutine stand_at_master_node(memory, node, point)
@@ -155,18 +137,19 @@ contains
     point%normal = -foot%normal
   end subroutine stand_at_master_node
 
-  !> Let the point stand at the k-th end of the slave segment, which is in contact.
-  pure subroutine stand_at_end(contact, memory, cover, k, point)
+  !> Let the point stand at a node that is in contact, the k-th end of the slave segment.
+  pure subroutine stand_at_end(contact, memory, node, k, point)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(cover_t), intent(in) :: cover
+    integer, intent(in) :: node
     integer, intent(in) :: k
     type(varied_point_t), intent(inout) :: point
 
     point%slave_xi = constant(k - 1.0_wp)
-    associate (foot => cover%feet(k))
-      point%nodes(3:4) = memory%n_slave + contact%master%segments(:, foot%segment)
-      call take_foot(point, spot_foot(memory%places, point, 3, foot%xi, foot%gap, memory%closed_gap))
+    associate (tracking => memory%slave_tracking)
+      point%nodes(3:4) = memory%n_slave + contact%master%segments(:, tracking%segment(node))
+      call take_foot(point, spot_foot(memory%places, point, 3, tracking%xi(node), &
+        tracking%gap(node), memory%closed_gap))
     end associate
   end subroutine stand_at_end
 

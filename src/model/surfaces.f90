@@ -16,6 +16,7 @@ module surfaces_m
     integer, allocatable :: segment_element(:) !! (n_segment) index of the element behind
     integer, allocatable :: previous(:)        !! (n_segment) segment before, 0 at a chain's start
     integer, allocatable :: next(:)            !! (n_segment) segment after, 0 at a chain's end
+    integer, allocatable :: chain(:)           !! (n_segment) number of the chain that it belongs to
     integer, allocatable :: incoming(:)        !! (n_node) segment that ends at the node, or 0
     integer, allocatable :: outgoing(:)        !! (n_node) segment that starts at the node, or 0
   end type surface_t
@@ -41,6 +42,30 @@ contains
       surface%previous(i_segment) = surface%incoming(surface%segments(1, i_segment))
       surface%next(i_segment) = surface%outgoing(surface%segments(2, i_segment))
     end do
+    call number_chains(surface)
   end subroutine link_segments
+
+  !> Number the chains of a surface in the order of their first segments.
+  pure subroutine number_chains(surface)
+    type(surface_t), intent(inout) :: surface
+    integer :: i, k, n
+
+    if (allocated(surface%chain)) deallocate (surface%chain)
+    allocate (surface%chain(surface%n_segment), source=0)
+    n = 0
+    do i = 1, surface%n_segment
+      if (surface%chain(i) > 0) cycle
+      n = n + 1
+      k = i
+      do while (surface%previous(k) > 0 .and. surface%previous(k) /= i)
+        k = surface%previous(k)
+      end do
+      do while (k > 0)
+        if (surface%chain(k) > 0) exit
+        surface%chain(k) = n
+        k = surface%next(k)
+      end do
+    end do
+  end subroutine number_chains
 
 end module surfaces_m

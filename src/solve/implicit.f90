@@ -20,7 +20,7 @@ module implicit_m
   use signals_m, only : stop_requested
   use sparse_m, only : sparse_t, start_matrix, compress_matrix
   use state_m, only : state_t
-  use step_control_m, only : step_control_t, start_step_control, next_time, grow_step, cut_step
+  use step_control_m, only : step_control_t, start_step_control, find_next_time, grow_step, cut_step
   use tangent_m, only : step_t, new_acceleration, new_velocity, assemble_residual
   implicit none
   private
@@ -140,9 +140,10 @@ contains
     type(equations_t) :: equations
     type(outcome_t) :: outcome
     type(trial_t) :: attempt
+    logical :: may_retry
 
     do
-      step%time = next_time(control, state%time)
+      call find_next_time(control, state%time, step%time)
       step%dt = step%time - state%time
       call number_equations(model, state, step%time, equations)
       call start_trial(model, state, attempt)
@@ -151,7 +152,9 @@ contains
         attempt, outcome)
       if (outcome%converged) exit
       call write_log(monitor%log, 'step to '//to_text(step%time)//': '//outcome%reason)
-      if (outcome%singular_equation > 0 .or. .not. cut_step(control)) then
+      may_retry = .false.
+      if (outcome%singular_equation == 0) call cut_step(control, may_retry)
+      if (.not. may_retry) then
         call raise_failure(model, state, step, equations, outcome, error)
         return
       end if

@@ -75,7 +75,7 @@ contains
       if (.not. solved) return
       now%energy = abs(dot_product(x, b))
       now%step = norm2(x)
-      call move_nodes(model, state, step, equations, x, moved, log, clock, trial, now, outcome)
+      call move_nodes(model, state, step, equations, x, moved, clock, trial, now, outcome)
       if (allocated(outcome%reason)) return
       moved = 0.0_wp
       call measure_residual(model, state, step, equations, trial, matrix, now)
@@ -105,13 +105,12 @@ contains
 
   !> Move the trial by `x`, shortened where elements would turn inside out or where the residual along x would not
   !> fall; prescribed degrees of freedom by all of `moved`.
-  subroutine move_nodes(model, state, step, equations, x, moved, log, clock, trial, now, outcome)
+  subroutine move_nodes(model, state, step, equations, x, moved, clock, trial, now, outcome)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: x(:), moved(:)
-    type(log_t), intent(inout) :: log
     type(clock_t), intent(inout) :: clock
     type(trial_t), intent(inout) :: trial
     type(measure_t), intent(inout) :: now

@@ -5,7 +5,7 @@ module step_control_m
   use controls_m, only : controls_t
   implicit none
   private
-  public :: step_control_t, start_step_control, next_time, grow_step, cut_step
+  public :: step_control_t, start_step_control, find_next_time, grow_step, cut_step
 
   !> What a step that took few iterations grows by, and what one that failed shrinks to.
   real(wp), parameter :: growth = 1.5_wp, cut = 0.5_wp
@@ -45,15 +45,15 @@ contains
   end function start_step_control
 
   !> End of the next step. The last step is stretched or shortened to end the run in time.
-  function next_time(control, time) result(next)
+  pure subroutine find_next_time(control, time, next)
     type(step_control_t), intent(inout) :: control
     real(wp), intent(in) :: time
-    real(wp) :: next
+    real(wp), intent(out) :: next
 
     next = time + control%dt
     control%is_last = next >= control%end_time - round_off*control%dt
     if (control%is_last) next = control%end_time
-  end function next_time
+  end subroutine find_next_time
 
   !> After a step that converged.
   pure subroutine grow_step(control, iterations)
@@ -66,12 +66,12 @@ contains
   end subroutine grow_step
 
   !> After a step that did not converge: whether a shorter one may be tried.
-  function cut_step(control) result(may_retry)
+  pure subroutine cut_step(control, may_retry)
     type(step_control_t), intent(inout) :: control
-    logical :: may_retry
+    logical, intent(out) :: may_retry
 
     may_retry = control%is_automatic .and. control%dt > control%least
     if (may_retry) control%dt = max(control%least, cut*control%dt)
-  end function cut_step
+  end subroutine cut_step
 
 end module step_control_m

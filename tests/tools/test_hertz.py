@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The Hertz scene and study: mesh, closed form, penalty layer, measures of a pressure profile."""
-import conftest  # noqa: F401
+import subprocess
+
 import numpy as np
 import pytest
 
 from slideline_tools import scenes
 from slideline_tools.scenes.common import ALUMINIUM, STEEL
 from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, RADIUS, graded
+from slideline_tools.studies import common, hertz
 from slideline_tools.studies import line_contact as lines
 from test_decks import Model, areas
 
@@ -38,11 +40,31 @@ def test_mesh(level):
         assert all(pair in edges for pair in zip(nodes[:-1], nodes[1:]))
 
 
+def test_finest_mesh_numbers_every_node_once():
+    block, cylinder, _, _ = scenes.hertz_grids(8)
+    assert not np.intersect1d(block.node, cylinder.node).size
+    assert not np.intersect1d(block.element, cylinder.element).size
+
+
 def test_exchanged_deck_differs_in_the_two_surfaces_alone():
     plain, swapped = (scenes.hertz(1, exchanged=flag).splitlines() for flag in (False, True))
     changed = [(a, b) for a, b in zip(plain, swapped) if a != b]
-    assert len(changed) == 2 and "exchanged" in changed[0][1]
-    assert changed[1][0].split()[:2] == ["-3", "-4"] and changed[1][1].split()[:2] == ["-4", "-3"]
+    assert len(changed) == 4 and "exchanged" in changed[0][1]
+    assert [pair[0].split()[0] for pair in changed[1:3]] == ["slave:", "master:"]
+    assert changed[3][0].split()[:2] == ["-3", "-4"] and changed[3][1].split()[:2] == ["-4", "-3"]
+
+
+def test_way_of_the_cut():
+    model = Model(scenes.hertz(1))
+    assert model.parameters["down"] == 30.0e-6
+    assert model.lines("BOUNDARY_PRESCRIBED_MOTION_SET")[0].split() == ["5", "2", "0", "2", "&down"]
+    curve = model.all_blocks("DEFINE_CURVE_TITLE")[1][2:]
+    time, velocity = np.array([(float(row[:20]), float(row[20:])) for row in curve]).T
+    way = np.sum(0.5 * (velocity[1:] + velocity[:-1]) * np.diff(time))
+    assert way == pytest.approx(-1.0, rel=1e-9)
+    assert np.all(velocity[time >= 20.0e-6 * (1.0 - 1e-12)] == 0.0)
+    top = model.chain(5)
+    np.testing.assert_allclose(top[:, 1], RADIUS, rtol=1e-12)
 
 
 def test_make_deck(tmp_path, tool):
@@ -112,3 +134,32 @@ def test_layer_widens_the_contact_in_proportion():
 @pytest.mark.parametrize("ctype, expected", [(1, 10.0), (3, 15.0), (7, 10.0)])
 def test_layer_of_a_penalty(ctype, expected):
     assert lines.layer_stiffness(ctype, 1.0, 0.1, 0.2) == pytest.approx(expected)
+
+
+def test_order_of_an_error_in_proportion_to_the_square():
+    assert hertz.order([1.0, 0.5, 0.25], [-0.16, 0.04, -0.01]) == pytest.approx(2.0)
+
+
+def test_page_of_a_few_runs(slideline, tmp_path):
+    for level in (1, 2):
+        for exchanged in (False, True):
+            name = f"level_{level}_type_7" + ("_exchanged" if exchanged else "")
+            deck = tmp_path / f"{name}.k"
+            deck.write_text(scenes.hertz(level, 7, exchanged=exchanged), encoding="ascii")
+            finished = subprocess.run(
+                [slideline, f"i={deck}", f"d={tmp_path / name}", "jobid=hertz"],
+                capture_output=True, text=True, check=False)
+            assert finished.returncode == 0, finished.stdout + finished.stderr
+    for factor in hertz.FACTORS:
+        (tmp_path / f"penalty_{factor}_type_7").symlink_to(tmp_path / "level_2_type_7")
+    wanted = [str(tmp_path), str(tmp_path / "doc"), "--levels", "1", "2", "--types", "7"]
+    assert common.study_main(hertz.__doc__, hertz.write, wanted) == 0
+    page = (tmp_path / "doc" / "studies" / "hertz.md").read_text()
+    assert page.count("| 7 segmented mortar | 2 |") == 3
+    assert (tmp_path / "doc" / "pictures" / "hertz_pressure.png").exists()
+    run = hertz.Run(tmp_path / "level_2_type_7", 2, 7)
+    assert run.half_width == pytest.approx(run.layer.half_width, rel=0.01)
+    assert run.peak == pytest.approx(run.layer.peak, rel=0.01)
+    assert run.segments == pytest.approx(2.0 * run.hertz[0] / CYLINDER_CELL)
+    wanted[-1] = "5"
+    assert common.study_main(hertz.__doc__, hertz.write, wanted) == 2

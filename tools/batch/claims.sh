@@ -3,8 +3,8 @@
 # usage: tools/batch/claims.sh [REPEATS]
 # Answers the claims of Kang, Lee & Shin (2023) from runs: writes doc/studies/claims.md. Wants the
 # results of block.sh, sliding.sh and collision.sh; runs sliding and collision again without output
-# to time them, each REPEATS times (default 3) on one thread, all variants in turn, so that
-# a busy machine hits all alike. About 15 minutes; keep the machine quiet.
+# to time them on one thread: REPEATS rounds (default 3) of all variants in turn, the short runs of
+# the collision three times in each. About 15 minutes; keep the machine quiet.
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -12,14 +12,14 @@ repeats=${1:-3}
 out=$root/results/batch/claims
 types="1 2 3 4 5 6 7"
 
-# timed SCENE DECK LEVEL: all contact types once; keeps the timing tables.
+# timed SCENE DECK LEVEL NAME: all contact types once; keeps the timing tables by that name.
 timed() {
   for type in $types; do
     run=$out/$1/level_${3}_type_$type
     mkdir -p "$run"
     "$root/build/release/slideline" i="$2" d="$run" jobid="$1" ctype="$type" ncpu=1 \
       p:dtplot=1 p:dthist=1 p:dtforc=1 >"$run/progress.txt"
-    cp "$run/$1.timing.csv" "$run/timing_$repeat.csv"
+    cp "$run/$1.timing.csv" "$run/timing_$4.csv"
   done
 }
 
@@ -32,13 +32,15 @@ done
 repeat=1
 while [ "$repeat" -le "$repeats" ]; do
   echo "== timing, round $repeat of $repeats"
-  for level in 1 2 3 4; do
-    suffix=
-    [ "$level" = 1 ] || suffix=_$level
-    timed collision "$root/input/collision/collision$suffix.k" "$level"
+  for turn in 1 2 3; do
+    for level in 1 2 3 4; do
+      suffix=
+      [ "$level" = 1 ] || suffix=_$level
+      timed collision "$root/input/collision/collision$suffix.k" "$level" "${repeat}_$turn"
+    done
   done
   for level in 1 2 3; do
-    timed sliding "$out/sliding_$level.k" "$level"
+    timed sliding "$out/sliding_$level.k" "$level" "$repeat"
   done
   repeat=$((repeat + 1))
 done
@@ -49,5 +51,4 @@ run=$out/exchanged
 "$root/build/release/slideline" i="$run/sliding.k" d="$run" jobid=sliding ctype=5 \
   >"$run/progress.txt"
 
-"$root/build/venv/bin/python" -m slideline_tools.studies.claims "$root/results/batch" "$root/doc" \
-  "$repeats"
+"$root/build/venv/bin/python" -m slideline_tools.studies.claims "$root/results/batch" "$root/doc"

@@ -11,7 +11,7 @@ module contact_factories_m
   use surfaces_m, only : surface_t, link_segments
   implicit none
   private
-  public :: problem_t, make_problem, line, polygon, slave_master_moment, bulk_modulus
+  public :: problem_t, make_problem, cut_chain, line, polygon, slave_master_moment, bulk_modulus
 
   real(wp), parameter :: bulk_modulus = 1.0e9_wp
 
@@ -87,6 +87,19 @@ contains
     surface%segment_element = [(first_element + i, i=1, n_segment)]
     call link_segments(surface)
   end subroutine make_chain
+
+  !> Take segments out of a chain, so that several remain.
+  subroutine cut_chain(surface, dropped)
+    type(surface_t), intent(inout) :: surface
+    integer, intent(in) :: dropped(:) !! segments
+    integer :: i
+    integer, allocatable :: kept(:)
+
+    kept = pack([(i, i=1, surface%n_segment)], [(all(dropped /= i), i=1, surface%n_segment)])
+    surface%segments = surface%segments(:, kept)
+    surface%segment_element = surface%segment_element(kept)
+    call link_segments(surface)
+  end subroutine cut_chain
 
   !> The nodes and elements behind a chain: to the left of it.
   subroutine fill_behind(surface, offset, thickness, x, elements)

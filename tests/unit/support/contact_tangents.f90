@@ -4,13 +4,15 @@
 module contact_tangents_m
   use contact_factories_m, only : problem_t, make_problem, line, polygon
   use kinds_m, only : wp
+  use surfaces_m, only : surface_t, link_segments
   implicit none
   private
   public :: n_place, places, make_place, valley, needle, solve_dense
 
-  integer, parameter :: n_place = 9, valley = 1, needle = 6
+  integer, parameter :: n_place = 11, valley = 1, needle = 6
   character(16), parameter :: places(n_place) = [character(16) :: 'valley', 'ridge', 'overhang', &
-    'one end', 'steep tip', 'needle', 'disc on plane', 'plane on disc', 'disc in ring']
+    'one end', 'steep tip', 'needle', 'disc on plane', 'plane on disc', 'disc in ring', 'two chains', &
+    'overlapped']
 
 contains
 
@@ -58,14 +60,35 @@ contains
       slave = polygon([0.5_wp, 0.5_wp], 0.5_wp, 19)
       master = polygon([0.5_wp, 0.5_wp], 0.51_wp, 26)
       master = master(:, 26:1:-1)
+    case ('two chains', 'overlapped')
+      slave = line([0.0_wp, 0.0_wp], [1.0_wp, 0.0_wp], 4)
+      slave(1, 3) = 0.45_wp
+      master = line([1.1_wp, 0.0_wp], [-0.1_wp, 0.0_wp], 7)
+      master(1, 4:5) = [0.63_wp, 0.55_wp]
+      if (places(k) == 'overlapped') master(1, 4:5) = [0.55_wp, 0.63_wp]
+      if (places(k) == 'overlapped') master(2, 5:) = -0.002_wp
     end select
     call make_problem(problem, slave, master, 0.3_wp, slave_is_closed=k == 7 .or. k == 9, &
-      master_is_closed=k >= 8)
+      master_is_closed=k == 8 .or. k == 9)
+    if (k > 9) call cut_chain(problem%contact%master, 4)
     n = size(slave, 2)
     do i = 1, n
       problem%motion(1:2, i) = [0.0_wp, -down] + 0.05_wp*down*[sin(3.0_wp*i), cos(5.0_wp*i)]
     end do
   end subroutine make_place
+
+  !> Take a segment out of a surface.
+  subroutine cut_chain(surface, segment)
+    type(surface_t), intent(inout) :: surface
+    integer, intent(in) :: segment
+
+    associate (n => surface%n_segment)
+      surface%segment_element = [surface%segment_element(:segment - 1), surface%segment_element(segment + 1:n)]
+      surface%segments = reshape([surface%segments(:, :segment - 1), &
+        surface%segments(:, segment + 1:n)], [2, n - 1])
+    end associate
+    call link_segments(surface)
+  end subroutine cut_chain
 
   !> Solution of a small dense system, by elimination with row exchange.
   subroutine solve_dense(matrix, x)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The collision scene with contact types 1, 2, 3: balances, and the plastic strain."""
+"""The collision scene with all contact types: balances, and the plastic strain."""
 import numpy as np
 
+from contact_types import TYPES
 from meshes import trapezoid
 
-TYPES = {1: "NTS", 2: "NTS-AR", 3: "two-pass NTS-AR"}
 MASS = 7850.0 * 0.020 * 0.005
 SPEED = -80.0
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Hertz line contact: half width and largest pressure, all types, three meshes for some."""
+import functools
 import pathlib
 import sys
 
@@ -21,6 +22,12 @@ MODULUS = lines.effective_modulus(STEEL, ALUMINIUM)
 CLOSED_FORM, ON_SPRINGS = "Hertz (1881)", "integral equation with the penalty as springs"
 
 
+@functools.cache
+def scene(level, exchanged):
+    """The deck, whose contact type is set from the command line."""
+    return hertz(level, exchanged=exchanged)
+
+
 class Answer:
     """What one run gives, over the closed form for its own contact force."""
 
@@ -28,7 +35,7 @@ class Answer:
         self.kind, self.level = kind, level
         self.slave_body = ALUMINIUM if exchanged else STEEL
         name = f"type{kind}_level{level}" + ("_exchanged" if exchanged else "")
-        self.result = run.program(hertz(level, kind, exchanged=exchanged), name=name)
+        self.result = run.program(scene(level, exchanged), f"ctype={kind}", name=name)
         self.name = f"{TYPES[kind]}, N_r = {level}" + (", exchanged" if exchanged else "")
         rows = self.result.table("contact")
         self.nodes = rows.where(time=rows["time"][-1])

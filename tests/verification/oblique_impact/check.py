@@ -29,7 +29,7 @@ def lower_and_sides(ids):
     return [*rows[:0:-1, 0], *rows[0], *rows[1:, -1]]
 
 
-def oblique_impact(kind, angle, penalty=MIDDLE, scale=0.4):
+def oblique_impact(kind, angle, penalty=MIDDLE, scale=0.4, exchanged=False):
     upper, lower = blocks(angle)
     deck = Deck(f"oblique impact at {angle:g} degrees, type {kind}")
     deck.control(END, scale=scale)
@@ -39,7 +39,7 @@ def oblique_impact(kind, angle, penalty=MIDDLE, scale=0.4):
     bottom = deck.mesh(*lower, part=2)
     deck.node_set(1, top).node_set(2, lower_and_sides(top)).node_set(3, bottom[-17:][::-1])
     deck.add("*INITIAL_VELOCITY", (1,), VELOCITY.tolist())
-    deck.contact(2, 3, kind, penalty)
+    deck.contact(*((3, 2) if exchanged else (2, 3)), kind, penalty)
     return deck.output(plot=INTERVAL, glstat=INTERVAL, matsum=INTERVAL, rcforc=INTERVAL)
 
 
@@ -127,7 +127,20 @@ def check_energy(run, name, result):
                energy["contact"][-1] / energy["total"][0])
 
 
+def check_symmetry(run):
+    """Two passes treat both sides alike: with slave and master exchanged nothing changes."""
+    angle = 30.0
+    plain, other = (run.program(oblique_impact(3, angle, exchanged=exchanged))
+                    for exchanged in (False, True))
+    found, expected = (result.table("rcforc").where(side=side)
+                       for result, side in ((other, "master"), (plain, "slave")))
+    for axis in ("fx", "fy"):
+        run.check(f"{TYPES[3]}, {angle:g} degrees, slave and master exchanged: {axis}", found[axis],
+                  expected[axis], 1e-9, source="same run with the sides exchanged")
+
+
 def check(run):
+    check_symmetry(run)
     for angle, penalty, scale in SCENES:
         (above, above_quads), (below, below_quads) = blocks(angle)
         mass = np.concatenate([lumped_mass(above, above_quads, RHO[0]),

@@ -4,7 +4,7 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (ALUMINIUM, CONTACT_TYPES, STEEL, elastic, energies_on,
-                                           part, plane_strain)
+                                           part, plane_strain, roles, slideline)
 from slideline_tools.scenes.sliding import stroke
 
 RADIUS = 0.020
@@ -13,7 +13,7 @@ FINE_CELLS, FINE_ROWS, GRADED_CELLS = 6, 4, 10
 CYLINDER_HALF_WIDTH = 0.6 * RADIUS
 BLOCK_HALF_WIDTH = BLOCK_HEIGHT = RADIUS
 PENALTY = 300.0e9
-APPROACH, RISE = 30.0e-6, 20.0e-6
+APPROACH, RISE, END = 30.0e-6, 20.0e-6, 50.0e-6
 
 
 def graded(start, end, cell, cells, level):
@@ -55,7 +55,7 @@ def hertz_grids(level):
     block = Grid(columns(BLOCK_CELL, BLOCK_HALF_WIDTH, n),
                  -rows(BLOCK_CELL, BLOCK_HEIGHT, n)[::-1])
     cylinder = Grid(columns(CYLINDER_CELL, CYLINDER_HALF_WIDTH, n), rows(CYLINDER_CELL, RADIUS, n),
-                    first_node=20001, first_element=20001)
+                    first_node=100001, first_element=100001)
     x, share = cylinder.points[:, :, 0], cylinder.points[:, :, 1] / RADIUS
     arc = x ** 2 / (RADIUS + np.sqrt(RADIUS ** 2 - x ** 2))
     cylinder.points[:, :, 1] = arc + share * (RADIUS - arc)
@@ -94,13 +94,11 @@ def hertz(level=1, ctype=2, ngauss=4, exchanged=False):
     write_support_and_motion(deck, block, cylinder)
     deck.block("The two surfaces, their evenly divided parts, as node sets in walking order: the "
                "body lies on the left hand.")
-    deck.node_set(3, "lower face of the cylinder", round_face)
-    deck.node_set(4, "upper face of the block", flat_face)
+    first, second = roles(exchanged)
+    deck.node_set(3, f"{first}: lower face of the cylinder", round_face)
+    deck.node_set(4, f"{second}: upper face of the block", flat_face)
     deck.comment("A negative SURFA or SURFB is a node set. PEN is in N/m per contact node.")
-    deck.keyword("CONTACT_2D_SLIDELINE")
-    slave, master = (4, 3) if exchanged else (3, 4)
-    deck.card("surfa surfb ctype ngauss pen fs fd dc",
-              -slave, -master, "&ctype", "&ngauss", "&pen", 0.0, 0.0, 0.0)
+    slideline(deck, 3, 4, exchanged)
     deck.block("Mesh of the block.")
     block.write(deck, 1)
     deck.block("Mesh of the cylinder.")
@@ -115,9 +113,10 @@ def write_parameters(deck, level, ctype, ngauss):
         ("ctype", ctype, "contact type: " + CONTACT_TYPES),
         ("ngauss", ngauss, "Gauss points of a slave segment, for type 6 alone"),
         ("pen", PENALTY, "penalty of a contact node in N/m"),
+        ("down", APPROACH, "way of the cylinder's cut in m"),
         ("damp", 7.0e5, "mass damping in 1/s"),
         ("dt", 8.0e-9 / level, "time step in s"),
-        ("endtim", 50.0e-6, "end time in s"),
+        ("endtim", END, "end time in s"),
         ("ihq", 4, "hourglass control: 1 viscous form, 4 stiffness form"),
         ("qh", 0.05, "hourglass coefficient"),
         ("dtplot", 10.0e-6, "time between the states for pictures in s"),
@@ -152,5 +151,5 @@ def write_support_and_motion(deck, block, cylinder):
                "d (1 - cos(2 pi t/t1))/t1.")
     deck.node_set(5, "cut of the cylinder", cylinder.upper)
     deck.keyword("BOUNDARY_PRESCRIBED_MOTION_SET")
-    deck.card("nsid dof vad lcid sf", 5, 2, 0, 2, 1.0)
-    deck.curve(2, "velocity of the cut", stroke(0.0, RISE, -APPROACH))
+    deck.card("nsid dof vad lcid sf", 5, 2, 0, 2, "&down")
+    deck.curve(2, "velocity of the cut for a way of 1 m", stroke(0.0, RISE, -1.0))

@@ -7,35 +7,71 @@ from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, 
                                            plane_strain, roles, slideline)
 
 
-def patch_grids(n_upper=5, n_lower=4):
-    """Lower and upper block of 1 m x 1 m with so many quads along each side."""
-    lower = Grid(spaced((0.0, 1.0, n_lower)), spaced((-1.0, 0.0, n_lower)))
-    upper = Grid(spaced((0.0, 1.0, n_upper)), spaced((0.0, 1.0, n_upper)),
+RHO, YOUNG = 1000.0, 1.0e6
+SLOWEST = 9.0  # angular frequency of the pinned blocks without the interface, 1/s
+SURVIVING = 38.0  # of the slowest motion, in powers of 1/e
+
+
+def even_lines(n):
+    """n quads over 1 m."""
+    return spaced((0.0, 1.0, n))
+
+
+def patch_grids(upper_lines=None, lower_lines=None, rows=None):
+    """Lower and upper block of 1 m x 1 m, columns at the given lines (4 and 5 even ones).
+
+    `rows`: rows of quads of each block, as many as columns if None.
+    """
+    lower_lines = even_lines(4) if lower_lines is None else lower_lines
+    upper_lines = even_lines(5) if upper_lines is None else upper_lines
+    lower = Grid(lower_lines, spaced((-1.0, 0.0, rows or len(lower_lines) - 1)))
+    upper = Grid(upper_lines, spaced((0.0, 1.0, rows or len(upper_lines) - 1)),
                  first_node=10001, first_element=10001)
     return lower, upper
 
 
-def patch(ctype=2, ngauss=4, exchanged=False):
-    """The contact patch test with meshes 5 / 4; `exchanged`: the lower block is the slave."""
-    lower, upper = patch_grids()
+def relaxation(lower, upper, penalty):
+    """Damping (1/s) about critical for the slowest mode, a stable step and an end time (s)."""
+    columns = len(upper.lower) - 1
+    spring = 0.45 * np.sqrt(penalty * columns / RHO)  # the upper block rocks on the interface
+    slowest = 1.0 / np.sqrt(1.0 / SLOWEST ** 2 + 1.0 / spring ** 2)
+    sides = [np.diff(grid.points[:, 0, 0]).min() for grid in (lower, upper)]
+    heights = [np.diff(grid.points[0, :, 1]).min() for grid in (lower, upper)]
+    element = 2.0 * np.sqrt(YOUNG / RHO) / min(*sides, *heights)
+    # Both passes of type 3 on the lightest nodes of both sides.
+    contact = sum(2.2 * penalty / (0.5 * RHO * side * height)
+                  for side, height in zip(sides, heights))
+    step = 1.4 / np.sqrt(element ** 2 + contact)
+    end = SURVIVING / slowest
+    return float(2.0 * slowest), float(end / np.ceil(end / step)), float(end)
+
+
+def patch(ctype=2, ngauss=4, exchanged=False, penalty=1.0e6, grids=None):
+    """The contact patch test, meshes 5 / 4 or `grids` as from patch_grids.
+
+    `exchanged`: the lower block is the slave; `penalty` in N/m per contact node.
+    """
+    lower, upper = grids or patch_grids()
+    damping, step, end = relaxation(lower, upper, penalty)
     deck = Deck("contact patch test" + (" exchanged" if exchanged else ""), [
         "Two blocks of 1 m x 1 m with non-matching meshes under a pressure of 1 Pa, damped to rest. SI "
         "units (m, kg, s, N, Pa), plane strain, per metre of depth.",
         "",
         "The exact answer is a uniform pressure of 1 Pa all over the interface.",
     ])
-    deck.block("The numbers to play with.")
+    deck.block("The numbers to play with; damping, step and end time belong to the penalty.")
     deck.parameters(
         ("ctype", ctype, "contact type: " + CONTACT_TYPES),
         ("ngauss", ngauss, "Gauss points of a slave segment of type 6"),
-        ("pen", 1.0e6, "penalty of a contact node in N/m"),
-        ("damp", 19.0, "mass damping in 1/s: critical for the slowest mode"),
-        ("dt", 2.0e-3, "time step in s"),
-        ("endtim", 4.0, "end time in s: exp(-38) of the motion is left"))
+        ("pen", penalty, "penalty of a contact node in N/m"),
+        ("damp", damping, "mass damping in 1/s: about critical for the slowest mode"),
+        ("dt", step, "time step in s"),
+        ("endtim", end, f"end time in s: exp(-{SURVIVING:g}) of the motion is left"),
+        ("dtplot", end / 4.0, "time between the states in s"))
     deck.block("When to stop, and a constant time step (the curve LCTM caps the step).")
     deck.keyword("CONTROL_TERMINATION")
     deck.card("endtim", "&endtim")
-    deck.constant_step(1, "&dt", 10.0)
+    deck.constant_step(1, "&dt", 1.0e3)
     deck.block("The stiffness form of hourglass control: the viscous form lets hourglasses creep.")
     deck.keyword("CONTROL_HOURGLASS")
     deck.card("ihq qh", 4, 0.1)
@@ -43,12 +79,12 @@ def patch(ctype=2, ngauss=4, exchanged=False):
     deck.keyword("DAMPING_GLOBAL")
     deck.card("lcid valdmp", 0, "&damp")
     deck.block("Output.")
-    deck.database(glstat=0.1, rcforc=0.1, binary_d3plot=1.0)
+    deck.database(glstat="&dtplot", rcforc="&dtplot", binary_d3plot="&dtplot")
     deck.block("Two bodies of one-point plane-strain quads (ELFORM 13), one material.")
     part(deck, 1, "lower block", 1, 1)
     part(deck, 2, "upper block", 1, 1)
     plane_strain(deck, 1)
-    elastic(deck, 1, rho=1000.0, young=1.0e6, poisson=0.0)
+    elastic(deck, 1, rho=RHO, young=YOUNG, poisson=0.0)
     deck.block("The lower face rests (u_y = 0); u_x = 0 at one lower and one upper node.")
     deck.node_set(1, "lower face of the lower block", lower.lower)
     deck.spc_set(1, False, True)
@@ -56,7 +92,7 @@ def patch(ctype=2, ngauss=4, exchanged=False):
     deck.node_set(2, "held in x", pins)
     deck.spc_set(2, True, False)
     deck.block("The pressure on the upper face.")
-    deck.curve(2, "pressure", [(0.0, 1.0), (10.0, 1.0)])
+    deck.curve(2, "pressure", [(0.0, 1.0), (1.0e3, 1.0)])
     deck.keyword("LOAD_SEGMENT")
     top = np.asarray(upper.upper)
     deck.table("lcid sf at n1 n2 n3 n4", [10] * 7,
@@ -66,8 +102,8 @@ def patch(ctype=2, ngauss=4, exchanged=False):
     deck.node_set(3, f"{first}: lower face of the upper block", upper.lower)
     deck.node_set(4, f"{second}: upper face of the lower block", lower.upper)
     slideline(deck, 3, 4, exchanged)
-    deck.block("Mesh of the lower block: 4 x 4 quads.")
+    deck.block("Mesh of the lower block.")
     lower.write(deck, 1)
-    deck.block("Mesh of the upper block: 5 x 5 quads.")
+    deck.block("Mesh of the upper block.")
     upper.write(deck, 2)
     return deck.text()

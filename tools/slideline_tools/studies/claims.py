@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The claims of Kang, Lee & Shin (2023) about the contact types, answered from runs.
 
-    python -m slideline_tools.studies.claims RUNS DOC REPEATS
+    python -m slideline_tools.studies.claims RUNS DOC
 
-RUNS holds the folders block, sliding, collision and claims of the batch jobs; the page goes to
-DOC/studies. REPEATS is the number of timing tables of each run.
+RUNS holds the folders block, sliding, collision and claims of the batch jobs, the last with
+<scene>/level_L_type_T/timing_*.csv, one table a round; the page goes to DOC/studies.
 """
 import argparse
 import pathlib
@@ -19,9 +19,10 @@ from slideline_tools.studies import block, sliding
 from slideline_tools.studies.common import TYPES, label, markdown_table, write_page
 
 SEARCH, PAIRING, FORCE = "contact_search", "contact_pairing", "contact_force"
+ELEMENTS = "elements"
 LEVELS = {"sliding": (1, 2, 3), "collision": (1, 2, 3, 4)}
 # Contact time over that of the classical one-pass NTS, by type and level.
-SEED_RATIOS = {
+SOURCE_RATIOS = {
     "sliding": {3: (2.25, 2.26, 2.26), 4: (2.09, 2.09, 2.20), 5: (1.22, 1.09, 1.12),
                 6: (4.98, 5.49, 5.85)},
     "collision": {3: (1.92, 1.97, 1.95, 1.93), 4: (2.06, 2.05, 2.04, 2.05),
@@ -69,7 +70,7 @@ def level_table(figures):
 
 
 def fewest_peaks(peaks):
-    """Answers whether type 5 has the fewest peaks, of the seed's types and of its NTS types."""
+    """Answers whether type 5 has the fewest peaks, of the source's types and of its NTS types."""
     every = [row[5] < min(row[k] for k in (1, 3, 4, 6)) for row in peaks.count.values()]
     nts = [row[5] < min(row[k] for k in (1, 3, 4)) for row in peaks.count.values()]
     return every, nts
@@ -108,39 +109,50 @@ def added_points(folder):
 
 # ---- time --------------------------------------------------------------------------------------
 
-def phase_times(folder, scene, level, ctype, repeats):
-    """(3,) median seconds of steps A, M and B, and lowest and highest of their sum."""
+def phase_times(folder):
+    """(n_round, 3) times of steps A, M and B from the timing tables of one run.
+
+    In units of the element loop of the same run, which is the same work for all types: on a busy
+    machine both wait alike.
+    """
     rounds = []
-    for repeat in range(1, repeats + 1):
-        table = read_csv(folder / scene / f"level_{level}_type_{ctype}" / f"timing_{repeat}.csv")
+    for path in sorted(folder.glob("timing_*.csv")):
+        table = read_csv(path)
         seconds = dict(zip(table["phase"].tolist(), table["seconds"].tolist()))
-        rounds.append([seconds[phase] for phase in (SEARCH, PAIRING, FORCE)])
-    total = np.sum(rounds, axis=1)
-    return np.median(rounds, axis=0), float(total.min()), float(total.max())
+        rounds.append([seconds[phase] / seconds[ELEMENTS] for phase in (SEARCH, PAIRING, FORCE)])
+    if not rounds:
+        raise UserError(f"{folder}: no timing tables")
+    return np.array(rounds)
 
 
 class Times:
-    """Median phase times of one scene: `steps[level][type]` = (3,) seconds of A, M, B."""
+    """Phase times of one scene: `steps[level][type]` = (3,) medians of A, M, B over the rounds.
 
-    def __init__(self, folder, scene, repeats):
+    `rounds`: fewest rounds of a run; `spread`: largest distance of the quartiles of the sum over
+    its median.
+    """
+
+    def __init__(self, folder, scene):
         self.scene = scene
-        measured = {level: {ctype: phase_times(folder, scene, level, ctype, repeats)
+        measured = {level: {ctype: phase_times(folder / scene / f"level_{level}_type_{ctype}")
                             for ctype in TYPES} for level in LEVELS[scene]}
-        self.steps = {level: {k: value[0] for k, value in row.items()}
+        self.steps = {level: {ctype: np.median(rounds, axis=0) for ctype, rounds in row.items()}
                       for level, row in measured.items()}
-        self.spread = max((high - low) / median.sum() for row in measured.values()
-                          for median, low, high in row.values())
+        every = [rounds.sum(axis=1) for row in measured.values() for rounds in row.values()]
+        self.rounds = min(len(sums) for sums in every)
+        self.spread = max(float(np.subtract(*np.percentile(sums, (75, 25))) / np.median(sums))
+                          for sums in every)
 
     def ratio(self, level, ctype):
         """Contact time over that of type 1."""
         return float(self.steps[level][ctype].sum() / self.steps[level][1].sum())
 
     def ratio_table(self):
-        """Ratios to type 1 by level, the seed's behind them."""
-        seed = SEED_RATIOS[self.scene]
+        """Ratios to type 1 by level, those of the source behind them."""
+        source = SOURCE_RATIOS[self.scene]
         rows = []
         for ctype in TYPES:
-            theirs = seed.get(ctype)
+            theirs = source.get(ctype)
             row = [label(ctype)]
             for place, level in enumerate(LEVELS[self.scene]):
                 row.append(f"{self.ratio(level, ctype):.2f}"
@@ -165,7 +177,7 @@ class Times:
 PAGE = """# The claims about the contact types, answered
 
 This page is written by `tools/batch/claims.sh` from runs: do not edit it. The verdicts follow from
-the figures by the rules stated here. The claims are those of Kang, Lee & Shin (2023), the seed;
+the figures by the rules stated here. The claims are those of Kang, Lee & Shin (2023), the source;
 its text compares types 1, 3, 4, 5 and 6. Dimensions that it does not give are ours, and
 its program and machine are others: compare ratios.
 
@@ -175,8 +187,8 @@ its program and machine are others: compare ratios.
 
 ## 1. NTS-mAR has the fewest force peaks: {fewest}
 
-Abrupt peaks of the sliding scene, as defined in [sliding.md](sliding.md). Yes means: type 5 has fewer
-than types 1, 3, 4 and 6 at every level. Fewer than types 1, 3 and 4, the NTS family, at
+Abrupt peaks of the sliding scene, as defined in [sliding.md](sliding.md). Yes means: type 5 has
+fewer than types 1, 3, 4 and 6 at every level. Fewer than types 1, 3 and 4, the NTS family, at
 {nts_levels}.
 
 {counts}
@@ -194,7 +206,7 @@ Yes means: of types 1, 3, 4, 5 and 6, type 6 has the smallest rms of r (fast rou
 smallest waviness (slow swing over a master segment) at every level. Smallest rms at {rms_levels},
 smallest waviness at {wave_levels}. Both in % of the mean force.
 
-The seed also finds NTS-mAR smoother than VTS-PPT: {smoother}. Its rms is smaller at
+The source also finds NTS-mAR smoother than VTS-PPT: {smoother}. Its rms is smaller at
 {calm_levels}, its waviness at {still_levels}.
 
 rms:
@@ -216,19 +228,20 @@ chain's; partly: one of them, or type 3 by its penetration only.
 
 ## 5. At most N - 1 master-to-slave points for N touching slave nodes: {points}
 
-The seed says so where the master is not finer than the slave. In the sliding scene the master is
+The source says so where the master is not finer than the slave. In the sliding scene the master is
 twice as coarse: {states} states with contact over all levels, at most {most} such points with
 {of} touching slave nodes. Yes means: never above N - 1; partly: in less than 5 % of
-the states. It is above in {above} states, which have at most {above_of} touching slave nodes: a segment
-of which only one end touches can have a master node that touches too. With slave and
+the states. It is above in {above} states, which have at most {above_of} touching slave nodes: a
+segment of which only one end touches can have a master node that touches too. With slave and
 master exchanged, the master twice as fine, there are up to {exchanged_most} such points with
 {exchanged_of} touching slave nodes, and {exchanged_above} of {exchanged_states} states are above
 N - 1: the bound needs its condition.
 
 ## 6. Step M is cheaper than steps A and B: {pairing}
 
-The timing has no M of its own for types 1, 2, 3 and 6, whose placing counts as B. Yes means: in types 4 and 5, M takes less
-time than A and less than B in every run; M over A and M over B:
+The timing has no M of its own for types 1, 2, 3 and 6, whose placing counts as B. Yes
+means: in types 4 and 5, M takes less time than A and less than B in every run; M over A and M
+over B:
 
 {pairings}
 
@@ -240,8 +253,8 @@ master nodes in type 5.
 ## 7. The contact cost of the collision is mostly detection: {detection}
 
 Yes means: step A takes more than half of the contact time of the collision in types 1, 3, 4, 5 and
-6 at every level. It does in {detections} of {n_detections} runs. Time of the steps over all of type 1,
-N_r = 1 and 4:
+6 at every level. It does in {detections} of {n_detections} runs. Time of the steps over all of
+type 1, N_r = 1 and 4:
 
 {collision_1}
 
@@ -249,8 +262,11 @@ N_r = 1 and 4:
 
 ## 8. Contact time over that of the classical one-pass NTS
 
-Steps A + M + B; the seed's ratios in brackets. The median of {repeats} rounds, all variants in turn,
-one thread; the largest spread of a run (highest less lowest, over the median) was {spread} %.
+Steps A + M + B; the ratios of the source in brackets. Medians of {slide_rounds} rounds of the
+sliding and {crash_rounds} of the collision, all variants in turn, one thread. Times count in units
+of the element loop of the same run, which is the same work for all types: what slows the machine
+for a while slows both. The quartiles of the rounds lie at most {slide_spread} % of the median apart
+in the sliding and {crash_spread} % in the collision.
 
 Sliding:
 
@@ -319,7 +335,7 @@ def point_texts(normal, exchanged):
     return texts
 
 
-def time_texts(slide, crash, repeats):
+def time_texts(slide, crash):
     """The texts of claims 6 to 8."""
     rows, cheaper = [], []
     for times in (slide, crash):
@@ -336,8 +352,10 @@ def time_texts(slide, crash, repeats):
         "pairings": markdown_table(["run", "type 4: M/A", "M/B", "type 5: M/A", "M/B"], rows),
         "detection": verdict(detected), "detections": sum(detected),
         "n_detections": len(detected), "collision_1": crash.phase_table(1),
-        "collision_4": crash.phase_table(4), "repeats": repeats,
-        "spread": f"{100.0 * max(slide.spread, crash.spread):.0f}",
+        "collision_4": crash.phase_table(4),
+        "slide_rounds": slide.rounds, "crash_rounds": crash.rounds,
+        "slide_spread": f"{100.0 * slide.spread:.0f}",
+        "crash_spread": f"{100.0 * crash.spread:.0f}",
         "sliding_ratios": slide.ratio_table(), "collision_ratios": crash.ratio_table(),
         "cheapest": f"{verdict(cheapest)}: in {sum(cheapest)} of {len(cheapest)} cases",
         "sliding_1": slide.phase_table(1), "sliding_3": slide.phase_table(3)}
@@ -354,7 +372,7 @@ CLAIMS = (("NTS-mAR has the fewest force peaks", "fewest"),
           ("NTS-mAR is the cheapest remedy", "cheapest"))
 
 
-def write(folder, doc, repeats):
+def write(folder, doc):
     """Read the runs below `folder`, write the page below `doc`."""
     texts = peak_texts(PeakFigures(folder / "sliding"))
     texts.update(end_texts(end_pressures(folder / "block")))
@@ -362,8 +380,7 @@ def write(folder, doc, repeats):
               for level in LEVELS["sliding"]]
     texts.update(point_texts(np.concatenate(normal),
                              added_points(folder / "claims" / "exchanged")))
-    texts.update(time_texts(Times(folder / "claims", "sliding", repeats),
-                            Times(folder / "claims", "collision", repeats), repeats))
+    texts.update(time_texts(*(Times(folder / "claims", scene) for scene in LEVELS)))
     texts["summary"] = "\n".join(f"| {text} | {texts[name]} |" for text, name in CLAIMS)
     write_page(doc, "claims", PAGE.format(**texts))
 
@@ -372,10 +389,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("doc", type=pathlib.Path)
-    parser.add_argument("repeats", type=int)
     options = parser.parse_args()
     try:
-        write(options.folder, options.doc, options.repeats)
+        write(options.folder, options.doc)
     except UserError as problem:
         print(problem, file=sys.stderr)
         return 2

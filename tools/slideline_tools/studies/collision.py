@@ -111,14 +111,15 @@ PAGE = """# Collision with all contact types
 This page and its pictures are written by `tools/batch/collision.sh`: do not edit it.
 
 An elastic steel block (slave) hits a clamped, elastic and perfectly plastic aluminium plate
-(master) at 80 m/s (Kang, Lee & Shin 2023, section 4.3; dimensions and velocity that its text does
-not give are ours, see the decks `input/collision/collision*.k`). Type 6 has 4 Gauss points. The
-largest plastic strain of all sits at the clamped end of the plate and grows with refinement (a
-clamped corner of a plastic plate has no limit), so compare it within a level only; the largest
-below the projectile (0 to 25 mm) stands beside it.
+(master) at 80 m/s (Kang, Lee & Shin 2023, section 4.3, the source; dimensions and velocity that
+its text does not give are ours, see the decks `input/collision/collision*.k`). Type 6 has 4 Gauss
+points. The largest plastic strain of all sits at the clamped end of the plate and grows with
+refinement (a clamped corner of a plastic plate has no limit), so compare it within a level only;
+the largest below the projectile (0 to 25 mm) stands beside it.
 
 The force is written every microsecond; an episode is a stretch of rows with a force, from its first
 to its last row. The rebound velocity is the mean vertical velocity of the projectile at the end.
+Every run reached its end: the script stops otherwise.
 
 ## Results
 
@@ -131,7 +132,7 @@ to its last row. The rebound velocity is the mean vertical velocity of the proje
 ![contact force](../pictures/collision_force.png)
 
 The picture shows N_r = {pictured}. Effective plastic strain at 0.7 ms, N_r = {pictured}, colours
-from 0 to 0.25 as in the seed's Fig. 31:
+from 0 to 0.25 as in Fig. 31 of the source:
 
 ![plastic strain](../pictures/collision_plastic_strain.png)
 """

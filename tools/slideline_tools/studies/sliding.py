@@ -138,8 +138,8 @@ def force_figure(runs):
                               100 * (THRESHOLD - spacing * place), color="#00000012", linewidth=0)
         panels[0].set_title("vertical contact force", loc="left")
         panels[1].set_title("the same, enlarged", loc="left")
-        panels[2].set_title("force without its trend, each type shifted by 1.5 %; grey: below the "
-                            "threshold of a peak", loc="left")
+        panels[2].set_title("force without its trend, each type shifted by 1.5 %; shaded: below "
+                            "the threshold of a peak", loc="left")
         panels[2].set_xlim(1e3 * np.array(judged_interval()))
         for axes, text in zip(panels, ("MN/m", "MN/m", "% of the mean force")):
             axes.set_ylabel(text)
@@ -156,17 +156,19 @@ PAGE = """# Sliding contact with all contact types
 This page and its pictures are written by `tools/batch/sliding.sh`: do not edit it.
 
 An elastic steel die with a crowned lower face (slave) is pressed 0.15 mm into an elastic, perfectly
-plastic aluminium plate (master) and drawn 8 mm along it (Kang, Lee & Shin 2023, section 4.2;
-dimensions and motion that its text does not give are ours, see the deck). Decks:
+plastic aluminium plate (master) and drawn 8 mm along it (Kang, Lee & Shin 2023, section 4.2, the
+source; dimensions and motion that its text does not give are ours, see the deck). Decks:
 `slideline-tools make-deck sliding --level N`. No friction, no damping but hourglass control of
 the viscous form (0.1). Type 6 has 6 Gauss points.
 
 ## The measure of abrupt peaks
 
 Node passing shows as bursts: the contact force jumps and the two bodies ring for some tens of
-microseconds. Between the bursts the force swings slowly, with the passage of the master segments.
-The measure (`tools/slideline_tools/studies/peaks.py`, tested on made histories in
-`tests/tools/test_peaks.py`) tells the two apart:
+microseconds. (In the undeformed meshes some slave node passes a master node every half master
+segment: {passes:.0f} times N_r in the time judged below.) Between the bursts the force swings
+slowly, with the passage of the master segments. The measure
+(`tools/slideline_tools/studies/peaks.py`, tested on made histories in `tests/tools/test_peaks.py`)
+tells the two apart:
 
 - The force F is written every {rows} steps and judged between {first:.4g} ms and {last:.4g} ms,
   while the die moves from {from_mm:.3g} mm to {to_mm:.3g} mm.
@@ -177,9 +179,11 @@ The measure (`tools/slideline_tools/studies/peaks.py`, tested on made histories 
 - An *abrupt peak* is a place where |r| exceeds {threshold:g} % of the mean force in the judged
   time; places less than half a window apart are one peak. Its *size* is its largest |r| over the
   mean force. The threshold is the same for all types and levels.
-- *largest* is the largest |r| and *rms* the root mean square of r, peak or not, over the mean force.
+- *largest* is the largest |r| and *rms* the root mean square of r, peak or not, over the mean
+  force.
 - *waviness* is the slow swing: the trend as a function of the distance travelled, less its running
   mean over one master segment, root mean square over the mean force.
+- *energy error* is the largest deviation of the energy ratio from 1.
 
 ## Results
 
@@ -187,10 +191,11 @@ The measure (`tools/slideline_tools/studies/peaks.py`, tested on made histories 
 
 ![contact force](../pictures/sliding_force.png)
 
-The picture shows N_r = {pictured}. The seed's Figs. 27 and 28 show the same for its own dimensions.
+The picture shows N_r = {pictured}; Figs. 27 and 28 of the source show the same for its own
+dimensions. Every run reached its end: the script stops otherwise.
 
-Effective plastic strain at the end (6 ms), N_r = {pictured}, colours from 0.1 to 0.3 as in the
-seed's Fig. 26:
+Effective plastic strain at the end (6 ms), N_r = {pictured}, colours from 0.1 to 0.3 as in
+Fig. 26 of the source:
 
 ![plastic strain](../pictures/sliding_plastic_strain.png)
 
@@ -213,8 +218,9 @@ def page(runs, pictured):
     first, last = judged_interval()
     moved = 1e3 * travel(np.array([first, last]))
     return PAGE.format(
-        rows=STEPS_PER_ROW, first=1e3 * first, last=1e3 * last, from_mm=moved[0],
-        to_mm=moved[1], share=1.0 / WINDOW_SHARE, window=1e6 * WINDOW_SHARE * crossing_time(1),
+        passes=(moved[1] - moved[0]) / (500 * SEGMENT), rows=STEPS_PER_ROW, first=1e3 * first,
+        last=1e3 * last, from_mm=moved[0], to_mm=moved[1], share=1.0 / WINDOW_SHARE,
+        window=1e6 * WINDOW_SHARE * crossing_time(1),
         threshold=100 * THRESHOLD, pictured=pictured, tables=by_level(runs, peak_table),
         robustness=by_level(runs, robustness_table))
 

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: MIT
+"""Nodal contact forces of all seven formulations against an independent brute-force reference."""
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from contact_types import TYPES  # noqa: E402
+from reference import Rule  # noqa: E402
+from scenes import Pair, Scene, random_pair  # noqa: E402
+from sliding import largest_jump, masters, rigid_line, sliding_scene  # noqa: E402
+
+PENALTY = 1.0e5
+POINTS = range(1, 11)
+TOLERANCE = 1.0e-10
+SEED = 20240607
+N_RANDOM, N_FAR, N_CLOSED = 60, 15, 15
+FAR = 1.0e6
+N_JUMP = 6  # slave segments
+APART = 1.0e-9  # on either side of a jump
+RULES = [*(Rule(kind, PENALTY) for kind in TYPES if kind != 6), Rule(5, PENALTY, strict=True),
+         *(Rule(6, PENALTY, gauss=n) for n in POINTS)]
+MAIN_RULES = [*(Rule(kind, PENALTY, gauss=4) for kind in TYPES), Rule(5, PENALTY, strict=True)]
+
+
+def label(rule):
+    extra = f", {rule.gauss} points" if rule.kind == 6 else ", strict" if rule.strict else ""
+    return f"{TYPES[rule.kind]}{extra}"
+
+
+def line(x, y):
+    x = np.asarray(x, dtype=float)
+    return np.stack([x, y(x) if callable(y) else np.broadcast_to(y, x.shape)], axis=1)
+
+
+def designed_pairs():
+    """What can go wrong, one by one; penetration 0.002 unless said otherwise."""
+    lower = np.linspace(0.0, 1.0, 5)
+    seven = np.linspace(0.0, 1.0, 8)
+    bend = lambda x: 0.3 * np.abs(x - 0.45)      # noqa: E731  re-entrant
+    ridge = lambda x: -0.3 * np.abs(x - 0.45)    # noqa: E731  convex
+    arc = lambda x: -0.25 * (x - 0.47) ** 2      # noqa: E731  not symmetric: that makes ties
+    wave = lambda x: 0.03 * np.sin(9.0 * x)      # noqa: E731
+    under = lambda y, d=0.002: lambda x: y(x) - d  # noqa: E731
+    uneven = np.array([0.0, 0.1, 0.37, 0.45, 0.8, 1.0])
+    tilted = lambda x: -0.001 - 0.004 * x        # noqa: E731
+    return [
+        Pair("flat, slave finer", line(np.linspace(0, 1, 8), -0.002), line(lower, 0.0)),
+        Pair("flat, master finer", line(lower, -0.002), line(np.linspace(0, 1, 12), 0.0)),
+        Pair("one slave segment over seven", line([0.0, 1.0], -0.002), line(seven, 0.0)),
+        Pair("tilted, over three segments", line([0.05, 0.5, 0.95], tilted), line(seven, 0.0), 0.4),
+        Pair("uneven both", line(uneven, tilted), line(1.0 - uneven[::-1], 0.0), -2.0),
+        Pair("slave overhangs left", line(np.linspace(-0.3, 0.9, 6), -0.002),
+             line(seven, 0.0), 1.0),
+        Pair("slave overhangs right", line(np.linspace(0.1, 1.3, 6), tilted),
+             line(seven, 0.0), 2.0),
+        Pair("slave overhangs both ends", line(np.linspace(-0.21, 1.3, 6), -0.002),
+             line(lower, 0.0), 3.0),
+        Pair("master inside one slave segment", line([-0.6, -0.2, 1.2, 1.9], -0.002),
+             line(lower, 0.0), -1.0),
+        Pair("one segment each, shifted", line([0.3, 1.3], tilted), line([0.0, 1.0], 0.0), 0.2),
+        Pair("overhang within the end tolerance", line(np.linspace(-0.001, 1.002, 5), -0.002),
+             line(seven, 0.0), 0.7),
+        Pair("flush but for round-off", line(np.linspace(1e-11, 1.0 + 1e-11, 5), -0.002),
+             line(seven, 0.0), 0.7),
+        Pair("re-entrant corner", line(uneven, under(bend)), line(lower, bend), 0.3),
+        Pair("node in a re-entrant corner", line([0.1, 0.46, 0.9], under(bend, 0.01)),
+             line([0.0, 0.45, 1.0], bend), 1.3),
+        Pair("ridge", line(uneven, under(ridge)), line([0.0, 0.45, 1.0], ridge), 0.3),
+        Pair("over a ridge with positive gaps", line(np.linspace(0, 1, 9), under(ridge, -0.001)),
+             line([0.0, 0.45, 0.7, 1.0], ridge), 0.3),
+        Pair("arc, slave finer", line(np.linspace(0, 1, 13), under(arc)), line(lower, arc), 2.4),
+        Pair("arc, master finer", line(lower, under(arc)), line(np.linspace(0, 1, 13), arc), -2.4),
+        Pair("waves", line(np.linspace(0, 1, 10), under(wave)), line(np.linspace(0, 1, 14), wave)),
+        Pair("waves, partly facing", line(np.linspace(0.4, 1.5, 10), under(wave)),
+             line(np.linspace(0, 1, 9), wave), 1.1),
+        Pair("closed", line(np.linspace(0.1, 0.85, 5), -0.002), line(seven, 0.0), 0.5, closed=True),
+        Pair("closed, flush", line(lower, -0.002), line(seven, 0.0), 0.5, closed=True),
+        Pair("closed, overhanging", line(np.linspace(-0.3, 1.4, 5), -0.002), line(seven, 0.0), -1.5,
+             closed=True),
+    ]
+
+
+class Verdicts:
+    """Largest differences by rule; and that forces were there to compare."""
+
+    def __init__(self):
+        self.worst = {}
+        self.count = {}
+        self.active = {}
+
+    def add(self, key, error, size):
+        self.worst[key] = max(self.worst.get(key, 0.0), error)
+        self.count[key] = self.count.get(key, 0) + 1
+        self.active[key] = self.active.get(key, 0) + (size > 0.0)
+
+    def judge(self, run, what, least=0.8):
+        for key, error in self.worst.items():
+            run.check(f"{what}, {key}: nodal forces of both sides / largest ({self.count[key]} "
+                      "interfaces)", error, 0.0, TOLERANCE, "abs", "brute-force reference")
+            run.check(f"{what}, {key}: interfaces in contact", self.active[key],
+                      least * self.count[key], 0.0, "min", "so that the comparison means something")
+
+
+def compare(run, name, scene, verdicts, key=lambda interface: label(interface.rule)):
+    """Run a scene and compare the forces at time zero."""
+    found = run.program(scene.deck, name=name).points("contact_force")[0, :, :2]
+    for interface in scene.interfaces:
+        error, size, _ = interface.compare(scene.nodes, found)
+        if error > TOLERANCE:
+            print(f"      differs: {interface.pair.name}: {label(interface.rule)}: {error:.3g}")
+        verdicts.add(key(interface), error, size)
+    return found
+
+
+def one_interface_each(run, name, pairs, rules, what):
+    """Every rule on bodies of its own, all in one deck."""
+    scene = Scene(name)
+    for pair in pairs:
+        for rule in rules:
+            scene.add(pair, rule)
+    verdicts = Verdicts()
+    compare(run, name, scene, verdicts)
+    verdicts.judge(run, what)
+
+
+def penalty_units(run):
+    """PUNIT 0, 1, 2 and a penalty of its own for the master pass."""
+    x = np.linspace(0.0, 1.0, 6), np.linspace(0.0, 1.0, 5)
+    pair = Pair("units", line(x[0], -0.002), line(x[1], 0.0), 0.6)
+    scene = Scene("penalty units")
+    for kind in TYPES:
+        for unit, penalty in ((0, 3.0e4), (1, 2.0e5), (2, 0.7)):
+            scene.add(pair, Rule(kind, penalty, unit, back=0.4 * penalty if kind == 3 else 0.0))
+    verdicts = Verdicts()
+    compare(run, "penalty_units", scene, verdicts,
+            lambda interface: f"{TYPES[interface.rule.kind]}, PUNIT {interface.rule.unit}")
+    verdicts.judge(run, "penalty units")
+
+
+def shared_chains(run):
+    """All rules as interfaces between the same two bodies: the forces are the sum."""
+    rng = np.random.default_rng(SEED + 3)
+    scene = Scene("shared chains")
+    for number in range(4):
+        pair = random_pair(rng, number)
+        made = None
+        for rule in MAIN_RULES:
+            made = scene.add(pair, rule, made)
+    found = run.program(scene.deck, name="shared_chains").points("contact_force")[0, :, :2]
+    wanted = np.zeros_like(found)
+    for interface in scene.interfaces:
+        _, _, (slave, master) = interface.compare(scene.nodes, found)
+        wanted[interface.slave] += slave
+        wanted[interface.master] += master
+    run.check("eight interfaces between the same two chains: sum of forces", found, wanted,
+              TOLERANCE, source="brute-force reference")
+
+
+def sliding(run):
+    """Force histories while the slave slides over many nodes, off both ends and back."""
+    scene = sliding_scene(MAIN_RULES)
+    result = run.program(scene.deck, name="sliding")
+    found, moved = (result.points(name)[..., :2] for name in ("contact_force", "displacement"))
+    verdicts = Verdicts()
+    for state, time in enumerate(result.times):
+        for interface in scene.interfaces:
+            error, size, _ = interface.compare(scene.nodes, found[state], moved[state])
+            if error > TOLERANCE:
+                print(f"      differs: {interface.pair.name}: {label(interface.rule)} "
+                      f"at {time:.4g}: {error:.3g}")
+            verdicts.add(label(interface.rule), error, size)
+    verdicts.judge(run, "sliding", 0.5)
+
+
+def jumps(run):
+    """Largest jump of the total force: its place found with the reference, its size measured with
+    the program on either side of that place, where the nodal forces are compared as well."""
+    scene = Scene("jumps")
+    places = []
+    for name, master in masters().items():
+        for rule in MAIN_RULES:
+            left, mean = largest_jump(rule, master, N_JUMP)
+            places.append((name, rule, mean))
+            for side in (-1.0, 1.0):
+                line = rigid_line(master, N_JUMP, left + side * APART)
+                scene.add(Pair(name, line, master), rule)
+    verdicts = Verdicts()
+    found = compare(run, "jumps", scene, verdicts)
+    verdicts.judge(run, "on either side of a jump")
+    for k, (name, rule, mean) in enumerate(places):
+        before, after = (found[interface.slave].sum(axis=0)
+                         for interface in scene.interfaces[2 * k:2 * k + 2])
+        run.report(f"largest jump / mean of the total force, {name}, {label(rule)}",
+                   np.hypot(*(after - before)) / mean)
+
+
+def check(run):
+    one_interface_each(run, "designed", designed_pairs(), RULES, "designed")
+    rng = np.random.default_rng(SEED)
+    pairs = [random_pair(rng, number) for number in range(N_RANDOM)]
+    one_interface_each(run, "random", pairs, RULES, "random")
+    rng = np.random.default_rng(SEED + 1)
+    pairs = [random_pair(rng, number, far=FAR) for number in range(N_FAR)]
+    one_interface_each(run, "far", pairs, MAIN_RULES, "far from the origin")
+    penalty_units(run)
+    shared_chains(run)
+    sliding(run)
+    jumps(run)

@@ -1,0 +1,402 @@
+# SPDX-License-Identifier: MIT
+"""The seven contact formulations by brute force, written from their description alone.
+
+Everything is evaluated from scratch for one configuration: the closest segment is found by
+looking at all of them, nothing is tracked, ordered or kept. Positions are handed in relative to a
+point near the interface, so that they carry no large common part.
+
+A surface is walked with its body on the left; the outward normal of a segment is (t_y, -t_x).
+A place on a chain is one number: segment number + coordinate along the segment (0 to 1).
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+OVERSHOOT = 0.01      # of the end segment of an open chain: still projected, not clamped
+SIDE_ON, FACE_ON = -0.1, -0.5  # slave normal . master normal: no facing above, full facing below
+SHALLOW = 0.1         # of the segment: how deep a point may be to change sides at a sharp corner
+SHARP = np.cos(np.radians(60.0))  # a projection does not walk across corners that turn more
+
+
+class Chain:
+    """Nodes (n, 2) in walking order and whether the last is joined to the first."""
+
+    def __init__(self, x, closed=False):
+        self.x = np.asarray(x, dtype=float)
+        self.closed = closed
+        n = len(self.x)
+        first = np.arange(n if closed else n - 1)
+        self.nodes = np.stack([first, (first + 1) % n], axis=1)
+        self.start = self.x[self.nodes[:, 0]]
+        edge = self.x[self.nodes[:, 1]] - self.start
+        self.length = np.hypot(edge[:, 0], edge[:, 1])
+        self.tangent = edge / self.length[:, None]
+        self.normal = np.stack([self.tangent[:, 1], -self.tangent[:, 0]], axis=1)
+
+    def __len__(self):
+        return len(self.length)
+
+    def next(self, segment, step):
+        """The neighbour segment in the walking sense (step 1) or against it (-1), or None."""
+        other = segment + step
+        if self.closed:
+            return other % len(self)
+        return other if 0 <= other < len(self) else None
+
+    def chords(self):
+        """Direction of the surface at each node: from the node before to the node after."""
+        chord = np.zeros(self.x.shape)
+        for side in (0, 1):
+            np.add.at(chord, self.nodes[:, side], self.length[:, None] * self.tangent)
+        return chord / np.hypot(chord[:, 0], chord[:, 1])[:, None]
+
+    def competence(self):
+        """Half of the segments on either side of each node."""
+        half = np.zeros(len(self.x))
+        for side in (0, 1):
+            np.add.at(half, self.nodes[:, side], 0.5 * self.length)
+        return half
+
+
+@dataclass
+class Foot:
+    """Projection of a point on a chain: x - foot = gap * normal."""
+    segment: int
+    at: float
+    gap: float
+    normal: np.ndarray
+    other: int | None = None  # the other segment, where the foot is the node between two
+
+    @property
+    def before(self):
+        """The segment that the foot is on; at a node the one before the node."""
+        return self.other if self.other is not None and self.at == 0.0 else self.segment
+
+    @property
+    def after(self):
+        return self.other if self.other is not None and self.at == 1.0 else self.segment
+
+
+def project(points, chain, along):
+    """Closest-point projections (Foot or None) of all points, each on the whole chain.
+
+    along: direction of the points' own surface, one for all or one per point.
+    """
+    points = np.atleast_2d(points)
+    along = np.broadcast_to(along, points.shape)
+    away = points[:, None, :] - chain.start[None, :, :]
+    at = np.sum(away * chain.tangent, axis=2) / chain.length
+    height = np.sum(away * chain.normal, axis=2)
+    beyond = (at - np.clip(at, 0.0, 1.0)) * chain.length
+    nearest = np.argmin(np.hypot(beyond, height), axis=1)
+    feet = []
+    for i, k in enumerate(nearest):
+        edge = facing_edge(chain, int(k), at[i], height[i], along[i])
+        feet.append(one_foot(points[i], chain, int(k), at[i], height[i]) if edge is None else
+                    Foot(edge, at[i, edge], height[i, edge], chain.normal[edge]))
+    return feet
+
+
+def facing_edge(chain, k, at, height, along):
+    """At a sharp corner (the edge of a block): the segment, other than the closest one, that the
+    point is under and that its own surface faces more; or None. Without this a corner that lies
+    flush on a corner would belong to the side of the block by a hair."""
+    if OVERSHOOT < at[k] < 1.0 - OVERSHOOT:
+        return None
+    found = [other for other in (chain.next(k, -1), chain.next(k, 1)) if other is not None
+             and np.dot(chain.tangent[k], chain.tangent[other]) < SHARP]
+    found = [s for s in (k, *found) if -OVERSHOOT <= at[s] <= 1.0 + OVERSHOOT]
+    best = min(found, key=lambda s: np.dot(along, chain.tangent[s]), default=k)
+    return best if best != k and -SHALLOW * chain.length[best] < height[best] < 0.0 else None
+
+
+def one_foot(point, chain, k, at, height):
+    """The foot on segment k or its vertex, given coordinates and heights over all segments."""
+    if 0.0 <= at[k] <= 1.0:
+        return Foot(k, at[k], height[k], chain.normal[k])
+    step = 1 if at[k] > 1.0 else -1
+    other = chain.next(k, step)
+    if other is None:
+        if -OVERSHOOT <= at[k] <= 1.0 + OVERSHOOT:
+            return Foot(k, at[k], height[k], chain.normal[k])
+        return None
+    vertex = chain.x[chain.nodes[k, 1 if step == 1 else 0]]
+    radius = point - vertex
+    distance = np.hypot(*radius)
+    if height[other] > height[k]:
+        k, other, step = other, k, -step
+    inside = height[k] < 0.0 and height[other] < 0.0
+    gap = -distance if inside else distance
+    normal = radius / gap if distance > 0.0 else chain.normal[k]
+    return Foot(k, 1.0 if step == 1 else 0.0, gap, normal, other)
+
+
+class Forces:
+    """Sums of nodal forces on both sides."""
+
+    def __init__(self, slave, master):
+        self.chains = slave, master
+        self.sides = np.zeros(slave.x.shape), np.zeros(master.x.shape)
+
+    def at_node(self, side, node, force):
+        self.sides[side][node] += force
+
+    def on_segment(self, side, segment, at, force):
+        first, second = self.chains[side].nodes[segment]
+        self.sides[side][first] += (1.0 - at) * force
+        self.sides[side][second] += at * force
+
+
+def gauss(n):
+    """Points and weights over 0 to 1."""
+    points, weights = np.polynomial.legendre.leggauss(n)
+    return 0.5 * (points + 1.0), 0.5 * weights
+
+
+def push_nodes(forces, side, stiffness):
+    """Nodes of one side on their closest segment of the other; stiffness per node."""
+    chain, other = forces.chains[side], forces.chains[1 - side]
+    for node, foot in enumerate(project(chain.x, other, chain.chords())):
+        if foot and foot.gap < 0.0:
+            force = -stiffness[node] * foot.gap * foot.normal
+            forces.at_node(side, node, force)
+            forces.on_segment(1 - side, foot.segment, foot.at, -force)
+
+
+def nts(slave, master, penalty):
+    """Type 1; penalty in N/m."""
+    forces = Forces(slave, master)
+    push_nodes(forces, 0, np.full(len(slave.x), penalty))
+    return forces.sides
+
+
+def nts_ar(slave, master, penalty):
+    """Type 2; penalty in N/m2, as in all the following."""
+    forces = Forces(slave, master)
+    push_nodes(forces, 0, penalty * slave.competence())
+    return forces.sides
+
+
+def two_pass_ar(slave, master, penalty, penalty_back):
+    """Type 3."""
+    forces = Forces(slave, master)
+    push_nodes(forces, 0, penalty * slave.competence())
+    push_nodes(forces, 1, penalty_back * master.competence())
+    return forces.sides
+
+
+def vts_ppt(slave, master, penalty):
+    """Type 4."""
+    forces = Forces(slave, master)
+    for k in range(len(slave)):
+        def position(at, k=k):
+            return slave.start[k] + at * slave.length[k] * slave.tangent[k]
+        for at in (0.25, 0.75):
+            foot = project(position(at), master, slave.tangent[k])[0]
+            if not foot or foot.gap >= 0.0:
+                continue
+            force = -penalty * 0.5 * slave.length[k] * foot.gap * foot.normal
+            forces.on_segment(0, k, at, force)
+            ends = [walk(position(end), foot.segment, master) for end in (at - 0.25, at + 0.25)]
+            parts = portions(master, *ends) or [(foot.segment, foot.at, 1.0)]
+            total = sum(length for _, _, length in parts)
+            for segment, centre, length in parts:
+                forces.on_segment(1, segment, centre, -force * length / total)
+    return forces.sides
+
+
+def walk(point, segment, chain):
+    """Steps (turns of the closed chain not reduced), segment and coordinate of the projection
+    that is reached from `segment` by going to the neighbour wherever the point lies beyond."""
+    steps, direction = 0, 0
+    while True:
+        at = np.dot(point - chain.start[segment], chain.tangent[segment]) / chain.length[segment]
+        wanted = 1 if at > 1.0 else -1 if at < 0.0 else 0
+        if wanted == 0:
+            return steps, segment, at
+        if direction and wanted != direction:  # between two neighbours: on the vertex
+            return steps, segment, 0.0 if wanted == -1 else 1.0
+        other = chain.next(segment, wanted)
+        if other is None and -OVERSHOOT <= at <= 1.0 + OVERSHOOT:
+            return steps, segment, at
+        if other is None or np.dot(chain.tangent[segment], chain.tangent[other]) <= SHARP:
+            return steps, segment, 1.0 if wanted == 1 else 0.0
+        segment, direction, steps = other, wanted, steps + wanted
+
+
+def portions(chain, one, two):
+    """(segment, centre, length) of the stretch between two places reached by walk()."""
+    (steps, segment, at), (last, _, end) = sorted((one, two), key=lambda place: place[0] + place[2])
+    found = []
+    while steps <= last:
+        stop = end if steps == last else 1.0
+        if stop > at:
+            found.append((segment, 0.5 * (at + stop), (stop - at) * chain.length[segment]))
+        segment, at, steps = chain.next(segment, 1), 0.0, steps + 1
+    return found
+
+
+def between(slave, master, k, feet, strict=False):
+    """Master nodes that cut slave segment k: sorted (coordinate on the segment, node), and the
+    covered stretch of the segment. The two chains are walked in opposite senses.
+
+    An end whose foot is a master node has this node between it and the other end.
+    """
+    first, second = (feet[node] for node in slave.nodes[k])
+    n = len(master.x)
+    high, low = first and first.after, second and second.before
+    if first and second:
+        if master.closed and high - low < -0.5 * n:
+            high += n
+        if master.closed and high - low > 0.5 * n:
+            low += n
+        nodes = range(low + 1, high + 1)
+    elif strict or master.closed:
+        nodes = range(0)
+    elif first:
+        nodes = range(0, high + 1)
+    elif second:
+        nodes = range(low + 1, n)
+    else:
+        nodes = range(0, n)
+    cuts = []
+    for node in nodes:
+        away = master.x[node % n] - slave.start[k]
+        cuts.append((np.dot(away, slave.tangent[k]) / slave.length[k], node % n))
+    start, stop = 0.0, 1.0
+    if not strict and not first:
+        start = max(0.0, min((at for at, _ in cuts), default=1.0))
+    if not strict and not second:
+        stop = min(1.0, max((at for at, _ in cuts), default=0.0))
+    return sorted(cut for cut in cuts if 0.0 < cut[0] < 1.0), start, max(start, stop)
+
+
+def facing(slave_normal, master_normal):
+    """Share of a slave segment that counts as facing: a cubic step between the two cosines."""
+    share = np.clip((SIDE_ON - np.dot(slave_normal, master_normal)) / (SIDE_ON - FACE_ON), 0.0, 1.0)
+    return share * share * (3.0 - 2.0 * share)
+
+
+def segment_facing(slave, k, feet):
+    """The larger share of the two ends; with both off the master there is no foot to judge by."""
+    found = [feet[node].normal for node in slave.nodes[k] if feet[node]]
+    return max((facing(slave.normal[k], normal) for normal in found), default=1.0)
+
+
+def nts_mar(slave, master, penalty, strict=False):
+    """Type 5, with the extension for slave chains that overhang the master unless strict."""
+    forces = Forces(slave, master)
+    feet = project(slave.x, master, slave.chords())
+    weight = np.zeros(len(slave.x))
+    facing_side = np.zeros(len(slave.x), dtype=bool)
+    extra = []
+    for k in range(len(slave)):
+        share_facing = 1.0 if strict else segment_facing(slave, k, feet)
+        if share_facing == 0.0:
+            continue
+        facing_side[slave.nodes[k]] = True
+        cuts, start, stop = between(slave, master, k, feet, strict)
+        points = [(0.0, None), *cuts, (1.0, None)]
+        share = np.zeros(len(points))
+        for i in range(len(points) - 1):
+            covered = min(points[i + 1][0], stop) - max(points[i][0], start)
+            if covered > 0.0:
+                share[i:i + 2] += 0.5 * covered * slave.length[k] * share_facing
+        weight[slave.nodes[k]] += share[[0, -1]]
+        extra += [(k, at, node, w) for (at, node), w in zip(cuts, share[1:-1])]
+    weight = np.where(facing_side, weight, slave.competence())
+    for node, foot in enumerate(feet):
+        if foot and foot.gap < 0.0:
+            force = -penalty * weight[node] * foot.gap * foot.normal
+            forces.at_node(0, node, force)
+            forces.on_segment(1, foot.segment, foot.at, -force)
+    for k, at, node, w in extra:
+        gap = np.dot(master.x[node] - slave.start[k], slave.normal[k])
+        if gap < 0.0:
+            force = -penalty * w * gap * slave.normal[k]
+            forces.at_node(1, node, force)
+            forces.on_segment(0, k, at, -force)
+    return forces.sides
+
+
+def nodal_pressure(slave, master, penalty, spots):
+    """Types 6 and 7 from integration points (slave segment, coordinate, length weight)."""
+    forces = Forces(slave, master)
+    where = [slave.start[k] + at * slave.length[k] * slave.tangent[k] for k, at, _ in spots]
+    feet = project(where, master, [slave.tangent[k] for k, _, _ in spots]) if spots else []
+    kept = [(k, at, w * facing(slave.normal[k], foot.normal), foot)
+            for (k, at, w), foot in zip(spots, feet) if foot]
+    area, volume = np.zeros(len(slave.x)), np.zeros(len(slave.x))
+    for k, at, w, foot in kept:
+        for node, shape in zip(slave.nodes[k], (1.0 - at, at)):
+            area[node] += shape * w
+            volume[node] += shape * w * foot.gap
+    gap = np.divide(volume, area, out=np.zeros_like(area), where=area > 0.0)
+    pressure = penalty * np.maximum(0.0, -gap)
+    for k, at, w, foot in kept:
+        first, second = pressure[slave.nodes[k]]
+        force = w * ((1.0 - at) * first + at * second) * foot.normal
+        forces.on_segment(0, k, at, force)
+        forces.on_segment(1, foot.segment, foot.at, -force)
+    return forces.sides
+
+
+def mortar(slave, master, penalty, n_gauss):
+    """Type 6."""
+    spots = [(k, at, w * slave.length[k])
+             for k in range(len(slave)) for at, w in zip(*gauss(n_gauss))]
+    return nodal_pressure(slave, master, penalty, spots)
+
+
+def segmented_mortar(slave, master, penalty):
+    """Type 7."""
+    feet = project(slave.x, master, slave.chords())
+    spots = []
+    for k in range(len(slave)):
+        cuts, start, stop = between(slave, master, k, feet)
+        edges = [start, *(at for at, _ in cuts if start < at < stop), stop]
+        for left, right in zip(edges[:-1], edges[1:]):
+            spots += [(k, left + at * (right - left), w * (right - left) * slave.length[k])
+                      for at, w in zip(*gauss(2)) if right > left]
+    return nodal_pressure(slave, master, penalty, spots)
+
+
+@dataclass
+class Rule:
+    """One contact card. unit: 0 N/m per contact node, 1 N/m2, 2 factor on the built-in estimate."""
+    kind: int
+    penalty: float
+    unit: int = 0
+    gauss: int = 2
+    strict: bool = False
+    back: float = 0.0  # PENT; 0 = as penalty
+
+    def name(self):
+        extra = f", {self.gauss} points" if self.kind == 6 else ", strict" if self.strict else ""
+        return f"type {self.kind}{extra}, unit {self.unit}"
+
+
+def distributed(rule, initial, estimate):
+    """eps_hat of the slave and of the master pass, from the initial chains."""
+    given = rule.penalty, rule.back or rule.penalty
+    if rule.unit == 0:
+        return [value / np.mean(chain.length) for value, chain in zip(given, initial)]
+    return [value * (estimate if rule.unit == 2 else 1.0) for value in given]
+
+
+def contact_forces(rule, slave, master, initial, estimate=None):
+    """Nodal forces (slave, master) of one interface; initial = both chains at time zero."""
+    penalty, back = distributed(rule, initial, estimate)
+    if rule.kind == 1:
+        return nts(slave, master, penalty * np.mean(initial[0].length))
+    if rule.kind == 2:
+        return nts_ar(slave, master, penalty)
+    if rule.kind == 3:
+        return two_pass_ar(slave, master, penalty, back)
+    if rule.kind == 4:
+        return vts_ppt(slave, master, penalty)
+    if rule.kind == 5:
+        return nts_mar(slave, master, penalty, rule.strict)
+    if rule.kind == 6:
+        return mortar(slave, master, penalty, rule.gauss)
+    return segmented_mortar(slave, master, penalty)
