@@ -137,7 +137,6 @@ contains
     type(step_t), intent(inout) :: step
     type(trial_t), intent(inout) :: trial
     type(error_t), allocatable, intent(out) :: error
-    type(equations_t) :: equations
     type(outcome_t) :: outcome
     type(trial_t) :: attempt
     logical :: may_retry
@@ -145,31 +144,29 @@ contains
     do
       call find_next_time(control, state%time, step%time)
       step%dt = step%time - state%time
-      call number_equations(model, state, step%time, equations)
+      call number_equations(model, state, step%time, step%equations)
+      step%increments = prescribed_increments(model, state, step%time, step%equations)
       call start_trial(model, state, attempt)
-      call find_equilibrium(model, state, step, equations, &
-        prescribed_increments(model, state, step%time, equations), monitor%log, monitor%clock, &
-        attempt, outcome)
+      call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
       if (outcome%converged) exit
       call write_log(monitor%log, 'step to '//to_text(step%time)//': '//outcome%reason)
       may_retry = .false.
       if (outcome%singular_equation == 0) call cut_step(control, may_retry)
       if (.not. may_retry) then
-        call raise_failure(model, state, step, equations, outcome, error)
+        call raise_failure(model, state, step, outcome, error)
         return
       end if
     end do
-    call commit(model, state, step, equations, attempt, trial)
+    call commit(model, state, step, attempt, trial)
     call grow_step(control, outcome%iterations)
     call lap(monitor%clock, phase_nodes)
   end subroutine take_step
 
   !> The trial becomes the state; works of contact, loads and prescribed motion by the trapezoidal rule.
-  subroutine commit(model, state, step, equations, attempt, trial)
+  subroutine commit(model, state, step, attempt, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(step_t), intent(inout) :: step
-    type(equations_t), intent(in) :: equations
     type(trial_t), intent(inout) :: attempt
     type(trial_t), intent(inout) :: trial    !! of the state before; of the new state on return
     real(wp), allocatable :: acceleration(:, :)
@@ -185,12 +182,12 @@ contains
     end do
     if (step%is_dynamic) then
       acceleration = new_acceleration(state, step, attempt)
-      state%external_work = state%external_work + reactions_work(model, equations, state, trial, &
+      state%external_work = state%external_work + reactions_work(model, step%equations, state, trial, &
         attempt, acceleration)
       state%motion(3:4, :) = new_velocity(state, step, acceleration)
       state%acceleration = acceleration
     else
-      state%external_work = state%external_work + reactions_work(model, equations, state, trial, attempt)
+      state%external_work = state%external_work + reactions_work(model, step%equations, state, trial, attempt)
     end if
     state%motion(1:2, :) = attempt%motion(1:2, :)
     state%elements = attempt%elements
@@ -203,17 +200,16 @@ contains
   end subroutine commit
 
   !> The error that ends the run; a free motion is named by node and direction.
-  subroutine raise_failure(model, state, step, equations, outcome, error)
+  subroutine raise_failure(model, state, step, outcome, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
-    type(equations_t), intent(in) :: equations
     type(outcome_t), intent(in) :: outcome
     type(error_t), allocatable, intent(out) :: error
     integer :: node, direction
 
     if (outcome%singular_equation > 0) then
-      call find_equation(equations, outcome%singular_equation, node, direction)
+      call find_equation(step%equations, outcome%singular_equation, node, direction)
       call raise(error, 'the stiffness is singular at time '//to_text(state%time)//': node ' &
         //to_text(model%mesh%node_id(node))//' moves freely in ' &
         //merge('x', 'y', direction == 1)//'; the model needs constraints, contact or inertia ' &

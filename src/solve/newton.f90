@@ -5,7 +5,7 @@ module newton_m
   use kinds_m, only : wp
   use clock_m, only : clock_t, lap, phase_solver
   use controls_m, only : implicit_t
-  use equations_m, only : equations_t, take_free, move_prescribed
+  use equations_m, only : take_free, move_prescribed
   use forces_m, only : trial_t, assemble_forces, is_sound
   use linear_solver_m, only : report_t, solve_linear
   use log_m, only : log_t, write_log, to_text
@@ -37,48 +37,48 @@ module newton_m
     real(wp) :: floor = 0.0_wp    !! round-off in it
     real(wp) :: step = 0.0_wp     !! norm of dU
     real(wp) :: factor = 1.0_wp   !! of the line search
+    real(wp), allocatable :: x(:)     !! dU of the free degrees of freedom
+    real(wp), allocatable :: moved(:) !! and of the prescribed ones
   end type measure_t
 
 contains
 
   !> Iterate from the committed state to equilibrium at `step%time`; `trial` is that state when converged.
-  subroutine find_equilibrium(model, state, step, equations, increments, log, clock, trial, outcome)
+  subroutine find_equilibrium(model, state, step, log, clock, trial, outcome)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: increments(:) !! of the prescribed degrees of freedom
     type(log_t), intent(inout) :: log
     type(clock_t), intent(inout) :: clock
     type(trial_t), intent(inout) :: trial
     type(outcome_t), intent(out) :: outcome
     type(sparse_t) :: matrix
     type(measure_t) :: first, now
-    real(wp), allocatable :: b(:), x(:), moved(:)
+    real(wp), allocatable :: b(:)
     type(report_t) :: report
     integer :: iteration
     logical :: solved
 
-    moved = increments
-    allocate (x(equations%n_free))
+    now%moved = step%increments
+    allocate (now%x(step%equations%n_free))
     trial%motion(1:2, :) = state%motion(1:2, :)
     call assemble_forces(model, state, step%time, .true., clock, trial)
     do iteration = 1, model%controls%implicit%max_iteration
       outcome%iterations = iteration
-      b = -take_free(equations, assemble_residual(model, state, step, trial))
-      call assemble_tangent(model, state, step, equations, trial, matrix)
-      call move_prescribed(equations%n_free, moved, matrix, b)
+      b = -take_free(step%equations, assemble_residual(model, state, step, trial))
+      call assemble_tangent(model, state, step, trial, matrix)
+      call move_prescribed(step%equations%n_free, now%moved, matrix, b)
       call compress_matrix(matrix)
-      call solve_linear(matrix, b, x, report)
+      call solve_linear(matrix, b, now%x, report)
       call lap(clock, phase_solver)
       call judge_solution(report, outcome, solved)
       if (.not. solved) return
-      now%energy = abs(dot_product(x, b))
-      now%step = norm2(x)
-      call move_nodes(model, state, step, equations, x, moved, clock, trial, now, outcome)
+      now%energy = abs(dot_product(now%x, b))
+      now%step = norm2(now%x)
+      call move_nodes(model, state, step, clock, trial, now, outcome)
       if (allocated(outcome%reason)) return
-      moved = 0.0_wp
-      call measure_residual(model, state, step, equations, trial, matrix, now)
+      now%moved = 0.0_wp
+      call measure_residual(model, state, step, trial, matrix, now)
       if (iteration == 1) first = now
       call write_log(log, iteration_line(step, iteration, first, now, report))
       outcome%converged = is_converged(model%controls%implicit, first, now, &
@@ -103,14 +103,12 @@ contains
     end if
   end subroutine judge_solution
 
-  !> Move the trial by `x`, shortened where elements would turn inside out or where the residual along x would not
-  !> fall; prescribed degrees of freedom by all of `moved`.
-  subroutine move_nodes(model, state, step, equations, x, moved, clock, trial, now, outcome)
+  !> Move the trial by `now%x`, shortened where elements would turn inside out or where the residual along x would not
+  !> fall; prescribed degrees of freedom by all of `now%moved`.
+  subroutine move_nodes(model, state, step, clock, trial, now, outcome)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: x(:), moved(:)
     type(clock_t), intent(inout) :: clock
     type(trial_t), intent(inout) :: trial
     type(measure_t), intent(inout) :: now
@@ -122,7 +120,7 @@ contains
 
     start = trial%motion(1:2, :)
     now%factor = 1.0_wp
-    is_straight = .not. any(abs(moved) > 0.0_wp)
+    is_straight = .not. any(abs(now%moved) > 0.0_wp)
     do i = 1, most_halvings
       call put_nodes(now%factor)
       if (is_sound(trial)) exit
@@ -156,12 +154,12 @@ contains
 
       do j = 1, size(start, 2)
         do k = 1, 2
-          n = equations%number(k, j)
+          n = step%equations%number(k, j)
           if (n == 0) cycle
-          if (n <= equations%n_free) then
-            trial%motion(k, j) = start(k, j) + factor*x(n)
+          if (n <= step%equations%n_free) then
+            trial%motion(k, j) = start(k, j) + factor*now%x(n)
           else
-            trial%motion(k, j) = start(k, j) + moved(n - equations%n_free)
+            trial%motion(k, j) = start(k, j) + now%moved(n - step%equations%n_free)
           end if
         end do
       end do
@@ -172,26 +170,26 @@ contains
     function slope_at() result(slope)
       real(wp) :: slope
 
-      slope = dot_product(x, take_free(equations, assemble_residual(model, state, step, trial)))
+      slope = dot_product(now%x, take_free(step%equations, &
+        assemble_residual(model, state, step, trial)))
     end function slope_at
 
   end subroutine move_nodes
 
   !> Norm of the residual and of the round-off that it must hold: that of forces, and of displacements times stiffness.
-  subroutine measure_residual(model, state, step, equations, trial, matrix, now)
+  subroutine measure_residual(model, state, step, trial, matrix, now)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
-    type(equations_t), intent(in) :: equations
     type(trial_t), intent(in) :: trial
     type(sparse_t), intent(in) :: matrix
     type(measure_t), intent(inout) :: now
-    real(wp) :: u(equations%n_free), total(equations%n_free)
+    real(wp) :: u(step%equations%n_free), total(step%equations%n_free)
     integer :: i, k
 
-    now%residual = norm2(take_free(equations, assemble_residual(model, state, step, trial)))
-    u = abs(take_free(equations, trial%motion(1:2, :)))
-    total = take_free(equations, abs(trial%internal) + abs(trial%contact) + abs(trial%external))
+    now%residual = norm2(take_free(step%equations, assemble_residual(model, state, step, trial)))
+    u = abs(take_free(step%equations, trial%motion(1:2, :)))
+    total = take_free(step%equations, abs(trial%internal) + abs(trial%contact) + abs(trial%external))
     do i = 1, matrix%n
       do k = matrix%first(i), matrix%first(i + 1) - 1
         total(i) = total(i) + abs(matrix%value(k))*u(matrix%column(k))

@@ -23,6 +23,8 @@ module tangent_m
     logical :: is_dynamic = .false.
     real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, gamma = 0.5_wp, beta = 0.25_wp
     real(wp), allocatable :: old_force(:, :) !! (2, n_node) f_int - f_contact - f_ext at its start
+    type(equations_t) :: equations
+    real(wp), allocatable :: increments(:)   !! what the prescribed degrees of freedom move in it
   end type step_t
 
 contains
@@ -66,26 +68,28 @@ contains
   end function new_velocity
 
   !> dR/du(n+1), collected.
-  subroutine assemble_tangent(model, state, step, equations, trial, matrix)
+  subroutine assemble_tangent(model, state, step, trial, matrix)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
-    type(equations_t), intent(in) :: equations
     type(trial_t), intent(in) :: trial
     type(sparse_t), intent(inout) :: matrix
     integer :: i
 
-    call start_matrix(matrix, equations%n)
-    call add_stiffness(model, trial%motion, 1.0_wp, state%elements, equations%number, matrix)
+    call start_matrix(matrix, step%equations%n)
+    call add_stiffness(model, trial%motion, 1.0_wp, state%elements, step%equations%number, matrix)
     do i = 1, size(model%contacts)
-      call add_contact_stiffness(model%contacts(i), trial%contacts(i), equations%number, matrix)
+      call add_contact_stiffness(model%contacts(i), trial%contacts(i), step%equations%number, &
+        matrix)
     end do
     do i = 1, size(model%conditions%pressures)
-      call add_pressure_stiffness(model, model%conditions%pressures(i), step%time, equations, matrix)
+      call add_pressure_stiffness(model, model%conditions%pressures(i), step%time, step%equations, &
+        matrix)
     end do
     if (.not. step%is_dynamic) return
     matrix%values(:matrix%n_entry) = (1.0_wp - step%alpha_f)*matrix%values(:matrix%n_entry)
-    call add_mass(model, (1.0_wp - step%alpha_m)/(step%beta*step%dt**2), equations%number, matrix)
+    call add_mass(model, (1.0_wp - step%alpha_m)/(step%beta*step%dt**2), step%equations%number, &
+      matrix)
   end subroutine assemble_tangent
 
   !> Minus the derivative of a pressure, which turns and stretches with its edge.
