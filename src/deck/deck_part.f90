@@ -95,7 +95,8 @@ contains
       call next_card(deck, parameters, cursor, 1, card)
       call check_section(deck, cursor, card)
       section%id = card%i(1)
-      section%element_form = merge(form_full, form_one_point, card%i(4) == 4)
+      section%is_full = card%i(4) == 4
+      section%element_form = merge(form_full, form_one_point, section%is_full)
       if (card%bad(1)) then
         raw%lost%sections = .true.
       else

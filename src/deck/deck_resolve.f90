@@ -6,11 +6,10 @@ module deck_resolve_m
   use controls_m, only : interval_t
   use deck_implicit_m, only : settle_scheme
   use model_m, only : model_t
-  use parts_m, only : form_full
   use deck_lines_m, only : deck_t, line_error
   use deck_maps_m, only : maps_t, make_maps, resolve_id
-  use deck_raw_m, only : raw_t, history_t, output_plot, output_glstat, output_matsum, &
-    output_rcforc, output_nodout
+  use deck_raw_m, only : raw_t, history_t, row_damping, output_plot, output_glstat, &
+    output_matsum, output_rcforc, output_nodout
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
@@ -30,11 +29,19 @@ contains
     integer :: i
 
     do i = 1, size(model%parts)
-      if (model%parts(i)%section == 0) cycle
-      if (model%sections(model%parts(i)%section)%element_form == form_full) cycle
-      call line_error(deck, raw%section_line(model%parts(i)%section), 'part ' &
-        //to_text(model%parts(i)%id)//' has one-point quads; the implicit method needs fully ' &
-        //'integrated ones (NIP 4)')
+      associate (part => model%parts(i))
+        if (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) call line_error( &
+          deck, raw%parts(i)%line, 'part '//to_text(part%id)//' has bulk viscosity ' &
+          //'(*CONTROL_BULK_VISCOSITY or *HOURGLASS), which the implicit method does not have')
+        if (part%section == 0) cycle
+        if (.not. model%sections(part%section)%is_full) call line_error(deck, &
+          raw%section_line(part%section), 'part '//to_text(part%id)//' has one-point quads; the ' &
+          //'implicit method needs fully integrated ones (NIP 4)')
+      end associate
+    end do
+    do i = 1, raw%n_row
+      if (raw%rows(i)%kind == row_damping) call line_error(deck, raw%rows(i)%line, &
+        '*DAMPING_GLOBAL is damping that the implicit method does not have')
     end do
   end subroutine check_implicit
 
