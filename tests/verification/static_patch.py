@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Small-strain static solution of two pressed blocks with a flat interface, written independently.
 
-One-point quads with the stiffness form of hourglass control (nu = 0), penalty contact as a sum of
-linear springs between means of nodal displacements; springs that would pull are left out.
+One-point quads with the stiffness form of hourglass control, or full integration (nu = 0), penalty
+contact as a sum of linear springs between means of nodal displacements; springs that would pull are
+left out.
 """
 import numpy as np
 
@@ -75,11 +76,30 @@ def element_stiffness(x, young, hourglass):
     return stiffness
 
 
+def full_stiffness(x, young):
+    """Stiffness of one quad (8, 8) with 2 x 2 Gauss points, nu = 0."""
+    total = np.zeros((8, 8))
+    corner = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+    for xi, eta in corner / np.sqrt(3.0):
+        slope = 0.25 * np.stack([corner[:, 0] * (1.0 + corner[:, 1] * eta),
+                                 corner[:, 1] * (1.0 + corner[:, 0] * xi)])
+        jacobian = slope @ x
+        b = np.linalg.solve(jacobian, slope)
+        strain = np.zeros((3, 8))
+        strain[0, 0::2] = strain[2, 1::2] = b[0]
+        strain[1, 1::2] = strain[2, 0::2] = b[1]
+        total += np.linalg.det(jacobian) * strain.T @ np.diag([young, young, 0.5 * young]) @ strain
+    return total
+
+
 def body_stiffness(blocks, hourglass):
+    """`hourglass`: coefficient of the one-point quad; None for full integration."""
     total = np.zeros((2 * len(blocks.x), 2 * len(blocks.x)))
     for quad in blocks.quads:
         dofs = np.stack([2 * quad, 2 * quad + 1], axis=1).ravel()
-        total[np.ix_(dofs, dofs)] += element_stiffness(blocks.x[quad], blocks.young, hourglass)
+        x = blocks.x[quad]
+        total[np.ix_(dofs, dofs)] += (full_stiffness(x, blocks.young) if hourglass is None else
+                                      element_stiffness(x, blocks.young, hourglass))
     return total
 
 

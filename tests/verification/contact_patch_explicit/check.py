@@ -5,31 +5,16 @@ import numpy as np
 import static_patch
 from contact_types import PASS_PATCH, TYPES
 from meshes import Deck, quad_areas
+from patch_layouts import (MESHES, SLOPE, consistent_forces, inclined_blocks, lines, load_edges,
+                           outer_chains)
 
 YOUNG, RHO, PRESSURE, HOURGLASS = 1.0e6, 1000.0, 1.0, 0.1
-SLOPE = np.tan(np.radians(20.0))
 POINTS = 4
 DECAY = 34.0  # of the slowest mode, in powers of e: 2e-15 left
 
 
-def lines(n, skew=0.0):
-    """n cells over 0 to 1; skew moves the inner lines alternately, the ends stay."""
-    x = np.arange(n + 1) / n
-    inner = np.arange(1, n)
-    x[1:-1] += skew / n * np.where(inner % 2 == 1, 1.0, -0.6)
-    return x
-
-
-SOFT, MIDDLE, STIFF = 1.0e4, 1.0e6, 1.0e8
-LAYOUTS = {  # lines of slave and master, rows, penalties in N/m per contact node
-    "3/2": (lines(3), lines(2), None, (MIDDLE,)),
-    "5/4": (lines(5), lines(4), None, (SOFT, MIDDLE, STIFF)),
-    "7/5 non-uniform": (lines(7, 0.35), lines(5, -0.3), None, (MIDDLE,)),
-    "slave segments over three and four master segments, 2/7": (lines(2), lines(7), None,
-                                                                (MIDDLE,)),
-    "master finer, 4/7 non-uniform": (lines(4, 0.25), lines(7, 0.3), None, (MIDDLE,)),
-    "51/50": (lines(51), lines(50), 2, (MIDDLE,)),
-}
+SOFT, MIDDLE, STIFF = 1.0e4, 1.0e6, 1.0e8  # penalties in N/m per contact node
+PENALTIES = {"5/4": (SOFT, MIDDLE, STIFF)}  # MIDDLE alone in the other layouts
 
 
 def longest_sides(coordinates, quads):
@@ -56,12 +41,6 @@ def block_deck(title, upper, lower, poisson, relaxation, load=None):
     deck.add("*DAMPING_GLOBAL", (0, 2.0 * low))  # critical for the slowest mode
     deck.output(plot=end / 2, glstat=end / 20, rcforc=end / 20)
     return deck, *ids
-
-
-def load_edges(deck, ids):
-    """The load on the edges of a chain of nodes."""
-    deck.add("*LOAD_SEGMENT", *[(1, 1.0, 0.0, a, b, b, b)
-                                for a, b in zip(ids[:-1].tolist(), ids[1:].tolist())])
 
 
 def pressed_blocks(kind, penalty, blocks, relaxation):
@@ -115,27 +94,10 @@ def check_layout(run, layout, kind, penalty, blocks, relaxation):
             run.report(f"{name}: max |p/p0 - 1| on the {side} side", error)
 
 
-def inclined_block(x, bottom, top):
-    """Columns at x between two lines y(x), with as many rows as columns."""
-    n = len(x) - 1
-    share = np.arange(n + 1) / n
-    points = np.array([(a, (1.0 - t) * bottom(a) + t * top(a)) for t in share for a in x])
-    return points, static_patch.block_grid(x, 0.0)[1]
-
-
-def outer_chains(ids, n):
-    """Bottom, right, top and left chain of a structured block, counter-clockwise."""
-    rows = np.asarray(ids).reshape(n + 1, n + 1)
-    return rows[0], rows[:, -1], rows[-1, ::-1], rows[::-1, 0]
-
-
 def inclined_patch(kind, penalty, load, matching):
     """Interface inclined by 20 degrees, the load on every outer face: a hydrostatic state."""
-    x_upper = lines(5, 0.2)
-    x_lower = x_upper if matching else lines(4, -0.2)
+    x_upper, x_lower, upper, lower = inclined_blocks(matching)
     n_lower = len(x_lower) - 1
-    upper = inclined_block(x_upper, lambda x: SLOPE * x, lambda x: 1.0 + 0.0 * x)
-    lower = inclined_block(x_lower, lambda x: -1.0 + 0.0 * x, lambda x: SLOPE * x)
     low, high = static_patch.frequencies(static_patch.Blocks(x_upper, x_lower, YOUNG), RHO, penalty)
     deck, upper_ids, lower_ids = block_deck(f"inclined patch test, type {kind}", upper, lower, 0.3,
                                             (0.3 * low, 1.5 * high),
@@ -169,14 +131,8 @@ def check_inclined(run, kind, matching):
               energy["kinetic"][-1] / energy["internal"][-1], 0.0, 1e-16, "abs", "at rest")
     position = result.points("Points")[-1, :, :2]
     force = result.points("contact_force")[-1, :, :2]
-    errors = []
-    for ids in (slave, master):
-        x = position[ids - 1]
-        wanted = np.zeros_like(x)  # half of each neighbouring segment, normal to the face inwards
-        half = 0.5 * load * np.diff(x, axis=0)[:, ::-1] * [-1.0, 1.0]
-        wanted[:-1] += half
-        wanted[1:] += half
-        errors.append((force[ids - 1], wanted))
+    errors = [(force[ids - 1], consistent_forces(position[ids - 1], load))
+              for ids in (slave, master)]
     if kind in PASS_PATCH or matching:
         for side, (found, wanted) in zip(("slave", "master"), errors):
             run.check(f"{name}: nodal forces on the {side} side", found, wanted, 2e-9,
@@ -226,9 +182,9 @@ def check_matching(run, kind):
 
 
 def check(run):
-    for layout, (upper, lower, rows, penalties) in LAYOUTS.items():
-        blocks = static_patch.Blocks(upper, lower, YOUNG, rows)
-        for penalty in penalties:
+    for layout, mesh in MESHES.items():
+        blocks = static_patch.Blocks(*mesh[:2], YOUNG, mesh[2])
+        for penalty in PENALTIES.get(layout, (MIDDLE,)):
             relaxation = static_patch.frequencies(blocks, RHO, penalty)
             for kind in TYPES:
                 check_layout(run, layout, kind, penalty, blocks, relaxation)
