@@ -1,11 +1,11 @@
 ! SPDX-License-Identifier: MIT
 !> From points to nodal forces.
 module contact_scatter_m
-  use contact_state_m, only : contact_points_t, n_side
+  use contact_state_m, only : contact_points_t, contact_state_t, n_side
   use kinds_m, only : wp
   implicit none
   private
-  public :: scatter_points
+  public :: scatter_points, add_gap_round_off
 
 contains
 
@@ -34,5 +34,29 @@ contains
       end do
     end do
   end subroutine scatter_points
+
+  !> What the rounding of places, one part in 1/epsilon of them, makes of the nodal forces of all pressed points: a gap along
+  !> n is known to n_x X and n_y Y. Times epsilon it is a force.
+  pure subroutine add_gap_round_off(memory, total)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(inout), contiguous :: total(:, :) !! (2, n_node of the mesh) N/m
+    real(wp) :: force, normal(2)
+    integer :: p, k, node
+
+    associate (points => memory%points)
+      do p = 1, points%n
+        if (.not. points%pressure(p) > 0.0_wp) cycle
+        normal = abs(points%normal(:, p))
+        node = points%master_nodes(1, p)
+        force = points%stiffness(p)*points%area(p)*dot_product(normal, abs(memory%places(1:2, node)))
+        do k = 1, n_side
+          node = memory%nodes(points%slave_nodes(k, p))
+          total(:, node) = total(:, node) + abs(points%slave_weights(k, p))*force*normal
+          node = memory%nodes(points%master_nodes(k, p))
+          total(:, node) = total(:, node) + abs(points%master_weights(k, p))*force*normal
+        end do
+      end do
+    end associate
+  end subroutine add_gap_round_off
 
 end module contact_scatter_m

@@ -8,7 +8,7 @@ module element_mass_m
   use sparse_m, only : sparse_t, add_block
   implicit none
   private
-  public :: add_mass, mass_times
+  public :: add_mass, mass_times, sum_part_motion
 
 contains
 
@@ -50,6 +50,26 @@ contains
       end associate
     end do
   end function mass_times
+
+  !> Kinetic energy and momentum of each part.
+  pure subroutine sum_part_motion(model, velocity, kinetic, momentum)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: velocity(:, :)  !! (2, n_node)
+    real(wp), intent(out) :: kinetic(:)     !! (n_part) J/m
+    real(wp), intent(out) :: momentum(:, :) !! (2, n_part) kg/s
+    real(wp) :: v(2, 4), p(2, 4)
+    integer :: i, part
+
+    kinetic = 0.0_wp
+    momentum = 0.0_wp
+    do i = 1, model%mesh%n_element
+      part = model%mesh%element_part(i)
+      v = velocity(:, model%mesh%element_nodes(:, i))
+      p = matmul(v, element_mass(model, i))
+      kinetic(part) = kinetic(part) + 0.5_wp*sum(v*p)
+      momentum(:, part) = momentum(:, part) + sum(p, 2)
+    end do
+  end subroutine sum_part_motion
 
   !> Mass matrix of one element, one direction.
   pure function element_mass(model, i) result(mass)

@@ -53,6 +53,7 @@ contains
       if (allocated(error)) exit
       stopped = stop_requested()
       last = control%is_last .or. stopped
+      if (model%controls%end_cycle > 0) last = last .or. state%cycle >= model%controls%end_cycle
       if (stopped) reason = 'stopped on request'
       state%dt = control%dt
       call report_step(model, state, last, monitor, error)

@@ -4,7 +4,7 @@
 module implicit_report_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_output
-  use element_mass_m, only : mass_times
+  use element_mass_m, only : mass_times, sum_part_motion
   use energies_m, only : energy_ratio, total_energy
   use equations_m, only : equations_t
   use errors_m, only : error_t
@@ -13,6 +13,7 @@ module implicit_report_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use progress_m, only : show_progress
+  use snapshot_m, only : snapshot_t
   use snapshot_filling_m, only : fill_energies, fill_parts, fill_interfaces, fill_plot
   use state_m, only : state_t
   implicit none
@@ -45,7 +46,7 @@ contains
         state%initial_energy = total_energy(shot%energies)
         shot%energies%initial = state%initial_energy
       end if
-      if (due%matsum) call fill_parts(model, shot)
+      if (due%matsum) call fill_consistent_parts(model, shot)
       if (due%rcforc) call fill_interfaces(model, state, shot)
       if (due%plot) call fill_plot(model, state, shot)
       call write_due(model, due, state%dt, monitor, error)
@@ -56,6 +57,21 @@ contains
     end associate
     call lap(monitor%clock, phase_output)
   end subroutine report_step
+
+  !> Parts with the consistent mass.
+  subroutine fill_consistent_parts(model, shot)
+    type(model_t), intent(in) :: model
+    type(snapshot_t), intent(inout) :: shot
+    real(wp) :: kinetic(size(model%parts)), momentum(2, size(model%parts))
+    integer :: i
+
+    call fill_parts(model, shot)
+    call sum_part_motion(model, shot%velocity, kinetic, momentum)
+    do i = 1, size(model%parts)
+      shot%parts(i)%kinetic = kinetic(i)
+      shot%parts(i)%momentum = momentum(:, i)
+    end do
+  end subroutine fill_consistent_parts
 
   !> Work of the forces that hold prescribed degrees of freedom to their curves, trapezoidal rule.
   function reactions_work(model, equations, state, before, after, acceleration) result(work)

@@ -4,6 +4,7 @@
 module newton_m
   use kinds_m, only : wp
   use clock_m, only : clock_t, lap, phase_solver
+  use contact_scatter_m, only : add_gap_round_off
   use controls_m, only : implicit_t
   use equations_m, only : take_free, move_prescribed
   use forces_m, only : trial_t, assemble_forces, is_sound
@@ -22,6 +23,9 @@ module newton_m
   !> How far above the estimate of the round-off in the residual it counts as reached.
   real(wp), parameter :: floor_margin = 4.0_wp
 
+  !> Part of the residual before above which it counts as falling no more.
+  real(wp), parameter :: stagnation = 0.3_wp
+
   !> How a step ended.
   type :: outcome_t
     logical :: converged = .false.
@@ -33,8 +37,10 @@ module newton_m
   !> Measures of one iteration.
   type :: measure_t
     real(wp) :: energy = 0.0_wp   !! |dU.R|
-    real(wp) :: residual = 0.0_wp !! norm of R
-    real(wp) :: floor = 0.0_wp    !! round-off in it
+    real(wp) :: residual = huge(1.0_wp) !! norm of R
+    real(wp) :: before = huge(1.0_wp) !! norm of R one iteration ago
+    real(wp) :: floor = 0.0_wp    !! round-off in it that comes from forces and displacements
+    real(wp) :: gap_floor = 0.0_wp !! and with that of places in gaps, an upper estimate
     real(wp) :: step = 0.0_wp     !! norm of dU
     real(wp) :: factor = 1.0_wp   !! of the line search
     real(wp), allocatable :: x(:)     !! dU of the free degrees of freedom
@@ -176,7 +182,8 @@ contains
 
   end subroutine move_nodes
 
-  !> Norm of the residual and of the round-off that it must hold: that of forces, and of displacements times stiffness.
+  !> Norm of the residual and of the round-off that it must hold: that of forces, of displacements times stiffness, and of
+  !> places in gaps times the springs of contact.
   subroutine measure_residual(model, state, step, trial, matrix, now)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -185,8 +192,10 @@ contains
     type(sparse_t), intent(in) :: matrix
     type(measure_t), intent(inout) :: now
     real(wp) :: u(step%equations%n_free), total(step%equations%n_free)
+    real(wp), allocatable :: forces(:, :)
     integer :: i, k
 
+    now%before = now%residual
     now%residual = norm2(take_free(step%equations, assemble_residual(model, state, step, trial)))
     u = abs(take_free(step%equations, trial%motion(1:2, :)))
     total = take_free(step%equations, abs(trial%internal) + abs(trial%contact) + abs(trial%external))
@@ -196,6 +205,11 @@ contains
       end do
     end do
     now%floor = epsilon(1.0_wp)*norm2(total)
+    forces = 0.0_wp*trial%contact
+    do i = 1, size(trial%contacts)
+      call add_gap_round_off(trial%contacts(i), forces)
+    end do
+    now%gap_floor = now%floor + epsilon(1.0_wp)*norm2(take_free(step%equations, forces))
   end subroutine measure_residual
 
   !> The seed's energy criterion or the round-off floor of the residual; the other criteria where the deck sets them.
@@ -205,7 +219,8 @@ contains
     real(wp), intent(in) :: step !! norm of the displacement of the whole step
     logical :: converged
 
-    converged = now%residual <= floor_margin*now%floor
+    converged = now%residual <= floor_margin*now%floor .or. (now%residual <= floor_margin*now%gap_floor &
+      .and. now%residual > stagnation*now%before)
     if (converged) return
     converged = now%energy <= implicit%energy_tolerance*first%energy .or. implicit%is_linear
     if (implicit%step_tolerance > 0.0_wp) converged = converged .and. now%step &
