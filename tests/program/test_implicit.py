@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""The implicit method where it must fail: what it says, how it ends, what it leaves."""
+import math
+import re
+import signal
+import subprocess
+import time
+
+import h5py
+import pytest
+from conftest import numbers
+from meshes import Deck, grid
+
+NORMAL = "N o r m a l    t e r m i n a t i o n"
+YIELD = 1.0e3
+
+
+def implicit(end_time, dt, dynamic=False, automatic=None, most_iterations=None):
+    """automatic: (DTMIN, DTMAX) of IAUTO = 1."""
+    deck = Deck("implicit")
+    deck.add("*CONTROL_TERMINATION", (end_time,)).add("*CONTROL_IMPLICIT_GENERAL", (1, dt))
+    if dynamic:
+        deck.add("*CONTROL_IMPLICIT_DYNAMICS", (1,))
+    if automatic:
+        deck.add("*CONTROL_IMPLICIT_AUTO", (1, 11, 5, *automatic))
+    if most_iterations:
+        deck.add("*CONTROL_IMPLICIT_SOLUTION", (12, None, most_iterations))
+    return deck
+
+
+def pulled(force, plastic=False, **control):
+    """A block of 3 x 2 quads on rollers whose right end is pulled by `force` per height, reached at time 1."""
+    deck = implicit(1.0, control.pop("dt"), **control).part(points=4)
+    if plastic:
+        deck.plastic(1000.0, 1.0e6, 0.3, YIELD)
+    else:
+        deck.elastic(1000.0, 1.0e6, 0.3)
+    nodes = deck.mesh(*grid(3, 2, 1.5, 1.0))
+    deck.fix(nodes[::4], x=1).fix(nodes[:4], y=1)
+    deck.curve(1, [(0.0, 0.0), (1.0, force)])
+    for node, share in zip(nodes[3::4], (0.25, 0.5, 0.25)):
+        deck.add("*LOAD_NODE_POINT", (int(node), 1, 1, share))
+    return deck.output(glstat=1.0e-9, plot=1.0e9)
+
+
+def last_state(folder):
+    """Times of the last plot state and of the last row of energies."""
+    with h5py.File(folder / "job.vtkhdf") as stream:
+        plot = stream["VTKHDF/Steps/Values"][-1]
+    return plot, numbers(folder / "job.glstat.csv", "time")[-1]
+
+
+def test_free_body_is_named(slideline, tmp_path):
+    deck = implicit(1.0, 0.1).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    nodes = deck.mesh(*grid(3, 2))
+    deck.fix(nodes[:4], y=1).curve(1, [(0.0, 1.0), (1.0, 1.0)])
+    deck.add("*LOAD_NODE_POINT", (int(nodes[-1]), 1, 1, 1.0)).output(glstat=0.1, plot=0.1)
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 2
+    assert NORMAL not in done.stdout
+    found = re.search(r"singular.*: node (\d+) moves freely in ([xy])", done.stderr)
+    assert found, done.stderr
+    assert int(found.group(1)) in nodes and found.group(2) == "x"
+    assert last_state(tmp_path / "x") == (0.0, 0.0)
+
+
+def test_the_loose_one_of_two_bodies_is_named(slideline):
+    deck = implicit(1.0, 0.1).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    held = deck.mesh(*grid(2, 2))
+    loose = deck.mesh(*grid(2, 2, 1.0, 1.0, (3.0, 0.0)))
+    deck.fix(held[:3], x=1, y=1).fix(loose[:3], x=1)
+    done = slideline("d=x", deck=deck.output(glstat=0.1))
+    assert done.returncode == 2
+    found = re.search(r"node (\d+) moves freely in ([xy])", done.stderr)
+    assert found, done.stderr
+    assert int(found.group(1)) in loose and found.group(2) == "y"
+
+
+def test_body_let_go_keeps_the_last_converged_state(slideline, tmp_path):
+    """Held by a prescribed motion that ends: the third step is singular."""
+    deck = implicit(1.0, 0.1).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    nodes = deck.mesh(*grid(2, 2))
+    deck.fix(nodes[:3], y=1).curve(1, [(0.0, 0.0), (1.0, 0.1)])
+    for node in nodes[::3]:
+        deck.add("*BOUNDARY_PRESCRIBED_MOTION_NODE", (int(node), 1, 2, 1, 1.0, 0, 0.25, 0.0))
+    done = slideline("d=x", deck=deck.output(glstat=1.0, plot=1.0))
+    assert done.returncode == 2
+    assert "moves freely in x" in done.stderr
+    assert last_state(tmp_path / "x") == pytest.approx((0.2, 0.2))
+
+
+def test_inertia_holds_a_free_body(slideline):
+    deck = implicit(1.0, 0.1, dynamic=True).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    deck.mesh(*grid(3, 2))
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0, done.stderr
+    assert NORMAL in done.stdout
+
+
+def test_constant_step_that_does_not_converge_is_2(slideline, tmp_path):
+    deck = pulled(4.0e5, dt=0.5, most_iterations=3)
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 2
+    assert "no equilibrium" in done.stderr and "3 iterations" in done.stderr
+    assert "last converged state is that of time 0" in done.stderr
+    assert NORMAL not in done.stdout
+    assert last_state(tmp_path / "x") == (0.0, 0.0)
+
+
+def test_automatic_step_is_cut_and_goes_on(slideline, tmp_path):
+    deck = pulled(4.0e5, dt=0.5, most_iterations=3, automatic=(1.0e-4, 0.5))
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0, done.stderr
+    assert last_state(tmp_path / "x") == (1.0, 1.0)
+    steps = numbers(tmp_path / "x" / "job.glstat.csv", "time")
+    assert len(steps) > 4
+    cycles = numbers(tmp_path / "x" / "job.glstat.csv", "cycle")
+    assert list(cycles) == list(range(len(cycles))), "every step is due, those after a cut too"
+    assert min(b - a for a, b in zip(steps, steps[1:])) < 0.26
+    assert "no equilibrium after 3 iterations" in (tmp_path / "x" / "job.log").read_text()
+
+
+def test_easy_steps_grow(slideline, tmp_path):
+    done = slideline("d=x", deck=pulled(1.0e3, dt=0.01, automatic=(0.001, 0.2)))
+    assert done.returncode == 0, done.stderr
+    steps = numbers(tmp_path / "x" / "job.glstat.csv", "time")
+    lengths = [b - a for a, b in zip(steps, steps[1:])]
+    assert lengths[0] == pytest.approx(0.01) and lengths[1] == pytest.approx(0.015)
+    assert max(lengths) == pytest.approx(0.2) or max(lengths) == pytest.approx(0.01 * 1.5 ** 7)
+    assert steps[-1] == 1.0
+
+
+def test_load_beyond_the_limit_stops_at_the_limit(slideline, tmp_path):
+    """Perfect plasticity carries 2/sqrt(3) of the yield stress in plane strain and no more."""
+    limit = 2.0 / math.sqrt(3.0) * YIELD
+    deck = pulled(1.5 * limit, dt=0.05, plastic=True, automatic=(1.0e-3, 0.05))
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 2
+    assert "no equilibrium" in done.stderr
+    plot, row = last_state(tmp_path / "x")
+    assert plot == row
+    assert 0.98 < 1.5 * row < 1.01, row
+    assert f"{row:.6E}"[:6] in done.stderr
+
+
+def test_terminated_is_4(exe, tmp_path):
+    (tmp_path / "job.k").write_text(pulled(1.0, dt=1.0e-6).text().replace("1000000000.0", "0.5"))
+    process = subprocess.Popen([exe, "i=job.k", "d=out"], cwd=tmp_path, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    path = tmp_path / "out" / "job.glstat.csv"
+    for _ in range(100):
+        time.sleep(0.1)
+        if path.exists() and path.stat().st_size > 1000:
+            break
+    process.send_signal(signal.SIGTERM)
+    stdout, stderr = process.communicate(timeout=20)
+    assert process.returncode == 4, stderr
+    assert "request" in stdout
+    plot, row = last_state(tmp_path / "out")
+    assert plot == row > 0.0, "the last state is written on the way out"
