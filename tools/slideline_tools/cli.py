@@ -25,7 +25,7 @@ def add_make_deck(commands):
             ("collision", "1 to 4 in the seed", 4, "projectile on a plate, half model"),
             ("sliding", "1 to 3 in the seed", 6, "die pressed into a plate and drawn along it"),
             ("block", None, 4, "two soft blocks, explicit"),
-            ("patch", None, 4, "contact patch test, damped to rest"),
+            ("patch", None, 4, "contact patch test, damped to rest or static"),
             ("oblique", None, 4, "oblique impact of a turned block on a free one"),
             ("hertz", "1 to 8", 4, "elastic cylinder on an elastic block")):
         scene = scenes.add_parser(name, help=text)
@@ -37,6 +37,9 @@ def add_make_deck(commands):
                            help=f"Gauss points of type 6 ({points})")
         scene.add_argument("--exchanged", action="store_true",
                            help="slave and master surface exchanged")
+        if name in ("patch", "hertz"):
+            scene.add_argument("--static", action="store_true",
+                               help="static steps of the implicit method, not damping to rest")
         scene.add_argument("--output", "-o", required=True, help="deck file to write")
     scene = scenes.add_parser("symmetric_plate", help="plate on two pins under a step load")
     scene.add_argument("--nx", type=int, default=8, help="elements along 8 m, a multiple of 8")
@@ -51,9 +54,11 @@ def add_make_deck(commands):
 
 def make_contact_scene(options):
     from slideline_tools import scenes
-    level = {} if options.level is None else {"level": options.level}
+    named = {} if options.level is None else {"level": options.level}
+    if getattr(options, "static", False):
+        named["static"] = True
     return write_deck(options, getattr(scenes, options.scene), ctype=options.ctype,
-                      ngauss=options.ngauss, exchanged=options.exchanged, **level)
+                      ngauss=options.ngauss, exchanged=options.exchanged, **named)
 
 
 def make_symmetric_plate(options):

@@ -17,26 +17,29 @@ from slideline_tools.scenes.hertz import (BLOCK_CELL, CYLINDER_CELL, PENALTY,  #
 from slideline_tools.studies import line_contact as lines  # noqa: E402
 
 LEVELS = (1, 2)
+STATIC = (2, 5, 7)  # types with the implicit method too
 FINEST, REFINED = 3, (5, 7)
 MODULUS = lines.effective_modulus(STEEL, ALUMINIUM)
 CLOSED_FORM, ON_SPRINGS = "Hertz (1881)", "integral equation with the penalty as springs"
 
 
 @functools.cache
-def scene(level, exchanged):
+def scene(level, exchanged, static):
     """The deck, whose contact type is set from the command line."""
-    return hertz(level, exchanged=exchanged)
+    return hertz(level, exchanged=exchanged, static=static)
 
 
 class Answer:
     """What one run gives, over the closed form for its own contact force."""
 
-    def __init__(self, run, kind, level, exchanged=False):
+    def __init__(self, run, kind, level, exchanged=False, static=False):
         self.kind, self.level = kind, level
         self.slave_body = ALUMINIUM if exchanged else STEEL
-        name = f"type{kind}_level{level}" + ("_exchanged" if exchanged else "")
-        self.result = run.program(scene(level, exchanged), f"ctype={kind}", name=name)
-        self.name = f"{TYPES[kind]}, N_r = {level}" + (", exchanged" if exchanged else "")
+        name = (f"type{kind}_level{level}" + ("_exchanged" if exchanged else "")
+                + ("_static" if static else ""))
+        self.result = run.program(scene(level, exchanged, static), f"ctype={kind}", name=name)
+        self.name = (f"{TYPES[kind]}, N_r = {level}" + (", exchanged" if exchanged else "")
+                     + (", static" if static else ""))
         rows = self.result.table("contact")
         self.nodes = rows.where(time=rows["time"][-1])
         self.found = lines.measure(*(self.nodes[key] for key in ("x", "length", "pressure")))
@@ -108,6 +111,17 @@ def check_refinement(run, answers):
                   0.5, 0.0, "max", "first order in the cell by the penalty alone")
 
 
+def check_static(run, kind, explicit):
+    """The implicit method on fully integrated quads; the force, for the same way, is that of the
+    one-point quads but for what the meshes leave."""
+    answers = [Answer(run, kind, level, static=True) for level in LEVELS]
+    for answer, other in zip(answers, explicit):
+        check_rest(run, answer)
+        check_answer(run, answer)
+        run.check(f"{answer.name}: contact force", answer.found.force, other.found.force,
+                  answer.mesh_error(), source="the explicit program, damped to rest")
+
+
 def check(run):
     for kind in TYPES:
         answers = [Answer(run, kind, level)
@@ -117,6 +131,8 @@ def check(run):
             check_answer(run, answer)
         if kind in REFINED:
             check_refinement(run, answers)
+        if kind in STATIC:
+            check_static(run, kind, answers)
         swapped = Answer(run, kind, 1, exchanged=True)
         check_rest(run, swapped)
         check_answer(run, swapped)

@@ -13,10 +13,10 @@ def part(deck, number, heading, section, material):
     return deck.card("pid secid mid eosid hgid", number, section, material, 0, 0)
 
 
-def plane_strain(deck, section):
-    """One-point plane-strain section; the thickness is not used (unit depth)."""
+def plane_strain(deck, section, points=1):
+    """Plane-strain section of 1 or 4 points; the thickness is not used (unit depth)."""
     deck.keyword("SECTION_SHELL")
-    deck.card("secid elform shrf nip", section, 13, 1.0, 1)
+    deck.card("secid elform shrf nip", section, 13, 1.0, points)
     return deck.card("t1 t2 t3 t4", 1.0, 1.0, 1.0, 1.0)
 
 
@@ -29,6 +29,12 @@ def perfectly_plastic(deck, number, rho, young, poisson, yield_stress):
     deck.keyword("MAT_PLASTIC_KINEMATIC")
     deck.card("mid ro e pr sigy etan beta", number, rho, young, poisson, yield_stress, 0.0, 1.0)
     return deck.card("src srp fs vp", 0.0, 0.0, 0.0, 0.0)
+
+
+def implicit_static(deck, step):
+    """Static equilibrium by the implicit method, in constant steps (a number or a parameter)."""
+    deck.keyword("CONTROL_IMPLICIT_GENERAL")
+    return deck.card("imflag dt0", 1, step)
 
 
 def energies_on(deck):

@@ -4,7 +4,7 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (ALUMINIUM, CONTACT_TYPES, STEEL, elastic, energies_on,
-                                           part, plane_strain, roles, slideline)
+                                           implicit_static, part, plane_strain, roles, slideline)
 from slideline_tools.scenes.sliding import stroke
 
 RADIUS = 0.020
@@ -14,6 +14,7 @@ CYLINDER_HALF_WIDTH = 0.6 * RADIUS
 BLOCK_HALF_WIDTH = BLOCK_HEIGHT = RADIUS
 PENALTY = 300.0e9
 APPROACH, RISE, END = 30.0e-6, 20.0e-6, 50.0e-6
+STATIC_STEPS = 4
 
 
 def graded(start, end, cell, cells, level):
@@ -63,35 +64,42 @@ def hertz_grids(level):
     return block, cylinder, cylinder.lower[outside:-outside], block.upper[outside:-outside]
 
 
-def hertz(level=1, ctype=2, ngauss=4, exchanged=False):
+def hertz(level=1, ctype=2, ngauss=4, exchanged=False, static=False):
     """The Hertz scene; `level` = N_r >= 1 divides every cell.
 
-    `exchanged`: the block is the slave, not the cylinder.
+    `exchanged`: the block is the slave, not the cylinder; `static`: static steps of the implicit
+    method with fully integrated quads, instead of damping to rest.
     """
     if level < 1 or level > 8:
         raise ValueError("level of the hertz scene: 1 to 8")
     block, cylinder, round_face, flat_face = hertz_grids(level)
-    deck = Deck(f"Hertz line contact N_r = {level}" + (" exchanged" if exchanged else ""), [
+    deck = Deck(f"Hertz line contact N_r = {level}" + (" static" if static else "")
+                + (" exchanged" if exchanged else ""), [
         "The lower part of a steel cylinder of radius 20 mm (cut at mid-height and at 0.6 R to "
         "both sides) is pressed upon an aluminium block; both are elastic. "
-        "The cut moves down smoothly, then mass damping brings the bodies to rest. SI units "
-        "(m, kg, s, N, Pa), plane strain, per metre of depth.",
+        + ("The cut moves down in static steps. SI units " if static else
+           "The cut moves down smoothly, then mass damping brings the bodies to rest. SI units ")
+        + "(m, kg, s, N, Pa), plane strain, per metre of depth.",
         "",
         f"Refinement level N_r = {level}: the cells of level 1 are divided into N_r x N_r.",
         "",
         "Hertz (1881) for the contact force F, with 1/E* = sum (1 - nu^2)/E: half width "
         "a = sqrt(4 F R/(pi E*)), largest pressure p0 = 2 F/(pi a).",
     ])
-    write_parameters(deck, level, ctype, ngauss)
-    write_control(deck)
-    deck.block("Two elastic bodies of one-point plane-strain quads (ELFORM 13).")
+    if static:
+        write_static(deck, ctype, ngauss)
+    else:
+        write_parameters(deck, level, ctype, ngauss)
+        write_control(deck)
+    deck.block(f"Two elastic bodies of {'fully integrated' if static else 'one-point'} plane-strain "
+               "quads (ELFORM 13).")
     part(deck, 1, "block", 1, 1)
     part(deck, 2, "cylinder", 1, 2)
-    plane_strain(deck, 1)
+    plane_strain(deck, 1, 4 if static else 1)
     deck.comment("aluminium, then steel")
     elastic(deck, 1, *(ALUMINIUM[key] for key in ("rho", "young", "poisson")))
     elastic(deck, 2, **STEEL)
-    write_support_and_motion(deck, block, cylinder)
+    write_support_and_motion(deck, block, cylinder, static)
     deck.block("The two surfaces, their evenly divided parts, as node sets in walking order: the "
                "body lies on the left hand.")
     first, second = roles(exchanged)
@@ -139,7 +147,25 @@ def write_control(deck):
     deck.database(glstat="&dthist", rcforc="&dthist", binary_d3plot="&dtplot")
 
 
-def write_support_and_motion(deck, block, cylinder):
+def write_static(deck, ctype, ngauss):
+    """Parameters, steps and output of the implicit method; the time counts the way."""
+    deck.block("The numbers to play with.")
+    deck.parameters(
+        ("ctype", ctype, "contact type: " + CONTACT_TYPES),
+        ("ngauss", ngauss, "Gauss points of a slave segment, for type 6 alone"),
+        ("pen", PENALTY, "penalty of a contact node in N/m"),
+        ("down", APPROACH, "way of the cylinder's cut in m"),
+        ("step", 1.0 / STATIC_STEPS, "part of the way in a step"))
+    deck.block("Static steps; at time 1 the cut has gone all the way.")
+    deck.keyword("CONTROL_TERMINATION")
+    deck.card("endtim", 1.0)
+    implicit_static(deck, "&step")
+    energies_on(deck)
+    deck.block("Output: energies, contact force, states.")
+    deck.database(glstat="&step", rcforc="&step", binary_d3plot=1.0)
+
+
+def write_support_and_motion(deck, block, cylinder, static):
     """Rollers below and on the axis of symmetry; the cut of the cylinder moves down."""
     deck.block("The block rests on rollers (u_y = 0); the axis stays straight (u_x = 0).")
     deck.node_set(1, "lower face of the block", block.lower)
@@ -147,9 +173,13 @@ def write_support_and_motion(deck, block, cylinder):
     middle = [grid.node[grid.node.shape[0] // 2] for grid in (block, cylinder)]
     deck.node_set(2, "axis of symmetry", np.concatenate(middle))
     deck.spc_set(2, True, False)
-    deck.block("The cut of the cylinder moves down and stays there; velocity "
+    deck.block("The cut of the cylinder moves down." if static else
+               "The cut of the cylinder moves down and stays there; velocity "
                "d (1 - cos(2 pi t/t1))/t1.")
     deck.node_set(5, "cut of the cylinder", cylinder.upper)
     deck.keyword("BOUNDARY_PRESCRIBED_MOTION_SET")
-    deck.card("nsid dof vad lcid sf", 5, 2, 0, 2, "&down")
+    deck.card("nsid dof vad lcid sf", 5, 2, 2 if static else 0, 2, "&down")
+    if static:
+        deck.curve(2, "displacement of the cut for a way of 1 m", [(0.0, 0.0), (1.0, -1.0)])
+        return
     deck.curve(2, "velocity of the cut for a way of 1 m", stroke(0.0, RISE, -1.0))

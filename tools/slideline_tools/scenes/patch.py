@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Contact patch test: two blocks with non-matching meshes under a uniform pressure, damped to rest."""
+"""Contact patch test: two blocks with non-matching meshes under a uniform pressure, at rest."""
 import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
-from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, part,
-                                           plane_strain, roles, slideline)
+from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, implicit_static,
+                                           part, plane_strain, roles, slideline)
 
 
 RHO, YOUNG = 1000.0, 1.0e6
@@ -46,24 +46,59 @@ def relaxation(lower, upper, penalty):
     return float(2.0 * slowest), float(end / np.ceil(end / step)), float(end)
 
 
-def patch(ctype=2, ngauss=4, exchanged=False, penalty=1.0e6, grids=None):
+def patch(ctype=2, ngauss=4, exchanged=False, penalty=1.0e6, grids=None, static=False):
     """The contact patch test, meshes 5 / 4 or `grids` as from patch_grids.
 
-    `exchanged`: the lower block is the slave; `penalty` in N/m per contact node.
+    `exchanged`: the lower block is the slave; `penalty` in N/m per contact node; `static`: one
+    static step of the implicit method with fully integrated quads, instead of damping to rest.
     """
     lower, upper = grids or patch_grids()
-    damping, step, end = relaxation(lower, upper, penalty)
-    deck = Deck("contact patch test" + (" exchanged" if exchanged else ""), [
-        "Two blocks of 1 m x 1 m with non-matching meshes under a pressure of 1 Pa, damped to rest. SI "
+    deck = Deck("contact patch test" + (" static" if static else "")
+                + (" exchanged" if exchanged else ""), [
+        "Two blocks of 1 m x 1 m with non-matching meshes under a pressure of 1 Pa, "
+        + ("in static equilibrium" if static else "damped to rest") + ". SI "
         "units (m, kg, s, N, Pa), plane strain, per metre of depth.",
         "",
         "The exact answer is a uniform pressure of 1 Pa all over the interface.",
     ])
+    contact = (("ctype", ctype, "contact type: " + CONTACT_TYPES),
+               ("ngauss", ngauss, "Gauss points of a slave segment of type 6"),
+               ("pen", penalty, "penalty of a contact node in N/m"))
+    if static:
+        write_static(deck, contact)
+    else:
+        write_damped(deck, contact, *relaxation(lower, upper, penalty))
+    write_bodies(deck, lower, upper, static)
+    deck.block("The two surfaces as node sets in walking order.")
+    first, second = roles(exchanged)
+    deck.node_set(3, f"{first}: lower face of the upper block", upper.lower)
+    deck.node_set(4, f"{second}: upper face of the lower block", lower.upper)
+    slideline(deck, 3, 4, exchanged)
+    deck.block("Mesh of the lower block.")
+    lower.write(deck, 1)
+    deck.block("Mesh of the upper block.")
+    upper.write(deck, 2)
+    return deck.text()
+
+
+def write_static(deck, contact):
+    """Parameters, the one step and output."""
+    deck.block("The numbers to play with.")
+    deck.parameters(*contact)
+    deck.block("One static step; the load grows with the time.")
+    deck.keyword("CONTROL_TERMINATION")
+    deck.card("endtim", 1.0)
+    implicit_static(deck, 1.0)
+    energies_on(deck)
+    deck.block("Output.")
+    deck.database(glstat=1.0, rcforc=1.0, binary_d3plot=1.0)
+
+
+def write_damped(deck, contact, damping, step, end):
+    """Parameters, damping, steps and output of the explicit method."""
     deck.block("The numbers to play with; damping, step and end time belong to the penalty.")
     deck.parameters(
-        ("ctype", ctype, "contact type: " + CONTACT_TYPES),
-        ("ngauss", ngauss, "Gauss points of a slave segment of type 6"),
-        ("pen", penalty, "penalty of a contact node in N/m"),
+        *contact,
         ("damp", damping, "mass damping in 1/s: about critical for the slowest mode"),
         ("dt", step, "time step in s"),
         ("endtim", end, f"end time in s: exp(-{SURVIVING:g}) of the motion is left"),
@@ -80,10 +115,15 @@ def patch(ctype=2, ngauss=4, exchanged=False, penalty=1.0e6, grids=None):
     deck.card("lcid valdmp", 0, "&damp")
     deck.block("Output.")
     deck.database(glstat="&dtplot", rcforc="&dtplot", binary_d3plot="&dtplot")
-    deck.block("Two bodies of one-point plane-strain quads (ELFORM 13), one material.")
+
+
+def write_bodies(deck, lower, upper, static):
+    """Parts, supports and the load."""
+    deck.block(f"Two bodies of {'fully integrated' if static else 'one-point'} plane-strain quads "
+               "(ELFORM 13), one material.")
     part(deck, 1, "lower block", 1, 1)
     part(deck, 2, "upper block", 1, 1)
-    plane_strain(deck, 1)
+    plane_strain(deck, 1, 4 if static else 1)
     elastic(deck, 1, rho=RHO, young=YOUNG, poisson=0.0)
     deck.block("The lower face rests (u_y = 0); u_x = 0 at one lower and one upper node.")
     deck.node_set(1, "lower face of the lower block", lower.lower)
@@ -92,18 +132,8 @@ def patch(ctype=2, ngauss=4, exchanged=False, penalty=1.0e6, grids=None):
     deck.node_set(2, "held in x", pins)
     deck.spc_set(2, True, False)
     deck.block("The pressure on the upper face.")
-    deck.curve(2, "pressure", [(0.0, 1.0), (1.0e3, 1.0)])
+    deck.curve(2, "pressure", [(0.0, 0.0 if static else 1.0), (1.0 if static else 1.0e3, 1.0)])
     deck.keyword("LOAD_SEGMENT")
     top = np.asarray(upper.upper)
     deck.table("lcid sf at n1 n2 n3 n4", [10] * 7,
                [(2, 1.0, 0.0, int(a), int(b), int(b), int(b)) for a, b in zip(top[:-1], top[1:])])
-    deck.block("The two surfaces as node sets in walking order.")
-    first, second = roles(exchanged)
-    deck.node_set(3, f"{first}: lower face of the upper block", upper.lower)
-    deck.node_set(4, f"{second}: upper face of the lower block", lower.upper)
-    slideline(deck, 3, 4, exchanged)
-    deck.block("Mesh of the lower block.")
-    lower.write(deck, 1)
-    deck.block("Mesh of the upper block.")
-    upper.write(deck, 2)
-    return deck.text()
