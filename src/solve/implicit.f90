@@ -14,7 +14,7 @@ module implicit_m
   use linear_solver_m, only : report_t, solve_linear
   use log_m, only : write_log, warn, to_text
   use model_m, only : model_t
-  use monitor_m, only : monitor_t
+  use monitor_m, only : monitor_t, due_t
   use newton_m, only : outcome_t, find_equilibrium
   use progress_m, only : show_progress, wants_line
   use signals_m, only : stop_requested
@@ -39,6 +39,8 @@ contains
     type(step_control_t) :: control
     type(trial_t) :: trial
     type(step_t) :: step
+    type(due_t) :: written
+    type(error_t), allocatable :: second
     logical :: last, stopped
 
     reason = 'termination time reached'
@@ -47,7 +49,7 @@ contains
     control = start_step_control(model%controls)
     last = .false.
     state%dt = control%dt
-    call report_step(model, state, .false., monitor, error)
+    call report_step(model, state, .false., monitor, written, error)
     do while (.not. last .and. .not. allocated(error))
       call take_step(model, state, monitor, control, step, trial, error)
       if (allocated(error)) exit
@@ -56,10 +58,12 @@ contains
       if (model%controls%end_cycle > 0) last = last .or. state%cycle >= model%controls%end_cycle
       if (stopped) reason = 'stopped on request'
       state%dt = control%dt
-      call report_step(model, state, last, monitor, error)
+      call report_step(model, state, last, monitor, written, error)
       if (wants_line(monitor%progress, state%cycle, monitor%clock%last)) call show_progress( &
         monitor%progress, monitor%clock, state%cycle, state%time, state%dt_before, 1.0_wp, '')
     end do
+    if (allocated(error) .and. .not. last) &
+      call report_step(model, state, .true., monitor, written, second)
     call report_contact_end(model, state, monitor%log)
   end subroutine advance_implicit
 

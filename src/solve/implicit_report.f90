@@ -20,19 +20,29 @@ module implicit_report_m
   private
   public :: report_step, reactions_work
 
+  !> Part of a step that a state may be early for an output time where steps can be cut.
+  real(wp), parameter :: soon = 1.0e-6_wp
+
 contains
 
-  !> Write what is due.
-  subroutine report_step(model, state, last, monitor, error)
+  !> Write what is due; of a state that was reported before, only what was not written then.
+  subroutine report_step(model, state, last, monitor, written, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     logical, intent(in) :: last
     type(monitor_t), intent(inout) :: monitor
+    type(due_t), intent(inout) :: written !! of the state reported before; now of this one
     type(error_t), allocatable, intent(out) :: error
     type(due_t) :: due
+    real(wp) :: dt
 
-    due = find_due(monitor, state%time, state%dt, state%cycle == 0 .or. last)
-    if (.not. (any_due(due) .or. state%cycle == 0 .or. last)) return
+    ! A planned step may be cut: then the state at or after an output time counts, not the nearest.
+    dt = state%dt
+    if (model%controls%implicit%is_automatic) dt = soon*dt
+    due = find_due(monitor, state%time, dt, state%cycle == 0 .or. last)
+    if (state%cycle == monitor%snapshot%cycle) due = without(due, written)
+    written = due
+    if (.not. any_due(due)) return
     associate (shot => monitor%snapshot)
       shot%time = state%time
       shot%cycle = state%cycle
@@ -49,7 +59,7 @@ contains
       if (due%matsum) call fill_consistent_parts(model, shot)
       if (due%rcforc) call fill_interfaces(model, state, shot)
       if (due%plot) call fill_plot(model, state, shot)
-      call write_due(model, due, state%dt, monitor, error)
+      call write_due(model, due, dt, monitor, error)
       if (due%plot) call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, &
         state%dt, energy_ratio(shot%energies), 'write vtkhdf state')
       if (.not. allocated(error)) call check_energy(model%controls, shot%energies, error)
@@ -57,6 +67,18 @@ contains
     end associate
     call lap(monitor%clock, phase_output)
   end subroutine report_step
+
+  !> What is due and was not written.
+  pure function without(due, written) result(left)
+    type(due_t), intent(in) :: due, written
+    type(due_t) :: left
+
+    left%plot = due%plot .and. .not. written%plot
+    left%glstat = due%glstat .and. .not. written%glstat
+    left%rcforc = due%rcforc .and. .not. written%rcforc
+    left%nodout = due%nodout .and. .not. written%nodout
+    left%matsum = due%matsum .and. .not. written%matsum
+  end function without
 
   !> Parts with the consistent mass.
   subroutine fill_consistent_parts(model, shot)
