@@ -21,9 +21,11 @@ module arguments_m
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
   end type arguments_t
 
-  !> Names that may be overridden for every deck (a contact one also as NAME.INTERFACE).
-  character(6), parameter :: override_names(6) = [character(6) :: 'ctype', 'ngauss', 'pen', &
-    'endtim', 'dt', 'tssfac']
+  !> Names that may be overridden for every deck; the first of them, those of a contact, also as
+  !> NAME.INTERFACE.
+  integer, parameter :: n_contact_name = 6
+  character(6), parameter :: override_names(9) = [character(6) :: 'ctype', 'ngauss', 'pen', &
+    'punit', 'pent', 'vdc', 'endtim', 'dt', 'tssfac']
 
 contains
 
@@ -124,8 +126,8 @@ contains
 
     dot = index(name, '.')
     known = any(override_names == name) .or. index(name, 'p:') == 1
-    if (dot > 1 .and. dot < len(name)) known = known .or. (any(override_names(1:3) == name(:dot - 1)) &
-      .and. verify(name(dot + 1:), '0123456789') == 0)
+    if (dot > 1 .and. dot < len(name)) known = known .or. (any(override_names(:n_contact_name) &
+      == name(:dot - 1)) .and. verify(name(dot + 1:), '0123456789') == 0)
   end function is_override
 
   !> Lower case.
@@ -166,6 +168,7 @@ contains
       '  memory=...    accepted and ignored'//n//n// &
       'overrides, for sweeps:'//n// &
       '  ctype=T ngauss=N pen=P      contact of every interface; ctype.2=T of interface 2'//n// &
+      '  punit=U pent=P vdc=D        unit of the penalty, that of the master pass, damping'//n// &
       '  endtim=T dt=DT tssfac=F     end time, constant step, safety factor'//n// &
       '  p:NAME=VALUE                a *PARAMETER of the deck'//n//n// &
       'results: JOB.vtkhdf (ParaView), JOB.*.csv, JOB.log, JOB.effective.k (the deck as run)'//n// &

@@ -49,7 +49,7 @@ contains
     end do
   end subroutine apply_overrides
 
-  !> dt=: a constant curve, named as LCTM.
+  !> dt=: a constant curve, named as LCTM; DT0 where the deck is implicit.
   subroutine override_step(deck, overrides, raw, tail)
     type(deck_t), intent(inout) :: deck
     type(overrides_t), intent(in) :: overrides
@@ -63,11 +63,16 @@ contains
     changed = .false.
     call override_real(overrides, 'DT', 0, dt, changed)
     if (.not. changed) return
+    text = override_text(overrides, 'DT', 0)
+    if (raw%controls%implicit%is_on) then
+      raw%controls%implicit%dt = dt
+      call replace_field(deck, 'CONTROL_IMPLICIT_GENERAL', 2, text, tail)
+      return
+    end if
     curve%id = 1
     do while (any(raw%curves%id == curve%id))
       curve%id = curve%id + 1
     end do
-    text = override_text(overrides, 'DT', 0)
     allocate (curve%abscissa(2), curve%ordinate(2))
     curve%abscissa = [0.0_wp, 1.0e20_wp]
     curve%ordinate = dt

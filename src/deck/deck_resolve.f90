@@ -6,7 +6,7 @@ module deck_resolve_m
   use controls_m, only : interval_t
   use deck_implicit_m, only : settle_scheme
   use model_m, only : model_t
-  use deck_lines_m, only : deck_t, line_error
+  use deck_lines_m, only : deck_t, line_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
   use deck_raw_m, only : raw_t, history_t, row_damping, output_plot, output_glstat, &
     output_matsum, output_rcforc, output_nodout
@@ -42,6 +42,11 @@ contains
     do i = 1, raw%n_row
       if (raw%rows(i)%kind == row_damping) call line_error(deck, raw%rows(i)%line, &
         '*DAMPING_GLOBAL is damping that the implicit method does not have')
+    end do
+    do i = 1, size(raw%contacts)
+      if (raw%contacts(i)%contact%damping > 0.0_wp) call line_warning(deck, &
+        deck%blocks(raw%contacts(i)%block)%keyword, 'implicit contact damping', &
+        'contact damping (VDC) has no effect with the implicit method')
     end do
   end subroutine check_implicit
 

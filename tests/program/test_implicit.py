@@ -97,6 +97,17 @@ def test_inertia_holds_a_free_body(slideline):
     assert NORMAL in done.stdout
 
 
+def test_contact_damping_is_warned_of(slideline, tmp_path):
+    deck = implicit(0.2, 0.1, dynamic=True).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    first, second = deck.mesh(*grid(2, 2)), deck.mesh(*grid(2, 2, 1.0, 1.0, (0.0, 1.0)))
+    deck.node_set(1, second[:3]).node_set(2, first[-3:][::-1]).contact(1, 2, 5, 1.0e6)
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0 and "VDC" not in done.stderr
+    done = slideline("d=y", "vdc=20", deck=deck)
+    assert done.returncode == 0
+    assert "VDC" in done.stderr and "no effect" in done.stderr
+
+
 def test_constant_step_that_does_not_converge_is_2(slideline, tmp_path):
     deck = pulled(4.0e5, dt=0.5, most_iterations=3)
     done = slideline("d=x", deck=deck)
@@ -118,6 +129,16 @@ def test_automatic_step_is_cut_and_goes_on(slideline, tmp_path):
     assert list(cycles) == list(range(len(cycles))), "every step is due, those after a cut too"
     assert min(b - a for a, b in zip(steps, steps[1:])) < 0.26
     assert "no equilibrium after 3 iterations" in (tmp_path / "x" / "job.log").read_text()
+
+
+def test_step_of_the_command_line(slideline, tmp_path):
+    done = slideline("d=x", "dt=0.25", deck=pulled(1.0e3, dt=0.01))
+    assert done.returncode == 0, done.stderr
+    assert list(numbers(tmp_path / "x" / "job.glstat.csv", "time")) == [0.0, 0.25, 0.5, 0.75, 1.0]
+    effective = next((tmp_path / "x").glob("*.effective.k"))
+    done = slideline(f"i={effective}", "d=y", "jobid=again")
+    assert done.returncode == 0, done.stderr
+    assert len(numbers(tmp_path / "y" / "again.glstat.csv", "time")) == 5
 
 
 def test_easy_steps_grow(slideline, tmp_path):
