@@ -295,8 +295,11 @@ def nts_mar(slave, master, penalty, strict=False):
                     extra[k, node] = extra.get((k, node), 0.0) + half
                 else:
                     weight[slave.nodes[k, end]] += half
-    weight = np.where(weight > 0.0, weight, slave.competence())
     for node, foot in enumerate(feet):
+        beside = [k for k in range(len(slave)) if node in slave.nodes[k]]
+        if foot and weight[node] == 0.0 and not any(facing(slave.normal[k], foot.normal) > 0.0
+                                                    for k in beside):
+            weight[node] = slave.competence()[node]
         if foot and foot.gap < 0.0:
             force = -penalty * weight[node] * foot.gap * foot.normal
             forces.at_node(0, node, force)
