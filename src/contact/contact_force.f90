@@ -53,7 +53,8 @@ contains
     memory%averages_pressure = formulation%averages_pressure
     memory%laps_pairing = formulation%covers_segments .or. formulation%spots == spots_at_quarters
     allocate (memory%mark(n_slave), source=0)
-    if (memory%averages_pressure) allocate (memory%nodal(2, n_slave), source=0.0_wp)
+    if (memory%averages_pressure .or. contact%damping > 0.0_wp) &
+      allocate (memory%nodal(2, n_slave + n_master), source=0.0_wp)
     call log_contact(contact, model, formulation%kind, memory, log)
   end subroutine start_contact
 
@@ -89,7 +90,7 @@ contains
       ! Springs loaded at time zero hold energy that no force has put in.
       if (cycle == 0) memory%energy = stored_energy(memory%points)
       if (contact%damping > 0.0_wp) &
-        call damp_points(memory%points, contact%damping, memory%nodes, motion, mass)
+        call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
       call scatter_points(memory%points, memory%force, memory%n_active)
       call add_force(memory%nodes, memory%force, motion, force, power)
     end if

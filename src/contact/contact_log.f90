@@ -65,9 +65,9 @@ contains
     p = minloc(memory%points%gap(:memory%points%n), 1)
     if (-memory%points%gap(p) <= round_off*memory%slave_tracking%reach) return
     call write_log(log, 'interface '//to_text(contact%id)//': initial penetration at ' &
-      //to_text(memory%points%n)//' points, deepest at node ' &
+      //to_text(count(memory%points%gap(:memory%points%n) < 0.0_wp))//' points, deepest at node ' &
       //to_text(model%mesh%node_id(memory%nodes(memory%points%slave_nodes(1, p))))//': ' &
-      //to_text(-memory%points%gap(p))//' m, force ' &
+      //to_text(-memory%points%gap(p))//' m, force of that point ' &
       //to_text(memory%points%pressure(p)*memory%points%area(p))//' N/m')
   end subroutine report_initial_contact
 

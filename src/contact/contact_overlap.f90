@@ -267,14 +267,18 @@ contains
     type(contact_state_t), intent(in) :: memory
     type(cover_t), intent(in) :: cover
     integer, intent(in) :: segment !! of the master
-    real(wp) :: share, own(2), other(2)
+    real(wp) :: share, own(2), other(2), product, squares
 
     own = separation(memory%places(:, cover%ends(2)), memory%places(:, cover%ends(1)))
-    associate (ends => memory%n_slave + contact%master%segments(:, segment))
-      other = separation(memory%places(:, ends(2)), memory%places(:, ends(1)))
-    end associate
-    share = facing_share(dot_product(own, other) &
-      /sqrt(max(dot_product(own, own)*dot_product(other, other), tiny(1.0_wp))))
+    other = separation(memory%places(:, memory%n_slave + contact%master%segments(2, segment)), &
+      memory%places(:, memory%n_slave + contact%master%segments(1, segment)))
+    product = dot_product(own, other)
+    squares = dot_product(own, own)*dot_product(other, other)
+    if (product < 0.0_wp .and. product**2 >= face_on**2*squares) then
+      share = 1.0_wp
+    else
+      share = facing_share(product/sqrt(max(squares, tiny(1.0_wp))))
+    end if
   end function share_of_segment
 
   !> How much of a surface counts where its outward normal and that of the other side have this cosine, 0 to 1.

@@ -126,7 +126,10 @@ contains
     integer :: p, k, node
 
     do p = 1, points%n
-      nodal(:, points%slave_nodes(:, p)) = 0.0_wp
+      do k = 1, n_side
+        nodal(1, points%slave_nodes(k, p)) = 0.0_wp
+        nodal(2, points%slave_nodes(k, p)) = 0.0_wp
+      end do
     end do
     do p = 1, points%n
       do k = 1, n_side
@@ -157,35 +160,58 @@ contains
     energy = -0.5_wp*sum(points%area(:n)*points%pressure(:n)*points%gap(:n))
   end function stored_energy
 
-  !> Add the damping of points in contact: `fraction` of the critical damping 2 sqrt(k m) of the point's
-  !> spring k = stiffness*area and its effective mass, 1/m = sum of w^2/m_node over both sides. The
+  !> Add the damping of points in contact, -2 fraction k/omega times the opening velocity, with omega^2 = sum of
+  !> w K/m over the nodes of both sides, where K is the sum of all springs at a node. For two masses and one spring it
+  !> is the fraction of critical, and it does not depend on how many points share a node's spring. The
   !> total never pulls.
-  pure subroutine damp_points(points, fraction, nodes, motion, mass)
+  pure subroutine damp_points(points, fraction, nodes, motion, mass, nodal)
     type(contact_points_t), intent(inout) :: points
     real(wp), intent(in) :: fraction
     integer, intent(in), contiguous :: nodes(:)      !! mesh index of each local node
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u and v
     real(wp), intent(in), contiguous :: mass(:)      !! (n_node) kg/m
-    real(wp) :: rate, softness, weight
-    integer :: p, k, node
+    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, local nodes) scratch
+    real(wp) :: rate, square, weight
+    integer :: p, k, local
 
+    call sum_springs(points, nodal)
     do p = 1, points%n
-      if (.not. points%pressure(p) > 0.0_wp) cycle
+      if (.not. points%pressure(p)*points%area(p) > 0.0_wp) cycle
       rate = 0.0_wp
-      softness = 0.0_wp
-      do k = 1, size(points%slave_nodes, 1)
-        node = nodes(points%slave_nodes(k, p))
+      square = 0.0_wp
+      do k = 1, n_side
+        local = points%slave_nodes(k, p)
         weight = points%slave_weights(k, p)
-        rate = rate + weight*dot_product(points%normal(:, p), motion(3:4, node))
-        softness = softness + weight**2/mass(node)
-        node = nodes(points%master_nodes(k, p))
+        rate = rate + weight*dot_product(points%normal(:, p), motion(3:4, nodes(local)))
+        square = square + weight*nodal(1, local)/mass(nodes(local))
+        local = points%master_nodes(k, p)
         weight = points%master_weights(k, p)
-        rate = rate - weight*dot_product(points%normal(:, p), motion(3:4, node))
-        softness = softness + weight**2/mass(node)
+        rate = rate - weight*dot_product(points%normal(:, p), motion(3:4, nodes(local)))
+        square = square + weight*nodal(1, local)/mass(nodes(local))
       end do
-      points%pressure(p) = max(0.0_wp, points%pressure(p) - 2.0_wp*fraction*rate &
-        *sqrt(points%stiffness(p)/(points%area(p)*softness)))
+      points%pressure(p) = max(0.0_wp, points%pressure(p) &
+        - 2.0_wp*fraction*rate*points%stiffness(p)/sqrt(square))
     end do
   end subroutine damp_points
+
+  !> Springs of all pressed points by node, N/m, into nodal(1, :): in two passes a node stands on either side.
+  pure subroutine sum_springs(points, nodal)
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(inout), contiguous :: nodal(:, :)
+    real(wp) :: spring
+    integer :: p, k
+
+    nodal(1, :) = 0.0_wp
+    do p = 1, points%n
+      if (.not. points%pressure(p) > 0.0_wp) cycle
+      spring = points%stiffness(p)*points%area(p)
+      do k = 1, n_side
+        nodal(1, points%slave_nodes(k, p)) = nodal(1, points%slave_nodes(k, p)) &
+          + points%slave_weights(k, p)*spring
+        nodal(1, points%master_nodes(k, p)) = nodal(1, points%master_nodes(k, p)) &
+          + points%master_weights(k, p)*spring
+      end do
+    end do
+  end subroutine sum_springs
 
 end module contact_penalty_m

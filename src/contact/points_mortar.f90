@@ -25,11 +25,12 @@ contains
     n_per_segment = size(memory%spot_xi)
     do k = 1, memory%slave_tracking%n_touching
       s = 1 + (memory%slave_tracking%touching(k) - 1)/n_per_segment
-      memory%mark(contact%slave%segments(:, s)) = &
-        memory%slave_tracking%segment(memory%slave_tracking%touching(k))
+      near = memory%slave_tracking%segment(memory%slave_tracking%touching(k))
+      memory%mark(contact%slave%segments(1, s)) = near
+      memory%mark(contact%slave%segments(2, s)) = near
     end do
     do s = 1, contact%slave%n_segment
-      near = maxval(memory%mark(contact%slave%segments(:, s)))
+      near = max(memory%mark(contact%slave%segments(1, s)), memory%mark(contact%slave%segments(2, s)))
       if (near > 0) call add_gauss_points(contact, memory, s, near)
     end do
     memory%mark = 0

@@ -5,15 +5,17 @@
 module points_nts_mar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
-    see_master_node
+    see_master_node, facing_share
   use contact_placing_m, only : add_touching_nodes, competence_length
+  use contact_projection_m, only : see_segment
   use contact_state_m, only : contact_state_t, make_room
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal
   use kinds_m, only : wp
+  use surfaces_m, only : surface_t
   implicit none
   private
-  public :: place_nts_mar
+  public :: place_nts_mar, is_tip
 
 contains
 
@@ -49,7 +51,7 @@ contains
     end do
   end subroutine mark_points
 
-  !> Forget that. Nodes at a tip, neither of whose segments faces the master, keep their whole competence length.
+  !> Forget that. Nodes at a tip keep their whole competence length.
   pure subroutine finish_nodes(contact, memory, n_before)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -60,10 +62,30 @@ contains
       p = n_before + k
       node = memory%points%slave_nodes(1, p)
       memory%mark(node) = 0
-      if (.not. memory%points%area(p) > 0.0_wp) memory%points%area(p) = competence_length( &
+      if (memory%points%area(p) > 0.0_wp) cycle
+      if (is_tip(contact%slave, memory, node)) memory%points%area(p) = competence_length( &
         contact%slave, memory%places(:, :memory%n_slave), node)
     end do
   end subroutine finish_nodes
+
+  !> Whether none of the segments at a touching slave node faces the master at its foot.
+  pure function is_tip(slave, memory, node)
+    type(surface_t), intent(in) :: slave
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: node
+    logical :: is_tip
+    integer :: k, s
+    type(sight_t) :: sight
+
+    is_tip = .true.
+    do k = 1, 2
+      s = merge(slave%incoming(node), slave%outgoing(node), k == 1)
+      if (s == 0) cycle
+      sight = see_segment(slave, memory%places(:, :memory%n_slave), memory%places(:, node), s)
+      if (facing_share(dot_product(sight_normal(sight), memory%slave_tracking%normal(:, node))) &
+        > 0.0_wp) is_tip = .false.
+    end do
+  end function is_tip
 
   !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
   !> ends. The strict rule adds no node where an end of the segment has no foot; otherwise the part

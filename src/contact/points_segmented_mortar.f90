@@ -42,7 +42,8 @@ contains
     end if
     do s = 1, contact%slave%n_segment
       if (memory%cover%is_placed(s)) cycle
-      if (.not. any(memory%mark(contact%slave%segments(:, s)) > 0)) cycle
+      if (memory%mark(contact%slave%segments(1, s)) == 0 &
+        .and. memory%mark(contact%slave%segments(2, s)) == 0) cycle
       call find_cover(contact, memory, s, cover)
       call add_pieces(contact, memory, cover)
     end do
@@ -67,7 +68,8 @@ contains
     if (.not. counts) then
       memory%points%n = n_before
     else if (deepest < memory%closed_gap) then
-      memory%mark(cover%ends) = 1
+      memory%mark(cover%ends(1)) = 1
+      memory%mark(cover%ends(2)) = 1
     end if
   end subroutine place_segment
 

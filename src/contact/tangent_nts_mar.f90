@@ -10,6 +10,7 @@ module tangent_nts_mar_m
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
   use kinds_m, only : wp
+  use points_nts_mar_m, only : is_tip
   use sparse_m, only : sparse_t
   use tangent_nts_m, only : vary_node, vary_competence
   implicit none
@@ -36,6 +37,7 @@ contains
     end do
     do p = 1, memory%slave_tracking%n_touching
       if (has_area(memory%slave_tracking%touching(p))) cycle
+      if (.not. is_tip(contact%slave, memory, memory%slave_tracking%touching(p))) cycle
       if (.not. memory%points%gap(p) < memory%closed_gap) cycle
       point = vary_node(memory, p)
       call vary_competence(contact%slave, 0, memory, point)

@@ -23,7 +23,7 @@ module contact_scenes_m
   integer, parameter :: adds_slave_length = 2, adds_master_length = 3, adds_facing_length = 4, &
     keeps_p2 = 5, keeps_places = 6
   integer, parameter :: n_scene = 8
-  character(16), parameter :: scenes(n_scene) = [character(16) :: 'slave finer', 'master finer', &
+  character(16), parameter :: scenes(n_scene) = [character(16) :: 'master finer', 'slave finer', &
     'tilted', 'kinked', 'arc', 'partly facing', 'far away', 'spread segment']
   real(wp), parameter :: penalty = 3.0e6_wp, depth = 0.004_wp
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Nodal contact forces of all seven formulations against an independent brute-force reference."""
+import itertools
 import sys
 from pathlib import Path
 
@@ -10,15 +11,15 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from contact_types import TYPES  # noqa: E402
 from reference import Rule  # noqa: E402
 from scenes import Pair, Scene, random_pair  # noqa: E402
-from sliding import largest_jump, masters, rigid_line, sliding_scene  # noqa: E402
+from sliding import STRETCHES, largest_jump, masters, rigid_line, sliding_scene  # noqa: E402
 
 PENALTY = 1.0e5
 POINTS = range(1, 11)
 TOLERANCE = 1.0e-10
 SEED = 20240607
-N_RANDOM, N_FAR, N_CLOSED = 60, 15, 15
+N_RANDOM, N_FAR, N_CLOSED = 40, 12, 12
 FAR = 1.0e6
-N_JUMP = 6  # slave segments
+N_JUMP = 7  # slave segments
 APART = 1.0e-9  # on either side of a jump
 RULES = [*(Rule(kind, PENALTY) for kind in TYPES if kind != 6), Rule(5, PENALTY, strict=True),
          *(Rule(6, PENALTY, gauss=n) for n in POINTS)]
@@ -180,20 +181,20 @@ def jumps(run):
     the program on either side of that place, where the nodal forces are compared as well."""
     scene = Scene("jumps")
     places = []
-    for name, master in masters().items():
-        for rule in MAIN_RULES:
-            left, mean = largest_jump(rule, master, N_JUMP)
-            places.append((name, rule, mean))
-            for side in (-1.0, 1.0):
-                line = rigid_line(master, N_JUMP, left + side * APART)
-                scene.add(Pair(name, line, master), rule)
+    cases = itertools.product(STRETCHES.items(), masters().items(), MAIN_RULES)
+    for (stretch, lefts), (name, master), rule in cases:
+        left, mean = largest_jump(rule, master, N_JUMP, lefts)
+        places.append((f"{stretch}, {name}", rule, mean))
+        for side in (-1.0, 1.0):
+            line = rigid_line(master, N_JUMP, left + side * APART)
+            scene.add(Pair(name, line, master), rule)
     verdicts = Verdicts()
     found = compare(run, "jumps", scene, verdicts)
     verdicts.judge(run, "on either side of a jump")
     for k, (name, rule, mean) in enumerate(places):
         before, after = (found[interface.slave].sum(axis=0)
                          for interface in scene.interfaces[2 * k:2 * k + 2])
-        run.report(f"largest jump / mean of the total force, {name}, {label(rule)}",
+        run.report(f"largest jump / mean of the total force while {name}, {label(rule)}",
                    np.hypot(*(after - before)) / mean)
 
 
@@ -205,6 +206,10 @@ def check(run):
     rng = np.random.default_rng(SEED + 1)
     pairs = [random_pair(rng, number, far=FAR) for number in range(N_FAR)]
     one_interface_each(run, "far", pairs, MAIN_RULES, "far from the origin")
+    rng = np.random.default_rng(SEED + 2)
+    pairs = [random_pair(rng, number, closed=True) for number in range(N_CLOSED)]
+    rules = [rule for rule in MAIN_RULES if not rule.strict]
+    one_interface_each(run, "closed", pairs, rules, "closed chains")
     penalty_units(run)
     shared_chains(run)
     sliding(run)

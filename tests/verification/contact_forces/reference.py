@@ -14,7 +14,7 @@ import numpy as np
 
 OVERSHOOT = 0.01      # of the end segment of an open chain: still projected, not clamped
 SIDE_ON, FACE_ON = -0.1, -0.5  # slave normal . master normal: no facing above, full facing below
-SHALLOW = 0.1         # of the segment: how deep a point may be to change sides at a sharp corner
+SHALLOW = 0.25        # of the segment: how deep a point may be to change sides at a sharp corner
 SHARP = np.cos(np.radians(60.0))  # a projection does not walk across corners that turn more
 
 
@@ -101,12 +101,15 @@ def facing_edge(chain, k, at, height, along):
     """At a sharp corner (the edge of a block): the segment, other than the closest one, that the
     point is under and that its own surface faces more; or None. Without this a corner that lies
     flush on a corner would belong to the side of the block by a hair."""
-    if OVERSHOOT < at[k] < 1.0 - OVERSHOOT:
+    if OVERSHOOT < at[k] < 1.0 - OVERSHOOT and np.dot(along, chain.tangent[k]) < 0.0:
         return None
     found = [other for other in (chain.next(k, -1), chain.next(k, 1)) if other is not None
-             and np.dot(chain.tangent[k], chain.tangent[other]) < SHARP]
+             and np.dot(chain.tangent[k], chain.tangent[other]) < SHARP
+             and np.dot(along, chain.tangent[other]) <= SIDE_ON]
     found = [s for s in (k, *found) if -OVERSHOOT <= at[s] <= 1.0 + OVERSHOOT]
     best = min(found, key=lambda s: np.dot(along, chain.tangent[s]), default=k)
+    if not (0.0 <= at[best] <= 1.0 or 0.0 <= at[k] <= 1.0):  # over neither: at the vertex
+        return None
     return best if best != k and -SHALLOW * chain.length[best] < height[best] < 0.0 else None
 
 
@@ -236,39 +239,39 @@ def portions(chain, one, two):
     return found
 
 
-def between(slave, master, k, feet, strict=False):
-    """Master nodes that cut slave segment k: sorted (coordinate on the segment, node), and the
-    covered stretch of the segment. The two chains are walked in opposite senses.
+def pieces(slave, master, k, feet, strict=False):
+    """Cuts of slave segment k by the master nodes between the feet of its two ends.
 
-    An end whose foot is a master node has this node between it and the other end.
+    The two chains are walked in opposite senses. An end whose foot is a master node has this node
+    between it and the other end. Beyond the end of the master chain there is no piece. Returns
+    (left, right, master node at the left or None, at the right or None, master segment).
     """
     first, second = (feet[node] for node in slave.nodes[k])
+    if strict and not (first and second):
+        return [(0.0, 1.0, None, None, None)]
     n = len(master.x)
-    high, low = first and first.after, second and second.before
-    if first and second:
-        if master.closed and high - low < -0.5 * n:
-            high += n
-        if master.closed and high - low > 0.5 * n:
-            low += n
-        nodes = range(low + 1, high + 1)
-    elif strict or master.closed:
-        nodes = range(0)
-    elif first:
-        nodes = range(0, high + 1)
-    elif second:
-        nodes = range(low + 1, n)
-    else:
-        nodes = range(0, n)
-    cuts = []
-    for node in nodes:
-        away = master.x[node % n] - slave.start[k]
-        cuts.append((np.dot(away, slave.tangent[k]) / slave.length[k], node % n))
-    start, stop = 0.0, 1.0
-    if not strict and not first:
-        start = max(0.0, min((at for at, _ in cuts), default=1.0))
-    if not strict and not second:
-        stop = min(1.0, max((at for at, _ in cuts), default=0.0))
-    return sorted(cut for cut in cuts if 0.0 < cut[0] < 1.0), start, max(start, stop)
+    high = first.after if first else n - 1
+    low = second.before if second else -1
+    if master.closed and high - low < -0.5 * n:
+        high += n
+    if master.closed and high - low > 0.5 * n:
+        low += n
+    found = []
+    left, left_node = 0.0, None
+    started = first is not None
+    for index in range(high, low, -1):
+        node = index % n
+        at = np.dot(master.x[node] - slave.start[k], slave.tangent[k]) / slave.length[k]
+        if started and at > left:
+            found.append((left, min(at, 1.0), left_node, node if at < 1.0 else None, node))
+        if at >= 1.0:
+            return found
+        if at > left:
+            left, left_node = at, node
+        started = True
+    if second:
+        found.append((left, 1.0, left_node, None, low % n))
+    return found
 
 
 def facing(slave_normal, master_normal):
@@ -277,55 +280,65 @@ def facing(slave_normal, master_normal):
     return share * share * (3.0 - 2.0 * share)
 
 
-def segment_facing(slave, k, feet):
-    """The larger share of the two ends; with both off the master there is no foot to judge by."""
-    found = [feet[node].normal for node in slave.nodes[k] if feet[node]]
-    return max((facing(slave.normal[k], normal) for normal in found), default=1.0)
-
-
 def nts_mar(slave, master, penalty, strict=False):
     """Type 5, with the extension for slave chains that overhang the master unless strict."""
     forces = Forces(slave, master)
     feet = project(slave.x, master, slave.chords())
     weight = np.zeros(len(slave.x))
-    facing_side = np.zeros(len(slave.x), dtype=bool)
-    extra = []
+    extra = {}
     for k in range(len(slave)):
-        share_facing = 1.0 if strict else segment_facing(slave, k, feet)
-        if share_facing == 0.0:
-            continue
-        facing_side[slave.nodes[k]] = True
-        cuts, start, stop = between(slave, master, k, feet, strict)
-        points = [(0.0, None), *cuts, (1.0, None)]
-        share = np.zeros(len(points))
-        for i in range(len(points) - 1):
-            covered = min(points[i + 1][0], stop) - max(points[i][0], start)
-            if covered > 0.0:
-                share[i:i + 2] += 0.5 * covered * slave.length[k] * share_facing
-        weight[slave.nodes[k]] += share[[0, -1]]
-        extra += [(k, at, node, w) for (at, node), w in zip(cuts, share[1:-1])]
-    weight = np.where(facing_side, weight, slave.competence())
+        for left, right, left_node, right_node, segment in pieces(slave, master, k, feet, strict):
+            share = 1.0 if strict else facing(slave.normal[k], master.normal[segment])
+            half = 0.5 * (right - left) * slave.length[k] * share
+            for end, node in enumerate((left_node, right_node)):
+                if node is not None:
+                    extra[k, node] = extra.get((k, node), 0.0) + half
+                else:
+                    weight[slave.nodes[k, end]] += half
     for node, foot in enumerate(feet):
+        beside = [k for k in range(len(slave)) if node in slave.nodes[k]]
+        if foot and weight[node] == 0.0 and not any(facing(slave.normal[k], foot.normal) > 0.0
+                                                    for k in beside):
+            weight[node] = slave.competence()[node]
         if foot and foot.gap < 0.0:
             force = -penalty * weight[node] * foot.gap * foot.normal
             forces.at_node(0, node, force)
             forces.on_segment(1, foot.segment, foot.at, -force)
-    for k, at, node, w in extra:
-        gap = np.dot(master.x[node] - slave.start[k], slave.normal[k])
+    for (k, node), w in extra.items():
+        away = master.x[node] - slave.start[k]
+        gap = np.dot(away, slave.normal[k])
         if gap < 0.0:
             force = -penalty * w * gap * slave.normal[k]
             forces.at_node(1, node, force)
+            at = np.dot(away, slave.tangent[k]) / slave.length[k]
             forces.on_segment(0, k, at, -force)
     return forces.sides
 
 
+def piece_foot(point, chain, piece, foot):
+    """Across a sharp corner a Gauss point under the segment of its piece stays with it."""
+    if piece is None or foot is None or foot.segment not in (chain.next(piece, -1),
+                                                             chain.next(piece, 1)):
+        return foot
+    away = point - chain.start[piece]
+    at = np.dot(away, chain.tangent[piece]) / chain.length[piece]
+    gap = np.dot(away, chain.normal[piece])
+    if (np.dot(chain.tangent[piece], chain.tangent[foot.segment]) < SHARP and 0.0 <= at <= 1.0
+            and -SHALLOW * chain.length[piece] < gap < 0.0):
+        return Foot(piece, at, gap, chain.normal[piece])
+    return foot
+
+
 def nodal_pressure(slave, master, penalty, spots):
-    """Types 6 and 7 from integration points (slave segment, coordinate, length weight)."""
+    """Types 6 and 7 from integration points: slave segment, coordinate, length weight, and the
+    master segment of the piece for type 7 (None for type 6)."""
     forces = Forces(slave, master)
-    where = [slave.start[k] + at * slave.length[k] * slave.tangent[k] for k, at, _ in spots]
-    feet = project(where, master, [slave.tangent[k] for k, _, _ in spots]) if spots else []
+    where = [slave.start[k] + at * slave.length[k] * slave.tangent[k] for k, at, _, _ in spots]
+    feet = project(where, master, [slave.tangent[k] for k, _, _, _ in spots]) if spots else []
+    feet = [piece_foot(point, master, piece, foot)
+            for point, (_, _, _, piece), foot in zip(where, spots, feet)]
     kept = [(k, at, w * facing(slave.normal[k], foot.normal), foot)
-            for (k, at, w), foot in zip(spots, feet) if foot]
+            for (k, at, w, _), foot in zip(spots, feet) if foot]
     area, volume = np.zeros(len(slave.x)), np.zeros(len(slave.x))
     for k, at, w, foot in kept:
         for node, shape in zip(slave.nodes[k], (1.0 - at, at)):
@@ -343,7 +356,7 @@ def nodal_pressure(slave, master, penalty, spots):
 
 def mortar(slave, master, penalty, n_gauss):
     """Type 6."""
-    spots = [(k, at, w * slave.length[k])
+    spots = [(k, at, w * slave.length[k], None)
              for k in range(len(slave)) for at, w in zip(*gauss(n_gauss))]
     return nodal_pressure(slave, master, penalty, spots)
 
@@ -353,11 +366,11 @@ def segmented_mortar(slave, master, penalty):
     feet = project(slave.x, master, slave.chords())
     spots = []
     for k in range(len(slave)):
-        cuts, start, stop = between(slave, master, k, feet)
-        edges = [start, *(at for at, _ in cuts if start < at < stop), stop]
-        for left, right in zip(edges[:-1], edges[1:]):
-            spots += [(k, left + at * (right - left), w * (right - left) * slave.length[k])
-                      for at, w in zip(*gauss(2)) if right > left]
+        for left, right, _, _, segment in pieces(slave, master, k, feet):
+            if facing(slave.normal[k], master.normal[segment]) > 0.0:
+                size = (right - left) * slave.length[k]
+                spots += [(k, left + at * (right - left), w * size, segment)
+                          for at, w in zip(*gauss(2))]
     return nodal_pressure(slave, master, penalty, spots)
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from reference import Chain, contact_forces
 from scenes import Pair, Scene
 
-END, STEPS, STATES = 0.2, 2000, 80
+END, STEPS, STATES = 0.2, 2000, 50
 DEPTH = 0.003
 LENGTH = 0.45  # of the slave chain; the master reaches from 0 to 1
 BEGIN, BEYOND, BACK = 0.12, 1.07, -0.2  # travel of the left end of the slave chain
@@ -86,14 +86,17 @@ def rigid_line(master, n, left):
     return shape + np.array([left - shape[0, 0], 0.0])
 
 
-def largest_jump(rule, master, n, span=0.12, samples=61, tries=3, width=1.0e-10):
-    """Place of the largest jump of the total force while the slave shifts by `span`; mean force.
+#: Stretches of travel of the left end: in the first no end of the slave chain passes a master node.
+STRETCHES = {"nodes pass nodes": (0.262, 0.318), "ends of the slave chain pass": (0.215, 0.335)}
+
+
+def largest_jump(rule, master, n, stretch, samples=31, tries=3, width=1.0e-10):
+    """Place of the largest jump of the total force over a stretch of travel; mean force.
 
     Intervals of a sweep in which the force deviates most from its neighbours are halved, keeping
     the half with the larger difference.
     """
-    middle = 0.5 * (1.0 - LENGTH)
-    lefts = middle + span * np.linspace(-0.5, 0.5, samples)
+    lefts = np.linspace(*stretch, samples)
     forces = np.array([total_force(rule, master, left, n) for left in lefts])
     mean = np.mean(np.hypot(forces[:, 0], forces[:, 1]))
     change = np.diff(forces, axis=0)

@@ -119,7 +119,7 @@ def check_energy(run, name, result):
     run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0, 0.005, "abs",
               "total with contact and hourglass energy over the initial energy")
     run.check(f"{name}: contact energy left / initial energy",
-              energy["contact"][-1] / energy["total"][0], 0.0, 0.03, "abs",
+              energy["contact"][-1] / energy["total"][0], 0.0, 0.05, "abs",
               "springs give back what they took: what is left was lost or created")
     run.report(f"{name}: energy ratio furthest from 1",
                1.0 + max(energy["energy_ratio"] - 1.0, key=abs))

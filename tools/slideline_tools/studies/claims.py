@@ -177,7 +177,8 @@ class Times:
 PAGE = """# The claims about the contact types, answered
 
 This page is written by `tools/batch/claims.sh` from runs: do not edit it. The verdicts follow from
-the figures by the rules stated here. The claims are those of Kang, Lee & Shin (2023), the source;
+the figures by the rules stated here; "partly" means in some of the runs, or in part of the sense, as the
+section tells. The claims are those of Kang, Lee & Shin (2023), the source;
 its text compares types 1, 3, 4, 5 and 6. Dimensions that it does not give are ours, and
 its program and machine are others: compare ratios.
 

@@ -149,13 +149,14 @@ The picture shows the non-uniform 7 / 5 meshes at eps = 1 MN/m.
 
 - **Types 4, 5 and 7** give the uniform pressure at every node of both sides at every penalty; the picture shows one
   line for the three.
-- **Type 1**, soft: every node has the same spring, so an end node (half the length) has nearly twice the pressure.
+- **Type 1**, soft: every node has the same spring, so an end node (half the length) has up to twice
+  the pressure, the more segments the more.
 - **Type 2** looks perfect on the slave side at soft penalties, but not on the master side: there the forces
   arrive where the slave nodes happen to stand. At stiff penalties types 1 and 2 agree: the nodes are then
   constrained, and the weights do not matter.
 - **Type 3** improves with the penalty: both sides constrain each other, and its pressures become uniform.
-- **Type 6** errs by its quadrature alone, at any penalty: mostly on the master side, and most where a slave
-  segment faces several master segments.
+- **Type 6** errs by its quadrature alone, at any penalty: on the master side where it is soft, on both where it is
+  stiff, and most where a slave segment faces several master segments.
 """
 
 
