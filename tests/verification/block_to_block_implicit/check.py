@@ -12,7 +12,7 @@ from contact_types import PASS_PATCH, TYPES
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "block_to_block"), str(HERE.parents[2] / "tools")]
 
-from chain import Blocks  # noqa: E402
+from chain import Blocks, solve as solve_explicit  # noqa: E402
 from implicit_chain import solve  # noqa: E402
 from slideline_tools.scenes import block, block_grids  # noqa: E402
 
@@ -123,8 +123,20 @@ def check_deviating(run, name, kind, scene):
     return deviation
 
 
+def report_drivers(run):
+    """Explicit (lumped mass) and implicit (consistent mass) chain; the runs equal them."""
+    for layers, step in ((2, 1.0e-3), (8, 1.0e-3), (16, 2.5e-4)):
+        blocks = dataclasses.replace(Blocks(), penalty=PENALTY * N_SLAVE / WIDTH, layers=layers,
+                                     step=step, steps=round(0.2 / step))
+        explicit = solve_explicit(blocks).pressure
+        distance = np.sqrt(np.mean((solve(blocks).pressure - explicit) ** 2)) / explicit.max()
+        run.report(f"explicit and implicit chain of {layers} layers a block: rms difference of the "
+                   "pressure / its maximum", distance)
+
+
 def check(run):
     chain = solve(dataclasses.replace(Blocks(), penalty=PENALTY * N_SLAVE / WIDTH))
+    report_drivers(run)
     ends = {}
     for kind, name in TYPES.items():
         scene = Scene(run, kind)

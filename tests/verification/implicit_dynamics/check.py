@@ -173,13 +173,20 @@ def check_energy(run):
         nodes = deck.mesh(coordinates, quads)
         deck.add("*INITIAL_VELOCITY_NODE",
                  *[(int(node), *speed) for node, speed in zip(nodes, speeds)])
-        result = run.program(deck.output(glstat=0.01, plot=0.01), name=f"free_block_{radius}")
-        ratios[radius] = result.table("glstat")["energy_ratio"]
+        deck.output(glstat=0.01, matsum=0.01, plot=0.01)
+        result = run.program(deck, name=f"free_block_{radius}")
+        energy, parts = result.table("glstat"), result.table("matsum")
+        ratios[radius] = energy["energy_ratio"]
         ids = result.points("node_id")[0].astype(int)
         velocity = result.points("velocity")[:, np.argsort(ids), :2]
         momentum = np.einsum("i,tik->tk", node_masses(coordinates, quads), velocity)
         run.check(f"free block, radius {radius}: momentum with consistent mass", momentum,
                   np.broadcast_to(momentum[0], momentum.shape), 1e-9, source="constant")
+        of_parts = np.stack([parts["momentum_x"], parts["momentum_y"]], axis=1)
+        run.check(f"free block, radius {radius}: momentum of the part", of_parts, momentum, 1e-9,
+                  source="consistent mass, computed here")
+        run.check(f"free block, radius {radius}: kinetic energy of the part", parts["kinetic"],
+                  energy["kinetic"], 1e-12, source="one part")
     run.check("free block, radius 1: energy", ratios[1.0], 1.0, 1e-7, "abs",
               "kept where the problem is linear")
     run.check("free block, radius 0.5: energy left", ratios[0.5][-1], 0.9, 0.0, "max",
