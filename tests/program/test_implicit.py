@@ -89,6 +89,36 @@ def test_body_let_go_keeps_the_last_converged_state(slideline, tmp_path):
     assert last_state(tmp_path / "x") == pytest.approx((0.2, 0.2))
 
 
+@pytest.mark.parametrize("dynamic", [False, True])
+def test_body_pulled_off_what_it_rests_on(slideline, tmp_path, dynamic):
+    """Only contact holds the upper block in y; its load turns round at half time."""
+    deck = implicit(1.0, 0.1, dynamic=dynamic).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    lower, upper = deck.mesh(*grid(2, 2)), deck.mesh(*grid(3, 2, 1.0, 1.0, (0.0, 1.0)))
+    deck.fix(lower[:3], x=1, y=1).fix(upper[::4], x=1)
+    deck.node_set(1, upper[:4]).node_set(2, lower[-3:][::-1]).contact(1, 2, 7, 1.0e6)
+    deck.curve(1, [(0.0, -100.0), (0.45, -100.0), (0.55, 100.0), (1.0, 100.0)])
+    for node in upper[-4:]:
+        deck.add("*LOAD_NODE_POINT", (int(node), 2, 1, 1.0))
+    done = slideline("d=x", deck=deck.output(glstat=0.1, plot=1.0))
+    if dynamic:
+        assert done.returncode == 0, done.stderr
+        return
+    assert done.returncode == 2
+    found = re.search(r"node (\d+) moves freely in ([xy])", done.stderr)
+    assert found, done.stderr
+    assert int(found.group(1)) in upper and found.group(2) == "y"
+    assert last_state(tmp_path / "x") == pytest.approx((0.5, 0.5))
+
+
+@pytest.mark.parametrize("dynamic", [False, True])
+def test_nothing_free_to_move(slideline, dynamic):
+    deck = implicit(1.0, 0.5, dynamic=dynamic).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    deck.fix(deck.mesh(*grid(2, 2)), x=1, y=1)
+    done = slideline("d=x", deck=deck.output(glstat=0.1))
+    assert done.returncode == 0, done.stderr
+    assert NORMAL in done.stdout
+
+
 def test_inertia_holds_a_free_body(slideline):
     deck = implicit(1.0, 0.1, dynamic=True).part(points=4).elastic(1000.0, 1.0e6, 0.3)
     deck.mesh(*grid(3, 2))
