@@ -9,7 +9,7 @@ import pytest
 
 from slideline_tools import UserError, scenes
 from slideline_tools.histories import History
-from slideline_tools.studies import block
+from slideline_tools.studies import block, block_implicit
 from slideline_tools.studies.common import study_main
 
 CHAIN = conftest.ROOT / "tests" / "verification" / "block_to_block" / "chain.py"
@@ -60,3 +60,47 @@ def test_page_of_a_run(slideline, tmp_path):
     for x, p in ((run.slave_x, run.slave), (run.master_x, run.master)):
         assert np.sum(p * block.half_segments(x)) == pytest.approx(run.force, rel=1e-6)
     assert study_main("block", block.write, [str(tmp_path), str(tmp_path / "doc"), "--types", "1"]) == 2
+
+
+LINE = "step to {} iteration {}: energy ratio {}, |R| 1.0E+00 (round-off 1.0E-13)\n"
+
+
+def test_energy_history_of_a_log():
+    text = "deck: x\n" + LINE.format("1.0E-03", 1, "1.0E+00") + LINE.format("1.0E-03", 2, "2.5E-24")
+    text += LINE.format("2.0E-03", 1, "1.0E+00")
+    steps = block_implicit.energy_history(text)
+    assert steps == [(1.0e-3, [1.0, 2.5e-24]), (2.0e-3, [1.0])]
+    assert block_implicit.largest_count(steps) == 2
+    assert block_implicit.ratio_table(steps).splitlines()[-1] == "| 2 | 1.0e+00 |  |"
+
+
+def test_answers_follow_the_pressures():
+    x = np.arange(5.0)
+    def run(end):
+        p = np.array([1.0 + end, 1.0, 1.0, 1.0, 1.0 + end])
+        return block.Pressures(x, p, x, p, 0.0, 4.0)
+    few, many = ([(1.0, [1.0] * count)] for count in (3, 4))
+    ends = {1: 0.2, 3: -0.01, 4: 0.0, 5: 1.0e-3, 6: 1.0e-3}
+    runs = {("implicit", ctype): run(end) for ctype, end in ends.items()}
+    def verdicts(histories):
+        return [line.split(" | ")[1] for line in
+                block_implicit.answers(runs, histories).splitlines()[2:]]
+    assert verdicts({1: few}) == ["yes", "yes", "yes", "yes", "no", "yes", "yes"]
+    assert verdicts({1: few, 5: many})[-1] == "no"
+
+
+def test_implicit_page_of_runs(tool, slideline, tmp_path):
+    for method, flags in (("implicit", ["--implicit"]), ("explicit", [])):
+        deck = tmp_path / f"{method}.k"
+        assert tool("make-deck", "block", *flags, "-o", deck).returncode == 0
+        assert ("*CONTROL_IMPLICIT_DYNAMICS" in deck.read_text()) == (method == "implicit")
+        finished = subprocess.run([slideline, f"i={deck}", f"d={tmp_path / method}_5", "jobid=block",
+                                   "ctype=5"], capture_output=True, text=True, check=False)
+        assert finished.returncode == 0, finished.stdout + finished.stderr
+    wanted = [str(tmp_path), str(tmp_path / "doc"), "--types", "5"]
+    assert study_main("block", block_implicit.write, wanted) == 0
+    page = (tmp_path / "doc" / "studies" / "block_to_block_implicit.md").read_text()
+    assert "| NTS-mAR: perfectly uniform (to 1e-08) | yes |" in page
+    assert (tmp_path / "doc" / "pictures" / "block_implicit_pressure.png").exists()
+    (tmp_path / "implicit_5" / "block.log").write_text("nothing", encoding="ascii")
+    assert study_main("block", block_implicit.write, wanted) == 2

@@ -24,7 +24,7 @@ def add_make_deck(commands):
     for name, levels, points, text in (
             ("collision", "1 to 4 in the seed", 4, "projectile on a plate, half model"),
             ("sliding", "1 to 3 in the seed", 6, "die pressed into a plate and drawn along it"),
-            ("block", None, 4, "two soft blocks, explicit"),
+            ("block", None, 4, "two soft blocks, explicit or implicit"),
             ("patch", None, 4, "contact patch test, damped to rest or static"),
             ("oblique", None, 4, "oblique impact of a turned block on a free one"),
             ("hertz", "1 to 8", 4, "elastic cylinder on an elastic block")):
@@ -40,6 +40,9 @@ def add_make_deck(commands):
         if name in ("patch", "hertz"):
             scene.add_argument("--static", action="store_true",
                                help="static steps of the implicit method, not damping to rest")
+        if name == "block":
+            scene.add_argument("--implicit", action="store_true",
+                               help="implicit dynamics instead of the explicit method")
         scene.add_argument("--output", "-o", required=True, help="deck file to write")
     scene = scenes.add_parser("symmetric_plate", help="plate on two pins under a step load")
     scene.add_argument("--nx", type=int, default=8, help="elements along 8 m, a multiple of 8")
@@ -55,8 +58,7 @@ def add_make_deck(commands):
 def make_contact_scene(options):
     from slideline_tools import scenes
     named = {} if options.level is None else {"level": options.level}
-    if getattr(options, "static", False):
-        named["static"] = True
+    named |= {name: True for name in ("static", "implicit") if getattr(options, name, False)}
     return write_deck(options, getattr(scenes, options.scene), ctype=options.ctype,
                       ngauss=options.ngauss, exchanged=options.exchanged, **named)
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Block-to-block: two soft blocks with non-matching meshes are pressed together."""
 from slideline_tools.decks import Deck, Grid, spaced
-from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, part,
-                                           plane_strain, roles, slideline)
+from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, implicit_dynamic,
+                                           part, plane_strain, roles, slideline)
 
 
 def block_grids(n_slave=51, n_master=50):
@@ -13,11 +13,11 @@ def block_grids(n_slave=51, n_master=50):
     return lower, upper
 
 
-def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False):
-    """The block-to-block scene with the explicit method, 200 steps of 1 ms.
+def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=False):
+    """The block-to-block scene, explicit or implicit, 200 steps of 1 ms.
 
     `n_slave`, `n_master`: quads along each block, 51 and 50 in the seed. `exchanged`: the lower
-    block is the slave; its number of quads is still `n_master`.
+    block is the slave; its number of quads is still `n_master`. `implicit`: generalised-alpha, consistent mass and fully integrated quads.
     """
     lower, upper = block_grids(n_slave, n_master)
     deck = Deck("block-to-block contact" + (" exchanged" if exchanged else ""), [
@@ -36,17 +36,22 @@ def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False):
         ("v0", -0.05, "velocity of the upper face in y in m/s"),
         ("dt", 1.0e-3, "time step in s"),
         ("endtim", 0.2, "end time in s: 200 steps"))
-    deck.block("When to stop, and a constant time step (the curve LCTM caps the step).")
+    deck.block("When to stop, and " + ("implicit dynamics in constant steps." if implicit else
+               "a constant time step (the curve LCTM caps the step)."))
     deck.keyword("CONTROL_TERMINATION")
     deck.card("endtim", "&endtim")
-    deck.constant_step(1, "&dt", 10.0)
+    if implicit:
+        implicit_dynamic(deck, "&dt")
+    else:
+        deck.constant_step(1, "&dt", 10.0)
     energies_on(deck)
     deck.block("Output: energies and contact force at each step, a state each 10 ms.")
     deck.database(glstat="&dt", rcforc="&dt", matsum=0.01, binary_d3plot=0.01)
-    deck.block("Two bodies of one-point plane-strain quads (ELFORM 13), one material.")
+    deck.block(f"Two bodies of {'fully integrated' if implicit else 'one-point'} plane-strain quads "
+               "(ELFORM 13), one material.")
     part(deck, 1, "lower block", 1, 1)
     part(deck, 2, "upper block", 1, 1)
-    plane_strain(deck, 1)
+    plane_strain(deck, 1, 4 if implicit else 1)
     elastic(deck, 1, rho=1000.0, young=1.0e6, poisson=0.0)
     deck.block("The lower face rests (u_y = 0), the upper face moves with a constant velocity.")
     deck.node_set(1, "lower face of the lower block", lower.lower)

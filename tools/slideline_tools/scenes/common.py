@@ -37,6 +37,13 @@ def implicit_static(deck, step):
     return deck.card("imflag dt0", 1, step)
 
 
+def implicit_dynamic(deck, step):
+    """Dynamics by the implicit method (generalised-alpha), in constant steps."""
+    implicit_static(deck, step)
+    deck.keyword("CONTROL_IMPLICIT_DYNAMICS")
+    return deck.card("imass", 1)
+
+
 def energies_on(deck):
     """All energies are computed and enter the balance of glstat."""
     deck.keyword("CONTROL_ENERGY")

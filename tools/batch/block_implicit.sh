@@ -1,0 +1,31 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# usage: tools/batch/block_implicit.sh [TYPES]
+# Runs the block-to-block scene implicitly and explicitly for every contact type (default
+# "1 2 3 4 5 6 7") into results/batch/block_implicit and writes doc/studies/block_to_block_implicit.md
+# with its picture; with arguments, the page goes to results/batch/block_implicit/doc instead. Some seconds.
+set -eu
+
+root=$(cd "$(dirname "$0")/../.." && pwd)
+types=${1:-1 2 3 4 5 6 7}
+out=$root/results/batch/block_implicit
+doc=$root/doc
+[ $# -eq 0 ] || doc=$out/doc
+
+"$root/tools/build.sh" release
+tools=$root/build/venv/bin/slideline-tools
+mkdir -p "$out"
+"$tools" make-deck block --output "$out/explicit.k"
+"$tools" make-deck block --implicit --output "$out/implicit.k"
+for type in $types; do
+  for method in implicit explicit; do
+    run=$out/${method}_$type
+    echo "== block-to-block, $method, contact type $type"
+    mkdir -p "$run"
+    "$root/build/release/slideline" i="$out/$method.k" d="$run" jobid=block ctype="$type" \
+      >"$run/progress.txt"
+  done
+done
+
+# shellcheck disable=SC2086  # the types are words
+"$root/build/venv/bin/python" -m slideline_tools.studies.block_implicit "$out" "$doc" --types $types
