@@ -3,7 +3,7 @@
 !> (doc/theory/implicit.md, section 3).
 module newton_m
   use kinds_m, only : wp
-  use clock_m, only : clock_t, lap, phase_solver
+  use clock_m, only : clock_t, lap, phase_nodes, phase_solver
   use contact_scatter_m, only : add_gap_round_off
   use controls_m, only : implicit_t
   use equations_m, only : take_free, move_prescribed
@@ -72,7 +72,8 @@ contains
     do iteration = 1, model%controls%implicit%max_iteration
       outcome%iterations = iteration
       b = -take_free(step%equations, assemble_residual(model, state, step, trial))
-      call assemble_tangent(model, state, step, trial, matrix)
+      call lap(clock, phase_nodes)
+      call assemble_tangent(model, state, step, trial, clock, matrix)
       call move_prescribed(step%equations%n_free, now%moved, matrix, b)
       call compress_matrix(matrix)
       call solve_linear(matrix, b, now%x, report)

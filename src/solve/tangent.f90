@@ -2,6 +2,7 @@
 !> Residual and tangent of one implicit step (doc/theory/implicit.md, sections 1 and 2).
 module tangent_m
   use kinds_m, only : wp
+  use clock_m, only : clock_t, lap, phase_elements, phase_contact_force
   use conditions_m, only : pressure_load_t
   use contact_stiffness_m, only : add_contact_stiffness
   use curves_m, only : curve_value
@@ -68,20 +69,23 @@ contains
   end function new_velocity
 
   !> dR/du(n+1), collected.
-  subroutine assemble_tangent(model, state, step, trial, matrix)
+  subroutine assemble_tangent(model, state, step, trial, clock, matrix)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
     type(trial_t), intent(in) :: trial
+    type(clock_t), intent(inout) :: clock
     type(sparse_t), intent(inout) :: matrix
     integer :: i
 
     call start_matrix(matrix, step%equations%n)
     call add_stiffness(model, trial%motion, 1.0_wp, state%elements, step%equations%number, matrix)
+    call lap(clock, phase_elements)
     do i = 1, size(model%contacts)
       call add_contact_stiffness(model%contacts(i), trial%contacts(i), step%equations%number, &
         matrix)
     end do
+    call lap(clock, phase_contact_force)
     do i = 1, size(model%conditions%pressures)
       call add_pressure_stiffness(model, model%conditions%pressures(i), step%time, step%equations, &
         matrix)

@@ -35,11 +35,10 @@ after two iterations, before the ratio of a third is formed.
 TIMES = """
 ## Contact time
 
-Search, pairing and force of the contact (the implicit runs count all three as force), one run each. Times on a busy machine
+Search, pairing and force of the contact (the implicit runs count all three and the tangent as force), one run each. Times on a busy machine
 vary and these runs take less than a second: only ratios are given, and small differences mean nothing. The implicit
-method evaluates the contact at each iteration and once more at the start of the step; the contact's part of the
-tangent counts as solver, not as contact, so that the implicit share is a lower bound. The calculation is the run
-without input and output, which take most of an explicit run of this size.
+method evaluates the contact at each iteration and once more at the start of the step, and forms its part of the
+tangent; the solution of the linear systems is not contact. The calculation is the run without input and output, which take most of an explicit run of this size.
 """
 ITERATION = re.compile(r"^step to (\S+) iteration (\d+): energy ratio ([^,\s]+)", re.MULTILINE)
 CONTACT_PHASES = ("contact_search", "contact_pairing", "contact_force")
