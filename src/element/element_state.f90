@@ -71,6 +71,10 @@ contains
     n_hourglass = 0
     do i_chunk = 1, model%layout%n_chunk
       associate (part => model%parts(model%layout%chunk_part(i_chunk)))
+        if (model%materials(part%material)%is_rigid) then
+          elements%time_limit(i_chunk) = huge(1.0_wp)
+          cycle
+        end if
         n_points = point_count(model%sections(part%section))
         n = n_points*history_size(model%materials(part%material))
         if (n > 0) elements%history_start(i_chunk) = n_history + 1
@@ -121,6 +125,7 @@ contains
     do i = 1, model%mesh%n_element
       slot = model%layout%element_slot(i)
       call volume_ratios(model, motion, elements, slot, n, stretch, start)
+      if (model%materials(model%parts(model%mesh%element_part(i))%material)%is_rigid) stretch = 0.0_wp
       bulk = model%materials(model%parts(model%mesh%element_part(i))%material)%bulk
       now = start*(1.0_wp + stretch)
       volumetric = bulk*(sum(now(:n)*log_ratio(stretch(:n)))/sum(now(:n)))
@@ -225,6 +230,7 @@ contains
 
     do i_chunk = 1, model%layout%n_chunk
       part = model%layout%chunk_part(i_chunk)
+      if (model%materials(model%parts(part)%material)%is_rigid) cycle
       internal(part) = internal(part) + elements%deviatoric_work(i_chunk)
       hourglass(part) = hourglass(part) + elements%hourglass_work(i_chunk)
       viscous(part) = viscous(part) + elements%viscous_work(i_chunk)

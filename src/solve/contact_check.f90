@@ -25,7 +25,8 @@ contains
     do i = 1, size(model%contacts)
       call report_initial_contact(model%contacts(i), model, state%contacts(i), log)
       if (.not. model%controls%contact_limits_step) cycle
-      call find_step_limit(model%contacts(i), state%mass, state%contacts(i), spring_limit, node)
+      call find_step_limit(model%contacts(i), state%contact_mass, state%contacts(i), &
+        spring_limit, node)
       ! Damping of a fraction z of critical takes sqrt(1 + z^2) - z of the limit.
       associate (z => model%contacts(i)%damping)
         spring_limit = spring_limit*(sqrt(1.0_wp + z**2) - z)
