@@ -19,8 +19,11 @@ contains
     integer, allocatable :: order(:), new_index(:)
     integer :: i
 
-    call build_slots(model%mesh, &
-      model%materials(model%parts(model%mesh%element_part)%material)%is_rigid, model%layout)
+    allocate (is_rigid(model%mesh%n_element))
+    do i = 1, model%mesh%n_element
+      is_rigid(i) = model%materials(model%parts(model%mesh%element_part(i))%material)%is_rigid
+    end do
+    call build_slots(model%mesh, is_rigid, model%layout)
     allocate (is_special(model%mesh%n_node), source=.false.)
     call mark_touched_nodes(model, is_special)
     is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)

@@ -166,25 +166,25 @@ def check_held(run):
                       mass * np.exp(-factor * damping * part["time"]), 3e-3, source="M v exp(-D t)")
 
 
-def springs(kind, fixed_turn):
+def springs(kind, fixed_turn, dt=1.0e-3, damping=0.0):
     """A rigid block on a rigid table that does not move: a mass on contact springs."""
-    n, penalty, dt, g = 10, 4.0e4, 1.0e-3, 9.81
+    n, penalty, g = 10, 4.0e4, 9.81
     deck = Deck(f"rigid block on contact springs, type {kind}")
     # eps_hat times the length in contact; type 1: nodes; type 3: five master segments' length besides
     stiffness = penalty * {1: n + 1, 3: n + 5}.get(kind, n)
     mass = RHO * 0.5
     omega = np.sqrt(stiffness / mass)
-    n_step = int(0.9 * 2.0 * np.pi / omega / dt)
+    n_step = max(3, int(0.9 * 2.0 * np.pi / omega / dt))
     deck.control(n_step * dt, dt=dt).part(1, 1).part(2, 2)
     rigid(deck, 1, (0, 7 if fixed_turn else 0))
     rigid(deck, 2, (7, 7))
     block = deck.mesh(*grid(n, 5, 1.0, 0.5), part=1)
     table = deck.mesh(*grid(8, 1, 1.6, 0.2, (-0.3, -0.2)), part=2)
     deck.node_set(1, block[:n + 1]).node_set(2, table[9:][::-1])
-    deck.contact(1, 2, kind, penalty)
+    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 2, penalty), (0.0, 1.0e20, 0, 0.0, damping))
     deck.curve(1, [(0.0, g), (1.0, g)]).add("*LOAD_BODY_Y", (1, 1.0))
     deck.output(glstat=dt, rcforc=dt, nodout=dt, nodes=[block[0], block[-1]])
-    frequency = 2.0 * np.arcsin(0.5 * omega * dt) / dt
+    frequency = 2.0 * np.arcsin(min(0.5 * omega * dt, 1.0)) / dt
     return deck, block, mass, g / omega ** 2, frequency
 
 
@@ -200,6 +200,27 @@ def check_springs(run):
                   "abs", "symmetric")
         run.check(f"{name}: energy ratio", result.table("glstat")["energy_ratio"][5:], 1.0, 2e-3, "abs",
                   "balance")
+
+
+def check_contact_mass(run):
+    """Damping and the limit of the step that contact allows know the mass of the body."""
+    share = 0.2
+    deck, block, mass, rest, frequency = springs(2, True, 1.0e-4, 100.0 * share)
+    history = run.program(deck).node(block[0])
+    swing = frequency * np.sqrt(1.0 - share ** 2)
+    time = history["time"]
+    expected = -rest * (1.0 - np.exp(-share * frequency * time) * (
+        np.cos(swing * time) + share * frequency / swing * np.sin(swing * time)))
+    run.check("damped contact: fall of a rigid block on springs", history["uy"], expected, 2e-3,
+              source="mass on springs with VDC per cent of critical damping")
+    _, _, _, rest, _ = springs(2, True)
+    limit = 2.0 * np.sqrt(rest / 9.81)
+    for factor in (0.99, 1.01):
+        for turns in (True, False):
+            result = run.program(springs(2, turns, factor * limit)[0])
+            said = "its penalty demands" in (result.folder / f"{result.job}.log").read_text()
+            run.true(f"step of {factor} of the limit, turn {'held' if turns else 'free'}: warning",
+                     said == (factor > 1.0 or not turns), "2 sqrt(M/K); a free turn takes a part of it")
 
 
 def pressed(kind, variant, young=YOUNG, free=False):
@@ -396,6 +417,7 @@ def check(run):
     check_torque(run)
     check_held(run)
     check_springs(run)
+    check_contact_mass(run)
     check_pressed(run)
     check_stiff(run)
     check_turned_die(run)
