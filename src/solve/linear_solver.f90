@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Solves A x = b for a sparse matrix with symmetric pattern, symmetric in value or not, and says how
-!> good the answer is. Theory: doc/theory/implicit.md, "Linear systems".
+!> Solves A x = b for a sparse matrix whose pattern is symmetric but for a few entries, symmetric in value or not, and
+!> says how good the answer is. Theory: doc/theory/implicit.md, "Linear systems".
 module linear_solver_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use equilibration_m, only : equilibrate
