@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: MIT
+"""Tables 1 and 2 and Figs. 23, 24, 29 and 32 of Kang, Lee & Shin (2023): what contact costs.
+
+Contact time of each type and level, split into steps A, M and B, its ratio to the classical NTS
+and its share of the computation; medians over rounds in which all variants run in turn.
+"""
+from __future__ import annotations
+
+import dataclasses
+from typing import Callable, Mapping, Sequence
+
+from slideline_tools import UserError, scenes
+from slideline_tools.plots import COLOURS, PAGE_WIDTH, plt
+from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
+from slideline_tools.study.charts import save, styled
+from slideline_tools.study.job import Job, Study
+from slideline_tools.study.table import finished
+from slideline_tools.study.times import LETTERS, STEPS, Times, phases
+
+NO_OUTPUT = ("p:dtplot=1", "p:dthist=1", "p:dtforc=1")
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    """A scene of the paper. `paper`: its ratios to type 1 by type and level; `told`: what its text
+    says of a chart whose numbers it does not give; `quick`: options of a shortened run."""
+
+    title: str
+    figure: str
+    deck: Callable[[int], str]
+    levels: Sequence[int]
+    turns: int
+    options: Sequence[str] = ()
+    quick: Sequence[str] = ()
+    table: str = ""
+    paper: Mapping = dataclasses.field(default_factory=dict)
+    told: str = ""
+
+
+def by_level(*types_and_ratios):
+    """{type: {level: ratio}} of (type, ratio at level 1, at level 2, ...)."""
+    return {ctype: dict(enumerate(ratios, start=1)) for ctype, *ratios in types_and_ratios}
+
+
+SCENES = {
+    "block_implicit": Scene(
+        "Block-to-block, implicit", "Fig. 23", lambda _: scenes.block(implicit=True), (1,), 1,
+        paper=by_level((3, 2.0), (4, 3.0)),
+        told="its text: type 3 about twice, type 4 three times type 1, close to type 6"),
+    "block": Scene(
+        "Block-to-block, explicit", "Fig. 24", lambda _: scenes.block(), (1,), 5,
+        paper=by_level((4, 2.4)), told="its text: type 4 2.4 times type 1, type 5 the cheapest after type 1"),
+    "sliding": Scene(
+        "Sliding", "Fig. 29", lambda level: scenes.sliding(level), (1, 2, 3), 1, NO_OUTPUT,
+        ("endtim=2.0e-3",), "Table 1",
+        by_level((3, 2.25, 2.26, 2.26), (4, 2.09, 2.09, 2.20), (5, 1.22, 1.09, 1.12),
+                 (6, 4.98, 5.49, 5.85))),
+    "collision": Scene(
+        "Collision", "Fig. 32", lambda level: scenes.collision(level), (1, 2, 3, 4), 3, NO_OUTPUT,
+        (), "Table 2",
+        by_level((3, 1.92, 1.97, 1.95, 1.93), (4, 2.06, 2.05, 2.04, 2.05),
+                 (5, 1.20, 1.09, 1.06, 1.06), (6, 3.41, 3.76, 3.82, 3.78))),
+}
+
+
+def jobs(options):
+    """Each scene, level and type once; type 1 always, since the others are compared with it."""
+    listed = []
+    for name, scene in SCENES.items():
+        for level in (level for level in scene.levels if level in options.levels):
+            deck = scene.deck(level)
+            for ctype in sorted({1, *options.types}):
+                listed.append(Job(
+                    f"{name}_{level}_type_{ctype}", deck, name,
+                    (f"ctype={ctype}", "ncpu=1", *scene.options, *(scene.quick * options.quick)),
+                    {"scene": name, "level": level, "type": ctype}, group=f"{name}_{level}",
+                    alone=True, turns=scene.turns))
+    return listed
+
+
+def measure(job, folder):
+    """Seconds by phase."""
+    return phases(folder / f"{job.jobid}.timing.csv")
+
+
+def times_of(rows):
+    """{scene: Times} of the scenes that have finished runs."""
+    done = {row["scene"] for row in finished(rows)}
+    return {name: Times(rows, name) for name in SCENES if name in done}
+
+
+# ---- charts ------------------------------------------------------------------------------------
+
+def draw_bars(axes, times):
+    """Steps A, M, B of each type at level 1 over the contact time of type 1; the paper's ratios."""
+    scene, level = SCENES[times.scene], times.levels[0]
+    types = [ctype for ctype in times.seconds[level] if times.has(level, ctype)]
+    foot = {ctype: 0.0 for ctype in types}
+    for step, colour in zip(STEPS, COLOURS):
+        heights = [times.ratio(level, ctype, step) for ctype in types]
+        axes.bar([str(k) for k in types], heights, bottom=list(foot.values()), color=colour,
+                 label=LETTERS[step], width=0.65)
+        foot = {ctype: foot[ctype] + height for ctype, height in zip(types, heights)}
+    for place, ctype in enumerate(types):
+        axes.annotate(f"{foot[ctype]:.2f}\n({100.0 * times.share(level, ctype):.0f} %)",
+                      (place, foot[ctype]), ha="center", va="bottom", fontsize=6.5,
+                      xytext=(0, 2), textcoords="offset points")
+    theirs = {ctype: scene.paper[ctype][level] for ctype in types
+              if level in scene.paper.get(ctype, {})}
+    axes.plot([str(k) for k in theirs], list(theirs.values()), linestyle="none", marker="D",
+              markersize=4.5, markerfacecolor="white", color="black", label="paper")
+    axes.set_ylim(0.0, 1.22 * max([*foot.values(), *theirs.values()]))
+    axes.set_title(f"{scene.title}, N_r = {level} ({scene.figure})", loc="left")
+    axes.set_xlabel("contact type")
+
+
+def chart(rows, folder):
+    """One bar chart for each scene, and the ratios by level."""
+    for name, times in times_of(rows).items():
+        if not times.has(times.levels[0], 1):
+            continue
+        with styled():
+            figure, axes = plt.subplots(figsize=(0.6 * PAGE_WIDTH, 3.2), layout="constrained")
+            draw_bars(axes, times)
+            axes.set_ylabel("contact time over that of type 1")
+            axes.legend()
+            save(figure, folder, f"{name}_contact_time")
+        if len(times.levels) > 1:
+            with styled():
+                save(level_figure(times), folder, f"{name}_ratio_by_level")
+
+
+def level_figure(times):
+    """Ratio of each type to type 1 by level; the paper's as open marks."""
+    figure, axes = plt.subplots(figsize=(0.6 * PAGE_WIDTH, 3.2), layout="constrained")
+    for ctype in times.seconds[times.levels[0]]:
+        levels = [level for level in times.levels if times.has(level, ctype)]
+        axes.plot(levels, [times.ratio(level, ctype) for level in levels], marker="o",
+                  color=COLOURS[ctype - 1], label=label(ctype))
+        theirs = SCENES[times.scene].paper.get(ctype, {})
+        shown = [level for level in levels if level in theirs]
+        axes.plot(shown, [theirs[level] for level in shown], linestyle=":", marker="D",
+                  markerfacecolor="white", color=COLOURS[ctype - 1])
+    axes.set(xlabel="N_r", ylabel="contact time over that of type 1", xticks=times.levels,
+             title=f"{SCENES[times.scene].title}: this program (lines), paper (dotted)")
+    axes.legend(fontsize=6.5)
+    return figure
+
+
+def page_figure(all_times):
+    """All bar charts on one picture."""
+    with styled():
+        figure, panels = plt.subplots(2, 2, figsize=(PAGE_WIDTH + 1.0, 6.0), layout="constrained")
+        for axes in panels.flat[len(all_times):]:
+            axes.set_axis_off()
+        for axes, times in zip(panels.flat, all_times.values()):
+            draw_bars(axes, times)
+        for axes in panels[:, 0]:
+            axes.set_ylabel("contact time over that of type 1")
+        panels.flat[0].legend()
+        return figure
+
+
+# ---- tables and page ---------------------------------------------------------------------------
+
+def ratio_table(times):
+    """Contact time and ratio to type 1 by level, the paper's ratio behind it."""
+    theirs, rows = SCENES[times.scene].paper, []
+    for ctype in TYPES:
+        row = [label(ctype)]
+        for level in times.levels:
+            if not times.has(level, ctype):
+                row.append("")
+                continue
+            ratio = theirs.get(ctype, {}).get(level)
+            row.append(f"{1e3 * times.seconds[level][ctype]['contact']:.3g} ms, "
+                       f"{times.ratio(level, ctype):.2f}" + (f" ({ratio:.2f})" if ratio else ""))
+        if any(row[1:]):
+            rows.append(row)
+    return markdown_table(["type", *(f"N_r = {level}" for level in times.levels)], rows)
+
+
+def step_table(times, level):
+    """Time of each step over the contact time of type 1, and the share of contact."""
+    rows = []
+    for ctype in times.seconds[level]:
+        if times.has(level, ctype):
+            steps = [f"{times.ratio(level, ctype, step):.2f}" for step in STEPS]
+            rows.append([label(ctype), *steps, f"{times.ratio(level, ctype):.2f}",
+                         f"{100.0 * times.share(level, ctype):.1f} %"])
+    return markdown_table(["type", *LETTERS.values(), "sum", "share of the computation"], rows)
+
+
+def section(times):
+    """One scene of the page."""
+    scene = SCENES[times.scene]
+    title = f"{scene.title} ({', '.join(name for name in (scene.table, scene.figure) if name)})"
+    parts = [f"## {title}", ratio_table(times)]
+    if scene.told:
+        parts.append(f"The paper gives no numbers of {scene.figure}; {scene.told}.")
+    ends = dict.fromkeys((times.levels[0], times.levels[-1]))
+    parts += [f"Steps over the contact time of type 1, N_r = {level}:\n\n{step_table(times, level)}"
+              for level in ends]
+    parts.append(f"Medians of {times.rounds} runs; the quartiles of a contact time lie at most "
+                 f"{100.0 * times.spread:.0f} % of its median apart.")
+    return "\n\n".join(parts)
+
+
+PAGE = """# What contact costs: the tables of the paper
+
+This page and its picture are written by `tools/study.sh paper-tables --publish`: do not edit it.
+
+Contact time of each type in the scenes of Kang, Lee & Shin (2023), beside its ratio to the contact
+time of type 1, the classical one-pass NTS; the paper's ratios in brackets. Its Tables 1 and 2 cover
+types 1, 3, 4, 5 and 6; types 2 and 7 are ours. Its program and machine are others, and dimensions
+that it does not give are ours: compare ratios, not seconds.
+
+How it is measured: one thread ({processor}); all variants run in turn, then again in the next
+round, and each figure is the median over the rounds. Step A is the search, M the pairing, that is the
+placing of points (counted as B in types 1, 2, 3 and 6), B the force. Seconds are corrected by the
+pace of the element loop of the same run, which is the same work for all types: what slows the
+machine for a while slows both. The share is that of the computation, without input and output. In
+the implicit run the contact tangent counts as B.
+
+![Contact time of all types](../pictures/paper_tables.png)
+
+Bars: steps A, M and B over the contact time of type 1; above them the sum and, in brackets, the share
+of the computation. Diamonds: the paper.
+
+{sections}
+
+{reading}
+"""
+READING = ""
+
+
+def page(rows, doc):
+    """doc/studies/paper_tables.md and its picture."""
+    all_times = {name: times for name, times in times_of(rows).items()
+                 if times.has(times.levels[0], 1)}
+    if not all_times:
+        raise UserError("no finished runs of type 1")
+    save_small(page_figure(all_times), doc / "pictures" / "paper_tables.png", lines=True)
+    processors = sorted({row["processor"] for row in finished(rows)})
+    write_page(doc, "paper_tables", PAGE.format(
+        processor="; ".join(processors), reading=READING,
+        sections="\n\n".join(section(times) for times in all_times.values())).rstrip() + "\n")
+
+
+STUDY = Study("paper-tables", jobs, measure, chart, page=page, levels=(1, 2, 3, 4), repeats=5,
+              quick_repeats=3)
