@@ -203,8 +203,8 @@ def test_time_to_go():
     assert progress.to_go() is None
     progress.known(Job("a", ""), {"seconds": 10.0, "status": 0})
     progress.known(Job("b", ""), {"seconds": 30.0, "status": 0})
-    progress.start([Job("b", "", repeat=2), Job("c", "", alone=True)], 2)
-    assert progress.to_go() == 30.0 / 2 + 20.0
+    progress.start([Job("b", "", repeat=2), Job("c", "", alone=True), Job("d", "", cost=3.0)], 2)
+    assert progress.to_go() == 30.0 / 2 + 20.0 + 3 * 20.0 / 2
     assert [span(x) for x in (None, 10.0, 300.0, 7200.0)] == [
         "an unknown time", "about 10 s", "about 5 min", "about 2.0 h"]
 

@@ -35,6 +35,7 @@ class Job:
     `group`     jobs of a group run on one machine, since they are compared in time
     `alone`     a timing job: nothing else runs beside it, whatever -j says
     `turns`     how often it runs in each round of repeats
+    `cost`      expected seconds up to a common factor, for the guess of the time to go
     `limit`     seconds after which it is stopped and counts as failed
     `repeat`    its number among the runs of this name; set by `interleave`
     """
@@ -48,6 +49,7 @@ class Job:
     group: str = ""
     alone: bool = False
     turns: int = 1
+    cost: float = 1.0
     limit: Optional[float] = None
     repeat: int = 1
 

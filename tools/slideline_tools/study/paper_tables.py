@@ -23,13 +23,15 @@ NO_OUTPUT = ("p:dtplot=1", "p:dthist=1", "p:dtforc=1")
 @dataclasses.dataclass(frozen=True)
 class Scene:
     """A scene of the paper. `paper`: its ratios to type 1 by type and level; `told`: what its text
-    says of a chart whose numbers it does not give; `quick`: options of a shortened run."""
+    says of a chart whose numbers it does not give; `quick`: options of a shortened run; `cost`: of
+    level 1, as in Job."""
 
     title: str
     figure: str
     deck: Callable[[int], str]
     levels: Sequence[int]
     turns: int
+    cost: float
     options: Sequence[str] = ()
     quick: Sequence[str] = ()
     table: str = ""
@@ -44,19 +46,19 @@ def by_level(*types_and_ratios):
 
 SCENES = {
     "block_implicit": Scene(
-        "Block-to-block, implicit", "Fig. 23", lambda _: scenes.block(implicit=True), (1,), 1,
+        "Block-to-block, implicit", "Fig. 23", lambda _: scenes.block(implicit=True), (1,), 1, 6.0,
         paper=by_level((3, 2.0), (4, 3.0)),
         told="its text: type 3 about twice, type 4 three times type 1, close to type 6"),
     "block": Scene(
-        "Block-to-block, explicit", "Fig. 24", lambda _: scenes.block(), (1,), 5,
+        "Block-to-block, explicit", "Fig. 24", lambda _: scenes.block(), (1,), 5, 0.3,
         paper=by_level((4, 2.4)), told="its text: type 4 2.4 times type 1, type 5 the cheapest after type 1"),
     "sliding": Scene(
-        "Sliding", "Fig. 29", lambda level: scenes.sliding(level), (1, 2, 3), 1, NO_OUTPUT,
+        "Sliding", "Fig. 29", lambda level: scenes.sliding(level), (1, 2, 3), 1, 15.0, NO_OUTPUT,
         ("endtim=2.0e-3",), "Table 1",
         by_level((3, 2.25, 2.26, 2.26), (4, 2.09, 2.09, 2.20), (5, 1.22, 1.09, 1.12),
                  (6, 4.98, 5.49, 5.85))),
     "collision": Scene(
-        "Collision", "Fig. 32", lambda level: scenes.collision(level), (1, 2, 3, 4), 3, NO_OUTPUT,
+        "Collision", "Fig. 32", lambda level: scenes.collision(level), (1, 2, 3, 4), 3, 1.0, NO_OUTPUT,
         (), "Table 2",
         by_level((3, 1.92, 1.97, 1.95, 1.93), (4, 2.06, 2.05, 2.04, 2.05),
                  (5, 1.20, 1.09, 1.06, 1.06), (6, 3.41, 3.76, 3.82, 3.78))),
@@ -74,7 +76,7 @@ def jobs(options):
                     f"{name}_{level}_type_{ctype}", deck, name,
                     (f"ctype={ctype}", "ncpu=1", *scene.options, *(scene.quick * options.quick)),
                     {"scene": name, "level": level, "type": ctype}, group=f"{name}_{level}",
-                    alone=True, turns=scene.turns))
+                    alone=True, turns=scene.turns, cost=scene.cost * level ** 3))
     return listed
 
 
@@ -101,15 +103,16 @@ def draw_bars(axes, times):
         axes.bar([str(k) for k in types], heights, bottom=list(foot.values()), color=colour,
                  label=LETTERS[step], width=0.65)
         foot = {ctype: foot[ctype] + height for ctype, height in zip(types, heights)}
-    for place, ctype in enumerate(types):
-        axes.annotate(f"{foot[ctype]:.2f}\n({100.0 * times.share(level, ctype):.0f} %)",
-                      (place, foot[ctype]), ha="center", va="bottom", fontsize=6.5,
-                      xytext=(0, 2), textcoords="offset points")
     theirs = {ctype: scene.paper[ctype][level] for ctype in types
               if level in scene.paper.get(ctype, {})}
+    for place, ctype in enumerate(types):
+        # Above the bar, and above a diamond that would hide it.
+        axes.annotate(f"{foot[ctype]:.2f}\n({100.0 * times.share(level, ctype):.0f} %)",
+                      (place, max(foot[ctype], theirs.get(ctype, 0.0))), ha="center", va="bottom",
+                      fontsize=6.5, xytext=(0, 4), textcoords="offset points")
     axes.plot([str(k) for k in theirs], list(theirs.values()), linestyle="none", marker="D",
               markersize=4.5, markerfacecolor="white", color="black", label="paper")
-    axes.set_ylim(0.0, 1.22 * max([*foot.values(), *theirs.values()]))
+    axes.set_ylim(0.0, 1.25 * max([*foot.values(), *theirs.values()]))
     axes.set_title(f"{scene.title}, N_r = {level} ({scene.figure})", loc="left")
     axes.set_xlabel("contact type")
 

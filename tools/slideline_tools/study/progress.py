@@ -7,18 +7,19 @@ LINE_EVERY, WIDTH = 1.0, 100
 
 
 class Progress:
-    """Counts finished runs and guesses the time to go from runs of the same name or of the mean."""
+    """Counts finished runs and guesses the time to go from runs of the same name, else from the cost."""
 
     def __init__(self, stream=None):
         self.stream = stream or sys.stdout
         self.updating = self.stream.isatty()
-        self.seconds = {}  # measured seconds by job name
+        self.seconds, self.costs = {}, {}  # measured seconds and expected cost by job name
         self.left, self.total, self.finished, self.failed = [], 0, 0, 0
         self.parallel, self.shown = 1, 0.0
 
     def known(self, job, record):
         """A run that has finished before."""
         self.seconds.setdefault(job.name, []).append(record["seconds"])
+        self.costs[job.name] = job.cost
         self.failed += record["status"] != 0
         self.finished += 1
 
@@ -74,8 +75,8 @@ class Progress:
         if not self.seconds:
             return None
         means = {name: sum(values) / len(values) for name, values in self.seconds.items()}
-        mean = sum(means.values()) / len(means)
-        return sum(means.get(job.name, mean) / (1 if job.alone else self.parallel)
+        unit = sum(means.values()) / sum(self.costs.values())
+        return sum(means.get(job.name, unit * job.cost) / (1 if job.alone else self.parallel)
                    for job in self.left)
 
 
