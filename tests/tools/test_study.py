@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The sweeps of `tools/study.sh`, with a small program in place of slideline."""
 import csv
+import io
 import json
 import os
 import pathlib
@@ -207,6 +208,25 @@ def test_time_to_go():
     assert progress.to_go() == 30.0 / 2 + 20.0 + 3 * 20.0 / 2
     assert [span(x) for x in (None, 10.0, 300.0, 7200.0)] == [
         "an unknown time", "about 10 s", "about 5 min", "about 2.0 h"]
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_one_updating_line_on_a_terminal_and_plain_lines_elsewhere(bench, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "60")
+    jobs = [Job("a", deck(1), "a"), Job("b", deck(2), "b", ("fail=2",)), Job("c", deck(3), "c")]
+    terminal, pipe = Terminal(), io.StringIO()
+    bench.sweep().run(jobs, 1, Progress(terminal))
+    shown = terminal.getvalue()
+    assert shown.count("\n") == 2  # the failure and the end stay
+    assert all(len(line) <= 59 for line in shown.replace("\n", "\r").split("\r"))
+    assert "\rb failed: deck.k: line 3: a mistake" in shown and "\r1 of 3 runs, about" in shown
+    bench.sweep().run([*jobs, Job("d", deck(4), "d")], 1, Progress(pipe))
+    assert pipe.getvalue().splitlines()[0] == "3 of 4 runs have finished before"
+    assert pipe.getvalue().splitlines()[1].startswith("4 of 4 runs, 1 failed; d took ")
 
 
 # ---- the command -------------------------------------------------------------------------------

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Says how far a sweep is: one updating line on a terminal, plain lines elsewhere."""
+import shutil
 import sys
 import time
 
-LINE_EVERY, WIDTH = 1.0, 100
+LINE_EVERY = 1.0  # seconds between plain lines
 
 
 class Progress:
@@ -49,7 +50,8 @@ class Progress:
         """What runs now, on a terminal."""
         if self.updating and running:
             text = f"{self.state()}: {', '.join(job.folder_name for job in running)}"
-            self.stream.write("\r" + text[:WIDTH].ljust(WIDTH))
+            width = shutil.get_terminal_size().columns - 1
+            self.stream.write("\r" + text[:width].ljust(width))
             self.stream.flush()
 
     def end(self):
@@ -59,8 +61,10 @@ class Progress:
 
     def line(self, text):
         """One line that stays."""
-        self.stream.write(("\r" if self.updating else "") + text.ljust(WIDTH if self.updating else 0)
-                          + "\n")
+        if self.updating:
+            self.stream.write("\r" + text.ljust(shutil.get_terminal_size().columns - 1) + "\n")
+        else:
+            self.stream.write(text + "\n")
         self.stream.flush()
 
     def state(self):

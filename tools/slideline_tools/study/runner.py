@@ -63,8 +63,8 @@ class Sweep:
             while waiting or running:
                 while waiting and has_room(waiting[0], running, parallel):
                     running.append(Run(self, waiting.popleft()))
-                running = [run for run in running if not run.ended(len(running), progress)]
                 progress.show([run.job for run in running])
+                running = [run for run in running if not run.ended(len(running), progress)]
         finally:
             stop_all(running)
             progress.end()
