@@ -130,6 +130,16 @@ def test_charts_and_page(tmp_path):
     assert (tmp_path / "doc/pictures/paper_tables.png").stat().st_size < 100_000
 
 
+def test_time_of_a_slave_node_is_that_of_the_paper_s_seconds():
+    found = times.Times(all_rows(), "sliding")
+    assert paper_tables.slave_node_time(found, 62.0, 150_000) == pytest.approx(62e9 / 150e3 / 19)
+    assert paper_tables.slave_node_time(found, 1.0) == pytest.approx(1e9 / 9 / 19)
+    text = paper_tables.reading(found, times.Times(all_rows(), "collision"))
+    assert "costs 5.00 to 5.00 times type 1" in text and "make 22 and 12 microseconds" in text
+    assert "sliding N_r = 3 type 4" in text
+    assert paper_tables.reading(found, None) == ""
+
+
 def test_page_without_type_1_is_refused(tmp_path):
     rows = [row("sliding", 1, 5, (1.0, 1.0, 1.0))]
     paper_tables.chart(rows, tmp_path)
