@@ -4,7 +4,7 @@ import shutil
 import sys
 import time
 
-LINE_EVERY = 1.0  # seconds between plain lines
+LINE_EVERY, SHOW_EVERY = 1.0, 0.2  # seconds between plain lines, between updates
 
 
 class Progress:
@@ -48,7 +48,8 @@ class Progress:
 
     def show(self, running):
         """What runs now, on a terminal."""
-        if self.updating and running:
+        if self.updating and running and time.monotonic() - self.shown > SHOW_EVERY:
+            self.shown = time.monotonic()
             text = f"{self.state()}: {', '.join(job.folder_name for job in running)}"
             width = shutil.get_terminal_size().columns - 1
             self.stream.write("\r" + text[:width].ljust(width))
