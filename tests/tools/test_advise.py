@@ -8,7 +8,9 @@ import time
 import numpy as np
 import pytest
 
-from slideline_tools.advise import advise, finished, geometry, outputs, report, study_decks
+from slideline_tools import scenes
+from slideline_tools.advise import (advise, bodies, finished, geometry, outputs, report,
+                                    study_decks, surfaces, touching)
 from slideline_tools.advise.run_deck import read_blocks, sets
 from slideline_tools.advise.run_log import read_log
 
@@ -108,9 +110,8 @@ def test_short_touch_between_rows_is_not_overlooked(slideline, tmp_path):
     run = finished.read_run(folder)
     for name in ("n_active", "fx", "fy"):
         run.tables["rcforc"].columns[name][:] = 0
-    from slideline_tools.advise.touching import never_touched
     assert np.any(run.tables["glstat"]["contact"])
-    assert never_touched(run) == []
+    assert touching.never_touched(run) == []
 
 
 def test_any_file_of_the_run_will_do(runs, tool):
@@ -151,16 +152,15 @@ def test_run_that_failed_gets_no_advice(runs, tmp_path):
 
 def test_contact_time_by_interface(runs):
     """Shared out by slave nodes, as many on both, or as timed."""
-    from slideline_tools.advise.touching import contact_seconds
     run = advise(runs["all"])[0]
     first, second = run.log.interfaces.values()
     assert first.n_slave == second.n_slave
-    shared = contact_seconds(run, second)
+    shared = touching.contact_seconds(run, second)
     assert 0.0 < shared == pytest.approx(run.seconds_of("contact") / 2.0)
     run.seconds.update({f"contact_{step}.2": 1.0 for step in ("search", "pairing", "force")})
-    assert contact_seconds(run, second) == 3.0
-    assert contact_seconds(run, second, ("search",)) == 1.0
-    assert contact_seconds(run, first) == pytest.approx(shared)
+    assert touching.contact_seconds(run, second) == 3.0
+    assert touching.contact_seconds(run, second, ("search",)) == 1.0
+    assert touching.contact_seconds(run, first) == pytest.approx(shared)
 
 
 def test_run_without_clock_gets_no_advice(runs, tmp_path):
@@ -252,3 +252,105 @@ def test_small_savings_are_left_out():
     assert [item.seconds for item in report.select(items, 100.0)] == [2.0, None]
     assert [item.seconds for item in report.select(items, 0.1)] == [2.0, 0.5, None]
     assert len(report.select(items, 100.0, everything=True)) == 4
+
+
+@pytest.fixture(scope="module")
+def oblique(tmp_path_factory):
+    """The oblique impact: a corner of a turned block on a free one, quarter of a second."""
+    return run_scene(tmp_path_factory.mktemp("oblique"), scenes.oblique())
+
+
+def run_scene(folder, text, *arguments):
+    if "SLIDELINE" not in os.environ:
+        pytest.skip("SLIDELINE is not set")
+    (folder / "scene.k").write_text(text, encoding="ascii")
+    done = subprocess.run([os.environ["SLIDELINE"], f"i={folder / 'scene.k'}", f"d={folder}",
+                           *arguments], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+def test_corner_first(oblique):
+    found = topics(oblique)
+    rows = finished.read_run(oblique).tables["contact"]
+    pressed = np.unique(rows["node"][rows["pressure"] > 0.0])
+    assert f"{len(pressed)} of 18 slave nodes" in found["long surface"].evidence
+    force = finished.read_run(oblique).tables["rcforc"].where(side="slave")
+    first, last = force["time"][force["n_active"] > 0][[0, -1]]
+    assert f"from {first:.4g} to {last:.4g}" in found["touched for a while"].what
+    assert "symmetry" not in found and "never touched" not in found
+
+
+def test_symmetric_mesh_that_moves_otherwise(runs):
+    run = finished.read_run(runs["all"])
+    assert [item.topic for item in bodies.symmetric(run)] == ["symmetry"]
+    moved = run.results.point_field("displacement")
+    moved[-1, 0, 0] += 2.0 * bodies.SYMMETRIC * np.abs(moved).max()
+    assert bodies.symmetric(run) == []
+
+
+def test_rigid_part_strains_little_and_keeps_little_energy(runs):
+    run = finished.read_run(runs["none"])
+    assert bodies.nearly_rigid(run) == []
+    energy = run.tables["matsum"]["internal"]
+    energy[run.tables["matsum"]["part"] == 2] *= 1.0e-4
+    assert bodies.nearly_rigid(run) == []
+    run.log.materials[2]["E"] *= 1.0e6
+    found = bodies.nearly_rigid(run)
+    assert len(found) == 1 and found[0].what.startswith('part 2 "block"')
+    # Block and plate have equal elements, 24 and 40 columns of 4.
+    assert found[0].seconds == pytest.approx(run.seconds_of("elements") * 24.0 / 64.0)
+
+
+def test_dear_type(runs):
+    run = finished.read_run(runs["none"])
+    run.seconds["contact_force"] = 0.3 * run.total
+    assert touching.dear_type(run) == []
+    run.log.interfaces[1].ctype = 6
+    found = touching.dear_type(run)
+    assert found[0].seconds == pytest.approx(0.34 * run.seconds_of("contact"))
+    run.seconds["contact_force"] = 0.0
+    assert touching.dear_type(run) == []
+
+
+def test_output_written_too_often(runs):
+    run = finished.read_run(runs["all"])
+    run.seconds["output"] = 0.05 * run.total
+    assert outputs.too_often(run) == []
+    run.seconds["output"] = 0.5 * run.total
+    found = {item.what.split()[0]: item for item in outputs.too_often(run)}
+    assert "*DATABASE_GLSTAT from 1e-07 to" in found["glstat"].change
+    assert 0.0 < found["glstat"].seconds < run.seconds["output"]
+    # Energies of alternating rows do not lie on straight lines.
+    run.tables["glstat"]["kinetic"][::2] *= 1.1
+    assert "glstat" not in {item.what.split()[0] for item in outputs.too_often(run)}
+
+
+@pytest.mark.parametrize("ctype", range(1, 8))
+@pytest.mark.parametrize("scene", [scenes.patch, scenes.oblique])
+def test_limit_of_springs_is_that_of_the_program(slideline, tmp_path, scene, ctype):
+    """The program warns of a penalty far too stiff and names the limits; they are ours."""
+    (tmp_path / "scene.k").write_text(scene(), encoding="ascii")
+    subprocess.run([slideline, f"i={tmp_path / 'scene.k'}", f"d={tmp_path}", f"ctype={ctype}",
+                    "pen=1e9", "endtim=0.02"], capture_output=True, check=False)
+    log = (tmp_path / "scene.log").read_text(encoding="utf-8")
+    warned = float(log.split("contact springs alone ")[1].split()[0])
+    run = finished.read_run(tmp_path)
+    interface = run.log.interfaces[1]
+    limit = surfaces.spring_limit(run, interface, surfaces.read_surfaces(run)[1],
+                                  geometry.lumped_mass(run))
+    assert limit == pytest.approx(warned, rel=1e-5)
+
+
+def test_softer_penalty_and_its_step_are_stable(tmp_path):
+    folder = run_scene(tmp_path, scenes.patch())
+    found = topics(folder)["penalty rules the step"]
+    factor = float(found.change.split("PEN times ")[1].split()[0])
+    step = float(found.change.split("dt=")[1].rstrip(")"))
+    again = tmp_path / "again"
+    again.mkdir()
+    run_scene(again, scenes.patch(), f"p:pen={1.0e6 * factor}", f"dt={step}")
+    soft, hard = finished.read_run(again), finished.read_run(folder)
+    assert len(soft.tables["glstat"]) and soft.log.normal
+    assert np.abs(soft.tables["glstat"]["kinetic"]).max() < 2.0 * np.abs(
+        hard.tables["glstat"]["kinetic"]).max()

@@ -75,7 +75,7 @@ def short_steps(run) -> list[Advice]:
     return [Advice(
         "short steps", f"The time step could be {allowed / step:.2f} times longer.",
         f"mean step {step:.3g}; smallest limit of the elements at {len(run.results.times)} states "
-        f"{elements:.3g}{with_springs} or more, together {allowed / SAFETY:.3g}",
+        f"{elements:.3g}{with_springs}, together {allowed / SAFETY:.3g}",
         f"a step of {allowed:.3g}: {how_to_step(run, allowed)}",
         run.seconds_of("loop") * (1.0 - step / allowed),
         f"fewer cycles, with {1.0 - SAFETY:.0%} of the limit to spare")]

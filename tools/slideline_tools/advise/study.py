@@ -16,6 +16,7 @@ import sys
 
 from slideline_tools import UserError
 from slideline_tools.advise import advise, bodies, outputs, report, stepping, study_decks, touching
+from slideline_tools.study.runner import processor
 from slideline_tools.studies.common import markdown_table, write_page
 
 ALL = "all"
@@ -76,7 +77,7 @@ def thresholds() -> list[tuple]:
          f"energies constant to {touching.FREE_FLIGHT:g} until then, parts only translate"),
         ("dear type", f"type 6 or 7, contact at least {touching.CONTACT_MATTERS:.0%} of the run"),
         ("short steps", f"{stepping.SAFETY} of the limit of elements (smallest of all states) and "
-         f"springs (a safe bound) is at least {stepping.LONGER_STEP} steps"),
+         f"springs (the bound that the program warns by) is at least {stepping.LONGER_STEP} steps"),
         ("penalty rules the step", f"the elements allow {stepping.PENALTY_RULES} times the step "
          f"that the springs leave, and the softer penalty keeps the deepest penetration below "
          f"{stepping.DEEPEST:.0%} of a segment"),
@@ -99,7 +100,8 @@ def thresholds() -> list[tuple]:
 def page(predicted: dict, totals: dict, last, clean) -> str:
     """The page."""
     return PAGE.format(
-        rounds=len(totals[ALL]), base=min(totals[ALL]), spread=spread(totals), table=markdown_table(
+        rounds=len(totals[ALL]), base=min(totals[ALL]), spread=spread(totals),
+        processor=processor(), table=markdown_table(
             ("topic", "predicted, %", "measured, %"), rows(predicted, totals)),
         example=report.as_text(*last_shown(last)), clean=report.as_text(*last_shown(clean)),
         thresholds=markdown_table(("topic", "says something only if"), thresholds()),
@@ -140,7 +142,7 @@ and of the same collision without them:
 ## Predicted and measured savings
 
 Each needless thing was taken out alone. Per cent of the run with all of them, which took {base:.2g} s of processor time; the fastest of
-{rounds} rounds in which all variants ran in turn, one thread. Rounds of the same deck differed by {spread:.0%} at the
+{rounds} rounds in which all variants ran in turn, one thread ({processor}). Rounds of the same deck differed by {spread:.0%} at the
 median, so that differences of a few per cent mean nothing.
 
 {table}

@@ -10,6 +10,11 @@ from slideline_tools.advise import geometry
 from slideline_tools.advise.run_deck import contact_blocks, sets, whole_number
 
 
+# Types that leave out what hangs over a chain's end; points of the others stand for half a segment
+# beyond it.
+COVERING = (5, 7)
+
+
 @dataclasses.dataclass
 class Surface:
     """Indices of nodes, and of the two ends of each segment (n, 2)."""
@@ -55,23 +60,49 @@ def read_surface(run, number: int) -> Surface:
 
 
 def spring_limit(run, interface, pair: tuple[Surface, Surface], mass: np.ndarray) -> float:
-    """A time step that the springs of an interface allow for certain, s.
+    """The time step that the springs of an interface alone allow, s.
 
-    2/omega with omega^2 <= max K/m of the slave + max K/m of the master nodes (doc/theory). A
-    node carries at most the springs of its competence length; the length here is the longest
-    segment of either side and a half, so that the limit is rather too small than too large.
+    2/omega with omega^2 <= max K/m of the slave + max K/m of the master nodes, all nodes in
+    contact at time zero: the bound that the program itself warns by (doc/theory/contact.md, 7).
     """
     points = run.results.points[0][:, :2]
-    slave, master = pair
-    length = 1.5 * max(slave.lengths(points).max(), master.lengths(points).max())
-    stiffness = (interface.slave_penalty
-                 + (interface.master_penalty if interface.ctype == 3 else 0.0)) * length
+    slave, master = ((side.lengths(points), np.searchsorted(side.nodes, side.segments),
+                      mass[side.nodes]) for side in pair)
+    overhang = 0.0 if interface.ctype in COVERING else 0.5
+    slave_ratio = interface.slave_penalty * competence(slave)
+    master_ratio = interface.slave_penalty * most_on_nodes(master, slave[0].max(), overhang)
     if interface.ctype == 1:
-        per_slave = slave.lengths(points).min()
-        stiffness = interface.node_penalty * max(1.0, 1.0 + length / per_slave)
-    lightest = 1.0 / mass[slave.nodes].min() + 1.0 / mass[master.nodes].min()
+        shortest = slave[0].min()
+        slave_ratio = np.full(len(slave[2]), interface.node_penalty)
+        master_ratio = (interface.node_penalty / shortest
+                        * most_on_nodes(master, shortest, overhang, True))
+    if interface.ctype == 3:
+        master_ratio = master_ratio + interface.master_penalty * competence(master)
+        slave_ratio = slave_ratio + interface.master_penalty * most_on_nodes(
+            slave, master[0].max(), overhang)
+    stiffest = (slave_ratio / slave[2]).max() + (master_ratio / master[2]).max()
     damping = np.sqrt(1.0 + interface.damping ** 2) - interface.damping
-    return float(2.0 / np.sqrt(max(stiffness * lightest, 1.0e-300)) * damping)
+    return float(2.0 / np.sqrt(max(stiffest, 1.0e-300)) * damping)
+
+
+def competence(side) -> np.ndarray:
+    """Half of the segments beside each node, m; `side` = lengths, local ends, masses."""
+    lengths, ends, mass = side
+    return 0.5 * (np.bincount(ends[:, 0], lengths, len(mass))
+                  + np.bincount(ends[:, 1], lengths, len(mass)))
+
+
+def most_on_nodes(side, s: float, overhang: float, at_equal_distances: bool = False):
+    """Most length that points of the other side, up to `s` apart, can put on each node."""
+    h, ends, mass = side
+    if at_equal_distances:
+        n = np.floor(h / s)
+        share = s * (0.5 + n * (1.0 - 0.5 * (n + 1.0) * s / h))
+    else:
+        share = 0.5 * h + np.where(s <= 2.0 * h, s ** 2 / (8.0 * h), 0.5 * (s - h))
+    beside = np.bincount(ends.ravel(), minlength=len(mass))
+    return (overhang * s * (2 - beside) + np.bincount(ends[:, 0], share, len(mass))
+            + np.bincount(ends[:, 1], share, len(mass)))
 
 
 def never_near(run, pair: tuple[Surface, Surface], largest: float = 2.0e8) -> float | None:
