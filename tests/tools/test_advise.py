@@ -101,7 +101,7 @@ def test_plate_that_yields_and_bodies_that_touch(slideline, tmp_path):
                           capture_output=True, text=True, check=False)
     assert done.returncode == 0
     assert not set(topics(tmp_path)) & {"never yielded", "never touched", "symmetry",
-                                                                        "long flight", "rigid", "long surface", "dear type"}
+                                        "long flight", "rigid", "long surface", "dear type"}
 
 
 def test_short_touch_between_rows_is_not_overlooked(slideline, tmp_path):
@@ -354,3 +354,10 @@ def test_softer_penalty_and_its_step_are_stable(tmp_path):
     assert len(soft.tables["glstat"]) and soft.log.normal
     assert np.abs(soft.tables["glstat"]["kinetic"]).max() < 2.0 * np.abs(
         hard.tables["glstat"]["kinetic"]).max()
+
+
+def test_saving_of_an_interface(runs):
+    run = finished.read_run(runs["all"])
+    saved, = touching.never_touched(run)
+    assert saved.seconds == pytest.approx(
+        run.seconds_of("contact") / 2.0 + run.seconds_of("nodes") / 4.0)

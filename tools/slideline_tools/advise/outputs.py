@@ -120,8 +120,8 @@ def too_often(run) -> list[Advice]:
             "written too often", f"{name} are written more often than they change: every "
             f"{ordinal(best)} would do.",
             f"output takes {run.seconds_of('output') / run.total:.0%} of the run; {len(times)} "
-            f"times {name}, straight lines between every {ordinal(best)} miss the others by at most "
-            f"{error:.1%} of the range", f"DT of {CARDS[name]} from {interval:.3g} to "
+            f"times {name}, straight lines between every {ordinal(best)} miss the others "
+            f"by at most {error:.1%} of the range", f"DT of {CARDS[name]} from {interval:.3g} to "
             f"{best * interval:.3g}", saving(run, name, fewer),
             "output time shared out by numbers written"))
     return advice

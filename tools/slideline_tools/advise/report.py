@@ -55,8 +55,8 @@ def as_text(run, advice: list[Advice], notes: list[str], hidden: int) -> str:
         lines += ["", "Each saving is that of one change alone; together they save less than "
                   "their sum."]
     if hidden:
-        lines += ["", f"{hidden} more would save less than {SMALLEST_SHARE:.0%} of the run, or less "
-                  f"than {SMALLEST_SECONDS} s, each (--all shows them)."]
+        lines += ["", f"{hidden} more would save less than {SMALLEST_SHARE:.0%} of the run, or "
+                  f"less than {SMALLEST_SECONDS} s, each (--all shows them)."]
     if notes:
         lines += ["", "Not judged:"] + [f"- {note}" for note in notes]
     return "\n".join(lines)

@@ -153,8 +153,9 @@ median, so that differences of a few per cent mean nothing.
 
 Savings are wall clock read from `<job>.timing.csv`. Three of them rest on ratios measured once: a plastic law adds
 {plastic} elastic elements to an element (0.05 to 0.2 by mesh and law), bulk viscosity {viscous} (0.5 to 0.6), and the measured time of output is
-shared out by what was written. The contact time is not kept by interface: it is shared out by tracked nodes, and an
-interface whose nodes sleep takes less than that.
+shared out by what was written. The contact time is that of the interface where the run
+kept it (`timing=interface`), else it is shared out by tracked nodes; half of the phase `nodes` is taken for the nodes of
+interfaces (two thirds in the deck above).
 
 What it cannot know: whether somebody needs the waves in a stiff body, a later contact, or a row between two others.
 Every saving is that of one change alone. A run that is asked again after a change is judged anew.

@@ -20,6 +20,9 @@ LONG_FLIGHT, FREE_FLIGHT = 0.05, 1.0e-9
 CONTACT_MATTERS = 0.15
 CHEAPER = {6: (4, "VTS-PPT", 0.34), 7: (4, "VTS-PPT", 0.23)}
 
+# Nodes of an interface are moved one by one: they take so much of the phase `nodes` at least.
+INTERFACE_NODES = 0.5
+
 
 def slave_rows(run, interface):
     """Rows of rcforc of the slave side."""
@@ -38,6 +41,14 @@ def contact_seconds(run, interface, steps=("search", "pairing", "force")) -> flo
         return one.n_slave + (one.n_master if one.ctype == 3 else 0)
     share = weight(interface) / max(sum(map(weight, run.log.interfaces.values())), 1)
     return share * sum(run.seconds_of(f"contact_{step}") for step in steps)
+
+
+def node_seconds(run, interface) -> float:
+    """Seconds that moving the nodes of one interface takes beyond those inside the bodies."""
+    def count(one):
+        return one.n_slave + one.n_master
+    share = count(interface) / max(sum(map(count, run.log.interfaces.values())), 1)
+    return INTERFACE_NODES * share * run.seconds_of("nodes")
 
 
 def never_touched(run) -> list[Advice]:
@@ -63,10 +74,11 @@ def never_touched(run) -> list[Advice]:
             "never touched", f"{interface.label} never touched.",
             f"no active point in {len(rows)} rows of rcforc; {proof}",
             f"leave interface {interface.id} (its *CONTACT_2D... block) out",
-            contact_seconds(run, interface),
-            "its contact time" if len(run.log.interfaces) == 1
-            or "contact_search.1" in run.seconds
-            else "its share of the contact time by its tracked nodes"))
+            contact_seconds(run, interface) + node_seconds(run, interface),
+            ("its contact time" if len(run.log.interfaces) == 1
+             or "contact_search.1" in run.seconds
+             else "its share of the contact time by its tracked nodes")
+            + ", and what its nodes cost to move"))
     return advice
 
 
@@ -93,7 +105,7 @@ def touched_for_a_while(run) -> list[Advice]:
             f"{time[active[-1]]:.4g}.",
             f"{len(active)} of {len(rows)} rows of rcforc have active points; none in "
             f"{idle:.0%} of the time, before the first and after the last",
-            f"{' and '.join(ends)} on card 2 of interface {interface.id}; holds for this run "
+            f"{' and '.join(ends)} of interface {interface.id}; holds for this run "
             "only: a later contact would go unseen",
             contact_seconds(run, interface, ("search",)) * idle,
             "its search outside that time: at most, since far nodes sleep anyway"))
