@@ -145,7 +145,7 @@ contains
       call say(log, trim(line))
     end do
     each = lap_seconds()
-    write (line, '(a,i0,a,f0.1,a,f4.2,a)') ' Clock               = ', sum(clock%calls), ' laps of ', &
+    write (line, '(a,i0,a,f0.1,a,f0.2,a)') ' Clock               = ', sum(clock%calls), ' laps of ', &
       1.0e9_wp*each, ' nanoseconds, ', 100.0_wp*each*sum(clock%calls)/total, ' % of the time'
     call say(log, trim(line))
   end subroutine show_timing
