@@ -9,23 +9,81 @@ module bandwidth_m
 
 contains
 
-  !> order(k) is the equation that comes k-th. The pattern of the matrix has to be symmetric.
+  !> order(k) is the equation that comes k-th. Two equations are neighbours where either has an entry for the other.
   pure function reverse_cuthill_mckee(matrix) result(order)
     type(sparse_t), intent(in) :: matrix
     integer :: order(matrix%n)
+    type(sparse_t) :: pattern
     integer :: level(matrix%n) !! 0: not reached yet
     integer :: root, start, n_done, n_found
 
+    pattern = symmetric_pattern(matrix)
     level = 0
     n_done = 0
     do root = 1, matrix%n
       if (level(root) /= 0) cycle
-      call find_end(matrix, root, level, order(n_done + 1:), start)
-      call walk_from(matrix, start, level, order(n_done + 1:), n_found)
+      call find_end(pattern, root, level, order(n_done + 1:), start)
+      call walk_from(pattern, start, level, order(n_done + 1:), n_found)
       n_done = n_done + n_found
     end do
     order = order(matrix%n:1:-1)
   end function reverse_cuthill_mckee
+
+  !> The pattern of the matrix and its transpose together, without values. Contact fills some entries on one side of the
+  !> diagonal alone; a walk along rows would pass by such neighbours.
+  pure function symmetric_pattern(matrix) result(pattern)
+    type(sparse_t), intent(in) :: matrix
+    type(sparse_t) :: pattern
+    integer, allocatable :: first(:), row(:)
+    integer :: i, n, a, b, next_a, next_b, least
+
+    call transpose_pattern(matrix, first, row)
+    pattern%n = matrix%n
+    allocate (pattern%first(matrix%n + 1), pattern%column(2*size(matrix%column)))
+    n = 0
+    do i = 1, matrix%n
+      pattern%first(i) = n + 1
+      a = matrix%first(i)
+      b = first(i)
+      do while (a < matrix%first(i + 1) .or. b < first(i + 1))
+        next_a = huge(1)
+        next_b = huge(1)
+        if (a < matrix%first(i + 1)) next_a = matrix%column(a)
+        if (b < first(i + 1)) next_b = row(b)
+        least = min(next_a, next_b)
+        if (next_a == least) a = a + 1
+        if (next_b == least) b = b + 1
+        n = n + 1
+        pattern%column(n) = least
+      end do
+    end do
+    pattern%first(matrix%n + 1) = n + 1
+  end function symmetric_pattern
+
+  !> Rows of the entries of each column, rising.
+  pure subroutine transpose_pattern(matrix, first, row)
+    type(sparse_t), intent(in) :: matrix
+    integer, allocatable, intent(out) :: first(:) !! (n + 1) where each column starts ...
+    integer, allocatable, intent(out) :: row(:)   !! ... in these
+    integer, allocatable :: next(:)
+    integer :: i, k
+
+    allocate (first(matrix%n + 1), row(size(matrix%column)), source=0)
+    do k = 1, size(matrix%column)
+      first(matrix%column(k) + 1) = first(matrix%column(k) + 1) + 1
+    end do
+    first(1) = 1
+    do i = 1, matrix%n
+      first(i + 1) = first(i + 1) + first(i)
+    end do
+    next = first
+    do i = 1, matrix%n
+      do k = matrix%first(i), matrix%first(i + 1) - 1
+        row(next(matrix%column(k))) = i
+        next(matrix%column(k)) = next(matrix%column(k)) + 1
+      end do
+    end do
+  end subroutine transpose_pattern
 
   !> An equation at one end of the connected part that holds `root`: from there the walk has the most,
   !> and so the narrowest, levels.

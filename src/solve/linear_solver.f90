@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Solves A x = b for a sparse matrix with symmetric pattern, symmetric in value or not, and says how
-!> good the answer is. Theory: doc/theory/implicit.md, "Linear systems".
+!> Solves A x = b for a sparse matrix whose pattern is symmetric but for a few entries, symmetric in value or not, and
+!> says how good the answer is. Theory: doc/theory/implicit.md, "Linear systems".
 module linear_solver_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use equilibration_m, only : equilibrate
@@ -18,6 +18,10 @@ module linear_solver_m
   !> Seen: 0.4e-16 to 7e-16 for rigid motions of up to 100,000 equations; 4e-15 for two blocks pressed
   !> together by a penalty 1e12 times their stiffness, 6e-14 for a cantilever of 2000 x 2 quads.
   real(wp), parameter :: singular_tolerance = 1.5e-15_wp
+  !> Up to here the errors of the factors may be all that is seen of A z, and z is corrected.
+  real(wp), parameter :: doubtful = 1.0e3_wp*singular_tolerance
+  !> Corrections of z at most.
+  integer, parameter :: n_correction = 2
   !> Largest residual of an answer.
   real(wp), parameter :: residual_tolerance = 1.0e-10_wp
   !> Steps of iterative refinement at most.
@@ -177,12 +181,46 @@ contains
     s = z/maxval(abs(z))
     call solve_factored(factor, .false., s, z)
     z = z/maxval(abs(z))
-    report%stiffness = norm2(multiply(scaled, z))/norm2(multiply_magnitudes(scaled, z))
+    report%stiffness = stiffness_met(scaled, z)
+    do i = 1, n_correction
+      if (report%stiffness <= singular_tolerance .or. report%stiffness > doubtful) exit
+      call correct_motion(scaled, factor, z, report%stiffness)
+    end do
     report%is_singular = report%stiffness <= singular_tolerance
     if (.not. report%is_singular) return
     report%equation = maxloc(abs(column_scale*z), dim=1)
     report%message = 'the matrix is singular: a motion meets no stiffness'
   end subroutine find_free_motion
+
+  !> |A z| / ||A||z||, Euclidean norms.
+  pure function stiffness_met(scaled, z) result(stiffness)
+    type(sparse_t), intent(in) :: scaled
+    real(wp), intent(in) :: z(:) !! (n), not zero
+    real(wp) :: stiffness
+
+    stiffness = norm2(multiply(scaled, z))/norm2(multiply_magnitudes(scaled, z))
+  end function stiffness_met
+
+  !> z - A^-1 A z instead of z where that meets less stiffness. With exact factors nothing would be left; with those of
+  !> A + E, z is free of A + E, and this takes away what of A z is due to E.
+  subroutine correct_motion(scaled, factor, z, stiffness)
+    type(sparse_t), intent(in) :: scaled
+    type(factor_t), intent(in) :: factor
+    real(wp), intent(inout) :: z(:)       !! (n)
+    real(wp), intent(inout) :: stiffness
+    real(wp), allocatable :: better(:)
+    real(wp) :: least
+
+    allocate (better(scaled%n))
+    call solve_factored(factor, .false., multiply(scaled, z), better)
+    better = z - better
+    if (.not. maxval(abs(better)) > 0.0_wp) return
+    better = better/maxval(abs(better))
+    least = stiffness_met(scaled, better)
+    if (.not. least < stiffness) return
+    stiffness = least
+    z = better
+  end subroutine correct_motion
 
   !> Solve and refine: the residual is solved for again until no equation gains (as LAPACK's dgerfs).
   subroutine solve_refined(scaled, factor, b, x, report)

@@ -20,7 +20,8 @@ module umfpack_m
   integer, parameter :: n_control = 20, n_info = 90
   integer, parameter :: control_strategy = 6, control_refinement = 8, control_ordering = 11, &
     control_scale = 17
-  integer, parameter :: info_factor_entries = 37, info_smallest_pivot = 72
+  integer, parameter :: info_lower_entries = 24, info_upper_entries = 25, info_factor_entries = 37, &
+    info_smallest_pivot = 72
   !> Values of settings: pivots on the diagonal where they are good; minimum degree or nested dissection;
   !> rows as given.
   real(c_double), parameter :: strategy_symmetric = 3, ordering_amd = 1, ordering_metis = 3, &
@@ -127,7 +128,7 @@ contains
     status = umfpack_di_symbolic(matrix%n, matrix%n, factor%start, factor%index, factor%entry, &
       symbolic, factor%control, info)
     if (status /= status_good .and. status /= status_singular) return
-    factor%bytes = int(bytes_per_entry*info(info_factor_entries), long)
+    factor%bytes = int(bytes_per_entry*expected_entries(info), long)
     if (factor%bytes < available_bytes()) then
       status = umfpack_di_numeric(factor%start, factor%index, factor%entry, symbolic, &
         factor%numeric, factor%control, info)
@@ -136,6 +137,16 @@ contains
     end if
     call umfpack_di_free_symbolic(symbolic)
   end subroutine factor_umfpack
+
+  !> Entries of the factors: as counted where pivots are taken from the diagonal; where the pattern allows none of
+  !> that, an upper bound.
+  pure function expected_entries(info) result(entries)
+    real(c_double), intent(in) :: info(n_info)
+    real(wp) :: entries
+
+    entries = info(info_factor_entries)
+    if (entries < 0.0_wp) entries = info(info_lower_entries) + info(info_upper_entries)
+  end function expected_entries
 
   !> x := A^-1 b, or A^-T b.
   subroutine solve_umfpack(factor, transposed, b, x)

@@ -1,0 +1,98 @@
+! SPDX-License-Identifier: MIT
+!> The two units that every other time is measured in: K, the element kernel alone on one chunk that stays in
+!> the L1 cache (gather, J2 stress, hourglass, forces, step limit; ns per element), and the bandwidth of the main
+!> memory (a = b + s c, GB/s counting 24 bytes an entry). usage: bench_kernel DECK, a deck of one full chunk of
+!> plastic quads that move. Prints `kernel_ns,...` and `bandwidth_gb_s,...`, each the best of several rounds.
+program bench_kernel
+  use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+  use contact_dispatch_m, only : contact_kinds
+  use deck_m, only : deck_request_t, read_deck
+  use element_chunk_m, only : element_chunk_t
+  use errors_m, only : error_t
+  use kinds_m, only : wp, long
+  use layout_m, only : chunk_size
+  use log_m, only : log_t
+  use model_m, only : model_t
+  use quad_one_point_m, only : advance_one_point
+  use renumber_m, only : renumber_model
+  use start_m, only : start_state
+  use state_m, only : state_t
+  implicit none
+
+  integer, parameter :: n_round = 7, n_call = 20000, n_entry = 20000000
+  type(model_t) :: model
+  type(state_t) :: state
+  type(deck_request_t) :: request
+  type(log_t) :: log
+  type(error_t), allocatable :: error
+  character(:), allocatable :: effective
+  character(1000) :: path
+
+  call get_command_argument(1, path)
+  request%path = trim(path)
+  call read_deck(request, contact_kinds, log, model, effective, error)
+  if (allocated(error)) then
+    write (error_unit, '(a)') error%message
+    error stop 1
+  end if
+  if (model%layout%n_chunk > 1) error stop 'the deck has more than one chunk of elements'
+  call renumber_model(model)
+  call start_state(model, log, state)
+  write (output_unit, '(a, f0.3)') 'kernel_ns,', time_kernel()
+  write (output_unit, '(a, f0.3)') 'bandwidth_gb_s,', measure_bandwidth()
+
+contains
+
+  !> K: ns per element of the best round.
+  function time_kernel() result(best)
+    real(wp) :: best
+    type(element_chunk_t) :: chunk
+    integer(long) :: start, finish, rate
+    real(wp) :: dt
+    integer :: i_round, i
+
+    associate (part => model%parts(model%layout%chunk_part(1)))
+      associate (material => model%materials(part%material))
+        call advance_one_point(1, model%layout%slot_nodes(1, 1), state%motion, material, part%hourglass, &
+          model%controls%length_rule, 0.0_wp, state%elements, chunk)
+        dt = 0.1_wp*state%elements%time_limit(1)
+        best = huge(1.0_wp)
+        do i_round = 1, n_round
+          call system_clock(start, rate)
+          do i = 1, n_call
+            call advance_one_point(1, model%layout%slot_nodes(1, 1), state%motion, material, &
+              part%hourglass, model%controls%length_rule, dt, state%elements, chunk)
+          end do
+          call system_clock(finish)
+          best = min(best, 1.0e9_wp*real(finish - start, wp)/real(rate, wp)/n_call/chunk_size)
+        end do
+      end associate
+    end associate
+    if (.not. maxval(state%elements%history) > 0.0_wp) error stop 'no element yields'
+  end function time_kernel
+
+  !> GB/s of the best round.
+  function measure_bandwidth() result(best)
+    real(wp) :: best
+    real(wp), allocatable :: a(:), b(:), c(:)
+    integer(long) :: start, finish, rate
+    integer :: i_round, i
+
+    allocate (a(n_entry), source=0.0_wp)
+    allocate (b(n_entry), source=1.0_wp)
+    allocate (c(n_entry), source=2.0_wp)
+    best = 0.0_wp
+    do i_round = 1, n_round
+      call system_clock(start, rate)
+      !$omp simd
+      do i = 1, n_entry
+        a(i) = b(i) + 0.5_wp*c(i)
+      end do
+      call system_clock(finish)
+      best = max(best, 24.0e-9_wp*n_entry*real(rate, wp)/real(finish - start, wp))
+      b(i_round) = a(n_entry)
+    end do
+    if (.not. sum(a) > 0.0_wp) error stop 'nothing was moved'
+  end function measure_bandwidth
+
+end program bench_kernel

@@ -1,0 +1,24 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# usage: tests/bench/run.sh [--quick]
+# Builds the Release program and its benchmarks and runs them on this machine; tables as CSV in
+# results/bench/. A quarter of an hour (--quick: one minute). Keep the machine quiet: what counts are the
+# ratios to the element kernel and to the memory's bandwidth, measured in the same minute.
+set -eu
+
+root=$(cd "$(dirname "$0")/../.." && pwd)
+out=$root/results/bench
+sizes="300 4000 100000 1000000 4000000"
+repeats=3
+if [ "${1:-}" = --quick ]; then
+  sizes="300 4000"
+  repeats=1
+fi
+
+"$root/tools/build.sh" release
+cmake -S "$root" -B "$root/build/release" -DSLIDELINE_BENCH=ON >/dev/null
+cmake --build "$root/build/release" --target bench_kernel
+# shellcheck disable=SC2086 # a list of sizes
+"$root/build/venv/bin/python" "$root/tests/bench/elements.py" --sizes $sizes --repeats "$repeats" \
+  --program "$root/build/release/slideline" \
+  --kernel "$root/build/release/tests/bench/bench_kernel" --out "$out"

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""What a study consists of: its jobs, and what is made of their results."""
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import os
+import pathlib
+from typing import Callable, Mapping, Optional, Sequence, Union
+
+ALL_TYPES = (1, 2, 3, 4, 5, 6, 7)
+
+
+@dataclasses.dataclass(frozen=True)
+class Options:
+    """What the user asked for."""
+
+    levels: tuple = (1,)
+    types: tuple = ALL_TYPES
+    quick: bool = False
+    repeats: int = 1
+
+
+@dataclasses.dataclass(frozen=True)
+class Job:
+    """One run of the program.
+
+    `name`      unique in the study; names the folder of the run
+    `deck`      text of the deck, or its file; without *INCLUDE
+    `jobid`     stem of the result files
+    `options`   further arguments of the program, for example ("ctype=5", "p:dtplot=1")
+    `labels`    columns of its row that say what it is, for example scene, level, type
+    `environment` variables set for it
+    `group`     jobs of a group run on one machine, since they are compared in time
+    `alone`     a timing job: nothing else runs beside it, whatever -j says
+    `turns`     how often it runs in each round of repeats
+    `cost`      expected seconds up to a common factor, for the guess of the time to go
+    `limit`     seconds after which it is stopped and counts as failed
+    `repeat`    its number among the runs of this name; set by `interleave`
+    """
+
+    name: str
+    deck: Union[str, pathlib.Path]
+    jobid: str = "run"
+    options: Sequence[str] = ()
+    labels: Mapping[str, object] = dataclasses.field(default_factory=dict)
+    environment: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    group: str = ""
+    alone: bool = False
+    turns: int = 1
+    cost: float = 1.0
+    limit: Optional[float] = None
+    repeat: int = 1
+
+    @property
+    def folder_name(self):
+        """Folder of the run below `runs`; the same whatever number of repeats is asked for."""
+        return self.name if self.repeat == 1 else f"{self.name}.{self.repeat}"
+
+    @property
+    def deck_text(self):
+        """The whole deck."""
+        if isinstance(self.deck, pathlib.Path):
+            return self.deck.read_text(encoding="utf-8")
+        return self.deck
+
+    def fingerprint(self, program):
+        """Changes with the deck, the options, the environment and the program (its `file_digest`)."""
+        parts = [self.deck_text, self.jobid, list(self.options), sorted(self.environment.items()),
+                 self.limit, program]
+        return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
+
+
+@dataclasses.dataclass(frozen=True)
+class Study:
+    """A sweep and what is made of it.
+
+    `jobs(options)`         the list of jobs of one round, without repeats
+    `measure(job, folder)`  columns read from one finished run; {} if there is nothing to read
+    `chart(rows, folder)`   draws the charts into `folder` (see `charts.save`)
+    `derive(rows, folder)`  optional: the rows with columns that need several runs, whose results
+                            are in folder/runs/<row["run"]>
+    `page(rows, doc)`       optional: writes DOC/studies/<name>.md and DOC/pictures/*
+    `levels`, `types`, `repeats` and `quick_...`: used where the user names none.
+    """
+
+    name: str
+    jobs: Callable[[Options], Sequence[Job]]
+    measure: Callable[[Job, pathlib.Path], Mapping]
+    chart: Callable[[list, pathlib.Path], None]
+    derive: Optional[Callable[[list, pathlib.Path], list]] = None
+    page: Optional[Callable[[list, pathlib.Path], None]] = None
+    levels: Sequence[int] = (1,)
+    types: Sequence[int] = ALL_TYPES
+    repeats: int = 1
+    quick_levels: Sequence[int] = (1,)
+    quick_repeats: int = 1
+
+
+def interleave(jobs, rounds):
+    """All jobs in turn, then the next round, so that a slow spell of the machine hits all alike."""
+    runs, count = [], {job.name: 0 for job in jobs}
+    if len(count) < len(jobs):
+        raise ValueError("two jobs of one name")
+    for _ in range(rounds):
+        for turn in range(max((job.turns for job in jobs), default=0)):
+            for job in jobs:
+                if turn < job.turns:
+                    count[job.name] += 1
+                    runs.append(dataclasses.replace(job, repeat=count[job.name]))
+    return runs
+
+
+def part_of(jobs, index, count):
+    """Part `index` (from 0) of `count` parts of the list; a group stays together."""
+    groups = list(dict.fromkeys(job.group or job.name for job in jobs))
+    chosen = set(groups[index::count])
+    return [job for job in jobs if (job.group or job.name) in chosen]
+
+
+def file_digest(path):
+    """Digest of a file, for `Job.fingerprint`."""
+    return hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
+
+
+def write_whole(path, text):
+    """Write a file so that it is there whole or not at all."""
+    part = path.with_name(path.name + ".part")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, path)

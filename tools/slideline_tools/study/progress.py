@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""Says how far a sweep is: one updating line on a terminal, plain lines elsewhere."""
+import shutil
+import sys
+import time
+
+LINE_EVERY, SHOW_EVERY = 1.0, 0.2  # seconds between plain lines, between updates
+
+
+class Progress:
+    """Counts finished runs and guesses the time to go from runs of the same name, else from the cost."""
+
+    def __init__(self, stream=None):
+        self.stream = stream or sys.stdout
+        self.updating = self.stream.isatty()
+        self.seconds, self.costs = {}, {}  # measured seconds and expected cost by job name
+        self.left, self.total, self.finished, self.failed = [], 0, 0, 0
+        self.parallel, self.shown = 1, 0.0
+
+    def known(self, job, record):
+        """A run that has finished before."""
+        self.seconds.setdefault(job.name, []).append(record["seconds"])
+        self.costs[job.name] = job.cost
+        self.failed += record["status"] != 0
+        self.finished += 1
+
+    def start(self, waiting, parallel):
+        """The runs to come."""
+        self.left, self.parallel = list(waiting), parallel
+        self.total = self.finished + len(self.left)
+        if self.finished:
+            self.line(f"{self.finished} of {self.total} runs have finished before")
+
+    def done(self, job, record):
+        """One more run has finished."""
+        self.left.remove(job)
+        self.known(job, record)
+        if record["status"] != 0:
+            self.line(f"{job.folder_name} failed: {record['message']}")
+        if not self.updating and (time.monotonic() - self.shown > LINE_EVERY or not self.left):
+            self.shown = time.monotonic()
+            self.line(f"{self.state()}; {job.folder_name} took {record['seconds']:.3g} s")
+
+    def killed(self, job):
+        """A run that was ended from outside: no result."""
+        self.left.remove(job)
+        self.line(f"{job.folder_name} was killed; the same command runs it anew")
+
+    def show(self, running):
+        """What runs now, on a terminal."""
+        if self.updating and running and time.monotonic() - self.shown > SHOW_EVERY:
+            self.shown = time.monotonic()
+            text = f"{self.state()}: {', '.join(job.folder_name for job in running)}"
+            width = shutil.get_terminal_size().columns - 1
+            self.stream.write("\r" + text[:width].ljust(width))
+            self.stream.flush()
+
+    def end(self):
+        """Leave the updating line."""
+        if self.updating and self.total:
+            self.line(self.state())
+
+    def line(self, text):
+        """One line that stays."""
+        if self.updating:
+            self.stream.write("\r" + text.ljust(shutil.get_terminal_size().columns - 1) + "\n")
+        else:
+            self.stream.write(text + "\n")
+        self.stream.flush()
+
+    def state(self):
+        """'12 of 84 runs, 1 failed, about 3 min to go'."""
+        text = f"{self.finished} of {self.total} runs"
+        if self.failed:
+            text += f", {self.failed} failed"
+        return text + (f", {span(self.to_go())} to go" if self.left else "")
+
+    def to_go(self):
+        """Seconds to go, or None if no run has finished yet."""
+        if not self.seconds:
+            return None
+        means = {name: sum(values) / len(values) for name, values in self.seconds.items()}
+        unit = sum(means.values()) / sum(self.costs.values())
+        return sum(means.get(job.name, unit * job.cost) / (1 if job.alone else self.parallel)
+                   for job in self.left)
+
+
+def span(seconds):
+    """A length of time in words."""
+    if seconds is None:
+        return "an unknown time"
+    if seconds < 90.0:
+        return f"about {max(1, round(seconds))} s"
+    if seconds < 5400.0:
+        return f"about {round(seconds / 60.0)} min"
+    return f"about {seconds / 3600.0:.1f} h"

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: MIT
+"""The studies by name: one line each."""
+import importlib
+
+from slideline_tools import UserError
+
+STUDIES = {  # name on the command line: file of this package
+    "paper-tables": "paper_tables",
+}
+
+
+def load(name):
+    """The `Study` of that name."""
+    if name not in STUDIES:
+        raise UserError(f"unknown study '{name}'; there are {', '.join(STUDIES)}")
+    return importlib.import_module(f"slideline_tools.study.{STUDIES[name]}").STUDY

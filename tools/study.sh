@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# usage: tools/study.sh NAME [--levels N...] [--types N...] [--quick] [-j N] [--repeats N] ...
+# Installs what is missing, builds Release and runs a study: a sweep of runs that ends in a table
+# and charts in results/study-NAME (tools/study.sh --help). Killed, it goes on with the same command.
+set -uo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+case " $* " in
+  *" --program "* | *" --program="*) ;;  # a program of one's own
+  *) "$root/tools/build.sh" release >&2 || exit 1 ;;
+esac
+MPLBACKEND=Agg exec "$root/build/venv/bin/python" -m slideline_tools.study "$@"
