@@ -6,7 +6,7 @@ module newton_m
   use clock_m, only : clock_t, lap, phase_nodes, phase_solver
   use contact_scatter_m, only : add_gap_round_off
   use controls_m, only : implicit_t
-  use equations_m, only : take_free, move_prescribed
+  use equations_m, only : take_free, move_prescribed, find_equation
   use forces_m, only : trial_t, assemble_forces, trouble_of
   use line_search_m, only : way_t, move_nodes
   use linear_solver_m, only : report_t, solve_linear
@@ -38,6 +38,7 @@ module newton_m
     real(wp) :: energy = 0.0_wp   !! |dU.R|
     real(wp) :: start = 0.0_wp    !! norm of what the iteration set out to remove
     real(wp) :: residual = huge(1.0_wp) !! norm of R
+    integer :: worst = 0          !! equation of the largest entry of R
     real(wp) :: before = huge(1.0_wp) !! norm of R one iteration ago
     real(wp) :: floor = 0.0_wp    !! round-off in it that comes from forces and displacements
     real(wp) :: gap_floor = 0.0_wp !! and with that of places in gaps, an upper estimate
@@ -60,7 +61,7 @@ contains
     type(measure_t) :: first, now
     type(way_t) :: way
     type(report_t) :: report
-    integer :: iteration
+    integer :: iteration, node, direction
     logical :: solved
 
     trial%motion(1:2, :) = state%motion(1:2, :)
@@ -86,7 +87,9 @@ contains
         norm2(trial%motion(3:4, :)))
       if (outcome%converged) return
     end do
-    outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations'
+    call find_equation(step%equations, now%worst, node, direction)
+    outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations, most force out of ' &
+      //'balance at node '//to_text(model%mesh%node_id(max(node, 1)))//' in '//merge('x', 'y', direction == 1)
   end subroutine find_equilibrium
 
   !> Where an iteration leads: the solution of the linear system; the first of a step moves the prescribed degrees of
@@ -143,7 +146,9 @@ contains
     integer :: i, k
 
     now%before = now%residual
-    now%residual = norm2(take_free(step%equations, assemble_residual(model, state, step, trial)))
+    u = take_free(step%equations, assemble_residual(model, state, step, trial))
+    now%residual = norm2(u)
+    now%worst = maxloc(abs(u), 1)
     u = abs(take_free(step%equations, trial%motion(1:2, :)))
     total = take_free(step%equations, abs(trial%internal) + abs(trial%contact) + abs(trial%external))
     do i = 1, matrix%n
