@@ -42,10 +42,12 @@ contains
     type(step_t) :: step
     type(due_t) :: written
     type(error_t), allocatable :: second
+    real(wp), allocatable :: changes(:)
     logical :: last, stopped
 
     reason = 'termination time reached'
-    control = start_step_control(model%controls, list_changes(model))
+    call list_changes(model, changes)
+    control = start_step_control(model%controls, changes)
     call plan_step(control, 0.0_wp)
     call start_implicit(model, control%next, state, monitor, step, trial, error)
     if (allocated(error)) return

@@ -171,12 +171,58 @@ contains
     end do
   end function curve_moment
 
-  !> Births and deaths of all prescribed motions.
-  pure function list_changes(model) result(changes)
+  !> Times at which a step must end: births and deaths of prescribed motions, where the equations change; and with steps
+  !> that grow, lest they leap over it, where a curve in use turns.
+  pure subroutine list_changes(model, changes)
     type(model_t), intent(in) :: model
-    real(wp) :: changes(2*size(model%conditions%motions))
+    real(wp), allocatable, intent(out) :: changes(:)
+    integer :: i
 
-    changes = [model%conditions%motions%birth, model%conditions%motions%death]
-  end function list_changes
+    associate (conditions => model%conditions)
+      changes = [conditions%motions%birth, conditions%motions%death]
+      if (.not. model%controls%implicit%is_automatic) return
+      changes = [changes, conditions%pressures%arrival, model%contacts%birth, model%contacts%death]
+      do i = 1, size(model%curves)
+        if (any(conditions%motions%curve == i) .or. any(conditions%nodal_loads%curve == i) &
+          .or. any(conditions%body_loads%curve == i)) &
+          changes = [changes, turning_points(model%curves(i))]
+        call add_pressure_turns(model, i, changes)
+      end do
+    end associate
+  end subroutine list_changes
+
+  !> Turns of curve `i` in pressures, whose curves start at their arrival: once for each time of arrival in a row.
+  pure subroutine add_pressure_turns(model, i, changes)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    real(wp), allocatable, intent(inout) :: changes(:)
+    real(wp) :: told
+    integer :: k
+
+    told = -huge(told)
+    do k = 1, size(model%conditions%pressures)
+      associate (load => model%conditions%pressures(k))
+        if (load%curve /= i .or. abs(load%arrival - told) <= 0.0_wp) cycle
+        changes = [changes, load%arrival + turning_points(model%curves(i))]
+        told = load%arrival
+      end associate
+    end do
+  end subroutine add_pressure_turns
+
+  !> Where a curve begins or ceases to rise or to fall.
+  pure function turning_points(curve) result(times)
+    type(curve_t), intent(in) :: curve
+    real(wp), allocatable :: times(:)
+    real(wp) :: way(0:size(curve%abscissa)) !! sign of the slope before and after each point
+    integer :: i, n
+
+    n = size(curve%abscissa)
+    way = 0.0_wp
+    do i = 1, n - 1
+      if (abs(curve%ordinate(i + 1) - curve%ordinate(i)) > 0.0_wp) &
+        way(i) = sign(1.0_wp, curve%ordinate(i + 1) - curve%ordinate(i))
+    end do
+    times = pack(curve%abscissa, abs(way(1:n) - way(0:n - 1)) > 0.5_wp)
+  end function turning_points
 
 end module prescribed_step_m

@@ -245,6 +245,18 @@ def test_easy_steps_grow(slideline, tmp_path):
     assert steps[-1] == 1.0
 
 
+def test_growing_steps_see_a_pulse(slideline, tmp_path):
+    """A load that lasts a tenth of a grown step: begin, top and end of it are steps, the others stay whole."""
+    deck = pulled(0.0, dt=0.05, automatic=(1.0e-3, 0.3))
+    deck.curve(2, [(0.0, 0.0), (0.71, 0.0), (0.72, 10.0), (0.74, 0.0), (1.0, 0.0)])
+    deck.add("*LOAD_NODE_POINT", (4, 1, 2, 1.0))
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0, done.stderr
+    steps = numbers(tmp_path / "x" / "job.glstat.csv", "time")
+    assert {0.71, 0.72, 0.74} <= {round(step, 9) for step in steps}
+    assert max(numbers(tmp_path / "x" / "job.glstat.csv", "internal")) > 0.0
+
+
 def test_load_beyond_the_limit_stops_at_the_limit(slideline, tmp_path):
     """Perfect plasticity carries 2/sqrt(3) of the yield stress in plane strain and no more."""
     limit = 2.0 / math.sqrt(3.0) * YIELD

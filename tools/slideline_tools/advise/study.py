@@ -16,19 +16,21 @@ import sys
 
 from slideline_tools import UserError
 from slideline_tools.advise import advise, bodies, outputs, report, stepping, study_decks, touching
-from slideline_tools.study.runner import processor
+from slideline_tools.scenes import collision
 from slideline_tools.studies.common import markdown_table, write_page
+from slideline_tools.study.runner import processor
+from slideline_tools.summaries import collision_row
 
 ALL = "all"
 
 
-def run_deck(program: pathlib.Path, folder: pathlib.Path, waste) -> float:
+def run_deck(program: pathlib.Path, folder: pathlib.Path, text: str, *arguments) -> float:
     """Run one deck into `folder`; processor seconds. UserError when it does not end normally."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "deck.k").write_text(study_decks.deck(waste), encoding="ascii")
+    (folder / "deck.k").write_text(text, encoding="ascii")
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([str(program), f"i={folder / 'deck.k'}", f"d={folder}", "jobid=run"],
-                          capture_output=True, text=True, check=False)
+    done = subprocess.run([str(program), f"i={folder / 'deck.k'}", f"d={folder}", "jobid=run",
+                           *arguments], capture_output=True, text=True, check=False)
     if done.returncode:
         raise UserError(f"{folder}: {done.stdout[-500:]}{done.stderr}")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -43,13 +45,31 @@ def measure(program: pathlib.Path, folder: pathlib.Path, rounds: int):
         for topic in (ALL, *study_decks.WASTE):
             waste = [other for other in study_decks.WASTE if other != topic]
             place = folder / topic.replace(" ", "_")
-            totals.setdefault(topic, []).append(run_deck(program, place, waste))
+            taken = run_deck(program, place, study_decks.deck(waste))
+            totals.setdefault(topic, []).append(taken)
             if topic == ALL:
                 last = advise(place)[:2]
                 for item in last[1]:
                     predicted.setdefault(item.topic, []).append(item.seconds / last[0].total)
-    run_deck(program, folder / "nothing", ())
+    run_deck(program, folder / "nothing", study_decks.deck(()))
     return predicted, totals, last, advise(folder / "nothing")[:2]
+
+
+def measure_collision(program: pathlib.Path, folder: pathlib.Path, rounds: int) -> dict:
+    """The collision of the seed, N_r = 2, and again with the step that the advice names."""
+    before, after, predicted, place = [], [], [], folder / "collision"
+    for _ in range(rounds):
+        before.append(run_deck(program, place, collision(2)))
+        run, found, _ = advise(place)
+        longer = next(item for item in found if item.topic == "short steps")
+        predicted.append(longer.seconds / run.total)
+        argument = longer.change.split("command line: ")[1].rstrip(")")
+        after.append(run_deck(program, folder / "collision_longer", collision(2), argument))
+    rebound = [collision_row(folder / name, "run")["rebound"]
+               for name in ("collision", "collision_longer")]
+    return {"argument": argument, "rebound": rebound,
+            "predicted": 100.0 * predicted[before.index(min(before))],
+            "measured": 100.0 * (1.0 - min(after) / min(before))}
 
 
 def rows(predicted: dict, totals: dict) -> list[tuple]:
@@ -97,9 +117,11 @@ def thresholds() -> list[tuple]:
          f"{report.SMALLEST_SECONDS} s, unless `--all`")]
 
 
-def page(predicted: dict, totals: dict, last, clean) -> str:
+def page(predicted: dict, totals: dict, last, clean, scene: dict) -> str:
     """The page."""
     return PAGE.format(
+        scene="{argument}: predicted {predicted:.1f} %, measured {measured:.1f} %; rebound velocity "
+        "{rebound[0]:.3f} and {rebound[1]:.3f} m/s".format(**scene),
         rounds=len(totals[ALL]), base=min(totals[ALL]), spread=spread(totals),
         processor=processor(), table=markdown_table(
             ("topic", "predicted, %", "measured, %"), rows(predicted, totals)),
@@ -147,6 +169,9 @@ median, so that differences of a few per cent mean nothing.
 
 {table}
 
+The collision of the seed (`input/collision/collision_2.k`) has a step somewhat shorter than it must. With the one that
+the advice names, {scene}.
+
 ## When it speaks
 
 {thresholds}
@@ -172,7 +197,8 @@ def main(arguments=None) -> int:
     options = parser.parse_args(arguments)
     try:
         write_page(options.doc, "advise",
-                   page(*measure(options.program, options.folder, options.rounds)))
+                   page(*measure(options.program, options.folder, options.rounds),
+                        measure_collision(options.program, options.folder, options.rounds)))
     except UserError as problem:
         print(problem, file=sys.stderr)
         return 2
