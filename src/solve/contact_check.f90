@@ -32,9 +32,9 @@ contains
         spring_limit = spring_limit*(sqrt(1.0_wp + z**2) - z)
       end associate
       ! Squares of frequencies add up at most.
-      limit = 1.0_wp/sqrt(1.0_wp/element_limit**2 + 1.0_wp/spring_limit**2)
+      limit = 1.0_wp/sqrt((1.0_wp/element_limit)**2 + 1.0_wp/spring_limit**2)
       if (state%dt <= limit) cycle
-      share = (1.0_wp/state%dt**2 - 1.0_wp/element_limit**2)*spring_limit**2
+      share = (1.0_wp/state%dt**2 - (1.0_wp/element_limit)**2)*spring_limit**2
       if (share > 0.0_wp) then
         call warn(log, 'interface '//to_text(model%contacts(i)%id)//': its penalty demands a time ' &
           //'step of at most '//to_text(limit)//' (elements alone '//to_text(element_limit) &

@@ -56,18 +56,22 @@ contains
     integer, intent(in) :: n_special
     type(state_t), intent(in) :: state
     type(rigid_state_t), intent(inout) :: rigid
-    real(wp) :: turn(2), arm(2), force(2)
-    integer :: k
+    real(wp) :: turn(2), arm(2), fx, fy, total(3)
+    integer :: k, node
 
-    rigid%force = 0.0_wp
+    total = 0.0_wp
     turn = turn_of(rigid%place(3))
     do k = 1, size(nodes)
-      if (nodes(k) > n_special) exit
-      force = state%force_special(:, nodes(k)) - state%internal_force(:, nodes(k))
+      node = nodes(k)
+      if (node > n_special) exit
+      fx = state%force_special(1, node) - state%internal_force(1, node)
+      fy = state%force_special(2, node) - state%internal_force(2, node)
       arm = rigid%arms(:, k) + shift_by_turn(turn, rigid%arms(:, k))
-      rigid%force(1:2) = rigid%force(1:2) + force
-      rigid%force(3) = rigid%force(3) + (arm(1)*force(2) - arm(2)*force(1))
+      total(1) = total(1) + fx
+      total(2) = total(2) + fy
+      total(3) = total(3) + (arm(1)*fy - arm(2)*fx)
     end do
+    rigid%force = total
   end subroutine sum_forces
 
   !> D of each degree of freedom: the turn is damped by the forces -D m v on the nodes as they now lie.
