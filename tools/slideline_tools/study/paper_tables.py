@@ -26,7 +26,7 @@ class Scene:
 
     `figure`, `table`  where the paper shows its times
     `deck`             text of the deck by level
-    `turns`, `cost`    as in Job, at level 1
+    `turns`, `cost`    as in Job, at level 1; finer runs are longer and take fewer turns
     `options`, `quick` of the program; `quick` shortens the run
     `slave_nodes`      at level 1
     `paper`            its ratios to type 1 by type and level
@@ -58,7 +58,7 @@ SCENES = {
         paper=by_level((3, 2.0), (4, 3.0)),
         told="its text: type 3 about twice, type 4 three times type 1, close to type 6"),
     "block": Scene(
-        "Block-to-block, explicit", "Fig. 24", lambda _: scenes.block(), turns=5, cost=0.3,
+        "Block-to-block, explicit", "Fig. 24", lambda _: scenes.block(), turns=12, cost=0.3,
         paper=by_level((4, 2.4)),
         told="its text: type 4 2.4 times type 1, type 5 the cheapest after type 1"),
     "sliding": Scene(
@@ -67,7 +67,7 @@ SCENES = {
         paper=by_level((3, 2.25, 2.26, 2.26), (4, 2.09, 2.09, 2.20), (5, 1.22, 1.09, 1.12),
                        (6, 4.98, 5.49, 5.85))),
     "collision": Scene(
-        "Collision", "Fig. 32", scenes.collision, levels=(1, 2, 3, 4), turns=3, options=NO_OUTPUT,
+        "Collision", "Fig. 32", scenes.collision, levels=(1, 2, 3, 4), turns=12, options=NO_OUTPUT,
         table="Table 2", slave_nodes=25,
         paper=by_level((3, 1.92, 1.97, 1.95, 1.93), (4, 2.06, 2.05, 2.04, 2.05),
                        (5, 1.20, 1.09, 1.06, 1.06), (6, 3.41, 3.76, 3.82, 3.78))),
@@ -84,8 +84,9 @@ def jobs(options):
                 listed.append(Job(
                     f"{name}_{level}_type_{ctype}", deck, name,
                     (f"ctype={ctype}", "ncpu=1", *scene.options, *(scene.quick * options.quick)),
-                    {"scene": name, "level": level, "type": ctype}, group=f"{name}_{level}",
-                    alone=True, turns=scene.turns, cost=scene.cost * level ** 3))
+                    {"scene": name, "level": level, "type": ctype, "quick": int(options.quick)},
+                    group=f"{name}_{level}",
+                    alone=True, turns=max(1, scene.turns // level), cost=scene.cost * level ** 3))
     return listed
 
 
@@ -175,6 +176,11 @@ def page_figure(all_times):
 
 # ---- tables and page ---------------------------------------------------------------------------
 
+def duration(seconds):
+    """A time in s or ms with three digits."""
+    return f"{seconds:.3g} s" if seconds >= 1.0 else f"{1e3 * seconds:.3g} ms"
+
+
 def ratio_table(times):
     """Contact time and ratio to type 1 by level, the paper's ratio behind it."""
     theirs, rows = SCENES[times.scene].paper, []
@@ -185,7 +191,7 @@ def ratio_table(times):
                 row.append("")
                 continue
             ratio = theirs.get(ctype, {}).get(level)
-            row.append(f"{1e3 * times.seconds[level][ctype]['contact']:.3g} ms, "
+            row.append(f"{duration(times.seconds[level][ctype]['contact'])}, "
                        f"{times.ratio(level, ctype):.2f}" + (f" ({ratio:.2f})" if ratio else ""))
         if any(row[1:]):
             rows.append(row)
@@ -214,7 +220,8 @@ def section(times):
     parts += [f"Steps over the contact time of type 1, N_r = {level}:\n\n{step_table(times, level)}"
               for level in ends]
     parts.append(f"Medians of {times.rounds} runs; the quartiles of a contact time lie at most "
-                 f"{100.0 * times.spread:.0f} % of its median apart.")
+                 f"{100.0 * times.spread:.0f} % of its median apart. Load of the machine: "
+                 f"{times.load:.1f}.")
     return "\n\n".join(parts)
 
 
@@ -232,16 +239,21 @@ round, and each figure is the median over the rounds. Step A is the search, M th
 placing of points (counted as B in types 1, 2, 3 and 6), B the force. Seconds are corrected by the
 pace of the element loop of the same run, which is the same work for all types: what slows the
 machine for a while slows both. The share is that of the computation, without input and output. In
-the implicit run the contact tangent counts as B.
+the implicit run the contact tangent counts as B. The load of a machine is the mean number of processes that want to
+run, this one included: above the number of its cores, times of short phases are not to be trusted.
 
 ![Contact time of all types](../pictures/paper_tables.png)
 
 Bars: steps A, M and B over the contact time of type 1; above them the sum and, in brackets, the share
 of the computation. Diamonds: the paper.
 
-{sections}
+{quick}{sections}
 
 {reading}
+"""
+QUICK = """This was a quick run: level 1 alone, and the sliding ends after 2 ms of 6, in which the die is
+pressed in and drawn along for 0.5 ms.
+
 """
 READING = """## Where the ratios differ from the paper's, and why
 
@@ -304,8 +316,9 @@ def page(rows, doc):
         raise UserError("no finished runs of type 1")
     save_small(page_figure(all_times), doc / "pictures" / "paper_tables.png", lines=True)
     processors = sorted({row["processor"] for row in finished(rows)})
+    quick = any(row["quick"] for row in rows)
     write_page(doc, "paper_tables", PAGE.format(
-        processor="; ".join(processors),
+        quick=QUICK if quick else "", processor="; ".join(processors),
         reading=reading(all_times.get("sliding"), all_times.get("collision")),
         sections="\n\n".join(section(times) for times in all_times.values())).rstrip() + "\n")
 
