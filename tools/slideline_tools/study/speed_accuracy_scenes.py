@@ -212,6 +212,7 @@ SCENES = {
     "collision": Scene(
         "Collision", scenes.collision, lambda level: 1.0e9 / level, judge_collision,
         (Measure("plastic_error", "plastic work, difference by column", referenced=True),
+         Measure("total_work_error", "plastic work in total, difference", referenced=True),
          Measure("rebound_error", "rebound, difference over the speed of impact", referenced=True),
          Measure("energy_error", "largest deviation of the energy ratio from 1")),
         levels=(1, 2, 3, 4), quick_levels=(1, 2), options=("p:dtplot=1",),
