@@ -9,6 +9,8 @@ from __future__ import annotations
 import dataclasses
 from typing import Callable, Mapping, Sequence
 
+import numpy as np
+
 from slideline_tools import UserError, scenes
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, plt
 from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
@@ -220,8 +222,8 @@ def section(times):
     parts += [f"Steps over the contact time of type 1, N_r = {level}:\n\n{step_table(times, level)}"
               for level in ends]
     parts.append(f"Medians of {times.rounds} runs; the quartiles of a contact time lie at most "
-                 f"{100.0 * times.spread:.0f} % of its median apart. Load of the machine: "
-                 f"{times.load:.1f}.")
+                 f"{100.0 * times.spread:.0f} % of its median apart."
+                 + ("" if np.isnan(times.load) else f" Load of the machine: {times.load:.1f}."))
     return "\n\n".join(parts)
 
 
@@ -240,7 +242,8 @@ placing of points (counted as B in types 1, 2, 3 and 6), B the force. Seconds ar
 pace of the element loop of the same run, which is the same work for all types: what slows the
 machine for a while slows both. The share is that of the computation, without input and output. In
 the implicit run the contact tangent counts as B. The load of a machine is the mean number of processes that want to
-run, this one included: above the number of its cores, times of short phases are not to be trusted.
+run, this one included: above the number of its cores, times of short phases are not to be trusted. What taking
+the times costs at so few slave nodes: [results.md](../results.md#what-the-timing-costs).
 
 ![Contact time of all types](../pictures/paper_tables.png)
 
@@ -266,8 +269,8 @@ differ by far more than two types of one program do, and what is compared is how
   takes {slide_a:.0f} ns a node and step in the sliding. A ratio to type 1 is a ratio to less, and what a type adds shows more.
 - **Type 5** costs {low_5:.2f} to {high_5:.2f} times type 1 (paper 1.06 to 1.22). It shares steps A and B with type 1; what it adds is
   step M, to find the feet of the slave nodes and the master nodes between them in each step: {low_m5:.2f} to {high_m5:.2f} of the
-  whole contact time of type 1, at {low_m5_ns:.0f} to {high_m5_ns:.0f} ns a slave node and step. Beside a detection of microseconds this would be the
-  paper's few per cent.
+  whole contact time of type 1, at {low_m5_ns:.0f} to {high_m5_ns:.0f} ns a slave node and step. Beside a detection of microseconds that would
+  hardly show.
 - **Type 4**: {low_4:.2f} to {high_4:.2f} (paper 2.05 to 2.20). It follows two places on each slave segment (step A) and
   divides each among the master segments that it faces (step M).
 - **Type 3**: {low_3:.2f} to {high_3:.2f} (paper 1.92 to 2.26), both surfaces are searched and
