@@ -66,16 +66,16 @@ TEXTS = {
     "block": """[Block-to-block](block_to_block.md), 51 N_r over 50 N_r quads, 0.2 s in 2000 steps (a tenth of that page's
 steps, so that there is a time to measure). Exact: the pressure of a separate one-dimensional solution (a chain of masses
 and springs) with the springs that the type has. What is left of the types that pass is the elements' own lateral stress.""",
-    "hertz": """[Hertz](hertz.md), cylinder on block, 50 microseconds. Errors against the closed form: largest distance of a nodal pressure
-from the ellipse inside 0.8 a, over p0; and the half width. The closed form leaves out finite strain, about 0.1 %
+    "hertz": """[Hertz](hertz.md), cylinder on block, 50 microseconds. Errors against the closed form: largest distance of a
+nodal pressure from the ellipse inside 0.8 a, over p0; and the half width. The closed form leaves out finite strain, about 0.1 %
 here. The penalty is a layer of springs, which widens the contact in the same way for all types.""",
     "sliding": """[Sliding](sliding.md), 6 ms. The error is the difference of the vertical force to the reference at the same
 time, root mean square over the mean force in the judged time: above all that of the mesh, whose segments the die
 passes one by one. The roughness (force less its trend, as defined there) is that of the contact, and needs no reference.""",
     "collision": """[Collision](collision.md), 1 ms. Plastic work: yield stress times plastic strain times area at the end, summed
 over each of the 36 columns of the level 1 plate (the error is the sum of the differences over the sum) and in total. (The
-largest plastic strain itself sits at the clamp and does not converge.) Rebound: difference of the mean final velocity over the 80 m/s of the
-impact; it is a small difference of large impulses. The energy error is that of the balance.""",
+largest plastic strain itself sits at the clamp and does not converge.) Rebound: difference of the mean final velocity over
+the 80 m/s of the impact; it is a small difference of large impulses. The energy error is that of the balance.""",
 }
 
 
