@@ -18,18 +18,17 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), intent(inout) :: velocity(:) !! (n_motion)
-    integer :: i
+    integer :: i, before
 
     do i = 1, size(model%conditions%motions)
       associate (prescribed => model%conditions%motions(i))
-        if (i > 1) then
-          if (has_same_velocity(prescribed, model%conditions%motions(i - 1))) then
-            velocity(i) = velocity(i - 1)
-            cycle
-          end if
+        before = max(1, i - 1)
+        if (i > before .and. has_same_velocity(prescribed, model%conditions%motions(before))) then
+          velocity(i) = velocity(before)
+        else
+          velocity(i) = next_velocity(model, prescribed, state%time, state%dt, state%dt_before, &
+            state%motion(prescribed%direction, prescribed%node), state%prescribed_velocity(i))
         end if
-        velocity(i) = next_velocity(model, prescribed, state%time, state%dt, state%dt_before, &
-          state%motion(prescribed%direction, prescribed%node), state%prescribed_velocity(i))
       end associate
     end do
   end subroutine find_prescribed_velocities

@@ -78,7 +78,7 @@ def test_added_points_are_the_active_ones_beyond_the_touching_nodes(tmp_path):
 def timing_rows(steps):
     """Three runs of every variant, the last one disturbed; `steps` = seconds by type."""
     return [{"state": "finished", "scene": scene, "level": level, "type": ctype, "elements": 1.0,
-             "element_calls": 1, "computing": 20.0, "contact": factor * (a + m + b),
+             "element_calls": 1, "computing": 20.0, "load": 1.0, "contact": factor * (a + m + b),
              "search": factor * a, "pairing": factor * m, "force": factor * b}
             for factor in (1.0, 0.9, 50.0) for scene, levels in claims.LEVELS.items()
             for level in levels for ctype, (a, m, b) in steps.items()]

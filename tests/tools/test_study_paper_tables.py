@@ -46,7 +46,7 @@ def row(scene, level, ctype, steps, slow=1.0, state="finished"):
     a, m, b = (slow * step for step in steps)
     return {"state": state, "scene": scene, "level": level, "type": ctype, "search": a, "pairing": m,
             "force": b, "contact": a + m + b, "elements": slow * 10.0, "element_calls": 10,
-            "computing": slow * 40.0, "processor": PROCESSOR}
+            "computing": slow * 40.0, "processor": PROCESSOR, "load": 1.5, "quick": 0}
 
 
 def all_rows():
@@ -100,7 +100,7 @@ def test_runs_are_alone_interleaved_and_include_type_1():
     assert {(job.labels["scene"], job.labels["level"]) for job in jobs} == {
         ("block_implicit", 1), ("block", 1), ("sliding", 1), ("sliding", 2), ("collision", 1),
         ("collision", 2)}
-    assert sum(job.name == "collision_2_type_5" for job in jobs) == 2 * 3
+    assert sum(job.name == "collision_2_type_5" for job in jobs) == 2 * 6
     for index in range(3):
         part = part_of(jobs, index, 3)
         groups = {job.group for job in part}
@@ -124,9 +124,9 @@ def test_charts_and_page(tmp_path):
     assert (tmp_path / "block_contact_time.svg").read_text() == first
     paper_tables.page(rows, tmp_path / "doc")
     page = (tmp_path / "doc/studies/paper_tables.md").read_text()
-    assert re.search(r"\| 5 NTS-mAR \| \S+ ms, 5.00 \(1.22\) \| \S+ ms, 5.00 \(1.09\)", page)
+    assert re.search(r"\| 5 NTS-mAR \| \S+ s, 5.00 \(1.22\) \| \S+ s, 5.00 \(1.09\)", page)
     assert "| 4 VTS-PPT | 2.00 | 1.00 | 1.00 | 4.00 | 40.0 % |" in page
-    assert PROCESSOR in page
+    assert PROCESSOR in page and "Load of the machine: 1.5." in page and "quick run" not in page
     assert (tmp_path / "doc/pictures/paper_tables.png").stat().st_size < 100_000
 
 
@@ -138,6 +138,11 @@ def test_time_of_a_slave_node_is_that_of_the_paper_s_seconds():
     assert "costs 5.00 to 5.00 times type 1" in text and "make 22 and 12 microseconds" in text
     assert "sliding N_r = 3 type 4" in text
     assert paper_tables.reading(found, None) == ""
+
+
+def test_durations_have_three_digits():
+    assert [paper_tables.duration(x) for x in (0.00034567, 0.99, 1.2345)] == ["0.346 ms", "990 ms",
+                                                                           "1.23 s"]
 
 
 def test_page_without_type_1_is_refused(tmp_path):
@@ -156,7 +161,7 @@ def test_a_few_real_runs(slideline, tmp_path):
     arguments = ["paper-tables", "--program", slideline, "--folder", str(tmp_path), *TWO_RUNS]
     assert command.main(arguments) == 0
     rows = read_rows(tmp_path / "paper-tables.csv")
-    assert [row["repeat"] for row in rows] == list(range(1, 11))
+    assert [row["repeat"] for row in rows] == list(range(1, 25))
     assert {row["state"] for row in rows} == {"finished"}
     for one in rows:
         assert one["search"] > 0.0 and one["force"] > 0.0
@@ -183,5 +188,5 @@ def test_array_script_shares_the_runs_out(slideline, tmp_path):
         counts.append(len(list((tmp_path / "sweep" / "runs").glob("*/job.json"))))
         assert (tmp_path / "sweep" / "paper-tables.csv").exists() == (task is None)
     # Groups in turn: block_implicit and collision, then block.
-    assert counts == [1 + 3, 1 + 3 + 5, 1 + 3 + 5]
-    assert "9 runs\n" in done.stdout
+    assert counts == [1 + 12, 1 + 24, 1 + 24]
+    assert "25 runs\n" in done.stdout

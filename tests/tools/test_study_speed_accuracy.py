@@ -238,7 +238,7 @@ def test_page(tmp_path):
     assert "**In general type 4 (VTS-PPT).**" in text
     assert "| 4 VTS-PPT | 4 / 1.4e+02 s; < 1e-7 % |" in text
     assert "| 5 NTS-mAR | 5.00 to 5.00 | 1.09 to 1.22 | 5.00 to 5.00 | 1.06 to 1.20 | 50 |" in text
-    assert "(1), (1), 1 %" in text and "nan" not in text  # 0.2/4/5 is below the reference's 0.02
+    assert "(1), (1), (1), 1 %" in text and "nan" not in text  # 0.2/4/5 is below the reference's 0.02
     for name in scenes.SCENES:
         assert (tmp_path / f"pictures/speed_accuracy_{name}.png").stat().st_size < 100_000
     width = None

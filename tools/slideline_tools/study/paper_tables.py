@@ -9,6 +9,8 @@ from __future__ import annotations
 import dataclasses
 from typing import Callable, Mapping, Sequence
 
+import numpy as np
+
 from slideline_tools import UserError, scenes
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, plt
 from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
@@ -26,7 +28,7 @@ class Scene:
 
     `figure`, `table`  where the paper shows its times
     `deck`             text of the deck by level
-    `turns`, `cost`    as in Job, at level 1
+    `turns`, `cost`    as in Job, at level 1; finer runs are longer and take fewer turns
     `options`, `quick` of the program; `quick` shortens the run
     `slave_nodes`      at level 1
     `paper`            its ratios to type 1 by type and level
@@ -58,7 +60,7 @@ SCENES = {
         paper=by_level((3, 2.0), (4, 3.0)),
         told="its text: type 3 about twice, type 4 three times type 1, close to type 6"),
     "block": Scene(
-        "Block-to-block, explicit", "Fig. 24", lambda _: scenes.block(), turns=5, cost=0.3,
+        "Block-to-block, explicit", "Fig. 24", lambda _: scenes.block(), turns=12, cost=0.3,
         paper=by_level((4, 2.4)),
         told="its text: type 4 2.4 times type 1, type 5 the cheapest after type 1"),
     "sliding": Scene(
@@ -67,7 +69,7 @@ SCENES = {
         paper=by_level((3, 2.25, 2.26, 2.26), (4, 2.09, 2.09, 2.20), (5, 1.22, 1.09, 1.12),
                        (6, 4.98, 5.49, 5.85))),
     "collision": Scene(
-        "Collision", "Fig. 32", scenes.collision, levels=(1, 2, 3, 4), turns=3, options=NO_OUTPUT,
+        "Collision", "Fig. 32", scenes.collision, levels=(1, 2, 3, 4), turns=12, options=NO_OUTPUT,
         table="Table 2", slave_nodes=25,
         paper=by_level((3, 1.92, 1.97, 1.95, 1.93), (4, 2.06, 2.05, 2.04, 2.05),
                        (5, 1.20, 1.09, 1.06, 1.06), (6, 3.41, 3.76, 3.82, 3.78))),
@@ -84,8 +86,9 @@ def jobs(options):
                 listed.append(Job(
                     f"{name}_{level}_type_{ctype}", deck, name,
                     (f"ctype={ctype}", "ncpu=1", *scene.options, *(scene.quick * options.quick)),
-                    {"scene": name, "level": level, "type": ctype}, group=f"{name}_{level}",
-                    alone=True, turns=scene.turns, cost=scene.cost * level ** 3))
+                    {"scene": name, "level": level, "type": ctype, "quick": int(options.quick)},
+                    group=f"{name}_{level}",
+                    alone=True, turns=max(1, scene.turns // level), cost=scene.cost * level ** 3))
     return listed
 
 
@@ -175,6 +178,11 @@ def page_figure(all_times):
 
 # ---- tables and page ---------------------------------------------------------------------------
 
+def duration(seconds):
+    """A time in s or ms with three digits."""
+    return f"{seconds:.3g} s" if seconds >= 1.0 else f"{1e3 * seconds:.3g} ms"
+
+
 def ratio_table(times):
     """Contact time and ratio to type 1 by level, the paper's ratio behind it."""
     theirs, rows = SCENES[times.scene].paper, []
@@ -185,7 +193,7 @@ def ratio_table(times):
                 row.append("")
                 continue
             ratio = theirs.get(ctype, {}).get(level)
-            row.append(f"{1e3 * times.seconds[level][ctype]['contact']:.3g} ms, "
+            row.append(f"{duration(times.seconds[level][ctype]['contact'])}, "
                        f"{times.ratio(level, ctype):.2f}" + (f" ({ratio:.2f})" if ratio else ""))
         if any(row[1:]):
             rows.append(row)
@@ -214,7 +222,8 @@ def section(times):
     parts += [f"Steps over the contact time of type 1, N_r = {level}:\n\n{step_table(times, level)}"
               for level in ends]
     parts.append(f"Medians of {times.rounds} runs; the quartiles of a contact time lie at most "
-                 f"{100.0 * times.spread:.0f} % of its median apart.")
+                 f"{100.0 * times.spread:.0f} % of its median apart."
+                 + ("" if np.isnan(times.load) else f" Load of the machine: {times.load:.1f}."))
     return "\n\n".join(parts)
 
 
@@ -232,16 +241,22 @@ round, and each figure is the median over the rounds. Step A is the search, M th
 placing of points (counted as B in types 1, 2, 3 and 6), B the force. Seconds are corrected by the
 pace of the element loop of the same run, which is the same work for all types: what slows the
 machine for a while slows both. The share is that of the computation, without input and output. In
-the implicit run the contact tangent counts as B.
+the implicit run the contact tangent counts as B. The load of a machine is the mean number of processes that want to
+run, this one included: above the number of its cores, times of short phases are not to be trusted. What taking
+the times costs at so few slave nodes: [results.md](../results.md#what-the-timing-costs).
 
 ![Contact time of all types](../pictures/paper_tables.png)
 
 Bars: steps A, M and B over the contact time of type 1; above them the sum and, in brackets, the share
 of the computation. Diamonds: the paper.
 
-{sections}
+{quick}{sections}
 
 {reading}
+"""
+QUICK = """This was a quick run: level 1 alone, and the sliding ends after 2 ms of 6, in which the die is
+pressed in and drawn along for 0.5 ms.
+
 """
 READING = """## Where the ratios differ from the paper's, and why
 
@@ -254,8 +269,8 @@ differ by far more than two types of one program do, and what is compared is how
   takes {slide_a:.0f} ns a node and step in the sliding. A ratio to type 1 is a ratio to less, and what a type adds shows more.
 - **Type 5** costs {low_5:.2f} to {high_5:.2f} times type 1 (paper 1.06 to 1.22). It shares steps A and B with type 1; what it adds is
   step M, to find the feet of the slave nodes and the master nodes between them in each step: {low_m5:.2f} to {high_m5:.2f} of the
-  whole contact time of type 1, at {low_m5_ns:.0f} to {high_m5_ns:.0f} ns a slave node and step. Beside a detection of microseconds this would be the
-  paper's few per cent.
+  whole contact time of type 1, at {low_m5_ns:.0f} to {high_m5_ns:.0f} ns a slave node and step. Beside a detection of microseconds that would
+  hardly show.
 - **Type 4**: {low_4:.2f} to {high_4:.2f} (paper 2.05 to 2.20). It follows two places on each slave segment (step A) and
   divides each among the master segments that it faces (step M).
 - **Type 3**: {low_3:.2f} to {high_3:.2f} (paper 1.92 to 2.26), both surfaces are searched and
@@ -304,8 +319,9 @@ def page(rows, doc):
         raise UserError("no finished runs of type 1")
     save_small(page_figure(all_times), doc / "pictures" / "paper_tables.png", lines=True)
     processors = sorted({row["processor"] for row in finished(rows)})
+    quick = any(row["quick"] for row in rows)
     write_page(doc, "paper_tables", PAGE.format(
-        processor="; ".join(processors),
+        quick=QUICK if quick else "", processor="; ".join(processors),
         reading=reading(all_times.get("sliding"), all_times.get("collision")),
         sections="\n\n".join(section(times) for times in all_times.values())).rstrip() + "\n")
 

@@ -34,7 +34,7 @@ def job(name, deck, level, ctype, role):
     """One run; `role`: sweep or reference."""
     scene = SCENES[name]
     options = [f"ctype={ctype}", "ncpu=1", f"p:pen={node_penalty(scene, level, ctype):.17g}",
-               *scene.options]
+               *scene.options(level)]
     swept = role == "sweep"
     return Job(f"{name}_{level}_type_{ctype}" + ("" if swept else "_reference"), deck, name, options,
                {"scene": name, "level": level, "type": ctype, "role": role}, alone=swept,

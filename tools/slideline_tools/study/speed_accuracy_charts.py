@@ -41,9 +41,11 @@ def draw_panel(axes, scene, points, cost, measure):
                       xytext=(-3, -3), textcoords="offset points", ha="right", va="top")
     axes.set(xscale="log", yscale="log")
     axes.margins(0.12, 0.15)
-    floors = {point.floor[key] for point in points} - {0.0}
-    if floors:
-        axes.axhspan(axes.get_ylim()[0], max(floors), color="#00000010", linewidth=0)
+    low, high = axes.get_ylim()
+    floor = max((point.floor[key] for point in points), default=0.0)
+    if floor > low:
+        axes.axhspan(low, min(floor, high), color="#00000010", linewidth=0)
+        axes.set_ylim(low, high)
     axes.grid(True, which="major", linewidth=0.3, color="#bbbbbb")
     for axis in (axes.xaxis, axes.yaxis):
         plain_ticks(axis)

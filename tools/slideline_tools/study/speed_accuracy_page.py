@@ -42,15 +42,15 @@ The cheapest type and mesh (type/N_r) by computing time that keeps an error at o
 - One thread on {processor}. {build}.
 - Every run is timed and judged. All variants run in turn, then again in the next round: medians of at least {rounds}
   runs, corrected by the pace of the element loop of the same run (as in [paper_tables](paper_tables.md)). Quartiles of
-  the contact times lie at most {spread:.0f} % of the median apart; {short}. Contact time is search, pairing and force; computing time is
-  the whole run without input and output.
+  the contact times lie at most {spread:.0f} % of the median apart, {short}{load}.
+- Contact time is search, pairing and force; computing time is the whole run without input and output.
 - The interface is as stiff for all types: in type 3 the springs of both passes add up, so each has half the penalty.
   The penalty, N_r and what it divides are those of the decks.
 - On the Pareto front are the types and meshes that nothing beats in cost and error at once. Errors within {gain:.0f} % of
   each other count as equal, and so do times within {tie:.0f} %.
 - Where there is no closed form, type 7 on a finer mesh is the reference. Its own error is extrapolated (Richardson) from
-  the distances of its finest levels, with the order they show (0.5 to 2). An error below it is drawn hollow, stands in brackets in the
-  tables and counts as that error: it says that the run is as good as the reference, not how good it is.
+  the distances of its finest levels, with the order they show (0.5 to 2). A smaller error is drawn hollow, stands in
+  brackets in the tables and counts as that error: the run is then as good as the reference, and not known better.
 
 {references}
 
@@ -60,22 +60,22 @@ The cheapest type and mesh (type/N_r) by computing time that keeps an error at o
 """
 
 TEXTS = {
-    "patch": """Two blocks under a uniform pressure of 1 Pa, explicit and damped to rest; the non-uniform 7 / 5
-meshes of [the patch test](patch_test.md), each quad divided into N_r x N_r. Exact: 1 Pa at every node of both sides
+    "patch": """Two blocks under a uniform pressure of 1 Pa, explicit and damped to rest in about 4 s; the non-uniform
+7 / 5 meshes of [the patch test](patch_test.md), each quad divided into N_r x N_r. Exact: 1 Pa at every node of both sides
 (round-off: below 1e-9). Refinement does not help a type that fails: the error is that of single nodes.""",
-    "block": """[Block-to-block](block_to_block.md), 51 N_r over 50 N_r quads. Exact: the pressure of a separate
-one-dimensional solution (a chain of masses and springs) with the springs that the type has. What is left of the types
-that pass is the elements' own lateral stress.""",
-    "hertz": """[Hertz](hertz.md), cylinder on block. Errors against the closed form: largest distance of a nodal pressure
-from the ellipse inside 0.8 a, over p0; and the half width. The closed form leaves out finite strain, about 0.1 %
+    "block": """[Block-to-block](block_to_block.md), 51 N_r over 50 N_r quads, 0.2 s in 2000 steps (a tenth of that page's
+steps, so that there is a time to measure). Exact: the pressure of a separate one-dimensional solution (a chain of masses
+and springs) with the springs that the type has. What is left of the types that pass is the elements' own lateral stress.""",
+    "hertz": """[Hertz](hertz.md), cylinder on block, 50 microseconds. Errors against the closed form: largest distance of a
+nodal pressure from the ellipse inside 0.8 a, over p0; and the half width. The closed form leaves out finite strain, about 0.1 %
 here. The penalty is a layer of springs, which widens the contact in the same way for all types.""",
-    "sliding": """[Sliding](sliding.md). The error is the difference of the vertical force to the reference at the same
+    "sliding": """[Sliding](sliding.md), 6 ms. The error is the difference of the vertical force to the reference at the same
 time, root mean square over the mean force in the judged time: above all that of the mesh, whose segments the die
 passes one by one. The roughness (force less its trend, as defined there) is that of the contact, and needs no reference.""",
-    "collision": """[Collision](collision.md). Plastic work: yield stress times plastic strain times area at 1 ms, summed
-over each of the 36 columns of the level 1 plate; the error is the sum of the differences over the sum. (The largest plastic
-strain itself sits at the clamp and does not converge.) Rebound: difference of the mean final velocity over the 80 m/s of the
-impact; it is a small difference of large impulses. The energy error is that of the balance.""",
+    "collision": """[Collision](collision.md), 1 ms. Plastic work: yield stress times plastic strain times area at the end, summed
+over each of the 36 columns of the level 1 plate (the error is the sum of the differences over the sum) and in total. (The
+largest plastic strain itself sits at the clamp and does not converge.) Rebound: difference of the mean final velocity over
+the 80 m/s of the impact; it is a small difference of large impulses. The energy error is that of the balance.""",
 }
 
 
@@ -168,14 +168,16 @@ at a time (mean of the judged time, N_r = {level}), and contact time for each of
 
 {table}
 
-The paper ranks its types by these ratios (its Tables 1 and 2): NTS-mAR next to the classical NTS, VTS-PPT and two passes about
-twice it, mortar farthest. What differs here is above all the type 1 that all are divided by. A slave node that touches keeps its
-segment from step to step, the nodes that touch are projected together in blocks, and the rest sleeps, so that a point costs type 1 some
-{nanoseconds:.0f} ns a step. The paper's 62 s for 150 000 steps of 19 slave nodes are 22 microseconds a node; beside that, whatever a
-type adds to the search is small. Here the search is not what prevails, and two things show that the paper's ratios
-hide: how many points a type places (the column *points*), and how they are found: types 4, 5 and 7 divide the
-surface anew in each step (pairing), which has no counterpart in types 1 and 2. Steps and their shares:
-[paper_tables](paper_tables.md). A ratio of contact times is also not one of computations: see the shares above.
+The paper ranks its types by these ratios (its Tables 1 and 2): NTS-mAR next to the classical NTS, VTS-PPT and two passes
+about twice it, mortar farthest. What differs here is above all the type 1 that all are divided by: a slave node that
+touches keeps its segment from step to step, the nodes that touch are projected in blocks with vector instructions, and
+nodes that can not touch sleep. A point costs type 1 some {nanoseconds:.0f} ns a step. The paper's 62 s for 150 000 steps of 19
+slave nodes are 22 microseconds a node; beside that, whatever a type adds is small.
+
+Here the search does not prevail, and what the paper's ratios hide comes out: how many points a type places (the
+column *points*), and that types 4, 5 and 7 divide the surface anew in each step (pairing), which types 1 and 2 never do.
+[paper_tables](paper_tables.md) has the steps one by one. A ratio of contact times is no ratio of computations: see the
+shares above.
 """
 
 
@@ -218,6 +220,12 @@ def short_text(times):
     return f"most in the scene {SCENES[worst].title.lower()}"
 
 
+def load_text(rows):
+    """How busy the machine was, where the runs say so."""
+    loads = [row["load"] for row in rows if "load" in row]
+    return f"; load of the machine before a run {np.median(loads):.1f} (median)" if loads else ""
+
+
 def page(rows, doc):
     """doc/studies/speed_accuracy.md and a picture for each scene."""
     times = times_of(rows)
@@ -237,7 +245,7 @@ def page(rows, doc):
         build="; ".join(sorted({row["build"] for row in swept})),
         rounds=min(found.rounds for found in times.values()),
         spread=100.0 * np.max([found.spread for found in times.values()]),
-        short=short_text(times), gain=100.0 * GAIN, tie=100.0 * TIE,
+        short=short_text(times), load=load_text(swept), gain=100.0 * GAIN, tie=100.0 * TIE,
         references=reference_table(rows),
         scenes="\n\n".join(scene_section(name, found) for name, found in points.items()),
         paper=paper_section(rows, times)).rstrip() + "\n")

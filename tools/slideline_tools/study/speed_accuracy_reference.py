@@ -74,10 +74,11 @@ def plastic_work(results):
 
 
 def collision_outcome(folder, _level):
-    """Plastic work by column, and the rebound velocity as a share of the speed of impact."""
+    """Plastic work by column and in total, rebound velocity as a share of the speed of impact."""
     rows = read_csv(folder / "collision.matsum.csv").where(part=PROJECTILE)
     rebound = rows["momentum_y"][-1] / rows["mass"][-1]
-    return {"plastic_error": plastic_work(read(folder / "collision.vtkhdf")),
+    work = plastic_work(read(folder / "collision.vtkhdf"))
+    return {"plastic_error": work, "total_work_error": np.array([work.sum()]),
             "rebound_error": np.array([rebound / IMPACT_SPEED])}
 
 
@@ -97,7 +98,7 @@ def plain_distance(one, other, _reference):
 
 OUTCOMES = {"sliding": sliding_force, "collision": collision_outcome}
 DISTANCES = {"force_error": force_distance, "plastic_error": work_distance,
-             "rebound_error": plain_distance}
+             "total_work_error": work_distance, "rebound_error": plain_distance}
 
 
 # ---- rows --------------------------------------------------------------------------------------

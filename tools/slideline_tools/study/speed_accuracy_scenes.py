@@ -26,7 +26,8 @@ from slideline_tools.studies import sliding as sliding_study
 from slideline_tools.studies.patch import LAYOUTS
 
 CHAIN = pathlib.Path(__file__).resolve().parents[3] / "tests/verification/block_to_block/chain.py"
-BLOCK_STEP, BLOCK_END = 1.0e-4, 0.2  # s; a tenth of the deck's step: 200 steps are too short a time
+BLOCK_STEP, BLOCK_END = 1.0e-4, 0.2  # s; a tenth of the deck's step, for a time to measure
+SLIDING_STEP = 40.0e-9  # s at level 1
 TWO_PASS = 3
 ROUND_OFF = 1.0e-9
 AT_REST = 1.0e-16  # kinetic over internal energy
@@ -56,6 +57,7 @@ class Scene:
     `judge`       (folder, level, type, penalty) -> columns
     `levels`, `quick_levels` those that are swept
     `references`, `quick_references` levels of type 7 the reference is made of, the finest last
+    `options`     of the program by level: no states but the first and the last
     `turns`, `cost` as in Job, at level 1; `power`: the cost grows with this power of the level
     """
 
@@ -66,7 +68,7 @@ class Scene:
     measures: Sequence[Measure]
     levels: Sequence[int]
     quick_levels: Sequence[int] = (1,)
-    options: Sequence[str] = ()
+    options: Callable[[int], Sequence[str]] = lambda _: ("p:dtplot=1",)
     references: Sequence[int] = ()
     quick_references: Sequence[int] = ()
     turns: int = 1
@@ -167,6 +169,12 @@ def judge_hertz(folder, level, ctype, penalty):
             "peak_error": abs(run.peak - 1.0)}
 
 
+def sliding_options(level):
+    """Rows of the force as close as the roughness needs them."""
+    rows = sliding_study.STEPS_PER_ROW * SLIDING_STEP / level
+    return ("p:dtplot=1", f"p:dtforc={rows:.17g}")
+
+
 def judge_sliding(folder, level, _ctype, _penalty):
     """Roughness of the force (see studies/sliding.py), energy error, mean number of points."""
     rows = read_csv(folder / "sliding.rcforc.csv").where(side="slave")
@@ -192,28 +200,29 @@ SCENES = {
     "patch": Scene(
         "Patch test", patch_deck, lambda level: 1.0e6 / level, judge_patch,
         (Measure("pressure_error", "largest deviation of p/p0 from 1, both sides", ROUND_OFF),),
-        levels=(1, 2, 4), quick_levels=(1, 2), turns=3, cost=0.05),
+        levels=(1, 2, 4), quick_levels=(1, 2), options=lambda _: (), turns=3, cost=0.05),
     "block": Scene(
         "Block-to-block", block_deck, block_penalty, judge_block,
         (Measure("pressure_error", "largest deviation of p/p1D from 1, both sides", ROUND_OFF),),
-        levels=(1, 2, 4), quick_levels=(1, 2), options=(f"p:dt={BLOCK_STEP}",), turns=3, cost=0.2,
-        power=1.0),
+        levels=(1, 2, 4), quick_levels=(1, 2), turns=3, cost=0.2, power=1.0,
+        options=lambda _: (f"p:dt={BLOCK_STEP}",)),
     "hertz": Scene(
         "Hertz", scenes.hertz, lambda _: HERTZ_PENALTY, judge_hertz,
         (Measure("profile_error", "largest distance of p from the ellipse over p0", FINITE_STRAIN),
          Measure("half_width_error", "deviation of the half width from Hertz", FINITE_STRAIN)),
-        levels=(1, 2, 4), options=("p:dtplot=1",), turns=1, cost=0.2),
+        levels=(1, 2, 4), cost=0.2),
     "sliding": Scene(
         "Sliding", scenes.sliding, lambda level: 10.0e9 / level, judge_sliding,
         (Measure("force_error", "force: rms difference over the mean force", referenced=True),
          Measure("roughness", "roughness: rms of force less trend over the mean force")),
-        levels=(1, 2, 3), options=("p:dtplot=1",), references=(2, 3, 6), quick_references=(1, 2),
+        levels=(1, 2, 3), options=sliding_options, references=(2, 3, 6), quick_references=(1, 2),
         cost=1.4, power=2.5),
     "collision": Scene(
         "Collision", scenes.collision, lambda level: 1.0e9 / level, judge_collision,
         (Measure("plastic_error", "plastic work, difference by column", referenced=True),
+         Measure("total_work_error", "plastic work in total, difference", referenced=True),
          Measure("rebound_error", "rebound, difference over the speed of impact", referenced=True),
          Measure("energy_error", "largest deviation of the energy ratio from 1")),
-        levels=(1, 2, 3, 4), quick_levels=(1, 2), options=("p:dtplot=1",),
-        references=(2, 4, 8), quick_references=(1, 2, 4), cost=0.2, power=2.3),
+        levels=(1, 2, 3, 4), quick_levels=(1, 2), references=(2, 4, 8),
+        quick_references=(1, 2, 4), cost=0.2, power=2.3),
 }

@@ -42,7 +42,8 @@ class Times:
     "contact" is the sum of the medians of the steps.
 
     `steps[level]`: time steps (explicit runs). `rounds`: fewest runs of a variant; `spread`: largest distance of the quartiles of the contact
-    time over its median; `pace_spread`: the same of the uncorrected pace.
+    time over its median; `pace_spread`: the same of the uncorrected pace; `load`:
+    median of the load of the machine.
     """
 
     COLUMNS = (*STEPS, "contact", "computing")
@@ -67,6 +68,7 @@ class Times:
                 spreads.append(quartile_distance(values["contact"]))
                 paces.append(quartile_distance(1.0 / factors))
                 counts.append(len(runs))
+        self.load = float(np.median([row.get("load", np.nan) for row in rows]))
         self.rounds, self.spread, self.pace_spread = min(counts), max(spreads), max(paces)
 
     @property
