@@ -26,16 +26,16 @@ contains
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
-    integer, allocatable :: owner(:)
-    integer :: i_part
+    integer, allocatable :: owner(:), parts(:)
+    integer :: i
 
-    allocate (model%rigids(0), model%conditions%rigid_motions(0))
-    do i_part = 1, size(model%parts)
-      if (model%parts(i_part)%material == 0) cycle
-      associate (material => model%materials(model%parts(i_part)%material))
-        if (material%is_rigid) model%rigids = [model%rigids, &
-          rigid_t(i_part, nodes_of_part(model%mesh, i_part), material%is_fixed)]
-      end associate
+    allocate (model%conditions%rigid_motions(0))
+    parts = pack([(i, i=1, size(model%parts))], [(is_rigid_part(model, i), i=1, size(model%parts))])
+    allocate (model%rigids(size(parts)))
+    do i = 1, size(parts)
+      model%rigids(i)%part = parts(i)
+      model%rigids(i)%nodes = nodes_of_part(model%mesh, parts(i))
+      model%rigids(i)%is_fixed = model%materials(model%parts(parts(i))%material)%is_fixed
     end do
     allocate (owner(model%mesh%n_node), source=0)
     call own_nodes(deck, raw, model, owner)
@@ -49,6 +49,16 @@ contains
       line_error(deck, raw%parts(1)%line, 'all parts are rigid, so no element gives a time step; ' &
       //'give one by a curve (LCTM of *CONTROL_TIMESTEP)')
   end subroutine resolve_rigids
+
+  !> Whether a part has *MAT_RIGID.
+  pure function is_rigid_part(model, i_part) result(yes)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_part
+    logical :: yes
+
+    yes = model%parts(i_part)%material > 0
+    if (yes) yes = model%materials(model%parts(i_part)%material)%is_rigid
+  end function is_rigid_part
 
   !> Nodes of the elements of a part, each once.
   pure function nodes_of_part(mesh, i_part) result(nodes)
