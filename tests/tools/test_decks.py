@@ -206,6 +206,12 @@ def test_sliding_with_a_rigid_die():
     np.testing.assert_array_equal(rigid.corners(), elastic.corners())
 
 
+def test_make_deck_with_a_rigid_die(tmp_path, tool):
+    path = tmp_path / "x.k"
+    assert tool("make-deck", "sliding", "--rigid-die", "--output", path).returncode == 0
+    assert path.read_text() == scenes.sliding(rigid_die=True)
+
+
 def test_block():
     model = Model(scenes.block())
     lower, upper = model.corners(1), model.corners(2)
