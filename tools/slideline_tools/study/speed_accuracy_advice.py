@@ -199,7 +199,7 @@ def share_advice(over):
                 for level in levels]
         rise = f", {step[-1] / step[0]:.0f} times the time from N_r = {levels[0]} to {levels[-1]}" \
             if len(levels) > 1 else ""
-        parts.append(f"{SCENES[scene].title.lower()} {100 * low:.0f} to {100 * high:.0f} %{rise}")
+        parts.append(f"{SCENES[scene].title} {100 * low:.0f} to {100 * high:.0f} %{rise}")
     return ("**What a dearer type costs** depends on the share of contact in the computation: "
             + "; ".join(parts) + ". Where it is small, take the type for its accuracy alone.")
 

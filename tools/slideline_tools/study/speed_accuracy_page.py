@@ -219,7 +219,7 @@ def paper_section(rows, times):
 def short_text(times):
     """Which scene scatters most."""
     worst = max(times, key=lambda name: times[name].spread)
-    return f"most in the scene {SCENES[worst].title.lower()}"
+    return f"most in the scene {SCENES[worst].title}"
 
 
 def load_text(rows):
