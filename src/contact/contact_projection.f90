@@ -3,12 +3,12 @@
 !> Two ways to find it: `closest_foot` knows nothing of the past; `follow_contact` keeps a spot that
 !> is in contact on the face through which it came (doc/theory/contact.md, section 3).
 module contact_projection_m
-  use geometry_m, only : sight_t, sight_of_segment, closest_distance, sight_gap, sight_normal
+  use geometry_m, only : sight_t, sight_of_segment, separation, closest_distance, sight_normal
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: foot_t, see_segment, closest_foot, face_foot, follow_contact, walk_to_closest, &
+  public :: foot_t, see_segment, closest_foot, plain_foot, face_foot, follow_contact, walk_to_closest, &
     is_over_segment, turns_gently, end_tolerance, side_on
 
   !> Overshoot accepted beyond the end of a chain, as a part of the segment; not clamped.
@@ -17,6 +17,8 @@ module contact_projection_m
   !> contact changes over to the nearer one. At sharper corners it stays on its face until the face ends.
   real(wp), parameter :: gentle_turn = 0.5_wp
 
+  !> Part of a segment next to its ends where round-off may decide which node or segment is closer.
+  real(wp), parameter :: well_inside = 1.0e-9_wp
   !> Cosine of the angle between two outward normals from which on surfaces do not face each other (a block's
   !> side that stands on a surface has no part in its contact).
   real(wp), parameter :: side_on = -0.1_wp
@@ -102,18 +104,59 @@ contains
     end if
   end function closest_foot
 
+  !> The common case of `walk_to_closest` and `closest_foot`: the spot is over the segment to start from, and the
+  !> closest points of the neighbours are the nodes in common, which are farther away. One root and no
+  !> distances.
+  pure subroutine plain_foot(surface, chain, spot, segment, is_found, foot)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :)
+    real(wp), intent(in) :: spot(4)
+    integer, intent(in) :: segment !! to start from
+    logical, intent(out) :: is_found
+    type(foot_t), intent(inout) :: foot !! left alone unless found
+    type(sight_t) :: sight
+    real(wp) :: t(2)
+
+    is_found = .false.
+    sight = see_segment(surface, chain, spot, segment)
+    if (sight%along <= well_inside*sight%square) return
+    if (sight%along >= (1.0_wp - well_inside)*sight%square) return
+    if (surface%previous(segment) > 0) then
+      associate (ends => surface%segments(:, surface%previous(segment)))
+        t = separation(chain(:, ends(2)), chain(:, ends(1)))
+      end associate
+      if (sight%d(1)*t(1) + sight%d(2)*t(2) < 0.0_wp) return
+    end if
+    if (surface%next(segment) > 0) then
+      associate (ends => surface%segments(:, surface%next(segment)))
+        t = separation(chain(:, ends(2)), chain(:, ends(1)))
+      end associate
+      if ((sight%d(1) - sight%t(1))*t(1) + (sight%d(2) - sight%t(2))*t(2) > 0.0_wp) return
+    end if
+    is_found = .true.
+    foot = face_foot(sight, segment)
+  end subroutine plain_foot
+
   !> Foot on the line of a segment; beyond the tolerance it is not on the chain.
   pure function face_foot(sight, segment) result(foot)
     type(sight_t), intent(in) :: sight
     integer, intent(in) :: segment
     type(foot_t) :: foot
 
+    real(wp) :: length
+
+    length = sqrt(sight%square)
     foot%segment = segment
     foot%is_on = is_over_segment(sight)
     foot%xi = sight%along/sight%square
-    foot%gap = sight_gap(sight)
-    foot%normal = sight_normal(sight)
-    foot%distance = sqrt(closest_distance(sight))
+    foot%gap = sight%across/length
+    foot%normal(1) = sight%t(2)/length
+    foot%normal(2) = -sight%t(1)/length
+    if (sight%along >= 0.0_wp .and. sight%along <= sight%square) then
+      foot%distance = abs(foot%gap)
+    else
+      foot%distance = sqrt(closest_distance(sight))
+    end if
   end function face_foot
 
   !> Foot at the node between two segments, neither of which has the spot over it. Outside of a convex
@@ -187,7 +230,8 @@ contains
     type(sight_t), intent(in) :: sight, other
     logical :: turns_gently
 
-    turns_gently = dot_product(sight%t, other%t) >= gentle_turn*sqrt(sight%square*other%square)
+    turns_gently = sight%t(1)*other%t(1) + sight%t(2)*other%t(2) &
+      >= gentle_turn*sqrt(sight%square*other%square)
   end function turns_gently
 
   !> Whether the spot has not yet reached the segment it is walking to (backwards or forwards).
