@@ -136,7 +136,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(in) :: cover
     type(sight_t) :: sight
-    real(wp) :: length, inverse, weight, xi
+    real(wp) :: length, master_length, weight, xi
     integer :: k, q, nodes(2)
 
     length = sqrt(cover%square)
@@ -148,9 +148,9 @@ contains
         xi = cover%cuts(k - 1) + gauss_xi(q)*(cover%cuts(k) - cover%cuts(k - 1))
         sight = sight_of_segment(place_on_segment(memory%places, cover%ends, xi), &
           memory%places(:, nodes(1)), memory%places(:, nodes(2)))
-        if (q == 1) inverse = 1.0_wp/sqrt(sight%square)
+        if (q == 1) master_length = sqrt(sight%square)
         if (is_plainly_behind(sight)) then
-          call add_foot(memory%points, cover%ends, xi, nodes, sight, inverse)
+          call add_foot(memory%points, cover%ends, xi, nodes, sight, master_length)
           memory%points%area(memory%points%n) = weight*length
           memory%points%stiffness(memory%points%n) = memory%slave_penalty
         else
@@ -170,15 +170,15 @@ contains
   end function is_plainly_behind
 
   !> Append a point that stands on the segment it is seen from.
-  pure subroutine add_foot(points, ends, xi, nodes, sight, inverse)
+  pure subroutine add_foot(points, ends, xi, nodes, sight, length)
     type(contact_points_t), intent(inout) :: points
     integer, intent(in) :: ends(2), nodes(2) !! local numbers of slave and master nodes
     real(wp), intent(in) :: xi               !! place on the slave segment
     type(sight_t), intent(in) :: sight       !! from the master segment
-    real(wp), intent(in) :: inverse          !! of the length of that, 1/m
+    real(wp), intent(in) :: length           !! of that, m
     real(wp) :: foot
 
-    foot = sight%along*(inverse*inverse)
+    foot = sight%along/sight%square
     points%n = points%n + 1
     associate (p => points%n)
       points%slave_nodes(1, p) = ends(1)
@@ -189,9 +189,9 @@ contains
       points%master_nodes(2, p) = nodes(2)
       points%master_weights(1, p) = 1.0_wp - foot
       points%master_weights(2, p) = foot
-      points%normal(1, p) = sight%t(2)*inverse
-      points%normal(2, p) = -sight%t(1)*inverse
-      points%gap(p) = sight%across*inverse
+      points%normal(1, p) = sight%t(2)/length
+      points%normal(2, p) = -sight%t(1)/length
+      points%gap(p) = sight%across/length
     end associate
   end subroutine add_foot
 
