@@ -1,13 +1,16 @@
 ! SPDX-License-Identifier: MIT
-!> The command line: `i=DECK d=DIR jobid=NAME ncpu=N memory=... OVERRIDES`; a bare path works as i=.
+!> The command line: `i=DECK d=DIR jobid=NAME ncpu=N timing=... memory=... OVERRIDES`; a bare path works as i=.
 module arguments_m
   use errors_m, only : error_t, raise, status_input
   implicit none
   private
-  public :: arguments_t, read_arguments, help_text
+  public :: arguments_t, read_arguments, help_text, timing_by_phase, timing_by_interface, timing_off
 
   !> Longest single argument.
   integer, parameter :: argument_length = 4096
+
+  !> What is timed: phases, contact phases of each interface too, or the run as a whole.
+  integer, parameter :: timing_by_phase = 0, timing_by_interface = 1, timing_off = 2
 
   !> What the command line asks for.
   type :: arguments_t
@@ -18,6 +21,7 @@ module arguments_m
     character(:), allocatable :: job        !! stem of the result files
     character(:), allocatable :: line       !! all arguments in one line, for the record
     integer :: n_thread = 1
+    integer :: timing = timing_by_phase     !! one of the `timing_` constants
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
   end type arguments_t
 
@@ -92,6 +96,8 @@ contains
       if (status /= 0 .or. verify(value, '0123456789') > 0 .or. arguments%n_thread < 1 &
         .or. arguments%n_thread > 1024) mistakes = mistakes//'ncpu="'//value &
         //'": expected a number from 1 to 1024'//new_line('a')
+    case ('timing')
+      call read_timing(value, arguments%timing, mistakes)
     case ('memory', 'memory2')
     case default
       if (is_override(name)) then
@@ -101,6 +107,25 @@ contains
       end if
     end select
   end subroutine read_word
+
+  !> Understand the value of timing=.
+  subroutine read_timing(value, timing, mistakes)
+    character(*), intent(in) :: value
+    integer, intent(inout) :: timing
+    character(:), allocatable, intent(inout) :: mistakes
+
+    select case (lower(value))
+    case ('phase')
+      timing = timing_by_phase
+    case ('interface')
+      timing = timing_by_interface
+    case ('off')
+      timing = timing_off
+    case default
+      mistakes = mistakes//'timing="'//value//'": expected phase, interface or off' &
+        //new_line('a')
+    end select
+  end subroutine read_timing
 
   !> Set a text once.
   subroutine take(target_text, value, name, mistakes)
@@ -159,12 +184,14 @@ contains
     character(1), parameter :: n = new_line('a')
 
     text = 'slideline: 2D explicit contact dynamics'//n//n// &
-      'usage: slideline i=DECK [d=DIR] [jobid=NAME] [ncpu=N] [OVERRIDES]'//n// &
+      'usage: slideline i=DECK [d=DIR] [jobid=NAME] [ncpu=N] [timing=...] [OVERRIDES]'//n// &
       '       slideline DECK ...     the same'//n//n// &
       '  i=DECK        LS-DYNA style keyword deck'//n// &
       '  d=DIR         folder of the results, made with its parents (default: .)'//n// &
       '  jobid=NAME    stem of the result files (default: the deck''s)'//n// &
       '  ncpu=N        threads (default 1); the results have the same bits at any number'//n// &
+      '  timing=HOW    phase: wall clock by phase (default); interface: contact phases of each'//n// &
+      '                interface too; off: the total alone'//n// &
       '  memory=...    accepted and ignored'//n//n// &
       'overrides, for sweeps:'//n// &
       '  ctype=T ngauss=N pen=P      contact of every interface; ctype.2=T of interface 2'//n// &

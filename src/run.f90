@@ -2,9 +2,9 @@
 !> One run: deck, model, state, driver, files.
 module run_m
   use, intrinsic :: iso_fortran_env, only : output_unit
-  use arguments_m, only : arguments_t
+  use arguments_m, only : arguments_t, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
-  use clock_m, only : lap, start_clock, phase_input, phase_output
+  use clock_m, only : lap, start_clock, stop_clock, split_contact, phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
   use errors_m, only : error_t, raise, status_stopped, status_files
@@ -38,12 +38,15 @@ contains
     character(:), allocatable :: prefix
 
     call start_clock(monitor%clock)
+    monitor%clock%is_on = arguments%timing /= timing_off
     call catch_stop_signals()
     call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
     call read_deck(request_of(arguments), contact_kinds, monitor%log, model, &
       info%effective_deck, error)
     if (allocated(error)) return
+    if (arguments%timing == timing_by_interface) &
+      call split_contact(monitor%clock, size(model%contacts))
     call renumber_model(model)
     prefix = join_path(arguments%directory, arguments%job)
     call open_outputs(arguments, prefix, info%effective_deck, monitor, error)
@@ -125,11 +128,14 @@ contains
       call advance_explicit(model, arguments%n_thread, state, monitor, reason, error)
     end if
     stopped = reason == 'stopped on request'
+    if (stopped) reason = reason//' (exit status '//to_text(status_stopped)//') before the ' &
+      //'termination time '//to_text(model%controls%end_time)
     if (allocated(error)) reason = error%message
     call finish_monitor(monitor, closing_error)
     if (.not. allocated(error) .and. allocated(closing_error)) &
       call move_alloc(closing_error, error)
     call lap(monitor%clock, phase_output)
+    call stop_clock(monitor%clock)
     call write_timing(prefix//'.timing.csv', monitor%clock, closing_error)
     if (.not. allocated(error) .and. allocated(closing_error)) &
       call move_alloc(closing_error, error)

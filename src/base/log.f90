@@ -96,6 +96,9 @@ contains
     character(24) :: buffer
 
     write (buffer, '(es13.6)') number
+    ! Where the exponent takes three digits that form drops the letter.
+    if (index(buffer, 'E') == 0 .and. scan(buffer, '0123456789') > 0) &
+      write (buffer, '(es14.6e3)') number
     text = trim(adjustl(buffer))
   end function real_to_text
 

@@ -10,17 +10,24 @@ module memory_m
 contains
 
   !> Bytes that can still be had, as far as the system says; otherwise the largest number.
-  function available_bytes() result(bytes)
+  function available_bytes(root) result(bytes)
+    character(*), intent(in), optional :: root !! folder with proc and sys, for tests; absent: /
     integer(long) :: bytes
+    character(:), allocatable :: top
     integer(long) :: limit, used
 
+    top = ''
+    if (present(root)) top = root
     bytes = huge(bytes)
-    limit = number_in('/proc/meminfo', 'MemAvailable:')
+    limit = number_in(top//'/proc/meminfo', 'MemAvailable:')
     if (limit >= 0) bytes = 1024*limit
-    ! The limit of a container, where there is one ("max" otherwise, which is no number).
-    limit = number_in('/sys/fs/cgroup/memory.max', '')
-    used = number_in('/sys/fs/cgroup/memory.current', '')
-    if (limit >= 0 .and. used >= 0) bytes = min(bytes, max(limit - used, 0_long))
+    ! The limit of a container, where there is one ("max" otherwise, which is no number). What it uses holds copies of
+    ! files that are given up on demand.
+    limit = number_in(top//'/sys/fs/cgroup/memory.max', '')
+    used = number_in(top//'/sys/fs/cgroup/memory.current', '')
+    if (limit < 0 .or. used < 0) return
+    used = used - max(number_in(top//'/sys/fs/cgroup/memory.stat', 'inactive_file '), 0_long)
+    bytes = min(bytes, max(limit - used, 0_long))
   end function available_bytes
 
   !> The number behind a label at the start of a line; -1 without file, label or number.

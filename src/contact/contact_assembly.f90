@@ -7,7 +7,7 @@ module contact_assembly_m
   use sparse_m, only : sparse_t, add_block
   implicit none
   private
-  public :: add_varied_point, add_spring_point, point_weights, pattern_t, start_pattern, &
+  public :: add_varied_point, add_spring_point, pattern_t, start_pattern, &
     add_to_row, add_to_column, add_product
 
   !> Scratch for a product of two vectors over the nodes of an interface of which few entries are not zero.

@@ -169,8 +169,8 @@ contains
       before = half
       node_before = piece%high_node
     end do
-    if (before > 0.0_wp .and. piece%high_node > 0) then
-      call add_master_node(memory, cover, piece%high_node, before)
+    if (before > 0.0_wp .and. node_before > 0) then
+      call add_master_node(memory, cover, node_before, before)
     else
       call add_area(memory, cover%ends(2:2), before)
     end if

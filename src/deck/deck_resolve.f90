@@ -6,10 +6,12 @@ module deck_resolve_m
   use controls_m, only : interval_t
   use deck_implicit_m, only : settle_scheme
   use model_m, only : model_t
-  use deck_lines_m, only : deck_t, line_error, line_warning
+  use conditions_m, only : motion_acceleration
+  use deck_cards_m, only : reject_field
+  use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
-  use deck_raw_m, only : raw_t, history_t, row_damping, output_plot, output_glstat, &
-    output_matsum, output_rcforc, output_nodout
+  use deck_raw_m, only : raw_t, history_t, row_damping, row_motion_node, row_motion_set, &
+    output_plot, output_glstat, output_matsum, output_rcforc, output_nodout
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
@@ -40,8 +42,19 @@ contains
       end associate
     end do
     do i = 1, raw%n_row
-      if (raw%rows(i)%kind == row_damping) call line_error(deck, raw%rows(i)%line, &
-        '*DAMPING_GLOBAL is damping that the implicit method does not have')
+      associate (row => raw%rows(i))
+        if (row%kind == row_damping) call line_error(deck, row%line, &
+          '*DAMPING_GLOBAL is damping that the implicit method does not have')
+        if ((row%kind == row_motion_node .or. row%kind == row_motion_set) .and. row%i(3) &
+          == motion_acceleration .and. .not. model%controls%implicit%is_dynamic) call reject_field( &
+          deck, place_t(row%line, 1, 3), 'is an acceleration, which has no meaning in statics ' &
+          //'(0 velocity or 2 displacement, or IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
+      end associate
+    end do
+    do i = 1, deck%n_block
+      if (deck%blocks(i)%name == 'CONTROL_TERMINATION' .and. raw%controls%dt_floor > 0.0_wp) &
+        call line_warning(deck, deck%blocks(i)%keyword, 'implicit step floor', 'DTMIN has no effect ' &
+        //'with the implicit method; DTMIN of *CONTROL_IMPLICIT_AUTO is its shortest step')
     end do
     do i = 1, size(raw%contacts)
       if (raw%contacts(i)%contact%damping > 0.0_wp) call line_warning(deck, &

@@ -1,18 +1,20 @@
 ! SPDX-License-Identifier: MIT
-!> The timing file: wall clock of the run by phase.
+!> The timing file: wall clock of the run by phase, and of the contact phases by interface on request.
 module timing_file_m
   use kinds_m, only : wp, long
-  use clock_m, only : clock_t, phase_names, n_phase
+  use clock_m, only : clock_t, phase_names, n_phase, n_contact_phase, phase_contact_search
   use errors_m, only : error_t
   use files_m, only : text_file_t, create_text_file, append_text, close_text_file
+  use log_m, only : to_text
   implicit none
   private
   public :: write_timing, timing_text
 
 contains
 
-  !> Write `phase,seconds,calls,share`, one row per phase and the row `total`. The total is the time
-  !> from the start to the last lap.
+  !> Write `phase,seconds,calls,share`, one row per phase and the row `total`, which is the time
+  !> from the start to the last lap. Where interfaces are timed, rows such as `contact_force.2` follow their
+  !> phase and add up to it. Where no laps are taken there is the total alone.
   subroutine write_timing(path, clock, error)
     character(*), intent(in) :: path
     type(clock_t), intent(in) :: clock
@@ -31,22 +33,52 @@ contains
   function timing_text(clock) result(text)
     type(clock_t), intent(in) :: clock
     character(:), allocatable :: text
-    integer(long) :: nanoseconds(n_phase), first, rate
+    integer(long) :: nanoseconds(n_phase), total, first, rate
     integer :: i_phase
 
     call system_clock(first, rate)
-    if (rate == 1000000000_long) then
-      nanoseconds = clock%ticks
-    else
-      nanoseconds = nint(1.0e9_wp*real(clock%ticks, wp)/real(rate, wp), long)
-    end if
+    nanoseconds = in_nanoseconds(clock%ticks, rate)
+    total = sum(nanoseconds)
+    if (.not. clock%is_on) total = in_nanoseconds(clock%last - clock%first, rate)
     text = 'phase,seconds,calls,share'//new_line('a')
     do i_phase = 1, n_phase
+      if (.not. clock%is_on) exit
       text = text//timing_row(phase_names(i_phase), nanoseconds(i_phase), clock%calls(i_phase), &
-        sum(nanoseconds))
+        total)//interface_rows(clock, i_phase, rate, total)
     end do
-    text = text//timing_row('total', sum(nanoseconds), 1_long, sum(nanoseconds))
+    text = text//timing_row('total', total, 1_long, total)
   end function timing_text
+
+  !> The rows of a contact phase by interface, numbered as in the deck.
+  function interface_rows(clock, i_phase, rate, total) result(text)
+    type(clock_t), intent(in) :: clock
+    integer, intent(in) :: i_phase
+    integer(long), intent(in) :: rate          !! ticks of a second
+    integer(long), intent(in) :: total         !! nanoseconds of the whole run
+    character(:), allocatable :: text
+    integer :: i_row, i
+
+    text = ''
+    i_row = i_phase - phase_contact_search + 1
+    if (i_row < 1 .or. i_row > n_contact_phase) return
+    if (.not. allocated(clock%interface_ticks)) return
+    do i = 1, ubound(clock%interface_ticks, 2)
+      text = text//timing_row(trim(phase_names(i_phase))//'.'//to_text(i), &
+        in_nanoseconds(clock%interface_ticks(i_row, i), rate), clock%interface_calls(i_row, i), total)
+    end do
+  end function interface_rows
+
+  !> Ticks as nanoseconds.
+  elemental function in_nanoseconds(ticks, rate) result(nanoseconds)
+    integer(long), intent(in) :: ticks, rate
+    integer(long) :: nanoseconds
+
+    if (rate == 1000000000_long) then
+      nanoseconds = ticks
+    else
+      nanoseconds = nint(1.0e9_wp*real(ticks, wp)/real(rate, wp), long)
+    end if
+  end function in_nanoseconds
 
   !> One row, with its line end.
   pure function timing_row(name, nanoseconds, n_call, total) result(row)

@@ -2,7 +2,7 @@
 !> What one thread does in each explicit cycle: contact and loads before the elements; writing; time,
 !> step and health after them.
 module cycle_m
-  use clock_m, only : lap, phase_nodes
+  use clock_m, only : lap, share_contact, phase_nodes
   use constraints_m, only : fix_nodes, update_activity
   use contact_check_m, only : report_contact_start, report_contact_end
   use contact_force_m, only : apply_contact
@@ -76,6 +76,7 @@ contains
       call apply_contact(model%contacts(i), state%motion, state%mass, &
         state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
         state%force_special)
+      call share_contact(monitor%clock, i)
     end do
     if (state%cycle > 0) call prepare_leap(model, state, cycle)
     call lap(monitor%clock, phase_nodes)

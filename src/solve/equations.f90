@@ -3,17 +3,13 @@
 !> fixed ones, and nodes that no element has, get none.
 module equations_m
   use kinds_m, only : wp
-  use conditions_m, only : prescribed_motion_t, motion_velocity, motion_acceleration, &
-    motion_displacement
   use constraints_m, only : is_active
-  use curves_m, only : curve_value, curve_integral
   use model_m, only : model_t
   use sparse_m, only : sparse_t
   use state_m, only : state_t
   implicit none
   private
-  public :: equations_t, number_equations, prescribed_increments, find_equation, move_prescribed, &
-    take_free
+  public :: equations_t, number_equations, find_equation, move_prescribed, take_free, put_prescribed
 
   !> Numbering for one step.
   type :: equations_t
@@ -25,7 +21,7 @@ module equations_m
 
 contains
 
-  !> Number the equations for a step that ends at `time`.
+  !> Number the equations for a step; `time` lies inside it (no motion is born or dies there).
   pure subroutine number_equations(model, state, time, equations)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -67,49 +63,6 @@ contains
     equations%n = n
   end subroutine number_equations
 
-  !> What the prescribed degrees of freedom move from `state` to `time`.
-  pure function prescribed_increments(model, state, time, equations) result(increments)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: time
-    type(equations_t), intent(in) :: equations
-    real(wp) :: increments(equations%n - equations%n_free)
-    integer :: i
-
-    do i = 1, size(increments)
-      associate (prescribed => model%conditions%motions(equations%motion_of(i)))
-        increments(i) = motion_increment(model, prescribed, state%time, time, &
-          state%motion(prescribed%direction, prescribed%node), &
-          state%motion(2 + prescribed%direction, prescribed%node))
-      end associate
-    end do
-  end function prescribed_increments
-
-  !> Displacement of one prescribed degree of freedom between two times: the integral of a velocity
-  !> curve, the distance to a displacement curve, twice the integral of an acceleration (to second order).
-  pure function motion_increment(model, prescribed, start, end_time, displacement, velocity) &
-    result(increment)
-    type(model_t), intent(in) :: model
-    type(prescribed_motion_t), intent(in) :: prescribed
-    real(wp), intent(in) :: start, end_time
-    real(wp), intent(in) :: displacement, velocity !! at the start
-    real(wp) :: increment
-
-    associate (curve => model%curves(prescribed%curve))
-      select case (prescribed%kind)
-      case (motion_velocity)
-        increment = prescribed%scale*curve_integral(curve, start, end_time)
-      case (motion_acceleration)
-        increment = (end_time - start)*(velocity + 0.5_wp*(end_time - start)*prescribed%scale &
-          *curve_value(curve, 0.5_wp*(start + end_time)))
-      case (motion_displacement)
-        increment = prescribed%scale*curve_value(curve, end_time) - displacement
-      case default
-        increment = 0.0_wp
-      end select
-    end associate
-  end function motion_increment
-
   !> Node and direction of an equation.
   pure subroutine find_equation(equations, number, node, direction)
     type(equations_t), intent(in) :: equations
@@ -117,25 +70,10 @@ contains
     integer, intent(out) :: node, direction !! 0 when there is none
     integer :: place(2)
 
-    place = findloc_2(equations%number, number)
+    place = findloc(equations%number, number)
     direction = place(1)
     node = place(2)
   end subroutine find_equation
-
-  !> Place of a value in an array of rank 2.
-  pure function findloc_2(array, value) result(place)
-    integer, intent(in) :: array(:, :)
-    integer, intent(in) :: value
-    integer :: place(2)
-    integer :: i, k
-
-    place = 0
-    do i = 1, size(array, 2)
-      do k = 1, size(array, 1)
-        if (array(k, i) == value) place = [k, i]
-      end do
-    end do
-  end function findloc_2
 
   !> Move prescribed columns of the collected matrix to the right-hand side: b(free) -= K(free, prescribed) *
   !> increments. What is left in the matrix are the free rows and columns.
@@ -177,5 +115,20 @@ contains
       end do
     end do
   end function take_free
+
+  !> Give the prescribed entries of a nodal field their values.
+  pure subroutine put_prescribed(equations, values, field)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: values(:)       !! (n - n_free)
+    real(wp), intent(inout) :: field(:, :)  !! (2, n_node)
+    integer :: i, k
+
+    do i = 1, size(field, 2)
+      do k = 1, 2
+        if (equations%number(k, i) > equations%n_free) &
+          field(k, i) = values(equations%number(k, i) - equations%n_free)
+      end do
+    end do
+  end subroutine put_prescribed
 
 end module equations_m

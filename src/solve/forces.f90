@@ -4,7 +4,8 @@
 module forces_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
-  use clock_m, only : clock_t, lap, phase_elements, phase_contact_force, phase_nodes
+  use clock_m, only : clock_t, lap, share_contact, phase_elements, &
+    phase_contact_force, phase_nodes
   use contact_force_m, only : evaluate_contact
   use contact_state_m, only : contact_state_t
   use element_dispatch_m, only : add_tile_forces
@@ -15,7 +16,7 @@ module forces_m
   use state_m, only : state_t
   implicit none
   private
-  public :: trial_t, start_trial, assemble_forces, is_sound
+  public :: trial_t, start_trial, assemble_forces, trouble_of
 
   !> What a trial displacement makes of a committed state.
   type :: trial_t
@@ -61,8 +62,9 @@ contains
     do i = 1, size(model%contacts)
       call evaluate_contact(model%contacts(i), trial%motion, time, is_first, trial%contacts(i), &
         trial%contact)
+      call lap(clock, phase_contact_force)
+      call share_contact(clock, i)
     end do
-    call lap(clock, phase_contact_force)
     trial%external = 0.0_wp
     call form_external_force(model, trial%motion, time, trial%external)
     if (size(model%conditions%body_loads) > 0) then
@@ -94,13 +96,19 @@ contains
     end do
   end subroutine assemble_internal
 
-  !> Whether all volumes are positive and all forces finite.
-  pure function is_sound(trial) result(sound)
+  !> What is wrong with a trial in words; empty where all volumes are positive and all forces finite.
+  pure function trouble_of(trial) result(trouble)
     type(trial_t), intent(in) :: trial
-    logical :: sound
+    character(:), allocatable :: trouble
 
-    sound = minval(trial%elements%volume_limit) > 0.0_wp
-    if (sound) sound = sum(abs(trial%internal)) + sum(abs(trial%contact)) <= huge(1.0_wp)
-  end function is_sound
+    trouble = ''
+    if (.not. minval(trial%elements%volume_limit) > 0.0_wp) then
+      trouble = 'an element has turned inside out'
+    else if (.not. sum(abs(trial%external)) <= huge(1.0_wp)) then
+      trouble = 'the loads are not finite'
+    else if (.not. sum(abs(trial%internal)) + sum(abs(trial%contact)) <= huge(1.0_wp)) then
+      trouble = 'the forces are not finite'
+    end if
+  end function trouble_of
 
 end module forces_m

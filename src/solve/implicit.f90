@@ -5,8 +5,8 @@ module implicit_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_nodes, phase_output, phase_solver
   use contact_check_m, only : report_contact_end
-  use element_mass_m, only : add_mass
-  use equations_m, only : equations_t, number_equations, prescribed_increments, find_equation, take_free
+  use element_mass_m, only : add_mass, mass_times
+  use equations_m, only : equations_t, number_equations, find_equation, take_free
   use errors_m, only : error_t, raise, status_run
   use forces_m, only : trial_t, start_trial, assemble_forces
   use health_m, only : check_energy
@@ -16,11 +16,12 @@ module implicit_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t
   use newton_m, only : outcome_t, find_equilibrium
+  use prescribed_step_m, only : prescribe_step, prescribe_start, list_changes
   use progress_m, only : show_progress, wants_line
   use signals_m, only : stop_requested
   use sparse_m, only : sparse_t, start_matrix, compress_matrix
   use state_m, only : state_t
-  use step_control_m, only : step_control_t, start_step_control, find_next_time, grow_step, cut_step
+  use step_control_m, only : step_control_t, start_step_control, plan_step, grow_step, cut_step
   use tangent_m, only : step_t, new_acceleration, new_velocity, assemble_residual
   implicit none
   private
@@ -41,23 +42,31 @@ contains
     type(step_t) :: step
     type(due_t) :: written
     type(error_t), allocatable :: second
+    real(wp), allocatable :: changes(:)
     logical :: last, stopped
 
     reason = 'termination time reached'
-    call start_implicit(model, state, monitor, step, trial, error)
+    call list_changes(model, changes)
+    control = start_step_control(model%controls, changes)
+    call plan_step(control, 0.0_wp)
+    call start_implicit(model, control%next, state, monitor, step, trial, error)
     if (allocated(error)) return
-    control = start_step_control(model%controls)
     last = .false.
-    state%dt = control%dt
+    state%dt = control%next
     call report_step(model, state, .false., monitor, written, error)
     do while (.not. last .and. .not. allocated(error))
       call take_step(model, state, monitor, control, step, trial, error)
       if (allocated(error)) exit
-      stopped = stop_requested()
-      last = control%is_last .or. stopped
+      last = control%is_last
       if (model%controls%end_cycle > 0) last = last .or. state%cycle >= model%controls%end_cycle
+      stopped = stop_requested() .and. .not. last
+      last = last .or. stopped
       if (stopped) reason = 'stopped on request'
       state%dt = control%dt
+      if (.not. last) then
+        call plan_step(control, state%time)
+        state%dt = control%next - state%time
+      end if
       call report_step(model, state, last, monitor, written, error)
       if (wants_line(monitor%progress, state%cycle, monitor%clock%last)) call show_progress( &
         monitor%progress, monitor%clock, state%cycle, state%time, state%dt_before, 1.0_wp, '')
@@ -68,8 +77,9 @@ contains
   end subroutine advance_implicit
 
   !> Forces and acceleration at time zero.
-  subroutine start_implicit(model, state, monitor, step, trial, error)
+  subroutine start_implicit(model, dt, state, monitor, step, trial, error)
     type(model_t), intent(in) :: model
+    real(wp), intent(in) :: dt !! first step
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(step_t), intent(out) :: step
@@ -89,7 +99,11 @@ contains
         //to_text(implicit%gamma)//', beta '//to_text(implicit%beta))
     end associate
     allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
-    if (.not. step%is_dynamic) state%motion(3:4, :) = 0.0_wp
+    if (step%is_dynamic) then
+      call prescribe_start(model, dt, state)
+    else
+      state%motion(3:4, :) = 0.0_wp
+    end if
     call start_trial(model, state, trial)
     call assemble_forces(model, state, 0.0_wp, .false., monitor%clock, trial)
     state%contacts = trial%contacts
@@ -98,7 +112,7 @@ contains
     call lap(monitor%clock, phase_solver)
   end subroutine start_implicit
 
-  !> M a(0) = -f(0) on the free degrees of freedom; prescribed ones start without acceleration.
+  !> M a(0) = -f(0) on the free degrees of freedom; those of prescribed ones, which the state has, act on them.
   subroutine find_first_acceleration(model, monitor, step, state, error)
     type(model_t), intent(in) :: model
     type(monitor_t), intent(inout) :: monitor
@@ -118,7 +132,8 @@ contains
     matrix%n = equations%n_free
     call compress_matrix(matrix)
     allocate (x(equations%n_free))
-    call solve_linear(matrix, -take_free(equations, step%old_force), x, report)
+    call solve_linear(matrix, -take_free(equations, step%old_force &
+      + mass_times(model, state%acceleration)), x, report)
     if (.not. report%is_solved) then
       call raise(error, 'no acceleration at time zero: '//report%message, status_run)
       return
@@ -147,25 +162,48 @@ contains
     logical :: may_retry
 
     do
-      call find_next_time(control, state%time, step%time)
-      step%dt = step%time - state%time
-      call number_equations(model, state, step%time, step%equations)
-      step%increments = prescribed_increments(model, state, step%time, step%equations)
-      call start_trial(model, state, attempt)
-      call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
+      call try_step(model, state, monitor, control%next, step, attempt, outcome)
       if (outcome%converged) exit
-      call write_log(monitor%log, 'step to '//to_text(step%time)//': '//outcome%reason)
       may_retry = .false.
-      if (outcome%singular_equation == 0) call cut_step(control, may_retry)
+      ! A body that nothing holds at the start of the step is none the better for a shorter one.
+      if (outcome%singular_equation == 0 .or. outcome%iterations > 1) &
+        call cut_step(control, state%time, may_retry)
       if (.not. may_retry) then
         call raise_failure(model, state, step, outcome, error)
         return
       end if
+      call plan_step(control, state%time)
     end do
     call commit(model, state, step, attempt, trial)
-    call grow_step(control, outcome%iterations)
+    call grow_step(control, step%dt, outcome%iterations)
     call lap(monitor%clock, phase_nodes)
   end subroutine take_step
+
+  !> A step to `time`: full iterations or searched ones, as the step before, then the other kind.
+  subroutine try_step(model, state, monitor, time, step, attempt, outcome)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(monitor_t), intent(inout) :: monitor
+    real(wp), intent(in) :: time
+    type(step_t), intent(inout) :: step
+    type(trial_t), intent(inout) :: attempt
+    type(outcome_t), intent(out) :: outcome
+    integer :: i
+
+    step%time = time
+    step%dt = time - state%time
+    call number_equations(model, state, 0.5_wp*(state%time + time), step%equations)
+    call prescribe_step(model, state, time, step%equations, step%prescribed)
+    do i = 1, 2
+      call start_trial(model, state, attempt)
+      call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
+      if (outcome%converged) return
+      call write_log(monitor%log, 'step to '//to_text(time)//': '//outcome%reason)
+      ! The first iteration is not searched: one that fails there fails again.
+      if (outcome%iterations <= 1) return
+      step%searches = .not. step%searches
+    end do
+  end subroutine try_step
 
   !> The trial becomes the state; works of contact, loads and prescribed motion by the trapezoidal rule.
   subroutine commit(model, state, step, attempt, trial)
@@ -174,7 +212,7 @@ contains
     type(step_t), intent(inout) :: step
     type(trial_t), intent(inout) :: attempt
     type(trial_t), intent(inout) :: trial    !! of the state before; of the new state on return
-    real(wp), allocatable :: acceleration(:, :)
+    real(wp), allocatable :: acceleration(:, :), velocity(:, :)
     integer :: i
 
     state%external_work = state%external_work + 0.5_wp*sum((trial%external + attempt%external) &
@@ -187,12 +225,13 @@ contains
     end do
     if (step%is_dynamic) then
       acceleration = new_acceleration(state, step, attempt)
-      state%external_work = state%external_work + reactions_work(model, step%equations, state, trial, &
-        attempt, acceleration)
-      state%motion(3:4, :) = new_velocity(state, step, acceleration)
+      velocity = new_velocity(state, step, acceleration)
+      state%external_work = state%external_work + reactions_work(model, step%equations, trial, attempt, &
+        reshape([state%motion(3:4, :), velocity], [2, size(velocity, 2), 2]))
+      state%motion(3:4, :) = velocity
       state%acceleration = acceleration
     else
-      state%external_work = state%external_work + reactions_work(model, step%equations, state, trial, attempt)
+      state%external_work = state%external_work + reactions_work(model, step%equations, trial, attempt)
     end if
     state%motion(1:2, :) = attempt%motion(1:2, :)
     state%elements = attempt%elements

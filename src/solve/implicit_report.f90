@@ -95,13 +95,13 @@ contains
     end do
   end subroutine fill_consistent_parts
 
-  !> Work of the forces that hold prescribed degrees of freedom to their curves, trapezoidal rule.
-  function reactions_work(model, equations, state, before, after, acceleration) result(work)
+  !> Work of the forces that hold prescribed degrees of freedom to their curves: of inertia, change of momentum times mean
+  !> velocity, which is the kinetic energy that they gain, also in a blow; of the others by the trapezoidal rule.
+  function reactions_work(model, equations, before, after, velocities) result(work)
     type(model_t), intent(in) :: model
     type(equations_t), intent(in) :: equations
-    type(state_t), intent(in) :: state                    !! at the start of the step
     type(trial_t), intent(in) :: before, after
-    real(wp), intent(in), optional :: acceleration(:, :)  !! a(n+1); absent: static
+    real(wp), intent(in), optional :: velocities(:, :, :) !! (2, n_node, 2) v(n) and v(n+1); absent: static
     real(wp) :: work
     real(wp), allocatable :: reaction(:, :)
 
@@ -109,8 +109,10 @@ contains
     if (equations%n == equations%n_free) return
     reaction = (before%internal - before%contact - before%external) &
       + (after%internal - after%contact - after%external)
-    if (present(acceleration)) reaction = reaction + mass_times(model, acceleration + state%acceleration)
     work = 0.5_wp*sum(reaction*after%motion(3:4, :), equations%number > equations%n_free)
+    if (.not. present(velocities)) return
+    work = work + 0.5_wp*sum(mass_times(model, velocities(:, :, 2) - velocities(:, :, 1)) &
+      *(velocities(:, :, 1) + velocities(:, :, 2)), equations%number > equations%n_free)
   end function reactions_work
 
 end module implicit_report_m

@@ -6,8 +6,9 @@ module newton_m
   use clock_m, only : clock_t, lap, phase_nodes, phase_solver
   use contact_scatter_m, only : add_gap_round_off
   use controls_m, only : implicit_t
-  use equations_m, only : take_free, move_prescribed
-  use forces_m, only : trial_t, assemble_forces, is_sound
+  use equations_m, only : take_free, move_prescribed, find_equation
+  use forces_m, only : trial_t, assemble_forces, trouble_of
+  use line_search_m, only : way_t, move_nodes
   use linear_solver_m, only : report_t, solve_linear
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
@@ -18,8 +19,6 @@ module newton_m
   private
   public :: outcome_t, find_equilibrium
 
-  !> Halvings of an iteration that leaves the range of sound elements, and steps of a line search.
-  integer, parameter :: most_halvings = 8, most_searches = 6
   !> How far above the estimate of the round-off in the residual it counts as reached.
   real(wp), parameter :: floor_margin = 4.0_wp
 
@@ -37,14 +36,14 @@ module newton_m
   !> Measures of one iteration.
   type :: measure_t
     real(wp) :: energy = 0.0_wp   !! |dU.R|
+    real(wp) :: start = 0.0_wp    !! norm of what the iteration set out to remove
     real(wp) :: residual = huge(1.0_wp) !! norm of R
+    integer :: worst = 0          !! equation of the largest entry of R
     real(wp) :: before = huge(1.0_wp) !! norm of R one iteration ago
     real(wp) :: floor = 0.0_wp    !! round-off in it that comes from forces and displacements
     real(wp) :: gap_floor = 0.0_wp !! and with that of places in gaps, an upper estimate
     real(wp) :: step = 0.0_wp     !! norm of dU
     real(wp) :: factor = 1.0_wp   !! of the line search
-    real(wp), allocatable :: x(:)     !! dU of the free degrees of freedom
-    real(wp), allocatable :: moved(:) !! and of the prescribed ones
   end type measure_t
 
 contains
@@ -60,31 +59,27 @@ contains
     type(outcome_t), intent(out) :: outcome
     type(sparse_t) :: matrix
     type(measure_t) :: first, now
-    real(wp), allocatable :: b(:)
+    type(way_t) :: way
     type(report_t) :: report
-    integer :: iteration
+    integer :: iteration, node, direction
     logical :: solved
 
-    now%moved = step%increments
-    allocate (now%x(step%equations%n_free))
     trial%motion(1:2, :) = state%motion(1:2, :)
     call assemble_forces(model, state, step%time, .true., clock, trial)
+    outcome%reason = trouble_of(trial)
+    if (len(outcome%reason) > 0) return
     do iteration = 1, model%controls%implicit%max_iteration
       outcome%iterations = iteration
-      b = -take_free(step%equations, assemble_residual(model, state, step, trial))
-      call lap(clock, phase_nodes)
-      call assemble_tangent(model, state, step, trial, clock, matrix)
-      call move_prescribed(step%equations%n_free, now%moved, matrix, b)
-      call compress_matrix(matrix)
-      call solve_linear(matrix, b, now%x, report)
-      call lap(clock, phase_solver)
+      call find_way(model, state, step, iteration == 1, clock, trial, matrix, way, report)
       call judge_solution(report, outcome, solved)
       if (.not. solved) return
-      now%energy = abs(dot_product(now%x, b))
-      now%step = norm2(now%x)
-      call move_nodes(model, state, step, clock, trial, now, outcome)
-      if (allocated(outcome%reason)) return
-      now%moved = 0.0_wp
+      now%energy = abs(dot_product(way%x, way%b))
+      now%step = norm2(way%x)
+      now%start = norm2(way%b)
+      call move_nodes(model, state, step, clock, trial, way)
+      outcome%reason = way%trouble
+      if (len(outcome%reason) > 0) return
+      now%factor = way%factor
       call measure_residual(model, state, step, trial, matrix, now)
       if (iteration == 1) first = now
       call write_log(log, iteration_line(step, iteration, first, now, report))
@@ -92,8 +87,35 @@ contains
         norm2(trial%motion(3:4, :)))
       if (outcome%converged) return
     end do
-    outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations'
+    call find_equation(step%equations, now%worst, node, direction)
+    outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations, most force out of ' &
+      //'balance at node '//to_text(model%mesh%node_id(max(node, 1)))//' in '//merge('x', 'y', direction == 1)
   end subroutine find_equilibrium
+
+  !> Where an iteration leads: the solution of the linear system; the first of a step moves the prescribed degrees of
+  !> freedom to their places.
+  subroutine find_way(model, state, step, is_first, clock, trial, matrix, way, report)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    logical, intent(in) :: is_first
+    type(clock_t), intent(inout) :: clock
+    type(trial_t), intent(in) :: trial
+    type(sparse_t), intent(inout) :: matrix !! of the free degrees of freedom, collected
+    type(way_t), intent(inout) :: way
+    type(report_t), intent(out) :: report
+
+    way%moved = step%prescribed%increment
+    if (.not. is_first) way%moved = 0.0_wp
+    way%b = -take_free(step%equations, assemble_residual(model, state, step, trial))
+    call lap(clock, phase_nodes)
+    call assemble_tangent(model, state, step, trial, clock, matrix)
+    call move_prescribed(step%equations%n_free, way%moved, matrix, way%b)
+    call compress_matrix(matrix)
+    if (.not. allocated(way%x)) allocate (way%x(step%equations%n_free))
+    call solve_linear(matrix, way%b, way%x, report)
+    call lap(clock, phase_solver)
+  end subroutine find_way
 
   !> Whether the linear system had a solution.
   subroutine judge_solution(report, outcome, solved)
@@ -110,79 +132,6 @@ contains
     end if
   end subroutine judge_solution
 
-  !> Move the trial by `now%x`, shortened where elements would turn inside out or where the residual along x would not
-  !> fall; prescribed degrees of freedom by all of `now%moved`.
-  subroutine move_nodes(model, state, step, clock, trial, now, outcome)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(step_t), intent(in) :: step
-    type(clock_t), intent(inout) :: clock
-    type(trial_t), intent(inout) :: trial
-    type(measure_t), intent(inout) :: now
-    type(outcome_t), intent(inout) :: outcome
-    real(wp), allocatable :: start(:, :)
-    real(wp) :: slope, low, high, slope_low, slope_high
-    logical :: is_straight
-    integer :: i
-
-    start = trial%motion(1:2, :)
-    now%factor = 1.0_wp
-    is_straight = .not. any(abs(now%moved) > 0.0_wp)
-    do i = 1, most_halvings
-      call put_nodes(now%factor)
-      if (is_sound(trial)) exit
-      if (i == most_halvings .or. .not. is_straight) then
-        outcome%reason = 'an element has turned inside out'
-        return
-      end if
-      now%factor = 0.5_wp*now%factor
-    end do
-    if (.not. is_straight) return
-    low = 0.0_wp
-    slope_low = -now%energy
-    high = now%factor
-    slope_high = slope_at()
-    do i = 1, most_searches
-      slope = slope_high
-      if (abs(slope) <= model%controls%implicit%search_tolerance*now%energy) exit
-      if (slope < 0.0_wp) exit
-      now%factor = max(low + 0.1_wp*(high - low), low - slope_low*(high - low)/(slope_high - slope_low))
-      call put_nodes(now%factor)
-      high = now%factor
-      slope_high = slope_at()
-    end do
-
-  contains
-
-    !> The trial at a part of the way.
-    subroutine put_nodes(factor)
-      real(wp), intent(in) :: factor
-      integer :: j, k, n
-
-      do j = 1, size(start, 2)
-        do k = 1, 2
-          n = step%equations%number(k, j)
-          if (n == 0) cycle
-          if (n <= step%equations%n_free) then
-            trial%motion(k, j) = start(k, j) + factor*now%x(n)
-          else
-            trial%motion(k, j) = start(k, j) + now%moved(n - step%equations%n_free)
-          end if
-        end do
-      end do
-      call assemble_forces(model, state, step%time, .false., clock, trial)
-    end subroutine put_nodes
-
-    !> dU.R at the trial; below zero while the way leads down.
-    function slope_at() result(slope)
-      real(wp) :: slope
-
-      slope = dot_product(now%x, take_free(step%equations, &
-        assemble_residual(model, state, step, trial)))
-    end function slope_at
-
-  end subroutine move_nodes
-
   !> Norm of the residual and of the round-off that it must hold: that of forces, of displacements times stiffness, and of
   !> places in gaps times the springs of contact.
   subroutine measure_residual(model, state, step, trial, matrix, now)
@@ -197,7 +146,9 @@ contains
     integer :: i, k
 
     now%before = now%residual
-    now%residual = norm2(take_free(step%equations, assemble_residual(model, state, step, trial)))
+    u = take_free(step%equations, assemble_residual(model, state, step, trial))
+    now%residual = norm2(u)
+    now%worst = maxloc(abs(u), 1)
     u = abs(take_free(step%equations, trial%motion(1:2, :)))
     total = take_free(step%equations, abs(trial%internal) + abs(trial%contact) + abs(trial%external))
     do i = 1, matrix%n
@@ -220,14 +171,14 @@ contains
     real(wp), intent(in) :: step !! norm of the displacement of the whole step
     logical :: converged
 
-    converged = now%residual <= floor_margin*now%floor .or. (now%residual <= floor_margin*now%gap_floor &
+    converged = implicit%is_linear .or. now%residual <= floor_margin*now%floor .or. (now%residual <= floor_margin*now%gap_floor &
       .and. now%residual > stagnation*now%before)
     if (converged) return
-    converged = now%energy <= implicit%energy_tolerance*first%energy .or. implicit%is_linear
+    converged = now%energy <= implicit%energy_tolerance*first%energy
     if (implicit%step_tolerance > 0.0_wp) converged = converged .and. now%step &
       <= implicit%step_tolerance*step
     if (implicit%residual_tolerance > 0.0_wp) converged = converged .and. now%residual &
-      <= implicit%residual_tolerance*first%residual
+      <= implicit%residual_tolerance*first%start
   end function is_converged
 
   !> One line of the account.

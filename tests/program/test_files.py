@@ -135,6 +135,74 @@ def test_timing_table(finished):
     assert all(value >= 0.0 for value in seconds.values())
 
 
+CONTACT_PHASES = ("contact_search", "contact_pairing", "contact_force")
+
+
+def timing_table(path):
+    """{phase: (whole nanoseconds, calls)} in the order of the file."""
+    table = columns(path)
+    assert len(set(table["phase"])) == len(table["phase"])
+    assert all(len(text.split(".")[1]) == 9 for text in table["seconds"])
+    return {phase: (int(text.replace(".", "")), int(calls)) for phase, text, calls
+            in zip(table["phase"], table["seconds"], table["calls"])}
+
+
+def check_interfaces(rows, count):
+    """Rows by interface add up to their phase, and the rows without a dot to the total."""
+    split = {phase: [rows[f"{phase}.{k}"] for k in range(1, count + 1)] for phase in CONTACT_PHASES}
+    for phase, parts in split.items():
+        assert (sum(t for t, _ in parts), sum(n for _, n in parts)) == rows[phase]
+    assert set(rows) == PHASES | {f"{p}.{k}" for p in CONTACT_PHASES for k in range(1, count + 1)}
+    assert sum(t for phase, (t, _) in rows.items() if "." not in phase and phase != "total") \
+        == rows["total"][0]
+    return split
+
+
+def test_timing_by_interface(slideline, tmp_path):
+    deck = drop(kind=2).contact(3, 2, 7, 2.0e5)
+    done = slideline("d=x", "timing=interface", deck=deck)
+    assert done.returncode == 0, done.stderr
+    split = check_interfaces(timing_table(tmp_path / "x" / "job.timing.csv"), 2)
+    cycles = numbers(tmp_path / "x" / "job.glstat.csv", "cycle")[-1] + 1
+    assert [n for _, n in split["contact_search"]] == [cycles, cycles]
+    # placing the points of type 2 counts as force, that of type 7 is work of its own
+    assert [n for _, n in split["contact_pairing"]] == [0, cycles]
+    assert all(t > 0 for t, _ in split["contact_search"] + split["contact_force"])
+
+
+def test_timing_by_interface_of_an_implicit_run(slideline, tmp_path):
+    deck = Deck("pressed")
+    deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 0.5))
+    deck.part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    lower, upper = deck.mesh(*grid(2, 2)), deck.mesh(*grid(3, 2, 1.0, 1.0, (0.0, 1.0)))
+    deck.fix(lower[:3], x=1, y=1).fix(upper[::4], x=1)
+    deck.node_set(1, upper[:4]).node_set(2, lower[-3:][::-1])
+    deck.contact(1, 2, 7, 1.0e6).contact(1, 2, 2, 1.0e6)
+    deck.curve(1, [(0.0, -100.0), (1.0, -100.0)])
+    for node in upper[-4:]:
+        deck.add("*LOAD_NODE_POINT", (int(node), 2, 1, 1.0))
+    done = slideline("d=x", "timing=interface", deck=deck)
+    assert done.returncode == 0, done.stderr
+    split = check_interfaces(timing_table(tmp_path / "x" / "job.timing.csv"), 2)
+    first, second = split["contact_force"]
+    assert first[0] > 0 and second[0] > 0 and first[1] == second[1] > 2
+
+
+def test_timing_off_leaves_the_total(slideline, tmp_path):
+    for word in ("phase", "off"):
+        assert slideline(f"d={word}", f"timing={word}", deck=drop()).returncode == 0
+    rows = timing_table(tmp_path / "off" / "job.timing.csv")
+    assert list(rows) == ["total"] and rows["total"][0] > 0
+    assert set(timing_table(tmp_path / "phase" / "job.timing.csv")) == PHASES
+    assert (tmp_path / "off" / "job.glstat.csv").read_bytes() \
+        == (tmp_path / "phase" / "job.glstat.csv").read_bytes()
+    log = (tmp_path / "phase" / "job.log").read_text()
+    laps, each = re.search(r"Clock += (\d+) laps of (\S+) nanoseconds", log).groups()
+    calls = timing_table(tmp_path / "phase" / "job.timing.csv")
+    assert int(laps) == sum(n for phase, (_, n) in calls.items() if phase != "total")
+    assert 1.0 < float(each) < 1.0e4
+
+
 @pytest.mark.parametrize("table", HISTORIES)
 def test_histories_in_hdf5(finished, table):
     folder, _ = finished

@@ -77,7 +77,7 @@ def test_the_loose_one_of_two_bodies_is_named(slideline):
 
 
 def test_body_let_go_keeps_the_last_converged_state(slideline, tmp_path):
-    """Held by a prescribed motion that ends: the third step is singular."""
+    """Held by a prescribed motion that ends inside the third step, which is divided there; the rest of it is singular."""
     deck = implicit(1.0, 0.1).part(points=4).elastic(1000.0, 1.0e6, 0.3)
     nodes = deck.mesh(*grid(2, 2))
     deck.fix(nodes[:3], y=1).curve(1, [(0.0, 0.0), (1.0, 0.1)])
@@ -86,7 +86,7 @@ def test_body_let_go_keeps_the_last_converged_state(slideline, tmp_path):
     done = slideline("d=x", deck=deck.output(glstat=1.0, plot=1.0))
     assert done.returncode == 2
     assert "moves freely in x" in done.stderr
-    assert last_state(tmp_path / "x") == pytest.approx((0.2, 0.2))
+    assert last_state(tmp_path / "x") == pytest.approx((0.25, 0.25))
 
 
 @pytest.mark.parametrize("dynamic", [False, True])
@@ -143,6 +143,7 @@ def test_constant_step_that_does_not_converge_is_2(slideline, tmp_path):
     done = slideline("d=x", deck=deck)
     assert done.returncode == 2
     assert "no equilibrium" in done.stderr and "3 iterations" in done.stderr
+    assert re.search(r"out of balance at node \d+ in [xy]", done.stderr)
     assert "last converged state is that of time 0" in done.stderr
     assert NORMAL not in done.stdout
     assert last_state(tmp_path / "x") == (0.0, 0.0)
@@ -159,6 +160,69 @@ def test_automatic_step_is_cut_and_goes_on(slideline, tmp_path):
     assert list(cycles) == list(range(len(cycles))), "every step is due, those after a cut too"
     assert min(b - a for a, b in zip(steps, steps[1:])) < 0.26
     assert "no equilibrium after 3 iterations" in (tmp_path / "x" / "job.log").read_text()
+
+
+def test_a_linear_run_iterates_once(slideline, tmp_path):
+    """NSOLVR = 1, whatever the tolerances ask for."""
+    deck = pulled(4.0e5, dt=0.5)
+    deck.add("*CONTROL_IMPLICIT_SOLUTION", (1, None, 9, 1.0e-12, None, 1.0e-12))
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0, done.stderr
+    log = (tmp_path / "x" / "job.log").read_text()
+    assert "iteration 1:" in log and "iteration 2:" not in log
+
+
+def test_residual_is_measured_against_the_start_of_the_step(slideline, tmp_path):
+    """RCTOL: the last |R| of each step is below it times the force put on in that step, that before is not."""
+    tolerance, force, dt = 1.0e-5, 4.0e4, 0.5
+    deck = pulled(force, dt=dt)
+    deck.add("*CONTROL_IMPLICIT_SOLUTION", (12, None, 15, None, 1.0e20, tolerance))
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0, done.stderr
+    log = (tmp_path / "x" / "job.log").read_text()
+    steps = {}
+    for step, residual in re.findall(r"step to (\S+) iteration \d+:.*\|R\| (\S+) ", log):
+        steps.setdefault(step, []).append(float(residual))
+    first = next(iter(steps.values()))
+    start = force * dt * math.sqrt(0.25 ** 2 + 0.5 ** 2 + 0.25 ** 2)
+    assert first[-1] <= tolerance * start < first[-2]
+
+
+def test_contact_that_opens_in_an_iteration_cuts_the_step(slideline, tmp_path):
+    """Only contact holds the upper block in y; its load vanishes at 0.5: the second iteration is singular."""
+    deck = implicit(1.0, 0.08, automatic=(1.0e-4, 0.08)).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    lower, upper = deck.mesh(*grid(2, 2)), deck.mesh(*grid(3, 2, 1.0, 1.0, (0.0, 1.0)))
+    deck.fix(lower[:3], x=1, y=1).fix(upper[::4], x=1)
+    deck.node_set(1, upper[:4]).node_set(2, lower[-3:][::-1]).contact(1, 2, 7, 1.0e6)
+    deck.curve(1, [(0.0, -100.0), (0.45, -100.0), (0.55, 100.0), (1.0, 100.0)])
+    for node in upper[-4:]:
+        deck.add("*LOAD_NODE_POINT", (int(node), 2, 1, 1.0))
+    done = slideline("d=x", deck=deck.output(glstat=0.08, plot=1.0))
+    assert done.returncode == 2
+    assert "moves freely in y" in done.stderr
+    assert 0.499 < last_state(tmp_path / "x")[0] < 0.5001
+
+
+def test_far_bending_in_one_step(slideline):
+    """A slender cantilever under ten times the load that linear theory allows: full iterations get there."""
+    deck = implicit(1.0, 1.0).part(points=4).elastic(1000.0, 1.2e7, 0.0)
+    nodes = deck.mesh(*grid(40, 1, 10.0, 0.25))
+    deck.fix(nodes[::41], x=1, y=1).curve(1, [(0.0, 0.0), (1.0, 10.0 * 1.2e7 * 0.25 ** 3 / 12.0 / 10.0 ** 2)])
+    for node in nodes[40::41]:
+        deck.add("*LOAD_NODE_POINT", (int(node), 2, 1, 0.5))
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0, done.stderr
+
+
+def test_step_floor_of_the_explicit_method_is_warned_of(slideline):
+    deck = pulled(1.0, dt=0.5)
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0 and "DTMIN" not in done.stderr
+    place = deck.lines.index("*CONTROL_TERMINATION")
+    deck.lines[place + 1] = "1.0, 0, 0.1"
+    done = slideline("d=y", deck=deck)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count("DTMIN has no effect") == 1
 
 
 def test_step_of_the_command_line(slideline, tmp_path):
@@ -179,6 +243,18 @@ def test_easy_steps_grow(slideline, tmp_path):
     assert lengths[0] == pytest.approx(0.01) and lengths[1] == pytest.approx(0.015)
     assert max(lengths) == pytest.approx(0.2) or max(lengths) == pytest.approx(0.01 * 1.5 ** 7)
     assert steps[-1] == 1.0
+
+
+def test_growing_steps_see_a_pulse(slideline, tmp_path):
+    """A load that lasts a tenth of a grown step: begin, top and end of it are steps, the others stay whole."""
+    deck = pulled(0.0, dt=0.05, automatic=(1.0e-3, 0.3))
+    deck.curve(2, [(0.0, 0.0), (0.71, 0.0), (0.72, 10.0), (0.74, 0.0), (1.0, 0.0)])
+    deck.add("*LOAD_NODE_POINT", (4, 1, 2, 1.0))
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0, done.stderr
+    steps = numbers(tmp_path / "x" / "job.glstat.csv", "time")
+    assert {0.71, 0.72, 0.74} <= {round(step, 9) for step in steps}
+    assert max(numbers(tmp_path / "x" / "job.glstat.csv", "internal")) > 0.0
 
 
 def test_load_beyond_the_limit_stops_at_the_limit(slideline, tmp_path):
@@ -209,3 +285,23 @@ def test_terminated_is_4(exe, tmp_path):
     assert "request" in stdout
     plot, row = last_state(tmp_path / "out")
     assert plot == row > 0.0, "the last state is written on the way out"
+
+
+def test_stop_in_the_last_step_is_no_stop(exe, tmp_path):
+    """The only step is under way when the signal comes: the run reaches its end."""
+    deck = implicit(1.0, 1.0).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    nodes = deck.mesh(*grid(100, 60))
+    deck.fix(nodes[::101], x=1, y=1).curve(1, [(0.0, 0.0), (1.0, 1.0)])
+    deck.add("*LOAD_NODE_POINT", (int(nodes[-1]), 1, 1, 1.0)).output(glstat=1.0)
+    (tmp_path / "job.k").write_text(deck.text())
+    process = subprocess.Popen([exe, "i=job.k", "d=out"], cwd=tmp_path, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    path = tmp_path / "out" / "job.glstat.csv"
+    for _ in range(500):
+        time.sleep(0.01)
+        if path.exists():
+            break
+    process.send_signal(signal.SIGTERM)
+    stdout, stderr = process.communicate(timeout=60)
+    assert process.returncode == 0, stderr
+    assert NORMAL in stdout

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The sweeps of `tools/study.sh`, with a small program in place of slideline."""
 import csv
+import io
 import json
 import os
 import pathlib
@@ -13,7 +14,7 @@ import pytest
 
 from slideline_tools import UserError
 from slideline_tools.study import __main__ as command
-from slideline_tools.study import registry, runner, table
+from slideline_tools.study import progress, registry, runner, table
 from slideline_tools.study.job import Job, Options, Study, interleave, part_of
 from slideline_tools.study.progress import Progress, span
 
@@ -199,14 +200,34 @@ def test_medians_and_groups():
 
 
 def test_time_to_go():
-    progress = Progress()
-    assert progress.to_go() is None
-    progress.known(Job("a", ""), {"seconds": 10.0, "status": 0})
-    progress.known(Job("b", ""), {"seconds": 30.0, "status": 0})
-    progress.start([Job("b", "", repeat=2), Job("c", "", alone=True)], 2)
-    assert progress.to_go() == 30.0 / 2 + 20.0
+    shown = Progress()
+    assert shown.to_go() is None
+    shown.known(Job("a", ""), {"seconds": 10.0, "status": 0})
+    shown.known(Job("b", ""), {"seconds": 30.0, "status": 0})
+    shown.start([Job("b", "", repeat=2), Job("c", "", alone=True), Job("d", "", cost=3.0)], 2)
+    assert shown.to_go() == 30.0 / 2 + 20.0 + 3 * 20.0 / 2
     assert [span(x) for x in (None, 10.0, 300.0, 7200.0)] == [
         "an unknown time", "about 10 s", "about 5 min", "about 2.0 h"]
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_one_updating_line_on_a_terminal_and_plain_lines_elsewhere(bench, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "60")
+    monkeypatch.setattr(progress, "SHOW_EVERY", 0.0)
+    jobs = [Job("a", deck(1), "a"), Job("b", deck(2), "b", ("fail=2",)), Job("c", deck(3), "c")]
+    terminal, pipe = Terminal(), io.StringIO()
+    bench.sweep().run(jobs, 1, Progress(terminal))
+    shown = terminal.getvalue()
+    assert shown.count("\n") == 2  # the failure and the end stay
+    assert all(len(line) <= 59 for line in shown.replace("\n", "\r").split("\r"))
+    assert "\rb failed: deck.k: line 3: a mistake" in shown and "\r1 of 3 runs, about" in shown
+    bench.sweep().run([*jobs, Job("d", deck(4), "d")], 1, Progress(pipe))
+    assert pipe.getvalue().splitlines()[0] == "3 of 4 runs have finished before"
+    assert pipe.getvalue().splitlines()[1].startswith("4 of 4 runs, 1 failed; d took ")
 
 
 # ---- the command -------------------------------------------------------------------------------

@@ -1,24 +1,30 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# usage: tools/batch/patch.sh [TYPES]
+# usage: tools/batch/patch.sh [static] [TYPES]
 # Runs the contact patch test on several meshes and with penalties from 1e3 to 1e10 N/m for every
-# contact type (default "1 2 3 4 5 6 7") into results/batch/patch and writes
-# doc/studies/patch_test.md with its picture; with arguments, the page goes to
-# results/batch/patch/doc instead. About two minutes.
+# contact type (default "1 2 3 4 5 6 7"), explicitly damped to rest (about two minutes) or in one
+# static step (less than a minute), into results/batch/patch or patch_static, and writes
+# doc/studies/patch_test.md or patch_test_static.md with its pictures; with types, the page goes to
+# doc/ in the folder of the results instead.
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
+study=patch
+if [ "${1:-}" = static ]; then
+  study=patch_static
+  shift
+fi
 types=${1:-1 2 3 4 5 6 7}
-out=$root/results/batch/patch
+out=$root/results/batch/$study
 doc=$root/doc
 [ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release
 python=$root/build/venv/bin/python
 mkdir -p "$out"
-"$python" -m slideline_tools.studies.patch decks "$out" >"$out/list.txt"
+"$python" -m slideline_tools.studies.$study decks "$out" >"$out/list.txt"
 while read -r name; do
-  echo "== patch test, $name"
+  echo "== $study, $name"
   for type in $types; do
     run=$out/${name}_type_$type
     mkdir -p "$run"
@@ -28,4 +34,4 @@ while read -r name; do
 done <"$out/list.txt"
 
 # shellcheck disable=SC2086  # the types are words
-"$python" -m slideline_tools.studies.patch page "$out" "$doc" --types $types
+"$python" -m slideline_tools.studies.$study page "$out" "$doc" --types $types

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command `slideline-tools`: info | plot | animate | compare | bless | make-deck."""
+"""The command `slideline-tools`: info | plot | animate | compare | advise | bless | make-deck."""
 import argparse
 import dataclasses
 import os
@@ -211,6 +211,28 @@ def run_compare(options):
     return OK if report.passed else FAILED
 
 
+def add_advise(commands):
+    parser = commands.add_parser(
+        "advise", help="say what in the model of a finished run was not needed",
+        description="Read a finished run and say what in its model was not needed, with the "
+                    "figures that show it, the expected saving and what to change in the deck.")
+    parser.add_argument("result", metavar="RUN", help="results folder, or a file of the run")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--all", action="store_true",
+                        help="also what saves less than 1 %% of the run")
+    parser.set_defaults(run=run_advise)
+
+
+def run_advise(options):
+    from slideline_tools import advise
+    from slideline_tools.advise import report
+    run, advice, notes = advise.advise(options.result)
+    shown = report.select(advice, run.total, options.all)
+    print(report.as_json(run, shown, notes) if options.json
+          else report.as_text(run, shown, notes, len(advice) - len(shown)))
+    return OK
+
+
 def add_bless(commands):
     parser = commands.add_parser(
         "bless", help="renew the reference of a regression case",
@@ -243,7 +265,8 @@ def build_parser():
         description="Look into, draw and compare results of slideline, and write scene decks.")
     parser.add_argument("--version", action="version", version=f"slideline-tools {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (add_info, add_plot, add_animate, add_compare, add_make_deck, add_bless):
+    for add in (add_info, add_plot, add_animate, add_compare, add_advise, add_make_deck,
+                add_bless):
         add(commands)
     return parser
 

@@ -65,6 +65,6 @@ def timing(folder, job):
     """Seconds of the whole run and the share of contact in it, from the timing table."""
     table = read_csv(pathlib.Path(folder) / f"{job}.timing.csv")
     seconds = dict(zip(table["phase"].tolist(), table["seconds"].tolist()))
-    contact = sum(value for phase, value in seconds.items() if phase.startswith("contact_"))
+    contact = sum(value for phase, value in seconds.items() if phase.startswith("contact_") and "." not in phase)
     total = seconds["total"]
     return {"seconds": total, "contact_share": contact / total if total > 0.0 else 0.0}

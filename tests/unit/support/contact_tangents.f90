@@ -9,10 +9,10 @@ module contact_tangents_m
   private
   public :: n_place, places, make_place, valley, needle, solve_dense
 
-  integer, parameter :: n_place = 11, valley = 1, needle = 6
+  integer, parameter :: n_place = 12, valley = 1, needle = 6
   character(16), parameter :: places(n_place) = [character(16) :: 'valley', 'ridge', 'overhang', &
     'one end', 'steep tip', 'needle', 'disc on plane', 'plane on disc', 'disc in ring', 'two chains', &
-    'overlapped']
+    'overlapped', 'chain at end']
 
 contains
 
@@ -67,6 +67,13 @@ contains
       master(1, 4:5) = [0.63_wp, 0.55_wp]
       if (places(k) == 'overlapped') master(1, 4:5) = [0.55_wp, 0.63_wp]
       if (places(k) == 'overlapped') master(2, 5:) = -0.002_wp
+    case ('chain at end')
+      ! The second chain begins below the end of a slave segment, just outside its projection.
+      slave = line([0.0_wp, 0.0_wp], [1.0_wp, 0.0_wp], 4)
+      slave(2, :) = -0.2_wp*abs(slave(1, :) - 0.5_wp)
+      master = line([1.1_wp, 0.0_wp], [-0.1_wp, 0.0_wp], 6)
+      master(1, 4) = 0.499_wp
+      master(2, :) = -0.2_wp*abs(master(1, :) - 0.5_wp)
     end select
     call make_problem(problem, slave, master, 0.3_wp, slave_is_closed=k == 7 .or. k == 9, &
       master_is_closed=k == 8 .or. k == 9)

@@ -229,11 +229,143 @@ def check_bars(run, kind):
     run.report(f"{name}: energy ratio at the end", energy["energy_ratio"][-1])
 
 
+def driven(title, kind, points, dt, steps, radius=1.0, birth=0.0, death=0.0):
+    """One element, free at its left end, its right end on a curve of speeds or places of 1e-7 m."""
+    deck = implicit(Deck(title), dt, steps * dt, radius=radius)
+    deck.part(points=4).elastic(RHO, YOUNG, 0.0)
+    nodes = deck.mesh(*grid(1, 1, LENGTH, LENGTH))
+    deck.fix(nodes, y=1).curve(1, points)
+    for node in nodes[[1, 3]]:
+        deck.add("*BOUNDARY_PRESCRIBED_MOTION_NODE", (int(node), 1, kind, 1, 1e-7, 0, death, birth))
+    deck.output(glstat=dt, nodout=dt, nodes=[int(nodes[0]), int(nodes[1])])
+    return deck, int(nodes[0]), int(nodes[1])
+
+
+VELOCITY, ACCELERATION, DISPLACEMENT = 0, 1, 2
+
+
+def check_driven(run):
+    """The driven end moves with speed 1 from the start: w = u_free - u_driven is a free oscillation from w' = -1."""
+    dt, steps = PERIOD / 20.0, 200
+    angle = 2.0 * np.arctan(0.5 * OMEGA * dt)
+    expected = -np.sin(angle * np.arange(steps + 1)) / OMEGA
+    for kind, name, points in ((DISPLACEMENT, "displacement", [(0.0, 0.0), (1e3, 1e3)]),
+                               (VELOCITY, "velocity", [(0.0, 1.0), (1e3, 1.0)])):
+        deck, free, moved = driven(f"driven by {name}", kind, points, dt, steps)
+        result = run.program(deck, name=f"driven_{name}")
+        end, other = result.node(moved), result.node(free)
+        run.check(f"{name} curve of speed 1: displacement", end["ux"] / 1e-7, end["time"], 1e-12,
+                  source="curve")
+        run.check(f"{name} curve of speed 1: velocity of its end", end["vx"] / 1e-7, 1.0, 1e-10, "abs",
+                  "curve")
+        run.check(f"{name} curve of speed 1: acceleration of its end", end["ax"] / 1e-7, 0.0, 1e-8, "abs",
+                  "curve")
+        run.check(f"{name} curve of speed 1: swinging of the free end",
+                  (other["ux"] - end["ux"]) / 1e-7, expected, 1e-6, source="closed form")
+        run.check(f"{name} curve of speed 1: energy", result.table("glstat")["energy_ratio"], 1.0, 1e-8,
+                  "abs", "the work of the reactions")
+
+
+def check_acceleration_curve(run):
+    """An acceleration that rises to 1 and stays: the curve integrated twice, whatever the step."""
+    rise = 3.0 * PERIOD
+    for dt in (PERIOD / 20.0, PERIOD / 1.7):
+        deck, _, moved = driven("acceleration", ACCELERATION, [(0.0, 0.0), (rise, 1.0), (1e3, 1.0)], dt, 20)
+        end = run.program(deck, name=f"acceleration_{dt / PERIOD:.2f}").node(moved)
+        time, late = end["time"], np.maximum(end["time"] - rise, 0.0)
+        early = np.minimum(time, rise)
+        run.check(f"acceleration curve, step {dt / PERIOD:.2f} periods: displacement", end["ux"] / 1e-7,
+                  early ** 3 / (6.0 * rise) + 0.5 * rise * late + 0.5 * late ** 2, 1e-12, source="integral")
+        run.check(f"acceleration curve, step {dt / PERIOD:.2f} periods: velocity", end["vx"] / 1e-7,
+                  0.5 * early ** 2 / rise + late, 1e-12, source="integral")
+
+
+def blow(dt, steps):
+    """The free end after the other was set to speed 1 in the first step: trapezoidal rule by hand."""
+    own, shared, spring = RHO * LENGTH / 3.0, RHO * LENGTH / 6.0, YOUNG / LENGTH
+    u = v = 0.0
+    rows = [u]
+    for i in range(steps):
+        # own (v1 - v) + shared (1 or 0) + dt spring (mean of u - driven) = 0, u1 - u = dt (v + v1)/2
+        kick = shared if i == 0 else 0.0
+        stretch = u + 0.25 * dt * v - (i + 0.5) * dt
+        v1 = (own * v - kick - dt * spring * stretch) / (own + 0.25 * dt ** 2 * spring)
+        u, v = u + 0.5 * dt * (v + v1), v1
+        rows.append(u)
+    return np.array(rows)
+
+
+def check_life(run):
+    """Births and deaths inside a step."""
+    dt, late, steps = PERIOD / 20.0, 7.3, 100
+    deck, free, moved = driven("born late", VELOCITY, [(0.0, 1.0), (1e3, 1.0)], dt, steps, birth=late * dt)
+    result = run.program(deck, name="born_late")
+    end = result.node(moved)
+    alive = end["time"] > late * dt
+    run.check("birth inside a step: displacement", end["ux"] / 1e-7,
+              np.maximum(end["time"] - late * dt, 0.0), 1e-12, source="curve")
+    run.check("birth inside a step: velocity from then on", end["vx"][alive] / 1e-7, 1.0, 1e-12, "abs",
+              "curve")
+    run.check("birth inside a step: acceleration from then on", end["ax"][alive] / 1e-7, 0.0, 1e-9, "abs",
+              "curve")
+    run.check("birth inside a step: energy", result.table("glstat")["energy_ratio"], 1.0, 1e-8, "abs",
+              "the work of the blow is the kinetic energy that it gives")
+    deck, free, _ = driven("born between steps", VELOCITY, [(0.0, 1.0), (1e3, 1.0)], dt, steps, birth=7.0 * dt)
+    other = run.program(deck, name="born_between").node(free)
+    run.check("birth between two steps: free end", other["ux"][7:] / 1e-7, blow(dt, steps - 7), 1e-6,
+              source="trapezoidal rule by hand, blow through the shared mass")
+    for kind, name, points in ((VELOCITY, "velocity", [(0.0, 1.0), (1e3, 1.0)]),
+                               (DISPLACEMENT, "displacement", [(0.0, 0.0), (1e3, 1e3)])):
+        deck, free, moved = driven("dies early", kind, points, dt, 8, death=2.6 * dt)
+        result = run.program(deck.output(plot=1e-3 * dt), name=f"dies_early_{name}")
+        order = np.argsort(result.points("node_id")[0].astype(int))
+        place = result.points("displacement")[:, order, 0]
+        run.check(f"death inside a step, {name}: a state at the death", np.min(np.abs(result.times / dt - 2.6)),
+                  0.0, 1e-9, "abs")
+        at_death = np.argmin(np.abs(result.times / dt - 2.6))
+        run.check(f"death inside a step, {name}: displacement there", place[at_death].max() / 1e-7, 2.6 * dt,
+                  1e-12, source="curve")
+        parts = result.points("velocity")[at_death:, order, 0].mean(axis=1)
+        run.check(f"death inside a step, {name}: momentum after it", parts, parts[0], 1e-9, source="free")
+
+
+def check_pulled_bar(run):
+    """A bar pulled at its end with speed 1: d'Alembert's wave, u = c t - x behind the front."""
+    n, speed = 100, 1e-6
+    size = LENGTH / n
+    dt = 0.5 * size / SOUND
+    for kind, name, points in ((DISPLACEMENT, "displacement", [(0.0, 0.0), (1.0, speed)]),
+                               (VELOCITY, "velocity", [(0.0, speed), (1.0, speed)])):
+        deck = implicit(Deck(f"pulled bar, {name}"), dt, 160 * dt)
+        deck.part(points=4).elastic(RHO, YOUNG, 0.0)
+        nodes = deck.mesh(*grid(n, 1, LENGTH, size))
+        deck.fix(nodes, y=1).curve(1, points)
+        for node in nodes[[0, n + 1]]:
+            deck.add("*BOUNDARY_PRESCRIBED_MOTION_NODE", (int(node), 1, kind, 1))
+        deck.output(glstat=dt, plot=160 * dt, nodout=dt, nodes=[int(nodes[0])])
+        result = run.program(deck, name=f"pulled_{name}")
+        end, energy = result.node(int(nodes[0])), result.table("glstat")
+        run.check(f"pulled bar, {name}: velocity of its end", end["vx"] / speed, 1.0, 1e-10, "abs", "curve")
+        order = np.argsort(result.points("node_id")[0].astype(int))
+        x = result.points("Points")[0][order, 0]
+        moved = result.points("displacement")[-1][order, 0]
+        exact = speed / SOUND * np.maximum(SOUND * 160 * dt - x, 0.0)
+        run.check(f"pulled bar, {name}: displacement along it", moved, exact, 0.01,
+                  source="d'Alembert; to an element's width at the front")
+        run.check(f"pulled bar, {name}: work of the pull", energy["external_work"][-1] + energy["kinetic"][0],
+                  RHO * SOUND * size * speed ** 2 * 160 * dt, 0.01, source="rho c v^2 t")
+        run.check(f"pulled bar, {name}: energy", energy["energy_ratio"][-1], 1.0, 5e-3, "abs", "balance")
+
+
 def check(run):
     check_recursion(run)
     check_closed_form(run)
     check_order(run)
     check_radius(run)
     check_energy(run)
+    check_driven(run)
+    check_acceleration_curve(run)
+    check_life(run)
+    check_pulled_bar(run)
     for kind in (5, 7):
         check_bars(run, kind)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The claims of Kang, Lee & Shin (2023) about the contact types, answered from runs.
 
-    python -m slideline_tools.studies.claims RUNS DOC
+    python -m slideline_tools.studies.claims RUNS TIMES.csv DOC
 
-RUNS holds the folders block, sliding, collision and claims of the batch jobs, the last with
-<scene>/level_L_type_T/timing_*.csv, one table a round; the page goes to DOC/studies.
+RUNS holds the folders block, sliding, collision and claims of the batch jobs; TIMES.csv is the table
+of the study paper-tables; the page goes to DOC/studies.
 """
 import argparse
 import pathlib
@@ -17,16 +17,10 @@ from slideline_tools.histories import read_csv
 from slideline_tools.scenes import block_grids
 from slideline_tools.studies import block, sliding
 from slideline_tools.studies.common import TYPES, label, markdown_table, write_page
+from slideline_tools.study.table import read_rows
+from slideline_tools.study.times import Times
 
-SEARCH, PAIRING, FORCE = "contact_search", "contact_pairing", "contact_force"
-ELEMENTS = "elements"
 LEVELS = {"sliding": (1, 2, 3), "collision": (1, 2, 3, 4)}
-# Contact time over that of the classical one-pass NTS, by type and level.
-SOURCE_RATIOS = {
-    "sliding": {3: (2.25, 2.26, 2.26), 4: (2.09, 2.09, 2.20), 5: (1.22, 1.09, 1.12),
-                6: (4.98, 5.49, 5.85)},
-    "collision": {3: (1.92, 1.97, 1.95, 1.93), 4: (2.06, 2.05, 2.04, 2.05),
-                  5: (1.20, 1.09, 1.06, 1.06), 6: (3.41, 3.76, 3.82, 3.78)}}
 
 
 def verdict(answers):
@@ -105,71 +99,6 @@ def added_points(folder):
     if not counts:
         raise UserError(f"{folder}: no contact")
     return np.array(counts)
-
-
-# ---- time --------------------------------------------------------------------------------------
-
-def phase_times(folder):
-    """(n_round, 3) times of steps A, M and B from the timing tables of one run.
-
-    In units of the element loop of the same run, which is the same work for all types: on a busy
-    machine both wait alike.
-    """
-    rounds = []
-    for path in sorted(folder.glob("timing_*.csv")):
-        table = read_csv(path)
-        seconds = dict(zip(table["phase"].tolist(), table["seconds"].tolist()))
-        rounds.append([seconds[phase] / seconds[ELEMENTS] for phase in (SEARCH, PAIRING, FORCE)])
-    if not rounds:
-        raise UserError(f"{folder}: no timing tables")
-    return np.array(rounds)
-
-
-class Times:
-    """Phase times of one scene: `steps[level][type]` = (3,) medians of A, M, B over the rounds.
-
-    `rounds`: fewest rounds of a run; `spread`: largest distance of the quartiles of the sum over
-    its median.
-    """
-
-    def __init__(self, folder, scene):
-        self.scene = scene
-        measured = {level: {ctype: phase_times(folder / scene / f"level_{level}_type_{ctype}")
-                            for ctype in TYPES} for level in LEVELS[scene]}
-        self.steps = {level: {ctype: np.median(rounds, axis=0) for ctype, rounds in row.items()}
-                      for level, row in measured.items()}
-        every = [rounds.sum(axis=1) for row in measured.values() for rounds in row.values()]
-        self.rounds = min(len(sums) for sums in every)
-        self.spread = max(float(np.subtract(*np.percentile(sums, (75, 25))) / np.median(sums))
-                          for sums in every)
-
-    def ratio(self, level, ctype):
-        """Contact time over that of type 1."""
-        return float(self.steps[level][ctype].sum() / self.steps[level][1].sum())
-
-    def ratio_table(self):
-        """Ratios to type 1 by level, those of the source behind them."""
-        source = SOURCE_RATIOS[self.scene]
-        rows = []
-        for ctype in TYPES:
-            theirs = source.get(ctype)
-            row = [label(ctype)]
-            for place, level in enumerate(LEVELS[self.scene]):
-                row.append(f"{self.ratio(level, ctype):.2f}"
-                           + (f" ({theirs[place]:.2f})" if theirs else ""))
-            rows.append(row)
-        return markdown_table(["type"] + [f"N_r = {level}" for level in LEVELS[self.scene]], rows)
-
-    def phase_table(self, level):
-        """Time of each step over all of type 1, and the share of step A."""
-        base = self.steps[level][1].sum()
-        rows = []
-        for ctype, steps in self.steps[level].items():
-            a, m, b = (f"{value / base:.2f}" for value in steps)
-            rows.append([label(ctype), a, m, b, f"{steps.sum() / base:.2f}",
-                         f"{100.0 * steps[0] / steps.sum():.0f} %"])
-        return markdown_table(["type", "A search", "M pairing", "B force", "sum", "share of A"],
-                              rows)
 
 
 # ---- the page ----------------------------------------------------------------------------------
@@ -254,35 +183,19 @@ master nodes in type 5.
 ## 7. The contact cost of the collision is mostly detection: {detection}
 
 Yes means: step A takes more than half of the contact time of the collision in types 1, 3, 4, 5 and
-6 at every level. It does in {detections} of {n_detections} runs. Time of the steps over all of
-type 1, N_r = 1 and 4:
+6 at every level. It does in {detections} of {n_detections} runs. Share of step A in the contact time:
 
-{collision_1}
+{shares}
 
-{collision_4}
+## 8. NTS-mAR is the cheapest remedy: {cheap}
 
-## 8. Contact time over that of the classical one-pass NTS
+Yes means: of types 3, 4, 5 and 6, type 5 has the smallest contact time at every level of the sliding and the
+collision. It has in {cheapest}. Contact time over that of the classical one-pass NTS, steps A + M + B:
 
-Steps A + M + B; the ratios of the source in brackets. Medians of {slide_rounds} rounds of the
-sliding and {crash_rounds} of the collision, all variants in turn, one thread. Times count in units
-of the element loop of the same run, which is the same work for all types: what slows the machine
-for a while slows both. The quartiles of the rounds lie at most {slide_spread} % of the median apart
-in the sliding and {crash_spread} % in the collision.
+{ratios}
 
-Sliding:
-
-{sliding_ratios}
-
-Collision:
-
-{collision_ratios}
-
-Is NTS-mAR the cheapest remedy (of types 3, 4, 5, 6)? {cheapest}. Sliding, time of the steps
-over all of type 1, N_r = 1 and 3:
-
-{sliding_1}
-
-{sliding_3}
+[paper_tables.md](paper_tables.md) has the times by step beside those of the source, and how they are
+measured.
 """
 
 
@@ -338,28 +251,32 @@ def point_texts(normal, exchanged):
 
 def time_texts(slide, crash):
     """The texts of claims 6 to 8."""
-    rows, cheaper = [], []
+    names, cases = [], []
     for times in (slide, crash):
-        for level, row in times.steps.items():
-            ratios = [row[k][1] / row[k][step] for k in (4, 5) for step in (0, 2)]
-            cheaper += [ratio < 1.0 for ratio in ratios]
-            rows.append([f"{times.scene}, N_r = {level}", *(f"{ratio:.2f}" for ratio in ratios)])
-    detected = [row[k][0] > 0.5 * row[k].sum() for row in crash.steps.values()
-                for k in (1, 3, 4, 5, 6)]
-    cheapest = [least({k: row[k].sum() for k in row}, (3, 4, 5, 6)) == 5
-                for times in (slide, crash) for row in times.steps.values()]
+        for level in LEVELS[times.scene]:
+            if not all(times.has(level, ctype) for ctype in TYPES):
+                raise UserError(f"{times.scene}: not all types have been timed at N_r = {level}")
+            names.append(f"{times.scene}, N_r = {level}")
+            cases.append(times.seconds[level])
+    pairings = [[row[k]["pairing"] / row[k][step] for k in (4, 5) for step in ("search", "force")]
+                for row in cases]
+    shares = [{k: row[k]["search"] / row[k]["contact"] for k in TYPES} for row in cases]
+    ratios = [{k: row[k]["contact"] / row[1]["contact"] for k in TYPES} for row in cases]
+    detected = [row[k] > 0.5 for name, row in zip(names, shares)
+                for k in (1, 3, 4, 5, 6) if name.startswith(crash.scene)]
+    cheapest = [least(row, (3, 4, 5, 6)) == 5 for row in ratios]
+    heads = ["run", *(label(k) for k in TYPES)]
     return {
-        "pairing": verdict(cheaper),
-        "pairings": markdown_table(["run", "type 4: M/A", "M/B", "type 5: M/A", "M/B"], rows),
-        "detection": verdict(detected), "detections": sum(detected),
-        "n_detections": len(detected), "collision_1": crash.phase_table(1),
-        "collision_4": crash.phase_table(4),
-        "slide_rounds": slide.rounds, "crash_rounds": crash.rounds,
-        "slide_spread": f"{100.0 * slide.spread:.0f}",
-        "crash_spread": f"{100.0 * crash.spread:.0f}",
-        "sliding_ratios": slide.ratio_table(), "collision_ratios": crash.ratio_table(),
-        "cheapest": f"{verdict(cheapest)}: in {sum(cheapest)} of {len(cheapest)} cases",
-        "sliding_1": slide.phase_table(1), "sliding_3": slide.phase_table(3)}
+        "pairing": verdict(ratio < 1.0 for row in pairings for ratio in row),
+        "pairings": markdown_table(
+            ["run", "type 4: M/A", "M/B", "type 5: M/A", "M/B"],
+            [[name, *(f"{ratio:.2f}" for ratio in row)] for name, row in zip(names, pairings)]),
+        "detection": verdict(detected), "detections": sum(detected), "n_detections": len(detected),
+        "shares": markdown_table(heads, [[name, *(f"{100.0 * row[k]:.0f} %" for k in TYPES)]
+                                         for name, row in zip(names, shares)]),
+        "cheap": verdict(cheapest), "cheapest": f"{sum(cheapest)} of {len(cheapest)} cases",
+        "ratios": markdown_table(heads, [[name, *(f"{row[k]:.2f}" for k in TYPES)]
+                                         for name, row in zip(names, ratios)])}
 
 
 CLAIMS = (("NTS-mAR has the fewest force peaks", "fewest"),
@@ -370,18 +287,19 @@ CLAIMS = (("NTS-mAR has the fewest force peaks", "fewest"),
           ("at most N - 1 master-to-slave points", "points"),
           ("step M is cheaper than A and B", "pairing"),
           ("the collision's contact cost is mostly detection", "detection"),
-          ("NTS-mAR is the cheapest remedy", "cheapest"))
+          ("NTS-mAR is the cheapest remedy", "cheap"))
 
 
-def write(folder, doc):
-    """Read the runs below `folder`, write the page below `doc`."""
+def write(folder, times, doc):
+    """Read the runs below `folder` and the table `times`, write the page below `doc`."""
     texts = peak_texts(PeakFigures(folder / "sliding"))
     texts.update(end_texts(end_pressures(folder / "block")))
     normal = [added_points(folder / "sliding" / f"level_{level}_type_5")
               for level in LEVELS["sliding"]]
     texts.update(point_texts(np.concatenate(normal),
                              added_points(folder / "claims" / "exchanged")))
-    texts.update(time_texts(*(Times(folder / "claims", scene) for scene in LEVELS)))
+    rows = read_rows(times)
+    texts.update(time_texts(*(Times(rows, scene) for scene in LEVELS)))
     texts["summary"] = "\n".join(f"| {text} | {texts[name]} |" for text, name in CLAIMS)
     write_page(doc, "claims", PAGE.format(**texts))
 
@@ -389,10 +307,11 @@ def write(folder, doc):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("times", type=pathlib.Path)
     parser.add_argument("doc", type=pathlib.Path)
     options = parser.parse_args()
     try:
-        write(options.folder, options.doc)
+        write(options.folder, options.times, options.doc)
     except UserError as problem:
         print(problem, file=sys.stderr)
         return 2

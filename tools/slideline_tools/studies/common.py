@@ -99,6 +99,31 @@ def study_main(text, write, arguments=None):
     return 0
 
 
+def decks_and_page_main(text, write_decks, write, arguments=None):
+    """Command line of a study that writes its own decks; returns the exit status.
+
+    `decks FOLDER`: write_decks(folder) writes decks and prints their names;
+    `page FOLDER DOC --types ...`: write(folder, doc, types) reads the runs and writes below DOC.
+    """
+    parser = argparse.ArgumentParser(description=text.splitlines()[0])
+    commands = parser.add_subparsers(dest="command", required=True)
+    commands.add_parser("decks").add_argument("folder", type=pathlib.Path)
+    page = commands.add_parser("page")
+    page.add_argument("folder", type=pathlib.Path)
+    page.add_argument("doc", type=pathlib.Path)
+    page.add_argument("--types", type=int, nargs="+", required=True, choices=TYPES)
+    options = parser.parse_args(arguments)
+    try:
+        if options.command == "decks":
+            write_decks(options.folder)
+        else:
+            write(options.folder, options.doc, options.types)
+    except UserError as problem:
+        print(problem, file=sys.stderr)
+        return 2
+    return 0
+
+
 def write_page(doc, name, text):
     """Write DOC/studies/NAME.md."""
     path = doc / "studies" / f"{name}.md"

@@ -9,18 +9,16 @@ for each its name and the penalties to run it with, of type 3 and of the others,
 distributed penalty stays the same.
 `page` reads the runs FOLDER/<scene>[_exchanged]_type_<n>/<scene>.* and writes DOC/studies/exchange.md.
 """
-import argparse
 import dataclasses
-import pathlib
 import sys
 import typing
 
 import numpy as np
 
-from slideline_tools import UserError, scenes
+from slideline_tools import scenes
 from slideline_tools.histories import read_csv
 from slideline_tools.results import read
-from slideline_tools.studies.common import TYPES, label, markdown_table, write_page
+from slideline_tools.studies.common import decks_and_page_main, label, markdown_table, write_page
 from slideline_tools.studies.sliding import judged_interval
 from slideline_tools.summaries import SNAPSHOT_TIME
 
@@ -273,23 +271,7 @@ def write(folder, doc, types):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    commands = parser.add_subparsers(dest="command", required=True)
-    commands.add_parser("decks").add_argument("folder", type=pathlib.Path)
-    page = commands.add_parser("page")
-    page.add_argument("folder", type=pathlib.Path)
-    page.add_argument("doc", type=pathlib.Path)
-    page.add_argument("--types", type=int, nargs="+", required=True, choices=TYPES)
-    options = parser.parse_args(arguments)
-    try:
-        if options.command == "decks":
-            write_decks(options.folder)
-        else:
-            write(options.folder, options.doc, options.types)
-    except UserError as problem:
-        print(problem, file=sys.stderr)
-        return 2
-    return 0
+    return decks_and_page_main(__doc__, write_decks, write, arguments)
 
 
 if __name__ == "__main__":

@@ -7,8 +7,6 @@
 `decks` writes FOLDER/<layout>_<penalty>.k and prints the names; `page` reads the runs
 FOLDER/<layout>_<penalty>_type_<n>/patch.* and writes DOC/studies/patch_test.md and its picture.
 """
-import argparse
-import pathlib
 import sys
 
 import numpy as np
@@ -18,8 +16,8 @@ from slideline_tools.histories import read_csv
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.results import read
 from slideline_tools.scenes.patch import even_lines, patch, patch_grids
-from slideline_tools.studies.common import (TYPES, colour, label, markdown_table, save_small,
-                                            write_page)
+from slideline_tools.studies.common import (colour, decks_and_page_main, label, markdown_table,
+                                            save_small, write_page)
 
 ALL = tuple(10.0 ** k for k in range(3, 11))
 FEW = tuple(10.0 ** k for k in range(3, 9))
@@ -170,23 +168,7 @@ def write(folder, doc, types):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    commands = parser.add_subparsers(dest="command", required=True)
-    commands.add_parser("decks").add_argument("folder", type=pathlib.Path)
-    page = commands.add_parser("page")
-    page.add_argument("folder", type=pathlib.Path)
-    page.add_argument("doc", type=pathlib.Path)
-    page.add_argument("--types", type=int, nargs="+", required=True, choices=TYPES)
-    options = parser.parse_args(arguments)
-    try:
-        if options.command == "decks":
-            write_decks(options.folder)
-        else:
-            write(options.folder, options.doc, options.types)
-    except UserError as problem:
-        print(problem, file=sys.stderr)
-        return 2
-    return 0
+    return decks_and_page_main(__doc__, write_decks, write, arguments)
 
 
 if __name__ == "__main__":

@@ -8,10 +8,8 @@
 FOLDER/<layout>_<penalty>_type_<n>/patch.* and writes DOC/studies/patch_test_static.md, its pictures
 and one table FOLDER/type_<n>.csv for each type.
 """
-import argparse
 import csv
 import math
-import pathlib
 import re
 import sys
 
@@ -20,7 +18,8 @@ from slideline_tools.fields import scalar_field
 from slideline_tools.plots import PAGE_WIDTH, STYLE, colour_bar, draw_field, plt
 from slideline_tools.results import read
 from slideline_tools.scenes.patch import patch
-from slideline_tools.studies.common import (TYPES, label, markdown_table, save_small, write_page)
+from slideline_tools.studies.common import (decks_and_page_main, label, markdown_table, save_small,
+                                            write_page)
 from slideline_tools.studies.patch import (ALL, LAYOUTS, Run, deck_name, layout_grids,
                                            pressure_figure)
 
@@ -101,7 +100,7 @@ def deformed_figure(folder, types):
 
 PAGE = """# Static contact patch test with all contact types
 
-This page and its pictures are written by `tools/batch/patch_static.sh`: do not edit it.
+This page and its pictures are written by `tools/batch/patch.sh static`: do not edit it.
 
 The scene of [the explicit page](patch_test.md) (section 2 of Kang, Lee & Shin 2023) with fully integrated
 quads and one static step of the implicit method: two blocks of 1 m x 1 m, E = 1 MPa, nu = 0, a uniform
@@ -157,23 +156,7 @@ def write(folder, doc, types):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    commands = parser.add_subparsers(dest="command", required=True)
-    commands.add_parser("decks").add_argument("folder", type=pathlib.Path)
-    page = commands.add_parser("page")
-    page.add_argument("folder", type=pathlib.Path)
-    page.add_argument("doc", type=pathlib.Path)
-    page.add_argument("--types", type=int, nargs="+", required=True, choices=TYPES)
-    options = parser.parse_args(arguments)
-    try:
-        if options.command == "decks":
-            write_decks(options.folder)
-        else:
-            write(options.folder, options.doc, options.types)
-    except UserError as problem:
-        print(problem, file=sys.stderr)
-        return 2
-    return 0
+    return decks_and_page_main(__doc__, write_decks, write, arguments)
 
 
 if __name__ == "__main__":

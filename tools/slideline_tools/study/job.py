@@ -35,6 +35,8 @@ class Job:
     `group`     jobs of a group run on one machine, since they are compared in time
     `alone`     a timing job: nothing else runs beside it, whatever -j says
     `turns`     how often it runs in each round of repeats
+    `once`      it runs in the first round alone: a result that is not timed
+    `cost`      expected seconds up to a common factor, for the guess of the time to go
     `limit`     seconds after which it is stopped and counts as failed
     `repeat`    its number among the runs of this name; set by `interleave`
     """
@@ -48,6 +50,8 @@ class Job:
     group: str = ""
     alone: bool = False
     turns: int = 1
+    once: bool = False
+    cost: float = 1.0
     limit: Optional[float] = None
     repeat: int = 1
 
@@ -101,10 +105,10 @@ def interleave(jobs, rounds):
     runs, count = [], {job.name: 0 for job in jobs}
     if len(count) < len(jobs):
         raise ValueError("two jobs of one name")
-    for _ in range(rounds):
+    for number in range(rounds):
         for turn in range(max((job.turns for job in jobs), default=0)):
             for job in jobs:
-                if turn < job.turns:
+                if turn < job.turns and not (job.once and number + turn):
                     count[job.name] += 1
                     runs.append(dataclasses.replace(job, repeat=count[job.name]))
     return runs

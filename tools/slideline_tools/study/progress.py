@@ -1,24 +1,26 @@
 # SPDX-License-Identifier: MIT
 """Says how far a sweep is: one updating line on a terminal, plain lines elsewhere."""
+import shutil
 import sys
 import time
 
-LINE_EVERY, WIDTH = 1.0, 100
+LINE_EVERY, SHOW_EVERY = 1.0, 0.2  # seconds between plain lines, between updates
 
 
 class Progress:
-    """Counts finished runs and guesses the time to go from runs of the same name or of the mean."""
+    """Counts finished runs and guesses the time to go from runs of the same name, else from the cost."""
 
     def __init__(self, stream=None):
         self.stream = stream or sys.stdout
         self.updating = self.stream.isatty()
-        self.seconds = {}  # measured seconds by job name
+        self.seconds, self.costs = {}, {}  # measured seconds and expected cost by job name
         self.left, self.total, self.finished, self.failed = [], 0, 0, 0
         self.parallel, self.shown = 1, 0.0
 
     def known(self, job, record):
         """A run that has finished before."""
         self.seconds.setdefault(job.name, []).append(record["seconds"])
+        self.costs[job.name] = job.cost
         self.failed += record["status"] != 0
         self.finished += 1
 
@@ -46,9 +48,11 @@ class Progress:
 
     def show(self, running):
         """What runs now, on a terminal."""
-        if self.updating and running:
+        if self.updating and running and time.monotonic() - self.shown > SHOW_EVERY:
+            self.shown = time.monotonic()
             text = f"{self.state()}: {', '.join(job.folder_name for job in running)}"
-            self.stream.write("\r" + text[:WIDTH].ljust(WIDTH))
+            width = shutil.get_terminal_size().columns - 1
+            self.stream.write("\r" + text[:width].ljust(width))
             self.stream.flush()
 
     def end(self):
@@ -58,8 +62,10 @@ class Progress:
 
     def line(self, text):
         """One line that stays."""
-        self.stream.write(("\r" if self.updating else "") + text.ljust(WIDTH if self.updating else 0)
-                          + "\n")
+        if self.updating:
+            self.stream.write("\r" + text.ljust(shutil.get_terminal_size().columns - 1) + "\n")
+        else:
+            self.stream.write(text + "\n")
         self.stream.flush()
 
     def state(self):
@@ -74,8 +80,8 @@ class Progress:
         if not self.seconds:
             return None
         means = {name: sum(values) / len(values) for name, values in self.seconds.items()}
-        mean = sum(means.values()) / len(means)
-        return sum(means.get(job.name, mean) / (1 if job.alone else self.parallel)
+        unit = sum(means.values()) / sum(self.costs.values())
+        return sum(means.get(job.name, unit * job.cost) / (1 if job.alone else self.parallel)
                    for job in self.left)
 
 

@@ -63,8 +63,8 @@ class Sweep:
             while waiting or running:
                 while waiting and has_room(waiting[0], running, parallel):
                     running.append(Run(self, waiting.popleft()))
-                running = [run for run in running if not run.ended(len(running), progress)]
                 progress.show([run.job for run in running])
+                running = [run for run in running if not run.ended(len(running), progress)]
         finally:
             stop_all(running)
             progress.end()
@@ -90,6 +90,7 @@ class Run:
         deck.write_text(job.deck_text, encoding="utf-8")
         self.command = [str(sweep.program), f"i={deck}", f"d={self.folder}", f"jobid={job.jobid}",
                         *job.options]
+        self.load = os.getloadavg()[0]
         with open(self.folder / PROGRESS, "wb") as out, open(self.folder / ERRORS, "wb") as err:
             self.begun = time.perf_counter()
             # A session of its own: an interrupt from the keyboard reaches this program alone.
@@ -122,7 +123,7 @@ class Run:
             status = STOPPED
         record = {"fingerprint": self.fingerprint, "name": self.job.name, "status": status,
                   "message": message, "seconds": seconds, "processor": processor(),
-                  "command": self.command}
+                  "load": self.load, "command": self.command}
         write_whole(self.folder / RECORD, json.dumps(record, indent=1) + "\n")
         progress.done(self.job, record)
         return True

@@ -9,11 +9,11 @@ from slideline_tools import UserError
 from slideline_tools.study.job import write_whole
 
 FINISHED, FAILED, MISSING = "finished", "failed", "missing"
-RECORDED = ("status", "message", "seconds", "processor")
+RECORDED = ("status", "message", "seconds", "processor", "load")
 
 
 def rows_of(study, jobs, sweep):
-    """One dict per job: run, repeat, labels, state, status, message, seconds, then measures.
+    """One dict per job: run, repeat, labels, state, what `RECORDED` names, then measures.
 
     A measure that can not be read leaves its row with the message why, and counts as failed.
     """
@@ -25,7 +25,7 @@ def rows_of(study, jobs, sweep):
             rows.append({**row, "state": MISSING})
             continue
         row["state"] = FINISHED if record["status"] == 0 else FAILED
-        row.update({name: record[name] for name in RECORDED})
+        row.update({name: record[name] for name in RECORDED if name in record})
         try:
             row.update(study.measure(job, sweep.run_folder(job)))
         except (UserError, OSError) as problem:

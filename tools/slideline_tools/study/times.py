@@ -41,8 +41,9 @@ class Times:
     """Medians of one scene: `seconds[level][type]` = {column: median of the corrected seconds};
     "contact" is the sum of the medians of the steps.
 
-    `rounds`: fewest runs of a variant; `spread`: largest distance of the quartiles of the contact
-    time over its median; `pace_spread`: the same of the uncorrected pace.
+    `steps[level]`: time steps (explicit runs). `rounds`: fewest runs of a variant; `spread`: largest distance of the quartiles of the contact
+    time over its median; `pace_spread`: the same of the uncorrected pace; `load`:
+    median of the load of the machine.
     """
 
     COLUMNS = (*STEPS, "contact", "computing")
@@ -52,10 +53,11 @@ class Times:
         rows = [row for row in finished(rows) if row["scene"] == scene]
         if not rows:
             raise UserError(f"no timing runs of the scene {scene}")
-        self.scene, self.seconds, spreads, paces, counts = scene, {}, [], [], []
+        self.scene, self.seconds, self.steps = scene, {}, {}
+        spreads, paces, counts = [], [], []
         for (level,), same_level in grouped(rows, "level").items():
             usual = np.median([pace(row) for row in same_level])
-            self.seconds[level] = {}
+            self.seconds[level], self.steps[level] = {}, same_level[0]["element_calls"] - 1
             for (ctype,), runs in sorted(grouped(same_level, "type").items()):
                 factors = np.array([usual / pace(run) for run in runs])
                 values = {name: factors * [run[name] for run in runs] for name in self.COLUMNS}
@@ -66,6 +68,7 @@ class Times:
                 spreads.append(quartile_distance(values["contact"]))
                 paces.append(quartile_distance(1.0 / factors))
                 counts.append(len(runs))
+        self.load = float(np.median([row.get("load", np.nan) for row in rows]))
         self.rounds, self.spread, self.pace_spread = min(counts), max(spreads), max(paces)
 
     @property

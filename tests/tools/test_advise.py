@@ -1,0 +1,376 @@
+# SPDX-License-Identifier: MIT
+"""Advice on runs: each check on a small run of its own, built so that one thing is needless."""
+import json
+import os
+import subprocess
+import time
+
+import numpy as np
+import pytest
+
+from slideline_tools import scenes
+from slideline_tools.advise import (advise, bodies, finished, geometry, outputs, report,
+                                    study, study_decks, surfaces, touching)
+from slideline_tools.advise.run_deck import read_blocks, sets
+from slideline_tools.advise.run_log import read_log
+
+LOG = """slideline 0.1.0
+part 1 "plate": 576 elements, section 1, material 1
+part 7 "": 384 elements, section 1, material 2
+material 1: density 2.700000E+03, E 6.9E+10, nu 3.3E-01, K 6.8E+10, G 2.6E+10, c 6.15E+03, yield 2.76E+08, plastic modulus 0.0E+00, beta 1.0E+00
+material 2: density 7.850000E+03, E 2.1E+11, nu 3.0E-01, K 1.75E+11, G 8.1E+10, c 6.0E+03
+conditions: 36 fixed and 0 moved degrees of freedom, 0 nodal loads, 0 pressure edges, {body} body loads
+end: time 1.000000E-03, step scale 9.000000E-01
+part 1: one-point quads, viscous hourglass control 1.0E-01, bulk viscosity Q1 1.5E+00 Q2 6.0E-02
+part 7: fully integrated quads (2x2 points), mean dilatation, bulk viscosity Q1 0.0E+00 Q2 0.0E+00
+interface 4 "a title": two-pass NTS-AR (type 3)
+  slave: 49 nodes, 48 segments of mean length 4.2E-04 m
+  master: 41 nodes, 40 segments of mean length 6.2E-04 m
+  penalty: 5.0E+08 N/m per slave node = 1.2E+12 N/m^2; master pass 5.0E+08 N/m per master node = 8.0E+11 N/m^2
+first time step 5.000000E-08, smallest L/c of the elements 6.943311E-08
+"""
+
+
+def run_variant(program, folder, waste, *arguments):
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "deck.k").write_text(study_decks.deck(waste, level=1), encoding="ascii")
+    done = subprocess.run([program, f"i={folder / 'deck.k'}", f"d={folder}", "jobid=run",
+                           *arguments], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """Folders: a run with all needless things, one with none, by name."""
+    if "SLIDELINE" not in os.environ:
+        pytest.skip("SLIDELINE is not set")
+    root = tmp_path_factory.mktemp("advise")
+    program = os.environ["SLIDELINE"]
+    return {"all": run_variant(program, root / "all", study_decks.WASTE),
+            "none": run_variant(program, root / "none", ()),
+            "threads": run_variant(program, root / "threads", (), "ncpu=4", "endtim=1e-5")}
+
+
+def topics(folder):
+    return {item.topic: item for item in advise(folder)[1]}
+
+
+@pytest.mark.parametrize("topic", [name for name in study_decks.WASTE
+                                   if name != "written too often"])
+def test_finds_what_is_needless_and_not_more(runs, topic):
+    assert topic in topics(runs["all"])
+    assert topic not in topics(runs["none"])
+
+
+def test_figures_are_those_of_the_deck(runs):
+    found = topics(runs["all"])
+    run = advise(runs["all"])[0]
+    # The columns of the block are 20/24 mm wide: the shortest length of all elements.
+    assert run.log.element_limit == pytest.approx(20.0e-3 / 24 / 6000.98, rel=1e-3)
+    assert study_decks.SHORT_STEP == pytest.approx(
+        float(found["short steps"].evidence.split("mean step ")[1].split(";")[0]))
+    # Flight of 1e-4 s of 3e-4 s; a third of what is paid per cycle.
+    expected = run.seconds_of("loop") + run.seconds_of("output")
+    assert found["long flight"].seconds == pytest.approx(expected / 3.0, rel=0.05)
+    assert "part 2 by (0, -0.0009" in found["long flight"].change
+    assert found["symmetry"].seconds == pytest.approx(0.5 * expected)
+    assert "x = 0:" in found["symmetry"].what
+    assert "interface 2" in found["never touched"].what
+    assert "*MAT_PLASTIC_KINEMATIC" in found["never yielded"].change
+
+
+def test_longer_step_is_stable(runs, slideline, tmp_path):
+    step = topics(runs["all"])["short steps"].change.split("dt=")[1].rstrip(")")
+    waste = [name for name in study_decks.WASTE if name != "short steps"]
+    ratio = advise(run_variant(slideline, tmp_path / "long", waste, f"dt={step}"))[0].tables[
+        "glstat"]["energy_ratio"]
+    assert np.abs(ratio - 1.0).max() < 0.01
+
+
+def test_threads(runs):
+    found = topics(runs["threads"])["threads"]
+    assert found.seconds is None and "4 threads" in found.what
+    assert "threads" not in topics(runs["none"])
+
+
+def test_plate_that_yields_and_bodies_that_touch(slideline, tmp_path):
+    """The collision of the seed: neither law nor contact is needless, and it is a half model."""
+    deck = finished.pathlib.Path(__file__).parents[2] / "input/collision/collision.k"
+    done = subprocess.run([slideline, f"i={deck}", f"d={tmp_path}", "p:endtim=3e-4"],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert not set(topics(tmp_path)) & {"never yielded", "never touched", "symmetry",
+                                        "long flight", "rigid", "long surface", "dear type"}
+
+
+def test_short_touch_between_rows_is_not_overlooked(slideline, tmp_path):
+    """No row of rcforc sees a contact, but the contact energy does: no advice."""
+    folder = run_variant(slideline, tmp_path, ())
+    run = finished.read_run(folder)
+    for name in ("n_active", "fx", "fy"):
+        run.tables["rcforc"].columns[name][:] = 0
+    assert np.any(run.tables["glstat"]["contact"])
+    assert touching.never_touched(run) == []
+
+
+def test_any_file_of_the_run_will_do(runs, tool):
+    for name in ("", "run.vtkhdf", "run.log", "run.timing.csv", "run.effective.k",
+                 "run.glstat.csv"):
+        finished_tool = tool("advise", runs["none"] / name)
+        assert finished_tool.returncode == 0, finished_tool.stderr
+        assert finished_tool.stdout.startswith("run: ")
+
+
+def test_json(runs, tool):
+    report_ = json.loads(tool("advise", runs["all"], "--json", "--all").stdout)
+    by_topic = {item["topic"]: item for item in report_["advice"]}
+    assert by_topic["symmetry"]["share"] == pytest.approx(
+        by_topic["symmetry"]["seconds"] / report_["total_seconds"])
+    assert all(item["what"] and item["evidence"] and item["change"] for item in by_topic.values())
+
+
+def test_what_is_no_run(tool, tmp_path):
+    assert tool("advise", tmp_path).returncode == 2
+    assert tool("advise", tmp_path / "x.txt").returncode == 2
+    (tmp_path / "a.log").write_text("", encoding="ascii")
+    missing = tool("advise", tmp_path)
+    assert missing.returncode == 2 and "timing.csv" in missing.stderr
+    (tmp_path / "b.log").write_text("", encoding="ascii")
+    assert "several runs: a, b" in tool("advise", tmp_path).stderr
+
+
+def test_run_that_failed_gets_no_advice(runs, tmp_path):
+    for file in runs["all"].iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    log = tmp_path / "run.log"
+    log.write_text(log.read_text(encoding="utf-8").replace("N o r m a l", "E r r o r"),
+                   encoding="utf-8")
+    _, found, notes = advise(tmp_path)
+    assert not found and "did not end normally" in notes[0]
+
+
+def test_contact_time_by_interface(runs):
+    """Shared out by slave nodes, as many on both, or as timed."""
+    run = advise(runs["all"])[0]
+    first, second = run.log.interfaces.values()
+    assert first.n_slave == second.n_slave
+    shared = touching.contact_seconds(run, second)
+    assert 0.0 < shared == pytest.approx(run.seconds_of("contact") / 2.0)
+    run.seconds.update({f"contact_{step}.2": 1.0 for step in ("search", "pairing", "force")})
+    assert touching.contact_seconds(run, second) == 3.0
+    assert touching.contact_seconds(run, second, ("search",)) == 1.0
+    assert touching.contact_seconds(run, first) == pytest.approx(shared)
+
+
+def test_run_without_clock_gets_no_advice(runs, tmp_path):
+    for file in runs["all"].iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    (tmp_path / "run.timing.csv").write_text("phase,seconds,calls,share\ntotal,1.0,1,1.0\n",
+                                             encoding="ascii")
+    _, found, notes = advise(tmp_path)
+    assert not found and "timing=off" in notes[0]
+
+
+def test_unread_files(runs, tmp_path):
+    for file in runs["none"].iterdir():
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    old = time.time() - 3 * 86400.0
+    for file in tmp_path.iterdir():
+        os.utime(file, (old, old))
+    run = finished.read_run(tmp_path)
+    assert os.stat(tmp_path / "run.vtkhdf").st_atime == pytest.approx(old, abs=1.0)
+    run.keeps_access_time = True
+    names = [item.what.split()[0] for item in outputs.never_read(run)]
+    assert names == ["run.vtkhdf", "run.rcforc.csv", "run.nodout.csv", "run.matsum.csv"]
+    assert outputs.never_read(run, now=old + 3600.0) == []
+    os.utime(tmp_path / "run.rcforc.csv", (old + 60.0, old))
+    run = finished.read_run(tmp_path)
+    run.keeps_access_time = True
+    assert "run.rcforc.csv" not in " ".join(item.what for item in outputs.never_read(run))
+    run.keeps_access_time = False
+    assert outputs.never_read(run) == []
+
+
+@pytest.mark.parametrize("options, kind, kept", [
+    ("rw,relatime", "ext4", True), ("rw,noatime", "ext4", False), ("rw", "nfs4", False)])
+def test_file_systems(tmp_path, options, kind, kept):
+    table = tmp_path / "mounts"
+    table.write_text(f"21 1 8:1 / / rw,noatime - ext4 /dev/a rw\n"
+                     f"22 21 8:2 / {tmp_path} {options} shared:1 - {kind} /dev/b rw\n",
+                     encoding="utf-8")
+    assert finished.keeps_access_time(tmp_path, str(table)) is kept
+
+
+def test_log():
+    log = read_log(LOG.format(body=0))
+    assert log.parts[7].points == 4 and log.parts[1].viscosity == (1.5, 0.06)
+    assert log.materials[1]["yield"] == 2.76e8 and "yield" not in log.materials[2]
+    assert log.materials[2]["density"] == 7850.0 and log.materials[1]["c"] == 6150.0
+    interface = log.interfaces[4]
+    assert (interface.ctype, interface.n_slave, interface.n_master) == (3, 49, 41)
+    assert (interface.slave_penalty, interface.master_penalty) == (1.2e12, 8.0e11)
+    assert not log.driven and not log.normal and log.element_limit == 6.943311e-08
+    assert read_log(LOG.format(body=2)).driven
+
+
+def test_sets_of_a_deck():
+    blocks = read_blocks("*KEYWORD\n*SET_NODE_LIST_TITLE\nname\n         3\n         1        12\n"
+                         "5,6\n*SET_PART_LIST\n         1\n         2\n*END\n")
+    assert sets(blocks, "NODE") == {3: [1, 12, 5, 6]} and sets(blocks, "PART") == {1: [2]}
+
+
+def test_mirror_images():
+    points = np.array([[0, 0], [1, 0], [3, 0], [4, 0], [0, 1], [1, 1], [3, 1], [4, 1.0]])
+    cells = np.array([[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6]])
+    pairs = geometry.mirror_pairs(points, 0)
+    assert pairs.tolist() == [3, 2, 1, 0, 7, 6, 5, 4]
+    assert geometry.mirrored_cells(cells, pairs).tolist() == [2, 1, 0]
+    assert geometry.mirrored_cells(cells[:2], pairs) is None
+    points[[1, 5], 0] = 1.1
+    assert geometry.mirror_pairs(points, 0) is None
+    assert geometry.mirror_pairs(points, 1).tolist() == [4, 5, 6, 7, 0, 1, 2, 3]
+
+
+def test_areas_and_limits():
+    points = np.array([[0, 0], [2, 0], [2, 1], [0, 1.0]])
+    area, length = geometry.corner_difference(points, np.array([[0, 1, 2, 3], [0, 1, 2, 2]]))
+    np.testing.assert_allclose(area, [2.0, 1.0])
+    np.testing.assert_allclose(length, [1.0, 1.0 / np.sqrt(5.0)])
+
+
+def test_coarser_rows():
+    times = np.linspace(0.0, 1.0, 101)
+    straight, bent = np.stack([times], axis=1), np.stack([np.sin(40.0 * times)], axis=1)
+    assert outputs.coarse_error(times, straight, 10) < 1e-12
+    # Chord of a sine over the interval d: d^2/8 times the second derivative, over the range 2.
+    assert outputs.coarse_error(times, bent, 2) == pytest.approx(0.8 ** 2 / 8.0 / 2.0, rel=0.06)
+
+
+def test_small_savings_are_left_out():
+    items = [report.Advice("a", "", "", "", seconds, "") for seconds in (0.005, 0.5, 2.0, None)]
+    assert [item.seconds for item in report.select(items, 100.0)] == [2.0, None]
+    assert [item.seconds for item in report.select(items, 0.1)] == [2.0, 0.5, None]
+    assert len(report.select(items, 100.0, everything=True)) == 4
+
+
+@pytest.fixture(scope="module")
+def oblique(tmp_path_factory):
+    """The oblique impact: a corner of a turned block on a free one, quarter of a second."""
+    return run_scene(tmp_path_factory.mktemp("oblique"), scenes.oblique())
+
+
+def run_scene(folder, text, *arguments):
+    if "SLIDELINE" not in os.environ:
+        pytest.skip("SLIDELINE is not set")
+    (folder / "scene.k").write_text(text, encoding="ascii")
+    done = subprocess.run([os.environ["SLIDELINE"], f"i={folder / 'scene.k'}", f"d={folder}",
+                           *arguments], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+def test_corner_first(oblique):
+    found = topics(oblique)
+    rows = finished.read_run(oblique).tables["contact"]
+    pressed = np.unique(rows["node"][rows["pressure"] > 0.0])
+    assert f"{len(pressed)} of 18 slave nodes" in found["long surface"].evidence
+    force = finished.read_run(oblique).tables["rcforc"].where(side="slave")
+    first, last = force["time"][force["n_active"] > 0][[0, -1]]
+    assert f"from {first:.4g} to {last:.4g}" in found["touched for a while"].what
+    assert "symmetry" not in found and "never touched" not in found
+
+
+def test_symmetric_mesh_that_moves_otherwise(runs):
+    run = finished.read_run(runs["all"])
+    assert [item.topic for item in bodies.symmetric(run)] == ["symmetry"]
+    moved = run.results.point_field("displacement")
+    moved[-1, 0, 0] += 2.0 * bodies.SYMMETRIC * np.abs(moved).max()
+    assert bodies.symmetric(run) == []
+
+
+def test_rigid_part_strains_little_and_keeps_little_energy(runs):
+    run = finished.read_run(runs["none"])
+    assert bodies.nearly_rigid(run) == []
+    energy = run.tables["matsum"]["internal"]
+    energy[run.tables["matsum"]["part"] == 2] *= 1.0e-4
+    assert bodies.nearly_rigid(run) == []
+    run.log.materials[2]["E"] *= 1.0e6
+    found = bodies.nearly_rigid(run)
+    assert len(found) == 1 and found[0].what.startswith('part 2 "block"')
+    # Block and plate have equal elements, 24 and 40 columns of 4.
+    assert found[0].seconds == pytest.approx(run.seconds_of("elements") * 24.0 / 64.0)
+
+
+def test_dear_type(runs):
+    run = finished.read_run(runs["none"])
+    run.seconds["contact_force"] = 0.3 * run.total
+    assert touching.dear_type(run) == []
+    run.log.interfaces[1].ctype = 6
+    found = touching.dear_type(run)
+    assert found[0].seconds == pytest.approx(0.34 * run.seconds_of("contact"))
+    run.seconds["contact_force"] = 0.0
+    assert touching.dear_type(run) == []
+
+
+def test_output_written_too_often(runs):
+    run = finished.read_run(runs["all"])
+    run.seconds["output"] = 0.05 * run.total
+    assert outputs.too_often(run) == []
+    run.seconds["output"] = 0.5 * run.total
+    found = {item.what.split()[0]: item for item in outputs.too_often(run)}
+    assert "*DATABASE_GLSTAT from 1e-07 to" in found["glstat"].change
+    assert 0.0 < found["glstat"].seconds < run.seconds["output"]
+    # Energies of alternating rows do not lie on straight lines.
+    run.tables["glstat"]["kinetic"][::2] *= 1.1
+    assert "glstat" not in {item.what.split()[0] for item in outputs.too_often(run)}
+
+
+@pytest.mark.parametrize("ctype", range(1, 8))
+@pytest.mark.parametrize("scene", [scenes.patch, scenes.oblique])
+def test_limit_of_springs_is_that_of_the_program(slideline, tmp_path, scene, ctype):
+    """The program warns of a penalty far too stiff and names the limits; they are ours."""
+    (tmp_path / "scene.k").write_text(scene(), encoding="ascii")
+    subprocess.run([slideline, f"i={tmp_path / 'scene.k'}", f"d={tmp_path}", f"ctype={ctype}",
+                    "pen=1e9", "endtim=0.02"], capture_output=True, check=False)
+    log = (tmp_path / "scene.log").read_text(encoding="utf-8")
+    warned = float(log.split("contact springs alone ")[1].split()[0])
+    run = finished.read_run(tmp_path)
+    interface = run.log.interfaces[1]
+    limit = surfaces.spring_limit(run, interface, surfaces.read_surfaces(run)[1],
+                                  geometry.lumped_mass(run))
+    assert limit == pytest.approx(warned, rel=1e-5)
+
+
+def test_softer_penalty_and_its_step_are_stable(tmp_path):
+    folder = run_scene(tmp_path, scenes.patch())
+    found = topics(folder)["penalty rules the step"]
+    factor = float(found.change.split("PEN times ")[1].split()[0])
+    step = float(found.change.split("dt=")[1].rstrip(")"))
+    again = tmp_path / "again"
+    again.mkdir()
+    run_scene(again, scenes.patch(), f"p:pen={1.0e6 * factor}", f"dt={step}")
+    soft, hard = finished.read_run(again), finished.read_run(folder)
+    assert len(soft.tables["glstat"]) and soft.log.normal
+    assert np.abs(soft.tables["glstat"]["kinetic"]).max() < 2.0 * np.abs(
+        hard.tables["glstat"]["kinetic"]).max()
+
+
+def test_saving_of_an_interface(runs):
+    run = finished.read_run(runs["all"])
+    saved, = touching.never_touched(run)
+    assert saved.seconds == pytest.approx(
+        run.seconds_of("contact") / 2.0 + run.seconds_of("nodes") / 4.0)
+
+
+def test_page(runs):
+    """Per cent of the fastest round stand in the page, and what was not found is named."""
+    totals = {topic: [2.0, 1.0, 1.5] for topic in (study.ALL, *study_decks.WASTE)}
+    totals["symmetry"] = [0.9, 0.8, 0.6]
+    predicted = {topic: [0.1, 0.2, 0.3] for topic in study_decks.WASTE if topic != "long flight"}
+    last, clean = advise(runs["all"])[:2], advise(runs["none"])[:2]
+    text = study.page(predicted, totals, last, clean, {
+        "argument": "dt=2", "predicted": 7.0, "measured": 8.0, "rebound": [4.0, 4.1]})
+    assert "| symmetry | 20.0 | 40.0 |" in text and "| long flight | not found | 0.0 |" in text
+    assert "differed by 50%" in text and "dt=2: predicted 7.0 %, measured 8.0 %" in text
+    assert str(runs["all"]) not in text

@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: MIT
+"""The study speed-accuracy: Pareto front, error measures, references, page, one real run of it."""
+import dataclasses
+import types
+
+import numpy as np
+import pytest
+
+from slideline_tools import UserError
+from slideline_tools.studies import block
+from slideline_tools.study import __main__ as command
+from slideline_tools.study import speed_accuracy as study
+from slideline_tools.study import speed_accuracy_advice as advice
+from slideline_tools.study import speed_accuracy_front as fronts
+from slideline_tools.study import speed_accuracy_page as pages
+from slideline_tools.study import speed_accuracy_reference as reference
+from slideline_tools.study import speed_accuracy_scenes as scenes
+from slideline_tools.study.job import Options, interleave
+from slideline_tools.study.table import read_rows
+
+
+# ---- front -------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("pairs, expected", [
+    ([], []),
+    ([(1.0, 5.0)], [0]),
+    ([(2.0, 1.0), (1.0, 2.0), (3.0, 3.0)], [1, 0]),
+    ([(1.0, 1.0), (1.0, 1.0), (1.0, 2.0)], [0]),
+    ([(1.0, 2.0), (2.0, 2.0), (3.0, 1.0)], [0, 2])])
+def test_pareto_front(pairs, expected):
+    assert fronts.pareto(pairs) == expected
+
+
+def test_front_by_its_definition():
+    """Random points: on the front is exactly what nothing beats or equals in both."""
+    numbers = np.random.default_rng(3)
+    pairs = [tuple(pair) for pair in numbers.integers(0, 30, (200, 2)).astype(float)]
+    found = {pairs[k] for k in fronts.pareto(pairs)}
+    expected = {one for one in pairs if not any(
+        other != one and other[0] <= one[0] and other[1] <= one[1] for other in pairs)}
+    assert found == expected and len(found) > 2
+
+
+def test_small_differences_count_as_none():
+    pairs = [(1.00, 1.0), (1.02, 0.5), (2.0, 0.49), (3.0, 0.40)]
+    assert fronts.pareto(pairs) == [0, 1, 2, 3]
+    assert fronts.pareto(pairs, gain=0.05) == [0, 1, 3]
+    assert fronts.pareto(pairs, gain=0.05, tie=0.03) == [1, 3]
+
+
+def point(ctype, level, contact, error, floor=0.0, computing=10.0):
+    return fronts.Point(ctype, level, {"contact": contact, "computing": computing},
+                        {"roughness": error}, {"roughness": floor})
+
+
+def test_unresolved_errors_are_equal():
+    points = [point(1, 1, 1.0, 1e-3, 1e-2), point(2, 1, 2.0, 1e-5, 1e-2), point(3, 1, 0.5, 0.5, 1e-2)]
+    assert [one.name for one in fronts.front(points, "contact", "roughness")] == ["3/1", "1/1"]
+    assert fronts.cheapest(points, "contact", "roughness", 5e-3) is None
+    assert fronts.cheapest(points, "contact", "roughness", 2e-2).name == "1/1"
+
+
+def test_ratios_compare_on_the_same_mesh():
+    points = [point(1, 1, 2.0, 1.0), point(1, 2, 4.0, 1.0), point(5, 1, 4.0, 1.0),
+              point(5, 2, 32.0, 1.0), point(5, 3, 99.0, 1.0)]
+    found = fronts.ratios(points, 5, lambda one: one.cost["contact"])
+    assert found == [2.0, 8.0] and fronts.geometric_mean(found) == pytest.approx(4.0)
+
+
+# ---- references --------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("order", [0.7, 1.0, 1.8])
+@pytest.mark.parametrize("levels", [(1, 2, 4), (2, 3, 6)])
+def test_own_error_of_a_known_sequence(order, levels):
+    values = [3.0 + 0.4 * level ** -order for level in levels]
+    found, error = reference.own_error(levels, np.abs(np.diff(values)))
+    assert found == pytest.approx(order, rel=1e-6)
+    assert error == pytest.approx(abs(values[-1] - 3.0), rel=1e-6)
+
+
+def test_order_is_bounded_and_two_levels_are_of_first_order():
+    assert reference.own_error((1, 2, 4), [1.0, 1.0])[0] == 0.5
+    assert reference.own_error((1, 2, 4), [100.0, 1.0])[0] == pytest.approx(2.0)
+    assert reference.own_error((2, 4), [0.3]) == (1.0, pytest.approx(0.3))
+    assert reference.own_error((2, 4), [0.0]) == (1.0, 0.0)
+
+
+def test_distances():
+    one, other = np.array([1.0, 3.0]), np.array([2.0, 2.0])
+    assert reference.force_distance(one, other, other) == pytest.approx(0.5)
+    assert reference.work_distance(one, other, other) == pytest.approx(0.5)
+    assert reference.plain_distance(np.array([0.3]), np.array([-0.1]), None) == pytest.approx(0.4)
+
+
+def test_plastic_work_is_yield_stress_times_strain_times_area():
+    """A quad of 0.5 mm x 1 mm in the first column, another in the last; the projectile apart."""
+    def quad(x, y):
+        return [[x, y, 0], [x + 5e-4, y, 0], [x + 5e-4, y + 1e-3, 0], [x, y + 1e-3, 0]]
+
+    points = np.array(quad(2e-4, -2e-3) + quad(0.0635, -2e-3) + quad(2e-4, 2e-3))
+    fields = {"part_id": np.array([[1, 1, 2]]), "plastic_strain": np.array([[0.1, 0.2, 9.0]])}
+    results = types.SimpleNamespace(points=points[None], cells=np.arange(12).reshape(3, 4),
+                                    cell_field=fields.__getitem__)
+    work = reference.plastic_work(results)
+    assert len(work) == 36 and np.count_nonzero(work) == 2
+    assert work[[0, -1]] == pytest.approx([276e6 * 0.1 * 5e-7, 276e6 * 0.2 * 5e-7], rel=1e-12)
+
+
+def write_force(folder, run, force):
+    """A force history of a sliding run."""
+    path = folder / "runs" / run
+    path.mkdir(parents=True)
+    lines = [f"{time!r},1,slave,0,{force!r},1" for time in (np.arange(3001) * 2e-6).tolist()]
+    (path / "sliding.rcforc.csv").write_text("time,interface,side,fx,fy,n_active\n"
+                                             + "\n".join(lines) + "\n")
+
+
+def test_force_errors_against_the_finest_level(tmp_path):
+    """Forces 10 (1 + 0.4/N): order 1, own error 4 % of 10 over the reference's 10.4."""
+    rows = []
+    for ctype, level, force in ((7, 2, 12.0), (7, 3, 10.0 + 4.0 / 3.0), (7, 6, 10.0 + 4.0 / 6.0),
+                                (5, 2, 13.0)):
+        run = f"sliding_{level}_type_{ctype}"
+        write_force(tmp_path, run, force)
+        rows.append({"run": run, "state": "finished", "scene": "sliding", "level": level,
+                     "type": ctype})
+    rows = reference.add_errors(rows, tmp_path)
+    mean = 10.0 + 4.0 / 6.0
+    assert [row["force_error"] for row in rows] == pytest.approx(
+        [(force - mean) / mean for force in (12.0, 10.0 + 4.0 / 3.0, mean, 13.0)], abs=1e-12)
+    assert rows[0]["force_error_order"] == pytest.approx(1.0)
+    assert rows[3]["force_error_floor"] == pytest.approx(4.0 / 6.0 / mean)
+
+
+def test_without_the_levels_of_a_reference_there_is_no_error(tmp_path):
+    rows = [{"run": "x", "state": "finished", "scene": "sliding", "level": 1, "type": 7}]
+    assert "force_error" not in reference.add_errors(rows, tmp_path)[0]
+
+
+# ---- scenes and jobs ---------------------------------------------------------------------------
+
+def test_largest_deviation_looks_at_both_sides():
+    assert scenes.largest_deviation([np.array([1.0, 1.1]), np.array([0.7, 1.0])], 1.0) \
+        == pytest.approx(0.3)
+
+
+def test_chain_is_that_of_the_verification_at_a_tenth_of_its_step():
+    """Twice the springs give a higher pressure; the full step gives nearly the same."""
+    soft, stiff = scenes.chain_pressure(5.1e6), scenes.chain_pressure(1.01e7)
+    assert soft == pytest.approx(8119.97, rel=0.02) and stiff == pytest.approx(9017.28, rel=0.02)
+
+
+def test_two_passes_have_half_the_penalty():
+    scene = scenes.SCENES["sliding"]
+    assert [scenes.node_penalty(scene, 2, ctype) for ctype in (1, 3, 7)] == [5e9, 2.5e9, 5e9]
+    springs = block.interface_stiffness(3, 102, 100) * 0.25
+    assert springs == pytest.approx(1e6 * 50.5 / 10.0)
+
+
+def test_divided_lines_keep_the_old_ones():
+    lines = np.array([0.0, 0.3, 1.0])
+    assert scenes.divided(lines, 2) == pytest.approx([0.0, 0.15, 0.3, 0.65, 1.0])
+
+
+def test_references_run_once_and_are_not_timed(monkeypatch):
+    for name, scene in scenes.SCENES.items():
+        monkeypatch.setitem(scenes.SCENES, name, dataclasses.replace(scene, deck=str))
+    options = Options(levels=(1, 2, 3, 4), types=(1, 5), repeats=2)
+    runs = interleave(study.jobs(options), 2)
+    once = [job for job in runs if job.labels["role"] == "reference"]
+    assert {(job.labels["scene"], job.labels["level"]) for job in once} == {
+        ("sliding", 2), ("sliding", 3), ("sliding", 6), ("collision", 2), ("collision", 4),
+        ("collision", 8)}
+    assert len(once) == 6 and runs[:6] == once and not any(job.alone for job in once)
+    swept = [job for job in runs if job.name == "sliding_3_type_5"]
+    assert [job.repeat for job in swept] == [1, 2] and all(job.alone for job in swept)
+    assert not any(job.labels["scene"] == "sliding" and job.labels["level"] == 4 for job in runs)
+
+
+# ---- page --------------------------------------------------------------------------------------
+
+def made_rows(types_of=range(1, 8)):
+    """Type k costs k; types 4, 5 and 7 are exact; roughness falls with the type, and with N_r."""
+    rows = []
+    for name, scene in scenes.SCENES.items():
+        for level in scene.levels:
+            for ctype in types_of:
+                row = {"state": "finished", "role": "sweep", "scene": name, "level": level,
+                       "type": ctype, "search": 1.0 * ctype, "pairing": 0.0, "force": 0.0,
+                       "contact": 1.0 * ctype,
+                       "computing": 100.0 * level + 10.0 * ctype, "elements": 1.0, "element_calls": 101,
+                       "processor": "slow one", "load": 1.0, "build": "slideline 0", "points": 10.0 * ctype,
+                       "reference_levels": "2, 3, 6"}
+                for measure in scene.measures:
+                    row[measure.key] = 0.2 / level / (8 - ctype if ctype == 6 else ctype)
+                    if measure.referenced:
+                        row[f"{measure.key}_floor"], row[f"{measure.key}_order"] = 0.02, 1.0
+                if name in advice.PRESSURE_SCENES and ctype in (4, 5, 7):
+                    row["pressure_error"] = 1e-12
+                rows.append(row)
+    return rows
+
+
+def overview(rows):
+    return advice.Overview(fronts.points_of(rows, fronts.times_of(rows)))
+
+
+def test_advice_follows_the_figures():
+    over = overview(made_rows())
+    assert [ctype for ctype in over.types if over.passes(ctype)] == [4, 5, 7]
+    best, text = advice.general_advice(over)
+    assert best == 4 and "4.0 times that of type 1" in text
+    assert "Where the force must be smooth type 7" in advice.smooth_advice(over, best)
+    assert "0.14 times that of type 1" in advice.smooth_advice(over, best)
+    assert over.error(5, "hertz", "profile_error") == pytest.approx(0.2)
+    # Type 6 is rougher than type 3 and dearer.
+    assert "asks for type 6**" in advice.idle_advice(over)
+
+
+def test_mesh_or_type_decides():
+    rows = made_rows()
+    assert "mesh and type both count" in advice.mesh_advice(overview(rows))
+    for row in rows:
+        row.update({key: 0.9 / row["level"] ** 2 for key in ("force_error", "plastic_error")
+                    if key in row})
+    assert "the mesh decides, not the type" in advice.mesh_advice(overview(rows))
+
+
+def test_charts(tmp_path):
+    study.chart([row for row in made_rows() if row["scene"] == "block"], tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        f"block_speed_accuracy.{kind}" for kind in ("svg", "png")}
+
+
+def test_page(tmp_path):
+    study.page(made_rows(), tmp_path)
+    text = (tmp_path / "studies/speed_accuracy.md").read_text()
+    assert "**In general type 4 (VTS-PPT).**" in text
+    assert "| 4 VTS-PPT | 4 / 1.4e+02 s; < 1e-7 % |" in text
+    assert "| 5 NTS-mAR | 5.00 to 5.00 | 1.09 to 1.22 | 5.00 to 5.00 | 1.06 to 1.20 | 50 |" in text
+    assert "(1), (1), (1), 1 %" in text and "nan" not in text  # 0.2/4/5 is below the reference's 0.02
+    for name in scenes.SCENES:
+        assert (tmp_path / f"pictures/speed_accuracy_{name}.png").stat().st_size < 100_000
+    width = None
+    for line in text.splitlines():
+        width = (width or line.count("|")) if line.startswith("|") else None
+        assert width is None or line.count("|") == width, line
+
+
+def test_page_of_one_type_alone(tmp_path):
+    pages.page([row for row in made_rows((5,)) if row["scene"] != "collision"], tmp_path)
+    assert "nan" not in (tmp_path / "studies/speed_accuracy.md").read_text()
+    with pytest.raises(UserError, match="no finished runs"):
+        pages.page([], tmp_path)
+
+
+# ---- with the program --------------------------------------------------------------------------
+
+def test_real_runs_of_the_block(slideline, tmp_path):
+    arguments = ["speed-accuracy", "--program", slideline, "--folder", str(tmp_path), "--quick",
+                 "--types", "1", "3", "5", "--only", "block_1*"]
+    assert command.main(arguments) == 0
+    found = {row["type"]: row["pressure_error"] for row in read_rows(tmp_path / "speed-accuracy.csv")}
+    assert found[5] < scenes.ROUND_OFF and 1e-4 < found[3] < 0.01 < found[1] < 0.2
+    assert (tmp_path / "doc/studies/speed_accuracy.md").exists()

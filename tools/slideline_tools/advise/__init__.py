@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: MIT
+"""What in the model of a finished run was not needed, with the expected saving.
+
+    from slideline_tools.advise import advise
+    run, advice, notes = advise("results/collision")
+
+Every check says nothing unless the files of the run prove its point; its thresholds stand at the
+top of its module (bodies, touching, stepping, outputs; doc/studies/advise.md lists them).
+"""
+from __future__ import annotations
+
+from slideline_tools.advise import bodies, outputs, stepping, touching
+from slideline_tools.advise.finished import Finished, read_run
+from slideline_tools.advise.report import Advice
+
+CHECKS = bodies.CHECKS + touching.CHECKS + stepping.CHECKS + outputs.CHECKS
+
+
+def advise(path) -> tuple[Finished, list[Advice], list[str]]:
+    """The run at `path` (its folder or a file of it), all advice, and what was not judged."""
+    run = read_run(path)
+    if not run.log.normal:
+        return run, [], ["anything: the run did not end normally"]
+    if run.seconds_of("loop") == 0.0:
+        return run, [], ["anything: the run was not timed by phase (timing=off)"]
+    advice = [item for check in CHECKS for item in check(run)]
+    return run, advice, not_judged(run)
+
+
+def not_judged(run: Finished) -> list[str]:
+    """What could not be looked at, and why."""
+    notes = []
+    if run.results is None:
+        notes.append("strains, stresses, symmetry and steps: no states of the run")
+    if run.log.interfaces and "rcforc" not in run.tables:
+        notes.append("interfaces: no rcforc (*DATABASE_RCFORC)")
+    if "matsum" not in run.tables:
+        notes.append("rigid parts: no matsum (*DATABASE_MATSUM)")
+    if run.is_implicit:
+        notes.append("steps, contact types and bulk viscosity: an implicit run")
+    elif run.results is not None and stepping.limits(run) is None:
+        notes.append("steps: limits of elements or contact springs cannot be told")
+    if not run.keeps_access_time:
+        notes.append("files never read: this file system is not known to keep access times")
+    return notes

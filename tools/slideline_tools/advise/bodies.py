@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: MIT
+"""Advice on parts: laws, viscosity, rigid bodies, symmetry."""
+from __future__ import annotations
+
+import numpy as np
+
+from slideline_tools.advise import geometry
+from slideline_tools.advise.report import Advice
+from slideline_tools.advise.run_deck import material_keyword
+
+# What a plastic law and bulk viscosity add to a one-point quad, in elastic ones without
+# viscosity. Measured in turn on meshes of 960 and 3840 elements: 0.05 to 0.2, 0.5 to 0.6.
+PLASTIC_EXTRA, VISCOUS_EXTRA = 0.1, 0.5
+# A 2x2 quad stands for so many one-point quads where a model has both.
+POINTS_COST = 4.0
+# Largest viscous energy over the largest total energy that says: without effect.
+NO_VISCOUS_ENERGY = 1.0e-4
+# Strain and internal energy of a part over the largest of all parts that say: rigid.
+RIGID_STRAIN, RIGID_ENERGY = 0.01, 0.01
+# Largest difference of mirrored displacements over the largest displacement: symmetric.
+SYMMETRIC = 1.0e-3
+
+
+def extras(run, part) -> tuple[float, float]:
+    """What its law and its viscosity add to an element of a part, in elastic elements."""
+    plastic = run.log.materials.get(part.material, {}).get("yield", 0.0) > 0.0
+    return PLASTIC_EXTRA * plastic, VISCOUS_EXTRA * (max(part.viscosity) > 0.0)
+
+
+def element_seconds(run, worth: dict[int, float | None]) -> float:
+    """Seconds of the element loop that belong to `worth`: by part, the cost per element in
+    elastic elements (None: all of it)."""
+    weights, total = 0.0, 0.0
+    for part in run.log.parts.values():
+        count = part.n_element * (POINTS_COST if part.points == 4 else 1.0)
+        whole = 1.0 + sum(extras(run, part))
+        total += count * whole
+        if part.id in worth:
+            weights += count * (whole if worth[part.id] is None else worth[part.id])
+    return run.seconds_of("elements") * weights / max(total, 1.0)
+
+
+def part_label(part) -> str:
+    """Words for a part."""
+    return f'part {part.id} "{part.title}"' if part.title else f"part {part.id}"
+
+
+def never_yielded(run) -> list[Advice]:
+    """Plastic laws of parts whose plastic strain is exactly zero at the last state."""
+    if run.results is None or "plastic_strain" not in run.results.cell_fields:
+        return []
+    parts = run.results.cell_field("part_id")[0]
+    strain, mises = run.results.cell_field("plastic_strain")[-1], run.results.cell_field("mises")
+    advice = []
+    for part in run.log.parts.values():
+        yield_stress = run.log.materials.get(part.material, {}).get("yield", 0.0)
+        own = parts == part.id
+        if yield_stress <= 0.0 or not own.any() or strain[own].max() > 0.0:
+            continue
+        others = [other.id for other in run.log.parts.values()
+                  if other.material == part.material and other.id != part.id]
+        shared = (f" (a material of its own: parts {', '.join(map(str, others))} share it)"
+                  if others else "")
+        advice.append(Advice(
+            "never yielded", f"{part_label(part)} never yielded: its law could be elastic.",
+            f"plastic strain 0 in all {own.sum()} elements at the end; largest Mises stress at "
+            f"{len(mises)} states {mises[:, own].max():.3g}, yield stress {yield_stress:.3g}",
+            f"material {part.material}: *MAT_ELASTIC with the same MID, RO, E, PR in place of "
+            f"{material_keyword(run.blocks, part.material)}{shared}",
+            element_seconds(run, {part.id: PLASTIC_EXTRA}),
+            f"a plastic element costs {1.0 + PLASTIC_EXTRA} elastic ones"))
+    return advice
+
+
+def idle_viscosity(run) -> list[Advice]:
+    """Bulk viscosity that took no energy."""
+    numbers = [part.id for part in run.log.parts.values() if max(part.viscosity) > 0.0]
+    glstat = run.tables.get("glstat")
+    if not numbers or run.is_implicit or glstat is None or len(glstat) < 3:
+        return []
+    largest = np.abs(glstat["total"]).max()
+    if not np.abs(glstat["viscous"]).max() <= NO_VISCOUS_ENERGY * largest:
+        return []
+    return [Advice(
+        "bulk viscosity", "Bulk viscosity took no energy worth naming.",
+        f"largest viscous energy {np.abs(glstat['viscous']).max():.3g}, largest total energy "
+        f"{largest:.3g}; parts with Q1 or Q2: {', '.join(map(str, numbers))}",
+        "leave *CONTROL_BULK_VISCOSITY out, or Q1 = Q2 = 0.0 there and in *HOURGLASS",
+        element_seconds(run, dict.fromkeys(numbers, VISCOUS_EXTRA)),
+        f"it adds {VISCOUS_EXTRA} elastic elements to an element; the step limit grows, too")]
+
+
+def nearly_rigid(run) -> list[Advice]:
+    """Parts that hardly deform beside the others."""
+    matsum, results = run.tables.get("matsum"), run.results
+    if (results is None or run.is_implicit or matsum is None or len(run.log.parts) < 2
+            or "mises" not in results.cell_fields):
+        return []
+    cell_part, mises = results.cell_field("part_id")[0], results.cell_field("mises")
+    plastic = (results.cell_field("plastic_strain") if "plastic_strain" in results.cell_fields
+               else np.zeros_like(mises))
+    strains, energies = {}, {}
+    for part in run.log.parts.values():
+        own = cell_part == part.id
+        young = run.log.materials.get(part.material, {}).get("E", 0.0)
+        rows = matsum.where(part=part.id)
+        if not own.any() or young <= 0.0 or not len(rows):
+            return []
+        strains[part.id] = float((mises[:, own] / young + plastic[:, own]).max())
+        energies[part.id] = float(rows["internal"].max())
+    advice = []
+    for number, strain in strains.items():
+        if (0.0 < strain <= RIGID_STRAIN * max(strains.values())
+                and energies[number] <= RIGID_ENERGY * max(energies.values())):
+            part = run.log.parts[number]
+            advice.append(Advice(
+                "rigid", f"{part_label(part)} moved nearly as a rigid body.",
+                f"largest strain {strain:.2g} (of all parts {max(strains.values()):.2g}), largest "
+                f"internal energy {energies[number]:.2g} (of all parts "
+                f"{max(energies.values()):.2g})",
+                f"material {part.material}: *MAT_RIGID (where doc/keywords.md has it), if the "
+                "waves in this part do not matter",
+                element_seconds(run, {number: None}),
+                "its elements need no stress update: at most"))
+    return advice
+
+
+def symmetric(run) -> list[Advice]:
+    """Mesh, parts and displacements at all states that are their own mirror images."""
+    results = run.results
+    if results is None or len(results.times) < 3:
+        return []
+    start, moved = results.points[0][:, :2], results.point_field("displacement")[:, :, :2]
+    start = start - moved[0]
+    largest = float(np.abs(moved).max())
+    if largest == 0.0:
+        return []
+    advice = []
+    for axis, name in ((0, "x"), (1, "y")):
+        pairs = geometry.mirror_pairs(start, axis)
+        match = None if pairs is None else geometry.mirrored_cells(results.cells, pairs)
+        if match is None:
+            continue
+        parts = results.cell_field("part_id")[0]
+        sign = np.where(np.arange(2) == axis, -1.0, 1.0)
+        error = float(np.abs(moved[:, pairs] - sign * moved).max()) / largest
+        if error > SYMMETRIC or not np.array_equal(parts, parts[match]):
+            continue
+        middle = 0.5 * (start[:, axis].min() + start[:, axis].max())
+        on_line = int(np.sum(pairs == np.arange(len(pairs))))
+        mesh = "" if on_line else " (no nodes lie there: the mesh must be cut anew)"
+        saved = 0.5 * (run.seconds_of("loop") + run.seconds_of("output")
+                       + run.seconds_of("solver"))
+        advice.append(Advice(
+            "symmetry", f"Model and results are symmetric about {name} = {middle:.4g}: half the "
+            "model would do.",
+            f"every node and element has its mirror image; displacements differ by {error:.1g} of "
+            f"the largest at {len(moved)} states",
+            f"keep one side of {name} = {middle:.4g} and fix u_{name} of the nodes on it by "
+            f"*BOUNDARY_SPC_SET{mesh}; forces and energies halve", saved,
+            "half of elements, nodes, contact and output"))
+    return advice
+
+
+CHECKS = (never_yielded, idle_viscosity, nearly_rigid, symmetric)

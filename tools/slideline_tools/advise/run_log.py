@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: MIT
+"""What the log of a run says about its parts, materials, interfaces and steps."""
+from __future__ import annotations
+
+import dataclasses
+import re
+
+NUMBER = r"([-+0-9.E]+)"
+
+
+@dataclasses.dataclass
+class Part:
+    """A part, with the data of its material and its elements."""
+
+    id: int
+    title: str
+    n_element: int
+    material: int
+    points: int = 1
+    viscosity: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclasses.dataclass
+class Interface:
+    """An interface; lengths in m, penalties in N/m^2 (`node_penalty` in N/m)."""
+
+    id: int
+    name: str
+    ctype: int
+    n_slave: int = 0
+    n_master: int = 0
+    slave_length: float = 0.0
+    master_length: float = 0.0
+    node_penalty: float = 0.0
+    slave_penalty: float = 0.0
+    master_penalty: float = 0.0
+    damping: float = 0.0
+
+    @property
+    def label(self) -> str:
+        """Words for a reader."""
+        return f"interface {self.id} ({self.name}, type {self.ctype})"
+
+
+@dataclasses.dataclass
+class RunLog:
+    """Everything that is read from a log."""
+
+    parts: dict[int, Part] = dataclasses.field(default_factory=dict)
+    materials: dict[int, dict[str, float]] = dataclasses.field(default_factory=dict)
+    interfaces: dict[int, Interface] = dataclasses.field(default_factory=dict)
+    driven: bool = False         # loads or prescribed motion
+    step_scale: float = 0.0      # TSSFAC
+    capped: bool = False         # a curve caps the step
+    element_limit: float = 0.0   # smallest L/c at time zero, 0 = unknown
+    normal: bool = False         # ended normally
+
+
+def read_log(text: str) -> RunLog:
+    """The log as data; what is not found keeps its default."""
+    log = RunLog()
+    for line in text.splitlines():
+        read_part(log, line)
+        read_interface(log, line)
+        if found := re.match(r"material (\d+): (.*)", line):
+            log.materials[int(found[1])] = {
+                name: float(value)
+                for name, value in re.findall(rf"([A-Za-z ]+?) {NUMBER}(?:,|$)", found[2])}
+            log.materials[int(found[1])] = {name.strip(): value for name, value
+                                            in log.materials[int(found[1])].items()}
+        elif found := re.match(r"conditions: \d+ fixed and (\d+) moved degrees of freedom, "
+                               r"(\d+) nodal loads, (\d+) pressure edges, (\d+) body loads", line):
+            log.driven = any(int(count) for count in found.groups())
+        elif found := re.search(rf"step scale {NUMBER}", line):
+            log.step_scale = float(found[1])
+        elif line.startswith("step capped by curve"):
+            log.capped = True
+        elif found := re.search(rf"smallest L/c of the elements {NUMBER}", line):
+            log.element_limit = float(found[1])
+        elif "N o r m a l" in line:
+            log.normal = True
+    return log
+
+
+def read_part(log: RunLog, line: str) -> None:
+    """The lines of a part."""
+    if found := re.match(r'part (\d+) "(.*)": (\d+) elements, section \d+, material (\d+)', line):
+        number = int(found[1])
+        log.parts[number] = Part(number, found[2], int(found[3]), int(found[4]))
+    elif found := re.match(rf"part (\d+): (.*), bulk viscosity Q1 {NUMBER} Q2 {NUMBER}", line):
+        if part := log.parts.get(int(found[1])):
+            part.points = 4 if found[2].startswith("fully") else 1
+            part.viscosity = (float(found[3]), float(found[4]))
+
+
+def read_interface(log: RunLog, line: str) -> None:
+    """The lines of an interface; indented ones belong to the last."""
+    if found := re.match(r'interface (\d+)(?: ".*")?: (.*) \(type (\d+)\)', line):
+        number = int(found[1])
+        log.interfaces[number] = Interface(number, found[2], int(found[3]))
+        return
+    if not line.startswith("  ") or not log.interfaces:
+        return
+    last = list(log.interfaces.values())[-1]
+    if found := re.match(rf"  slave: (\d+) nodes, \d+ segments of mean length {NUMBER}", line):
+        last.n_slave, last.slave_length = int(found[1]), float(found[2])
+    elif found := re.match(rf"  master: (\d+) nodes, \d+ segments of mean length {NUMBER}", line):
+        last.n_master, last.master_length = int(found[1]), float(found[2])
+    elif found := re.match(rf"  penalty: {NUMBER} N/m per slave node = {NUMBER} N/m\^2; master "
+                           rf"pass {NUMBER} N/m per master node = {NUMBER} N/m\^2", line):
+        last.node_penalty, last.slave_penalty = float(found[1]), float(found[2])
+        last.master_penalty = float(found[4])
+    elif found := re.match(rf"  damping: {NUMBER} of critical", line):
+        last.damping = float(found[1])

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+"""Charts of the study speed-accuracy: error over cost, one figure for each scene."""
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from slideline_tools.plots import PAGE_WIDTH, plt
+from slideline_tools.studies.common import colour, label
+from slideline_tools.study.charts import save, styled
+from slideline_tools.study.speed_accuracy_front import COSTS, front, points_of, times_of
+from slideline_tools.study.speed_accuracy_scenes import SCENES
+
+LOWEST = 1.0e-12  # errors are drawn here at least
+MARKERS = {1: "s", 2: ">", 3: "o", 4: "v", 5: "^", 6: "D", 7: "P"}
+
+
+def draw_type(axes, points, cost, key):
+    """Points of one type, joined from mesh to mesh; hollow where the error is not resolved."""
+    ctype = points[0].type
+    x = [point.cost[cost] for point in points]
+    y = [max(point.error[key], LOWEST) for point in points]
+    axes.plot(x, y, color=colour(ctype), linewidth=0.7, alpha=0.8)
+    for flag, face in ((True, colour(ctype)), (False, "white")):
+        chosen = [k for k, point in enumerate(points) if point.resolved(key) is flag]
+        axes.plot([x[k] for k in chosen], [y[k] for k in chosen], linestyle="none",
+                  marker=MARKERS[ctype], color=colour(ctype), markersize=4.5,
+                  markerfacecolor=face, label=label(ctype) if flag else None)
+
+
+def draw_panel(axes, scene, points, cost, measure):
+    """One measure over one cost, with the Pareto front."""
+    key = measure.key
+    points = [point for point in points if key in point.error]
+    for ctype in sorted({point.type for point in points}):
+        draw_type(axes, sorted((point for point in points if point.type == ctype),
+                               key=lambda point: point.level), cost, key)
+    best = front(points, cost, key)
+    axes.step([point.cost[cost] for point in best],
+              [max(point.judged(key), LOWEST) for point in best], where="post", color="black",
+              linewidth=1.6, alpha=0.35, zorder=0)
+    for point in best:
+        axes.annotate(point.name, (point.cost[cost], max(point.error[key], LOWEST)), fontsize=7,
+                      xytext=(-3, -3), textcoords="offset points", ha="right", va="top")
+    axes.set(xscale="log", yscale="log")
+    axes.margins(0.12, 0.15)
+    low, high = axes.get_ylim()
+    floor = max((point.floor[key] for point in points), default=0.0)
+    if floor > low:
+        axes.axhspan(low, min(floor, high), color="#00000010", linewidth=0)
+        axes.set_ylim(low, high)
+    axes.grid(True, which="major", linewidth=0.3, color="#bbbbbb")
+    for axis in (axes.xaxis, axes.yaxis):
+        plain_ticks(axis)
+
+
+def plain_ticks(axis):
+    """Ticks at 1, 2 and 5 on a short logarithmic axis, at decades on a long one."""
+    low, high = axis.get_view_interval()
+    if high < 300.0 * low:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def scene_figure(name, points):
+    """A row of panels for each measure, a column for each cost; call it within `styled()`."""
+    scene = SCENES[name]
+    measures = [measure for measure in scene.measures
+                if any(measure.key in point.error for point in points)]
+    figure, panels = plt.subplots(len(measures), len(COSTS), squeeze=False, layout="constrained",
+                                  figsize=(PAGE_WIDTH + 0.5, 0.7 + 2.5 * len(measures)))
+    for row, measure in zip(panels, measures):
+        for axes, cost in zip(row, COSTS):
+            draw_panel(axes, scene, points, cost, measure)
+        row[1].sharey(row[0])
+        row[0].set_title(measure.title, loc="left")
+    for axes, text in zip(panels[-1], COSTS.values()):
+        axes.set_xlabel(f"{text} of the run, s")
+    handles = {}
+    for line, text in zip(*panels[0][0].get_legend_handles_labels()):
+        handles.setdefault(text, line)
+    figure.legend(handles.values(), handles, loc="outside lower center", ncols=4)
+    figure.suptitle(f"{scene.title}: type/N_r named on the Pareto front", fontsize=9)
+    return figure
+
+
+def chart(rows, folder):
+    """One figure for each scene."""
+    for name, points in points_of(rows, times_of(rows)).items():
+        if any(point.error for point in points):
+            with styled():
+                save(scene_figure(name, points), folder, f"{name}_speed_accuracy")
