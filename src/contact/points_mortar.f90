@@ -47,7 +47,7 @@ contains
     integer, intent(in) :: s, near
     type(foot_t) :: foot
     type(sight_t) :: sight
-    real(wp) :: length
+    real(wp) :: length, normal(2)
     integer :: q, i, ends(2)
 
     call make_room(memory%points, size(memory%spot_xi))
@@ -55,18 +55,19 @@ contains
     sight = sight_of_segment(memory%places(:, ends(2)), memory%places(:, ends(1)), &
       memory%places(:, ends(2)))
     length = sqrt(sight%square)
+    normal = sight_normal(sight)
     do q = 1, size(memory%spot_xi)
       i = (s - 1)*size(memory%spot_xi) + q
       associate (tracking => memory%slave_tracking)
         if (tracking%status(i) == is_touching) then
-          call add_spot(contact, memory, ends, q, i, sight_normal(sight), length)
+          call add_spot(contact, memory, ends, q, i, normal, length)
           cycle
         end if
         if (tracking%status(i) == is_behind) cycle
         foot = local_foot(contact, memory, memory%spots(:, i), &
           merge(tracking%segment(i), near, tracking%segment(i) > 0))
       end associate
-      if (foot%is_on) call add_foot(contact, memory, ends, q, foot, sight_normal(sight), length)
+      if (foot%is_on) call add_foot(contact, memory, ends, q, foot, normal, length)
     end do
   end subroutine add_gauss_points
 

@@ -89,41 +89,43 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(cover_t), intent(in) :: cover
     type(piece_t) :: piece
+    type(sight_t) :: slave
     integer :: q
 
+    if (.not. cover%exists) return
+    slave = sight_of_segment(memory%places(:, cover%ends(2)), memory%places(:, cover%ends(1)), &
+      memory%places(:, cover%ends(2)))
     call first_piece(contact, memory, cover, piece)
     do while (.not. piece%is_last)
       call next_piece(contact, memory, cover, piece)
       if (.not. (piece%high > piece%low .and. piece%share > 0.0_wp)) cycle
       call make_room(memory%points, size(gauss_xi))
       do q = 1, size(gauss_xi)
-        call add_gauss_point(contact, memory, cover%ends, piece%segment, &
+        call add_gauss_point(contact, memory, cover%ends, slave, piece%segment, &
           piece%low + gauss_xi(q)*(piece%high - piece%low), 0.5_wp*(piece%high - piece%low))
       end do
     end do
   end subroutine add_pieces
 
   !> One Gauss point on a piece, over whatever master segment is closest there.
-  pure subroutine add_gauss_point(contact, memory, ends, segment, xi, weight)
+  pure subroutine add_gauss_point(contact, memory, ends, slave, segment, xi, weight)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: ends(2)  !! nodes of the slave segment
+    type(sight_t), intent(in) :: slave !! some place seen from it
     integer, intent(in) :: segment  !! master segment of the piece
     real(wp), intent(in) :: xi      !! place on the slave segment
     real(wp), intent(in) :: weight  !! part of its length
-    type(sight_t) :: sight
     type(foot_t) :: foot
-    real(wp) :: share, place(4)
+    real(wp) :: share
 
-    place = place_on_segment(memory%places, ends, xi)
-    foot = local_foot(contact, memory, place, segment)
+    foot = local_foot(contact, memory, place_on_segment(memory%places, ends, xi), segment)
     if (.not. foot%is_on) return
-    sight = sight_of_segment(place, memory%places(:, ends(1)), memory%places(:, ends(2)))
-    share = facing_share(dot_product(sight_normal(sight), foot%normal))
+    share = facing_share(dot_product(sight_normal(slave), foot%normal))
     if (.not. share > 0.0_wp) return
     call add_segment_point(contact%master, memory%n_slave, ends, xi, foot, memory%points)
     associate (p => memory%points%n)
-      memory%points%area(p) = weight*share*sqrt(sight%square)
+      memory%points%area(p) = weight*share*sqrt(slave%square)
       memory%points%stiffness(p) = memory%slave_penalty
     end associate
   end subroutine add_gauss_point
@@ -135,7 +137,7 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(in) :: cover
-    type(sight_t) :: sight
+    type(sight_t) :: sight, slave
     real(wp) :: length, master_length, weight, xi
     integer :: k, q, nodes(2)
 
@@ -154,7 +156,9 @@ contains
           memory%points%area(memory%points%n) = weight*length
           memory%points%stiffness(memory%points%n) = memory%slave_penalty
         else
-          call add_gauss_point(contact, memory, cover%ends, cover%segments(k), xi, weight)
+          slave = sight_of_segment(memory%places(:, cover%ends(2)), memory%places(:, cover%ends(1)), &
+            memory%places(:, cover%ends(2)))
+          call add_gauss_point(contact, memory, cover%ends, slave, cover%segments(k), xi, weight)
         end if
       end do
     end do

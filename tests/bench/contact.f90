@@ -25,7 +25,7 @@ program bench_contact
     read (argument, *) chosen(i_size)
   end do
   write (output_unit, '(a)') 'scene,slave_nodes,type,points,active,ns_step,ns_step_median,' &
-    //'ns_slave_node,ns_point'
+    //'ns_slave_node,ns_point,of_type_1'
   do i_scene = 1, size(scenes)
     do i_size = 1, size(sizes)
       if (chosen(1) > 0 .and. chosen(1) /= sizes(i_size)) cycle
@@ -44,6 +44,7 @@ contains
     integer :: i_type, i_round, n_step
 
     allocate (problems(n_type))
+    times = huge(1.0_wp)
     do i_type = 1, n_type
       if (chosen(2) > 0 .and. chosen(2) /= i_type) cycle
       call start_problem(problems(i_type), scene, n, i_type)
@@ -60,8 +61,9 @@ contains
       if (chosen(2) > 0 .and. chosen(2) /= i_type) cycle
       best = minval(times(:, i_type))
       associate (memory => problems(i_type)%memory)
-        write (output_unit, '(a, 4(",", i0), 4(",", f0.2))') trim(scene), n, i_type, memory%points%n, &
-          memory%n_active, best, median(times(:, i_type)), best/n, best/max(1, memory%points%n)
+        write (output_unit, '(a, 4(",", i0), 4(",", f0.2), ",", f0.3)') trim(scene), n, i_type, memory%points%n, &
+          memory%n_active, best, median(times(:, i_type)), best/n, best/max(1, memory%points%n), &
+          best/minval(times(:, 1))
       end associate
     end do
   end subroutine time_types
