@@ -55,7 +55,8 @@ contains
     call open_files(model, prefix, info, monitor, error)
     if (allocated(error)) return
     deallocate (info%effective_deck)
-    call start_state(model, monitor%log, state)
+    call start_state(model, monitor%log, state, error)
+    if (allocated(error)) return
     ! Used up: the state holds it now.
     if (allocated(model%conditions%initial_velocity)) &
       deallocate (model%conditions%initial_velocity)
