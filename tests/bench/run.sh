@@ -10,10 +10,12 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 out=$root/results/bench
 sizes="300 4000 100000 1000000 4000000"
 chains="20 1000 100000"
+large=1000000
 repeats=3
 if [ "${1:-}" = --quick ]; then
   sizes="300 4000"
   chains="20"
+  large=100000
   repeats=1
 fi
 
@@ -24,6 +26,8 @@ cmake --build "$root/build/release" --target bench_kernel bench_contact
 "$root/build/venv/bin/python" "$root/tests/bench/elements.py" --sizes $sizes --repeats "$repeats" \
   --program "$root/build/release/slideline" \
   --kernel "$root/build/release/tests/bench/bench_kernel" --out "$out"
+"$root/build/venv/bin/python" "$root/tests/bench/input_output.py" --elements "$large" \
+  --repeats "$repeats" --program "$root/build/release/slideline" --out "$out"
 
 mkdir -p "$out"
 for nodes in $chains; do

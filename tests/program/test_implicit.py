@@ -274,6 +274,23 @@ def test_step_of_the_command_line(slideline, tmp_path):
     assert len(numbers(tmp_path / "y" / "again.glstat.csv", "time")) == 5
 
 
+def test_a_first_step_outside_its_limits_is_warned_of(slideline, tmp_path):
+    done = slideline("d=x", deck=pulled(1.0e3, dt=0.05, automatic=(0.001, 0.01)))
+    assert done.returncode == 0, done.stderr
+    assert "first step 5.0" in done.stderr and "DTMAX" in done.stderr
+    assert numbers(tmp_path / "x" / "job.glstat.csv", "time")[1] == pytest.approx(0.01)
+
+
+def test_growing_steps_end_at_plot_states(slideline, tmp_path):
+    deck = pulled(1.0e3, dt=0.02, automatic=(0.001, 0.5))
+    deck.lines[deck.lines.index("*DATABASE_BINARY_D3PLOT") + 1] = "0.15,"
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0, done.stderr
+    with h5py.File(tmp_path / "x" / "job.vtkhdf") as stream:
+        times = list(stream["VTKHDF/Steps/Values"])
+    assert times == pytest.approx([0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.0])
+
+
 def test_easy_steps_grow(slideline, tmp_path):
     done = slideline("d=x", deck=pulled(1.0e3, dt=0.01, automatic=(0.001, 0.2)))
     assert done.returncode == 0, done.stderr
