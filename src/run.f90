@@ -142,7 +142,7 @@ contains
       status_files)
   end subroutine open_outputs
 
-  !> What restart files need to know; those of an earlier run of this name are removed.
+  !> What restart files need to know; what an earlier run of this name has left of them is removed.
   subroutine prepare_restarts(arguments, prefix, effective, restarts, error)
     type(arguments_t), intent(in) :: arguments
     character(*), intent(in) :: prefix, effective
@@ -158,7 +158,7 @@ contains
     call add_bytes(checksum, effective)
     restarts%effective_deck_checksum = checksum_text(checksum)
     call forget_switch(arguments%directory)
-    if (.not. restarts%goes_on) call forget_files(restarts, error)
+    call forget_files(restarts, error)
   end subroutine prepare_restarts
 
   !> Advance to the end, close the files and say how it ended.

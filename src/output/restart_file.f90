@@ -21,7 +21,7 @@ module restart_file_m
   use log_m, only : to_text
   implicit none
   private
-  public :: create_restart, finish_restart, open_restart, close_restart, file_checksum
+  public :: create_restart, finish_restart, open_restart, close_restart, file_checksum, unfinished
 
   !> Layout of the file. To be raised when a component of the state comes, goes or changes its meaning.
   integer, parameter :: format_version = 1

@@ -12,7 +12,7 @@ module restart_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t
   use restart_file_m, only : create_restart, finish_restart, open_restart, close_restart, &
-    file_checksum
+    file_checksum, unfinished
   use restart_history_m, only : keep_schedule, keep_histories, keep_times
   use restart_plan_m, only : restarts_t, dump_path, running_path
   use restart_state_m, only : keep_state
@@ -252,18 +252,35 @@ contains
     call close_restart(source, error)
   end subroutine take_up_steps
 
-  !> Remove restart files of an earlier run of this name.
+  !> Remove what an earlier run of this name has left: files that it has not finished, and whole ones too
+  !> unless the run goes on.
   subroutine forget_files(restarts, error)
     type(restarts_t), intent(in) :: restarts
     type(error_t), allocatable, intent(out) :: error
+    logical :: found
     integer :: i
 
-    call remove_file(running_path(restarts), error)
-    i = 1
-    do while (file_exists(dump_path(restarts, i)) .and. .not. allocated(error))
-      call remove_file(dump_path(restarts, i), error)
+    call forget_file(running_path(restarts), .not. restarts%goes_on, found, error)
+    i = 0
+    do while (found .or. i == 0)
       i = i + 1
+      if (.not. allocated(error)) &
+        call forget_file(dump_path(restarts, i), .not. restarts%goes_on, found, error)
     end do
   end subroutine forget_files
+
+  !> Remove an unfinished file, and a whole one if asked.
+  subroutine forget_file(path, whole_too, found, error)
+    character(*), intent(in) :: path
+    logical, intent(in) :: whole_too
+    logical, intent(out) :: found       !! there was one, and nothing stood in the way
+    type(error_t), allocatable, intent(out) :: error
+
+    found = file_exists(path)
+    if (.not. found) found = file_exists(path//unfinished)
+    call remove_file(path//unfinished, error)
+    if (whole_too .and. .not. allocated(error)) call remove_file(path, error)
+    found = found .and. .not. allocated(error)
+  end subroutine forget_file
 
 end module restart_m
