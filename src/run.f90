@@ -69,7 +69,7 @@ contains
     call open_files(model, prefix, info, monitor, error)
     if (allocated(error)) return
     deallocate (info%effective_deck)
-    if (.not. monitor%restarts%goes_on) call start_state(model, monitor%log, state)
+    if (.not. monitor%restarts%goes_on) call start_state(model, monitor%log, state, error)
     if (allocated(error)) return
     ! Used up: the state holds it now.
     if (allocated(model%conditions%initial_velocity)) &

@@ -4,6 +4,7 @@ module contact_force_m
   use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_pairing, &
     phase_contact_force
   use contact_closing_m, only : close_contacts, closed_gap_of
+  use contact_crossing_m, only : crossings_t, find_crossings, catch_crossings
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
   use contact_initial_m, only : start_slave_tracking, start_master_tracking, start_cover
   use contact_log_m, only : log_contact
@@ -102,11 +103,12 @@ contains
   !> is taken from the last converged step: give a copy of it to each trial, so that forces are a function of u.
   pure subroutine evaluate_contact(contact, motion, time, is_first, memory, force)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u and v
+    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u, and u minus that of the start of the step
     real(wp), intent(in) :: time                       !! of u, s
     logical, intent(in) :: is_first                    !! of a step: gaps of zero count as contact
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
+    type(crossings_t) :: crossings
     real(wp) :: spread
     integer :: i
 
@@ -121,7 +123,9 @@ contains
     memory%travel = memory%travel + spread
     if (allocated(memory%spots)) &
       call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
+    call find_crossings(contact, motion, memory, crossings)
     call search_pairs(contact, 0, memory)
+    call catch_crossings(contact, crossings, memory)
     if (is_first) call close_contacts(contact, closed_gap_of(contact, memory), memory)
     call place_points(contact, memory)
     if (memory%points%n == 0) return

@@ -3,13 +3,13 @@
 module contact_log_m
   use contact_penalty_m, only : mean_length
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t, contact_kind_t
+  use contacts_m, only : contact_t, contact_kind_t, penalty_share
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
   implicit none
   private
-  public :: log_contact, report_initial_contact, report_released
+  public :: log_contact, penalty_text, report_initial_contact, report_released
 
   !> Part of the search reach below which a penetration at time zero is round-off.
   real(wp), parameter :: round_off = 1.0e-10_wp
@@ -23,11 +23,8 @@ contains
     type(contact_kind_t), intent(in) :: kind
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
-    real(wp) :: slave_length, master_length
     character(:), allocatable :: title
 
-    slave_length = mean_length(contact%slave, model)
-    master_length = mean_length(contact%master, model)
     title = ''
     if (allocated(contact%title)) title = contact%title
     if (len(title) > 0) title = ' "'//title//'"'
@@ -35,13 +32,16 @@ contains
       //to_text(kind%number)//')'//trim(merge(', chosen by keyword', '                   ', &
       contact%chosen_by_keyword)))
     call write_log(log, '  slave: '//to_text(contact%slave%n_node)//' nodes, ' &
-      //to_text(contact%slave%n_segment)//' segments of mean length '//to_text(slave_length)//' m')
-    call write_log(log, '  master: '//to_text(contact%master%n_node)//' nodes, ' &
-      //to_text(contact%master%n_segment)//' segments of mean length '//to_text(master_length) &
+      //to_text(contact%slave%n_segment)//' segments of mean length '//to_text(mean_length(contact%slave, model)) &
       //' m')
-    call write_log(log, '  penalty: '//to_text(memory%node_penalty)//' N/m per slave node = ' &
-      //to_text(memory%slave_penalty)//' N/m^2; master pass '//to_text(memory%master_penalty &
-      *master_length)//' N/m per master node = '//to_text(memory%master_penalty)//' N/m^2')
+    call write_log(log, '  master: '//to_text(contact%master%n_node)//' nodes, ' &
+      //to_text(contact%master%n_segment)//' segments of mean length '//to_text(mean_length(contact%master, &
+      model))//' m')
+    if (contact%penalty_unit == penalty_share) then
+      call write_log(log, '  penalty: '//to_text(contact%penalty)//' of the largest stable one')
+    else
+      call write_log(log, '  penalty: '//penalty_text(contact, model, memory))
+    end if
     if (kind%uses_gauss_points) call write_log(log, '  Gauss points of a slave segment: ' &
       //to_text(contact%n_gauss))
     if (contact%strict) call write_log(log, '  strict rule where a slave segment hangs over the end ' &
@@ -51,6 +51,18 @@ contains
     call write_log(log, '  deepest first contact: '//to_text(minval( &
       memory%slave_tracking%spot_depth))//' m or less')
   end subroutine log_contact
+
+  !> All equivalents of the penalty.
+  function penalty_text(contact, model, memory) result(text)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(in) :: memory
+    character(:), allocatable :: text
+
+    text = to_text(memory%node_penalty)//' N/m per slave node = '//to_text(memory%slave_penalty) &
+      //' N/m^2; master pass '//to_text(memory%master_penalty*mean_length(contact%master, model)) &
+      //' N/m per master node = '//to_text(memory%master_penalty)//' N/m^2'
+  end function penalty_text
 
   !> The deepest penetration at time zero and the force that it causes; nothing when there is none.
   !> Initial penetrations are taken as they are.

@@ -2,7 +2,8 @@
 !> From the penalty of the deck to the pressure of each point.
 module contact_penalty_m
   use contact_state_m, only : contact_points_t, contact_state_t, n_side
-  use contacts_m, only : contact_t, penalty_per_node, penalty_distributed, penalty_factor
+  use contacts_m, only : contact_t, penalty_per_node, penalty_distributed, penalty_factor, &
+    penalty_share
   use kinds_m, only : wp
   use model_m, only : model_t
   use surfaces_m, only : surface_t
@@ -14,7 +15,8 @@ contains
 
   !> All equivalents of the penalty. The seed's rule eps_hat = eps/l with the mean segment length of the
   !> initial mesh converts; l is that of the slave surface for eps_hat of the slave pass and for
-  !> eps of type 1, that of the master surface for eps_hat of the master pass.
+  !> eps of type 1, that of the master surface for eps_hat of the master pass. A share of the largest stable
+  !> penalty stands as it is until the step is known.
   pure subroutine set_penalties(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -27,7 +29,7 @@ contains
     case (penalty_per_node)
       memory%slave_penalty = contact%penalty/mean_length(contact%slave, model)
       memory%master_penalty = master_value/mean_length(contact%master, model)
-    case (penalty_distributed)
+    case (penalty_distributed, penalty_share)
       memory%slave_penalty = contact%penalty
       memory%master_penalty = master_value
     case (penalty_factor)

@@ -1,117 +1,157 @@
 ! SPDX-License-Identifier: MIT
-!> The step that the penalty springs of an interface alone allow.
+!> The step that the penalty springs of all interfaces and the elements allow together.
 !> With springs k_p between weighted means of slave and master nodes, (s - m)^2 <= (1 + c) s^2 + (1 + 1/c) m^2
-!> and the convexity of the square give omega^2 <= max_s K_s/m_s + max_m K_m/m_m, where K is the sum of
-!> k_p times weight at a node. It is exact for two masses and one spring. Averaging the gaps of points over slave
-!> nodes only lowers omega: by convexity again the energy is no more than that of springs at the points.
-!> A node of the tracked side carries at most its competence length in all formulations, for a node of the other side
-!> see `most_on_nodes` (doc/theory/contact.md, section 7).
+!> for any c > 0 and the convexity of the square give
+!>
+!>     omega^2 <= max over nodes of sum over interfaces of (1 + c) K/m (slave side) or (1 + 1/c) K/m (master side),
+!>
+!> with a c of each interface and the ratios K/m of `spring_ratios`. One interface alone: c = B/A gives
+!> max_s K/m + max_m K/m = A + B, exact for two masses and one spring. Averaging the gaps of points over slave nodes only
+!> lowers omega: by convexity again the energy is no more than that of springs at the points.
+!> Squares of frequencies of elements and springs add up at most (doc/theory/contact.md, section 7).
 module contact_step_limit_m
-  use contact_dispatch_m, only : formulation_t, formulation_of
-  use contact_placing_m, only : competence_length
+  use contact_spring_ratios_m, only : spring_ratios
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
-  use geometry_m, only : segment_length
   use kinds_m, only : wp
-  use surfaces_m, only : surface_t
   implicit none
   private
-  public :: find_step_limit
+  public :: spring_bound_t, bound_springs, stable_step, fitting_scale
+
+  !> What is known of the springs at the nodes of one interface, those of other interfaces there included.
+  type :: spring_bound_t
+    real(wp) :: rate = 0.0_wp     !! bound of omega^2, 1/s^2
+    real(wp) :: damping = 0.0_wp  !! sum of damping fraction times omega, 1/s
+    integer :: node = 0           !! where the bound is taken: index in the mesh
+  end type spring_bound_t
+
+  !> K/m of the nodes of one interface.
+  type :: ratios_t
+    real(wp), allocatable :: at(:)    !! (n_slave + n_master)
+    real(wp) :: c = 1.0_wp            !! share between its sides
+  end type ratios_t
+
+  !> Rounds over all interfaces, and halvings of the interval of log c: any c is safe, more only sharpen the bound.
+  integer, parameter :: n_round = 20, n_halving = 40
 
 contains
 
-  !> Stable step 2/omega of the springs alone and the node that matters most (the larger K/m). A penalty
-  !> smaller by (dt/limit)^2 would fit a step dt. `places` are those in the memory, all nodes in contact.
-  pure subroutine find_step_limit(contact, mass, memory, limit, node)
-    type(contact_t), intent(in) :: contact
-    real(wp), intent(in) :: mass(:) !! (n_node) kg/m
-    type(contact_state_t), intent(in) :: memory
-    real(wp), intent(out) :: limit  !! s; huge without any spring
-    integer, intent(out) :: node    !! index in the mesh
-    type(formulation_t) :: formulation
-    real(wp), allocatable :: slave_ratio(:), master_ratio(:)
-    real(wp) :: spacing, overhang
-    integer :: n, worst(2)
+  !> Bounds of all interfaces, each penalty times its `scale`.
+  pure subroutine bound_springs(contacts, mass, memories, scale, bounds)
+    type(contact_t), intent(in) :: contacts(:)
+    real(wp), intent(in) :: mass(:)                      !! (n_node) kg/m
+    type(contact_state_t), intent(in) :: memories(:)
+    real(wp), intent(in) :: scale(:)                     !! (n_interface) 0 or more
+    type(spring_bound_t), intent(out) :: bounds(:)       !! (n_interface)
+    type(ratios_t) :: ratios(size(contacts))
+    integer :: users(size(mass)), i, n, worst(2)
 
-    n = memory%n_slave
-    formulation = formulation_of(contact)
-    overhang = merge(0.0_wp, 0.5_wp, formulation%covers_segments .and. .not. contact%strict)
-    associate (slave => memory%places(:, :n), master => memory%places(:, n + 1:))
-      slave_ratio = memory%slave_penalty*areas(contact%slave, slave)
-      master_ratio = memory%slave_penalty*most_on_nodes(contact%master, master, &
-        maxval(lengths(contact%slave, slave)), overhang, .false.)
-      if (formulation%has_unit_area) then
-        slave_ratio = memory%node_penalty
-        spacing = minval(lengths(contact%slave, slave))
-        master_ratio = memory%node_penalty/spacing &
-          *most_on_nodes(contact%master, master, spacing, overhang, .true.)
-      end if
-      if (formulation%has_two_passes) then
-        master_ratio = master_ratio + memory%master_penalty*areas(contact%master, master)
-        slave_ratio = slave_ratio + memory%master_penalty*most_on_nodes(contact%slave, slave, &
-          maxval(lengths(contact%master, master)), overhang, .false.)
-      end if
-    end associate
-    slave_ratio = slave_ratio/mass(memory%nodes(:n))
-    master_ratio = master_ratio/mass(memory%nodes(n + 1:))
-    worst = [maxloc(slave_ratio, 1), maxloc(master_ratio, 1)]
-    limit = 2.0_wp/sqrt(max(slave_ratio(worst(1)) + master_ratio(worst(2)), tiny(1.0_wp)))
-    node = memory%nodes(merge(worst(1), n + worst(2), &
-      slave_ratio(worst(1)) >= master_ratio(worst(2))))
-  end subroutine find_step_limit
+    users = 0
+    do i = 1, size(contacts)
+      n = memories(i)%n_slave
+      ratios(i)%at = scale(i)*spring_ratios(contacts(i), mass, memories(i))
+      worst = [maxloc(ratios(i)%at(:n), 1), n + maxloc(ratios(i)%at(n + 1:), 1)]
+      associate (most => ratios(i)%at(worst))
+        bounds(i)%rate = sum(most)
+        bounds(i)%damping = contacts(i)%damping*sqrt(bounds(i)%rate)
+        bounds(i)%node = memories(i)%nodes(worst(merge(1, 2, most(1) >= most(2))))
+        if (all(most > 0.0_wp)) ratios(i)%c = most(2)/most(1)
+      end associate
+      users(memories(i)%nodes) = users(memories(i)%nodes) + 1
+    end do
+    if (any(users > 1)) call join_interfaces(memories, ratios, bounds, size(mass))
+  end subroutine bound_springs
 
-  !> Competence lengths of all nodes of a surface, m.
-  pure function areas(surface, places)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :)
-    real(wp) :: areas(surface%n_node)
+  !> Interfaces that share nodes: the c of each in turn evens out its sides, as the others stand.
+  pure subroutine join_interfaces(memories, ratios, bounds, n_node)
+    type(contact_state_t), intent(in) :: memories(:)
+    type(ratios_t), intent(inout) :: ratios(:)
+    type(spring_bound_t), intent(inout) :: bounds(:)
+    integer, intent(in) :: n_node
+    real(wp) :: total(n_node), damping(n_node)
+    integer :: i, round
+
+    total = 0.0_wp
+    damping = 0.0_wp
+    do i = 1, size(memories)
+      associate (nodes => memories(i)%nodes)
+        total(nodes) = total(nodes) + weighted(ratios(i), memories(i)%n_slave, ratios(i)%c)
+        damping(nodes) = damping(nodes) + bounds(i)%damping
+      end associate
+    end do
+    do round = 1, n_round
+      do i = 1, size(memories)
+        associate (nodes => memories(i)%nodes, n => memories(i)%n_slave)
+          total(nodes) = total(nodes) - weighted(ratios(i), n, ratios(i)%c)
+          ratios(i)%c = even_share(ratios(i), n, max(total(nodes), 0.0_wp))
+          total(nodes) = total(nodes) + weighted(ratios(i), n, ratios(i)%c)
+        end associate
+      end do
+    end do
+    do i = 1, size(memories)
+      associate (nodes => memories(i)%nodes)
+        bounds(i)%rate = maxval(total(nodes))
+        bounds(i)%node = nodes(maxloc(total(nodes), 1))
+        bounds(i)%damping = maxval(damping(nodes))
+      end associate
+    end do
+  end subroutine join_interfaces
+
+  !> (1 + c) K/m of slave nodes and (1 + 1/c) K/m of master nodes.
+  pure function weighted(ratios, n_slave, c)
+    type(ratios_t), intent(in) :: ratios
+    integer, intent(in) :: n_slave
+    real(wp), intent(in) :: c
+    real(wp) :: weighted(size(ratios%at))
+
+    weighted(:n_slave) = (1.0_wp + c)*ratios%at(:n_slave)
+    weighted(n_slave + 1:) = (1.0_wp + 1.0_wp/c)*ratios%at(n_slave + 1:)
+  end function weighted
+
+  !> The c for which both sides of an interface are loaded alike, on top of what others put on the nodes.
+  pure function even_share(ratios, n_slave, others) result(c)
+    type(ratios_t), intent(in) :: ratios
+    integer, intent(in) :: n_slave
+    real(wp), intent(in) :: others(:) !! (n_slave + n_master)
+    real(wp) :: c
+    real(wp) :: low, high, load(size(others))
     integer :: i
 
-    do i = 1, surface%n_node
-      areas(i) = competence_length(surface, places, i)
-    end do
-  end function areas
-
-  !> Lengths of all segments of a surface, m.
-  pure function lengths(surface, places)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :)
-    real(wp) :: lengths(surface%n_segment)
-    integer :: i
-
-    do i = 1, surface%n_segment
-      lengths(i) = segment_length(places(:, surface%segments(1, i)), &
-        places(:, surface%segments(2, i)))
-    end do
-  end function lengths
-
-  !> Most length that points of the other side can put on each node, by its hat function over segments of
-  !> length h. At equal distances s, each with the length s: with a point at the node, s/2 and
-  !> sum(s (1 - i s/h), i s < h) for each neighbouring segment. At distances up to s, or integrating segments of up to s: h/2, and
-  !> the largest error of the trapezoidal rule at the foot of the hat, s^2/(8h), or (s - h)/2 when s > 2h (the midpoint
-  !> rule errs as much at the top, Gauss rules less). Points at a chain's end may stand for a part `overhang` of s beyond it.
-  pure function most_on_nodes(surface, places, s, overhang, at_equal_distances) result(most)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :)
-    real(wp), intent(in) :: s        !! m
-    real(wp), intent(in) :: overhang
-    logical, intent(in) :: at_equal_distances
-    real(wp) :: most(surface%n_node)
-    real(wp) :: h(surface%n_segment), share
-    integer :: i, n
-
-    most = overhang*s*(merge(1, 0, surface%incoming == 0) + merge(1, 0, surface%outgoing == 0))
-    h = lengths(surface, places)
-    do i = 1, surface%n_segment
-      if (at_equal_distances) then
-        n = int(h(i)/s)
-        share = s*(0.5_wp + n*(1.0_wp - 0.5_wp*(n + 1)*s/h(i)))
+    low = log(ratios%c) - 10.0_wp
+    high = low + 20.0_wp
+    do i = 1, n_halving
+      c = exp(0.5_wp*(low + high))
+      load = others + weighted(ratios, n_slave, c)
+      if (maxval(load(:n_slave)) > maxval(load(n_slave + 1:))) then
+        high = log(c)
       else
-        share = 0.5_wp*h(i) &
-          + merge(s**2/(8.0_wp*h(i)), 0.5_wp*(s - h(i)), s <= 2.0_wp*h(i))
+        low = log(c)
       end if
-      most(surface%segments(:, i)) = most(surface%segments(:, i)) + share
     end do
-  end function most_on_nodes
+  end function even_share
+
+  !> Largest dt with (dt/element_limit)^2 + dt^2 rate/4 + dt damping <= 1; without springs that of the elements.
+  pure elemental function stable_step(element_limit, bound) result(limit)
+    real(wp), intent(in) :: element_limit !! s
+    type(spring_bound_t), intent(in) :: bound
+    real(wp) :: limit
+    real(wp) :: square
+
+    limit = element_limit
+    if (.not. bound%rate > 0.0_wp) return
+    square = (1.0_wp/element_limit)**2 + 0.25_wp*bound%rate
+    limit = 2.0_wp/(bound%damping + sqrt(bound%damping**2 + 4.0_wp*square))
+  end function stable_step
+
+  !> Factor on the penalties for which the step `dt` is just stable; 0 where the elements leave no room.
+  pure elemental function fitting_scale(dt, element_limit, bound) result(scale)
+    real(wp), intent(in) :: dt, element_limit !! s
+    type(spring_bound_t), intent(in) :: bound !! with a rate above 0
+    real(wp) :: scale
+    real(wp) :: room
+
+    room = max(1.0_wp - (dt/element_limit)**2, 0.0_wp)
+    scale = (2.0_wp*room/(dt*(bound%damping + sqrt(bound%damping**2 + room*bound%rate))))**2
+  end function fitting_scale
 
 end module contact_step_limit_m

@@ -77,11 +77,12 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(parameters_t) :: parameters
     type(overrides_t) :: overrides
-    type(raw_t) :: raw
+    type(raw_t), allocatable :: raw
     character(:), allocatable :: tail
     integer, allocatable :: known(:)
     integer :: i
 
+    allocate (raw)
     call start_raw(raw)
     call know_blocks(deck, raw, known)
     if (deck%n_block == 0) then
@@ -103,6 +104,7 @@ contains
     if (.not. raw%terminated .and. .not. raw%end_given) call line_error(deck, 0, &
       'the deck has no end time (*CONTROL_TERMINATION)')
     call resolve_model(deck, raw, model)
+    deallocate (raw) ! before the effective deck takes its place
     call emit_warnings(deck%report, log)
     call emit_errors(deck%report, request%path, error)
     if (allocated(error)) return

@@ -8,9 +8,9 @@ module deck_conditions_m
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, check_rest, &
     report_field
-  use deck_raw_m, only : raw_t, row_t, append_row, row_spc_node, row_spc_set, row_motion_node, &
-    row_motion_set, row_velocity, row_velocity_node, row_velocity_generation, row_load_node, &
-    row_load_set, row_pressure, row_pressure_set, row_body, row_damping
+  use deck_raw_m, only : raw_t, row_t, reserve_rows, append_row, row_spc_node, row_spc_set, &
+    row_motion_node, row_motion_set, row_velocity, row_velocity_node, row_velocity_generation, &
+    row_load_node, row_load_set, row_pressure, row_pressure_set, row_body, row_damping
   implicit none
   private
   public :: read_condition, read_initial_velocity
@@ -34,6 +34,7 @@ contains
     if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
     row%kind = row_kind(trim(deck%blocks(i_block)%name))
     row%direction = merge(2, 1, deck%blocks(i_block)%name == 'LOAD_BODY_Y')
+    call reserve_rows(raw, deck%blocks(i_block)%last - deck%blocks(i_block)%first + 1)
     n_row = 0
     do
       call next_row(deck, parameters, cursor, 1, card, found)
@@ -87,7 +88,7 @@ contains
     if (any(card%bad)) return
     row%line = card%line
     row%i = card%i(1:8)
-    row%r = card%r
+    row%r = card%r(1:8)
     call append_row(raw, row)
   end subroutine keep_row
 

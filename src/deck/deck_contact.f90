@@ -5,7 +5,7 @@ module deck_contact_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use text_m, only : read_integer, number_good
-  use contacts_m, only : contact_kind_t, penalty_per_node, penalty_factor
+  use contacts_m, only : contact_kind_t, penalty_per_node, penalty_share, penalty_factor
   use deck_lines_m, only : deck_t, place_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
@@ -140,9 +140,12 @@ contains
       if (cards(1)%r(5) <= 0.0_wp) call report_field(deck, cursor, cards(1), 5, &
         'is not a penalty (more than 0)')
       contact%penalty_unit = cards(2)%i(3)
-      if (cards(2)%i(3) < penalty_per_node .or. cards(2)%i(3) > penalty_factor) &
+      if (cards(2)%i(3) < penalty_per_node .or. cards(2)%i(3) > penalty_share) &
         call report_field(deck, cursor, cards(2), 3, 'is not a unit of the penalty (0 N/m per ' &
-        //'contact node, 1 N/m^2, 2 factor on the built-in estimate)')
+        //'contact node, 1 N/m^2, 2 factor on the built-in estimate, 3 share of the largest ' &
+        //'stable one)')
+      if (cards(2)%i(3) == penalty_share .and. cards(1)%r(5) > 1.0_wp) call report_field(deck, &
+        cursor, cards(1), 5, 'is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)')
       contact%master_penalty = contact%penalty
       if (abs(cards(2)%r(4)) > 0.0_wp) contact%master_penalty = cards(2)%r(4)
       if (cards(2)%r(4) < 0.0_wp) call report_field(deck, cursor, cards(2), 4, &

@@ -3,7 +3,7 @@
 module deck_control_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use controls_m, only : length_by_side, length_by_diagonal
+  use controls_m, only : length_by_side, length_by_diagonal, contact_step_warns, contact_step_rules
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
@@ -148,9 +148,10 @@ contains
     if (cards(1)%r(1) < 0.0_wp) call report_field(deck, cursor, cards(1), 1, 'is negative')
     raw%controls%penalty_scale = 0.1_wp
     if (cards(1)%r(1) > 0.0_wp) raw%controls%penalty_scale = cards(1)%r(1)
-    if (cards(2)%i(7) < 0 .or. cards(2)%i(7) > 1) call report_field(deck, cursor, cards(2), 7, &
-      'is not 0 or 1 (contact does not limit the step)')
-    raw%controls%contact_limits_step = cards(2)%i(7) == 0
+    if (cards(2)%i(7) < contact_step_warns .or. cards(2)%i(7) > contact_step_rules) &
+      call report_field(deck, cursor, cards(2), 7, 'is not 0, 1 or 2 (a warning where contact ' &
+      //'needs a smaller step, no warning, a step that is stable with contact)')
+    raw%controls%contact_step = cards(2)%i(7)
   end subroutine take_contact
 
 end module deck_control_m

@@ -4,7 +4,7 @@ module deck_override_apply_m
   use kinds_m, only : wp
   use text_m, only : exact_text
   use log_m, only : to_text
-  use contacts_m, only : contact_kind_t, penalty_per_node, penalty_factor
+  use contacts_m, only : contact_kind_t, penalty_per_node, penalty_share
   use curves_m, only : curve_t
   use deck_lines_m, only : deck_t, place_t, line_text, line_error, layout_mark
   use deck_fields_m, only : card_t, cut_card, field_text
@@ -188,10 +188,13 @@ contains
       end if
       call override_real(overrides, 'PENT', id, contact%master_penalty, priced)
       call override_integer(overrides, 'PUNIT', id, contact%penalty_unit, priced)
-      if (contact%penalty_unit < penalty_per_node .or. contact%penalty_unit > penalty_factor) then
+      if (contact%penalty_unit < penalty_per_node .or. contact%penalty_unit > penalty_share) then
         if (priced) call line_error(deck, 0, '"'//to_text(contact%penalty_unit)//'" on the ' &
-          //'command line is not a unit of the penalty (0, 1 or 2)')
+          //'command line is not a unit of the penalty (0, 1, 2 or 3)')
       end if
+      if (priced .and. contact%penalty_unit == penalty_share .and. contact%penalty > 1.0_wp) &
+        call line_error(deck, 0, 'with the command line the penalty "'//to_text(contact%penalty) &
+        //'" is not a share of the largest stable one (punit=3: pen= above 0, at most 1)')
       call override_real(overrides, 'VDC', id, entry%per_cent, damped)
       if (damped) contact%damping = entry%per_cent/100.0_wp
     end associate

@@ -11,7 +11,7 @@ module deck_raw_m
   implicit none
   private
   public :: raw_t, lost_t, start_raw, raw_part_t, raw_set_t, raw_contact_t, row_t, history_t, &
-    append_row, append_set, append_member, reserve_nodes, reserve_elements, &
+    reserve_rows, append_row, append_set, append_member, reserve_nodes, reserve_elements, &
     row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, row_velocity_node, &
     row_velocity_generation, row_load_node, row_load_set, row_pressure, row_pressure_set, &
     row_body, row_damping, output_plot, output_glstat, output_matsum, output_rcforc, output_nodout
@@ -31,7 +31,7 @@ module deck_raw_m
     integer :: line = 0
     integer :: direction = 0     !! of a body load
     integer :: i(8) = 0
-    real(wp) :: r(16) = 0.0_wp
+    real(wp) :: r(8) = 0.0_wp
   end type row_t
 
   !> One *PART.
@@ -126,17 +126,24 @@ contains
     call reserve_elements(raw, 0)
   end subroutine start_raw
 
+  !> Room for `n_more` rows: a large deck may have one for each node.
+  subroutine reserve_rows(raw, n_more)
+    type(raw_t), intent(inout) :: raw
+    integer, intent(in) :: n_more
+    type(row_t), allocatable :: longer(:)
+
+    if (raw%n_row + n_more <= size(raw%rows)) return
+    allocate (longer(raw%n_row + max(n_more, raw%n_row)))
+    longer(:raw%n_row) = raw%rows(:raw%n_row)
+    call move_alloc(longer, raw%rows)
+  end subroutine reserve_rows
+
   !> One more row.
   subroutine append_row(raw, row)
     type(raw_t), intent(inout) :: raw
     type(row_t), intent(in) :: row
-    type(row_t), allocatable :: longer(:)
 
-    if (raw%n_row == size(raw%rows)) then
-      allocate (longer(2*raw%n_row))
-      longer(:raw%n_row) = raw%rows
-      call move_alloc(longer, raw%rows)
-    end if
+    call reserve_rows(raw, 1)
     raw%n_row = raw%n_row + 1
     raw%rows(raw%n_row) = row
   end subroutine append_row

@@ -4,10 +4,15 @@ module controls_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: controls_t, implicit_t, output_plan_t, interval_t, length_by_side, length_by_diagonal
+  public :: controls_t, implicit_t, output_plan_t, interval_t, length_by_side, length_by_diagonal, &
+    contact_step_warns, contact_step_free, contact_step_rules
 
   !> Element length of the stable step (ISDO): area over longest side, or over longest diagonal.
   integer, parameter :: length_by_side = 0, length_by_diagonal = 1
+
+  !> What the contact springs do to the step (ECDT): the start warns where it is too large for them, nothing, or
+  !> the stable step is that of elements and springs together.
+  integer, parameter :: contact_step_warns = 0, contact_step_free = 1, contact_step_rules = 2
 
   !> Time between two outputs of one file; off while both are zero.
   type :: interval_t
@@ -66,7 +71,7 @@ module controls_m
     integer :: length_rule = length_by_side  !! ISDO
     integer :: dt_curve = 0                  !! LCTM: index of the curve that caps the step
     real(wp) :: penalty_scale = 0.1_wp       !! SLSFAC
-    logical :: contact_limits_step = .true.  !! ECDT = 1 switches the contact warning off
+    integer :: contact_step = contact_step_warns !! ECDT, one of the `contact_step_` constants
     type(implicit_t) :: implicit
     type(output_plan_t) :: output
   end type controls_t

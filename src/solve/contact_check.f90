@@ -2,14 +2,18 @@
 !> What the run says about its interfaces at its start and at its end.
 module contact_check_m
   use contact_log_m, only : report_initial_contact, report_released
-  use contact_step_limit_m, only : find_step_limit
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, fitting_scale
+  use controls_m, only : contact_step_free, contact_step_rules
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use state_m, only : state_t
   implicit none
   private
-  public :: report_contact_start, report_contact_end
+  public :: report_contact_start, report_contact_end, follow_springs
+
+  !> Cycles between two looks at the lengths that contact springs stand for.
+  integer, parameter :: refresh_interval = 20
 
 contains
 
@@ -18,35 +22,57 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(log_t), intent(inout) :: log
-    real(wp) :: spring_limit, limit, element_limit, share
-    integer :: i, node
+    type(spring_bound_t) :: bounds(size(model%contacts))
+    real(wp) :: element_limit
+    integer :: i
 
     element_limit = minval(state%elements%time_limit)
+    if (model%controls%contact_step /= contact_step_free) call bound_springs(model%contacts, &
+      state%mass, state%contacts, [(1.0_wp, i=1, size(bounds))], bounds)
     do i = 1, size(model%contacts)
       call report_initial_contact(model%contacts(i), model, state%contacts(i), log)
-      if (.not. model%controls%contact_limits_step) cycle
-      call find_step_limit(model%contacts(i), state%mass, state%contacts(i), spring_limit, node)
-      ! Damping of a fraction z of critical takes sqrt(1 + z^2) - z of the limit.
-      associate (z => model%contacts(i)%damping)
-        spring_limit = spring_limit*(sqrt(1.0_wp + z**2) - z)
-      end associate
-      ! Squares of frequencies add up at most.
-      limit = 1.0_wp/sqrt(1.0_wp/element_limit**2 + 1.0_wp/spring_limit**2)
-      if (state%dt <= limit) cycle
-      share = (1.0_wp/state%dt**2 - 1.0_wp/element_limit**2)*spring_limit**2
-      if (share > 0.0_wp) then
-        call warn(log, 'interface '//to_text(model%contacts(i)%id)//': its penalty demands a time ' &
-          //'step of at most '//to_text(limit)//' (elements alone '//to_text(element_limit) &
-          //', contact springs alone '//to_text(spring_limit)//' at node ' &
-          //to_text(model%mesh%node_id(node))//'), the step is '//to_text(state%dt) &
-          //'; a penalty of '//to_text(share)//' times the present one would fit')
-      else
-        call warn(log, 'interface '//to_text(model%contacts(i)%id)//': the time step ' &
-          //to_text(state%dt)//' lies above the limit of the elements '//to_text(element_limit) &
-          //' and leaves no room for contact springs')
-      end if
+      if (model%controls%contact_step == contact_step_free) cycle
+      if (state%dt <= stable_step(element_limit, bounds(i))) cycle
+      call warn_of_step(model, i, state%dt, element_limit, bounds(i), log)
     end do
   end subroutine report_contact_start
+
+  !> The warning for one interface: the limits, the node and the penalty that would fit.
+  subroutine warn_of_step(model, i, dt, element_limit, bound, log)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    real(wp), intent(in) :: dt, element_limit !! s
+    type(spring_bound_t), intent(in) :: bound
+    type(log_t), intent(inout) :: log
+
+    if (dt < element_limit) then
+      call warn(log, 'interface '//to_text(model%contacts(i)%id)//': its penalty demands a time ' &
+        //'step of at most '//to_text(stable_step(element_limit, bound))//' (elements alone ' &
+        //to_text(element_limit)//', springs of all contacts at its nodes alone ' &
+        //to_text(stable_step(huge(1.0_wp), bound))//' at node ' &
+        //to_text(model%mesh%node_id(bound%node))//'), the step is '//to_text(dt) &
+        //'; a penalty of '//to_text(fitting_scale(dt, element_limit, bound)) &
+        //' times the present one would fit')
+    else
+      call warn(log, 'interface '//to_text(model%contacts(i)%id)//': the time step ' &
+        //to_text(dt)//' lies above the limit of the elements '//to_text(element_limit) &
+        //' and leaves no room for contact springs')
+    end if
+  end subroutine warn_of_step
+
+  !> Where ECDT = 2 asks for it: find now and then what the springs at the present places demand of the steps to come.
+  pure subroutine follow_springs(model, state, bounds)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(spring_bound_t), allocatable, intent(inout) :: bounds(:)
+    integer :: i
+
+    if (model%controls%contact_step /= contact_step_rules) return
+    if (mod(state%cycle, refresh_interval) /= 0) return
+    if (.not. allocated(bounds)) allocate (bounds(size(model%contacts)))
+    call bound_springs(model%contacts, state%mass, state%contacts, &
+      [(1.0_wp, i=1, size(bounds))], bounds)
+  end subroutine follow_springs
 
   !> First contacts that were released.
   subroutine report_contact_end(model, state, log)

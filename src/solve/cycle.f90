@@ -4,7 +4,7 @@
 module cycle_m
   use clock_m, only : lap, share_contact, phase_nodes, phase_output
   use constraints_m, only : fix_nodes, update_activity
-  use contact_check_m, only : report_contact_start, report_contact_end
+  use contact_check_m, only : report_contact_start, report_contact_end, follow_springs
   use contact_force_m, only : apply_contact
   use energies_m, only : energy_ratio, total_energy
   use errors_m, only : error_t
@@ -165,6 +165,7 @@ contains
     type(cycle_t), intent(inout) :: cycle
 
     call check_elements(model, state, cycle%error)
+    if (state%cycle == 0) call follow_springs(model, state, cycle%steps%springs)
     if (state%cycle == 0 .and. .not. allocated(cycle%error)) &
       call first_step(model, state%elements, monitor%log, cycle%steps, state%dt, cycle%error)
     if (allocated(cycle%error)) then
@@ -217,6 +218,7 @@ contains
     end if
     state%cycle = state%cycle + 1
     state%dt_before = state%dt
+    call follow_springs(model, state, cycle%steps%springs)
     call next_step(model, state%elements, monitor%log, state%cycle, cycle%steps, state%time, state%dt)
     if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
       state%time, state%dt, cycle%error)

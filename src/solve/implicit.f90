@@ -6,6 +6,7 @@ module implicit_m
   use clock_m, only : lap, phase_nodes, phase_output, phase_solver
   use contact_check_m, only : report_contact_end
   use element_mass_m, only : add_mass, mass_times
+  use energies_m, only : energy_ratio
   use equations_m, only : equations_t, number_equations, find_equation, take_free
   use errors_m, only : error_t, raise, status_run
   use forces_m, only : trial_t, start_trial, assemble_forces
@@ -26,6 +27,9 @@ module implicit_m
   implicit none
   private
   public :: advance_implicit
+
+  !> Energy ratio above which a failure is put down to it.
+  real(wp), parameter :: gained = 1.1_wp
 
 contains
 
@@ -48,6 +52,9 @@ contains
     reason = 'termination time reached'
     call list_changes(model, changes)
     control = start_step_control(model%controls, changes)
+    if (abs(control%dt - model%controls%implicit%dt) > 0.0_wp) call warn(monitor%log, 'the first step ' &
+      //to_text(model%controls%implicit%dt)//' does not lie between DTMIN and DTMAX of ' &
+      //'*CONTROL_IMPLICIT_AUTO; it is '//to_text(control%dt))
     call plan_step(control, 0.0_wp)
     call start_implicit(model, control%next, state, monitor, step, trial, error)
     if (allocated(error)) return
@@ -71,8 +78,10 @@ contains
       if (wants_line(monitor%progress, state%cycle, monitor%clock%last)) call show_progress( &
         monitor%progress, monitor%clock, state%cycle, state%time, state%dt_before, 1.0_wp, '')
     end do
-    if (allocated(error) .and. .not. last) &
+    if (allocated(error) .and. .not. last) then
       call report_step(model, state, .true., monitor, written, second)
+      call hint_at_energy(step, energy_ratio(monitor%snapshot%energies), error)
+    end if
     call report_contact_end(model, state, monitor%log)
   end subroutine advance_implicit
 
@@ -264,5 +273,16 @@ contains
         //to_text(state%time), status_run)
     end if
   end subroutine raise_failure
+
+  !> Say so where a run that failed had gained energy before.
+  subroutine hint_at_energy(step, ratio, error)
+    type(step_t), intent(in) :: step
+    real(wp), intent(in) :: ratio !! of the last converged state
+    type(error_t), intent(inout) :: error
+
+    if (.not. step%is_dynamic .or. ratio <= gained) return
+    error%message = error%message//'; its energy ratio is '//to_text(ratio) &
+      //': the steps gain energy (shorter steps, or a spectral radius below 1)'
+  end subroutine hint_at_energy
 
 end module implicit_m

@@ -89,8 +89,25 @@ contains
     end do
     call find_equation(step%equations, now%worst, node, direction)
     outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations, most force out of ' &
-      //'balance at node '//to_text(model%mesh%node_id(max(node, 1)))//' in '//merge('x', 'y', direction == 1)
+      //'balance at node '//to_text(model%mesh%node_id(max(node, 1)))//' in '//merge('x', 'y', direction == 1) &
+      //contacts_of(model, max(node, 1))
   end subroutine find_equilibrium
+
+  !> The interfaces that a node belongs to, in words; empty where there are none.
+  function contacts_of(model, node) result(words)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: node
+    character(:), allocatable :: words
+    integer :: i
+
+    words = ''
+    do i = 1, size(model%contacts)
+      associate (contact => model%contacts(i))
+        if (any(contact%slave%nodes == node)) words = words//', a slave node of interface '//to_text(contact%id)
+        if (any(contact%master%nodes == node)) words = words//', a master node of interface '//to_text(contact%id)
+      end associate
+    end do
+  end function contacts_of
 
   !> Where an iteration leads: the solution of the linear system; the first of a step moves the prescribed degrees of
   !> freedom to their places.

@@ -6,6 +6,7 @@ module prescribed_step_m
   use conditions_m, only : prescribed_motion_t, motion_velocity, motion_acceleration, &
     motion_displacement
   use constraints_m, only : is_active
+  use controls_m, only : controls_t
   use curves_m, only : curve_t, curve_value, curve_integral
   use equations_m, only : equations_t
   use model_m, only : model_t
@@ -17,6 +18,11 @@ module prescribed_step_m
 
   !> Part of a step below which two times are the same.
   real(wp), parameter :: same_time = 1.0e-6_wp
+
+  !> Change of slope that makes a corner of a curve, as a part of the steeper side.
+  real(wp), parameter :: corner = 0.5_wp
+  !> Plot states for which steps end.
+  real(wp), parameter :: most_plots = 1.0e4_wp
 
   !> The prescribed degrees of freedom of one step, in the order of their equations.
   type :: prescribed_step_t
@@ -172,7 +178,7 @@ contains
   end function curve_moment
 
   !> Times at which a step must end: births and deaths of prescribed motions, where the equations change; and with steps
-  !> that grow, lest they leap over it, where a curve in use turns.
+  !> that grow, lest they leap over it, where a curve in use turns, where forces come and go and where states are written.
   pure subroutine list_changes(model, changes)
     type(model_t), intent(in) :: model
     real(wp), allocatable, intent(out) :: changes(:)
@@ -181,7 +187,8 @@ contains
     associate (conditions => model%conditions)
       changes = [conditions%motions%birth, conditions%motions%death]
       if (.not. model%controls%implicit%is_automatic) return
-      changes = [changes, conditions%pressures%arrival, model%contacts%birth, model%contacts%death]
+      changes = [changes, conditions%pressures%arrival, model%contacts%birth, model%contacts%death, &
+        plot_times(model%controls)]
       do i = 1, size(model%curves)
         if (any(conditions%motions%curve == i) .or. any(conditions%nodal_loads%curve == i) &
           .or. any(conditions%body_loads%curve == i)) &
@@ -209,20 +216,33 @@ contains
     end do
   end subroutine add_pressure_turns
 
-  !> Where a curve begins or ceases to rise or to fall.
+  !> Corners of a curve: where its slope changes sign, or by more than half of the steeper side. (The points of a finely
+  !> sampled smooth curve are none.)
   pure function turning_points(curve) result(times)
     type(curve_t), intent(in) :: curve
     real(wp), allocatable :: times(:)
-    real(wp) :: way(0:size(curve%abscissa)) !! sign of the slope before and after each point
-    integer :: i, n
+    real(wp) :: slope(0:size(curve%abscissa)) !! before and after each point
+    integer :: n
 
     n = size(curve%abscissa)
-    way = 0.0_wp
-    do i = 1, n - 1
-      if (abs(curve%ordinate(i + 1) - curve%ordinate(i)) > 0.0_wp) &
-        way(i) = sign(1.0_wp, curve%ordinate(i + 1) - curve%ordinate(i))
-    end do
-    times = pack(curve%abscissa, abs(way(1:n) - way(0:n - 1)) > 0.5_wp)
+    slope = 0.0_wp
+    slope(1:n - 1) = (curve%ordinate(2:) - curve%ordinate(:n - 1))/(curve%abscissa(2:) - curve%abscissa(:n - 1))
+    times = pack(curve%abscissa, abs(slope(1:n) - slope(0:n - 1)) &
+      > corner*max(abs(slope(1:n)), abs(slope(0:n - 1))))
   end function turning_points
+
+  !> Times of plot states, where they are no closer than the first step.
+  pure function plot_times(controls) result(times)
+    type(controls_t), intent(in) :: controls
+    real(wp), allocatable :: times(:)
+    integer :: i
+
+    allocate (times(0))
+    associate (interval => controls%output%plot%dt)
+      if (controls%output%plot%curve > 0 .or. interval < controls%implicit%dt .or. &
+        .not. controls%end_time < most_plots*interval) return
+      times = [(i*interval, i=1, int(controls%end_time/interval))]
+    end associate
+  end function plot_times
 
 end module prescribed_step_m

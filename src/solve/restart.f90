@@ -5,6 +5,7 @@
 !> that is written, so that the run that goes on makes the same bits as one that was not interrupted.
 module restart_m
   use archive_m, only : archive_t, keep, keep_fixed, keep_text, enter, leave, fail_archive
+  use contact_step_limit_m, only : spring_bound_t
   use errors_m, only : error_t, raise, status_files, status_input
   use files_m, only : file_exists, remove_file
   use kinds_m, only : wp, long
@@ -154,10 +155,36 @@ contains
     call keep(archive, 'end_cycle', steps%end_cycle)
     call keep(archive, 'end_time', steps%end_time)
     call keep(archive, 'warned', steps%warned)
+    call keep_springs(archive, 'springs', steps%springs)
     call keep_fixed(archive, 'damping', damping)
     call keep(archive, 'ratio', ratio)
     call leave(archive)
   end subroutine keep_steps
+
+  !> Bounds of the contact springs.
+  subroutine keep_springs(archive, name, springs)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(spring_bound_t), allocatable, intent(inout) :: springs(:)
+    integer :: i, n
+
+    n = -1
+    if (allocated(springs)) n = size(springs)
+    call enter(archive, name)
+    call keep(archive, 'n', n)
+    if (archive%is_read) then
+      if (allocated(springs)) deallocate (springs)
+      if (n >= 0) allocate (springs(n))
+    end if
+    do i = 1, n
+      call enter(archive, to_text(i))
+      call keep(archive, 'rate', springs(i)%rate)
+      call keep(archive, 'damping', springs(i)%damping)
+      call keep(archive, 'node', springs(i)%node)
+      call leave(archive)
+    end do
+    call leave(archive)
+  end subroutine keep_springs
 
   !> Open the file to go on from; what it says of the run, and the deck as run.
   subroutine take_up_file(path, restarts, effective_deck, error)

@@ -2,10 +2,12 @@
 !> From a model to its state at time zero.
 module start_m
   use kinds_m, only : wp
+  use automatic_penalty_m, only : set_automatic_penalties
   use constraints_m, only : fix_nodes, update_activity
   use contact_force_m, only : start_contact
   use element_log_m, only : log_elements
   use element_state_m, only : start_elements, lump_mass
+  use errors_m, only : error_t
   use initial_values_m, only : start_motion
   use log_m, only : log_t
   use model_m, only : model_t
@@ -17,10 +19,11 @@ module start_m
 contains
 
   !> Allocate and fill everything that the run changes.
-  subroutine start_state(model, log, state)
+  subroutine start_state(model, log, state, error)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     type(state_t), intent(out) :: state
+    type(error_t), allocatable, intent(out) :: error
     integer :: i
 
     call start_motion(model, state%motion)
@@ -48,6 +51,7 @@ contains
     do i = 1, size(model%contacts)
       call start_contact(model%contacts(i), model, log, state%contacts(i))
     end do
+    call set_automatic_penalties(model, state, log, error)
   end subroutine start_state
 
 end module start_m

@@ -10,6 +10,8 @@ module step_control_m
 
   !> What a step that took few iterations grows by, and what one that failed shrinks to.
   real(wp), parameter :: growth = 1.5_wp, cut = 0.5_wp
+  !> Part of a step that is not left over before a time at which a step must end.
+  real(wp), parameter :: least_rest = 0.25_wp
   !> Part of a step by which a time may be missed.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
@@ -30,7 +32,7 @@ module step_control_m
 
 contains
 
-  !> As the deck asks.
+  !> As the deck asks; the first step is brought between the shortest and the longest.
   pure function start_step_control(controls, changes) result(control)
     type(controls_t), intent(in) :: controls
     real(wp), intent(in) :: changes(:) !! times at which the equations change, in any order
@@ -45,12 +47,18 @@ contains
       if (.not. control%least > 0.0_wp) control%least = 1.0e-3_wp*implicit%dt
       control%most = implicit%dt_most
       if (.not. control%most > 0.0_wp) control%most = 10.0_wp*implicit%dt
+      control%most = max(control%most, control%least)
+      if (control%is_automatic) control%dt = min(max(control%dt, control%least), control%most)
       control%few = implicit%best_iterations - implicit%iteration_window
-      control%many = implicit%best_iterations + implicit%iteration_window
+      ! A step that took all iterations it may take was a hard one too.
+      control%many = max(control%few, min(implicit%best_iterations + implicit%iteration_window, &
+        implicit%max_iteration - 1))
     end associate
   end function start_step_control
 
-  !> End of the next step. The last step is stretched or shortened to end the run in time.
+  !> End of the next step. The last step is stretched or shortened to end the run in time. Of constant steps what a change
+  !> leaves over follows as a step of its own, of automatic ones a whole step; a step that would leave a small rest before a
+  !> change goes half of the way.
   pure subroutine plan_step(control, time)
     type(step_control_t), intent(inout) :: control
     real(wp), intent(in) :: time !! start of the step
@@ -63,7 +71,13 @@ contains
       end if
       control%next = control%target
       change = minval(control%changes, mask=control%changes > time + missed)
-      if (change < control%target - missed) control%next = change
+      if (change < control%target - missed) then
+        control%next = change
+      else if (control%is_automatic .and. change > control%target + missed .and. &
+        change < control%target + least_rest*control%dt) then
+        control%next = time + 0.5_wp*(change - time)
+      end if
+      if (control%is_automatic) control%target = control%next
       control%is_last = control%next >= control%end_time
     end associate
   end subroutine plan_step

@@ -1,9 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> The time step: TSSFAC times the smallest L/c of the elements, capped by a curve; constant where the curve
-!> is constant and lies below the stable step. The limit of one cycle rules the step of the next, so that a
-!> cycle need not wait for its own elements.
+!> The time step: TSSFAC times the smallest L/c of the elements (or what contact springs leave of it), capped by a
+!> curve; constant where the curve is constant and lies below the stable step. The limit of one cycle rules the
+!> step of the next, so that a cycle need not wait for its own elements.
 module time_step_m
   use block_state_m, only : block_state_t
+  use contact_step_limit_m, only : spring_bound_t, stable_step
   use curves_m, only : curve_value, curve_is_constant
   use errors_m, only : error_t, raise, status_input
   use kinds_m, only : wp
@@ -11,7 +12,7 @@ module time_step_m
   use model_m, only : model_t
   implicit none
   private
-  public :: step_plan_t, start_steps, first_step, next_step, is_last
+  public :: step_plan_t, start_steps, first_step, next_step, plain_step, is_last
 
   !> How the steps go on.
   type :: step_plan_t
@@ -23,6 +24,7 @@ module time_step_m
     integer :: end_cycle = 0         !! ENDCYC, 0 = none
     real(wp) :: end_time = 0.0_wp
     logical :: warned = .false.      !! the cap has been found above the stable step
+    type(spring_bound_t), allocatable :: springs(:) !! that the step must respect; none unless ECDT = 2
   end type step_plan_t
 
 contains
@@ -48,7 +50,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: limit
 
-    limit = minval(elements%time_limit)
+    limit = stable_limit(elements, steps)
     dt = choose_step(model, limit, steps%start_time, log, steps)
     if (model%controls%dt_initial > 0.0_wp .and. model%controls%dt_curve == 0) &
       dt = min(dt, model%controls%dt_initial)
@@ -65,8 +67,20 @@ contains
       end if
     end if
     call write_log(log, 'first time step '//to_text(dt)//', smallest L/c of the elements ' &
-      //to_text(limit))
+      //to_text(minval(elements%time_limit)))
+    if (allocated(steps%springs)) call write_log(log, 'stable step of elements and contact ' &
+      //'springs '//to_text(limit))
   end subroutine first_step
+
+  !> Smallest L/c of the elements, and below it what contact springs leave of it.
+  pure function stable_limit(elements, steps) result(limit)
+    type(block_state_t), intent(in) :: elements
+    type(step_plan_t), intent(in) :: steps
+    real(wp) :: limit
+
+    limit = minval(elements%time_limit)
+    if (allocated(steps%springs)) limit = minval([limit, stable_step(limit, steps%springs)])
+  end function stable_limit
 
   !> Step at `time` from the elements' limit; warns once when the cap is above the stable step.
   function choose_step(model, limit, time, log, steps) result(dt)
@@ -76,20 +90,34 @@ contains
     type(step_plan_t), intent(inout) :: steps
     real(wp) :: dt, cap
 
-    dt = model%controls%dt_scale*limit
+    dt = plain_step(model, limit, time)
     if (model%controls%dt_curve == 0) return
     cap = curve_value(model%curves(model%controls%dt_curve), time)
-    if (cap <= limit) then
-      dt = cap
-      if (.not. curve_is_constant(model%curves(model%controls%dt_curve))) &
-        dt = min(cap, model%controls%dt_scale*limit)
-    else if (.not. steps%warned .and. curve_is_constant(model%curves(model%controls%dt_curve))) then
+    if (cap > limit .and. .not. steps%warned &
+      .and. curve_is_constant(model%curves(model%controls%dt_curve))) then
       call warn(log, 'the constant time step '//to_text(cap)//' at time '//to_text(time) &
-        //' lies above the stable step '//to_text(limit)//' of the elements; using TSSFAC times ' &
-        //'the stable step while it does')
+        //' lies above the stable step '//to_text(limit)//' of the elements' &
+        //trim(merge(' and contact springs', '                    ', allocated(steps%springs))) &
+        //'; using TSSFAC times the stable step while it does')
       steps%warned = .true.
     end if
   end function choose_step
+
+  !> TSSFAC times the limit, or the curve that caps it.
+  pure function plain_step(model, limit, time) result(dt)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: limit, time
+    real(wp) :: dt, cap
+
+    dt = model%controls%dt_scale*limit
+    if (model%controls%dt_curve == 0) return
+    associate (curve => model%curves(model%controls%dt_curve))
+      cap = curve_value(curve, time)
+      if (cap > limit) return
+      if (.not. curve_is_constant(curve)) cap = min(cap, dt)
+      dt = cap
+    end associate
+  end function plain_step
 
   !> Time of cycle `cycle` and the step that leads away from it. A constant step counts time as n dt.
   subroutine next_step(model, elements, log, cycle, steps, time, dt)
@@ -106,7 +134,7 @@ contains
     else
       time = time + dt
     end if
-    dt = choose_step(model, minval(elements%time_limit), time, log, steps)
+    dt = choose_step(model, stable_limit(elements, steps), time, log, steps)
     if (steps%warned) steps%constant = 0.0_wp
   end subroutine next_step
 

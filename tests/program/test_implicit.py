@@ -203,6 +203,45 @@ def test_contact_that_opens_in_an_iteration_cuts_the_step(slideline, tmp_path):
     assert 0.499 < last_state(tmp_path / "x")[0] < 0.5001
 
 
+def pushed_through(kind, n_steps):
+    """A block of height 1.5 is pushed by 0.2 towards a plate 0.05 thick, 0.1 below it: in one step without contact, it
+    would come out at the far side."""
+    deck = implicit(1.0, 1.0 / n_steps, automatic=(1.0e-3, 1.0 / n_steps)).part(points=4).elastic(1000.0, 1.0e6, 0.0)
+    lower, upper = deck.mesh(*grid(8, 1, 1.2, 0.05, (-0.1, 0.0))), deck.mesh(*grid(6, 12, 1.0, 1.5, (0.0, 0.15)))
+    deck.fix(lower[:9], x=1, y=1).fix(upper[-7:], x=1)
+    deck.curve(1, [(0.0, 0.0), (1.0, -0.2)])
+    for node in upper[-7:]:
+        deck.prescribe(node, 2, 2, 1)
+    deck.node_set(1, upper[:7]).node_set(2, lower[-9:][::-1]).contact(1, 2, kind, 1.0e7)
+    return deck.output(rcforc=1.0)
+
+
+@pytest.mark.parametrize("kind", range(1, 8))
+def test_one_step_does_not_lead_through_a_body(slideline, tmp_path, kind):
+    """Contact forces after one step and after twenty are the same, about those of bars of equal stress."""
+    forces = []
+    for n_steps in (1, 20):
+        done = slideline(f"d={n_steps}", deck=pushed_through(kind, n_steps))
+        assert done.returncode == 0, done.stderr
+        forces.append(abs(numbers(tmp_path / str(n_steps) / "job.rcforc.csv", "fy")[-1]))
+    assert forces[0] == pytest.approx(forces[1], rel=2.0e-3)
+    assert forces[0] == pytest.approx(1.0e6 * math.log(1.55 / 1.45), rel=0.05)
+
+
+@pytest.mark.parametrize("n_steps", [2, 5, 8])
+def test_one_step_does_not_lead_through_a_moving_body(slideline, tmp_path, n_steps):
+    """A block that flies at 3 m/s against a held one, up to 1.5 m a step, turns round."""
+    deck = implicit(1.0, 1.0 / n_steps, dynamic=True).part(1, points=4).elastic(1000.0, 1.0e6, 0.0)
+    deck.part(2, points=4).elastic(1000.0, 1.0e6, 0.0, 2)
+    lower = deck.mesh(*grid(6, 4, 1.5, 1.0, (0.0, -1.0)), part=1)
+    upper = deck.mesh(*grid(3, 3, 0.6, 0.6, (0.4, 0.05)), part=2)
+    deck.fix(lower[:7], x=1, y=1).node_set(1, upper[:4]).node_set(2, lower[-7:][::-1]).node_set(3, upper)
+    deck.contact(1, 2, 7, 5.0e6).add("*INITIAL_VELOCITY", (3,), (0.0, -3.0))
+    done = slideline("d=x", deck=deck.output(matsum=1.0))
+    assert done.returncode == 0, done.stderr
+    assert numbers(tmp_path / "x" / "job.matsum.csv", "momentum_y")[-1] > 0.0
+
+
 def test_far_bending_in_one_step(slideline):
     """A slender cantilever under ten times the load that linear theory allows: full iterations get there."""
     deck = implicit(1.0, 1.0).part(points=4).elastic(1000.0, 1.2e7, 0.0)
@@ -233,6 +272,23 @@ def test_step_of_the_command_line(slideline, tmp_path):
     done = slideline(f"i={effective}", "d=y", "jobid=again")
     assert done.returncode == 0, done.stderr
     assert len(numbers(tmp_path / "y" / "again.glstat.csv", "time")) == 5
+
+
+def test_a_first_step_outside_its_limits_is_warned_of(slideline, tmp_path):
+    done = slideline("d=x", deck=pulled(1.0e3, dt=0.05, automatic=(0.001, 0.01)))
+    assert done.returncode == 0, done.stderr
+    assert "first step 5.0" in done.stderr and "DTMAX" in done.stderr
+    assert numbers(tmp_path / "x" / "job.glstat.csv", "time")[1] == pytest.approx(0.01)
+
+
+def test_growing_steps_end_at_plot_states(slideline, tmp_path):
+    deck = pulled(1.0e3, dt=0.02, automatic=(0.001, 0.5))
+    deck.lines[deck.lines.index("*DATABASE_BINARY_D3PLOT") + 1] = "0.15,"
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0, done.stderr
+    with h5py.File(tmp_path / "x" / "job.vtkhdf") as stream:
+        times = list(stream["VTKHDF/Steps/Values"])
+    assert times == pytest.approx([0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.0])
 
 
 def test_easy_steps_grow(slideline, tmp_path):

@@ -91,7 +91,7 @@ def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
         active, at = numbers(whole / "job.rcforc.csv", "n_active"), middle / cycles
         assert active[int(at * len(active)):].max() > 0
     rest = part_of(whole, tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
-    done = slideline("r=rest/job.dump01.h5", f"ncpu={2 if kind == 3 else 1}")
+    done = slideline("r=rest/job.dump01.h5", f"ncpu={2 if scene == 'block' else 1}")
     assert done.returncode == 0, done.stderr
     assert numbers(rest / "job.glstat.csv", "cycle")[-1] == cycles
     assert_same(whole, rest)

@@ -9,6 +9,7 @@ import ctypes
 import json
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import subprocess
@@ -90,7 +91,7 @@ class Run:
         deck.write_text(job.deck_text, encoding="utf-8")
         self.command = [str(sweep.program), f"i={deck}", f"d={self.folder}", f"jobid={job.jobid}",
                         *job.options]
-        self.load = os.getloadavg()[0]
+        self.load, self.spent_before = os.getloadavg()[0], processor_seconds()
         with open(self.folder / PROGRESS, "wb") as out, open(self.folder / ERRORS, "wb") as err:
             self.begun = time.perf_counter()
             # A session of its own: an interrupt from the keyboard reaches this program alone.
@@ -123,7 +124,9 @@ class Run:
             status = STOPPED
         record = {"fingerprint": self.fingerprint, "name": self.job.name, "status": status,
                   "message": message, "seconds": seconds, "processor": processor(),
-                  "load": self.load, "command": self.command}
+                  "load": self.load, "command": self.command,
+                  # That of all runs that ended meanwhile: its own where it ran alone.
+                  "processor_seconds": processor_seconds() - self.spent_before}
         write_whole(self.folder / RECORD, json.dumps(record, indent=1) + "\n")
         progress.done(self.job, record)
         return True
@@ -153,6 +156,12 @@ def stop_all(running):
         except subprocess.TimeoutExpired:
             run.process.kill()
             run.process.wait()
+
+
+def processor_seconds():
+    """Processor time of all ended runs, s."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def processor():

@@ -6,7 +6,8 @@ from slideline_tools.study.speed_accuracy_scenes import SCENES
 
 PRESSURE_SCENES = ("patch", "block")
 GLOBAL = (("sliding", "force_error", "force history of the sliding"),
-          ("collision", "plastic_error", "plastic work of the collision"))
+          ("collision", "plastic_error", "plastic work of the collision by columns"),
+          ("collision", "total_work_error", "the same in total"))
 TARGETS = (0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.0003)
 FROM_A_TO_B = "{:.2f} to {:.2f}"
 
@@ -82,7 +83,7 @@ def overall_table(over):
 
 
 COMPARED = (("hertz", "profile_error"), ("sliding", "force_error"), ("sliding", "roughness"),
-            ("collision", "plastic_error"))
+            ("collision", "total_work_error"))
 
 
 def target_table(over):
@@ -162,28 +163,29 @@ def smooth_advice(over, usual):
 
 def mesh_advice(over):
     """For global answers: what the type changes beside what the mesh changes."""
-    lines, decides = [], []
+    lines, first = [], []
     for scene, key, title in GLOBAL:
         points = [point for point in over.points.get(scene, ()) if key in point.error]
         levels = sorted({point.level for point in points})
         if len(levels) < 2:
             continue
-        by_level = [[point.judged(key) for point in points if point.level == level]
-                    for level in levels]
-        spread = max(max(values) / min(values) for values in by_level)
-        gain = geometric_mean(by_level[0]) / geometric_mean(by_level[-1])
-        decides.append(gain > spread)
-        lines.append(f"{title}: on one mesh the largest error of a type is at most {spread:.1f} times the "
-                     f"smallest, from N_r = {levels[0]} to {levels[-1]} the errors fall by a factor of "
-                     f"{gain:.1f}")
+        ends = [[point.judged(key) for point in points if point.level == level]
+                for level in (levels[0], levels[-1])]
+        coarse, fine = (max(values) / min(values) for values in ends)
+        gain = geometric_mean(ends[0]) / geometric_mean(ends[1])
+        first.append(gain > coarse)
+        lines.append(f"{title}: errors of the types differ by a factor of {coarse:.1f} at N_r = "
+                     f"{levels[0]} and {fine:.1f} at N_r = {levels[-1]}, and fall by a factor of "
+                     f"{gain:.1f} from the one to the other")
     if not lines:
         return ""
-    text = ("**For global answers the mesh decides, not the type.** " if all(decides) else
-            "**For global answers mesh and type both count.** ") + capital("; ".join(lines)) + "."
-    if all(decides) and 1 in over.types:
+    if not all(first):
+        return "**For global answers mesh and type both count.** " + capital("; ".join(lines)) + "."
+    text = "**For global answers refine first.** " + capital("; ".join(lines)) + "."
+    if 1 in over.types:
         least = min(over.types, key=lambda ctype: over.cost(ctype, "contact"))
-        text += (f" There the cheapest type ({least}) will do, and time is better spent on the mesh; pressures "
-                 "and local stresses of the failing types remain wrong on any mesh.")
+        text += (f" On a coarse mesh the cheapest type ({least}) will do for them; pressures and local stresses "
+                 "of the types that fail the patch test remain wrong on any mesh.")
     return text
 
 
@@ -197,7 +199,7 @@ def share_advice(over):
                 for level in levels]
         rise = f", {step[-1] / step[0]:.0f} times the time from N_r = {levels[0]} to {levels[-1]}" \
             if len(levels) > 1 else ""
-        parts.append(f"{SCENES[scene].title.lower()} {100 * low:.0f} to {100 * high:.0f} %{rise}")
+        parts.append(f"{SCENES[scene].title} {100 * low:.0f} to {100 * high:.0f} %{rise}")
     return ("**What a dearer type costs** depends on the share of contact in the computation: "
             + "; ".join(parts) + ". Where it is small, take the type for its accuracy alone.")
 

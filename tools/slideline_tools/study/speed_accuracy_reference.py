@@ -113,7 +113,8 @@ def reference_levels(rows, scene):
 
 
 def add_errors(rows, folder):
-    """Columns <key>, <key>_floor and <key>_order of every measure against a reference."""
+    """Columns <key>, <key>_floor and <key>_order of every measure against a reference, for the
+    runs on coarser meshes than the reference's."""
     for scene, read_outcome in OUTCOMES.items():
         mine = [row for row in finished(rows) if row["scene"] == scene]
         levels = reference_levels(mine, scene)
@@ -132,6 +133,8 @@ def add_errors(rows, folder):
             order, floor = own_error(levels, [distance(one[key], other[key], reference)
                                               for one, other in zip(chain[:-1], chain[1:])])
             for row in mine:
+                if row["level"] >= levels[-1]:
+                    continue  # no finer than the run that is judged
                 row[key] = distance(outcomes[row["type"], row["level"]][key], reference, reference)
                 row[f"{key}_floor"], row[f"{key}_order"] = floor, order
     return rows

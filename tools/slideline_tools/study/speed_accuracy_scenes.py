@@ -199,30 +199,30 @@ def energy_error(path):
 SCENES = {
     "patch": Scene(
         "Patch test", patch_deck, lambda level: 1.0e6 / level, judge_patch,
-        (Measure("pressure_error", "largest deviation of p/p0 from 1, both sides", ROUND_OFF),),
+        (Measure("pressure_error", "p/p0, largest deviation from 1", ROUND_OFF),),
         levels=(1, 2, 4), quick_levels=(1, 2), options=lambda _: (), turns=3, cost=0.05),
     "block": Scene(
         "Block-to-block", block_deck, block_penalty, judge_block,
-        (Measure("pressure_error", "largest deviation of p/p1D from 1, both sides", ROUND_OFF),),
+        (Measure("pressure_error", "p/p1D, largest deviation from 1", ROUND_OFF),),
         levels=(1, 2, 4), quick_levels=(1, 2), turns=3, cost=0.2, power=1.0,
         options=lambda _: (f"p:dt={BLOCK_STEP}",)),
     "hertz": Scene(
         "Hertz", scenes.hertz, lambda _: HERTZ_PENALTY, judge_hertz,
-        (Measure("profile_error", "largest distance of p from the ellipse over p0", FINITE_STRAIN),
-         Measure("half_width_error", "deviation of the half width from Hertz", FINITE_STRAIN)),
+        (Measure("profile_error", "distance of p from the ellipse over p0", FINITE_STRAIN),
+         Measure("half_width_error", "half width, deviation from Hertz", FINITE_STRAIN)),
         levels=(1, 2, 4), cost=0.2),
     "sliding": Scene(
         "Sliding", scenes.sliding, lambda level: 10.0e9 / level, judge_sliding,
-        (Measure("force_error", "force: rms difference over the mean force", referenced=True),
-         Measure("roughness", "roughness: rms of force less trend over the mean force")),
+        (Measure("force_error", "force, rms difference over the mean", referenced=True),
+         Measure("roughness", "roughness of the force over the mean")),
         levels=(1, 2, 3), options=sliding_options, references=(2, 3, 6), quick_references=(1, 2),
         cost=1.4, power=2.5),
     "collision": Scene(
         "Collision", scenes.collision, lambda level: 1.0e9 / level, judge_collision,
-        (Measure("plastic_error", "plastic work, difference by column", referenced=True),
+        (Measure("plastic_error", "plastic work by column, difference", referenced=True),
          Measure("total_work_error", "plastic work in total, difference", referenced=True),
-         Measure("rebound_error", "rebound, difference over the speed of impact", referenced=True),
-         Measure("energy_error", "largest deviation of the energy ratio from 1")),
-        levels=(1, 2, 3, 4), quick_levels=(1, 2), references=(2, 4, 8),
+         Measure("rebound_error", "rebound, difference over the impact", referenced=True),
+         Measure("energy_error", "energy ratio, largest deviation from 1")),
+        levels=(1, 2, 3, 4), quick_levels=(1, 2), references=(2, 4, 6),
         quick_references=(1, 2, 4), cost=0.2, power=2.3),
 }

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: MIT
+"""The same bits at any number of threads and on every repeat: every scene with every type.
+
+End times are short and meshes fine enough for several tiles of 512 elements, which is what threads share;
+the scenes come into contact within the run. Every table and every dataset is compared byte for byte.
+"""
+import importlib
+import os
+import subprocess
+
+import h5py
+import numpy as np
+import pytest
+from meshes import Deck, grid
+
+from slideline_tools.scenes import block, collision, hertz, oblique, patch, patch_grids
+from slideline_tools.scenes import symmetric_plate
+from slideline_tools.scenes.patch import even_lines
+
+TYPES = range(1, 8)
+THREADS = (1, 2, 3, 4, 3)  # the last one is a repeat
+# Threads beyond the cores wait asleep, or the test would take minutes.
+ENVIRONMENT = {**os.environ, "OMP_WAIT_POLICY": "passive"}
+
+
+def fast_sliding(kind):
+    """The sliding scene with its strokes in microseconds, so that some hundred steps hold both."""
+    scene = importlib.import_module("slideline_tools.scenes.sliding")
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(scene, "PRESS", (0.0, 3.0e-6, -0.02e-3))
+        patched.setattr(scene, "DRAW", (2.0e-6, 5.0e-6, 0.5e-3))
+        return scene.sliding(2, kind)
+
+
+def fine_patch(kind):
+    return patch(kind, grids=patch_grids(even_lines(24), even_lines(22)))
+
+
+def everything(kind):
+    """Two bodies on many tiles under all that acts from outside: gravity, damping, pressure, nodal
+    forces, prescribed motion; the pressed upper body yields."""
+    deck = Deck("everything that acts")
+    deck.control(0.004, scale=0.6).hourglass(4, 0.1)
+    deck.part(1).plastic(1000.0, 1.0e6, 0.3, 2.0e3, 1.0e5, 0.5, 1)
+    deck.part(2).elastic(1000.0, 1.0e6, 0.3, 2)
+    upper = deck.mesh(*grid(61, 21, 0.6, 0.2, (0.2, 0.0)), part=1)
+    lower = deck.mesh(*grid(80, 24, 1.0, 0.3, (0.0, -0.3)), part=2)
+    deck.node_set(2, upper[:62]).node_set(3, lower[-81:][::-1])
+    deck.contact(2, 3, kind, 2.0e4, gauss=3)
+    deck.fix(lower[:81], y=1)
+    deck.curve(1, [(0.0, 9.81), (0.002, 20.0), (1.0, 20.0)]).curve(2, [(0.0, 10.0), (1.0, 20.0)])
+    deck.curve(3, [(0.0, 0.0), (0.002, 0.2), (1.0, 0.2)]).curve(4, [(0.0, 5.0e3), (1.0, 5.0e3)])
+    deck.add("*LOAD_BODY_Y", (1, 1.0)).add("*LOAD_BODY_X", (1, 0.1))
+    deck.add("*DAMPING_GLOBAL", (2, 0.0))
+    top = upper[-62:].tolist()
+    deck.add("*LOAD_SEGMENT", *[(4, 1.0, 0.0, b, a, a, a) for a, b in zip(top[:-1], top[1:])])
+    deck.add("*LOAD_NODE_POINT", (top[0], 1, 4, 0.001), (top[-1], 1, 4, -0.0005))
+    for node in lower[:81:10]:
+        deck.prescribe(node, 1, 0, 3)
+    return deck.output(plot=0.002, glstat=1.0e-4, matsum=1.0e-4, rcforc=1.0e-4, nodout=1.0e-4,
+                       nodes=[1, 30, int(lower[-1])]).text()
+
+
+SCENES = {
+    "collision": (lambda kind: collision(2, kind),
+                  ("endtim=1e-5", "p:dtplot=5e-6", "p:dthist=1e-6")),
+    "sliding": (fast_sliding, ("endtim=6e-6", "p:dtplot=3e-6", "p:dthist=1e-6", "p:dtforc=1e-7")),
+    "block": (lambda kind: block(kind, n_slave=151, n_master=150), ("endtim=0.1", "dt=5e-4")),
+    "patch": (fine_patch, ("endtim=0.3", "p:dtplot=0.05")),
+    "hertz": (lambda kind: hertz(1, kind), ("endtim=6e-6", "p:dthist=1e-6", "p:dtplot=2e-6")),
+    "oblique": (oblique, ("endtim=0.06",)),
+    "everything": (everything, ()),
+    "static_patch": (lambda kind: patch(kind, static=True), ()),
+}
+
+
+def run(program, folder, text, words, name):
+    """Run a deck into folder/name; the contents of all its tables and datasets."""
+    (folder / "job.k").write_text(text, encoding="ascii")
+    done = subprocess.run([program, "i=job.k", f"d={name}", *words], cwd=folder, env=ENVIRONMENT,
+                          capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr + done.stdout
+    found = {path.name: path.read_bytes() for path in (folder / name).glob("*.csv")
+             if "timing" not in path.name}
+    with h5py.File(folder / name / "job.vtkhdf") as results:
+        results.visititems(lambda key, item: found.update({key: item[()].tobytes()})
+                           if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def check_same(program, folder, text, words):
+    """Run with every number of threads; returns what the last run wrote."""
+    runs = [run(program, folder, text, (*words, f"ncpu={threads}"), f"run_{k}")
+            for k, threads in enumerate(THREADS)]
+    for threads, found in zip(THREADS[1:], runs[1:]):
+        assert found.keys() == runs[0].keys()
+        different = [name for name in found if found[name] != runs[0][name]]
+        assert not different, f"{threads} threads"
+    return runs[-1]
+
+
+def last_force(found):
+    """The largest force component of the last row of the table of contact forces."""
+    _, _, _, f_x, f_y, _ = found["job.rcforc.csv"].split()[-1].split(b",")
+    return max(abs(float(f_x)), abs(float(f_y)))
+
+
+@pytest.mark.parametrize("kind", TYPES)
+@pytest.mark.parametrize("scene", SCENES)
+def test_scene_has_the_same_bits(exe, tmp_path, scene, kind):
+    write, words = SCENES[scene]
+    found = check_same(exe, tmp_path, write(kind), words)
+    assert last_force(found) > 0.0, "no contact in this run"
+
+
+@pytest.mark.parametrize("elastoplastic", [False, True])
+def test_plate_has_the_same_bits(exe, tmp_path, elastoplastic):
+    text = symmetric_plate(64, 16, elastoplastic=elastoplastic)
+    found = check_same(exe, tmp_path, text, ("endtim=0.03", "p:dtplot=1e-2"))
+    plate = np.frombuffer(found["VTKHDF/PointData/velocity"])
+    assert np.abs(plate).max() > 0.0

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: MIT
+"""The automatic penalty and the automatic step against the largest eigenvalue, all contact types.
+
+The eigenvalue is that of M^-1 (K_elements + K_contact): elements as one-point quads with stiffness
+hourglass control, contact as differences of the brute-force reference forces of contact_forces.
+"""
+import dataclasses
+import pathlib
+import re
+import sys
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent / "contact_forces"), str(HERE.parents[2] / "tools")]
+
+from contact_types import TYPES  # noqa: E402
+from reference import Chain, Rule, contact_forces  # noqa: E402
+from slideline_tools.scenes import block, block_grids  # noqa: E402
+from slideline_tools.study.stability_eigen import Model  # noqa: E402
+
+MESHES = ((7, 5), (5, 8))
+YOUNG, RHO, HOURGLASS = 1.0e6, 1000.0, 0.1
+DEPTH, NUDGE = 1.0e-4, 1.0e-6      # m
+GAUSS = 4
+SLOW = ("p:v0=-1e-3",)                 # m/s: shapes hardly change
+INSIDE, OUTSIDE = 1.03, 0.97       # limit by eigenvalue over the step
+BOUND, SHARP = 0.05, 1.5         # of |energy ratio - 1|; of limit by eigenvalue over step
+RULE = "*CONTROL_CONTACT\n\n0,0,0,0,0,0,2\n"
+
+
+def deck_of(kind, meshes, contact_rules=False):
+    """The block scene with stiffness hourglass control."""
+    cards = "*CONTROL_HOURGLASS\n4,%g\n" % HOURGLASS + (RULE if contact_rules else "")
+    return block(kind, GAUSS, *meshes).replace("*CONTROL_ENERGY", cards + "*CONTROL_ENERGY")
+
+
+class Eigen:
+    """Limits by eigenvalue for penalties in N/m^2 (type 1: N/m per mean slave segment)."""
+
+    def __init__(self, kind, meshes):
+        lower, upper = block_grids(*meshes)
+        self.model = Model([lower, upper], YOUNG, 0.0, RHO, HOURGLASS)
+        self.model.fix(lower.lower, 1)
+        self.model.fix(upper.upper, 1)
+        slave, master = self.model.rows(upper.lower), self.model.rows(lower.upper)
+        self.springs = self.unit_springs(kind, slave, master)
+
+    def unit_springs(self, kind, slave, master):
+        """Stiffness in y of all nodes for a penalty of 1 N/m^2, from central differences."""
+        x = self.model.x
+        start = [Chain(x[slave]), Chain(x[master])]
+        length = np.mean(start[0].length)
+        rule = Rule(kind, length if kind == 1 else 1.0, 0 if kind == 1 else 1, gauss=GAUSS)
+        nodes = np.concatenate([slave, master])
+        n = len(slave)
+        stiffness = np.zeros((len(x), len(x)))
+        for k, node in enumerate(nodes):
+            sides = []
+            for sign in (-1.0, 1.0):
+                y = x[nodes].copy()
+                y[:n, 1] -= DEPTH
+                y[k, 1] += sign * NUDGE
+                sides.append(np.concatenate(
+                    contact_forces(rule, Chain(y[:n]), Chain(y[n:]), start))[:, 1])
+            stiffness[nodes, node] = (sides[0] - sides[1]) / (2.0 * NUDGE)
+        return stiffness
+
+    def limit(self, penalty):
+        return self.model.limit(penalty * self.springs)
+
+    def fitting(self, limit):
+        """The penalty for which the limit by eigenvalue is this one."""
+        low, high = 0.0, 30.0
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.limit(np.exp(middle)) > limit else (low, middle)
+        return float(np.exp(low))
+
+
+@dataclasses.dataclass
+class Said:
+    """What the log says: penalty in N/m^2 and first step."""
+    penalty: float
+    step: float
+
+
+def said(result):
+    text = (result.folder / f"{result.job}.log").read_text()
+    penalty = re.findall(r"per slave node = (\S+) N/m\^2", text)[-1]
+    return Said(float(penalty), float(re.search(r"first time step ([^,]+),", text).group(1)))
+
+
+def strayed(result):
+    """Largest departure of the energy ratio from one; infinite for a run that broke off."""
+    if result.status != 0:
+        return np.inf
+    return float(np.max(np.abs(result.table("glstat")["energy_ratio"][5:] - 1.0)))
+
+
+def check_one(run, kind, meshes):
+    name = f"{TYPES[kind]}, {meshes[0]}/{meshes[1]} quads"
+    eigen, deck = Eigen(kind, meshes), deck_of(kind, meshes)
+    stem = f"type{kind}_{meshes[0]}"
+
+    def go(suffix, *options, deck=deck, expect=0):
+        return run.program(deck, *options, name=f"{stem}_{suffix}", expect_status=expect)
+
+    first = go("share", "punit=3", "pen=1", *SLOW, "dt=1", "tssfac=0.9", "endtim=2.0")
+    auto = said(first)
+    limit = eigen.limit(auto.penalty)
+    run.check(f"{name}: automatic penalty: limit by eigenvalue / step", limit / auto.step, 1.0,
+              1.0e-9, "min", "largest eigenvalue of M^-1 K")
+    run.check(f"{name}: the same, sharpness", limit / auto.step, SHARP, 0.0, "max",
+              "largest eigenvalue of M^-1 K")
+    run.check(f"{name}: energy ratio with it", strayed(first), BOUND, 0.0, "max", "stability")
+    half = said(go("half", "punit=3", "pen=0.5", "dt=1", "tssfac=0.9", "endtim=0.01"))
+    run.check(f"{name}: half the share, half the penalty", half.penalty, 0.5 * auto.penalty, 1e-5)
+    for what, factor in (("inside", INSIDE), ("outside", OUTSIDE)):
+        penalty = eigen.fitting(factor * auto.step)
+        options = ("punit=1", f"pen={penalty!r}", *SLOW, "dt=1", "tssfac=0.9", "endtim=2.0")
+        try:
+            away = strayed(go(what, *options))
+        except RuntimeError as problem:
+            if "exit status 2" not in str(problem):
+                raise
+            away = np.inf
+        run.check(f"{name}: energy ratio, limit by eigenvalue {factor:g} times the step",
+                  min(away, 1.0e6), BOUND, 0.0, "max" if factor > 1.0 else "min", "stability")
+    stiff = 1.0e3 * auto.penalty
+    ruled = said(go("ruled", "punit=1", f"pen={stiff!r}", "dt=1", "tssfac=1.0", "endtim=0.05",
+                    deck=deck_of(kind, meshes, True)))
+    true = eigen.limit(stiff)
+    run.check(f"{name}: automatic step: limit by eigenvalue / step", true / ruled.step, 1.0,
+              1.0e-9, "min", "largest eigenvalue of M^-1 K")
+    run.check(f"{name}: the same, sharpness", true / ruled.step, SHARP, 0.0, "max",
+              "largest eigenvalue of M^-1 K")
+
+
+def check(run):
+    for meshes in MESHES:
+        for kind in TYPES:
+            check_one(run, kind, meshes)
