@@ -22,6 +22,7 @@ module deck_m
   use deck_raw_m, only : raw_t, lost_t, start_raw
   use deck_mesh_m, only : read_nodes, read_elements, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
+  use deck_rigid_m, only : read_rigid
   use deck_material_m, only : read_elastic, read_plastic_kinematic, read_curve
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control
@@ -190,6 +191,8 @@ contains
       call read_elastic(deck, parameters, i, raw)
     case ('MAT_PLASTIC_KINEMATIC')
       call read_plastic_kinematic(deck, parameters, i, raw)
+    case ('MAT_RIGID')
+      call read_rigid(deck, parameters, i, raw)
     case ('DEFINE_CURVE')
       call read_curve(deck, parameters, i, raw)
     case ('INITIAL_VELOCITY', 'INITIAL_VELOCITY_GENERATION')

@@ -10,7 +10,8 @@ module deck_conditions_m
     report_field
   use deck_raw_m, only : raw_t, row_t, reserve_rows, append_row, row_spc_node, row_spc_set, &
     row_motion_node, row_motion_set, row_velocity, row_velocity_node, row_velocity_generation, &
-    row_load_node, row_load_set, row_pressure, row_pressure_set, row_body, row_damping
+    row_load_node, row_load_set, row_pressure, row_pressure_set, row_body, row_damping, &
+    row_motion_rigid
   implicit none
   private
   public :: read_condition, read_initial_velocity
@@ -62,6 +63,8 @@ contains
       kind = row_motion_node
     case ('BOUNDARY_PRESCRIBED_MOTION_SET')
       kind = row_motion_set
+    case ('BOUNDARY_PRESCRIBED_MOTION_RIGID')
+      kind = row_motion_rigid
     case ('INITIAL_VELOCITY_NODE')
       kind = row_velocity_node
     case ('LOAD_NODE_POINT')
@@ -106,6 +109,11 @@ contains
       call check_flag(deck, cursor, card, 3)
       call check_flag(deck, cursor, card, 4)
     case (row_motion_node, row_motion_set)
+      call check_direction(deck, cursor, card, 2)
+      call check_motion(deck, cursor, card)
+    case (row_motion_rigid)
+      if (all(card%i(2) /= [1, 2, 7])) call report_field(deck, cursor, card, 2, &
+        'is not a motion that a rigid body has here (1 x, 2 y, 7 turn about z)')
       call check_motion(deck, cursor, card)
     case (row_load_node, row_load_set)
       call check_direction(deck, cursor, card, 2)
@@ -155,13 +163,12 @@ contains
       'is not a curve number (1 or more)')
   end subroutine check_curve
 
-  !> *BOUNDARY_PRESCRIBED_MOTION_.
+  !> *BOUNDARY_PRESCRIBED_MOTION_ but its direction.
   subroutine check_motion(deck, cursor, card)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
 
-    call check_direction(deck, cursor, card, 2)
     if (card%i(3) < 0 .or. card%i(3) > 2) call report_field(deck, cursor, card, 3, &
       'is not a kind of motion that this version has (0 velocity, 1 acceleration, 2 displacement)')
     call check_curve(deck, cursor, card, 4)

@@ -13,7 +13,7 @@ module deck_material_m
   use deck_raw_m, only : raw_t
   implicit none
   private
-  public :: read_elastic, read_plastic_kinematic, read_curve
+  public :: read_elastic, read_plastic_kinematic, read_curve, elastic_constants, append_material
 
 contains
 

@@ -15,6 +15,7 @@ module deck_resolve_m
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
+  use deck_resolve_rigids_m, only : resolve_rigids
   use deck_resolve_velocity_m, only : resolve_velocity
   use deck_resolve_contacts_m, only : resolve_contacts
   implicit none
@@ -92,6 +93,7 @@ contains
     end associate
     if (model%controls%implicit%is_on) call check_implicit(deck, raw, model)
     call resolve_conditions(deck, raw, maps, model)
+    call resolve_rigids(deck, raw, maps, model)
     call resolve_velocity(deck, raw, maps, model)
     allocate (model%mesh%deck_node(model%mesh%n_node))
     model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]

@@ -112,6 +112,8 @@ contains
       name = 'MAT_ELASTIC'
     case ('MAT_003')
       name = 'MAT_PLASTIC_KINEMATIC'
+    case ('MAT_020')
+      name = 'MAT_RIGID'
     case ('SET_NODE')
       name = 'SET_NODE_LIST'
     case ('SET_NODE_GENERATE')
@@ -221,6 +223,9 @@ contains
       text = 'is a box, which this version does not have; leave it 0'
     case ('PHASE', 'SIDR')
       text = 'asks for dynamic relaxation, which this version does not have; leave it 0'
+    case ('COUPLE', 'M', 'ALIAS')
+      text = 'couples the body to another program or to a surface file, which this version does ' &
+        //'not have; leave it blank'
     case default
       text = 'is not supported here; leave it at its default'
     end select

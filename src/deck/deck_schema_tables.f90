@@ -87,6 +87,10 @@ module deck_schema_tables_m
     'MAT_PLASTIC_KINEMATIC t', &
     ' MID:i RO:f E:f PR:f SIGY:f ETAN:f BETA:f', &
     ' SRC:fr SRP:fr FS:f VP:fw', &
+    'MAT_RIGID t', &
+    ' MID:i RO:f E:f PR:f N:fr COUPLE:fr M:fr ALIAS:ar', &
+    ' CMO:i CON1:i CON2:i', &
+    ' LCO_OR_A1:fw A2:fw A3:fw V1:fw V2:fw V3:fw', &
     'DEFINE_CURVE t', &
     ' LCID:i SIDR:ir SFA:f=1 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
     ' A1:f20 O1:f20', &
@@ -116,6 +120,8 @@ module deck_schema_tables_m
     ' NID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'BOUNDARY_PRESCRIBED_MOTION_SET t', &
     ' NSID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
+    'BOUNDARY_PRESCRIBED_MOTION_RIGID t', &
+    ' PID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'INITIAL_VELOCITY', &
     ' NSID:i NSIDEX:i BOXID:ir IRIGID:is ICID:ir', &
     ' VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw', &
@@ -195,8 +201,6 @@ module deck_schema_tables_m
   !> Keywords that are known but not honoured, first match counts: without effect here, or the
   !> beginning of `... not part of this version`. An asterisk stands for any ending.
   character(60), parameter :: table_others(*) = [character(60) :: &
-    'MAT_RIGID* rigid bodies are', &
-    'MAT_020* rigid bodies are', &
     'MAT_PIECEWISE_LINEAR_PLASTICITY* this material is', &
     'MAT_024* this material is', &
     'MAT_* this material is', &
@@ -208,9 +212,9 @@ module deck_schema_tables_m
     'SET_NODE_GENERAL* general node sets are', &
     'SET_2D_SEGMENT* boundary sets of parts are', &
     'SET_* this kind of set is', &
-    'BOUNDARY_PRESCRIBED_MOTION_RIGID* rigid bodies are', &
+    'BOUNDARY_PRESCRIBED_MOTION_RIGID* axes of bodies are', &
     'BOUNDARY_* this condition is', &
-    'INITIAL_VELOCITY_RIGID_BODY* rigid bodies are', &
+    'INITIAL_VELOCITY_RIGID_BODY* velocities by rigid body are', &
     'INITIAL_* this initial condition is', &
     'LOAD_* this load is', &
     'DAMPING_* this damping is', &
@@ -290,7 +294,7 @@ module deck_schema_tables_m
     'PERTURBATION_* perturbations are', &
     'AIRBAG_* airbags are', &
     'ALE_* ALE is', &
-    'DEFORMABLE_TO_RIGID* rigid bodies are', &
+    'DEFORMABLE_TO_RIGID* parts that become rigid are', &
     'EF_* this keyword family is', &
     'SENSOR_* sensors are', &
     'USER_* user interfaces are', &

@@ -21,6 +21,10 @@ contains
 
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
+        if (model%materials(part%material)%is_rigid) then
+          call write_log(log, 'part '//to_text(part%id)//': rigid body, its elements carry no stress')
+          cycle
+        end if
         if (point_count(model%sections(part%section)) == 1) then
           text = 'one-point quads, '//trim(merge('stiffness', 'viscous  ', &
             part%hourglass%form == hourglass_stiffness))//' hourglass control ' &

@@ -26,9 +26,10 @@ contains
     integer :: n_slot, n_chunk, i_slot
 
     n_slot = model%layout%n_slot
-    n_chunk = model%layout%n_chunk
     allocate (elements%reference(n_slot, 6))
     allocate (elements%deviator(n_slot, 3), source=0.0_wp)
+    ! Chunks of rigid parts come after these.
+    n_chunk = model%layout%tiles(size(model%layout%tiles))%last_chunk
     allocate (elements%deviatoric_work(n_chunk), elements%hourglass_work(n_chunk), &
       elements%viscous_work(n_chunk), source=0.0_wp)
     allocate (elements%time_limit(n_chunk), elements%volume_limit(n_chunk), source=1.0_wp)
@@ -71,6 +72,7 @@ contains
     n_hourglass = 0
     do i_chunk = 1, model%layout%n_chunk
       associate (part => model%parts(model%layout%chunk_part(i_chunk)))
+        if (model%materials(part%material)%is_rigid) cycle
         n_points = point_count(model%sections(part%section))
         n = n_points*history_size(model%materials(part%material))
         if (n > 0) elements%history_start(i_chunk) = n_history + 1
@@ -121,6 +123,7 @@ contains
     do i = 1, model%mesh%n_element
       slot = model%layout%element_slot(i)
       call volume_ratios(model, motion, elements, slot, n, stretch, start)
+      if (model%materials(model%parts(model%mesh%element_part(i))%material)%is_rigid) stretch = 0.0_wp
       bulk = model%materials(model%parts(model%mesh%element_part(i))%material)%bulk
       now = start*(1.0_wp + stretch)
       volumetric = bulk*(sum(now(:n)*log_ratio(stretch(:n)))/sum(now(:n)))
@@ -225,6 +228,7 @@ contains
 
     do i_chunk = 1, model%layout%n_chunk
       part = model%layout%chunk_part(i_chunk)
+      if (model%materials(model%parts(part)%material)%is_rigid) cycle
       internal(part) = internal(part) + elements%deviatoric_work(i_chunk)
       hourglass(part) = hourglass(part) + elements%hourglass_work(i_chunk)
       viscous(part) = viscous(part) + elements%viscous_work(i_chunk)

@@ -5,6 +5,8 @@
 !> be padding. A tile is a run of chunks whose elements are neighbours in space. Nodes are
 !> numbered so that the special ones come first (touched by several tiles, or by contact, loads or
 !> prescribed motion) and then, tile after tile, the interior nodes that belong to that tile alone.
+!> Elements of rigid bodies have slots behind all tiles, and their nodes that nothing touches come last:
+!> the step passes over both.
 !> A tile sums the forces of its interior nodes and moves them; forces on special nodes go into one
 !> force slot per tile and node and are added in a fixed order, so that the result has the same bits at any number
 !> of threads.

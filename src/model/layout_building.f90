@@ -14,32 +14,45 @@ module layout_building_m
   integer, parameter :: tile_elements = 512
   !> Cells of the Hilbert curve along each axis, 2^16.
   integer, parameter :: curve_bits = 16
+  !> More than any place on the curve.
+  integer(long), parameter :: behind_all = 2_long**40
 
 contains
 
   !> Tiles, chunks and slots of the elements (no node numbers yet).
-  subroutine build_slots(mesh, layout)
+  subroutine build_slots(mesh, is_rigid, layout)
     type(mesh_t), intent(in) :: mesh
+    logical, intent(in) :: is_rigid(:)    !! (n_element) of a rigid body
     type(layout_t), intent(out) :: layout !! tiles' chunks, chunk_part, slot_element, element_slot
-    integer, allocatable :: order(:), in_tile(:)
-    integer :: n_tile, i_tile, first, last
+    integer, allocatable :: order(:)
+    integer :: n_tile, i_tile, first, last, n_moving
 
-    order = sorted_order(hilbert_keys(mesh))
-    n_tile = max(1, (mesh%n_element + tile_elements - 1)/tile_elements)
+    ! Rigid elements behind all others.
+    order = sorted_order(hilbert_keys(mesh) + merge(behind_all, 0_long, is_rigid))
+    n_moving = count(.not. is_rigid)
+    n_tile = max(1, (n_moving + tile_elements - 1)/tile_elements)
     allocate (layout%tiles(n_tile), layout%element_slot(mesh%n_element))
     allocate (layout%chunk_part(0), layout%slot_element(0))
-    call reserve_chunks(mesh, order, layout)
+    call reserve_chunks(mesh, order, n_moving, layout)
     layout%n_chunk = 0
     do i_tile = 1, n_tile
-      call tile_range(mesh%n_element, n_tile, i_tile, first, last)
-      in_tile = order(first:last)
-      in_tile = in_tile(sorted_order(int(mesh%element_part(in_tile), long)*huge(0) + in_tile))
+      call tile_range(n_moving, n_tile, i_tile, first, last)
       layout%tiles(i_tile)%first_chunk = layout%n_chunk + 1
-      call fill_chunks(mesh, in_tile, layout)
+      call fill_chunks(mesh, by_part(mesh, order(first:last)), layout)
       layout%tiles(i_tile)%last_chunk = layout%n_chunk
     end do
+    call fill_chunks(mesh, by_part(mesh, order(n_moving + 1:)), layout)
     layout%n_slot = layout%n_chunk*chunk_size
   end subroutine build_slots
+
+  !> Elements sorted by part, and by number within a part.
+  function by_part(mesh, elements) result(sorted)
+    type(mesh_t), intent(in) :: mesh
+    integer, intent(in) :: elements(:)
+    integer, allocatable :: sorted(:)
+
+    sorted = elements(sorted_order(int(mesh%element_part(elements), long)*huge(0) + elements))
+  end function by_part
 
   !> Elements first .. last of the curve belong to a tile.
   pure subroutine tile_range(n_element, n_tile, i_tile, first, last)
@@ -51,9 +64,10 @@ contains
   end subroutine tile_range
 
   !> Allocate the chunk arrays once their number is known.
-  subroutine reserve_chunks(mesh, order, layout)
+  subroutine reserve_chunks(mesh, order, n_moving, layout)
     type(mesh_t), intent(in) :: mesh
     integer, intent(in) :: order(:)          !! elements along the curve
+    integer, intent(in) :: n_moving          !! the first so many are not rigid
     type(layout_t), intent(inout) :: layout
     integer, allocatable :: counts(:)
     integer :: i_tile, n_tile, n_chunk, first, last, i
@@ -61,8 +75,9 @@ contains
     n_tile = size(layout%tiles)
     allocate (counts(maxval(mesh%element_part)))
     n_chunk = 0
-    do i_tile = 1, n_tile
-      call tile_range(mesh%n_element, n_tile, i_tile, first, last)
+    do i_tile = 1, n_tile + 1
+      call tile_range(n_moving, n_tile, i_tile, first, last)
+      if (i_tile > n_tile) last = mesh%n_element
       counts = 0
       do i = first, last
         counts(mesh%element_part(order(i))) = counts(mesh%element_part(order(i))) + 1
@@ -96,17 +111,19 @@ contains
     end do
   end subroutine fill_chunks
 
-  !> New order of the nodes: special ones first, then the interior nodes of each tile; in either
-  !> class in the order in which the elements touch them. Fills the tiles' node ranges.
-  subroutine order_nodes(mesh, is_special, layout, order)
+  !> New order of the nodes: special ones first, then the interior nodes of each tile, last those of rigid
+  !> bodies that nothing touches; in the first classes in the order in which the elements touch them. Fills the
+  !> tiles' node ranges.
+  subroutine order_nodes(mesh, is_rigid, is_special, layout, order)
     type(mesh_t), intent(in) :: mesh
+    logical, intent(in) :: is_rigid(:)      !! (n_node) of a rigid body
     logical, intent(inout) :: is_special(:) !! (n_node) in: wanted special; out: all special nodes
     type(layout_t), intent(inout) :: layout
     integer, allocatable, intent(out) :: order(:) !! (n_node) present index of each new node
     logical, allocatable :: placed(:)
     integer :: i_tile, n_placed
 
-    call mark_shared_nodes(mesh, layout, is_special)
+    call mark_shared_nodes(mesh, is_rigid, layout, is_special)
     allocate (order(mesh%n_node))
     allocate (placed(mesh%n_node), source=.false.)
     n_placed = 0
@@ -120,11 +137,14 @@ contains
       call place_tile_nodes(mesh, layout, i_tile, .not. is_special, placed, order, n_placed)
       layout%tiles(i_tile)%last_node = n_placed
     end do
+    call place_rest(.not. is_special, placed, order, n_placed)
   end subroutine order_nodes
 
-  !> Nodes that several tiles touch are special; so is a node without any element.
-  subroutine mark_shared_nodes(mesh, layout, is_special)
+  !> Nodes that several tiles touch are special; so is a node without any element, and a node of a rigid body
+  !> with an element that is not rigid.
+  subroutine mark_shared_nodes(mesh, is_rigid, layout, is_special)
     type(mesh_t), intent(in) :: mesh
+    logical, intent(in) :: is_rigid(:)
     type(layout_t), intent(in) :: layout
     logical, intent(inout) :: is_special(:)
     integer, allocatable :: tile_of(:)
@@ -141,7 +161,7 @@ contains
         end do
       end do
     end do
-    is_special = is_special .or. tile_of == 0
+    is_special = is_special .or. (tile_of == 0 .neqv. is_rigid)
   end subroutine mark_shared_nodes
 
   !> Place those nodes of a tile that are wanted and not yet placed.
@@ -167,16 +187,16 @@ contains
     end do
   end subroutine place_tile_nodes
 
-  !> Place special nodes that no element touches.
-  pure subroutine place_rest(is_special, placed, order, n_placed)
-    logical, intent(in) :: is_special(:)
+  !> Place nodes that are wanted and not yet placed.
+  pure subroutine place_rest(wanted, placed, order, n_placed)
+    logical, intent(in) :: wanted(:)
     logical, intent(inout) :: placed(:)
     integer, intent(inout) :: order(:)
     integer, intent(inout) :: n_placed
     integer :: node
 
-    do node = 1, size(is_special)
-      if (placed(node) .or. .not. is_special(node)) cycle
+    do node = 1, size(wanted)
+      if (placed(node) .or. .not. wanted(node)) cycle
       placed(node) = .true.
       n_placed = n_placed + 1
       order(n_placed) = node
@@ -198,9 +218,26 @@ contains
     do i_tile = 1, size(layout%tiles)
       call number_tile(mesh, i_tile, layout, local, special, n_special_slots)
     end do
+    call number_rest(mesh, layout)
     layout%special_node = special(:n_special_slots)
     call list_node_slots(layout)
   end subroutine build_local_numbers
+
+  !> Nodes of the slots behind all tiles; they have no local numbers.
+  pure subroutine number_rest(mesh, layout)
+    type(mesh_t), intent(in) :: mesh
+    type(layout_t), intent(inout) :: layout
+    integer :: slot
+
+    do slot = last_slot(layout%tiles(size(layout%tiles))) + 1, layout%n_slot
+      layout%slot_local(:, slot) = 0
+      if (layout%slot_element(slot) > 0) then
+        layout%slot_nodes(:, slot) = mesh%element_nodes(:, layout%slot_element(slot))
+      else
+        layout%slot_nodes(:, slot) = layout%slot_nodes(1, slot - 1)
+      end if
+    end do
+  end subroutine number_rest
 
   !> Local numbers of one tile; its special nodes get the next force slots.
   subroutine number_tile(mesh, i_tile, layout, local, special, n_special_slots)

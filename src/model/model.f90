@@ -14,6 +14,7 @@ module model_m
   use sets_m, only : node_set_t, segment_set_t, part_set_t
   use conditions_m, only : conditions_t
   use contacts_m, only : contact_t
+  use rigids_m, only : rigid_t
   use controls_m, only : controls_t
   implicit none
   private
@@ -32,6 +33,7 @@ module model_m
     type(part_set_t), allocatable :: part_sets(:)
     type(conditions_t) :: conditions
     type(contact_t), allocatable :: contacts(:)
+    type(rigid_t), allocatable :: rigids(:)
     type(controls_t) :: controls
   end type model_t
 

@@ -35,6 +35,8 @@ module parts_m
     real(wp) :: yield = 0.0_wp     !! initial yield stress sigma_Y
     real(wp) :: hardening = 0.0_wp !! plastic modulus E_p = E Et/(E - Et)
     real(wp) :: beta = 1.0_wp      !! 1 isotropic, 0 kinematic, between mixed
+    logical :: is_rigid = .false.  !! no stress: parts of it are rigid bodies; E and nu serve contact
+    logical :: is_fixed(3) = .false. !! of a rigid body: x, y and the turn about z do not move
   end type material_t
 
   !> Hourglass control and bulk viscosity of a part (*HOURGLASS, or the *CONTROL defaults).

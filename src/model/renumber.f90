@@ -1,9 +1,11 @@
 ! SPDX-License-Identifier: MIT
 !> Puts a finished model into the order of the step: nodes renumbered everywhere, layout built.
 module renumber_m
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   use layout_building_m, only : build_slots, order_nodes, build_local_numbers
   use model_m, only : model_t
+  use rigids_m, only : mark_rigid_nodes
+  use sorting_m, only : sorted_order
   implicit none
   private
   public :: renumber_model
@@ -13,14 +15,19 @@ contains
   !> Renumber the nodes of the whole model and build its layout. Called once, after the deck layer.
   subroutine renumber_model(model)
     type(model_t), intent(inout) :: model
-    logical, allocatable :: is_special(:)
+    logical, allocatable :: is_special(:), is_rigid(:)
     integer, allocatable :: order(:), new_index(:)
     integer :: i
 
-    call build_slots(model%mesh, model%layout)
+    allocate (is_rigid(model%mesh%n_element))
+    do i = 1, model%mesh%n_element
+      is_rigid(i) = model%materials(model%parts(model%mesh%element_part(i))%material)%is_rigid
+    end do
+    call build_slots(model%mesh, is_rigid, model%layout)
     allocate (is_special(model%mesh%n_node), source=.false.)
     call mark_touched_nodes(model, is_special)
-    call order_nodes(model%mesh, is_special, model%layout, order)
+    is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)
+    call order_nodes(model%mesh, is_rigid, is_special, model%layout, order)
     allocate (new_index(model%mesh%n_node))
     do i = 1, model%mesh%n_node
       new_index(order(i)) = i
@@ -28,6 +35,7 @@ contains
     call renumber_mesh(model, order, new_index)
     call renumber_conditions(model, order, new_index)
     call renumber_surfaces(model, new_index)
+    call renumber_rigids(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
   end subroutine renumber_model
 
@@ -104,5 +112,19 @@ contains
       end associate
     end do
   end subroutine renumber_surfaces
+
+  !> Rigid bodies: their nodes in rising order, so that special ones come first.
+  subroutine renumber_rigids(model, new_index)
+    type(model_t), intent(inout) :: model
+    integer, intent(in) :: new_index(:)
+    integer :: i
+
+    do i = 1, size(model%rigids)
+      associate (rigid => model%rigids(i))
+        rigid%nodes = new_index(rigid%nodes)
+        rigid%nodes = rigid%nodes(sorted_order(int(rigid%nodes, long)))
+      end associate
+    end do
+  end subroutine renumber_rigids
 
 end module renumber_m

@@ -90,7 +90,7 @@ contains
       if (model%contacts(i)%penalty_unit /= penalty_share) cycle
       alone = 0.0_wp
       alone(i) = 1.0_wp/model%contacts(i)%penalty
-      call bound_springs(model%contacts, state%mass, state%contacts, alone, bounds)
+      call bound_springs(model%contacts, state%contact_mass, state%contacts, alone, bounds)
       factor(i) = fitting_scale(dt, limit, bounds(i))
     end do
     if (fits(model, state, dt, limit, factor)) return
@@ -116,7 +116,7 @@ contains
     logical :: is_share(size(factor))
 
     is_share = model%contacts%penalty_unit == penalty_share
-    call bound_springs(model%contacts, state%mass, state%contacts, &
+    call bound_springs(model%contacts, state%contact_mass, state%contacts, &
       merge(factor/model%contacts%penalty, 1.0_wp, is_share), bounds)
     fits = all(stable_step(limit, bounds) >= dt*(1.0_wp - round_off) .or. .not. is_share)
   end function fits

@@ -28,7 +28,7 @@ contains
 
     element_limit = minval(state%elements%time_limit)
     if (model%controls%contact_step /= contact_step_free) call bound_springs(model%contacts, &
-      state%mass, state%contacts, [(1.0_wp, i=1, size(bounds))], bounds)
+      state%contact_mass, state%contacts, [(1.0_wp, i=1, size(bounds))], bounds)
     do i = 1, size(model%contacts)
       call report_initial_contact(model%contacts(i), model, state%contacts(i), log)
       if (model%controls%contact_step == contact_step_free) cycle
@@ -70,7 +70,7 @@ contains
     if (model%controls%contact_step /= contact_step_rules) return
     if (mod(state%cycle, refresh_interval) /= 0) return
     if (.not. allocated(bounds)) allocate (bounds(size(model%contacts)))
-    call bound_springs(model%contacts, state%mass, state%contacts, &
+    call bound_springs(model%contacts, state%contact_mass, state%contacts, &
       [(1.0_wp, i=1, size(bounds))], bounds)
   end subroutine follow_springs
 

@@ -17,6 +17,7 @@ module cycle_m
   use node_motion_m, only : leap_t, make_leap
   use prescribed_m, only : find_prescribed_velocities, start_prescribed, impose_prescribed, &
     prescribed_work
+  use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
   use progress_m, only : show_progress, wants_line
   use restart_m, only : write_dump, write_running, take_up_steps
   use restart_plan_m, only : wants_dump, wants_running, wants_look
@@ -84,7 +85,7 @@ contains
     call apply_loads(model, state, cycle)
     call lap(monitor%clock, phase_nodes)
     do i = 1, size(model%contacts)
-      call apply_contact(model%contacts(i), state%motion, state%mass, &
+      call apply_contact(model%contacts(i), state%motion, state%contact_mass, &
         state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
         state%force_special)
       call share_contact(monitor%clock, i)
@@ -177,9 +178,11 @@ contains
       call prepare_leap(model, state, cycle)
       call start_prescribed(model, cycle%velocity, state)
     end if
+    call report_rigids(model, state, cycle)
     state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
       cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
     call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
+    call fill_rigids(model, state, monitor%snapshot)
     if (cycle%due%glstat .or. cycle%due%matsum) call fill_energies(model, state, monitor%snapshot)
     if (state%cycle == 0) then
       state%initial_energy = total_energy(monitor%snapshot%energies)
@@ -200,6 +203,31 @@ contains
     if (.not. allocated(cycle%error)) call judge_energies(monitor%snapshot%energies, monitor%log)
   end subroutine report_cycle
 
+  !> Rigid bodies in a cycle that writes: what their forces ask for, and the work of prescribed motion so far.
+  subroutine report_rigids(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(cycle_t), intent(in) :: cycle
+
+    if (size(state%rigids) == 0) return
+    call solve_rigids(model, cycle%damping, state)
+    if (state%cycle == 0) call start_rigid_motions(model, state)
+    state%external_work = state%external_work + rigid_work(model, state, cycle%damping, &
+      0.5_wp*state%dt_before, 0.0_wp)
+  end subroutine report_rigids
+
+  !> Rigid bodies to their next places.
+  subroutine advance_rigids(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(cycle_t), intent(in) :: cycle
+
+    if (.not. cycle%writes) call solve_rigids(model, cycle%damping, state)
+    state%external_work = state%external_work + rigid_work(model, state, cycle%damping, &
+      merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes), 0.5_wp*state%dt)
+    call move_rigids(model, state)
+  end subroutine advance_rigids
+
   !> Prescribed nodes to their places, health, and on to the next instant.
   subroutine end_cycle(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
@@ -216,6 +244,7 @@ contains
         cycle%damping, before, 0.5_wp*state%dt)
       call impose_prescribed(model, cycle%velocity, cycle%displacement, state)
     end if
+    if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
     state%cycle = state%cycle + 1
     state%dt_before = state%dt
     call follow_springs(model, state, cycle%steps%springs)

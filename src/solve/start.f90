@@ -11,6 +11,7 @@ module start_m
   use initial_values_m, only : start_motion
   use log_m, only : log_t
   use model_m, only : model_t
+  use rigid_start_m, only : start_rigids
   use state_m, only : state_t
   implicit none
   private
@@ -46,6 +47,7 @@ contains
       end associate
     end do
     call log_elements(model, log)
+    call start_rigids(model, log, state)
     call start_elements(model, state%elements)
     allocate (state%contacts(size(model%contacts)))
     do i = 1, size(model%contacts)

@@ -8,7 +8,7 @@ module block_state_m
   public :: block_state_t
 
   !> Element history. The volumetric stress follows from the displacement, so only the deviator is
-  !> stored: s_zz = -(s_xx + s_yy).
+  !> stored: s_zz = -(s_xx + s_yy). Work and limits end with the last tile: rigid parts have none.
   type :: block_state_t
     real(wp), allocatable :: reference(:, :)  !! (n_slot, 6) X31 Y31 X42 Y42 and h.X, h.Y at time zero
     real(wp), allocatable :: deviator(:, :)   !! (n_slot, 3) s_xx, s_yy, s_xy, Pa; the mean over the

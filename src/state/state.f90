@@ -10,6 +10,7 @@ module state_m
   use block_state_m, only : block_state_t
   use contact_state_m, only : contact_state_t
   use energies_m, only : energies_t
+  use rigid_state_m, only : rigid_state_t
   implicit none
   private
   public :: state_t
@@ -23,6 +24,7 @@ module state_m
     real(wp), allocatable :: motion(:, :)      !! (4, n_node) u_x, u_y, v_x, v_y: one load a node
     real(wp), allocatable :: mass(:)           !! (n_node) lumped mass
     real(wp), allocatable :: inverse_mass(:, :) !! (2, n_node) 1/m, 0 where the motion is prescribed
+    real(wp), allocatable :: contact_mass(:)   !! (n_special) mass that contact feels: lumped, or of a rigid body
     real(wp), allocatable :: force_special(:, :) !! (2, n_special) contact + external force
     real(wp), allocatable :: external(:, :)    !! (2, n_special) external force; only where the deck has loads
     real(wp), allocatable :: force_slots(:, :) !! (2, force slots) internal force, tile by tile
@@ -34,6 +36,7 @@ module state_m
     real(wp) :: body_acceleration(2) = 0.0_wp  !! of *LOAD_BODY at `time`
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)
+    type(rigid_state_t), allocatable :: rigids(:)
     real(wp) :: external_work = 0.0_wp
     real(wp) :: damping_work = 0.0_wp
     real(wp) :: initial_energy = 0.0_wp

@@ -196,6 +196,22 @@ def test_strokes_of_the_die():
     assert cards == [["2", "2", "0", "2"], ["2", "1", "0", "3"]]
 
 
+def test_sliding_with_a_rigid_die():
+    elastic, rigid = Model(scenes.sliding(1)), Model(scenes.sliding(1, rigid_die=True))
+    assert [line.split() for line in rigid.lines("MAT_RIGID")[:2]] == [
+        elastic.lines("MAT_ELASTIC")[0].split(), ["1", "0", "7"]]
+    assert not rigid.lines("MAT_ELASTIC") and not rigid.lines("BOUNDARY_PRESCRIBED_MOTION_SET")
+    cards = [block[0].split()[:4] for block in rigid.all_blocks("BOUNDARY_PRESCRIBED_MOTION_RIGID")]
+    assert cards == [["2", "2", "0", "2"], ["2", "1", "0", "3"]]
+    np.testing.assert_array_equal(rigid.corners(), elastic.corners())
+
+
+def test_make_deck_with_a_rigid_die(tmp_path, tool):
+    path = tmp_path / "x.k"
+    assert tool("make-deck", "sliding", "--rigid-die", "--output", path).returncode == 0
+    assert path.read_text() == scenes.sliding(rigid_die=True)
+
+
 def test_block():
     model = Model(scenes.block())
     lower, upper = model.corners(1), model.corners(2)

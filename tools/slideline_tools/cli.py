@@ -43,6 +43,9 @@ def add_make_deck(commands):
         if name == "block":
             scene.add_argument("--implicit", action="store_true",
                                help="implicit dynamics instead of the explicit method")
+        if name == "sliding":
+            scene.add_argument("--rigid-die", action="store_true",
+                               help="the die is a rigid body, not elastic")
         scene.add_argument("--output", "-o", required=True, help="deck file to write")
     scene = scenes.add_parser("symmetric_plate", help="plate on two pins under a step load")
     scene.add_argument("--nx", type=int, default=8, help="elements along 8 m, a multiple of 8")
@@ -58,7 +61,7 @@ def add_make_deck(commands):
 def make_contact_scene(options):
     from slideline_tools import scenes
     named = {} if options.level is None else {"level": options.level}
-    named |= {name: True for name in ("static", "implicit") if getattr(options, name, False)}
+    named |= {name: True for name in ("static", "implicit", "rigid_die") if getattr(options, name, False)}
     return write_deck(options, getattr(scenes, options.scene), ctype=options.ctype,
                       ngauss=options.ngauss, exchanged=options.exchanged, **named)
 

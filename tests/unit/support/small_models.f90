@@ -105,10 +105,11 @@ contains
     model%parts(1)%section = 1
     model%parts(1)%material = 1
     call set_moduli(model%materials(1), 210.0_wp, 0.3_wp, 2.5_wp)
-    allocate (model%node_sets(0), model%segment_sets(0), model%part_sets(0), model%contacts(0))
+    allocate (model%node_sets(0), model%segment_sets(0), model%part_sets(0), model%contacts(0), &
+      model%rigids(0))
     associate (conditions => model%conditions)
       allocate (conditions%fixed_nodes(0), conditions%fixed_directions(0), conditions%motions(0), &
-        conditions%nodal_loads(0), conditions%pressures(0), conditions%body_loads(0))
+        conditions%rigid_motions(0), conditions%nodal_loads(0), conditions%pressures(0), conditions%body_loads(0))
     end associate
     allocate (model%controls%output%history_nodes(0))
     model%controls%end_time = 1.0_wp

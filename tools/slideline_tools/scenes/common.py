@@ -25,6 +25,14 @@ def elastic(deck, number, rho, young, poisson):
     return deck.card("mid ro e pr", number, rho, young, poisson)
 
 
+def rigid(deck, number, rho, young, poisson, turn_held=True):
+    """A rigid body whose centre is free; its turn about z is held unless asked otherwise."""
+    deck.keyword("MAT_RIGID")
+    deck.card("mid ro e pr", number, rho, young, poisson)
+    deck.card("cmo con1 con2", 1, 0, 7 if turn_held else 0)
+    return deck.card("lco a2 a3 v1 v2 v3", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
 def perfectly_plastic(deck, number, rho, young, poisson, yield_stress):
     deck.keyword("MAT_PLASTIC_KINEMATIC")
     deck.card("mid ro e pr sigy etan beta", number, rho, young, poisson, yield_stress, 0.0, 1.0)

@@ -4,8 +4,8 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (ALUMINIUM, CONTACT_TYPES, STEEL, elastic, energies_on,
-                                           part, perfectly_plastic, plane_strain, roles,
-                                           slideline)
+                                           part, perfectly_plastic, plane_strain, rigid,
+                                           roles, slideline)
 
 CENTRE, CROWN_RADIUS, TOP = 0.010, 0.020, 0.002
 PRESS = (0.0, 1.5e-3, -0.15e-3)
@@ -38,17 +38,18 @@ def stroke(start, end, distance):
     return ([(0.0, 0.0)] if start > 0.0 else []) + points + [(1.0, 0.0)]
 
 
-def sliding(level=1, ctype=2, ngauss=6, exchanged=False):
+def sliding(level=1, ctype=2, ngauss=6, exchanged=False, rigid_die=False):
     """The sliding scene ("ironing"); `level` = N_r >= 1 (1 to 3 in the seed).
 
-    `exchanged`: the plate is the slave.
+    `exchanged`: the plate is the slave. `rigid_die`: the die is a rigid body, moved as a whole.
     """
     if level < 1 or level > 8:
         raise ValueError("level of the sliding scene: 1 to 8")
     plate, die = sliding_grids(level)
     steps = 150000 * level
-    deck = Deck(f"sliding contact N_r = {level}" + (" exchanged" if exchanged else ""), [
-        "A steel die with a crowned lower face is pressed 0.15 mm into an aluminium plate and "
+    deck = Deck(f"sliding contact N_r = {level}" + (" exchanged" if exchanged else "")
+                + (" rigid die" if rigid_die else ""), [
+        ("A rigid die" if rigid_die else "A steel die") + " with a crowned lower face is pressed 0.15 mm into an aluminium plate and "
         "drawn 8 mm along it. SI units (m, kg, s, N, Pa), plane strain, per metre of depth.",
         "",
         f"Refinement level N_r = {level}: all cell and step counts times N_r, time step and "
@@ -87,12 +88,16 @@ def sliding(level=1, ctype=2, ngauss=6, exchanged=False):
     plane_strain(deck, 1)
     deck.comment("aluminium, elastic and perfectly plastic")
     perfectly_plastic(deck, 1, **ALUMINIUM)
-    deck.comment("steel, elastic")
-    elastic(deck, 2, **STEEL)
+    if rigid_die:
+        deck.comment("rigid, as heavy as steel; CON2 = 7 holds its turn")
+        rigid(deck, 2, **STEEL)
+    else:
+        deck.comment("steel, elastic")
+        elastic(deck, 2, **STEEL)
     deck.block("The lower face of the plate is fixed (u = 0).")
     deck.node_set(1, "lower face of the plate", plate.lower)
     deck.spc_set(1, True, True)
-    write_motion(deck, die)
+    write_motion(deck, die, rigid_die)
     deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
                "so a lower face runs from left to right, an upper face from right to left.")
     first, second = roles(exchanged)
@@ -107,14 +112,16 @@ def sliding(level=1, ctype=2, ngauss=6, exchanged=False):
     return deck.text()
 
 
-def write_motion(deck, die):
-    """The velocity of the die's upper face in x and y."""
-    deck.block("The upper face of the die moves down, then along, each with a velocity "
+def write_motion(deck, die, rigid_die=False):
+    """The velocity of the die's upper face, or of the rigid die, in x and y."""
+    what = "die" if rigid_die else "upper face of the die"
+    deck.block(f"The {what} moves down, then along, each with a velocity "
                "d (1 - cos(2 pi (t - t0) / (t1 - t0))) / (t1 - t0).")
-    deck.node_set(2, "upper face of the die", die.upper)
-    deck.keyword("BOUNDARY_PRESCRIBED_MOTION_SET")
-    deck.table("nsid dof vad lcid sf", [10] * 5, [(2, 2, 0, 2, 1.0)])
-    deck.keyword("BOUNDARY_PRESCRIBED_MOTION_SET")
-    deck.table("nsid dof vad lcid sf", [10] * 5, [(2, 1, 0, 3, 1.0)])
+    if not rigid_die:
+        deck.node_set(2, "upper face of the die", die.upper)
+    option, number = ("RIGID", "pid") if rigid_die else ("SET", "nsid")
+    for direction, curve in ((2, 2), (1, 3)):
+        deck.keyword(f"BOUNDARY_PRESCRIBED_MOTION_{option}")
+        deck.table(f"{number} dof vad lcid sf", [10] * 5, [(2, direction, 0, curve, 1.0)])
     deck.curve(2, "velocity of the die in y", stroke(*PRESS))
     deck.curve(3, "velocity of the die in x", stroke(*DRAW))

@@ -1,0 +1,78 @@
+! SPDX-License-Identifier: MIT
+!> *MAT_RIGID.
+module deck_rigid_m
+  use parts_m, only : material_t
+  use deck_lines_m, only : deck_t, line_warning
+  use deck_fields_m, only : card_t
+  use deck_parameter_table_m, only : parameters_t
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, check_rest, report_field
+  use deck_material_m, only : elastic_constants, append_material
+  use deck_raw_m, only : raw_t
+  implicit none
+  private
+  public :: read_rigid
+
+  !> Codes of CON1 and CON2: 0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz.
+  logical, parameter :: has_x(0:7) = [.false., .true., .false., .false., .true., .false., .true., &
+    .true.]
+  logical, parameter :: has_y(0:7) = [.false., .false., .true., .false., .true., .true., .false., &
+    .true.]
+  logical, parameter :: has_z(0:7) = [.false., .false., .false., .true., .false., .true., .true., &
+    .true.]
+
+contains
+
+  !> *MAT_RIGID.
+  subroutine read_rigid(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card, constraints, axes
+    type(material_t) :: material
+    character(:), allocatable :: title
+
+    call open_cursor(deck, i_block, cursor)
+    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call next_card(deck, parameters, cursor, 1, card)
+    call elastic_constants(deck, cursor, card, material)
+    material%is_rigid = .true.
+    call next_card(deck, parameters, cursor, 2, constraints)
+    call read_constraints(deck, cursor, constraints, material)
+    call next_card(deck, parameters, cursor, 3, axes)
+    call append_material(raw, material, card)
+    call check_rest(deck, cursor)
+  end subroutine read_rigid
+
+  !> CMO, CON1 and CON2.
+  subroutine read_constraints(deck, cursor, card, material)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(material_t), intent(inout) :: material
+    integer :: k
+
+    if (card%i(1) == -1) then
+      call report_field(deck, cursor, card, 1, 'asks for constraints in local axes, which this ' &
+        //'version does not have; 1 takes the global ones')
+      return
+    else if (card%i(1) /= 0 .and. card%i(1) /= 1) then
+      call report_field(deck, cursor, card, 1, &
+        'is not 0 (no constraints) or 1 (constraints in global axes)')
+      return
+    end if
+    do k = 2, 3
+      if (card%i(k) < 0 .or. card%i(k) > 7) call report_field(deck, cursor, card, k, &
+        'is not a code of constraints (0 to 7)')
+    end do
+    if (any(card%bad(2:3))) return
+    if (card%i(1) == 1) then
+      material%is_fixed = [has_x(card%i(2)), has_y(card%i(2)), has_z(card%i(3))]
+    else if (any(card%i(2:3) > 0)) then
+      call line_warning(deck, card%line, 'CMO 0', &
+        'CON1 and CON2 have no effect while CMO is 0; 1 makes them constraints')
+    end if
+  end subroutine read_constraints
+
+end module deck_rigid_m

@@ -1,0 +1,30 @@
+! SPDX-License-Identifier: MIT
+!> Rigid bodies: one for each part of *MAT_RIGID.
+module rigids_m
+  implicit none
+  private
+  public :: rigid_t, mark_rigid_nodes
+
+  !> One body.
+  type :: rigid_t
+    integer :: part = 0               !! index into model%parts
+    integer, allocatable :: nodes(:)  !! node indices, rising: those that forces reach come first
+    logical :: is_fixed(3) = .false.  !! x, y and the turn about z (CON1 and CON2 of *MAT_RIGID)
+  end type rigid_t
+
+contains
+
+  !> Nodes that belong to a rigid body.
+  pure function mark_rigid_nodes(rigids, n_node) result(is_rigid)
+    type(rigid_t), intent(in) :: rigids(:)
+    integer, intent(in) :: n_node
+    logical :: is_rigid(n_node)
+    integer :: i
+
+    is_rigid = .false.
+    do i = 1, size(rigids)
+      is_rigid(rigids(i)%nodes) = .true.
+    end do
+  end function mark_rigid_nodes
+
+end module rigids_m
