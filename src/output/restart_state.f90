@@ -6,6 +6,7 @@ module restart_state_m
   use block_state_m, only : block_state_t
   use log_m, only : to_text
   use restart_contact_m, only : keep_contact
+  use rigid_state_m, only : rigid_state_t
   use state_m, only : state_t
   implicit none
   private
@@ -26,6 +27,7 @@ contains
     call keep(archive, 'motion', state%motion)
     call keep(archive, 'mass', state%mass)
     call keep(archive, 'inverse_mass', state%inverse_mass)
+    call keep(archive, 'contact_mass', state%contact_mass)
     call keep(archive, 'force_special', state%force_special)
     call keep(archive, 'external', state%external)
     call keep(archive, 'force_slots', state%force_slots)
@@ -35,6 +37,7 @@ contains
     call keep_fixed(archive, 'body_acceleration', state%body_acceleration)
     call keep_elements(archive, 'elements', state%elements)
     call keep_contacts(archive, 'contacts', state)
+    call keep_rigids(archive, 'rigids', state)
     call keep(archive, 'external_work', state%external_work)
     call keep(archive, 'damping_work', state%damping_work)
     call keep(archive, 'initial_energy', state%initial_energy)
@@ -84,5 +87,45 @@ contains
     end do
     call leave(archive)
   end subroutine keep_contacts
+
+  !> Rigid bodies, numbered from 1.
+  subroutine keep_rigids(archive, name, state)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(state_t), intent(inout) :: state
+    integer :: i, n
+
+    n = 0
+    if (allocated(state%rigids)) n = size(state%rigids)
+    call enter(archive, name)
+    call keep(archive, 'n', n)
+    if (archive%is_read) then
+      if (allocated(state%rigids)) deallocate (state%rigids)
+      allocate (state%rigids(n))
+    end if
+    do i = 1, n
+      call keep_rigid(archive, to_text(i), state%rigids(i))
+    end do
+    call leave(archive)
+  end subroutine keep_rigids
+
+  !> One rigid body.
+  subroutine keep_rigid(archive, name, rigid)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(rigid_state_t), intent(inout) :: rigid
+
+    call enter(archive, name)
+    call keep_fixed(archive, 'inertia', rigid%inertia)
+    call keep_fixed(archive, 'second', rigid%second)
+    call keep_fixed(archive, 'centre', rigid%centre)
+    call keep(archive, 'arms', rigid%arms)
+    call keep_fixed(archive, 'place', rigid%place)
+    call keep_fixed(archive, 'velocity', rigid%velocity)
+    call keep_fixed(archive, 'next_velocity', rigid%next_velocity)
+    call keep_fixed(archive, 'acceleration', rigid%acceleration)
+    call keep_fixed(archive, 'force', rigid%force)
+    call leave(archive)
+  end subroutine keep_rigid
 
 end module restart_state_m

@@ -10,7 +10,8 @@ from fortran_source import ROOT, read_source
 #: components that are not kept like that and why)
 KEPT = {
     "state_t": ("state/state.f90", "output/restart_state.f90", "state%", {
-        "contacts": "kept one by one"}),
+        "contacts": "kept one by one", "rigids": "kept one by one"}),
+    "rigid_state_t": ("state/rigid_state.f90", "output/restart_state.f90", "rigid%", {}),
     "block_state_t": ("state/block_state.f90", "output/restart_state.f90", "elements%", {}),
     "contact_state_t": ("state/contact_state.f90", "output/restart_contact.f90", "contact%", {}),
     "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {}),
