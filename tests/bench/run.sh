@@ -9,9 +9,11 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 out=$root/results/bench
 sizes="300 4000 100000 1000000 4000000"
+large=1000000
 repeats=3
 if [ "${1:-}" = --quick ]; then
   sizes="300 4000"
+  large=100000
   repeats=1
 fi
 
@@ -22,3 +24,5 @@ cmake --build "$root/build/release" --target bench_kernel
 "$root/build/venv/bin/python" "$root/tests/bench/elements.py" --sizes $sizes --repeats "$repeats" \
   --program "$root/build/release/slideline" \
   --kernel "$root/build/release/tests/bench/bench_kernel" --out "$out"
+"$root/build/venv/bin/python" "$root/tests/bench/input_output.py" --elements "$large" \
+  --repeats "$repeats" --program "$root/build/release/slideline" --out "$out"

@@ -6,6 +6,7 @@ from slideline_tools import UserError
 
 STUDIES = {  # name on the command line: file of this package
     "paper-tables": "paper_tables",
+    "stability": "stability",
     "speed-accuracy": "speed_accuracy",
     "simplify": "simplify",
 }

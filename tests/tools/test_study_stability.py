@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""The stability maps: springs, eigenvalues, verdicts, and a few cells with the program."""
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from slideline_tools.decks import Grid
+from slideline_tools.study import stability, stability_measures as measures
+from slideline_tools.study.job import Options
+from slideline_tools.study.stability_eigen import Model, quad_stiffness
+from slideline_tools.study.stability_scenes import SCENES
+from slideline_tools.study.stability_springs import springs
+
+REFERENCE = Path(__file__).resolve().parents[1] / "verification" / "contact_forces"
+SLAVE, MASTER = np.array([0.1, 0.31, 0.55, 0.9]), np.array([0.0, 0.2, 0.45, 0.62, 0.7, 1.0])
+
+
+@pytest.mark.parametrize("ctype", range(1, 8))
+def test_springs_are_the_derivative_of_brute_force_contact_forces(ctype):
+    sys.path.insert(0, str(REFERENCE))
+    try:
+        from reference import Chain, Rule, contact_forces
+    finally:
+        sys.path.remove(str(REFERENCE))
+    master = MASTER[::-1]  # walked with the body on the left
+    n, depth, nudge = len(SLAVE), 1.0e-5, 1.0e-7
+    x = np.concatenate([SLAVE, master])
+    y = np.where(np.arange(len(x)) < n, -depth, 0.0)
+    start = [Chain(np.stack([SLAVE, 0.0 * SLAVE], axis=1)),
+             Chain(np.stack([master, 0.0 * master], axis=1))]
+    mean = float(np.mean(np.diff(SLAVE)))
+    rule = Rule(ctype, mean if ctype == 1 else 1.0, 0 if ctype == 1 else 1, gauss=4)
+
+    def forces(k, change):
+        moved = y.copy()
+        moved[k] += change
+        points = np.stack([x, moved], axis=1)
+        return np.concatenate(contact_forces(rule, Chain(points[:n]), Chain(points[n:]), start))[:, 1]
+
+    found = np.stack([(forces(k, -nudge) - forces(k, nudge)) / (2.0 * nudge)
+                      for k in range(len(x))], axis=1)
+    order = np.concatenate([np.arange(n), len(x) - 1 - np.arange(len(MASTER))])
+    expected = springs(ctype, SLAVE, MASTER)
+    assert found[np.ix_(order, order)] == pytest.approx(expected, abs=2.0e-4 * expected.max())
+    assert expected.sum(axis=1) == pytest.approx(0.0, abs=1.0e-12)  # both sides together
+
+
+def test_springs_without_a_master_carry_nothing():
+    over = springs(5, [0.0, 1.0, 2.0], [0.0, 0.5, 1.0])
+    assert np.all(over[2] == 0.0)
+    assert over[0, 0] == pytest.approx(0.25 + 0.5 * 0.5 ** 2)  # its own, and at the middle
+
+
+def test_stiffness_of_a_quad():
+    a, b, young, poisson, hourglass = 0.4, 0.3, 2.0e6, 0.3, 0.1
+    x = np.array([[0.0, 0.0], [a, 0.0], [a, b], [0.0, b]])
+    stiffness, area = quad_stiffness(x, young, poisson, hourglass)
+    assert area == pytest.approx(a * b)
+    rigid = [np.tile([1.0, 0.0], 4), np.tile([0.0, 1.0], 4),
+             np.stack([-x[:, 1], x[:, 0]], axis=1).ravel()]
+    for mode in rigid:
+        assert stiffness @ mode == pytest.approx(0.0, abs=1e-6)
+    lame = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
+    wave = lame + young / (1.0 + poisson)
+    stretch = np.stack([x[:, 0], 0.0 * x[:, 0]], axis=1).ravel()
+    assert stretch @ stiffness @ stretch == pytest.approx(wave * area)
+    bend = np.zeros(8)
+    bend[0::2] = [1.0, -1.0, 1.0, -1.0]  # doc/theory/elements.md: frequency of the pure mode
+    square = bend @ stiffness @ bend / (4.0 * 0.25 * area)
+    assert square == pytest.approx(4.0 * wave * hourglass * (1.0 / a ** 2 + 1.0 / b ** 2))
+
+
+def test_limit_of_two_quads_and_springs():
+    grids = [Grid([0.0, 1.0], [-1.0, 0.0]), Grid([0.0, 1.0], [0.0, 1.0], first_node=11)]
+    model = Model(grids, 1.0, 0.0, [1.0, 1.0], 0.0)
+    stiff = np.zeros((8, 8))
+    for slave, master in zip(model.rows(grids[1].lower), model.rows(grids[0].upper[::-1])):
+        stiff[np.ix_([slave, master], [slave, master])] += 1e8 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    assert model.limit(stiff) == pytest.approx(2.0 / np.sqrt(1e8 * 2.0 / 0.25), rel=1e-6)
+    assert model.limit(0.0 * stiff) == pytest.approx(1.0)  # L/c, without Poisson's ratio
+    model.fix(grids[0].node.ravel(), 1)
+    model.fix(grids[0].node.ravel(), 0)
+    assert model.limit(stiff) == pytest.approx(2.0 / np.sqrt(1e8 / 0.25), rel=1e-6)
+
+
+@pytest.mark.parametrize("change, status, verdict", [
+    ({}, 0, measures.STABLE), ({}, 2, measures.BLOWN_UP), ({"drift": 0.06}, 0, measures.BLOWN_UP),
+    ({"created": 0.06}, 0, measures.BLOWN_UP), ({"depth": 0.21}, 0, measures.PENETRATING),
+    ({"switching": 0.11}, 0, measures.CHATTERING), ({"uneven": 0.31}, 0, measures.LOCKED),
+    ({"uneven": 0.31, "depth": 0.21, "switching": 0.2}, 0, measures.PENETRATING)])
+def test_verdicts(change, status, verdict):
+    good = dict(drift=0.01, created=0.01, depth=0.1, switching=0.01, uneven=0.1)
+    assert measures.judge(status, {**good, **change}, 0.2, np.inf, True) == verdict
+    if change == {"uneven": 0.31}:
+        assert measures.judge(0, {**good, **change}, 0.2, np.inf, False) == measures.STABLE
+
+
+def test_rows_below_the_limit_and_their_decks(tmp_path):
+    row = {"scene": "patch", "type": 1}
+    rows = [{**row, "kind": "limit", "decade": x, "program_limit": y} for x, y in ((0.0, 0.8), (2.0, 0.2))]
+    rows += [{**row, "kind": "map", "decade": 1.0, "step": step, "verdict": "blown up", "run": f"r{step}"}
+             for step in (0.4, 0.6, 0.7)]
+    for name in ("r0.4", "r0.6", "r0.7"):
+        folder = tmp_path / "runs" / name
+        folder.mkdir(parents=True)
+        (folder / "patch.effective.k").write_text(name)
+    stability.keep_failing(stability.mark_below(rows), tmp_path)
+    assert [r.get("below_limit") for r in rows[2:]] == [True, False, False]
+    assert [path.name for path in (tmp_path / "failing").iterdir()] == ["r0.4_blown_up.k"]
+
+
+def test_jobs_are_unique_and_complete():
+    jobs = stability.jobs(Options(types=(1, 7)))
+    maps = len(stability.DECADES) * len(stability.STEPS)
+    assert len({job.name for job in jobs}) == len(jobs) == 2 * len(SCENES) * (maps + 9)
+
+
+@pytest.mark.parametrize("pen, step, verdict", [
+    ("10", 0.5, "stable"), ("10", 1.2, "blown up"), ("1e-2", 0.5, "penetrating"),
+    ("1e4", 0.5, "blown up")])
+def test_cells_with_the_program(slideline, tmp_path, pen, step, verdict):
+    scene = SCENES["patch"]
+    (tmp_path / "run.k").write_text(scene.deck(2))
+    subprocess.run([slideline, "i=run.k", "d=.", "ctype=2", "punit=2", f"pen={pen}", "dt=1e3",
+                    f"tssfac={step}", f"endtim={scene.end}", *scene.options],
+                   cwd=tmp_path, capture_output=True, check=False)
+    assert measures.measure_run(tmp_path, "run", scene)["verdict"] == verdict

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+"""What became of a run: one of five verdicts, by measures with fixed thresholds."""
+import math
+
+import numpy as np
+
+from slideline_tools.histories import read_csv
+
+STABLE, LOCKED, CHATTERING, PENETRATING, BLOWN_UP = range(5)
+VERDICTS = ("stable", "locked", "chattering", "penetrating", "blown up")
+
+ENERGY_DRIFT = 0.05     # of the largest energy: unaccounted for
+ENERGY_CREATED = 0.05   # of the largest energy: made by the contact forces
+DEPTH_SIDES = 1.0       # element sides
+DEPTH_APPROACH = 0.5    # of the way that the bodies are driven together
+SWITCHING = 0.10        # of the contacts open or close between two samples
+UNEVEN = 0.30           # scatter of the pressure over its mean where it should be uniform
+ENDS = 2                # nodes at each end of the surface that do not count for that
+
+
+def energies(glstat):
+    """(drift, created) over the largest energy of the run; infinite where not finite."""
+    work = glstat["external_work"]
+    scale = np.max([np.max(np.abs(glstat["total"])), np.max(np.abs(work)), 1e-300])
+    drift = np.max(np.abs(glstat["total"] - glstat["total"][0] - (work - work[0]))) / scale
+    created = -np.min(glstat["contact"]) / scale
+    return tuple(value if math.isfinite(value) else math.inf for value in (drift, created))
+
+
+def switching(rcforc):
+    """Share of contacts that open or close between two samples, in the second half of the run."""
+    active = rcforc.where(side="slave")["n_active"]
+    active = active[len(active) // 2:]
+    if len(active) < 2 or not np.max(active) > 0:
+        return 0.0
+    return float(np.mean(np.abs(np.diff(active))) / np.max(active))
+
+
+def depth(contact):
+    """Deepest penetration of a slave node in all states, m."""
+    return float(max(0.0, -np.min(contact["gap"])))
+
+
+def unevenness(contact):
+    """Scatter of the pressure along the surface over its mean, in the last state."""
+    last = contact.where(time=contact["time"][-1])
+    pressure = last["pressure"][np.argsort(last["s"])][ENDS:-ENDS]
+    mean = np.mean(pressure)
+    return float(np.std(pressure) / mean) if mean > 0.0 else math.inf
+
+
+def judge(status, measures, side, approach, is_uniform):
+    """The verdict, from the worst down."""
+    if status == 2 or measures["drift"] > ENERGY_DRIFT or measures["created"] > ENERGY_CREATED:
+        return BLOWN_UP
+    if measures["depth"] > min(DEPTH_SIDES * side, DEPTH_APPROACH * approach):
+        return PENETRATING
+    if measures["switching"] > SWITCHING:
+        return CHATTERING
+    if is_uniform and measures["uneven"] > UNEVEN:
+        return LOCKED
+    return STABLE
+
+
+def measure_run(folder, jobid, scene):
+    """All measures of one run and its verdict."""
+    tables = {name: read_csv(folder / f"{jobid}.{name}.csv")
+              for name in ("glstat", "rcforc", "contact")}
+    drift, created = energies(tables["glstat"])
+    measures = {"drift": drift, "created": created, "depth": depth(tables["contact"]),
+                "switching": switching(tables["rcforc"]), "uneven": unevenness(tables["contact"])}
+    reached = tables["glstat"]["time"][-1] >= 0.99 * scene.end
+    verdict = judge(0 if reached else 2, measures, scene.side, scene.approach, scene.is_uniform)
+    return {**measures, "verdict": VERDICTS[verdict]}
