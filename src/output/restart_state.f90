@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> The state in a restart file, type by type, component by component, in the order of their
-!> declarations. A component that is missing here is noticed by tests/house/test_restart.py.
+!> declarations. A component that is missing here is noticed by tests/house/test_restart_components.py.
 module restart_state_m
   use archive_m, only : archive_t, keep, keep_fixed, enter, leave
   use block_state_m, only : block_state_t
