@@ -89,10 +89,10 @@ def test_limit_of_two_quads_and_springs():
 @pytest.mark.parametrize("change, status, verdict", [
     ({}, 0, measures.STABLE), ({}, 2, measures.BLOWN_UP), ({"drift": 0.06}, 0, measures.BLOWN_UP),
     ({"created": 0.06}, 0, measures.BLOWN_UP), ({"depth": 0.21}, 0, measures.PENETRATING),
-    ({"switching": 0.11}, 0, measures.CHATTERING), ({"uneven": 0.31}, 0, measures.LOCKED),
-    ({"uneven": 0.31, "depth": 0.21, "switching": 0.2}, 0, measures.PENETRATING)])
+    ({"swings": 4.1}, 0, measures.CHATTERING), ({"uneven": 0.31}, 0, measures.LOCKED),
+    ({"uneven": 0.31, "depth": 0.21, "swings": 5.0}, 0, measures.PENETRATING)])
 def test_verdicts(change, status, verdict):
-    good = dict(drift=0.01, created=0.01, depth=0.1, switching=0.01, uneven=0.1)
+    good = dict(drift=0.01, created=0.01, depth=0.1, swings=1.0, uneven=0.1)
     assert measures.judge(status, {**good, **change}, 0.2, np.inf, True) == verdict
     if change == {"uneven": 0.31}:
         assert measures.judge(0, {**good, **change}, 0.2, np.inf, False) == measures.STABLE

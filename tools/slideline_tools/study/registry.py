@@ -7,6 +7,7 @@ from slideline_tools import UserError
 STUDIES = {  # name on the command line: file of this package
     "paper-tables": "paper_tables",
     "stability": "stability",
+    "stability-shapes": "stability_shapes",
     "speed-accuracy": "speed_accuracy",
     "simplify": "simplify",
 }

@@ -13,7 +13,7 @@ ENERGY_DRIFT = 0.05     # of the largest energy: unaccounted for
 ENERGY_CREATED = 0.05   # of the largest energy: made by the contact forces
 DEPTH_SIDES = 1.0       # element sides
 DEPTH_APPROACH = 0.5    # of the way that the bodies are driven together
-SWITCHING = 0.10        # of the contacts open or close between two samples
+SWINGS = 4.0            # ups and downs of the contact force over its largest value
 UNEVEN = 0.30           # scatter of the pressure over its mean where it should be uniform
 ENDS = 2                # nodes at each end of the surface that do not count for that
 
@@ -27,13 +27,14 @@ def energies(glstat):
     return tuple(value if math.isfinite(value) else math.inf for value in (drift, created))
 
 
-def switching(rcforc):
-    """Share of contacts that open or close between two samples, in the second half of the run."""
-    active = rcforc.where(side="slave")["n_active"]
-    active = active[len(active) // 2:]
-    if len(active) < 2 or not np.max(active) > 0:
+def swings(rcforc):
+    """Ups and downs of the contact force in the second half of the run, over its largest value."""
+    slave = rcforc.where(side="slave")
+    force = np.hypot(slave["fx"], slave["fy"])
+    force = force[len(force) // 2:]
+    if len(force) < 2 or not np.max(force) > 0.0:
         return 0.0
-    return float(np.mean(np.abs(np.diff(active))) / np.max(active))
+    return float(np.sum(np.abs(np.diff(force))) / np.max(force))
 
 
 def depth(contact):
@@ -55,7 +56,7 @@ def judge(status, measures, side, approach, is_uniform):
         return BLOWN_UP
     if measures["depth"] > min(DEPTH_SIDES * side, DEPTH_APPROACH * approach):
         return PENETRATING
-    if measures["switching"] > SWITCHING:
+    if measures["swings"] > SWINGS:
         return CHATTERING
     if is_uniform and measures["uneven"] > UNEVEN:
         return LOCKED
@@ -68,7 +69,7 @@ def measure_run(folder, jobid, scene):
               for name in ("glstat", "rcforc", "contact")}
     drift, created = energies(tables["glstat"])
     measures = {"drift": drift, "created": created, "depth": depth(tables["contact"]),
-                "switching": switching(tables["rcforc"]), "uneven": unevenness(tables["contact"])}
+                "swings": swings(tables["rcforc"]), "uneven": unevenness(tables["contact"])}
     reached = tables["glstat"]["time"][-1] >= 0.99 * scene.end
     verdict = judge(0 if reached else 2, measures, scene.side, scene.approach, scene.is_uniform)
     return {**measures, "verdict": VERDICTS[verdict]}

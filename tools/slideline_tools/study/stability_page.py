@@ -139,5 +139,5 @@ def write_maps_page(rows, doc):
         times=times, faster=FASTER, limits=limit_table(by_scene), counts=count_table(by_scene),
         ranges=first_failures(by_scene), n_below=len(below), n_bad=len(bad),
         **{name: getattr(measures, name) for name in (
-            "ENERGY_DRIFT", "ENERGY_CREATED", "DEPTH_SIDES", "DEPTH_APPROACH", "SWITCHING",
+            "ENERGY_DRIFT", "ENERGY_CREATED", "DEPTH_SIDES", "DEPTH_APPROACH", "SWINGS",
             "UNEVEN", "ENDS")}))
