@@ -8,8 +8,9 @@ module contact_force_m
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
   use contact_initial_m, only : start_slave_tracking, start_master_tracking, start_cover
   use contact_log_m, only : log_contact
+  use contact_motion_m, only : gather_motion, gather_places, take_force, add_force
   use contact_penalty_m, only : set_penalties, press_points, stored_energy, damp_points
-  use contact_scatter_m, only : scatter_points
+  use contact_scatter_m, only : scatter_points, scatter_runs
   use contact_search_m, only : update_tracking, wake_all
   use contact_spots_m, only : spots_at_quarters, start_spots, move_spots
   use contact_state_m, only : contact_state_t, tracking_t, allocate_points, is_free
@@ -92,7 +93,7 @@ contains
       if (cycle == 0) memory%energy = stored_energy(memory%points)
       if (contact%damping > 0.0_wp) &
         call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
-      call scatter_points(memory%points, memory%force, memory%n_active)
+      call scatter(memory)
       call add_force(memory%nodes, memory%force, motion, force, power)
     end if
     memory%energy = memory%energy - 0.5_wp*dt*power
@@ -109,7 +110,6 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
     type(crossings_t) :: crossings
-    real(wp) :: spread
     integer :: i
 
     memory%points%n = 0
@@ -119,8 +119,7 @@ contains
     memory%is_stale = memory%is_stale .or. time < contact%birth .or. time > contact%death
     if (time < contact%birth .or. time > contact%death) return
     if (memory%is_stale) call refresh_memory(motion, memory)
-    call take_places(memory%nodes, motion, memory%places, spread)
-    memory%travel = memory%travel + spread
+    call gather_places(motion, memory)
     if (allocated(memory%spots)) &
       call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
     call find_crossings(contact, motion, memory, crossings)
@@ -130,13 +129,24 @@ contains
     call place_points(contact, memory)
     if (memory%points%n == 0) return
     call press_points(memory)
-    call scatter_points(memory%points, memory%force, memory%n_active)
+    call scatter(memory)
     do i = 1, size(memory%nodes)
       associate (node => memory%nodes(i))
         force(:, node) = force(:, node) + memory%force(:, i)
       end associate
     end do
   end subroutine evaluate_contact
+
+  !> Forces of all points. Those between slave nodes follow each other segment by segment.
+  pure subroutine scatter(memory)
+    type(contact_state_t), intent(inout) :: memory
+
+    if (memory%averages_pressure .or. allocated(memory%spots)) then
+      call scatter_runs(memory%points, memory%force, memory%n_active)
+    else
+      call scatter_points(memory%points, memory%force, memory%n_active)
+    end if
+  end subroutine scatter
 
   !> Outside birth .. death: no forces; those of the last call have done their last half step of work.
   pure subroutine suspend_contact(motion, dt, memory)
@@ -152,68 +162,6 @@ contains
     memory%points%n = 0
     memory%n_active = 0
   end subroutine suspend_contact
-
-  !> Take the present motion into the memory, let its travel grow by a bound on how far any two nodes have
-  !> moved relative to each other since the last call, find the power of the last forces and forget these.
-  pure subroutine gather_motion(motion, memory, power)
-    real(wp), intent(in), contiguous :: motion(:, :)
-    type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(out) :: power !! of the previous forces with the present velocity, W/m
-    real(wp) :: spread
-
-    power = 0.0_wp
-    if (memory%n_active > 0) call take_force(memory%nodes, motion, memory%force, power)
-    call take_places(memory%nodes, motion, memory%places, spread)
-    memory%travel = memory%travel + spread
-  end subroutine gather_motion
-
-  !> Power of nodal forces with the velocities of the nodes; the forces are zero afterwards.
-  pure subroutine take_force(nodes, motion, force, power)
-    integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in) :: motion(4, *)
-    real(wp), intent(inout) :: force(2, *)
-    real(wp), intent(out) :: power
-    real(wp) :: power_x, power_y
-    integer :: i
-
-    power_x = 0.0_wp
-    power_y = 0.0_wp
-    do i = 1, size(nodes)
-      power_x = power_x + motion(3, nodes(i))*force(1, i)
-      power_y = power_y + motion(4, nodes(i))*force(2, i)
-      force(1, i) = 0.0_wp
-      force(2, i) = 0.0_wp
-    end do
-    power = power_x + power_y
-  end subroutine take_force
-
-  !> Copy u of the nodes; the diagonal of the box of their changes bounds the relative motion.
-  pure subroutine take_places(nodes, motion, places, spread)
-    integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in) :: motion(4, *)
-    real(wp), intent(inout) :: places(4, *)
-    real(wp), intent(out) :: spread !! m
-    real(wp) :: low_x, low_y, high_x, high_y, ux, uy, dx, dy
-    integer :: i
-
-    low_x = huge(1.0_wp)
-    low_y = huge(1.0_wp)
-    high_x = -huge(1.0_wp)
-    high_y = -huge(1.0_wp)
-    do i = 1, size(nodes)
-      ux = motion(1, nodes(i))
-      uy = motion(2, nodes(i))
-      dx = ux - places(3, i)
-      dy = uy - places(4, i)
-      low_x = merge(dx, low_x, dx < low_x)
-      low_y = merge(dy, low_y, dy < low_y)
-      high_x = merge(dx, high_x, dx > high_x)
-      high_y = merge(dy, high_y, dy > high_y)
-      places(3, i) = ux
-      places(4, i) = uy
-    end do
-    spread = sqrt((high_x - low_x)**2 + (high_y - low_y)**2)
-  end subroutine take_places
 
   !> After a time without contact: take the present places and search all anew.
   pure subroutine refresh_memory(motion, memory)
@@ -266,26 +214,5 @@ contains
       memory%places(:, :memory%n_slave), memory%places(:, memory%n_slave + 1:), memory%travel, &
       memory%n_released)
   end subroutine search_pairs
-
-  !> Add the forces of the interface to those of the mesh, and their power to `power`.
-  pure subroutine add_force(nodes, contact_force, motion, force, power)
-    integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in) :: contact_force(2, *), motion(4, *)
-    real(wp), intent(inout) :: force(2, *)
-    real(wp), intent(inout) :: power
-    real(wp) :: power_x, power_y
-    integer :: i, node
-
-    power_x = 0.0_wp
-    power_y = 0.0_wp
-    do i = 1, size(nodes)
-      node = nodes(i)
-      force(1, node) = force(1, node) + contact_force(1, i)
-      force(2, node) = force(2, node) + contact_force(2, i)
-      power_x = power_x + motion(3, node)*contact_force(1, i)
-      power_y = power_y + motion(4, node)*contact_force(2, i)
-    end do
-    power = power + (power_x + power_y)
-  end subroutine add_force
 
 end module contact_force_m

@@ -5,8 +5,8 @@
 !> pieces, each facing one master segment; there is no search (doc/theory/contact.md, section 3.5).
 module contact_overlap_m
   use contact_placing_m, only : tracked_foot
-  use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest, see_segment, &
-    turns_gently, side_on
+  use contact_projection_m, only : foot_t, closest_foot, plain_foot, follow_contact, &
+    walk_to_closest, see_segment, turns_gently, side_on
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, separation
@@ -105,9 +105,11 @@ contains
     real(wp), intent(in) :: place(4)
     integer, intent(in) :: start !! master segment
     type(foot_t) :: foot
+    logical :: is_found
 
     associate (chain => memory%places(:, memory%n_slave + 1:))
-      foot = closest_foot(contact%master, chain, place, &
+      call plain_foot(contact%master, chain, place, start, is_found, foot)
+      if (.not. is_found) foot = closest_foot(contact%master, chain, place, &
         walk_to_closest(contact%master, chain, place, start))
     end associate
   end function free_foot
@@ -120,7 +122,10 @@ contains
     real(wp), intent(in) :: place(4)
     integer, intent(in) :: start !! master segment
     type(foot_t) :: foot
+    logical :: is_found
 
+    call plain_foot(contact%master, memory%places(:, memory%n_slave + 1:), place, start, is_found, foot)
+    if (is_found .and. foot%gap >= 0.0_wp) return
     foot = follow_contact(contact%master, memory%places(:, memory%n_slave + 1:), place, start)
     if (foot%is_on .and. foot%gap < 0.0_wp) return
     foot = free_foot(contact, memory, place, start)

@@ -109,7 +109,7 @@ contains
 
     associate (points => memory%points)
       if (memory%averages_pressure) then
-        call press_nodes(points, memory%nodal)
+        call press_nodes(points, memory%n_slave, memory%nodal)
       else
         do p = 1, points%n
           points%pressure(p) = points%stiffness(p)*max(0.0_wp, -points%gap(p))
@@ -121,36 +121,70 @@ contains
   !> Pressure at slave nodes from averaged gaps, p_A = stiffness * max(0, -sum(N_A a g)/sum(N_A a)), and at the points
   !> by the slave shape functions (Fischer & Wriggers 2005). The forces that follow are the derivative of
   !> the energy sum of p_A^2 sum(N_A a)/(2 stiffness) at frozen weights.
-  pure subroutine press_nodes(points, nodal)
+  pure subroutine press_nodes(points, n_slave, nodal)
     type(contact_points_t), intent(inout) :: points
-    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave) scratch
-    real(wp) :: share
-    integer :: p, k, node
+    integer, intent(in) :: n_slave
+    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave or more) scratch
+    integer :: node
 
-    do p = 1, points%n
-      do k = 1, n_side
-        nodal(1, points%slave_nodes(k, p)) = 0.0_wp
-        nodal(2, points%slave_nodes(k, p)) = 0.0_wp
-      end do
+    nodal(:, :n_slave) = 0.0_wp
+    call sum_gaps(points%n, points%slave_nodes, points%slave_weights, points%area, points%gap, nodal)
+    do node = 1, n_slave
+      nodal(1, node) = max(0.0_wp, -nodal(1, node))/max(nodal(2, node), tiny(1.0_wp))
     end do
-    do p = 1, points%n
-      do k = 1, n_side
-        share = points%slave_weights(k, p)*points%area(p)
-        node = points%slave_nodes(k, p)
-        nodal(1, node) = nodal(1, node) + share*points%gap(p)
-        nodal(2, node) = nodal(2, node) + share
-      end do
-    end do
-    do p = 1, points%n
-      points%pressure(p) = 0.0_wp
-      do k = 1, n_side
-        node = points%slave_nodes(k, p)
-        if (.not. nodal(1, node) < 0.0_wp) cycle
-        points%pressure(p) = points%pressure(p) &
-          - points%stiffness(p)*points%slave_weights(k, p)*nodal(1, node)/nodal(2, node)
-      end do
-    end do
+    call share_pressure(points%n, points%slave_nodes, points%slave_weights, points%stiffness, nodal, &
+      points%pressure)
   end subroutine press_nodes
+
+  !> Pressure of the points from -g_A of the slave nodes.
+  pure subroutine share_pressure(n, slave_nodes, slave_weights, stiffness, nodal, pressure)
+    integer, intent(in) :: n, slave_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), stiffness(*), nodal(2, *)
+    real(wp), intent(inout) :: pressure(*)
+    integer :: p
+
+    do p = 1, n
+      pressure(p) = stiffness(p)*(slave_weights(1, p)*nodal(1, slave_nodes(1, p)) &
+        + slave_weights(2, p)*nodal(1, slave_nodes(2, p)))
+    end do
+  end subroutine share_pressure
+
+  !> Sums of weight times area times gap, and of weight times area, by slave node. Points of one segment
+  !> follow each other and are summed before they are given to the nodes.
+  pure subroutine sum_gaps(n, slave_nodes, slave_weights, area, gap, nodal)
+    integer, intent(in) :: n, slave_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), area(*), gap(*)
+    real(wp), intent(inout) :: nodal(2, *)
+    real(wp) :: part(2), sums(2, n_side)
+    integer :: p, k
+    logical :: is_last
+
+    sums = 0.0_wp
+    do p = 1, n
+      part = [area(p)*gap(p), area(p)]
+      do k = 1, n_side
+        sums(:, k) = sums(:, k) + slave_weights(k, p)*part
+      end do
+      is_last = p == n
+      if (.not. is_last) is_last = slave_nodes(1, p) /= slave_nodes(1, p + 1) .or. &
+        slave_nodes(2, p) /= slave_nodes(2, p + 1)
+      if (is_last) call give_sums(slave_nodes(1, p), sums, nodal)
+    end do
+  end subroutine sum_gaps
+
+  !> Add the sums of a run to its two nodes and forget them.
+  pure subroutine give_sums(nodes, sums, nodal)
+    integer, intent(in) :: nodes(n_side)
+    real(wp), intent(inout) :: sums(2, n_side)
+    real(wp), intent(inout) :: nodal(2, *)
+    integer :: k
+
+    do k = 1, n_side
+      nodal(1, nodes(k)) = nodal(1, nodes(k)) + sums(1, k)
+      nodal(2, nodes(k)) = nodal(2, nodes(k)) + sums(2, k)
+    end do
+    sums = 0.0_wp
+  end subroutine give_sums
 
   !> Energy of the springs of all points as pressed, J/m; holds for both rules of pressure.
   pure function stored_energy(points) result(energy)

@@ -53,13 +53,16 @@ contains
 
     points%n = points%n + 1
     associate (p => points%n)
-      points%slave_nodes(:, p) = ends
+      points%slave_nodes(1, p) = ends(1)
+      points%slave_nodes(2, p) = ends(2)
       points%slave_weights(1, p) = 1.0_wp - xi
       points%slave_weights(2, p) = xi
-      points%master_nodes(:, p) = n_slave + master%segments(:, foot%segment)
+      points%master_nodes(1, p) = n_slave + master%segments(1, foot%segment)
+      points%master_nodes(2, p) = n_slave + master%segments(2, foot%segment)
       points%master_weights(1, p) = 1.0_wp - foot%xi
       points%master_weights(2, p) = foot%xi
-      points%normal(:, p) = foot%normal
+      points%normal(1, p) = foot%normal(1)
+      points%normal(2, p) = foot%normal(2)
       points%gap(p) = foot%gap
     end associate
   end subroutine add_segment_point

@@ -5,7 +5,7 @@ module contact_scatter_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: scatter_points, add_gap_round_off
+  public :: scatter_points, scatter_runs, add_gap_round_off
 
 contains
 
@@ -15,25 +15,100 @@ contains
     type(contact_points_t), intent(in) :: points
     real(wp), intent(inout) :: force(2, *) !! by local node, N/m
     integer, intent(out) :: n_active
+
+    n_active = count(points%pressure(:points%n) > 0.0_wp)
+    call scatter_each(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
+      points%master_weights, points%normal, points%pressure, points%area, force)
+  end subroutine scatter_points
+
+  !> The same where several points in a row have the same nodes on a side, as on a slave segment.
+  pure subroutine scatter_runs(points, force, n_active)
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(inout) :: force(2, *) !! by local node, N/m
+    integer, intent(out) :: n_active
+
+    n_active = count(points%pressure(:points%n) > 0.0_wp)
+    call scatter_in_runs(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
+      points%master_weights, points%normal, points%pressure, points%area, force)
+  end subroutine scatter_runs
+
+  !> On arrays of known shape: through the list each access costs a multiplication by its stride.
+  pure subroutine scatter_each(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
+    pressure, area, force)
+    integer, intent(in) :: n
+    integer, intent(in) :: slave_nodes(n_side, *), master_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
+    real(wp), intent(in) :: normal(2, *), pressure(*), area(*)
+    real(wp), intent(inout) :: force(2, *)
     real(wp) :: total, fx, fy
     integer :: p, k, node
 
-    n_active = count(points%pressure(:points%n) > 0.0_wp)
-    do p = 1, points%n
-      total = points%pressure(p)*points%area(p)
-      fx = total*points%normal(1, p)
-      fy = total*points%normal(2, p)
+    do p = 1, n
+      total = pressure(p)*area(p)
+      fx = total*normal(1, p)
+      fy = total*normal(2, p)
       do k = 1, n_side
-        node = points%master_nodes(k, p)
-        force(1, node) = force(1, node) - points%master_weights(k, p)*fx
-        force(2, node) = force(2, node) - points%master_weights(k, p)*fy
-        if (.not. abs(points%slave_weights(k, p)) > 0.0_wp) cycle
-        node = points%slave_nodes(k, p)
-        force(1, node) = force(1, node) + points%slave_weights(k, p)*fx
-        force(2, node) = force(2, node) + points%slave_weights(k, p)*fy
+        node = master_nodes(k, p)
+        force(1, node) = force(1, node) - master_weights(k, p)*fx
+        force(2, node) = force(2, node) - master_weights(k, p)*fy
+        if (.not. abs(slave_weights(k, p)) > 0.0_wp) cycle
+        node = slave_nodes(k, p)
+        force(1, node) = force(1, node) + slave_weights(k, p)*fx
+        force(2, node) = force(2, node) + slave_weights(k, p)*fy
       end do
     end do
-  end subroutine scatter_points
+  end subroutine scatter_each
+
+  !> The forces of a run of points are summed before they are given to its nodes: a sum in memory has to be
+  !> stored before it can be read again.
+  pure subroutine scatter_in_runs(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
+    pressure, area, force)
+    integer, intent(in) :: n
+    integer, intent(in) :: slave_nodes(n_side, *), master_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
+    real(wp), intent(in) :: normal(2, *), pressure(*), area(*)
+    real(wp), intent(inout) :: force(2, *)
+    real(wp) :: f(2), slave(2, n_side), master(2, n_side)
+    integer :: p, k
+
+    slave = 0.0_wp
+    master = 0.0_wp
+    do p = 1, n
+      f = pressure(p)*area(p)*normal(:, p)
+      do k = 1, n_side
+        slave(:, k) = slave(:, k) + slave_weights(k, p)*f
+        master(:, k) = master(:, k) - master_weights(k, p)*f
+      end do
+      if (p < n) then
+        if (any_differs(slave_nodes(1, p), slave_nodes(1, p + 1))) &
+          call give_run(slave_nodes(1, p), slave, force)
+        if (any_differs(master_nodes(1, p), master_nodes(1, p + 1))) &
+          call give_run(master_nodes(1, p), master, force)
+      else
+        call give_run(slave_nodes(1, p), slave, force)
+        call give_run(master_nodes(1, p), master, force)
+      end if
+    end do
+  end subroutine scatter_in_runs
+
+  !> Whether two points have different nodes on a side.
+  pure function any_differs(nodes, others)
+    integer, intent(in) :: nodes(n_side), others(n_side)
+    logical :: any_differs
+
+    any_differs = nodes(1) /= others(1) .or. nodes(2) /= others(2)
+  end function any_differs
+
+  !> Add the forces of a run to its two nodes and forget them.
+  pure subroutine give_run(nodes, run, force)
+    integer, intent(in) :: nodes(n_side)
+    real(wp), intent(inout) :: run(2, n_side)
+    real(wp), intent(inout) :: force(2, *)
+
+    force(:, nodes(1)) = force(:, nodes(1)) + run(:, 1)
+    force(:, nodes(2)) = force(:, nodes(2)) + run(:, 2)
+    run = 0.0_wp
+  end subroutine give_run
 
   !> What the rounding of places, one part in 1/epsilon of them, makes of the nodal forces of all pressed points: a gap along
   !> n is known to n_x X and n_y Y. Times epsilon it is a force.

@@ -3,6 +3,7 @@
 !> miss something, asleep where nothing can touch (doc/theory/contact.md, section 4).
 module contact_search_m
   use contact_buckets_m, only : nearest_t, fill_grid, slip_limit, box_distance, find_nearest
+  use contact_keeping_m, only : keep_contacts, list_kept, n_together
   use contact_projection_m, only : foot_t, see_segment, closest_foot, follow_contact, &
     walk_to_closest, is_over_segment, turns_gently, end_tolerance, &
     side_on
@@ -13,9 +14,6 @@ module contact_search_m
   implicit none
   private
   public :: update_tracking, wake_all, most_facing, begin_contact
-
-  !> Spots projected together.
-  integer, parameter :: block_size = 64
 
 contains
 
@@ -38,7 +36,16 @@ contains
       surface%segments, chain, spots, tracking%xi, tracking%gap, tracking%normal, tracking%is_kept)
     next_wake = huge(1.0_wp)
     n_touching = 0
-    do i = 1, tracking%n
+    i = 0
+    do while (i < tracking%n)
+      if (i + n_together <= tracking%n) then
+        if (all(tracking%is_kept(i + 1:i + n_together))) then
+          call list_kept(tracking%touching, tracking%is_kept, i, n_touching)
+          next_wake = -huge(1.0_wp)
+          cycle
+        end if
+      end if
+      i = i + 1
       if (travel < tracking%wake(i)) then
         next_wake = min(next_wake, tracking%wake(i))
         cycle
@@ -54,68 +61,6 @@ contains
     tracking%n_touching = n_touching
     tracking%next_wake = next_wake
   end subroutine update_tracking
-
-  !> The common case of spots in contact: still over their segment, behind it, and no nearer to a
-  !> neighbour than to it. Of others nothing is changed. In blocks, so that the roots and quotients
-  !> of a block are formed together: 8 ns a spot one by one, 5 ns so.
-  pure subroutine keep_contacts(touching, segment, ends, chain, spots, xi, gap, normal, is_kept)
-    integer, intent(in), contiguous :: touching(:) !! spots that touched after the last step
-    integer, intent(in), contiguous :: segment(:)
-    integer, intent(in) :: ends(2, *)
-    real(wp), intent(in) :: chain(4, *), spots(4, *)
-    real(wp), intent(inout) :: xi(*), gap(*), normal(2, *)
-    logical, intent(inout), contiguous :: is_kept(:)
-    real(wp), dimension(block_size) :: tx, ty, dx, dy, along, across
-    logical :: kept(block_size)
-    integer :: first, n, i, k, a, b
-
-    do first = 1, size(touching), block_size
-      n = min(block_size, size(touching) - first + 1)
-      !GCC$ NOVECTOR
-      do k = 1, n
-        i = touching(first + k - 1)
-        a = ends(1, segment(i))
-        b = ends(2, segment(i))
-        tx(k) = (chain(1, b) - chain(1, a)) + (chain(3, b) - chain(3, a))
-        ty(k) = (chain(2, b) - chain(2, a)) + (chain(4, b) - chain(4, a))
-        dx(k) = (spots(1, i) - chain(1, a)) + (spots(3, i) - chain(3, a))
-        dy(k) = (spots(2, i) - chain(2, a)) + (spots(4, i) - chain(4, a))
-      end do
-      call project_block(n, tx, ty, dx, dy, along, across, kept)
-      do k = 1, n
-        if (.not. kept(k)) cycle
-        i = touching(first + k - 1)
-        is_kept(i) = .true.
-        xi(i) = along(k)
-        gap(i) = across(k)
-        normal(1, i) = ty(k)
-        normal(2, i) = -tx(k)
-      end do
-    end do
-  end subroutine keep_contacts
-
-  !> Projections of a block.
-  pure subroutine project_block(n, tx, ty, dx, dy, xi, gap, kept)
-    integer, intent(in) :: n
-    real(wp), intent(inout) :: tx(block_size), ty(block_size) !! in: segments, m; out: unit tangents
-    real(wp), intent(in) :: dx(block_size), dy(block_size)    !! from the segments' first nodes, m
-    real(wp), intent(out) :: xi(block_size), gap(block_size)
-    logical, intent(out) :: kept(block_size) !! behind the segment, and not nearer to a neighbour
-    real(wp) :: square, along, across, inverse
-    integer :: k
-
-    do k = 1, n
-      square = max(tx(k)*tx(k) + ty(k)*ty(k), tiny(1.0_wp))
-      along = dx(k)*tx(k) + dy(k)*ty(k)
-      across = dx(k)*ty(k) - dy(k)*tx(k)
-      kept(k) = across < 0.0_wp .and. across + along >= 0.0_wp .and. across + square >= along
-      inverse = 1.0_wp/sqrt(square)
-      xi(k) = along*(inverse*inverse)
-      gap(k) = across*inverse
-      tx(k) = tx(k)*inverse
-      ty(k) = ty(k)*inverse
-    end do
-  end subroutine project_block
 
   !> Any other case, by what the spot was doing.
   pure subroutine update_spot(tracking, surface, chain, spots, i, travel, n_released)

@@ -6,6 +6,7 @@ module points_nts_mar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     see_master_node, facing_share
+  use contact_plain_cover_m, only : plain_cover_t, find_plain_cover, note_plain_contact
   use contact_placing_m, only : add_touching_nodes, competence_length
   use contact_projection_m, only : see_segment
   use contact_state_m, only : contact_state_t, make_room
@@ -23,6 +24,7 @@ contains
   pure subroutine place_nts_mar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    type(plain_cover_t) :: plain
     integer :: s, n_before
 
     if (all_asleep(memory)) return
@@ -32,7 +34,12 @@ contains
     call mark_points(memory, n_before)
     do s = 1, contact%slave%n_segment
       if (is_asleep(memory, s, contact%slave%segments(:, s))) cycle
-      call share_segment(contact, memory, s)
+      call find_plain_cover(contact, memory, s, plain)
+      if (plain%n_piece > 0) then
+        call share_plain_segment(memory, s, plain)
+      else
+        call share_segment(contact, memory, s)
+      end if
     end do
     call note_next_wake(memory)
     call finish_nodes(contact, memory, n_before)
@@ -86,6 +93,36 @@ contains
         > 0.0_wp) is_tip = .false.
     end do
   end function is_tip
+
+  !> The common case of `share_segment`.
+  pure subroutine share_plain_segment(memory, s, cover)
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: s
+    type(plain_cover_t), intent(in) :: cover
+    real(wp) :: length, half, before, gap
+    logical :: is_deep
+    integer :: k
+
+    length = sqrt(cover%square)
+    half = 0.5_wp*cover%cuts(1)*length
+    associate (points => memory%points, p => memory%mark(cover%ends(1)))
+      points%area(p) = points%area(p) + half
+    end associate
+    is_deep = .false.
+    do k = 1, cover%n_piece - 1
+      before = half
+      half = 0.5_wp*(cover%cuts(k + 1) - cover%cuts(k))*length
+      gap = cover%across(k)/length
+      if (cover%across(k) >= 0.0_wp .and. gap >= memory%closed_gap) cycle
+      is_deep = is_deep .or. gap < memory%closed_gap
+      call add_cut(memory, cover%ends, cover%nodes(k), cover%cuts(k), gap, &
+        [-cover%t(2)/length, cover%t(1)/length], before + half)
+    end do
+    associate (points => memory%points, p => memory%mark(cover%ends(2)))
+      points%area(p) = points%area(p) + half
+    end associate
+    call note_plain_contact(memory, s, is_deep)
+  end subroutine share_plain_segment
 
   !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
   !> ends. The strict rule adds no node where an end of the segment has no foot; otherwise the part
@@ -162,23 +199,40 @@ contains
     integer, intent(in) :: node
     real(wp), intent(in) :: area
     type(sight_t) :: sight
-    real(wp) :: xi
 
     sight = see_master_node(memory, cover, node)
     if (sight%across >= 0.0_wp .and. sight_gap(sight) >= memory%closed_gap) return
-    xi = sight%along/sight%square
+    call add_cut(memory, cover%ends, node, sight%along/sight%square, sight_gap(sight), &
+      -sight_normal(sight), area)
+  end subroutine add_master_node
+
+  !> Append a point at a master node.
+  pure subroutine add_cut(memory, ends, node, xi, gap, normal, area)
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: ends(2)       !! nodes of the slave segment
+    integer, intent(in) :: node          !! of the master
+    real(wp), intent(in) :: xi           !! where it is on the segment
+    real(wp), intent(in) :: gap          !! m
+    real(wp), intent(in) :: normal(2)    !! against the segment's own
+    real(wp), intent(in) :: area         !! m
+
     call make_room(memory%points, 1)
     associate (points => memory%points, p => memory%points%n)
       p = p + 1
-      points%slave_nodes(:, p) = cover%ends
-      points%slave_weights(:, p) = [1.0_wp - xi, xi]
-      points%master_nodes(:, p) = memory%n_slave + node
-      points%master_weights(:, p) = [1.0_wp, 0.0_wp]
-      points%normal(:, p) = -sight_normal(sight)
-      points%gap(p) = sight_gap(sight)
+      points%slave_nodes(1, p) = ends(1)
+      points%slave_nodes(2, p) = ends(2)
+      points%slave_weights(1, p) = 1.0_wp - xi
+      points%slave_weights(2, p) = xi
+      points%master_nodes(1, p) = memory%n_slave + node
+      points%master_nodes(2, p) = memory%n_slave + node
+      points%master_weights(1, p) = 1.0_wp
+      points%master_weights(2, p) = 0.0_wp
+      points%normal(1, p) = normal(1)
+      points%normal(2, p) = normal(2)
+      points%gap(p) = gap
       points%area(p) = area
       points%stiffness(p) = memory%slave_penalty
     end associate
-  end subroutine add_master_node
+  end subroutine add_cut
 
 end module points_nts_mar_m

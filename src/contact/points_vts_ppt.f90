@@ -6,11 +6,11 @@
 !> moment is not exactly zero on a kinked master.
 module points_vts_ppt_m
   use contact_placing_m, only : add_segment_point, place_on_segment, tracked_foot
-  use contact_portions_m, only : mark_t, walk_to_mark
+  use contact_portions_m, only : mark_t, walk_from
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t, make_room
   use contacts_m, only : contact_t
-  use geometry_m, only : segment_length
+  use geometry_m, only : sight_t, sight_of_segment, segment_length
   use kinds_m, only : wp
   implicit none
   private
@@ -36,6 +36,7 @@ contains
     integer, intent(in) :: spot
     type(mark_t) :: marks(2)
     type(foot_t) :: foot
+    type(sight_t) :: sights(2)
     real(wp) :: xi, half, low, high
     integer :: ends(2), segment, n_before, k
 
@@ -43,10 +44,19 @@ contains
     xi = memory%spot_xi(2 - mod(spot, 2))
     half = 0.5_wp*segment_length(memory%places(:, ends(1)), memory%places(:, ends(2)))
     foot = tracked_foot(memory%slave_tracking, spot)
+    call see_ends(contact, memory, ends, xi, foot%segment, sights)
+    if (all(sights%along >= 0.0_wp .and. sights%along <= sights%square) .and. &
+      sights(2)%along > sights(1)%along) then
+      foot%xi = 0.5_wp*(sights(1)%along + sights(2)%along)/sights(1)%square
+      call make_room(memory%points, 1)
+      call add_segment_point(contact%master, memory%n_slave, ends, xi, foot, memory%points)
+      memory%points%area(memory%points%n) = half
+      memory%points%stiffness(memory%points%n) = memory%slave_penalty
+      return
+    end if
     do k = 1, 2
-      ! The slave runs against the master: its later end has the earlier mark.
-      marks(k) = walk_to_mark(contact%master, memory%places(:, memory%n_slave + 1:), &
-        place_on_segment(memory%places, ends, xi + (1.5_wp - k)*0.5_wp), foot%segment)
+      marks(k) = walk_from(contact%master, memory%places(:, memory%n_slave + 1:), &
+        place_on_segment(memory%places, ends, end_of_half(xi, k)), foot%segment, sights(k))
     end do
     n_before = memory%points%n
     segment = marks(1)%segment
@@ -62,6 +72,33 @@ contains
       area = area*(half/sum(area))
     end associate
   end subroutine add_portions
+
+  !> Ends of a half segment, the later one first: the slave runs against the master.
+  pure function end_of_half(xi, k)
+    real(wp), intent(in) :: xi !! of the virtual node
+    integer, intent(in) :: k
+    real(wp) :: end_of_half
+
+    end_of_half = xi + (1.5_wp - k)*0.5_wp
+  end function end_of_half
+
+  !> Both ends of a half segment, seen from a master segment.
+  pure subroutine see_ends(contact, memory, ends, xi, segment, sights)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)   !! nodes of the slave segment
+    real(wp), intent(in) :: xi       !! of the virtual node
+    integer, intent(in) :: segment   !! of the master
+    type(sight_t), intent(out) :: sights(2)
+    integer :: k, a, b
+
+    a = memory%n_slave + contact%master%segments(1, segment)
+    b = memory%n_slave + contact%master%segments(2, segment)
+    do k = 1, 2
+      sights(k) = sight_of_segment(place_on_segment(memory%places, ends, end_of_half(xi, k)), &
+        memory%places(:, a), memory%places(:, b))
+    end do
+  end subroutine see_ends
 
   !> One portion: from `low` to `high` on a master segment, whose centre takes the force; area = its length until all are known.
   pure subroutine add_portion(contact, memory, ends, xi, foot, segment, low, high)

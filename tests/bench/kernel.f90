@@ -37,7 +37,8 @@ program bench_kernel
   end if
   if (model%layout%n_chunk > 1) error stop 'the deck has more than one chunk of elements'
   call renumber_model(model)
-  call start_state(model, log, state)
+  call start_state(model, log, state, error)
+  if (allocated(error)) error stop 1
   write (output_unit, '(a, f0.3)') 'kernel_ns,', time_kernel()
   write (output_unit, '(a, f0.3)') 'bandwidth_gb_s,', measure_bandwidth()
 

@@ -1,0 +1,140 @@
+! SPDX-License-Identifier: MIT
+!> Time of contact alone, whole (search, points, pressure, scatter, energy): two chains that face each other, the
+!> slave sliding over the master by 1e-4 of a segment a step. `flat`: all slave nodes touch; `crown`:
+!> the slave is part of a circle that dips into a flat master, a third of its nodes touch.
+!> usage: bench_contact [SLAVE_NODES [TYPE]]. Prints a row per scene, size and type: the best and the median of interleaved
+!> rounds, ns per step, slave node and point.
+program bench_contact
+  use, intrinsic :: iso_fortran_env, only : output_unit
+  use contact_factories_m, only : problem_t, make_problem, line
+  use contact_force_m, only : start_contact, apply_contact
+  use kinds_m, only : wp, long
+  implicit none
+
+  integer, parameter :: n_type = 7, n_round = 5, sizes(3) = [20, 1000, 100000]
+  character(5), parameter :: scenes(2) = [character(5) :: 'flat', 'crown']
+  !> Steps times slave nodes of a round.
+  integer, parameter :: n_work = 200000
+  real(wp), parameter :: slip = 1.0e-4_wp
+  integer :: i_scene, i_size, chosen(2)
+  character(20) :: argument
+
+  chosen = 0
+  do i_size = 1, command_argument_count()
+    call get_command_argument(i_size, argument)
+    read (argument, *) chosen(i_size)
+  end do
+  write (output_unit, '(a)') 'scene,slave_nodes,type,points,active,ns_step,ns_step_median,' &
+    //'ns_slave_node,ns_point,of_type_1'
+  do i_scene = 1, size(scenes)
+    do i_size = 1, size(sizes)
+      if (chosen(1) > 0 .and. chosen(1) /= sizes(i_size)) cycle
+      call time_types(scenes(i_scene), sizes(i_size))
+    end do
+  end do
+
+contains
+
+  !> All types of one scene, a round of each in turn.
+  subroutine time_types(scene, n)
+    character(*), intent(in) :: scene
+    integer, intent(in) :: n !! slave nodes
+    type(problem_t), allocatable :: problems(:)
+    real(wp) :: times(n_round, n_type), best
+    integer :: i_type, i_round, n_step
+
+    allocate (problems(n_type))
+    times = huge(1.0_wp)
+    do i_type = 1, n_type
+      if (chosen(2) > 0 .and. chosen(2) /= i_type) cycle
+      call start_problem(problems(i_type), scene, n, i_type)
+      call take_steps(problems(i_type), 3, best)
+    end do
+    n_step = max(3, n_work/n)
+    do i_round = 1, n_round
+      do i_type = 1, n_type
+        if (chosen(2) > 0 .and. chosen(2) /= i_type) cycle
+        call take_steps(problems(i_type), n_step, times(i_round, i_type))
+      end do
+    end do
+    do i_type = 1, n_type
+      if (chosen(2) > 0 .and. chosen(2) /= i_type) cycle
+      best = minval(times(:, i_type))
+      associate (memory => problems(i_type)%memory)
+        write (output_unit, '(a, 4(",", i0), 4(",", f0.2), ",", f0.3)') trim(scene), n, i_type, memory%points%n, &
+          memory%n_active, best, median(times(:, i_type)), best/n, best/max(1, memory%points%n), &
+          best/minval(times(:, 1))
+      end associate
+    end do
+  end subroutine time_types
+
+  !> Chains of unit segments, the master's a little longer.
+  subroutine start_problem(problem, scene, n, i_type)
+    type(problem_t), intent(out) :: problem
+    character(*), intent(in) :: scene
+    integer, intent(in) :: n, i_type
+    real(wp), allocatable :: slave(:, :), master(:, :)
+    integer :: n_master
+
+    slave = line([0.0_wp, 0.0_wp], [real(n - 1, wp), 0.0_wp], n - 1)
+    n_master = nint((n + 9)/1.02_wp)
+    master = line([n + 4.0_wp, 0.0_wp], [-5.0_wp, 0.0_wp], n_master)
+    slave(2, :) = -1.0e-3_wp*(1.0_wp + 0.1_wp*sin(real(slave(1, :), wp)))
+    ! Depth at the middle such that a third of the chord is below zero.
+    if (scene == 'crown') slave(2, :) = 0.3_wp/n*((slave(1, :) - 0.5_wp*(n - 1))**2/n - n/36.0_wp)
+    call make_problem(problem, slave, master, 1.0_wp)
+    problem%contact%contact_type = i_type
+    problem%contact%n_gauss = 6
+    call start_contact(problem%contact, problem%model, problem%log, problem%memory)
+  end subroutine start_problem
+
+  !> Mean time of a step, ns of this process (the machine may be shared). Moving the slave is not counted.
+  subroutine take_steps(problem, n_step, time)
+    type(problem_t), intent(inout) :: problem
+    integer, intent(in) :: n_step
+    real(wp), intent(out) :: time
+    real(wp) :: start, middle, finish
+    integer :: i
+
+    call cpu_time(start)
+    do i = 1, n_step
+      call move_slave(problem)
+      call apply_contact(problem%contact, problem%motion, problem%mass, 1.0e-9_wp*problem%cycle, 1.0e-9_wp, &
+        problem%cycle, problem%clock, problem%memory, problem%force)
+    end do
+    call cpu_time(middle)
+    do i = 1, n_step
+      call move_slave(problem)
+    end do
+    call cpu_time(finish)
+    problem%cycle = problem%cycle - n_step
+    time = 1.0e9_wp*((middle - start) - (finish - middle))/n_step
+  end subroutine take_steps
+
+  !> To and fro over two segments.
+  subroutine move_slave(problem)
+    type(problem_t), intent(inout) :: problem
+    integer :: i
+    real(wp) :: shift
+
+    problem%cycle = problem%cycle + 1
+    shift = 2.0_wp*abs(1.0_wp - modulo(0.5_wp*slip*problem%cycle, 2.0_wp))
+    do i = 1, problem%contact%slave%n_node
+      problem%motion(1, i) = shift
+    end do
+  end subroutine move_slave
+
+  !> Median of an odd number of values.
+  pure function median(values)
+    real(wp), intent(in) :: values(:)
+    real(wp) :: median
+    integer :: i
+
+    median = values(1)
+    do i = 1, size(values)
+      if (count(values < values(i)) <= size(values)/2 .and. count(values > values(i)) &
+        <= size(values)/2) median = values(i)
+    end do
+  end function median
+
+end program bench_contact
