@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> The command line: `i=DECK d=DIR jobid=NAME ncpu=N timing=... memory=... OVERRIDES`; a bare path works as i=.
+!> The command line: `i=DECK r=FILE d=DIR jobid=NAME ncpu=N timing=... memory=... OVERRIDES`; a bare path works as i=.
 module arguments_m
   use errors_m, only : error_t, raise, status_input
   implicit none
   private
-  public :: arguments_t, read_arguments, help_text, timing_by_phase, timing_by_interface, timing_off
+  public :: arguments_t, read_arguments, help_text, file_stem, only_end_time, timing_by_phase, timing_by_interface, timing_off
 
   !> Longest single argument.
   integer, parameter :: argument_length = 4096
@@ -16,7 +16,8 @@ module arguments_m
   type :: arguments_t
     logical :: help = .false.
     logical :: version = .false.
-    character(:), allocatable :: deck       !! path of the deck
+    character(:), allocatable :: deck       !! path of the deck; with a restart, of what changes, or unset
+    character(:), allocatable :: restart    !! path of the restart file to go on from, or unset
     character(:), allocatable :: directory  !! where results go
     character(:), allocatable :: job        !! stem of the result files
     character(:), allocatable :: line       !! all arguments in one line, for the record
@@ -51,10 +52,14 @@ contains
       call read_word(trim(word), arguments, mistakes)
     end do
     if (arguments%help .or. arguments%version) return
-    if (.not. allocated(arguments%deck)) mistakes = mistakes &
-      //'no deck given: expected i=DECK'//new_line('a')
+    if (.not. allocated(arguments%deck) .and. .not. allocated(arguments%restart)) &
+      mistakes = mistakes//'no deck given: expected i=DECK (or r=FILE to go on)'//new_line('a')
     if (len(mistakes) > 0) then
       call raise(error, mistakes//'try slideline --help', status_input)
+      return
+    end if
+    if (allocated(arguments%restart)) then
+      if (.not. allocated(arguments%directory)) arguments%directory = folder_of(arguments%restart)
       return
     end if
     if (.not. allocated(arguments%directory)) arguments%directory = '.'
@@ -85,6 +90,8 @@ contains
     select case (name)
     case ('i')
       call take(arguments%deck, value, 'deck', mistakes)
+    case ('r')
+      call take(arguments%restart, value, 'r=', mistakes)
     case ('d')
       call take(arguments%directory, value, 'd=', mistakes)
     case ('jobid')
@@ -167,6 +174,27 @@ contains
     end do
   end function lower
 
+  !> Whether the command line changes nothing of a deck but its end time.
+  pure function only_end_time(arguments) result(only)
+    type(arguments_t), intent(in) :: arguments
+    logical :: only
+    integer :: i
+
+    only = .true.
+    do i = 1, size(arguments%overrides)
+      only = only .and. lower(arguments%overrides(i)(:7)) == 'endtim='
+    end do
+  end function only_end_time
+
+  !> The folder that a file lies in.
+  pure function folder_of(path) result(folder)
+    character(*), intent(in) :: path
+    character(:), allocatable :: folder
+
+    folder = path(:index(path, '/', back=.true.))
+    if (len(folder) == 0) folder = '.'
+  end function folder_of
+
   !> File name without folders and last extension.
   pure function file_stem(path) result(stem)
     character(*), intent(in) :: path
@@ -185,8 +213,11 @@ contains
 
     text = 'slideline: 2D explicit contact dynamics'//n//n// &
       'usage: slideline i=DECK [d=DIR] [jobid=NAME] [ncpu=N] [timing=...] [OVERRIDES]'//n// &
+      '       slideline r=FILE [i=CHANGES] [d=DIR] [ncpu=N] [endtim=T]   go on from a restart file'//n// &
       '       slideline DECK ...     the same'//n//n// &
       '  i=DECK        LS-DYNA style keyword deck'//n// &
+      '  r=FILE        restart file (JOB.dump01.h5, JOB.runrsf.h5): the run goes on from there, in its'//n// &
+      '                folder unless d= says otherwise; i= then names a small deck of changes'//n// &
       '  d=DIR         folder of the results, made with its parents (default: .)'//n// &
       '  jobid=NAME    stem of the result files (default: the deck''s)'//n// &
       '  ncpu=N        threads (default 1); the results have the same bits at any number'//n// &
@@ -199,6 +230,8 @@ contains
       '  endtim=T dt=DT tssfac=F     end time, constant step, safety factor'//n// &
       '  p:NAME=VALUE                a *PARAMETER of the deck'//n//n// &
       'results: JOB.vtkhdf (ParaView), JOB.*.csv, JOB.log, JOB.effective.k (the deck as run)'//n// &
+      'while it runs: a file DIR/d3kil with sw1 (restart file, stop), sw2 (status line), sw3 (restart'//n// &
+      'file), sw4 (plot state) or stop'//n// &
       'exit status: 0 normal, 1 refused input, 2 error termination, 3 files, 4 stopped on request'//n// &
       '--version prints the version, compiler and options'
   end function help_text

@@ -4,6 +4,7 @@ module run_m
   use, intrinsic :: iso_fortran_env, only : output_unit
   use arguments_m, only : arguments_t, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
+  use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
   use clock_m, only : lap, start_clock, stop_clock, split_contact, phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
@@ -11,12 +12,16 @@ module run_m
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
   use files_m, only : make_directory, join_path
-  use log_m, only : open_log, close_log, write_log, to_text
+  use go_on_m, only : take_up_deck
+  use log_m, only : open_log, close_log, write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use progress_m, only : show_end
   use renumber_m, only : renumber_model
+  use restart_m, only : take_up_state, take_up_results, take_up_outputs, forget_files
+  use restart_plan_m, only : restarts_t
   use results_file_m, only : run_info_t
+  use sense_switch_m, only : forget_switch
   use signals_m, only : catch_stop_signals
   use start_m, only : start_state
   use state_m, only : state_t
@@ -29,12 +34,13 @@ contains
 
   !> Run what the command line asks for.
   subroutine run_deck(arguments, error)
-    type(arguments_t), intent(in) :: arguments
+    type(arguments_t), intent(inout) :: arguments !! gets the job name of a restart file
     type(error_t), allocatable, intent(out) :: error
     type(model_t) :: model
     type(state_t) :: state
     type(monitor_t) :: monitor
     type(run_info_t) :: info
+    type(deck_request_t) :: request
     character(:), allocatable :: prefix
 
     call start_clock(monitor%clock)
@@ -42,53 +48,78 @@ contains
     call catch_stop_signals()
     call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
-    call read_deck(request_of(arguments), contact_kinds, monitor%log, model, &
-      info%effective_deck, error)
+    call make_request(arguments, monitor, request, error)
     if (allocated(error)) return
+    call read_deck(request, contact_kinds, monitor%log, model, info%effective_deck, error)
+    if (allocated(error)) return
+    if (allocated(request%text)) deallocate (request%text)
     if (arguments%timing == timing_by_interface) &
       call split_contact(monitor%clock, size(model%contacts))
     call renumber_model(model)
     prefix = join_path(arguments%directory, arguments%job)
+    if (monitor%restarts%goes_on) then
+      call take_up_state(monitor%restarts%source, model, state, error)
+      if (.not. allocated(error)) &
+        call take_up_results(monitor%restarts, model, prefix//'.vtkhdf', error)
+      if (allocated(error)) return
+    end if
     call open_outputs(arguments, prefix, info%effective_deck, monitor, error)
     if (allocated(error)) return
-    call describe_run(arguments, model, info)
+    call describe_run(arguments, model, monitor%restarts, info)
     call open_files(model, prefix, info, monitor, error)
     if (allocated(error)) return
     deallocate (info%effective_deck)
-    call start_state(model, monitor%log, state, error)
+    if (.not. monitor%restarts%goes_on) call start_state(model, monitor%log, state, error)
     if (allocated(error)) return
     ! Used up: the state holds it now.
     if (allocated(model%conditions%initial_velocity)) &
       deallocate (model%conditions%initial_velocity)
     call start_monitor(model, size(state%elements%history) > 0, monitor)
+    if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
+    if (allocated(error)) return
     call lap(monitor%clock, phase_input)
     call drive(arguments, model, prefix, state, monitor, error)
     call close_log(monitor%log)
   end subroutine run_deck
 
-  !> What the deck layer has to know of the command line.
-  pure function request_of(arguments) result(request)
-    type(arguments_t), intent(in) :: arguments
-    type(deck_request_t) :: request
+  !> What the deck layer has to know of the command line and of a restart file.
+  subroutine make_request(arguments, monitor, request, error)
+    type(arguments_t), intent(inout) :: arguments
+    type(monitor_t), intent(inout) :: monitor
+    type(deck_request_t), intent(out) :: request
+    type(error_t), allocatable, intent(out) :: error
 
-    request%path = arguments%deck
     request%overrides = arguments%overrides
-  end function request_of
+    if (allocated(arguments%restart)) then
+      call take_up_deck(arguments, program_text(), monitor, request, error)
+    else
+      request%path = arguments%deck
+      monitor%restarts%deck = arguments%deck(index(arguments%deck, '/', back=.true.) + 1:)
+    end if
+  end subroutine make_request
+
+  !> Version and build of the program.
+  pure function program_text() result(text)
+    character(:), allocatable :: text
+
+    text = version//', '//build_type//', '//compiler//', '//flags
+  end function program_text
 
   !> What the results file keeps about the run, beside the effective deck.
-  pure subroutine describe_run(arguments, model, info)
+  pure subroutine describe_run(arguments, model, restarts, info)
     type(arguments_t), intent(in) :: arguments
     type(model_t), intent(in) :: model
+    type(restarts_t), intent(in) :: restarts
     type(run_info_t), intent(inout) :: info
 
     if (allocated(model%controls%title)) info%title = model%controls%title
-    info%deck = arguments%deck(index(arguments%deck, '/', back=.true.) + 1:)
+    info%deck = restarts%deck
     info%version = version
     info%build = build_type//', '//compiler//', '//flags
     info%options = arguments%line
   end subroutine describe_run
 
-  !> Make the directory, the log and the effective deck.
+  !> Make the directory, the log and the effective deck, which restart files will hold.
   subroutine open_outputs(arguments, prefix, effective, monitor, error)
     type(arguments_t), intent(in) :: arguments
     character(*), intent(in) :: prefix, effective
@@ -99,7 +130,9 @@ contains
 
     call make_directory(arguments%directory, error)
     if (allocated(error)) return
-    call open_log(monitor%log, prefix//'.log', error)
+    call open_log(monitor%log, prefix//'.log', monitor%restarts%goes_on, error)
+    if (allocated(error)) return
+    call prepare_restarts(arguments, prefix, effective, monitor%restarts, error)
     if (allocated(error)) return
     open (newunit=unit, file=prefix//'.effective.k', status='replace', action='write', &
       access='stream', form='unformatted', iostat=status, iomsg=reason)
@@ -108,6 +141,25 @@ contains
     if (status /= 0) call raise(error, 'cannot write '//prefix//'.effective.k: '//trim(reason), &
       status_files)
   end subroutine open_outputs
+
+  !> What restart files need to know; what an earlier run of this name has left of them is removed.
+  subroutine prepare_restarts(arguments, prefix, effective, restarts, error)
+    type(arguments_t), intent(in) :: arguments
+    character(*), intent(in) :: prefix, effective
+    type(restarts_t), intent(inout) :: restarts
+    type(error_t), allocatable, intent(out) :: error
+    type(checksum_t) :: checksum
+
+    restarts%directory = arguments%directory
+    restarts%job = arguments%job
+    restarts%prefix = prefix
+    restarts%program = program_text()
+    call start_checksum(checksum)
+    call add_bytes(checksum, effective)
+    restarts%effective_deck_checksum = checksum_text(checksum)
+    call forget_switch(arguments%directory)
+    call forget_files(restarts, error)
+  end subroutine prepare_restarts
 
   !> Advance to the end, close the files and say how it ended.
   subroutine drive(arguments, model, prefix, state, monitor, error)
@@ -124,6 +176,9 @@ contains
     if (model%controls%check_only) then
       reason = 'model checked, no solution asked for (NOSOL)'
     else if (model%controls%implicit%is_on) then
+      if (model%controls%output%dump_cycles >= 0 .or. model%controls%output%running_cycles > 0) &
+        call warn(monitor%log, 'restart files (*DATABASE_BINARY_D3DUMP, RUNRSF) are written by the ' &
+        //'explicit method alone: this run writes none')
       call advance_implicit(model, state, monitor, reason, error)
     else
       call advance_explicit(model, arguments%n_thread, state, monitor, reason, error)

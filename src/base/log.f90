@@ -25,16 +25,23 @@ module log_m
 
 contains
 
-  !> Open the file and write what has been waiting. Fails when the file cannot be made.
-  subroutine open_log(log, path, error)
+  !> Open the file, behind what it holds where a run goes on, and write what has been waiting. Fails when
+  !> the file cannot be made.
+  subroutine open_log(log, path, goes_on, error)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: path
+    logical, intent(in) :: goes_on
     type(error_t), allocatable, intent(out) :: error
     integer :: status
     character(200) :: reason
 
-    open (newunit=log%unit, file=path, status='replace', action='write', iostat=status, &
-      iomsg=reason)
+    if (goes_on) then
+      open (newunit=log%unit, file=path, position='append', action='write', iostat=status, &
+        iomsg=reason)
+    else
+      open (newunit=log%unit, file=path, status='replace', action='write', iostat=status, &
+        iomsg=reason)
+    end if
     if (status /= 0) then
       call raise(error, 'cannot write the log '//path//': '//trim(reason), status_files)
       return

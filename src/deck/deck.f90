@@ -12,7 +12,7 @@ module deck_m
   use model_m, only : model_t
   use deck_report_m, only : emit_warnings, emit_errors
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text
-  use deck_reader_m, only : read_blocks
+  use deck_reader_m, only : read_blocks, cut_deck
   use deck_schema_m, only : find_keyword, known_honoured, known_ignored, known_refused
   use deck_parameter_table_m, only : parameters_t
   use deck_parameters_m, only : read_parameters
@@ -40,6 +40,7 @@ module deck_m
     character(:), allocatable :: path
     character(:), allocatable :: overrides(:) !! `name=value`, `name.interface=value`,
                                               !! `p:NAME=value`
+    character(:), allocatable :: text         !! of the deck where it is no file; `path` names it then
   end type deck_request_t
 
 contains
@@ -54,9 +55,15 @@ contains
     character(:), allocatable, intent(out) :: effective      !! the deck as run
     type(error_t), allocatable, intent(out) :: error
     type(deck_t) :: deck
+    character(:), allocatable :: text
 
-    call read_blocks(request%path, deck, error)
-    if (allocated(error)) return
+    if (allocated(request%text)) then
+      text = request%text
+      call cut_deck(request%path, text, deck)
+    else
+      call read_blocks(request%path, deck, error)
+      if (allocated(error)) return
+    end if
     call interpret_deck(deck, request, kinds, log, model, effective, error)
   end subroutine read_deck
 

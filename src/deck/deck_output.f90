@@ -12,6 +12,9 @@ module deck_output_m
   private
   public :: read_database
 
+  !> Most cycles between two restart files.
+  real(wp), parameter :: most_cycles = 2.0e9_wp
+
 contains
 
   !> One *DATABASE_ keyword with an interval.
@@ -34,6 +37,12 @@ contains
     select case (deck%blocks(i_block)%name)
     case ('DATABASE_BINARY_D3PLOT')
       file = output_plot
+    case ('DATABASE_BINARY_D3DUMP')
+      call take_cycles(deck, cursor, card, raw%controls%output%dump_cycles)
+      return
+    case ('DATABASE_BINARY_RUNRSF')
+      call take_cycles(deck, cursor, card, raw%controls%output%running_cycles)
+      return
     case ('DATABASE_GLSTAT')
       file = output_glstat
     case ('DATABASE_MATSUM')
@@ -55,5 +64,22 @@ contains
     end if
     raw%outputs(file) = history
   end subroutine read_database
+
+  !> Cycles between two restart files.
+  subroutine take_cycles(deck, cursor, card, cycles)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(out) :: cycles
+
+    cycles = 0
+    if (.not. (card%r(1) >= 0.0_wp .and. card%r(1) <= most_cycles)) then
+      call report_field(deck, cursor, card, 1, 'is not a number of cycles')
+    else if (abs(card%r(1) - anint(card%r(1))) > 0.0_wp) then
+      call report_field(deck, cursor, card, 1, 'is not a whole number of cycles')
+    else
+      cycles = nint(card%r(1))
+    end if
+  end subroutine take_cycles
 
 end module deck_output_m

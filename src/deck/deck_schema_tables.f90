@@ -189,6 +189,10 @@ module deck_schema_tables_m
     'DATABASE_BINARY_D3PLOT', &
     ' DT:f LCDT:i BEAM:is NPLTC:i PSETID:iw', &
     ' IOOPT:is RATE:fs CUTOFF:fs WINDOW:fs TYPE:is PSET:iw', &
+    'DATABASE_BINARY_D3DUMP', &
+    ' CYCL:f NR:is BEAM:is NPLTC:iw PSETID:iw', &
+    'DATABASE_BINARY_RUNRSF', &
+    ' CYCL:f NR:iw=1 BEAM:is NPLTC:iw PSETID:iw', &
     'DATABASE_HISTORY_NODE', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_HISTORY_NODE_SET', &
@@ -248,8 +252,6 @@ module deck_schema_tables_m
     'CONTROL_ALE ignored', &
     'CONTROL_RIGID ignored', &
     'DATABASE_FORMAT ignored', &
-    'DATABASE_BINARY_D3DUMP ignored', &
-    'DATABASE_BINARY_RUNRSF ignored', &
     'DATABASE_BINARY_D3THDT ignored', &
     'DATABASE_BINARY_INTFOR ignored', &
     'DATABASE_BINARY_D3DRLF ignored', &

@@ -28,6 +28,9 @@ module controls_m
     type(interval_t) :: rcforc
     type(interval_t) :: nodout
     integer, allocatable :: history_nodes(:) !! node indices of *DATABASE_HISTORY_NODE
+    integer :: dump_cycles = -1    !! cycles between restart files that stay (*DATABASE_BINARY_D3DUMP), 0 =
+                                   !! at the end alone, -1 = none
+    integer :: running_cycles = 0  !! cycles between restart files that replace each other (RUNRSF), 0 = none
     integer :: status_interval = 0 !! cycles between progress lines (IKEDIT); 0 = the program's choice
   end type output_plan_t
 

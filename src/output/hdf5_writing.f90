@@ -22,7 +22,7 @@ module hdf5_writing_m
   public :: growing_t, as_real, as_integer, as_index, &
     create_growing, link_growing, append_rows, close_growing, &
     make_group, write_rows, write_string_attribute, write_index_attribute, write_text, &
-    check_status
+    check_status, memory_type, file_type
 
   !> What the rows of a dataset hold: float64, int32, int64.
   integer, parameter :: as_real = 1, as_integer = 2, as_index = 3

@@ -7,23 +7,24 @@
 !> file before, into rows that nobody looks at yet; tables of chunks lie within a page each and do
 !> not split as long as no more states come than the deck plans.
 module results_arrays_m
-  use, intrinsic :: iso_c_binding, only : c_loc, c_char, c_int, c_null_char
+  use, intrinsic :: iso_c_binding, only : c_loc
   use hdf5, only : hid_t, hsize_t, size_t, H5P_FILE_CREATE_F, H5P_FILE_ACCESS_F, H5F_ACC_TRUNC_F, &
-    H5S_SCALAR_F, H5T_STD_I64LE, H5_INTEGER_KIND, h5kind_to_type, h5dont_atexit_f, h5open_f, &
-    h5eset_auto_f, h5pcreate_f, h5pclose_f, h5pset_sym_k_f, h5pset_cache_f, h5pset_alignment_f, &
+    H5S_SCALAR_F, H5T_STD_I64LE, H5_INTEGER_KIND, h5kind_to_type, h5pcreate_f, h5pclose_f, &
+    h5pset_sym_k_f, h5pset_cache_f, h5pset_alignment_f, &
     h5pset_meta_block_size_f, h5fcreate_f, h5gopen_f, h5gclose_f, h5screate_f, h5sclose_f, &
     h5acreate_f, h5awrite_f
   use kinds_m, only : wp, long
   use errors_m, only : error_t, raise, status_files
   use mesh_m, only : mesh_t
   use controls_m, only : controls_t
+  use hdf5_library_m, only : open_library
   use hdf5_writing_m, only : growing_t, as_real, as_index, create_growing, link_growing, &
     make_group, check_status
   implicit none
   private
   public :: results_file_t, create_file, create_steps, create_fields, planned_states, &
     states_per_chunk, unfinished, n_point_field, n_cell_field, n_step_array, &
-    step_values, step_points, step_ones
+    point_names, point_columns, cell_names, cell_columns, step_values, step_points, step_ones
 
   !> Fields, in the order in which `append_state` writes them, and their numbers of columns.
   integer, parameter :: n_point_field = 6, n_cell_field = 4
@@ -59,6 +60,7 @@ module results_arrays_m
     integer(hid_t) :: id = -1                   !! open file
     integer(hid_t) :: n_steps = -1              !! open attribute NSteps
     integer(long) :: n_state = 0                !! states in the file
+    real(wp), allocatable :: times(:)           !! (n_state or more) their times
     type(growing_t) :: point_fields(n_point_field)
     type(growing_t) :: cell_fields(n_cell_field)
     type(growing_t) :: steps(n_step_array)
@@ -66,16 +68,6 @@ module results_arrays_m
     real(wp), allocatable :: point_values(:)    !! (n_node) work space
     real(wp), allocatable :: cell_values(:)     !! (n_element) work space
   end type results_file_t
-
-  interface
-    !> POSIX setenv; 0 on success.
-    function c_setenv(name, text, overwrite) bind(c, name='setenv') result(status)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: name(*), text(*) !! end with a null
-      integer(c_int), value :: overwrite   !! 0: what the user has set stays
-      integer(c_int) :: status
-    end function c_setenv
-  end interface
 
 contains
 
@@ -106,15 +98,6 @@ contains
     n = int(max(1_long, min(int(n, long), large_chunk/state_size)))
   end function states_per_chunk
 
-  !> Let viewers open the file while the run still writes it, and let it live on network file
-  !> systems without locks: switches HDF5's lock off unless the user's environment says otherwise.
-  !> To be called before HDF5 is.
-  subroutine allow_reading()
-    integer(c_int) :: status
-
-    status = c_setenv('HDF5_USE_FILE_LOCKING'//c_null_char, 'FALSE'//c_null_char, 0_c_int)
-  end subroutine allow_reading
-
   !> Make the HDF5 file. What keeps it whole at every instant: no chunk waits in a cache; a table of
   !> chunks lies within a page, so that it changes with one write; tables of groups are small, so
   !> that all of Steps lies within a page.
@@ -122,19 +105,16 @@ contains
     type(results_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(out) :: error
     integer(hid_t) :: creation, access
-    integer :: status(9)
+    integer :: status(8)
 
-    call allow_reading()
-    call h5dont_atexit_f(status(1)) ! HDF5's own clean-up crashes after a full disk
-    call h5open_f(status(1))
-    call h5eset_auto_f(0, status(2)) ! statuses become errors here; HDF5 itself stays quiet
-    call h5pcreate_f(H5P_FILE_CREATE_F, creation, status(3))
-    call h5pset_sym_k_f(creation, 4, 4, status(4))
-    call h5pcreate_f(H5P_FILE_ACCESS_F, access, status(5))
-    call h5pset_cache_f(access, 0, 0_size_t, 0_size_t, 0.0, status(6))
-    call h5pset_alignment_f(access, table_size, page_size, status(7))
-    call h5pset_meta_block_size_f(access, 4*page_size, status(8))
-    call h5fcreate_f(file%path//unfinished, H5F_ACC_TRUNC_F, file%id, status(9), creation, access)
+    call open_library(status(1))
+    call h5pcreate_f(H5P_FILE_CREATE_F, creation, status(2))
+    call h5pset_sym_k_f(creation, 4, 4, status(3))
+    call h5pcreate_f(H5P_FILE_ACCESS_F, access, status(4))
+    call h5pset_cache_f(access, 0, 0_size_t, 0_size_t, 0.0, status(5))
+    call h5pset_alignment_f(access, table_size, page_size, status(6))
+    call h5pset_meta_block_size_f(access, 4*page_size, status(7))
+    call h5fcreate_f(file%path//unfinished, H5F_ACC_TRUNC_F, file%id, status(8), creation, access)
     if (minval(status) < 0) then
       file%id = -1
       call raise(error, 'cannot write '//file%path//' (no directory, no permission or no space)', &

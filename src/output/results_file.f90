@@ -26,18 +26,20 @@ module results_file_m
     write_index_attribute, check_status
   implicit none
   private
-  public :: results_file_t, run_info_t, open_results, append_state, finish_results
+  public :: results_file_t, run_info_t, open_results, append_state, append_instant, take_name, &
+    finish_results
 
 contains
 
   !> Make the file with the mesh and without a state. It has its own name from the first state on,
   !> and `<path>.part` before, so that what stands under the name always opens. A file of that name
-  !> from an earlier run is removed.
-  subroutine open_results(file, path, model, run_info, error)
+  !> from an earlier run is removed, unless its states are going to be taken over.
+  subroutine open_results(file, path, model, run_info, goes_on, error)
     type(results_file_t), intent(out) :: file
     character(*), intent(in) :: path
     type(model_t), intent(in) :: model
     type(run_info_t), intent(in) :: run_info
+    logical, intent(in) :: goes_on      !! a restart: what stands under the name stays for now
     type(error_t), allocatable, intent(out) :: error
     integer(hid_t) :: group
     integer :: status, n_planned
@@ -45,8 +47,9 @@ contains
     group = -1
     n_planned = planned_states(model%controls)
     file%path = path
-    call remove_file(path, error)
+    if (.not. goes_on) call remove_file(path, error)
     if (allocated(error)) return
+    allocate (file%times(n_planned))
     call create_file(file, error)
     if (allocated(error)) return
     call make_group(file%id, 'VTKHDF', error)
@@ -71,25 +74,38 @@ contains
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in), target :: snapshot
     type(error_t), allocatable, intent(out) :: error
-    real(wp), target :: time(1)
-    integer(long), target :: numbers(4)
-    integer :: i
 
     if (file%id < 0 .or. file%is_broken) return
     call append_point_fields(file, model, snapshot, error)
     call append_cell_fields(file, snapshot, error)
+    call append_instant(file, model, snapshot%time, error)
+    call take_name(file, error)
+    call note_failure(file, error)
+  end subroutine append_state
+
+  !> Make a state of the rows that have been appended to the fields.
+  subroutine append_instant(file, model, instant, error)
+    type(results_file_t), intent(inout) :: file
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: instant                    !! its time
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), target :: time(1)
+    integer(long), target :: numbers(4)
+    integer :: i
+
     call flush_file(file, error)
-    time = snapshot%time
+    time = instant
     numbers = [file%n_state*model%mesh%n_node, file%n_state*model%mesh%n_element, 0_long, 1_long]
     call append_rows(file%steps(step_values), 1, c_loc(time), error)
     do i = step_points, step_ones
       call append_rows(file%steps(i), 1, c_loc(numbers(i - 1)), error)
     end do
-    if (.not. allocated(error)) file%n_state = file%n_state + 1
+    if (allocated(error)) return
+    if (file%n_state == size(file%times)) file%times = [file%times, file%times]
+    file%n_state = file%n_state + 1
+    file%times(file%n_state) = instant
     call publish(file, error)
-    if (file%n_state == 1) call take_name(file, error)
-    call note_failure(file, error)
-  end subroutine append_state
+  end subroutine append_instant
 
   !> Give the file its own name.
   subroutine take_name(file, error)

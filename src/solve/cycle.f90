@@ -2,7 +2,7 @@
 !> What one thread does in each explicit cycle: contact and loads before the elements; writing; time,
 !> step and health after them.
 module cycle_m
-  use clock_m, only : lap, share_contact, phase_nodes
+  use clock_m, only : lap, share_contact, phase_nodes, phase_output
   use constraints_m, only : fix_nodes, update_activity
   use contact_check_m, only : report_contact_start, report_contact_end, follow_springs
   use contact_force_m, only : apply_contact
@@ -11,6 +11,7 @@ module cycle_m
   use external_force_m, only : form_external_force, body_acceleration, damping_rate
   use health_m, only : check_elements, check_step, check_energy, judge_energies
   use kinds_m, only : wp
+  use log_m, only : warn
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use node_motion_m, only : leap_t, make_leap
@@ -18,6 +19,10 @@ module cycle_m
     prescribed_work
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
   use progress_m, only : show_progress, wants_line
+  use restart_m, only : write_dump, write_running, take_up_steps
+  use restart_plan_m, only : wants_dump, wants_running, wants_look
+  use sense_switch_m, only : take_switch, switch_none, switch_dump_and_stop, switch_status, &
+    switch_dump, switch_plot, switch_stop, switch_unknown
   use signals_m, only : stop_requested
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
   use state_m, only : state_t
@@ -31,6 +36,7 @@ module cycle_m
     logical :: writes = .true.       !! this cycle writes something
     logical :: finished = .false.    !! the run is over
     logical :: last = .false.        !! this cycle is the last one
+    logical :: plots = .false.       !! this cycle writes a plot state because someone asked for it
     type(due_t) :: due
     type(leap_t) :: leap             !! motion factors of this cycle
     type(step_plan_t) :: steps
@@ -46,9 +52,10 @@ module cycle_m
 contains
 
   !> Set up the cycles.
-  subroutine start_cycles(model, state, cycle)
+  subroutine start_cycles(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
+    type(monitor_t), intent(inout) :: monitor
     type(cycle_t), intent(out) :: cycle
 
     associate (motions => model%conditions%motions)
@@ -58,6 +65,8 @@ contains
     end associate
     cycle%reason = 'termination time reached'
     cycle%steps = start_steps(model, state%time)
+    if (monitor%restarts%goes_on) call take_up_steps(model, monitor%restarts%source, cycle%steps, &
+      cycle%damping, cycle%ratio, cycle%error)
   end subroutine start_cycles
 
   !> Forces on the special nodes at u(n), and what this cycle has to write.
@@ -70,6 +79,8 @@ contains
 
     cycle%last = is_last(cycle%steps, state%cycle, state%time) .or. cycle%last
     cycle%due = find_due(monitor, state%time, state%dt, state%cycle == 0 .or. cycle%last)
+    cycle%due%plot = cycle%due%plot .or. (cycle%plots .and. monitor%has_plot)
+    cycle%plots = .false.
     cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
     call apply_loads(model, state, cycle)
     call lap(monitor%clock, phase_nodes)
@@ -241,12 +252,56 @@ contains
     if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
       state%time, state%dt, cycle%error)
     if (allocated(cycle%error)) cycle%finished = .true.
-    if (stop_requested() .and. .not. cycle%last) then
-      cycle%last = .true.
-      cycle%reason = 'stopped on request'
-    end if
+    if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
     if (wants_line(monitor%progress, state%cycle, monitor%clock%last)) call show_progress( &
       monitor%progress, monitor%clock, state%cycle, state%time, state%dt, cycle%ratio, '')
   end subroutine end_cycle
+
+  !> Stop, restart files, states and lines that are due or that someone asks for. The state is that before the
+  !> next cycle; a run that goes on from it repeats that cycle.
+  subroutine heed_requests(state, monitor, cycle)
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(cycle_t), intent(inout) :: cycle
+    integer :: switch
+    logical :: looks, ends, signalled
+
+    switch = switch_none
+    call wants_look(monitor%restarts, monitor%clock%is_on, monitor%clock%last, state%cycle, looks)
+    if (looks) call take_switch(monitor%restarts%directory, switch)
+    if (switch == switch_unknown) call warn(monitor%log, 'd3kil holds none of sw1, sw2, sw3, sw4, stop')
+    if (switch == switch_status) call show_progress(monitor%progress, monitor%clock, state%cycle, &
+      state%time, state%dt, cycle%ratio, 'status (sw2)')
+    cycle%plots = switch == switch_plot
+    ends = is_last(cycle%steps, state%cycle, state%time)
+    signalled = stop_requested() .and. .not. ends
+    call write_restarts(switch == switch_dump_and_stop .or. switch == switch_dump, ends, signalled, &
+      state, monitor, cycle)
+    if (ends .or. .not. (signalled .or. switch == switch_dump_and_stop .or. switch == switch_stop)) &
+      return
+    cycle%last = .true.
+    cycle%reason = 'stopped on request'
+  end subroutine heed_requests
+
+  !> Write the restart files that are due. A stop by a signal counts as an end.
+  subroutine write_restarts(asked, ends, signalled, state, monitor, cycle)
+    logical, intent(in) :: asked       !! someone asks for one
+    logical, intent(in) :: ends        !! the next cycle is the last one
+    logical, intent(in) :: signalled   !! a signal asks for a stop
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(cycle_t), intent(inout) :: cycle
+    logical :: dumps, runs
+
+    dumps = asked .or. wants_dump(monitor%restarts, state%cycle, ends .or. signalled)
+    runs = wants_running(monitor%restarts, state%cycle, signalled)
+    if (.not. dumps .and. .not. runs) return
+    call lap(monitor%clock, phase_nodes)
+    if (dumps) call write_dump(state, monitor, cycle%steps, cycle%damping, cycle%ratio, cycle%error)
+    if (runs .and. .not. allocated(cycle%error)) call write_running(state, monitor, cycle%steps, &
+      cycle%damping, cycle%ratio, cycle%error)
+    call lap(monitor%clock, phase_output)
+    cycle%finished = allocated(cycle%error)
+  end subroutine write_restarts
 
 end module cycle_m

@@ -31,7 +31,12 @@ contains
     type(error_t), allocatable, intent(out) :: error  !! what went wrong, if anything
     type(cycle_t) :: cycle
 
-    call start_cycles(model, state, cycle)
+    call start_cycles(model, state, monitor, cycle)
+    if (allocated(cycle%error)) then
+      reason = cycle%error%message
+      call move_alloc(cycle%error, error)
+      return
+    end if
     !$omp parallel num_threads(n_thread) default(none) shared(model, state, monitor, cycle)
     call run_cycles(model, state, monitor, cycle)
     !$omp end parallel

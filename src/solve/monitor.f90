@@ -11,6 +11,7 @@ module monitor_m
   use model_m, only : model_t
   use output_schedule_m, only : schedule_t, start_schedule, is_due, mark_written
   use progress_m, only : progress_t, start_progress
+  use restart_plan_m, only : restarts_t, plan_restarts
   use results_file_m, only : results_file_t, run_info_t, open_results, append_state, finish_results
   use snapshot_m, only : snapshot_t
   use snapshot_filling_m, only : start_snapshot
@@ -33,6 +34,7 @@ module monitor_m
     type(log_t) :: log
     type(clock_t) :: clock
     type(progress_t) :: progress
+    type(restarts_t) :: restarts
     logical :: has_plot = .false. !! the deck asks for plot states
   end type monitor_t
 
@@ -50,7 +52,8 @@ contains
     call open_histories(monitor%histories, prefix, model, error)
     if (allocated(error)) return
     if (monitor%has_plot) &
-      call open_results(monitor%results, prefix//'.vtkhdf', model, run_info, error)
+      call open_results(monitor%results, prefix//'.vtkhdf', model, run_info, &
+        monitor%restarts%goes_on, error)
   end subroutine open_files
 
   !> Schedules, progress lines and the snapshot. Energies go with the plot states where the deck gives
@@ -75,6 +78,7 @@ contains
       call start_schedule(monitor%matsum, plan%matsum, model%curves, end_time)
       call start_progress(monitor%progress, end_time, plan%status_interval)
     end associate
+    call plan_restarts(monitor%restarts, model%controls%output)
     call start_snapshot(model, has_history, monitor%snapshot)
   end subroutine start_monitor
 

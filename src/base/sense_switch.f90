@@ -1,0 +1,53 @@
+! SPDX-License-Identifier: MIT
+!> Sense switches: a word in a file `d3kil` of the results folder asks a run for something, in the DYNA manner.
+module sense_switch_m
+  use errors_m, only : error_t
+  use files_m, only : file_exists, remove_file, join_path
+  use text_m, only : upper_case
+  implicit none
+  private
+  public :: take_switch, forget_switch, switch_none, switch_dump_and_stop, switch_status, &
+    switch_dump, switch_plot, switch_stop, switch_unknown
+
+  !> What is asked for: nothing; sw1, sw2, sw3, sw4, stop; a word that says nothing.
+  integer, parameter :: switch_none = 0, switch_dump_and_stop = 1, switch_status = 2, &
+    switch_dump = 3, switch_plot = 4, switch_stop = 5, switch_unknown = 6
+  !> Words of the first five.
+  character(4), parameter :: words(5) = [character(4) :: 'SW1', 'SW2', 'SW3', 'SW4', 'STOP']
+  character(*), parameter :: file_name = 'd3kil'
+
+contains
+
+  !> What the file in this folder asks for; the file is removed. One without a word is left: it may be
+  !> about to be written.
+  subroutine take_switch(directory, switch)
+    character(*), intent(in) :: directory
+    integer, intent(out) :: switch  !! one of the `switch_` constants
+    type(error_t), allocatable :: ignored
+    character(80) :: line
+    integer :: unit, status, i
+
+    switch = switch_none
+    if (.not. file_exists(join_path(directory, file_name))) return
+    open (newunit=unit, file=join_path(directory, file_name), status='old', action='read', &
+      iostat=status)
+    if (status /= 0) return
+    read (unit, '(a)', iostat=status) line
+    close (unit)
+    if (status /= 0 .or. len_trim(line) == 0) return
+    switch = switch_unknown
+    do i = 1, size(words)
+      if (upper_case(trim(adjustl(line))) == words(i)) switch = i
+    end do
+    call remove_file(join_path(directory, file_name), ignored)
+  end subroutine take_switch
+
+  !> Remove a file that was meant for an earlier run.
+  subroutine forget_switch(directory)
+    character(*), intent(in) :: directory
+    type(error_t), allocatable :: ignored
+
+    call remove_file(join_path(directory, file_name), ignored)
+  end subroutine forget_switch
+
+end module sense_switch_m

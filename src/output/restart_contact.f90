@@ -1,0 +1,127 @@
+! SPDX-License-Identifier: MIT
+!> The memory of an interface in a restart file (see restart_state_m).
+module restart_contact_m
+  use archive_m, only : archive_t, keep, keep_fixed, enter, leave
+  use contact_state_m, only : contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
+    cover_memory_t
+  implicit none
+  private
+  public :: keep_contact
+
+contains
+
+  !> The memory of one interface.
+  subroutine keep_contact(archive, name, contact)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(contact_state_t), intent(inout) :: contact
+
+    call enter(archive, name)
+    call keep(archive, 'n_slave', contact%n_slave)
+    call keep(archive, 'n_master', contact%n_master)
+    call keep(archive, 'nodes', contact%nodes)
+    call keep(archive, 'places', contact%places)
+    call keep(archive, 'travel', contact%travel)
+    call keep(archive, 'is_stale', contact%is_stale)
+    call keep(archive, 'next_search', contact%next_search)
+    call keep(archive, 'spots', contact%spots)
+    call keep(archive, 'spot_xi', contact%spot_xi)
+    call keep(archive, 'spot_share', contact%spot_share)
+    call keep_tracking(archive, 'slave_tracking', contact%slave_tracking)
+    call keep_tracking(archive, 'master_tracking', contact%master_tracking)
+    call keep_cover(archive, 'cover', contact%cover)
+    call keep_points(archive, 'points', contact%points)
+    call keep(archive, 'laps_pairing', contact%laps_pairing)
+    call keep(archive, 'averages_pressure', contact%averages_pressure)
+    call keep(archive, 'nodal', contact%nodal)
+    call keep(archive, 'mark', contact%mark)
+    call keep(archive, 'closed_gap', contact%closed_gap)
+    call keep(archive, 'force', contact%force)
+    call keep(archive, 'slave_penalty', contact%slave_penalty)
+    call keep(archive, 'master_penalty', contact%master_penalty)
+    call keep(archive, 'node_penalty', contact%node_penalty)
+    call keep(archive, 'energy', contact%energy)
+    call keep(archive, 'n_active', contact%n_active)
+    call keep(archive, 'n_released', contact%n_released)
+    call leave(archive)
+  end subroutine keep_contact
+
+  !> Spots followed over a chain.
+  subroutine keep_tracking(archive, name, tracking)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(tracking_t), intent(inout) :: tracking
+
+    call enter(archive, name)
+    call keep(archive, 'n', tracking%n)
+    call keep(archive, 'n_touching', tracking%n_touching)
+    call keep(archive, 'next_wake', tracking%next_wake)
+    call keep(archive, 'reach', tracking%reach)
+    call keep(archive, 'touching', tracking%touching)
+    call keep(archive, 'is_kept', tracking%is_kept)
+    call keep(archive, 'segment', tracking%segment)
+    call keep(archive, 'status', tracking%status)
+    call keep(archive, 'xi', tracking%xi)
+    call keep(archive, 'gap', tracking%gap)
+    call keep(archive, 'normal', tracking%normal)
+    call keep(archive, 'wake', tracking%wake)
+    call keep(archive, 'recheck', tracking%recheck)
+    call keep(archive, 'spot_depth', tracking%spot_depth)
+    call keep(archive, 'segment_depth', tracking%segment_depth)
+    call keep(archive, 'chord', tracking%chord)
+    call keep_grid(archive, 'grid', tracking%grid)
+    call leave(archive)
+  end subroutine keep_tracking
+
+  !> Segments sorted into cells.
+  subroutine keep_grid(archive, name, grid)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(bucket_grid_t), intent(inout) :: grid
+
+    call enter(archive, name)
+    call keep(archive, 'cell', grid%cell)
+    call keep(archive, 'least_cell', grid%least_cell)
+    call keep(archive, 'filled_at', grid%filled_at)
+    call keep_fixed(archive, 'low', grid%low)
+    call keep_fixed(archive, 'high', grid%high)
+    call keep(archive, 'first', grid%first)
+    call keep(archive, 'items', grid%items)
+    call leave(archive)
+  end subroutine keep_grid
+
+  !> The memory of slave segments.
+  subroutine keep_cover(archive, name, cover)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(cover_memory_t), intent(inout) :: cover
+
+    call enter(archive, name)
+    call keep(archive, 'status', cover%status)
+    call keep(archive, 'wake', cover%wake)
+    call keep(archive, 'is_placed', cover%is_placed)
+    call keep(archive, 'next_wake', cover%next_wake)
+    call leave(archive)
+  end subroutine keep_cover
+
+  !> Contact points.
+  subroutine keep_points(archive, name, points)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(contact_points_t), intent(inout) :: points
+
+    call enter(archive, name)
+    call keep(archive, 'n', points%n)
+    call keep(archive, 'slave_nodes', points%slave_nodes)
+    call keep(archive, 'slave_weights', points%slave_weights)
+    call keep(archive, 'master_nodes', points%master_nodes)
+    call keep(archive, 'master_weights', points%master_weights)
+    call keep(archive, 'normal', points%normal)
+    call keep(archive, 'gap', points%gap)
+    call keep(archive, 'area', points%area)
+    call keep(archive, 'stiffness', points%stiffness)
+    call keep(archive, 'pressure', points%pressure)
+    call leave(archive)
+  end subroutine keep_points
+
+end module restart_contact_m

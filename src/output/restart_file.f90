@@ -1,0 +1,237 @@
+! SPDX-License-Identifier: MIT
+!> A restart file: an HDF5 archive behind a head of 512 bytes of text, which HDF5 skips:
+!>
+!>     slideline restart 1
+!>     length 123456
+!>     checksum 89ABCDEF
+!>
+!> Length and CRC-32 are those of the bytes behind the head. They are compared before HDF5 sees the
+!> file, so that damage never reaches it. The file is written aside as `<path>.part`, its head last, and
+!> then takes its name in one step: under the name there is always a whole file.
+module restart_file_m
+  use hdf5, only : hid_t, hsize_t, H5P_FILE_CREATE_F, H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, &
+    H5F_SCOPE_LOCAL_F, h5fcreate_f, h5fopen_f, h5fclose_f, h5fflush_f, h5pcreate_f, h5pclose_f, &
+    h5pset_userblock_f
+  use archive_m, only : archive_t, fail_archive
+  use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
+  use errors_m, only : error_t, raise, status_files, status_input
+  use files_m, only : rename_file, remove_file
+  use hdf5_library_m, only : open_library
+  use kinds_m, only : long
+  use log_m, only : to_text
+  implicit none
+  private
+  public :: create_restart, finish_restart, open_restart, close_restart, file_checksum, unfinished
+
+  !> Layout of the file. To be raised when a component of the state comes, goes or changes its meaning.
+  integer, parameter :: format_version = 1
+  character(*), parameter :: mark = 'slideline restart '
+  !> Bytes of the head, and of a block that is read.
+  integer, parameter :: head_size = 512, block_size = 65536
+  !> Behind the name of a file that is not complete.
+  character(*), parameter :: unfinished = '.part'
+
+contains
+
+  !> Begin a restart file that will be `path`.
+  subroutine create_restart(path, archive)
+    character(*), intent(in) :: path
+    type(archive_t), intent(out) :: archive
+    integer(hid_t) :: creation
+    integer :: status(4), ignored
+
+    archive%path = path
+    archive%folder = ''
+    call open_library(status(1))
+    call h5pcreate_f(H5P_FILE_CREATE_F, creation, status(2))
+    call h5pset_userblock_f(creation, int(head_size, hsize_t), status(3))
+    call h5fcreate_f(path//unfinished, H5F_ACC_TRUNC_F, archive%id, status(4), creation)
+    call h5pclose_f(creation, ignored)
+    if (minval(status) < 0) call fail_archive(archive, 'cannot write '//path &
+      //' (no directory, no permission or no space)', status_files)
+  end subroutine create_restart
+
+  !> Bring the file to the disk, write its head and give it its name. After a failure the file that
+  !> had the name stays.
+  subroutine finish_restart(archive, error)
+    type(archive_t), intent(inout) :: archive
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: ignored
+    integer :: status
+
+    if (.not. allocated(archive%error)) then
+      call h5fflush_f(archive%id, H5F_SCOPE_LOCAL_F, status)
+      ! A file that could not be flushed is left: closing it would make HDF5 try again, and crash.
+      if (status >= 0) call h5fclose_f(archive%id, status)
+      if (status < 0) call fail_archive(archive, 'cannot write '//archive%path &
+        //' (is the disk full?)', status_files)
+    end if
+    if (.not. allocated(archive%error)) call write_head(archive%path//unfinished, archive%error)
+    if (.not. allocated(archive%error)) &
+      call rename_file(archive%path//unfinished, archive%path, archive%error)
+    if (.not. allocated(archive%error)) return
+    call move_alloc(archive%error, error)
+    error%status = status_files
+    call remove_file(archive%path//unfinished, ignored)
+  end subroutine finish_restart
+
+  !> Length and checksum of what follows the head.
+  subroutine write_head(path, error)
+    character(*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    character(head_size) :: head
+    character(:), allocatable :: checksum, reason
+    integer(long) :: length
+    integer :: unit, status
+
+    call file_checksum(path, head_size, length, checksum, reason)
+    if (.not. allocated(reason)) then
+      head = head_text(length, checksum)
+      open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+        action='readwrite', iostat=status)
+      if (status == 0) write (unit, pos=1, iostat=status) head
+      if (status == 0) close (unit, iostat=status)
+      if (status /= 0) reason = 'the file system refused its head'
+    end if
+    if (allocated(reason)) call raise(error, 'cannot write '//path//': '//reason, status_files)
+  end subroutine write_head
+
+  !> The head of a file.
+  pure function head_text(length, checksum) result(head)
+    integer(long), intent(in) :: length     !! bytes behind the head
+    character(*), intent(in) :: checksum
+    character(head_size) :: head
+    character(20) :: digits
+    character(1), parameter :: n = new_line('a')
+
+    write (digits, '(i0)') length
+    head = mark//to_text(format_version)//n//'length '//trim(digits)//n//'checksum '//checksum//n
+  end function head_text
+
+  !> Checksum of a file behind its first bytes; `reason` is set when it can not be read.
+  subroutine file_checksum(path, n_skipped, length, checksum, reason)
+    character(*), intent(in) :: path
+    integer, intent(in) :: n_skipped
+    integer(long), intent(out) :: length    !! bytes that count
+    character(:), allocatable, intent(out) :: checksum
+    character(:), allocatable, intent(out) :: reason
+    type(checksum_t) :: sum_of_bytes
+    character(block_size), allocatable :: block
+    integer(long) :: n_byte, start
+    integer :: unit, status, n
+
+    length = 0
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+      action='read', iostat=status)
+    if (status /= 0) then
+      reason = 'it can not be opened'
+      return
+    end if
+    inquire (unit=unit, size=n_byte)
+    length = max(n_byte - n_skipped, 0_long)
+    allocate (block)
+    call start_checksum(sum_of_bytes)
+    start = n_skipped
+    do while (start < n_byte .and. status == 0)
+      n = int(min(int(block_size, long), n_byte - start))
+      read (unit, pos=start + 1, iostat=status) block(:n)
+      call add_bytes(sum_of_bytes, block(:n))
+      start = start + n
+    end do
+    if (status /= 0) reason = 'it can not be read'
+    close (unit, iostat=status)
+    checksum = checksum_text(sum_of_bytes)
+  end subroutine file_checksum
+
+  !> Open a restart file for reading; one that is not whole or not ours is refused with the reason.
+  subroutine open_restart(path, archive, error)
+    character(*), intent(in) :: path
+    type(archive_t), intent(out) :: archive
+    type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: reason
+    integer :: status
+
+    archive%path = path
+    archive%folder = ''
+    archive%is_read = .true.
+    call judge_file(path, reason)
+    if (.not. allocated(reason)) then
+      call open_library(status)
+      if (status >= 0) call h5fopen_f(path, H5F_ACC_RDONLY_F, archive%id, status)
+      if (status < 0) reason = 'HDF5 can not open it'
+    end if
+    if (allocated(reason)) call raise(error, 'the restart file '//path//' is refused: '//reason, &
+      status_input)
+  end subroutine open_restart
+
+  !> Why a file is no restart file to go on from; `reason` stays unset when it is one.
+  subroutine judge_file(path, reason)
+    character(*), intent(in) :: path
+    character(:), allocatable, intent(out) :: reason
+    character(head_size) :: head
+    character(:), allocatable :: checksum
+    integer(long) :: length, n_byte
+    integer :: unit, status, version, i
+
+    head = ''
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+      action='read', iostat=status)
+    if (status /= 0) then
+      reason = 'it can not be opened'
+      return
+    end if
+    inquire (unit=unit, size=n_byte)
+    if (n_byte > 0) read (unit, iostat=status) head(:min(n_byte, int(head_size, long)))
+    close (unit)
+    if (status /= 0 .or. n_byte == 0) then
+      reason = 'it is empty or can not be read'
+    else if (index(head, mark) /= 1) then
+      reason = 'it is not a restart file of slideline'
+      if (head(2:4) == 'HDF') reason = reason//', but another HDF5 file'
+    end if
+    if (allocated(reason)) return
+    i = index(head, new_line('a'))
+    read (head(len(mark) + 1:max(i - 1, len(mark) + 1)), *, iostat=status) version
+    if (status /= 0) then
+      reason = 'its head is damaged'
+    else if (version /= format_version) then
+      reason = 'it has format '//to_text(version)//' and was written by '//trim(merge('an older', &
+        'a newer ', version < format_version))//' version; this program reads format ' &
+        //to_text(format_version)
+    else
+      call file_checksum(path, head_size, length, checksum, reason)
+      if (.not. allocated(reason)) call compare_heads(head, length, checksum, reason)
+    end if
+  end subroutine judge_file
+
+  !> Compare what the head says with what the file is.
+  subroutine compare_heads(head, length, checksum, reason)
+    character(*), intent(in) :: head
+    integer(long), intent(in) :: length
+    character(*), intent(in) :: checksum
+    character(:), allocatable, intent(out) :: reason
+    integer(long) :: expected
+    integer :: at, status
+
+    if (head == head_text(length, checksum)) return
+    reason = 'it is damaged (its checksum is '//checksum//', not that of its head)'
+    at = index(head, 'length ')
+    if (at == 0) return
+    read (head(at + 7:), *, iostat=status) expected
+    if (status /= 0 .or. expected == length) return
+    reason = 'it is damaged (it has another length than its head says)'
+    if (length < expected) reason = 'it is truncated'
+  end subroutine compare_heads
+
+  !> Close a file that was read.
+  subroutine close_restart(archive, error)
+    type(archive_t), intent(inout) :: archive
+    type(error_t), allocatable, intent(out) :: error
+    integer :: status
+
+    if (archive%id >= 0) call h5fclose_f(archive%id, status)
+    archive%id = -1
+    if (allocated(archive%error)) call move_alloc(archive%error, error)
+  end subroutine close_restart
+
+end module restart_file_m

@@ -1,0 +1,131 @@
+! SPDX-License-Identifier: MIT
+!> The state in a restart file, type by type, component by component, in the order of their
+!> declarations. A component that is missing here is noticed by tests/house/test_restart_components.py.
+module restart_state_m
+  use archive_m, only : archive_t, keep, keep_fixed, enter, leave
+  use block_state_m, only : block_state_t
+  use log_m, only : to_text
+  use restart_contact_m, only : keep_contact
+  use rigid_state_m, only : rigid_state_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: keep_state
+
+contains
+
+  !> Write or read the state. One that is read replaces whatever there was.
+  subroutine keep_state(archive, state)
+    type(archive_t), intent(inout) :: archive
+    type(state_t), intent(inout) :: state
+
+    call enter(archive, 'state')
+    call keep(archive, 'cycle', state%cycle)
+    call keep(archive, 'time', state%time)
+    call keep(archive, 'dt', state%dt)
+    call keep(archive, 'dt_before', state%dt_before)
+    call keep(archive, 'motion', state%motion)
+    call keep(archive, 'mass', state%mass)
+    call keep(archive, 'inverse_mass', state%inverse_mass)
+    call keep(archive, 'contact_mass', state%contact_mass)
+    call keep(archive, 'force_special', state%force_special)
+    call keep(archive, 'external', state%external)
+    call keep(archive, 'force_slots', state%force_slots)
+    call keep(archive, 'internal_force', state%internal_force)
+    call keep(archive, 'prescribed_velocity', state%prescribed_velocity)
+    call keep(archive, 'acceleration', state%acceleration)
+    call keep_fixed(archive, 'body_acceleration', state%body_acceleration)
+    call keep_elements(archive, 'elements', state%elements)
+    call keep_contacts(archive, 'contacts', state)
+    call keep_rigids(archive, 'rigids', state)
+    call keep(archive, 'external_work', state%external_work)
+    call keep(archive, 'damping_work', state%damping_work)
+    call keep(archive, 'initial_energy', state%initial_energy)
+    call leave(archive)
+  end subroutine keep_state
+
+  !> Element history.
+  subroutine keep_elements(archive, name, elements)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(block_state_t), intent(inout) :: elements
+
+    call enter(archive, name)
+    call keep(archive, 'reference', elements%reference)
+    call keep(archive, 'deviator', elements%deviator)
+    call keep(archive, 'point_start', elements%point_start)
+    call keep(archive, 'point_deviator', elements%point_deviator)
+    call keep(archive, 'history_start', elements%history_start)
+    call keep(archive, 'history', elements%history)
+    call keep(archive, 'hourglass_start', elements%hourglass_start)
+    call keep(archive, 'hourglass_strain', elements%hourglass_strain)
+    call keep(archive, 'deviatoric_work', elements%deviatoric_work)
+    call keep(archive, 'hourglass_work', elements%hourglass_work)
+    call keep(archive, 'viscous_work', elements%viscous_work)
+    call keep(archive, 'time_limit', elements%time_limit)
+    call keep(archive, 'volume_limit', elements%volume_limit)
+    call leave(archive)
+  end subroutine keep_elements
+
+  !> Memories of all interfaces, numbered from 1.
+  subroutine keep_contacts(archive, name, state)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(state_t), intent(inout) :: state
+    integer :: i, n
+
+    n = 0
+    if (allocated(state%contacts)) n = size(state%contacts)
+    call enter(archive, name)
+    call keep(archive, 'n', n)
+    if (archive%is_read) then
+      if (allocated(state%contacts)) deallocate (state%contacts)
+      allocate (state%contacts(n))
+    end if
+    do i = 1, n
+      call keep_contact(archive, to_text(i), state%contacts(i))
+    end do
+    call leave(archive)
+  end subroutine keep_contacts
+
+  !> Rigid bodies, numbered from 1.
+  subroutine keep_rigids(archive, name, state)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(state_t), intent(inout) :: state
+    integer :: i, n
+
+    n = 0
+    if (allocated(state%rigids)) n = size(state%rigids)
+    call enter(archive, name)
+    call keep(archive, 'n', n)
+    if (archive%is_read) then
+      if (allocated(state%rigids)) deallocate (state%rigids)
+      allocate (state%rigids(n))
+    end if
+    do i = 1, n
+      call keep_rigid(archive, to_text(i), state%rigids(i))
+    end do
+    call leave(archive)
+  end subroutine keep_rigids
+
+  !> One rigid body.
+  subroutine keep_rigid(archive, name, rigid)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(rigid_state_t), intent(inout) :: rigid
+
+    call enter(archive, name)
+    call keep_fixed(archive, 'inertia', rigid%inertia)
+    call keep_fixed(archive, 'second', rigid%second)
+    call keep_fixed(archive, 'centre', rigid%centre)
+    call keep(archive, 'arms', rigid%arms)
+    call keep_fixed(archive, 'place', rigid%place)
+    call keep_fixed(archive, 'velocity', rigid%velocity)
+    call keep_fixed(archive, 'next_velocity', rigid%next_velocity)
+    call keep_fixed(archive, 'acceleration', rigid%acceleration)
+    call keep_fixed(archive, 'force', rigid%force)
+    call leave(archive)
+  end subroutine keep_rigid
+
+end module restart_state_m

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT
+"""A restart file holds every component of everything that changes: none may be forgotten."""
+import re
+
+import pytest
+
+from fortran_source import ROOT, read_source
+
+#: type -> (file that declares it, file that keeps it, what stands there before a component,
+#: components that are not kept like that and why)
+KEPT = {
+    "state_t": ("state/state.f90", "output/restart_state.f90", "state%", {
+        "contacts": "kept one by one", "rigids": "kept one by one"}),
+    "rigid_state_t": ("state/rigid_state.f90", "output/restart_state.f90", "rigid%", {}),
+    "block_state_t": ("state/block_state.f90", "output/restart_state.f90", "elements%", {}),
+    "contact_state_t": ("state/contact_state.f90", "output/restart_contact.f90", "contact%", {}),
+    "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {}),
+    "bucket_grid_t": ("state/contact_state.f90", "output/restart_contact.f90", "grid%", {}),
+    "cover_memory_t": ("state/contact_state.f90", "output/restart_contact.f90", "cover%", {}),
+    "contact_points_t": ("state/contact_state.f90", "output/restart_contact.f90", "points%", {}),
+    "step_plan_t": ("solve/time_step.f90", "solve/restart.f90", "steps%", {}),
+    "spring_bound_t": ("contact/contact_step_limit.f90", "solve/restart.f90", "springs(i)%", {}),
+    "schedule_t": ("output/output_schedule.f90", "output/restart_history.f90", "kept%", {
+        "end_time": "from the deck, which may change it", "curve": "kept as two arrays"}),
+    "histories_t": ("output/history_file.f90", "output/restart_history.f90", "histories%", {
+        "tables": "kept one by one"}),
+    "monitor_t": ("solve/monitor.f90", "solve/restart.f90", "monitor%", {
+        "results": "times of its states are kept", "snapshot": "filled anew before it is written",
+        "log": "of each run", "clock": "of each run", "progress": "of each run",
+        "restarts": "n_dump is kept", "has_plot": "from the deck"}),
+    "cycle_t": ("solve/cycle.f90", "solve/restart.f90", "", {
+        "writes": "set in each cycle", "finished": "not when a file is written",
+        "last": "found again", "plots": "of the run that was asked", "due": "set in each cycle",
+        "leap": "made in each cycle", "steps": "kept as step_plan_t",
+        "timed_motions": "from the deck", "velocity": "made in each cycle",
+        "displacement": "made in each cycle", "reason": "of each run", "error": "of each run"}),
+}
+#: types of src/state that hold no memory
+WITHOUT_MEMORY = {"snapshot_t", "interface_result_t", "part_result_t", "slave_result_t",
+                  "energies_t"}
+
+
+def types_of(path):
+    """type -> its components, of one file"""
+    found, inside = {}, None
+    for _, statement in read_source(path).statements:
+        begins = re.match(r"type\s*(?:,[^:]*)?::\s*(\w+)$", statement, re.I)
+        if begins:
+            inside = found.setdefault(begins.group(1).lower(), [])
+        elif re.match(r"end\s*type", statement, re.I):
+            inside = None
+        elif inside is not None and "::" in statement:
+            names = re.sub(r"\([^()]*(?:\([^()]*\)[^()]*)*\)", "", statement.split("::", 1)[1])
+            inside += [name.split("=")[0].strip().lower() for name in names.split(",")]
+    return found
+
+
+def kept_names(path, before):
+    """The components that the `keep...` calls of a file hand over under their own names."""
+    text = " ".join(statement for _, statement in read_source(path).statements)
+    pairs = re.findall(r"call keep\w*\(archive, '(\w+)', (?:time, dt, )?([^,]+?)\)(?= |$)", text)
+    return {name for name, handed in pairs if handed == before + name}
+
+
+@pytest.mark.parametrize("kind", KEPT)
+def test_every_component_is_kept(kind):
+    declared, keeper, before, exempt = KEPT[kind]
+    components = types_of(ROOT / "src" / declared)[kind]
+    assert len(components) > 0 and set(exempt) <= set(components)
+    missing = set(components) - set(exempt) - kept_names(ROOT / "src" / keeper, before)
+    assert not missing, f"{kind}: not in the restart file (src/{keeper}): {sorted(missing)}"
+
+
+def test_every_type_of_the_state_is_looked_at():
+    types = {name for path in (ROOT / "src/state").glob("*.f90") for name in types_of(path)}
+    assert types - WITHOUT_MEMORY <= set(KEPT)
+
+
+def test_a_name_is_kept_once_in_each_procedure():
+    for path in {keeper for _, keeper, _, _ in KEPT.values()}:
+        source = read_source(ROOT / "src" / path)
+        for procedure in source.procedures:
+            names = [name for line, statement in source.statements
+                     if procedure.first <= line <= procedure.last
+                     for name in re.findall(r"call keep\w*\(archive, '(\w+)'", statement)]
+            assert len(names) == len(set(names)), f"{path}: {procedure.name}"
