@@ -13,7 +13,7 @@ module contact_keeping_m
 
 contains
 
-  !> Keep spots i + 1 .. i + n_together on the list of those in contact: 0.5 ns a spot, one by one 3.
+  !> Keep spots i + 1 .. i + n_together on the list of those in contact.
   pure subroutine list_kept(touching, is_kept, i, n_touching)
     integer, intent(inout), contiguous :: touching(:)
     logical, intent(inout), contiguous :: is_kept(:)
@@ -30,7 +30,7 @@ contains
 
   !> The common case of spots in contact: still over their segment, behind it, and no nearer to a
   !> neighbour than to it. Of others nothing is changed. In blocks, so that the roots and quotients
-  !> of a block are formed together: 8 ns a spot one by one, 5 ns so.
+  !> of a block are formed together.
   pure subroutine keep_contacts(touching, segment, ends, chain, spots, xi, gap, normal, is_kept)
     integer, intent(in), contiguous :: touching(:) !! spots that touched after the last step
     integer, intent(in), contiguous :: segment(:)
