@@ -8,7 +8,6 @@ simplify_decks.py makes the decks, simplify_compare.py compares results.
 from __future__ import annotations
 
 import dataclasses
-import inspect
 import json
 import pathlib
 import re
@@ -90,8 +89,6 @@ def variants():
         "sliding_awake": Variant("sliding", lambda level: decks.awake(scenes.sliding(level)),
                                  turns=1, cost=1.6),
     }
-    if "rigid_die" not in inspect.signature(scenes.sliding).parameters:
-        del listed["sliding_rigid"]
     for ctype in ALL_TYPES:
         once = ctype not in TIMED_TYPES
         if ctype != USUAL:
