@@ -94,7 +94,8 @@ contains
     end associate
   end function normal_forces
 
-  !> Gap of a slave node at the present places; 0 when it is unpaired.
+  !> Gap of a slave node at the present places; 0 when it is unpaired. A spot that sleeps keeps its segment although
+  !> it may have gone out of reach since.
   pure function present_gap(contact, chain, place, memory, i) result(gap)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_master) present places
@@ -102,7 +103,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: i                        !! node of the slave surface
     real(wp) :: gap
-    type(foot_t) :: foot
+    type(foot_t) :: foot, spot_foot
     integer :: spot
 
     gap = 0.0_wp
@@ -110,8 +111,11 @@ contains
     associate (tracking => memory%slave_tracking, segment => memory%slave_tracking%segment(spot))
       if (memory%is_stale .or. segment == 0) return
       if (tracking%status(spot) /= is_touching) then
-        foot = closest_foot(contact%master, chain, place, &
-          walk_to_closest(contact%master, chain, place, segment))
+        foot = nearest_foot(contact%master, chain, place, segment)
+        spot_foot = foot
+        if (allocated(memory%spots)) &
+          spot_foot = nearest_foot(contact%master, chain, memory%spots(:, spot), segment)
+        if (spot_foot%distance > tracking%reach) return
       else if (allocated(memory%spots)) then
         foot = follow_contact(contact%master, chain, place, segment)
       else
@@ -120,6 +124,17 @@ contains
       if (foot%is_on) gap = foot%gap
     end associate
   end function present_gap
+
+  !> Foot of a place by walking from a segment that it was on or near.
+  pure function nearest_foot(surface, chain, place, segment) result(foot)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :)
+    real(wp), intent(in) :: place(4)
+    integer, intent(in) :: segment
+    type(foot_t) :: foot
+
+    foot = closest_foot(surface, chain, place, walk_to_closest(surface, chain, place, segment))
+  end function nearest_foot
 
   !> The spot at a slave node, or of those on its segments the one next to it that is in contact, if any.
   pure function spot_at_node(slave, memory, i) result(spot)

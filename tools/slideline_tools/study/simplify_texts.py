@@ -58,8 +58,7 @@ touch. Collision, N_r = {level}:
 
 {sleep}
 
-"Same bits": all histories, and all fields of all states, are equal, but for the gap of nodes that touch nothing: that is kept from the
-last look at them and so depends on when it was.
+"Same bits": all histories, and all fields of all states, are equal.
 
 {exception}
 
