@@ -118,8 +118,7 @@ def nearly_rigid(run) -> list[Advice]:
                 f"largest strain {strain:.2g} (of all parts {max(strains.values()):.2g}), largest "
                 f"internal energy {energies[number]:.2g} (of all parts "
                 f"{max(energies.values()):.2g})",
-                f"material {part.material}: *MAT_RIGID (where doc/keywords.md has it), if the "
-                "waves in this part do not matter",
+                f"material {part.material}: *MAT_RIGID, if the waves in this part do not matter",
                 element_seconds(run, {number: None}),
                 "its elements need no stress update: at most"))
     return advice
