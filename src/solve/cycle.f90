@@ -14,6 +14,7 @@ module cycle_m
   use log_m, only : warn
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
+  use motion_sums_m, only : motion_sums_t, plan_sums, count_sums
   use node_motion_m, only : leap_t, make_leap
   use prescribed_m, only : find_prescribed_velocities, start_prescribed, impose_prescribed, &
     prescribed_work
@@ -41,6 +42,7 @@ module cycle_m
     type(leap_t) :: leap             !! motion factors of this cycle
     type(step_plan_t) :: steps
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
+    type(motion_sums_t) :: sums      !! for the work of body loads and damping
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
     real(wp) :: ratio = 1.0_wp       !! last energy ratio known
     real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
@@ -63,6 +65,7 @@ contains
       cycle%timed_motions = any(motions%birth > 0.0_wp .or. &
         motions%death < model%controls%end_time)
     end associate
+    call plan_sums(model, cycle%sums)
     cycle%reason = 'termination time reached'
     cycle%steps = start_steps(model, state%time)
     if (monitor%restarts%goes_on) call take_up_steps(model, monitor%restarts%source, cycle%steps, &
@@ -94,12 +97,13 @@ contains
     call lap(monitor%clock, phase_nodes)
   end subroutine begin_cycle
 
-  !> Loads from outside and their work (trapezoidal rule), body acceleration and damping.
+  !> Loads from outside and their work (trapezoidal rule), body acceleration and damping; the work of these two
+  !> is counted once the sums over all nodes are there.
   subroutine apply_loads(model, state, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(cycle_t), intent(inout) :: cycle
-    real(wp) :: half, body(2), momentum(2)
+    real(wp) :: half, body(2)
 
     half = 0.5_wp*state%dt_before
     if (allocated(state%external)) then
@@ -112,15 +116,11 @@ contains
     end if
     if (size(model%conditions%body_loads) > 0) then
       body = body_acceleration(model%conditions, model%curves, state%time)
-      momentum(1) = sum(state%mass*state%motion(3, :))
-      momentum(2) = sum(state%mass*state%motion(4, :))
-      state%external_work = state%external_work &
-        + half*dot_product(body + state%body_acceleration, momentum)
+      cycle%sums%share(1:2) = half*(body + state%body_acceleration)
       state%body_acceleration = body
     end if
     if (allocated(model%conditions%damping)) then
-      state%damping_work = state%damping_work + state%dt_before*(cycle%damping(1) &
-        *sum(state%mass*state%motion(3, :)**2) + cycle%damping(2)*sum(state%mass*state%motion(4, :)**2))
+      cycle%sums%share(3:4) = state%dt_before*cycle%damping
       cycle%damping = damping_rate(model%conditions, model%curves, state%time)
     end if
   end subroutine apply_loads
@@ -165,6 +165,7 @@ contains
     type(monitor_t), intent(inout) :: monitor
     type(cycle_t), intent(inout) :: cycle
 
+    call count_sums(cycle%sums, state%external_work, state%damping_work)
     call check_elements(model, state, cycle%error)
     if (state%cycle == 0) call follow_springs(model, state, cycle%steps%springs)
     if (state%cycle == 0 .and. .not. allocated(cycle%error)) &
@@ -237,7 +238,10 @@ contains
     real(wp) :: before
 
     if (cycle%finished) return
-    if (.not. cycle%writes) call check_elements(model, state, cycle%error)
+    if (.not. cycle%writes) then
+      call count_sums(cycle%sums, state%external_work, state%damping_work)
+      call check_elements(model, state, cycle%error)
+    end if
     if (size(cycle%velocity) > 0) then
       before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
       state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &

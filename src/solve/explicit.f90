@@ -11,6 +11,7 @@ module explicit_m
   use errors_m, only : error_t
   use kinds_m, only : wp
   use model_m, only : model_t
+  use motion_sums_m, only : sum_motion, sum_blocks
   use monitor_m, only : monitor_t
   use node_motion_m, only : share_tile_forces, keep_tile_forces, move_tile_nodes, &
     sum_special_force, move_special_node
@@ -85,15 +86,20 @@ contains
   subroutine advance_tiles(model, state, cycle, force)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    type(cycle_t), intent(in) :: cycle
+    type(cycle_t), intent(inout) :: cycle
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local) this thread's own
     integer :: i_tile
+    logical :: sums
 
+    sums = allocated(cycle%sums%parts)
+    if (sums) call sum_blocks(model%layout, state, cycle%sums)
     !$omp do schedule(static)
     do i_tile = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i_tile))
         call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
         call share_tile_forces(tile, force, state%force_slots)
+        if (sums) cycle%sums%parts(:, i_tile) = sum_motion(tile%first_node, tile%last_node, &
+          state%mass, state%motion)
         if (cycle%writes) then
           call keep_tile_forces(tile, force, state%internal_force)
         else

@@ -1,0 +1,108 @@
+! SPDX-License-Identifier: MIT
+!> Work of what acts on every node: body loads and global damping. It needs sums of m v and m v^2 over all nodes;
+!> the team forms them tile by tile while a tile's nodes are in cache, before they move. Partial sums are added
+!> in their order, so that the bits do not depend on the number of threads.
+module motion_sums_m
+  use kinds_m, only : wp
+  use layout_m, only : layout_t
+  use model_m, only : model_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: motion_sums_t, plan_sums, sum_motion, sum_blocks, count_sums
+
+  !> Nodes of one partial sum where no tile moves them.
+  integer, parameter :: block_size = 512
+
+  !> Partial sums of one cycle, and what they are for.
+  type :: motion_sums_t
+    integer, allocatable :: blocks(:, :) !! (2, blocks) first and last node
+    real(wp), allocatable :: parts(:, :) !! (4, tiles and then blocks) m v_x, m v_y, m v_x^2, m v_y^2;
+                                         !! allocated only where the deck has body loads or damping
+    real(wp) :: share(4) = 0.0_wp        !! what each counts: two in external work, two in that of damping
+  end type motion_sums_t
+
+contains
+
+  !> Set up the sums that a model needs, if any: over its tiles and over blocks of the nodes that no tile moves,
+  !> special ones and those inside rigid bodies.
+  pure subroutine plan_sums(model, sums)
+    type(model_t), intent(in) :: model
+    type(motion_sums_t), intent(out) :: sums
+    integer :: n_tile, n_special, n_moved, n_block, i
+
+    if (size(model%conditions%body_loads) == 0 .and. .not. allocated(model%conditions%damping)) return
+    n_tile = size(model%layout%tiles)
+    n_special = model%layout%n_special
+    n_moved = n_special
+    if (n_tile > 0) n_moved = model%layout%tiles(n_tile)%last_node
+    n_block = blocks_of(n_special)
+    allocate (sums%blocks(2, n_block + blocks_of(model%mesh%n_node - n_moved)))
+    do i = 1, size(sums%blocks, 2)
+      if (i <= n_block) then
+        sums%blocks(:, i) = [(i - 1)*block_size + 1, min(i*block_size, n_special)]
+      else
+        sums%blocks(:, i) = [n_moved + (i - n_block - 1)*block_size + 1, &
+          min(n_moved + (i - n_block)*block_size, model%mesh%n_node)]
+      end if
+    end do
+    allocate (sums%parts(4, n_tile + size(sums%blocks, 2)), source=0.0_wp)
+  end subroutine plan_sums
+
+  !> Blocks that hold so many nodes.
+  pure function blocks_of(n_node) result(n_block)
+    integer, intent(in) :: n_node
+    integer :: n_block
+
+    n_block = (n_node + block_size - 1)/block_size
+  end function blocks_of
+
+  !> Sums over the nodes first .. last. Two by two, so that an addition need not wait for the one before.
+  pure function sum_motion(first, last, mass, motion) result(sums)
+    integer, intent(in) :: first, last
+    real(wp), intent(in) :: mass(*)      !! of all nodes
+    real(wp), intent(in) :: motion(4, *) !! of all nodes
+    real(wp) :: sums(4)                  !! m v_x, m v_y, m v_x^2, m v_y^2
+    real(wp) :: odd(4), even(4), v(2)
+    integer :: i
+
+    odd = 0.0_wp
+    even = 0.0_wp
+    do i = first, last - 1, 2
+      v = motion(3:4, i)
+      odd = odd + mass(i)*[v, v**2]
+      v = motion(3:4, i + 1)
+      even = even + mass(i + 1)*[v, v**2]
+    end do
+    if (i == last) odd = odd + mass(i)*[motion(3:4, i), motion(3:4, i)**2]
+    sums = odd + even
+  end function sum_motion
+
+  !> The blocks, shared by the team, which does not wait: nothing moves these nodes while tiles advance.
+  subroutine sum_blocks(layout, state, sums)
+    type(layout_t), intent(in) :: layout
+    type(state_t), intent(in) :: state
+    type(motion_sums_t), intent(inout) :: sums
+    integer :: i
+
+    !$omp do schedule(static)
+    do i = 1, size(sums%blocks, 2)
+      sums%parts(:, size(layout%tiles) + i) = sum_motion(sums%blocks(1, i), sums%blocks(2, i), &
+        state%mass, state%motion)
+    end do
+    !$omp end do nowait
+  end subroutine sum_blocks
+
+  !> Work since the last instant, once the sums are complete.
+  pure subroutine count_sums(sums, external_work, damping_work)
+    type(motion_sums_t), intent(in) :: sums
+    real(wp), intent(inout) :: external_work, damping_work
+    real(wp) :: work(4)
+
+    if (.not. allocated(sums%parts)) return
+    work = sums%share*sum(sums%parts, 2)
+    external_work = external_work + (work(1) + work(2))
+    damping_work = damping_work + (work(3) + work(4))
+  end subroutine count_sums
+
+end module motion_sums_m
