@@ -76,7 +76,8 @@ contains
       end if
       call report_step(model, state, last, monitor, written, error)
       if (wants_line(monitor%progress, state%cycle, monitor%clock%last)) call show_progress( &
-        monitor%progress, monitor%clock, state%cycle, state%time, state%dt_before, 1.0_wp, '')
+        monitor%progress, monitor%clock, state%cycle, state%time, state%dt_before, &
+        energy_ratio(monitor%snapshot%energies), '')
     end do
     if (allocated(error) .and. .not. last) then
       call report_step(model, state, .true., monitor, written, second)
