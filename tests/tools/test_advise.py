@@ -10,7 +10,7 @@ import pytest
 
 from slideline_tools import scenes
 from slideline_tools.advise import (advise, bodies, finished, geometry, outputs, report,
-                                    study, study_decks, surfaces, touching)
+                                    stepping, study, study_decks, surfaces, touching)
 from slideline_tools.advise.run_deck import read_blocks, sets
 from slideline_tools.advise.run_log import read_log
 
@@ -212,6 +212,53 @@ def test_log():
     assert (interface.slave_penalty, interface.master_penalty) == (1.2e12, 8.0e11)
     assert not log.driven and not log.normal and log.element_limit == 6.943311e-08
     assert read_log(LOG.format(body=2)).driven
+
+
+def test_log_of_an_automatic_penalty():
+    """The penalties come in a line of their own; a restart has none."""
+    share = "  penalty: 1.000000E+00 of the largest stable one\n"
+    head, foot = LOG.format(body=0).split("  penalty: ")
+    fixed, rest = foot.split("\n", 1)
+    log = read_log(f"{head}{share}interface 4: penalty {fixed}, 1.0E+00 of the largest for a time "
+                   f"step of 1.0E-07\n{rest}")
+    interface = log.interfaces[4]
+    assert interface.is_automatic and len(log.interfaces) == 1
+    assert (interface.node_penalty, interface.slave_penalty) == (5.0e8, 1.2e12)
+    assert interface.master_penalty == 8.0e11
+    assert read_log(head + share).interfaces[4].slave_penalty == 0.0
+    assert not read_log(LOG.format(body=0)).interfaces[4].is_automatic
+
+
+@pytest.mark.parametrize("rigid_die", [False, True])
+def test_automatic_penalty_leaves_the_step_alone(slideline, tmp_path, rigid_die):
+    """The penalty would follow a longer step: nothing is said of either."""
+    deck = scenes.sliding(rigid_die=rigid_die)
+    given, share = (tmp_path / name for name in ("given", "share"))
+    for folder, arguments in ((given, ()), (share, ("punit=3", "pen=0.5"))):
+        folder.mkdir()
+        run_scene(folder, deck, "p:endtim=2e-5", "ctype=5", *arguments)
+    _, found, notes = advise(share)
+    assert not {item.topic for item in found} & {"short steps", "penalty rules the step"}
+    assert "steps: the penalty follows the step (PUNIT 3, interface 1)" in notes
+    assert finished.read_run(share).log.interfaces[1].slave_penalty > 0.0
+    assert not any("steps" in note for note in advise(given)[2])
+
+
+def test_unknown_limits_have_a_reason(runs):
+    run = finished.read_run(runs["none"])
+    assert stepping.unknown_limits(run) == "" and stepping.limits(run) is not None
+    run.log.interfaces[1].slave_penalty = 0.0
+    assert stepping.unknown_limits(run) == "the log has no penalty of interface 1"
+    assert stepping.limits(run) is None
+    run.log.element_limit = 0.0
+    assert "smallest L/c" in stepping.unknown_limits(run)
+
+
+@pytest.mark.parametrize("n_slave, expected", [(51, False), (50, True)])
+def test_symmetry_needs_nodes_on_the_cut(slideline, tmp_path, n_slave, expected):
+    """The middle element of 51 lies across x = 5."""
+    folder = run_scene(tmp_path, scenes.block(5, implicit=True, n_slave=n_slave), "endtim=0.05")
+    assert ("symmetry" in topics(folder)) is expected
 
 
 def test_sets_of_a_deck():

@@ -38,8 +38,8 @@ def not_judged(run: Finished) -> list[str]:
         notes.append("rigid parts: no matsum (*DATABASE_MATSUM)")
     if run.is_implicit:
         notes.append("steps, contact types and bulk viscosity: an implicit run")
-    elif run.results is not None and stepping.limits(run) is None:
-        notes.append("steps: limits of elements or contact springs cannot be told")
+    elif run.results is not None and (why := stepping.unknown_limits(run)):
+        notes.append(f"steps: {why}")
     if not run.keeps_access_time:
         notes.append("files never read: this file system is not known to keep access times")
     return notes

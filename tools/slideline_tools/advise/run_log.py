@@ -6,6 +6,8 @@ import dataclasses
 import re
 
 NUMBER = r"([-+0-9.E]+)"
+PENALTIES = (rf"{NUMBER} N/m per slave node = {NUMBER} N/m\^2; master pass {NUMBER} N/m per master "
+             rf"node = {NUMBER} N/m\^2")
 
 
 @dataclasses.dataclass
@@ -35,6 +37,7 @@ class Interface:
     slave_penalty: float = 0.0
     master_penalty: float = 0.0
     damping: float = 0.0
+    is_automatic: bool = False   # penalty by the program from the step (PUNIT 3)
 
     @property
     def label(self) -> str:
@@ -99,6 +102,9 @@ def read_interface(log: RunLog, line: str) -> None:
         number = int(found[1])
         log.interfaces[number] = Interface(number, found[2], int(found[3]))
         return
+    if found := re.match(rf"interface (\d+): penalty {PENALTIES}", line):
+        if interface := log.interfaces.get(int(found[1])):
+            set_penalties(interface, found.groups()[1:])
     if not line.startswith("  ") or not log.interfaces:
         return
     last = list(log.interfaces.values())[-1]
@@ -106,9 +112,15 @@ def read_interface(log: RunLog, line: str) -> None:
         last.n_slave, last.slave_length = int(found[1]), float(found[2])
     elif found := re.match(rf"  master: (\d+) nodes, \d+ segments of mean length {NUMBER}", line):
         last.n_master, last.master_length = int(found[1]), float(found[2])
-    elif found := re.match(rf"  penalty: {NUMBER} N/m per slave node = {NUMBER} N/m\^2; master "
-                           rf"pass {NUMBER} N/m per master node = {NUMBER} N/m\^2", line):
-        last.node_penalty, last.slave_penalty = float(found[1]), float(found[2])
-        last.master_penalty = float(found[4])
+    elif found := re.match(rf"  penalty: {PENALTIES}", line):
+        set_penalties(last, found.groups())
+    elif re.match(rf"  penalty: {NUMBER} of the largest stable one", line):
+        last.is_automatic = True
     elif found := re.match(rf"  damping: {NUMBER} of critical", line):
         last.damping = float(found[1])
+
+
+def set_penalties(interface: Interface, numbers: tuple[str, ...]) -> None:
+    """The penalties of a line: per slave node, per length, per master node, per its length."""
+    node, slave, _, master = (float(number) for number in numbers)
+    interface.node_penalty, interface.slave_penalty, interface.master_penalty = node, slave, master

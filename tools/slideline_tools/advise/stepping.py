@@ -31,18 +31,34 @@ def mean_step(run) -> float:
                  / (glstat["cycle"][-1] - glstat["cycle"][0]))
 
 
+def unknown_limits(run) -> str:
+    """Why the step limits of elements or springs cannot be known; empty when they can."""
+    interfaces = run.log.interfaces.values()
+    if automatic := [str(one.id) for one in interfaces if one.is_automatic]:
+        return f"the penalty follows the step (PUNIT 3, interface {', '.join(automatic)})"
+    if run.results is None:
+        return "no states of the run"
+    if run.log.element_limit <= 0.0:
+        return "the log has no smallest L/c of the elements (a restart writes none)"
+    if unread := [str(one.id) for one in interfaces if not one.slave_penalty > 0.0]:
+        return f"the log has no penalty of interface {', '.join(unread)}"
+    if len(read_surfaces(run)) < len(run.log.interfaces):
+        return "the effective deck does not show the surfaces of all interfaces as lists"
+    if not np.isfinite(geometry.smallest_limit_ratio(run)):
+        return "the log has no wave speed of some material"
+    mass = geometry.lumped_mass(run)
+    if not np.all(np.isfinite(mass)) or not mass.min() > 0.0:
+        return "the mass of some node is unknown or zero"
+    return ""
+
+
 def limits(run) -> tuple[float, float] | None:
     """Smallest step limit of the elements over all states, and that of the springs of all
     interfaces (inf without any); None when one of them cannot be known."""
-    if run.results is None or run.is_implicit or run.log.element_limit <= 0.0:
+    if run.is_implicit or unknown_limits(run):
         return None
-    shrunk = geometry.smallest_limit_ratio(run)
+    shrunk, mass = geometry.smallest_limit_ratio(run), geometry.lumped_mass(run)
     surfaces = read_surfaces(run)
-    if not np.isfinite(shrunk) or len(surfaces) < len(run.log.interfaces):
-        return None
-    mass = geometry.lumped_mass(run)
-    if not np.all(np.isfinite(mass)) or not mass.min() > 0.0:
-        return None
     springs = [spring_limit(run, run.log.interfaces[number], pair, mass)
                for number, pair in surfaces.items()]
     # Squares of frequencies add up at most.

@@ -103,8 +103,8 @@ def thresholds() -> list[tuple]:
          f"{stepping.DEEPEST:.0%} of a segment"),
         ("rigid", f"largest strain and internal energy of a part at most {bodies.RIGID_STRAIN:.0%}"
          " of the largest of all parts"),
-        ("symmetry", "nodes, elements and parts are mirror images, displacements at all states "
-         f"to {bodies.SYMMETRIC:g} of the largest"),
+        ("symmetry", "nodes, elements and parts are mirror images, no element lies across the "
+         f"cut, displacements at all states to {bodies.SYMMETRIC:g} of the largest"),
         ("bulk viscosity", f"viscous energy at most {bodies.NO_VISCOUS_ENERGY:g} of the largest "
          "total energy"),
         ("written too often", f"output at least {outputs.OUTPUT_MATTERS:.0%} of the run, and "
