@@ -120,7 +120,7 @@ contains
   end function follow_curve
 
   !> Slope at `time`: the mean over `dt` to both sides, or that of the present piece where one side lies outside
-  !> the life of the motion.
+  !> the life of the motion. 0 for a life next to nothing.
   pure function mean_slope(curve, time, dt, life) result(slope)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: time
@@ -138,7 +138,8 @@ contains
     else if (.not. is_past) then
       x = [time, min(time + dt, minval(curve%abscissa, mask=curve%abscissa > time + same_time*dt))]
     end if
-    slope = (curve_value(curve, x(2)) - curve_value(curve, x(1)))/(x(2) - x(1))
+    slope = 0.0_wp
+    if (x(2) > x(1)) slope = (curve_value(curve, x(2)) - curve_value(curve, x(1)))/(x(2) - x(1))
   end function mean_slope
 
   !> Change of slope at `time` over `dt` to both sides; none where one side lies outside the life of the motion.
