@@ -4,7 +4,7 @@ module arguments_m
   use errors_m, only : error_t, raise, status_input
   implicit none
   private
-  public :: arguments_t, read_arguments, help_text, file_stem, only_end_time, timing_by_phase, timing_by_interface, timing_off
+  public :: arguments_t, read_arguments, help_text, only_end_time, timing_by_interface, timing_off
 
   !> Longest single argument.
   integer, parameter :: argument_length = 4096

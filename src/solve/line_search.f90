@@ -10,7 +10,7 @@ module line_search_m
   use tangent_m, only : step_t, assemble_residual
   implicit none
   private
-  public :: way_t, move_nodes, put_nodes
+  public :: way_t, move_nodes
 
   !> Halvings of an iteration that leaves the range of sound elements, and steps of a line search.
   integer, parameter :: most_halvings = 8, most_searches = 6
