@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slideline_tools.decks import Grid
-from slideline_tools.study import stability, stability_measures as measures
+from slideline_tools.study import stability, stability_measures as measures, stability_page
 from slideline_tools.study.job import Options
 from slideline_tools.study.stability_eigen import Model, quad_stiffness
 from slideline_tools.study.stability_scenes import SCENES
@@ -110,6 +110,25 @@ def test_rows_below_the_limit_and_their_decks(tmp_path):
     stability.keep_failing(stability.mark_below(rows), tmp_path)
     assert [r.get("below_limit") for r in rows[2:]] == [True, False, False]
     assert [path.name for path in (tmp_path / "failing").iterdir()] == ["r0.4_blown_up.k"]
+
+
+def test_texts_on_soft_penalties_follow_the_cells():
+    def cell(ctype, decade, verdict, depth, below=True):
+        return {"type": ctype, "kind": "map", "decade": decade, "verdict": verdict,
+                "depth": depth, **({"below_limit": True} if below else {})}
+
+    rows = [cell(1, -0.5, "penetrating", 0.2), cell(1, 0.5, "penetrating", 0.18),
+            cell(2, -0.5, "penetrating", 0.2), cell(2, 0.5, "stable", 0.06),
+            cell(2, 0.5, "blown up", 0.9, below=False), cell(5, -0.5, "stable", 0.03),
+            cell(5, 0.5, "stable", 0.04), cell(5, 0.5, "stable", 0.06),
+            cell(5, 1.0, "blown up", 0.9)]
+    assert stability_page.smallest_penalties({"block": rows}) == \
+        "Block 0.3 (type 5), 3 (type 2), none (type 1)"
+    assert stability_page.good_decades(rows, 5) == [-0.5, 0.5]
+    table = stability_page.depth_table(rows, 0.24).splitlines()
+    assert table[0] == "| type | 0.3 | 1 | 3 | 10 |"
+    assert table[2:] == ["| 1 NTS | 0.83 |  | 0.75 |  |", "| 2 NTS-AR | 0.83 |  | 0.25 |  |",
+                         "| 5 NTS-mAR | 0.12 |  | 0.25 |  |"]
 
 
 def test_jobs_are_unique_and_complete():

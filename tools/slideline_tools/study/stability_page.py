@@ -14,6 +14,7 @@ from slideline_tools.study.stability_measures import BLOWN_UP, CHATTERING, STABL
 from slideline_tools.study.stability_scenes import FASTER, SCENES
 from slideline_tools.study.stability_texts import PAGE
 
+DEPTH_DECADES = (-0.5, 0.0, 0.5, 1.0)  # penalties of the table of depths
 FILLS = ("#d9ead3", "#9fc5e8", "#ffe599", "#b4a7d6", "#cc4125")
 
 
@@ -112,15 +113,54 @@ def count_table(by_scene):
                            "cells above the limit by eigenvalue", "of these stable"], lines)
 
 
+def good_decades(rows, ctype):
+    """Decades of the penalty at which all cells below the program's limit are stable, in order."""
+    below = [row for row in of_type(rows, ctype, "map") if row.get("below_limit")]
+    bad = {row["decade"] for row in below if row["verdict"] != VERDICTS[STABLE]}
+    return sorted({row["decade"] for row in below} - bad)
+
+
+def one_digit(decade):
+    """The penalty at a decade, rounded to a digit: 0.3 for -0.5."""
+    return f"{float(f'{10.0 ** decade:.1g}'):g}"
+
+
+def smallest_penalties(by_scene):
+    """The types by their smallest good penalty over K L/A, as a text for each scene."""
+    texts = []
+    for name, rows in by_scene.items():
+        types = {}
+        for ctype in sorted({row["type"] for row in rows}):
+            good = good_decades(rows, ctype)
+            types.setdefault(good[0] if good else np.inf, []).append(str(ctype))
+        texts.append(f"{SCENES[name].title} " + ", ".join(
+            f"{'none' if decade == np.inf else one_digit(decade)} "
+            f"(type{'s' if len(same) > 1 else ''} {', '.join(same)})"
+            for decade, same in sorted(types.items())))
+    return "; ".join(texts)
+
+
+def depth_table(rows, approach):
+    """Deepest slave node over `approach` in cells below the program's limit that do not blow up."""
+    cells = [row for row in rows if row.get("below_limit") and row["decade"] in DEPTH_DECADES
+             and row["verdict"] != VERDICTS[BLOWN_UP]]
+    lines = []
+    for ctype in sorted({row["type"] for row in cells}):
+        deepest = [max((row["depth"] for row in cells if (row["type"], row["decade"]) ==
+                        (ctype, decade)), default=None) for decade in DEPTH_DECADES]
+        lines.append([label(ctype), *("" if depth is None else f"{depth / approach:.2f}"
+                                      for depth in deepest)])
+    return markdown_table(["type", *map(one_digit, DEPTH_DECADES)], lines)
+
+
 def first_failures(by_scene):
-    """Largest penalty of each type for which all steps below the program's limit are good, by scene."""
+    """Smallest and largest penalty of each type for which all steps below the program's limit are
+    good, by scene."""
     lines = []
     for ctype in sorted({row["type"] for rows in by_scene.values() for row in rows}):
         cells = [label(ctype)]
         for rows in by_scene.values():
-            below = [row for row in of_type(rows, ctype, "map") if row.get("below_limit")]
-            bad = {row["decade"] for row in below if row["verdict"] != VERDICTS[STABLE]}
-            good = sorted({row["decade"] for row in below} - bad)
+            good = good_decades(rows, ctype)
             cells.append(f"1e{good[0]:+.1f} to 1e{good[-1]:+.1f}" if good else "none")
         lines.append(cells)
     return markdown_table(["type", *(SCENES[name].title for name in by_scene)], lines)
@@ -137,7 +177,10 @@ def write_maps_page(rows, doc):
     times = ", ".join(f"{SCENES[name].title.lower()} {SCENES[name].end:g} s" for name in names)
     write_page(doc, "stability", PAGE.format(
         times=times, faster=FASTER, limits=limit_table(by_scene), counts=count_table(by_scene),
-        ranges=first_failures(by_scene), n_below=len(below), n_bad=len(bad),
+        ranges=first_failures(by_scene), soft=smallest_penalties(by_scene),
+        depths=depth_table(by_scene.get("block", ()), SCENES["block"].approach),
+        ways=f"{SCENES['block'].approach:g} m and {1e3 * SCENES['sliding'].approach:g} mm",
+        n_below=len(below), n_bad=len(bad),
         **{name: getattr(measures, name) for name in (
             "ENERGY_DRIFT", "ENERGY_CREATED", "DEPTH_SIDES", "DEPTH_APPROACH", "SWINGS",
             "UNEVEN", "ENDS")}))

@@ -9,7 +9,8 @@ Each contact type over eight decades of penalty and steps of 0.1 to 1.5 times th
 under 20 kPa (2 % of the modulus) with mass damping, two blocks driven together by 0.24 m, and the sliding die with its strokes {faster:g} times faster.
 Simulated times are short: {times}; an instability that is any faster shows, a slow drift does not. All elements have one point and the stiffness form of hourglass control.
 The penalty is given over `K L/A`, the stiffness of the elements behind the interface (`PUNIT 2` is a factor on a tenth of it); at 1 the springs are as stiff as one row of elements.
-Steps above the elements' own limit are refused by the program where the deck gives a constant one; TSSFAC above 1 forces them, with a warning.
+The step is TSSFAC times `L/c`. A constant step of the deck (`LCTM`) above the stable step would not do it: the program warns once and takes TSSFAC times the stable step while it lies above. TSSFAC above 1
+forces a step above `L/c`.
 
 ![Stability maps](../pictures/stability.png)
 
@@ -46,8 +47,14 @@ Smallest and largest penalty over `K L/A` for which all steps tried below the pr
 
 ## Reading the maps
 
-- *Too soft* fails for every type alike: below a third to a tenth of `K L/A` the springs, not the bodies, take up the motion. This is no instability, and no step cures it. (The sliding die goes down by
-  0.15 mm only; there it is half of that way, not the side of an element, that decides.)
+- *Too soft* is where the springs, not the bodies, take up the motion. This is no instability, and no step cures it. The smallest penalty of the table, over `K L/A`: {soft}.
+  Type 3 adds its two passes and may be softer. (The blocks and the sliding die are driven together by {ways} only; there it is half of that way, not the side of an element, that decides.)
+- *Penetrating where other types are stable* are types 1 and 2 between the blocks, by the end nodes alone: the two surfaces end at the same place, and an end node that slips over the master's end has no
+  spring and sinks before it comes back. The nodes away from the ends lie as deep as with the other types. Deepest slave node over the way that the blocks are driven together (penetrating above {DEPTH_APPROACH:g}), the largest
+  of the cells below the program's limit that do not blow up, by penalty over `K L/A`:
+
+{depths}
+
 - *Too stiff* fails along one curve, `dt = 2/omega`, in all scenes and types. Past `K L/A` the limit falls with the root of the penalty: ten times the penalty costs three times the steps. Up to about `K L/A` a contact
   costs next to nothing.
 - The types differ in where the curve lies, not in its shape. Type 1 gives every node the same spring: an end node has half of the mass and the whole spring. Type 3 adds its two passes. In both the curve
