@@ -99,6 +99,16 @@ def test_time_claims_follow_the_medians():
         claims.time_texts(*(claims.Times(timing_rows(steps), scene) for scene in claims.LEVELS))
 
 
+@pytest.mark.parametrize("fourth, fifth, expected, count", [
+    ((3.0, 0.5, 1.0), (3.0, 0.5, 1.0), "yes", 14), ((3.0, 0.5, 1.0), (3.0, 2.0, 1.0), "partly", 7),
+    ((3.0, 2.0, 1.0), (3.0, 2.0, 1.0), "no", 0), ((1.0, 2.0, 3.0), (3.0, 2.0, 1.0), "no", 0)])
+def test_pairing_is_cheap_only_below_both_steps(fourth, fifth, expected, count):
+    steps = {ctype: (3.0, 0.0, 1.0) for ctype in common.TYPES} | {4: fourth, 5: fifth}
+    texts = claims.time_texts(*(claims.Times(timing_rows(steps), scene)
+                                for scene in claims.LEVELS))
+    assert (texts["pairing"], texts["paired"], texts["n_paired"]) == (expected, count, 14)
+
+
 def peak_figures(count):
     figures = claims.PeakFigures.__new__(claims.PeakFigures)
     figures.count = figures.largest = figures.rms = figures.waviness = {
