@@ -229,6 +229,22 @@ def test_log_of_an_automatic_penalty():
     assert not read_log(LOG.format(body=0)).interfaces[4].is_automatic
 
 
+def test_restart_in_a_folder_of_its_own_says_what_it_lacks(runs, slideline, tmp_path):
+    first, second = tmp_path / "first", tmp_path / "second"
+    first.mkdir()
+    deck = study_decks.deck((), level=1).replace(
+        "*END", "*DATABASE_BINARY_RUNRSF\n200,\n*END")
+    run_scene(first, deck, "jobid=run", "endtim=5e-5")
+    done = subprocess.run([slideline, f"r={first / 'run.runrsf.h5'}", f"d={second}"],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    notes = advise(second)[2]
+    assert any(note.startswith("interfaces, bulk viscosity and steps: the log of a restart")
+               for note in notes)
+    assert not any(note.startswith("steps") for note in notes)
+    assert not any("restart" in note for note in advise(runs["none"])[2])
+
+
 @pytest.mark.parametrize("rigid_die", [False, True])
 def test_automatic_penalty_leaves_the_step_alone(slideline, tmp_path, rigid_die):
     """The penalty would follow a longer step: nothing is said of either."""

@@ -32,13 +32,16 @@ def not_judged(run: Finished) -> list[str]:
     notes = []
     if run.results is None:
         notes.append("strains, stresses, symmetry and steps: no states of the run")
+    if run.log.is_restart:
+        notes.append("interfaces, bulk viscosity and steps: the log of a restart in a folder of "
+                     "its own does not describe them; ask the run before it")
     if run.log.interfaces and "rcforc" not in run.tables:
         notes.append("interfaces: no rcforc (*DATABASE_RCFORC)")
     if "matsum" not in run.tables:
         notes.append("rigid parts: no matsum (*DATABASE_MATSUM)")
     if run.is_implicit:
         notes.append("steps, contact types and bulk viscosity: an implicit run")
-    elif run.results is not None and (why := stepping.unknown_limits(run)):
+    elif run.results is not None and not run.log.is_restart and (why := stepping.unknown_limits(run)):
         notes.append(f"steps: {why}")
     if not run.keeps_access_time:
         notes.append("files never read: this file system is not known to keep access times")

@@ -57,6 +57,7 @@ class RunLog:
     capped: bool = False         # a curve caps the step
     element_limit: float = 0.0   # smallest L/c at time zero, 0 = unknown
     normal: bool = False         # ended normally
+    is_restart: bool = False     # the log of a restart alone, which does not describe the model again
 
 
 def read_log(text: str) -> RunLog:
@@ -82,6 +83,8 @@ def read_log(text: str) -> RunLog:
             log.element_limit = float(found[1])
         elif "N o r m a l" in line:
             log.normal = True
+        elif line.startswith("goes on from the restart file"):
+            log.is_restart = log.element_limit == 0.0
     return log
 
 

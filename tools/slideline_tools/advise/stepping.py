@@ -39,7 +39,7 @@ def unknown_limits(run) -> str:
     if run.results is None:
         return "no states of the run"
     if run.log.element_limit <= 0.0:
-        return "the log has no smallest L/c of the elements (a restart writes none)"
+        return "the log has no smallest L/c of the elements"
     if unread := [str(one.id) for one in interfaces if not one.slave_penalty > 0.0]:
         return f"the log has no penalty of interface {', '.join(unread)}"
     if len(read_surfaces(run)) < len(run.log.interfaces):
