@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Help, information and errors of the command line."""
+import os
 import subprocess
 import sys
 
 import pytest
 
-COMMANDS = ("info", "plot", "animate", "compare", "make-deck", "bless")
+from slideline_tools import cli
+
+COMMANDS = ("info", "plot", "animate", "compare", "advise", "make-deck", "bless")
 
 
 def test_help_lists_the_commands(tool):
@@ -56,3 +59,13 @@ def test_as_a_program():
     finished = subprocess.run([*command, "info", "none.vtkhdf"], capture_output=True, text=True,
                               check=False)
     assert finished.returncode == 2 and finished.stdout == ""
+
+
+def test_reader_that_goes_away(results_file):
+    """As with `| head`: no message, and no status that means something else."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    with os.fdopen(writing, "w") as stream:
+        finished = subprocess.run([sys.executable, "-m", "slideline_tools.cli", "info", results_file],
+                                  stdout=stream, stderr=subprocess.PIPE, text=True, check=False)
+    assert (finished.returncode, finished.stderr) == (cli.NO_READER, "")

@@ -10,6 +10,7 @@ import tempfile
 from slideline_tools import UserError, __version__
 
 OK, FAILED, UNUSABLE = 0, 1, 2
+NO_READER = 141  # what a shell gives for a program that SIGPIPE ends
 
 
 class ToolError(UserError):
@@ -186,7 +187,8 @@ def add_compare(commands):
     parser.add_argument("--column-rtol", action="append", default=[], metavar="COLUMN=RTOL",
                         help="relative tolerance of one column; may be repeated")
     parser.add_argument("--measures", help="comma list of: values, peak, time of peak, impulse, "
-                                           "final (default: all)")
+                                           "final (default: all); start and end, the first and "
+                                           "last time, are always judged")
     parser.set_defaults(run=run_compare)
 
 
@@ -275,10 +277,16 @@ def build_parser():
 
 
 def main(arguments=None):
-    """Entry point: returns 0 when done, 1 when a comparison failed, 2 when it could not be done."""
+    """Entry point: returns 0 when done, 1 when a comparison failed, 2 when it could not be done,
+    141 when whoever reads the output went away."""
     options = build_parser().parse_args(arguments)
     try:
-        return options.run(options)
+        status = options.run(options)
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left to flush
+        return NO_READER
     except (UserError, OSError) as problem:
         print(f"slideline-tools: {problem}", file=sys.stderr)
         return UNUSABLE
