@@ -174,6 +174,7 @@ contains
     do i = 1, size(table_others)
       n = index(table_others(i), ' ')
       if (.not. matches(table_others(i)(:n - 1), name)) cycle
+      if (table_others(i)(n + 1:) == 'unknown') return
       known = merge(known_ignored, known_refused, table_others(i)(n + 1:) == 'ignored')
       reason = trim(table_others(i)(n + 1:))
       return

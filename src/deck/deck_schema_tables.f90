@@ -199,8 +199,9 @@ module deck_schema_tables_m
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i']
 
   !> Keywords that are known but not honoured, first match counts: without effect here, or the
-  !> beginning of `... not part of this version`. An asterisk stands for any ending.
-  character(60), parameter :: table_others(*) = [character(60) :: &
+  !> beginning of `... not part of this version`. An asterisk stands for any ending. `unknown` keeps names of a
+  !> family that holds honoured keywords from the lines below it: a misspelt one must not pass for another.
+  character(80), parameter :: table_others(*) = [character(80) :: &
     'MAT_PIECEWISE_LINEAR_PLASTICITY* this material is', &
     'MAT_024* this material is', &
     'MAT_* this material is', &
@@ -224,17 +225,46 @@ module deck_schema_tables_m
     'CONTACT_2D_AUTOMATIC_TIED* tied contact is', &
     'CONTACT_2D_TIED_SLIDING* tied contact is', &
     'CONTACT_2D_PENALTY_FRICTION* friction is', &
-    'CONTACT_2D_* this kind of contact is', &
+    'CONTACT_2D_AUTOMATIC_SURFACE_IN_CONTINUUM* this kind of contact is', &
+    'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_THERMAL* heat through contact is', &
+    'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE_THERMAL* heat through contact is', &
+    'CONTACT_2D_FORCE_TRANSDUCER* this kind of contact is', &
+    'CONTACT_2D_NODE_TO_SOLID* this kind of contact is', &
+    'CONTACT_2D_SLIDING_ONLY* this kind of contact is', &
+    'CONTACT_2D_SLIDING_VOIDS* this kind of contact is', &
+    'CONTACT_2D_* unknown', &
     'CONTACT_* three-dimensional contact is', &
     'DEFINE_* this definition is', &
     'PART_* this option of *PART is', &
     'INCLUDE_* this kind of include is', &
     'NODE_* this kind of node is', &
-    'CONTROL_IMPLICIT_EIGENVALUE* an eigenvalue analysis is', &
-    'CONTROL_IMPLICIT_BUCKLE* a buckling analysis is', &
-    'CONTROL_IMPLICIT_MODES* a modal analysis is', &
-    'CONTROL_IMPLICIT_FORMING* this implicit option is', &
-    'CONTROL_IMPLICIT_INERTIA_RELIEF* this implicit option is', &
+    'CONTROL_IMPLICIT_AUTO_DYN switching phases of an implicit run is', &
+    'CONTROL_IMPLICIT_AUTO_SPR springback phases are', &
+    'CONTROL_IMPLICIT_BUCKLE a buckling analysis is', &
+    'CONTROL_IMPLICIT_CONSISTENT_MASS a consistent mass matrix is', &
+    'CONTROL_IMPLICIT_DYNAMICS_DYN switching phases of an implicit run is', &
+    'CONTROL_IMPLICIT_DYNAMICS_SPR springback phases are', &
+    'CONTROL_IMPLICIT_EIGENVALUE an eigenvalue analysis is', &
+    'CONTROL_IMPLICIT_EXPLICIT_HYBRID an implicit analysis of some parts alone is', &
+    'CONTROL_IMPLICIT_FORMING this implicit option is', &
+    'CONTROL_IMPLICIT_GENERAL_DYN switching phases of an implicit run is', &
+    'CONTROL_IMPLICIT_GENERAL_SPR springback phases are', &
+    'CONTROL_IMPLICIT_INERTIA_RELIEF this implicit option is', &
+    'CONTROL_IMPLICIT_MODAL_DYNAMIC a modal analysis is', &
+    'CONTROL_IMPLICIT_MODAL_DYNAMIC_DAMPING a modal analysis is', &
+    'CONTROL_IMPLICIT_MODAL_DYNAMIC_MODE a modal analysis is', &
+    'CONTROL_IMPLICIT_MODES a modal analysis is', &
+    'CONTROL_IMPLICIT_RESIDUAL_VECTOR a modal analysis is', &
+    'CONTROL_IMPLICIT_ROTATIONAL_DYNAMICS rotating parts are', &
+    'CONTROL_IMPLICIT_SOLUTION_DYN switching phases of an implicit run is', &
+    'CONTROL_IMPLICIT_SOLUTION_SPR springback phases are', &
+    'CONTROL_IMPLICIT_SSD a steady state analysis is', &
+    'CONTROL_IMPLICIT_SSD_DIRECT a steady state analysis is', &
+    'CONTROL_IMPLICIT_STABILIZATION artificial stabilisation is', &
+    'CONTROL_IMPLICIT_STABILIZATION_DYN artificial stabilisation is', &
+    'CONTROL_IMPLICIT_STABILIZATION_SPR artificial stabilisation is', &
+    'CONTROL_IMPLICIT_STATIC_CONDENSATION static condensation is', &
+    'CONTROL_IMPLICIT_TERMINATION an end by displacement or energy is', &
     'CONTROL_SHELL ignored', &
     'CONTROL_SOLID ignored', &
     'CONTROL_CPU ignored', &
@@ -242,7 +272,9 @@ module deck_schema_tables_m
     'CONTROL_SOLUTION ignored', &
     'CONTROL_MPP_* ignored', &
     'CONTROL_ACCURACY ignored', &
-    'CONTROL_IMPLICIT_* ignored', &
+    'CONTROL_IMPLICIT_JOINTS ignored', &
+    'CONTROL_IMPLICIT_ORDERING ignored', &
+    'CONTROL_IMPLICIT_SOLVER ignored', &
     'CONTROL_STRUCTURED* ignored', &
     'CONTROL_DEBUG ignored', &
     'CONTROL_FORMING_* ignored', &
