@@ -140,6 +140,7 @@ contains
       if (cards(1)%r(5) <= 0.0_wp) call report_field(deck, cursor, cards(1), 5, &
         'is not a penalty (more than 0)')
       contact%penalty_unit = cards(2)%i(3)
+      entry%unit_place = place_t(line=cards(2)%line, card=2, field=3)
       if (cards(2)%i(3) < penalty_per_node .or. cards(2)%i(3) > penalty_share) &
         call report_field(deck, cursor, cards(2), 3, 'is not a unit of the penalty (0 N/m per ' &
         //'contact node, 1 N/m^2, 2 factor on the built-in estimate, 3 share of the largest ' &

@@ -161,7 +161,7 @@ contains
     type(overrides_t), intent(in) :: overrides
     type(raw_contact_t), intent(inout) :: entry
     logical :: changed, typed, priced, damped
-    integer :: id
+    integer :: id, unit
 
     id = entry%contact%id
     changed = .false.
@@ -187,7 +187,9 @@ contains
         call override_real(overrides, 'PEN', id, contact%penalty, priced)
       end if
       call override_real(overrides, 'PENT', id, contact%master_penalty, priced)
+      unit = contact%penalty_unit
       call override_integer(overrides, 'PUNIT', id, contact%penalty_unit, priced)
+      if (contact%penalty_unit /= unit) entry%unit_place%line = 0
       if (contact%penalty_unit < penalty_per_node .or. contact%penalty_unit > penalty_share) then
         if (priced) call line_error(deck, 0, '"'//to_text(contact%penalty_unit)//'" on the ' &
           //'command line is not a unit of the penalty (0, 1, 2 or 3)')

@@ -59,6 +59,7 @@ module deck_raw_m
     real(wp) :: per_cent = 0.0_wp       !! VDC as given
     integer :: sides(2) = 0             !! SURFA, SURFB as in the deck: > 0 part set, < 0 node set
     type(place_t) :: places(2)
+    type(place_t) :: unit_place         !! PUNIT; line 0 where the command line gives it
   end type raw_contact_t
 
   !> Output of one file: its interval is completed when curves and ENDTIM are known.

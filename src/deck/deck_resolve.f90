@@ -7,10 +7,11 @@ module deck_resolve_m
   use deck_implicit_m, only : settle_scheme
   use model_m, only : model_t
   use conditions_m, only : motion_acceleration
+  use contacts_m, only : penalty_share
   use deck_cards_m, only : reject_field
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
-  use deck_raw_m, only : raw_t, history_t, row_damping, row_motion_node, row_motion_set, &
+  use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, row_motion_set, &
     output_plot, output_glstat, output_matsum, output_rcforc, output_nodout
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
@@ -61,8 +62,24 @@ contains
       if (raw%contacts(i)%contact%damping > 0.0_wp) call line_warning(deck, &
         deck%blocks(raw%contacts(i)%block)%keyword, 'implicit contact damping', &
         'contact damping (VDC) has no effect with the implicit method')
+      call check_penalty_unit(deck, raw%contacts(i))
     end do
   end subroutine check_implicit
+
+  !> An automatic penalty is made for an explicit step.
+  subroutine check_penalty_unit(deck, entry)
+    type(deck_t), intent(inout) :: deck
+    type(raw_contact_t), intent(in) :: entry
+    character(*), parameter :: reason = 'asks for a share of the largest stable penalty of an ' &
+      //'explicit step, which the implicit method does not have (0, 1 or 2)'
+
+    if (entry%contact%penalty_unit /= penalty_share) return
+    if (entry%unit_place%line > 0) then
+      call reject_field(deck, entry%unit_place, reason)
+    else
+      call line_error(deck, 0, '"3" on the command line (punit=) '//reason)
+    end if
+  end subroutine check_penalty_unit
 
   !> Fill the model.
   subroutine resolve_model(deck, raw, model)

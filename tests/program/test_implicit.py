@@ -264,6 +264,16 @@ def test_step_floor_of_the_explicit_method_is_warned_of(slideline):
     assert done.stderr.count("DTMIN has no effect") == 1
 
 
+def test_automatic_penalty_of_the_command_line_is_refused(slideline):
+    deck = implicit(1.0, 0.1).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    upper = deck.mesh(*grid(3, 2, 0.6, 0.4, (0.2, 0.0)))
+    lower = deck.mesh(*grid(5, 2, 1.0, 0.4, (0.0, -0.4)))
+    deck.node_set(2, upper[:4]).node_set(3, lower[-6:][::-1]).fix(lower[:6], x=1, y=1)
+    done = slideline("d=a", "punit=3", "pen=0.5", deck=deck.contact(2, 3, 1, 2.0e5))
+    assert done.returncode == 1
+    assert '"3" on the command line (punit=) asks for a share' in done.stderr
+
+
 def test_step_of_the_command_line(slideline, tmp_path):
     done = slideline("d=x", "dt=0.25", deck=pulled(1.0e3, dt=0.01))
     assert done.returncode == 0, done.stderr
