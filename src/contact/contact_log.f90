@@ -5,14 +5,15 @@ module contact_log_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, contact_kind_t, penalty_share
   use kinds_m, only : wp
-  use log_m, only : log_t, write_log, to_text
+  use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   implicit none
   private
   public :: log_contact, penalty_text, report_initial_contact, report_released
 
-  !> Part of the search reach below which a penetration at time zero is round-off.
-  real(wp), parameter :: round_off = 1.0e-10_wp
+  !> Part of the search reach below which a penetration at time zero is round-off, that of coordinates
+  !> written with some eight digits included.
+  real(wp), parameter :: round_off = 1.0e-6_wp
 
 contains
 
@@ -64,33 +65,36 @@ contains
       //' N/m per master node = '//to_text(memory%master_penalty)//' N/m^2'
   end function penalty_text
 
-  !> The deepest penetration at time zero and the force that it causes; nothing when there is none.
+  !> Warn of the deepest penetration at time zero, with the force that it causes; nothing when there is none.
   !> Initial penetrations are taken as they are.
   subroutine report_initial_contact(contact, model, memory, log)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
+    real(wp) :: depth !! that counts, m
     integer :: p
 
     if (memory%points%n == 0) return
     p = minloc(memory%points%gap(:memory%points%n), 1)
-    if (-memory%points%gap(p) <= round_off*memory%slave_tracking%reach) return
-    call write_log(log, 'interface '//to_text(contact%id)//': initial penetration at ' &
-      //to_text(count(memory%points%gap(:memory%points%n) < 0.0_wp))//' points, deepest at node ' &
+    depth = round_off*memory%slave_tracking%reach
+    if (-memory%points%gap(p) <= depth) return
+    call warn(log, 'interface '//to_text(contact%id)//': initial penetration at ' &
+      //to_text(count(memory%points%gap(:memory%points%n) < -depth))//' points, deepest at node ' &
       //to_text(model%mesh%node_id(memory%nodes(memory%points%slave_nodes(1, p))))//': ' &
       //to_text(-memory%points%gap(p))//' m, force of that point ' &
-      //to_text(memory%points%pressure(p)*memory%points%area(p))//' N/m')
+      //to_text(memory%points%pressure(p)*memory%points%area(p))//' N/m; it is kept, so that the ' &
+      //'run starts with these forces')
   end subroutine report_initial_contact
 
-  !> First contacts that were too deep and were let go, at the end of the run.
+  !> Warn of first contacts that were too deep and were let go, at the end of the run.
   subroutine report_released(contact, memory, log)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
 
     if (memory%n_released == 0) return
-    call write_log(log, 'interface '//to_text(contact%id)//': '//to_text(memory%n_released) &
+    call warn(log, 'interface '//to_text(contact%id)//': '//to_text(memory%n_released) &
       //' first contacts were deeper than the limit and were released')
   end subroutine report_released
 

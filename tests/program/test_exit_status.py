@@ -72,6 +72,38 @@ def test_contact_too_stiff_for_the_step_is_warned_of(slideline, tmp_path):
     assert "warning" not in done.stderr.lower()
 
 
+def pushed_in(depth):
+    """The drop with its blocks overlapping by `depth` at the start."""
+    deck = Deck("overlap").control(0.002, dt=1.0e-4).part(1).elastic(1000.0, 1.0e6, 0.3)
+    upper = deck.mesh(*grid(3, 2, 0.6, 0.4, (0.2, -depth)))
+    lower = deck.mesh(*grid(5, 2, 1.0, 0.4, (0.0, -0.4)))
+    deck.node_set(2, upper[:4]).node_set(3, lower[-6:][::-1]).fix(lower[:6], x=1, y=1)
+    return deck.contact(2, 3, 1, 2.0e5).output(plot=0.001)
+
+
+@pytest.mark.parametrize("depth", [0.0, 1.0e-9, 0.004])
+def test_initial_penetration_is_one_warning(slideline, depth):
+    """Four nodes, all as deep: warned of once, with a node and the depth; round-off is not."""
+    done = slideline("d=i", deck=pushed_in(depth))
+    assert done.returncode == 0, done.stderr
+    found = re.findall(r"warning: interface 1: initial penetration at (\d+) points, deepest at "
+                       r"node \d+: (\S+) m", done.stderr)
+    assert [(int(n), float(d)) for n, d in found] == ([(4, depth)] if depth > 1.0e-3 else [])
+    assert f"Warnings            = {len(found)}" in done.stdout
+
+
+def test_released_first_contacts_are_warned_of(slideline):
+    """Born when the blocks overlap deeper than what is caught."""
+    deck = pushed_in(0.12)
+    place = deck.lines.index("*CONTACT_2D_SLIDELINE") + 2
+    deck.lines[place] = "0.001" + deck.lines[place][deck.lines[place].index(","):]
+    done = slideline("d=i", deck=deck)
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"warning: interface 1: \d+ first contacts were deeper than the limit and were "
+                     r"released", done.stderr)
+    assert "Warnings            = 1" in done.stdout
+
+
 def test_step_below_its_floor_is_2(slideline):
     """A squeezed element wants a smaller step than DTMIN allows."""
     deck = Deck("squeezed")
