@@ -10,7 +10,7 @@ module progress_m
   use signals_m, only : output_is_terminal
   implicit none
   private
-  public :: progress_t, start_progress, show_progress, show_end, wants_line
+  public :: progress_t, start_progress, show_progress, show_note, show_end, wants_line
 
   !> Seconds between two refreshes on a terminal, and between two lines in a pipe.
   real(wp), parameter :: terminal_interval = 0.25_wp, pipe_interval = 10.0_wp
@@ -82,6 +82,18 @@ contains
         //hour(5:6)
     end if
   end subroutine show_progress
+
+  !> A line of its own to the screen and to the log: a restart, a restart file.
+  subroutine show_note(progress, log, text)
+    type(progress_t), intent(inout) :: progress
+    type(log_t), intent(inout) :: log
+    character(*), intent(in) :: text
+
+    if (progress%line_open) write (output_unit, '()')
+    progress%line_open = .false.
+    call say(log, text)
+    flush (output_unit)
+  end subroutine show_note
 
   !> The end of the run: how it ended, problem time, cycles, cost and the timing table.
   subroutine show_end(progress, clock, log, normal, reason, cycle, time, n_element)

@@ -12,6 +12,7 @@ module restart_m
   use log_m, only : write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t
+  use progress_m, only : show_note
   use restart_file_m, only : create_restart, finish_restart, open_restart, close_restart, &
     file_checksum, unfinished
   use restart_history_m, only : keep_schedule, keep_histories, keep_times
@@ -40,6 +41,8 @@ contains
     monitor%restarts%n_dump = monitor%restarts%n_dump + 1
     call write_file(dump_path(monitor%restarts, monitor%restarts%n_dump), state, monitor, steps, &
       damping, ratio, error)
+    if (.not. allocated(error)) call show_note(monitor%progress, monitor%log, 'restart file ' &
+      //dump_path(monitor%restarts, monitor%restarts%n_dump)//place_text(state))
   end subroutine write_dump
 
   !> Write the running restart file, in place of the one before.
@@ -52,6 +55,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call write_file(running_path(monitor%restarts), state, monitor, steps, damping, ratio, error)
+    if (.not. allocated(error)) call write_log(monitor%log, 'restart file ' &
+      //running_path(monitor%restarts)//place_text(state))
   end subroutine write_running
 
   !> Write a restart file.
@@ -74,9 +79,15 @@ contains
     call keep_steps(archive, steps, damping, ratio)
     call keep_state(archive, state)
     call finish_restart(archive, error)
-    if (.not. allocated(error)) call write_log(monitor%log, 'restart file '//path//' at time ' &
-      //to_text(state%time)//', cycle '//to_text(state%cycle))
   end subroutine write_file
+
+  !> Time and cycle for a message.
+  pure function place_text(state) result(text)
+    type(state_t), intent(in) :: state
+    character(:), allocatable :: text
+
+    text = ' at time '//to_text(state%time)//', cycle '//to_text(state%cycle)
+  end function place_text
 
   !> The deck as run, from the file that the run has written at its start: a large one is not kept
   !> in memory.
@@ -251,6 +262,8 @@ contains
       error = monitor%restarts%source%error
       return
     end if
+    call show_note(monitor%progress, monitor%log, 'restart from '//monitor%restarts%source%path &
+      //place_text(state))
     if (.not. monitor%has_plot) return
     associate (restarts => monitor%restarts)
       if (restarts%finds_states) then

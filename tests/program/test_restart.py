@@ -312,13 +312,18 @@ def test_sense_switches(exe, slideline, tmp_path):
     wait_for(lambda: not kill.exists())
     kill.write_text("sw1\n")
     assert process.wait(timeout=20) == 4
-    assert "status (sw2)" in (tmp_path / "cut.out").read_text()
+    said = (tmp_path / "cut.out").read_text()
+    assert "status (sw2)" in said
+    for name in ("job.dump01.h5", "job.dump02.h5"):
+        assert re.search(rf"^restart file cut/{name} at time \S+, cycle \d+$", said, re.M), said
     assert (tmp_path / "cut" / "job.dump02.h5").exists()
     cut = numbers(tmp_path / "cut" / "job.glstat.csv", "time")[-1]
     end = f"endtim={1.05 * cut:.3f}"
     assert slideline("d=whole", end, deck=long_drop()).returncode == 0
     done = slideline("r=cut/job.dump02.h5", end)
     assert done.returncode == 0, done.stderr
+    place = re.search(r"job.dump02.h5( at time \S+, cycle \d+)$", said, re.M)[1]
+    assert f"restart from cut/job.dump02.h5{place}\n" in done.stdout
     assert_same(tmp_path / "whole", tmp_path / "cut")
 
 
