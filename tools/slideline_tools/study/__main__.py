@@ -6,6 +6,7 @@ import fcntl
 import fnmatch
 import os
 import pathlib
+import re
 import signal
 import sys
 
@@ -105,6 +106,20 @@ def collect(study, jobs, sweep, doc):
         study.page(rows, doc)
 
 
+def lead_links_home(folder, home):
+    """Let the pages below `folder` link to those of `home` (the repository's doc/studies) that
+    they do not find beside them."""
+    def target(link):
+        path = link[1]
+        if (folder / path).exists() or not (home / path).exists():
+            return link[0]
+        return f"]({os.path.relpath((home / path).resolve(), folder)}"
+
+    for page in folder.glob("*.md"):
+        text = page.read_text(encoding="utf-8")
+        page.write_text(re.sub(r"\]\(([^):#]+)", target, text), encoding="utf-8")
+
+
 def perform(wanted):
     study = registry.load(wanted.name)
     folder = wanted.folder or ROOT / "results" / f"study-{study.name}{'-quick' * wanted.quick}"
@@ -130,6 +145,8 @@ def perform(wanted):
             sweep.run(chosen, wanted.parallel, Progress(), wanted.retry)
         if not wanted.part:
             collect(study, jobs, sweep, ROOT / "doc" if wanted.publish else folder / "doc")
+            if not wanted.publish:
+                lead_links_home(folder / "doc" / "studies", ROOT / "doc" / "studies")
 
 
 def interrupt(*_):
