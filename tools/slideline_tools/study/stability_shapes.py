@@ -7,7 +7,6 @@ A block flies onto a larger one whose lower face is fixed, with half of the larg
 from __future__ import annotations
 
 import dataclasses
-import shutil
 
 import numpy as np
 
@@ -15,7 +14,8 @@ from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.histories import read_csv
 from slideline_tools.scenes.common import elastic, energies_on, part, plane_strain, slideline
 from slideline_tools.study.job import Job, Study
-from slideline_tools.study.stability_measures import STABLE, VERDICTS, measure_run
+from slideline_tools.study.stability_failing import keep_failing
+from slideline_tools.study.stability_measures import measure_run
 from slideline_tools.study.stability_scenes import SAMPLES, SOFT
 from slideline_tools.study.stability_shapes_page import draw_strips, write_shapes_page
 from slideline_tools.study.charts import save, styled
@@ -167,13 +167,7 @@ def measure(job, folder):
 
 def chart(rows, folder):
     """Strips of verdicts; decks of failing cells."""
-    target = folder / "failing"
-    shutil.rmtree(target, ignore_errors=True)
-    for row in rows:
-        if row.get("verdict", VERDICTS[STABLE]) != VERDICTS[STABLE]:
-            target.mkdir(exist_ok=True)
-            shutil.copyfile(folder / "runs" / row["run"] / "impact.effective.k",
-                            target / f"{row['run']}_{row['verdict'].replace(' ', '_')}.k")
+    keep_failing(rows, folder)
     with styled():
         save(draw_strips(rows, SWEEPS), folder, "shapes")
 

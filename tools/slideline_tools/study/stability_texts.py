@@ -69,5 +69,5 @@ Smallest and largest penalty over `K L/A` for which all steps tried below the pr
 - Cells at a step of exactly `L/c` can be stable although the limit by eigenvalue lies one or two per cent below: so near to it growth takes longer than these runs.
 - Between the two lines lies what the program gives away to be safe for all positions of the surfaces. (They are drawn straight between full decades.)
 
-Decks of failing cells (the first of each verdict, and every one below the program's limit) are in `results/study-stability/failing/`, ready to run.
+The deck of every failing cell, named by cell and verdict, is in `results/study-stability/failing/`, ready to run; meshes that cells share are written once and included.
 """
