@@ -8,6 +8,8 @@ import sys
 import tempfile
 
 from slideline_tools import UserError, __version__
+from slideline_tools.commands import draw as draw_command
+from slideline_tools.commands import report as report_command
 
 OK, FAILED, UNUSABLE = 0, 1, 2
 NO_READER = 141  # what a shell gives for a program that SIGPIPE ends
@@ -270,8 +272,9 @@ def build_parser():
         description="Look into, draw and compare results of slideline, and write scene decks.")
     parser.add_argument("--version", action="version", version=f"slideline-tools {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (add_info, add_plot, add_animate, add_compare, add_advise, add_make_deck,
-                add_bless):
+    for add in (add_info, add_plot, add_animate, add_compare, add_advise, report_command.add,
+                draw_command.add,
+                add_make_deck, add_bless):
         add(commands)
     return parser
 
