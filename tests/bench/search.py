@@ -93,7 +93,7 @@ def write_decks(folder, sizes, cases=CASES):
 def time_search(options, case, deck, nodes, ctype):
     """[(variant, ns per slave node and step, share)]: search and pairing, and contact whole."""
     seconds, share = run_program(options.program, deck, options.out, 1, (f"ctype={ctype}",))
-    calls = phase_calls(options.out / "bench.timing.csv", "contact_force")
+    calls = phase_calls(options.out / "bench.timing.csv", "elements")
     scale = 1.0e9 / nodes / max(1, calls)
     found = seconds["contact_search"] + seconds["contact_pairing"]
     whole = found + seconds["contact_force"]

@@ -159,3 +159,33 @@ def test_mesh_of_the_peers_is_that_of_slideline():
     x, y = points[quads[4]].T
     area = 0.5 * sum(x[k] * y[(k + 1) % 4] - x[(k + 1) % 4] * y[k] for k in range(4))
     assert area == pytest.approx(1.0 / 9.0)
+
+
+def test_page_of_peers(tmp_path):
+    waves = [{"round": n, "program": program, "element": element, "elements": 100, "steps": 10,
+              "ns": ns * n, "free_side": 0.5 + error, "exact": 0.5}
+             for n in (1, 2) for program, element, ns, error in (
+                 ("slideline", "one point, large strain", 10.0, 1e-3),
+                 ("slideline", "2x2 points, large strain", 30.0, 1e-3),
+                 ("Other", "2x2 points", 90.0, 2e-3))]
+    contact = [{"round": n, "scene": "patch", "elements": 41, "program": program,
+                "contact": contact, "mean": mean, "exact": 1.0, "deviation": deviation,
+                "processor_seconds": used * n, "seconds": used, "message": message}
+               for n in (1, 2) for program, contact, mean, deviation, used, message in (
+                   ("slideline", "type 5", 1.0, 1e-15, 0.1, ""),
+                   ("CalculiX", "node to surface", 1.02, 0.03, 0.25, ""),
+                   ("CalculiX", "mortar", "nan", "nan", 0.1, "*ERROR: node 17 is tied"))]
+    for name, rows in (("elements", waves), ("contact", contact)):
+        with open(tmp_path / f"{name}.csv", "w", newline="", encoding="ascii") as stream:
+            writer = csv.DictWriter(stream, rows[0].keys())
+            writer.writeheader()
+            writer.writerows(rows)
+    (tmp_path / "versions.txt").write_text("akantu==1.2.3\nThis is Version 2.20\n")
+    assert peers.main([str(tmp_path), str(tmp_path / "doc")]) == 0
+    text = (tmp_path / "doc" / "studies" / "peers.md").read_text(encoding="utf-8")
+    assert "| akantu | 1.2.3 | PyPI, wheel |" in text
+    assert "Other (2x2 points) takes 3.0 to 3.0 times as long as slideline's element with 2x2 points and 9.0 to 9.0" in text
+    assert "within 1e-03 of each other" in text
+    assert "| patch | 41 | CalculiX | node to surface | 1.02 | 2.0e-02 | 3.0e-02 |" in text
+    assert "takes 2.50 times the processor time" in text
+    assert text.count("refused (`*ERROR: node is tied`)") == 1
