@@ -3,6 +3,7 @@
 program slideline
   use, intrinsic :: iso_c_binding, only : c_int
   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+  use check_m, only : check_deck
   use arguments_m, only : arguments_t, read_arguments, help_text
   use build_info_m, only : version, build_type, compiler, flags, solvers
   use errors_m, only : error_t
@@ -28,6 +29,8 @@ program slideline
     else if (arguments%version) then
       write (output_unit, '(a)') 'slideline '//version, 'build '//build_type//', '//compiler, &
         'flags '//flags, 'linear solvers '//solvers
+    else if (arguments%check) then
+      call check_deck(arguments, error)
     else
       call run_deck(arguments, error)
     end if
