@@ -8,6 +8,7 @@ program slideline
   use build_info_m, only : version, build_type, compiler, flags, solvers
   use errors_m, only : error_t
   use run_m, only : run_deck
+  use source_version_m, only : source_version
   implicit none
 
   interface
@@ -27,7 +28,7 @@ program slideline
     if (arguments%help) then
       write (output_unit, '(a)') help_text()
     else if (arguments%version) then
-      write (output_unit, '(a)') 'slideline '//version, 'build '//build_type//', '//compiler, &
+      write (output_unit, '(a)') 'slideline '//version//' (source '//source_version//')', 'build '//build_type//', '//compiler, &
         'flags '//flags, 'linear solvers '//solvers
     else if (arguments%check) then
       call check_deck(arguments, error)
