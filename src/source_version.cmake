@@ -11,13 +11,4 @@ if(GIT_FOUND)
     string(REGEX REPLACE "[^A-Za-z0-9._-]" "" source "${answer}")
   endif()
 endif()
-file(CONFIGURE OUTPUT ${output} @ONLY CONTENT
-"!> Where the program was built from; written at every build.
-module source_version_m
-  implicit none
-  private
-  public :: source_version
-
-  character(len=*), parameter :: source_version = '@source@' !! commit, -dirty where files differ from it
-end module source_version_m
-")
+configure_file(${folder}/src/source_version.f90.in ${output} @ONLY)
