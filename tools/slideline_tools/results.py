@@ -190,7 +190,8 @@ class Results:
         return self._arrays[name]
 
     def frame(self, name: str) -> pandas.DataFrame:
-        """A history table as a pandas DataFrame, with columns and rows of the CSV file.
+        """A history table as a pandas DataFrame: columns and rows of the CSV file, time and
+        entities (interface, side, node, part) first.
 
         `attrs` has the table (`table`) and the title of the run (`title`). pandas is an extra:
         pip install 'slideline-tools[frames]'.
