@@ -73,8 +73,8 @@ def test_block_of_about_as_many_elements(tmp_path):
 
 @pytest.mark.parametrize("case", search.CASES)
 def test_search_deck_runs_with_contact(case, tmp_path):
-    text, nodes = search.search_deck(case, 200)
-    assert nodes == 200
+    text = search.search_deck(case, 200)
+    assert search.slave_nodes(case, 200)[0] == 200
     assert text.count("*CONTACT_2D_SLIDELINE") == (50 if case == "interfaces" else 1)
     if "SLIDELINE" not in os.environ:
         pytest.skip("SLIDELINE is not set")
@@ -132,10 +132,19 @@ def test_page_of_speed_judges_the_goals(tmp_path):
     assert (tmp_path / "doc" / "pictures" / "speed_search.png").exists()
 
 
-def test_page_of_speed_says_when_the_machine_was_shared(tmp_path):
+def test_page_of_speed_says_when_the_machine_was_shared():
     bench = speed.Bench.__new__(speed.Bench)
     bench.rows = [measuring.summarise(STEP, [(10.0, 4.0, 8.0, share)]) for share in (1.0, 0.5)]
-    assert "1 of 2" in speed.disturbed(bench)
+    assert "50 to 100 % with 1 thread" in speed.disturbed(bench)
+    assert "shared the machine" in speed.disturbed(bench)
+    bench.rows = bench.rows[:1]
+    assert "shared the machine" not in speed.disturbed(bench)
+
+
+def test_times_of_one_thread_are_freed_of_others():
+    assert measuring.without_others(10.0, 0.5, 1) == 5.0
+    assert measuring.without_others(10.0, 0.98, 1) == 10.0
+    assert measuring.without_others(10.0, 0.5, 2) == 10.0
 
 
 def test_ratios_of_peers_are_taken_round_by_round():
