@@ -148,6 +148,7 @@ def test_sets_and_conditions(model):
     assert held == {**{number: [True, True] for number in (97, 98, 99, 100)}, 88: [True, False]}
     assert numbers(model, model.history_nodes) == [200]
     assert not model.unread
+    assert len(model.warnings) >= 1 and "numbered clockwise" in model.warnings[0]
 
 
 def test_loads_and_motions(model):
