@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: MIT
 """All benchmarks: interleaved rounds, one table with ratios to the kernel and the bandwidth.
 
-usage: bench.py --build FOLDER --out FOLDER [--quick] [--rounds N] [--threads N] [--parts ...]
+usage: bench.py --build FOLDER --out FOLDER [--quick] [--rounds N] [--threads N] [--sizes ...] [--parts ...]
 
 Each round measures everything in turn, K and the bandwidth before each size. After each round the table bench.csv
 (medians and quartiles of the least disturbed half) is written anew from samples.csv, which holds every sample: stopped and
 started again, with the same program, it goes on collecting.
 """
 import argparse
+import contextlib
 import json
 import os
 import subprocess
@@ -17,7 +18,7 @@ from pathlib import Path
 from contact import time_contact
 import elements
 import input_output
-from measuring import Samples, Variant, measure_units, write_summary
+from measuring import Disturbed, Samples, Variant, measure_units, write_summary
 import search
 
 SIZES = (100, 300, 1000, 4000, 20000, 100000, 400000, 1000000, 4000000)
@@ -33,6 +34,7 @@ def build_parser():
     parser.add_argument("--quick", action="store_true", help="smallest sizes, one round: does it run?")
     parser.add_argument("--rounds", type=int, default=5, help="0: the table of what is there")
     parser.add_argument("--threads", type=int, default=min(2, os.cpu_count()))
+    parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="elements")
     parser.add_argument("--parts", nargs="+", default=["step", "contact", "search", "files"],
                         choices=["step", "contact", "search", "files"])
     return parser
@@ -40,7 +42,7 @@ def build_parser():
 
 def plan(options):
     """What is to be measured: decks by part."""
-    sizes, chains, searches, large = SIZES, CHAINS, SEARCHES, LARGE
+    sizes, chains, searches, large = options.sizes, CHAINS, SEARCHES, LARGE
     cases = search.CASES
     if options.quick:
         sizes, chains, searches, large = (100, 300), (10, 20), (500,), 4000
@@ -87,9 +89,10 @@ def run_round(options, work, samples):
         for (_, material), (deck, count, steps) in work["step"].items():
             now = units() if material == "elastic" else now
             for threads in sorted({1, options.threads}):
-                variant, value, share = elements.time_steps(options, deck, count, steps, material,
-                                                            threads)
-                samples.add(variant, value, now, share)
+                with contextlib.suppress(Disturbed):
+                    variant, value, share = elements.time_steps(options, deck, count, steps,
+                                                                material, threads)
+                    samples.add(variant, value, now, share)
     if "contact" in options.parts:
         for nodes in work["contact"]:
             now = units()
@@ -99,8 +102,10 @@ def run_round(options, work, samples):
         for (case, _), (deck, nodes) in work["search"].items():
             now = units() if case == search.CASES[0] else now
             for ctype in search.TYPES:
-                for variant, value, share in search.time_search(options, case, deck, nodes, ctype):
-                    samples.add(variant, value, now, share)
+                with contextlib.suppress(Disturbed):
+                    for variant, value, share in search.time_search(options, case, deck, nodes,
+                                                                    ctype):
+                        samples.add(variant, value, now, share)
     if "files" in options.parts:
         now = units()
         for variant, value in input_output.time_files(options, work["files"]):

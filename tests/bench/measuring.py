@@ -8,13 +8,20 @@ import csv
 import dataclasses
 import hashlib
 import os
+import signal
 import statistics
 import subprocess
+import threading
 import time
 from pathlib import Path
 
 BYTES = 320.0  # moved per element and step: state read and written, nodes, connectivity
 UNDISTURBED = 0.97  # share of the processors that a run had
+LONGEST = 120.0  # s; a run that takes longer waits for processors that others have: no sample
+
+
+class Disturbed(Exception):
+    """A run that could not be measured, since others had the processors."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -159,14 +166,22 @@ def phase_calls(path, phase):
 
 
 def run_program(program, deck, folder, threads=1, words=()):
-    """Run a deck; seconds by phase, and the share of the processors the run had."""
+    """Run a deck; seconds by phase, and the share of the processors the run had.
+
+    Raises `Disturbed` where it is not done within LONGEST seconds.
+    """
     command = [str(program), f"i={deck}", f"d={folder}", "jobid=bench", f"ncpu={threads}", *words]
     start = time.monotonic()
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
+        alarm = threading.Timer(LONGEST, process.kill)
+        alarm.start()
         trouble = process.stderr.read().decode()
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
+        alarm.cancel()
     clock = time.monotonic() - start
+    if process.returncode == -signal.SIGKILL and clock >= LONGEST:
+        raise Disturbed(deck)
     if process.returncode:
         raise SystemExit(f"{deck}: the program ended with status {process.returncode}\n{trouble}")
     seconds = phase_seconds(folder / "bench.timing.csv")

@@ -61,6 +61,15 @@ def test_bandwidth_is_that_of_as_many_threads(tmp_path):
     assert samples.of_program()[two][0][2] == 16.0
 
 
+def test_a_run_that_takes_too_long_is_no_sample(tmp_path, monkeypatch):
+    slow = tmp_path / "slow"
+    slow.write_text("#!/bin/sh\nexec sleep 20\n")
+    slow.chmod(0o755)
+    monkeypatch.setattr(measuring, "LONGEST", 0.2)
+    with pytest.raises(measuring.Disturbed):
+        measuring.run_program(slow, "deck.k", tmp_path)
+
+
 # ---- decks -------------------------------------------------------------------------------------
 
 def test_block_of_about_as_many_elements(tmp_path):
