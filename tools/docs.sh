@@ -3,7 +3,8 @@
 # usage: tools/docs.sh [--serve] [--no-fortran]
 # Installs MkDocs and FORD into an environment of their own, build/docs-venv, and builds the
 # documentation as build/site (start at index.html).  --serve: shows it at http://127.0.0.1:8000
-# until Ctrl-C.  --no-fortran leaves the pages of the Fortran interface out, which take the longest.
+# until Ctrl-C, with search, which browsers do not allow in files.  --no-fortran leaves out the pages
+# of the Fortran interface, which take the longest.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build="$root/build"
@@ -42,10 +43,13 @@ fi
 
 echo "== building the pages"
 "$venv/bin/python" "$root/tools/docs/site_source.py" "$build/docs"
-run docs-mkdocs.log "$venv/bin/mkdocs" build --strict --quiet --config-file "$build/docs/mkdocs.yml"
+run docs-mkdocs.log env NO_MKDOCS_2_WARNING=1 "$venv/bin/mkdocs" build --strict --quiet --config-file "$build/docs/mkdocs.yml"
 if [ $fortran = yes ]; then
   echo "== building the pages of the Fortran interface"
   run docs-ford.log "$venv/bin/ford" --output_dir "$build/site/fortran" "$root/doc/ford.md"
+  # Nothing on the site is fetched from elsewhere.
+  find "$build/site/fortran" -name '*.html' -exec \
+    sed -i -E 's#<script[^>]* src="(https?:)?//[^"]*"[^>]*></script>##g' {} +
 fi
 echo "== the site is build/site/index.html"
 if [ $serve = yes ]; then

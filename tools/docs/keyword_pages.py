@@ -94,15 +94,21 @@ def expectation_table(example):
     return [*lines, "", "</div>", ""]
 
 
-def deck_block(path):
-    """A deck as a code block with its name, without the head of the example."""
+def deck_block(path, keyword):
+    """A deck as a code block with its name and the keyword marked, without the head of the example."""
     lines = path.read_text(encoding="utf-8").splitlines()
-    start = next(k for k, line in enumerate(lines) if not line.startswith("$"))
-    name = path.relative_to(examples.ROOT)
-    return [f'```text title="{name}"', *lines[start:], "```", ""]
+    lines = lines[next(k for k, line in enumerate(lines) if not line.startswith("$")):]
+    marked, inside = [], False
+    for number, line in enumerate(lines, 1):
+        if line.startswith("*"):
+            inside = re.fullmatch(rf"\*{keyword}(_TITLE|_ID)?", line.strip()) is not None
+        if inside:
+            marked.append(str(number))
+    mark = f' hl_lines="{" ".join(marked)}"' if marked else ""
+    return [f'```text title="{path.relative_to(examples.ROOT)}"{mark}', *lines, "```", ""]
 
 
-def example_lines(example):
+def example_lines(example, keyword):
     lines = [f"## Example: {example.title[0].lower()}{example.title[1:]}", ""]
     for paragraph in example.paragraphs:
         lines += [paragraph, ""]
@@ -112,7 +118,7 @@ def example_lines(example):
     if example.files:
         lines += ["It leaves " + ", ".join(f"`{name}`" for name in example.files) + ".", ""]
     for path in [example.path, *examples.included_files(example)]:
-        lines += deck_block(path)
+        lines += deck_block(path, keyword)
     return lines
 
 
@@ -124,7 +130,7 @@ def page(keyword, shown, others):
     if keyword.fields:
         lines += card_lines(keyword)
     for example in shown:
-        lines += example_lines(example)
+        lines += example_lines(example, keyword.name)
     if others:
         names = ", ".join(f"`{example.path.name}`" for example in others)
         lines += ["## Also used in", "", f"{names} of `doc/examples`.", ""]
