@@ -24,11 +24,13 @@ module deck_m
   use deck_mesh_m, only : read_nodes, read_elements, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
   use deck_rigid_m, only : read_rigid
+  use deck_hardening_m, only : read_piecewise, read_table
   use deck_material_m, only : read_elastic, read_plastic_kinematic, read_curve
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control
   use deck_output_m, only : read_database
   use deck_contact_m, only : read_contact
+  use deck_wall_m, only : read_wall
   use deck_resolve_m, only : resolve_model
   use deck_effective_m, only : write_effective
   use deck_echo_m, only : echo_model
@@ -195,12 +197,18 @@ contains
       call read_elastic(deck, parameters, i, raw)
     case ('MAT_PLASTIC_KINEMATIC')
       call read_plastic_kinematic(deck, parameters, i, raw)
+    case ('MAT_PIECEWISE_LINEAR_PLASTICITY')
+      call read_piecewise(deck, parameters, i, raw)
     case ('MAT_RIGID')
       call read_rigid(deck, parameters, i, raw)
     case ('DEFINE_CURVE')
       call read_curve(deck, parameters, i, raw)
+    case ('DEFINE_TABLE')
+      call read_table(deck, parameters, i, raw)
     case ('INITIAL_VELOCITY', 'INITIAL_VELOCITY_GENERATION')
       call read_initial_velocity(deck, parameters, i, raw)
+    case ('RIGIDWALL_PLANAR')
+      call read_wall(deck, parameters, i, raw)
     case ('DATABASE_HISTORY_NODE')
       call read_history_ids(deck, parameters, i, raw%history_nodes)
     case ('DATABASE_HISTORY_NODE_SET')

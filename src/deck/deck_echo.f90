@@ -5,6 +5,7 @@ module deck_echo_m
   use log_m, only : log_t, write_log, to_text
   use controls_m, only : interval_t
   use curves_m, only : curve_is_constant
+  use hardenings_m, only : hardening_t
   use model_m, only : model_t
   implicit none
   private
@@ -30,6 +31,7 @@ contains
       call echo_material(model, i, log)
     end do
     call echo_conditions(model, log)
+    if (allocated(model%walls)) call echo_walls(model, log)
     call write_log(log, 'end: time '//to_text(model%controls%end_time)//', step scale ' &
       //to_text(model%controls%dt_scale))
     call echo_short_curves(model, log)
@@ -40,6 +42,7 @@ contains
     call echo_interval('matsum', model%controls%output%matsum)
     call echo_interval('rcforc', model%controls%output%rcforc)
     call echo_interval('nodout', model%controls%output%nodout)
+    call echo_interval('rwforc', model%controls%output%rwforc)
 
   contains
 
@@ -66,7 +69,7 @@ contains
 
     do i = 1, size(model%curves)
       associate (curve => model%curves(i))
-        if (curve_is_constant(curve)) cycle
+        if (curve_is_constant(curve) .or. .not. curve%is_of_time) cycle
         if (curve%abscissa(size(curve%abscissa)) >= model%controls%end_time) cycle
         call write_log(log, 'curve '//to_text(curve%id)//' ends at ' &
           //to_text(curve%abscissa(size(curve%abscissa)))//', before the end time: its last ' &
@@ -101,11 +104,49 @@ contains
         //to_text(material%young)//', nu '//to_text(material%poisson)//', K ' &
         //to_text(material%bulk)//', G '//to_text(material%shear)//', c ' &
         //to_text(material%sound_speed)
-      if (material%yield > 0.0_wp) text = text//', yield '//to_text(material%yield) &
+      if (allocated(material%curve)) then
+        text = text//hardening_text(material%curve)
+      else if (material%yield > 0.0_wp) then
+        text = text//', yield '//to_text(material%yield) &
         //', plastic modulus '//to_text(material%hardening)//', beta '//to_text(material%beta)
+      end if
     end associate
     call write_log(log, text)
   end subroutine echo_material
+
+  !> Hardening by points and its rate effect.
+  pure function hardening_text(hardening) result(text)
+    type(hardening_t), intent(in) :: hardening
+    character(:), allocatable :: text
+    integer :: n
+
+    n = size(hardening%strain)
+    text = ', yield '//to_text(hardening%stress(1, 1))//', hardening by '//to_text(n) &
+      //' point(s) to plastic strain '//to_text(hardening%strain(n))//', then modulus ' &
+      //to_text(hardening%slope(n, 1))
+    if (size(hardening%rate) > 1) text = text//', '//to_text(size(hardening%rate)) &
+      //' strain rates from '//to_text(hardening%rate(1))//' to '//to_text(maxval(hardening%rate))
+    if (hardening%rate_constant > 0.0_wp) text = text//', Cowper-Symonds C ' &
+      //to_text(hardening%rate_constant)//', P '//to_text(1.0_wp/hardening%rate_exponent)
+    if (allocated(hardening%rate_factor)) text = text//', rate factor by curve ' &
+      //to_text(hardening%rate_factor%id)
+  end function hardening_text
+
+  !> Rigid walls.
+  subroutine echo_walls(model, log)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    integer :: i
+
+    do i = 1, size(model%walls)
+      associate (wall => model%walls(i))
+        call write_log(log, 'wall '//to_text(wall%id)//': through ('//to_text(wall%foot(1))//', ' &
+          //to_text(wall%foot(2))//'), normal ('//to_text(wall%normal(1))//', ' &
+          //to_text(wall%normal(2))//'), seen by '//to_text(size(wall%nodes))//' nodes, plastic ' &
+          //'impact without friction')
+      end associate
+    end do
+  end subroutine echo_walls
 
   !> Counts of the conditions.
   subroutine echo_conditions(model, log)

@@ -11,8 +11,8 @@ module deck_maps_m
 
   !> Maps from user id to index.
   type :: maps_t
-    type(id_map_t) :: nodes, elements, parts, sections, materials, hourglasses, curves, node_sets, &
-      part_sets, segment_sets
+    type(id_map_t) :: nodes, elements, parts, sections, materials, hourglasses, curves, tables, &
+      node_sets, part_sets, segment_sets
   end type maps_t
 
 contains
@@ -33,6 +33,7 @@ contains
     call map_kind(deck, 'hourglass control', [raw%hourglasses%id], raw%hourglass_line, 1, &
       maps%hourglasses)
     call map_kind(deck, 'curve', [raw%curves%id], raw%curve_line, 1, maps%curves)
+    call map_kind(deck, 'table', [raw%tables%id], [raw%tables%line], 1, maps%tables)
     call map_kind(deck, 'node set', [raw%node_sets(:raw%n_node_set)%id], &
       [raw%node_sets(:raw%n_node_set)%line], 1, maps%node_sets)
     call map_kind(deck, 'part set', [raw%part_sets(:raw%n_part_set)%id], &
@@ -46,6 +47,7 @@ contains
     maps%materials%incomplete = raw%lost%materials .or. all_lost
     maps%hourglasses%incomplete = raw%lost%hourglasses .or. all_lost
     maps%curves%incomplete = raw%lost%curves .or. all_lost
+    maps%tables%incomplete = raw%lost%tables .or. all_lost
     maps%node_sets%incomplete = raw%lost%sets .or. all_lost
     maps%part_sets%incomplete = raw%lost%sets .or. all_lost
     maps%segment_sets%incomplete = raw%lost%sets .or. all_lost

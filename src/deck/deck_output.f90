@@ -7,7 +7,7 @@ module deck_output_m
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field
   use deck_raw_m, only : raw_t, history_t, output_plot, output_glstat, output_matsum, &
-    output_rcforc, output_nodout
+    output_rcforc, output_nodout, output_rwforc
   implicit none
   private
   public :: read_database
@@ -49,6 +49,8 @@ contains
       file = output_matsum
     case ('DATABASE_RCFORC')
       file = output_rcforc
+    case ('DATABASE_RWFORC')
+      file = output_rwforc
     case default
       file = output_nodout
     end select

@@ -7,14 +7,16 @@ module deck_raw_m
   use parts_m, only : section_t, material_t, hourglass_t
   use contacts_m, only : contact_t
   use controls_m, only : controls_t
+  use walls_m, only : wall_t
   use deck_lines_m, only : place_t
   implicit none
   private
-  public :: raw_t, lost_t, start_raw, raw_part_t, raw_set_t, raw_contact_t, row_t, history_t, &
+  public :: raw_t, lost_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_set_t, raw_contact_t, row_t, history_t, &
     reserve_rows, append_row, append_set, append_member, reserve_nodes, reserve_elements, &
     row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, row_velocity_node, &
     row_velocity_generation, row_load_node, row_load_set, row_pressure, row_pressure_set, &
-    row_body, row_damping, row_motion_rigid, output_plot, output_glstat, output_matsum, output_rcforc, output_nodout
+    row_body, row_damping, row_motion_rigid, output_plot, output_glstat, output_matsum, output_rcforc, output_nodout, &
+    output_rwforc, raw_wall_t
 
   !> Kinds of `row_t`.
   integer, parameter :: row_spc_node = 1, row_spc_set = 2, row_motion_node = 3, &
@@ -23,7 +25,7 @@ module deck_raw_m
     row_body = 12, row_damping = 13, row_motion_rigid = 14
   !> Files of the output plan.
   integer, parameter :: output_plot = 1, output_glstat = 2, output_matsum = 3, output_rcforc = 4, &
-    output_nodout = 5
+    output_nodout = 5, output_rwforc = 6
 
   !> One card of a condition: its fields by position.
   type :: row_t
@@ -33,6 +35,25 @@ module deck_raw_m
     integer :: i(8) = 0
     real(wp) :: r(8) = 0.0_wp
   end type row_t
+
+  !> Hardening of a *MAT_PIECEWISE_LINEAR_PLASTICITY, until its curves are known.
+  type :: raw_hardening_t
+    integer :: material = 0              !! index
+    type(curve_t) :: points              !! of the card, where LCSS is 0: EPS and ES, or SIGY alone
+    real(wp) :: modulus = 0.0_wp         !! plastic modulus behind a single point
+    integer :: curve = 0, rate_curve = 0 !! LCSS, LCSR, user ids
+    type(place_t) :: curve_place, rate_curve_place, rate_place, form_place
+    real(wp) :: rate_constant = 0.0_wp, rate_power = 0.0_wp !! C, P
+    logical :: is_viscoplastic = .false. !! VP = 1
+  end type raw_hardening_t
+
+  !> One *DEFINE_TABLE: its values; its curves are those of the blocks that come next.
+  type :: raw_table_t
+    integer :: id = 0
+    integer :: line = 0
+    integer :: block = 0
+    real(wp), allocatable :: values(:)
+  end type raw_table_t
 
   !> One *PART.
   type :: raw_part_t
@@ -62,6 +83,14 @@ module deck_raw_m
     type(place_t) :: unit_place         !! PUNIT; line 0 where the command line gives it
   end type raw_contact_t
 
+  !> One *RIGIDWALL_PLANAR.
+  type :: raw_wall_t
+    type(wall_t) :: wall
+    integer :: line = 0, card_line = 0  !! of the keyword, of card 1
+    integer :: sets(2) = 0              !! NSID, NSIDEX
+    real(wp) :: reach = 0.0_wp          !! OFFSET
+  end type raw_wall_t
+
   !> Output of one file: its interval is completed when curves and ENDTIM are known.
   type :: history_t
     real(wp) :: dt = 0.0_wp
@@ -74,6 +103,7 @@ module deck_raw_m
   type :: lost_t
     logical :: nodes = .false., elements = .false., parts = .false., sections = .false.
     logical :: materials = .false., hourglasses = .false., curves = .false., sets = .false.
+    logical :: tables = .false.
   end type lost_t
 
   !> Everything.
@@ -90,6 +120,8 @@ module deck_raw_m
     integer, allocatable :: section_line(:)
     type(material_t), allocatable :: materials(:)
     integer, allocatable :: material_line(:)
+    type(raw_hardening_t), allocatable :: hardenings(:)
+    type(raw_table_t), allocatable :: tables(:)
     type(hourglass_t), allocatable :: hourglasses(:)
     integer, allocatable :: hourglass_line(:)
     logical, allocatable :: bulk_given(:, :)   !! (2, n) Q1 and Q2 of *HOURGLASS are not blank
@@ -101,6 +133,7 @@ module deck_raw_m
     type(row_t), allocatable :: rows(:)
     integer :: n_row = 0
     type(raw_contact_t), allocatable :: contacts(:)
+    type(raw_wall_t), allocatable :: walls(:)
     type(controls_t) :: controls
     logical :: end_given = .false.             !! ENDTIM comes from the command line
     logical :: terminated = .false.            !! the deck has *CONTROL_TERMINATION
@@ -109,7 +142,7 @@ module deck_raw_m
     real(wp) :: spectral_radius = -1.0_wp      !! of the implicit method, negative = not given
     integer :: dt_curve = 0                    !! LCTM, user id
     type(place_t) :: dt_curve_place
-    type(history_t) :: outputs(5)
+    type(history_t) :: outputs(6)
     type(raw_set_t) :: history_nodes, history_node_sets
   end type raw_t
 
@@ -121,8 +154,8 @@ contains
 
     allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%materials(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
-      raw%curves(0), raw%curve_line(0), raw%contacts(0), raw%rows(64), raw%node_sets(16), &
-      raw%part_sets(16), raw%segment_sets(16))
+      raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%tables(0), raw%contacts(0), &
+      raw%walls(0), raw%rows(64), raw%node_sets(16), raw%part_sets(16), raw%segment_sets(16))
     call reserve_nodes(raw, 0)
     call reserve_elements(raw, 0)
   end subroutine start_raw

@@ -12,13 +12,15 @@ module deck_resolve_m
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, row_motion_set, &
-    output_plot, output_glstat, output_matsum, output_rcforc, output_nodout
+    output_plot, output_glstat, output_matsum, output_rcforc, output_nodout, output_rwforc
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
+  use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
   use deck_resolve_rigids_m, only : resolve_rigids
   use deck_resolve_velocity_m, only : resolve_velocity
   use deck_resolve_contacts_m, only : resolve_contacts
+  use deck_wall_m, only : resolve_walls
   implicit none
   private
   public :: resolve_model
@@ -43,6 +45,7 @@ contains
           //'implicit method needs fully integrated ones (NIP 4)')
       end associate
     end do
+    call check_no_rates(deck, raw, model)
     do i = 1, raw%n_row
       associate (row => raw%rows(i))
         if (row%kind == row_damping) call line_error(deck, row%line, &
@@ -95,6 +98,7 @@ contains
     if (model%controls%implicit%is_on) call settle_scheme(raw%newmark, raw%hht, &
       raw%spectral_radius, model%controls%implicit)
     call resolve_parts(deck, raw, maps, model)
+    call resolve_hardenings(deck, raw, maps, model)
     call resolve_mesh(deck, raw, maps, model, sound)
     call resolve_sets(deck, raw, maps, model)
     call resolve_history(deck, raw, maps, model)
@@ -107,11 +111,13 @@ contains
       call take_interval(deck, maps, raw%outputs(output_matsum), model, output%matsum)
       call take_interval(deck, maps, raw%outputs(output_rcforc), model, output%rcforc)
       call take_interval(deck, maps, raw%outputs(output_nodout), model, output%nodout)
+      call take_interval(deck, maps, raw%outputs(output_rwforc), model, output%rwforc)
     end associate
     if (model%controls%implicit%is_on) call check_implicit(deck, raw, model)
     call resolve_conditions(deck, raw, maps, model)
     call resolve_rigids(deck, raw, maps, model)
     call resolve_velocity(deck, raw, maps, model)
+    call resolve_walls(deck, raw, maps, model)
     allocate (model%mesh%deck_node(model%mesh%n_node))
     model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]
     if (sound) then

@@ -104,7 +104,7 @@ contains
   !> The one spelling of a keyword that the tables hold.
   pure function canonical(given) result(name)
     character(*), intent(in) :: given
-    character(len(given) + 12) :: name
+    character(len(given) + 26) :: name
 
     name = given
     select case (given)
@@ -112,6 +112,8 @@ contains
       name = 'MAT_ELASTIC'
     case ('MAT_003')
       name = 'MAT_PLASTIC_KINEMATIC'
+    case ('MAT_024')
+      name = 'MAT_PIECEWISE_LINEAR_PLASTICITY'
     case ('MAT_020')
       name = 'MAT_RIGID'
     case ('SET_NODE')
@@ -212,7 +214,7 @@ contains
         //'leave it 0'
     case ('DT2MS')
       text = 'asks for mass scaling, which this version does not have; leave it 0'
-    case ('ERODE')
+    case ('ERODE', 'TDEL')
       text = 'asks for deletion of elements, which this version does not have; leave it 0'
     case ('IMFLAG')
       text = 'asks for the implicit solver, which this version does not have; leave it 0'

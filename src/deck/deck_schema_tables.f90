@@ -87,6 +87,11 @@ module deck_schema_tables_m
     'MAT_PLASTIC_KINEMATIC t', &
     ' MID:i RO:f E:f PR:f SIGY:f ETAN:f BETA:f', &
     ' SRC:fr SRP:fr FS:f VP:fw', &
+    'MAT_PIECEWISE_LINEAR_PLASTICITY t', &
+    ' MID:i RO:f E:f PR:f SIGY:f ETAN:f FAIL:f TDEL:fr', &
+    ' C:f P:f LCSS:i LCSR:i VP:f', &
+    ' EPS1:f EPS2:f EPS3:f EPS4:f EPS5:f EPS6:f EPS7:f EPS8:f', &
+    ' ES1:f ES2:f ES3:f ES4:f ES5:f ES6:f ES7:f ES8:f', &
     'MAT_RIGID t', &
     ' MID:i RO:f E:f PR:f N:fr COUPLE:fr M:fr ALIAS:ar', &
     ' CMO:i CON1:i CON2:i', &
@@ -94,6 +99,9 @@ module deck_schema_tables_m
     'DEFINE_CURVE t', &
     ' LCID:i SIDR:ir SFA:f=1 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
     ' A1:f20 O1:f20', &
+    'DEFINE_TABLE t', &
+    ' TBID:i SFA:f=1 OFFA:f', &
+    ' VALUE:f20', &
     'SET_NODE_LIST t', &
     ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
     ' NID1:i NID2:i NID3:i NID4:i NID5:i NID6:i NID7:i NID8:i', &
@@ -111,7 +119,7 @@ module deck_schema_tables_m
     ' N1:i N2:i N3:i N4:i A1:fs A2:fs A3:fs A4:fs']
 
   !> Constraints, loads, initial values.
-  character(63), parameter :: table_conditions(*) = [character(63) :: &
+  character(69), parameter :: table_conditions(*) = [character(69) :: &
     'BOUNDARY_SPC_NODE t', &
     ' NID:i CID:ir DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
     'BOUNDARY_SPC_SET t', &
@@ -143,6 +151,9 @@ module deck_schema_tables_m
     ' LCID:i SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
     'LOAD_BODY_Y', &
     ' LCID:i SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
+    'RIGIDWALL_PLANAR t', &
+    ' NSID:i NSIDEX:i BOXID:ir OFFSET:f BIRTH:f DEATH:f=1e20 RWKSF:fs=1', &
+    ' XT:f YT:f ZT:f XH:f YH:f ZH:f FRIC:fr WVEL:fr', &
     'DAMPING_GLOBAL', &
     ' LCID:i VALDMP:f STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs']
 
@@ -186,6 +197,8 @@ module deck_schema_tables_m
     ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_NODOUT', &
     ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_RWFORC', &
+    ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_BINARY_D3PLOT', &
     ' DT:f LCDT:i BEAM:is NPLTC:i PSETID:iw', &
     ' IOOPT:is RATE:fs CUTOFF:fs WINDOW:fs TYPE:is PSET:iw', &
@@ -202,8 +215,6 @@ module deck_schema_tables_m
   !> beginning of `... not part of this version`. An asterisk stands for any ending. `unknown` keeps names of a
   !> family that holds honoured keywords from the lines below it: a misspelt one must not pass for another.
   character(80), parameter :: table_others(*) = [character(80) :: &
-    'MAT_PIECEWISE_LINEAR_PLASTICITY* this material is', &
-    'MAT_024* this material is', &
     'MAT_* this material is', &
     'EOS_* equations of state are', &
     'ELEMENT_MASS* lumped masses are', &
@@ -219,7 +230,8 @@ module deck_schema_tables_m
     'INITIAL_* this initial condition is', &
     'LOAD_* this load is', &
     'DAMPING_* this damping is', &
-    'RIGIDWALL_* rigid walls are', &
+    'RIGIDWALL_PLANAR_* this option of a planar rigid wall is', &
+    'RIGIDWALL_* this kind of rigid wall is', &
     'CONSTRAINED_* this constraint is', &
     'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE* self contact is', &
     'CONTACT_2D_AUTOMATIC_TIED* tied contact is', &
@@ -300,7 +312,6 @@ module deck_schema_tables_m
     'DATABASE_NODFOR ignored', &
     'DATABASE_SLEOUT ignored', &
     'DATABASE_BNDOUT ignored', &
-    'DATABASE_RWFORC ignored', &
     'DATABASE_RBDOUT ignored', &
     'DATABASE_EXTENT_BINARY ignored', &
     'DATABASE_HISTORY_SHELL* ignored', &

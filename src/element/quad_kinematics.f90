@@ -50,6 +50,7 @@ contains
       both, inverse, cosine, sine, mean, half, shear
     integer :: i
 
+    stress%dt = dt
     back = 0.5_wp*dt
     !$omp simd private(x31, y31, x42, y42, factor, lxx, lxy, lyx, lyy, area, turn, square, &
     !$omp& both, inverse, cosine, sine, mean, half, shear)

@@ -3,11 +3,12 @@
 module material_dispatch_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use parts_m, only : material_t, law_elastic, law_plastic
+  use parts_m, only : material_t, law_elastic, law_plastic, law_piecewise
   use stress_chunk_m, only : stress_chunk_t
   use stress_point_m, only : stress_point_t
   use material_elastic_m, only : update_elastic, tangent_elastic
   use material_j2_m, only : update_j2_isotropic, update_j2_mixed, tangent_j2
+  use material_piecewise_m, only : update_piecewise, tangent_piecewise
   implicit none
   private
   public :: update_stress, form_tangent, history_size
@@ -23,6 +24,8 @@ contains
     select case (material%law)
     case (law_plastic)
       n = merge(1, 4, has_no_back_stress(material))
+    case (law_piecewise)
+      n = 1
     case default
       n = 0
     end select
@@ -45,6 +48,8 @@ contains
         call update_j2_mixed(material, chunk, history(:, 1), history(:, 2), history(:, 3), &
           history(:, 4))
       end if
+    case (law_piecewise)
+      call update_piecewise(material%shear, material%curve, chunk, history(:, 1))
     end select
   end subroutine update_stress
 
@@ -58,6 +63,8 @@ contains
       call tangent_elastic(material%shear, point)
     case (law_plastic)
       call tangent_j2(material, point)
+    case (law_piecewise)
+      call tangent_piecewise(material%shear, material%curve, point)
     end select
   end subroutine form_tangent
 

@@ -11,7 +11,7 @@ module material_j2_m
   use stress_point_m, only : stress_point_t, turn, turn_rate
   implicit none
   private
-  public :: update_j2_isotropic, update_j2_mixed, tangent_j2
+  public :: update_j2_isotropic, update_j2_mixed, tangent_j2, tangent_of_return, trial_mises
 
 contains
 
@@ -89,24 +89,46 @@ contains
     end do
   end subroutine update_j2_mixed
 
-  !> The same at one point, with its derivative: xi* = Q s Q^T + 2G dev(e) - Q alpha Q^T is scaled by
-  !> f = 1 - 3G/(3G + E_p) (1 - R/xi_v), R = sigma_Y + beta E_p eps_p, d(xi_v) = 3 (3 m, h, q).d(xi*)/xi_v.
+  !> The same at one point, with its derivative.
   pure subroutine tangent_j2(material, point)
     type(material_t), intent(in) :: material
     type(stress_point_t), intent(inout) :: point !! `stress` and `tangent` out
-    real(wp) :: turned(3), back(3), moduli(3), xi(3), ratio, radius, mises, factor, slope, scaling(3, 3)
+
+    call tangent_of_return(material%shear, material%yield + material%beta*material%hardening &
+      *point%plastic_strain, material%hardening, point)
+  end subroutine tangent_j2
+
+  !> Von Mises value of the trial flow direction xi* = Q s Q^T + 2G dev(e) - Q alpha Q^T.
+  pure function trial_mises(shear, point) result(mises)
+    real(wp), intent(in) :: shear
+    type(stress_point_t), intent(in) :: point
+    real(wp) :: mises
+    real(wp) :: xi(3)
+
+    xi = turn(point, point%old) + 2.0_wp*shear*[1.0_wp/3.0_wp, 1.0_wp, 1.0_wp]*point%strain &
+      - turn(point, point%back)
+    mises = sqrt(3.0_wp*(3.0_wp*xi(1)**2 + xi(2)**2 + xi(3)**2))
+  end function trial_mises
+
+  !> Return to a surface that grows by `hardening` from `radius` R, at one point, with its derivative: xi* is
+  !> scaled by f = 1 - 3G/(3G + E_p) (1 - R/xi_v), d(xi_v) = 3 (3 m, h, q).d(xi*)/xi_v.
+  pure subroutine tangent_of_return(shear, radius, hardening, point)
+    real(wp), intent(in) :: shear
+    real(wp), intent(in) :: radius    !! yield stress at the plastic strain at the start of the step
+    real(wp), intent(in) :: hardening !! E_p
+    type(stress_point_t), intent(inout) :: point !! `stress` and `tangent` out
+    real(wp) :: turned(3), back(3), moduli(3), xi(3), ratio, mises, factor, slope, scaling(3, 3)
     integer :: i
 
-    moduli = 2.0_wp*material%shear*[1.0_wp/3.0_wp, 1.0_wp, 1.0_wp]
+    moduli = 2.0_wp*shear*[1.0_wp/3.0_wp, 1.0_wp, 1.0_wp]
     turned = turn(point, point%old)
     back = turn(point, point%back)
     xi = turned + moduli*point%strain - back
-    mises = sqrt(3.0_wp*(3.0_wp*xi(1)**2 + xi(2)**2 + xi(3)**2))
-    radius = material%yield + material%beta*material%hardening*point%plastic_strain
+    mises = trial_mises(shear, point)
     factor = 1.0_wp
     scaling = 0.0_wp
     if (mises > radius) then
-      ratio = 3.0_wp*material%shear/(3.0_wp*material%shear + material%hardening)
+      ratio = 3.0_wp*shear/(3.0_wp*shear + hardening)
       factor = 1.0_wp - ratio*(1.0_wp - radius/mises)
       slope = -3.0_wp*ratio*radius/mises**3
       scaling(:, 1) = 3.0_wp*slope*xi(1)*xi
@@ -119,6 +141,6 @@ contains
     end do
     point%stress = factor*xi + back
     point%tangent(:, 4) = matmul(scaling, turn_rate(turned - back)) + turn_rate(back)
-  end subroutine tangent_j2
+  end subroutine tangent_of_return
 
 end module material_j2_m

@@ -10,6 +10,7 @@ module stress_chunk_m
   !> Strain increments of the step in the mid-step geometry, and the deviatoric stress.
   type :: stress_chunk_t
     real(wp), dimension(chunk_size) :: dxx, dyy, dxy !! dt D_xx, dt D_yy, dt D_xy (D_zz = 0)
+    real(wp) :: dt = 0.0_wp                          !! step
     real(wp), dimension(chunk_size) :: cosine, sine  !! of the rotation of the step
     real(wp), dimension(chunk_size) :: cos2, sin2    !! of twice that rotation
     real(wp), dimension(chunk_size) :: sxx, syy, sxy !! deviator, s_zz = -(s_xx + s_yy)

@@ -27,6 +27,7 @@ module controls_m
     type(interval_t) :: matsum
     type(interval_t) :: rcforc
     type(interval_t) :: nodout
+    type(interval_t) :: rwforc
     integer, allocatable :: history_nodes(:) !! node indices of *DATABASE_HISTORY_NODE
     integer :: dump_cycles = -1    !! cycles between restart files that stay (*DATABASE_BINARY_D3DUMP), 0 =
                                    !! at the end alone, -1 = none

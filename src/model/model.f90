@@ -15,6 +15,7 @@ module model_m
   use conditions_m, only : conditions_t
   use contacts_m, only : contact_t
   use rigids_m, only : rigid_t
+  use walls_m, only : wall_t
   use controls_m, only : controls_t
   implicit none
   private
@@ -34,6 +35,7 @@ module model_m
     type(conditions_t) :: conditions
     type(contact_t), allocatable :: contacts(:)
     type(rigid_t), allocatable :: rigids(:)
+    type(wall_t), allocatable :: walls(:)       !! only where the deck has any
     type(controls_t) :: controls
   end type model_t
 

@@ -1,17 +1,18 @@
 ! SPDX-License-Identifier: MIT
 !> Parts and what they refer to: section, material, hourglass control and bulk viscosity.
 module parts_m
+  use hardenings_m, only : hardening_t
   use kinds_m, only : wp
   implicit none
   private
   public :: part_t, section_t, material_t, hourglass_t, find_id, &
-    form_one_point, form_full, law_elastic, law_plastic, &
+    form_one_point, form_full, law_elastic, law_plastic, law_piecewise, &
     hourglass_viscous, hourglass_stiffness
 
   !> Element forms. Only the element dispatcher asks for them.
   integer, parameter :: form_one_point = 1, form_full = 2
   !> Material laws. Only the material dispatcher asks for them.
-  integer, parameter :: law_elastic = 1, law_plastic = 2
+  integer, parameter :: law_elastic = 1, law_plastic = 2, law_piecewise = 3
   !> Hourglass control: viscous (IHQ 1 to 3 and blank) or stiffness (IHQ 4 and 5).
   integer, parameter :: hourglass_viscous = 1, hourglass_stiffness = 2
 
@@ -35,6 +36,7 @@ module parts_m
     real(wp) :: yield = 0.0_wp     !! initial yield stress sigma_Y
     real(wp) :: hardening = 0.0_wp !! plastic modulus E_p = E Et/(E - Et)
     real(wp) :: beta = 1.0_wp      !! 1 isotropic, 0 kinematic, between mixed
+    type(hardening_t), allocatable :: curve !! yield stress by points, of a piecewise linear law
     logical :: is_rigid = .false.  !! no stress: parts of it are rigid bodies; E and nu serve contact
     logical :: is_fixed(3) = .false. !! of a rigid body: x, y and the turn about z do not move
   end type material_t

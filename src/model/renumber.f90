@@ -36,10 +36,11 @@ contains
     call renumber_conditions(model, order, new_index)
     call renumber_surfaces(model, new_index)
     call renumber_rigids(model, new_index)
+    if (allocated(model%walls)) call renumber_walls(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
   end subroutine renumber_model
 
-  !> Nodes that contact, loads or prescribed motion touch.
+  !> Nodes that contact, loads, prescribed motion or walls touch.
   subroutine mark_touched_nodes(model, is_special)
     type(model_t), intent(in) :: model
     logical, intent(inout) :: is_special(:) !! (n_node)
@@ -53,6 +54,10 @@ contains
     is_special(model%conditions%nodal_loads%node) = .true.
     do i = 1, size(model%conditions%pressures)
       is_special(model%conditions%pressures(i)%nodes) = .true.
+    end do
+    if (.not. allocated(model%walls)) return
+    do i = 1, size(model%walls)
+      is_special(model%walls(i)%nodes) = .true.
     end do
   end subroutine mark_touched_nodes
 
@@ -126,5 +131,23 @@ contains
       end associate
     end do
   end subroutine renumber_rigids
+
+  !> Rigid walls: their nodes in rising order, and where each special node stands among them.
+  subroutine renumber_walls(model, new_index)
+    type(model_t), intent(inout) :: model
+    integer, intent(in) :: new_index(:)
+    integer :: i, k
+
+    do i = 1, size(model%walls)
+      associate (wall => model%walls(i))
+        wall%nodes = new_index(wall%nodes)
+        wall%nodes = wall%nodes(sorted_order(int(wall%nodes, long)))
+        allocate (wall%place(model%layout%n_special), source=0)
+        do k = 1, size(wall%nodes)
+          wall%place(wall%nodes(k)) = k
+        end do
+      end associate
+    end do
+  end subroutine renumber_walls
 
 end module renumber_m

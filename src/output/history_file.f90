@@ -13,12 +13,12 @@ module history_file_m
   implicit none
   private
   public :: histories_t, open_histories, append_glstat, append_rcforc, append_nodout, &
-    append_matsum, append_contact, flush_histories, close_histories, n_table, &
-    table_glstat, table_rcforc, table_nodout, table_contact, table_matsum
+    append_matsum, append_contact, append_rwforc, flush_histories, close_histories, n_table, &
+    table_glstat, table_rcforc, table_nodout, table_contact, table_matsum, table_rwforc
 
-  integer, parameter :: n_table = 5
+  integer, parameter :: n_table = 6
   integer, parameter :: table_glstat = 1, table_rcforc = 2, table_nodout = 3, table_contact = 4, &
-    table_matsum = 5
+    table_matsum = 5, table_rwforc = 6
 
   !> Columns of the tables, as users' scripts know them.
   character(*), parameter :: glstat_columns = 'time,cycle,dt,kinetic,internal,hourglass,'// &
@@ -28,6 +28,7 @@ module history_file_m
   character(*), parameter :: contact_columns = 'time,interface,node,s,x,y,gap,pressure,fx,fy,length'
   character(*), parameter :: matsum_columns = 'time,part,kinetic,internal,hourglass,'// &
     'momentum_x,momentum_y,mass'
+  character(*), parameter :: rwforc_columns = 'time,wall,fx,fy,normal_force,impulse,work,n_active'
 
   !> All tables of a run.
   type :: histories_t
@@ -37,7 +38,7 @@ module history_file_m
 contains
 
   !> Make the files that were asked for. glstat always; the others with an interval and something to
-  !> write: interfaces for rcforc and contact, history nodes for nodout.
+  !> write: interfaces for rcforc and contact, history nodes for nodout, rigid walls for rwforc.
   subroutine open_histories(histories, prefix, model, error)
     type(histories_t), intent(out) :: histories
     character(*), intent(in) :: prefix   !! directory and job name
@@ -68,6 +69,10 @@ contains
     end if
     if (is_asked(model%controls%output%matsum)) call open_table(histories%tables(table_matsum), &
       prefix, 'matsum', matsum_columns, [r, i, r, r, r, r, r, r], error)
+    if (allocated(error)) return
+    if (is_asked(model%controls%output%rwforc) .and. allocated(model%walls)) &
+      call open_table(histories%tables(table_rwforc), prefix, 'rwforc', rwforc_columns, &
+      [r, i, r, r, r, r, r, i], error)
   end subroutine open_histories
 
   !> Whether an output has an interval.
@@ -174,6 +179,22 @@ contains
       end associate
     end do
   end subroutine append_contact
+
+  !> Resultants of the rigid walls.
+  subroutine append_rwforc(histories, model, snapshot)
+    type(histories_t), intent(inout) :: histories
+    type(model_t), intent(in) :: model
+    type(snapshot_t), intent(in) :: snapshot
+    integer :: i
+
+    if (.not. histories%tables(table_rwforc)%is_open) return
+    do i = 1, size(snapshot%walls)
+      associate (wall => snapshot%walls(i))
+        call add_row(histories%tables(table_rwforc), [snapshot%time, real(model%walls(i)%id, wp), &
+          wall%force, wall%normal_force, wall%impulse, wall%work, real(wall%n_active, wp)])
+      end associate
+    end do
+  end subroutine append_rwforc
 
   !> Bring all rows into the files; reports the first failure of any table.
   subroutine flush_histories(histories, error)

@@ -8,6 +8,7 @@ module restart_state_m
   use restart_contact_m, only : keep_contact
   use rigid_state_m, only : rigid_state_t
   use state_m, only : state_t
+  use wall_state_m, only : wall_state_t
   implicit none
   private
   public :: keep_state
@@ -38,6 +39,7 @@ contains
     call keep_elements(archive, 'elements', state%elements)
     call keep_contacts(archive, 'contacts', state)
     call keep_rigids(archive, 'rigids', state)
+    call keep_walls(archive, 'walls', state)
     call keep(archive, 'external_work', state%external_work)
     call keep(archive, 'damping_work', state%damping_work)
     call keep(archive, 'initial_energy', state%initial_energy)
@@ -127,5 +129,40 @@ contains
     call keep_fixed(archive, 'force', rigid%force)
     call leave(archive)
   end subroutine keep_rigid
+
+  !> Rigid walls, numbered from 1.
+  subroutine keep_walls(archive, name, state)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(state_t), intent(inout) :: state
+    integer :: i, n
+
+    n = 0
+    if (allocated(state%walls)) n = size(state%walls)
+    call enter(archive, name)
+    call keep(archive, 'n', n)
+    if (archive%is_read) then
+      if (allocated(state%walls)) deallocate (state%walls)
+      if (n > 0) allocate (state%walls(n))
+    end if
+    do i = 1, n
+      call keep_wall(archive, to_text(i), state%walls(i))
+    end do
+    call leave(archive)
+  end subroutine keep_walls
+
+  !> One rigid wall.
+  subroutine keep_wall(archive, name, wall)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(wall_state_t), intent(inout) :: wall
+
+    call enter(archive, name)
+    call keep(archive, 'force', wall%force)
+    call keep(archive, 'speed', wall%speed)
+    call keep(archive, 'impulse', wall%impulse)
+    call keep(archive, 'work', wall%work)
+    call leave(archive)
+  end subroutine keep_wall
 
 end module restart_state_m

@@ -27,6 +27,7 @@ module cycle_m
   use signals_m, only : stop_requested
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
   use state_m, only : state_t
+  use wall_motion_m, only : hold_nodes, count_walls, fill_walls
   use time_step_m, only : step_plan_t, start_steps, first_step, next_step, is_last
   implicit none
   private
@@ -181,6 +182,7 @@ contains
       call start_prescribed(model, cycle%velocity, state)
     end if
     call report_rigids(model, state, cycle)
+    call report_walls(model, state, monitor, cycle)
     state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
       cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
     call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
@@ -218,6 +220,19 @@ contains
       0.5_wp*state%dt_before, 0.0_wp)
   end subroutine report_rigids
 
+  !> Rigid walls in a cycle that writes: their forces, and their work so far.
+  subroutine report_walls(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(cycle_t), intent(in) :: cycle
+
+    if (.not. allocated(state%walls)) return
+    call hold_nodes(model, cycle%leap, state)
+    call count_walls(model, .true., .false., state)
+    if (cycle%due%rwforc) call fill_walls(model, state, monitor%snapshot%walls)
+  end subroutine report_walls
+
   !> Rigid bodies to their next places.
   subroutine advance_rigids(model, state, cycle)
     type(model_t), intent(in) :: model
@@ -249,6 +264,7 @@ contains
         cycle%damping, before, 0.5_wp*state%dt)
       call impose_prescribed(model, cycle%velocity, cycle%displacement, state)
     end if
+    if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
     if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
     state%cycle = state%cycle + 1
     state%dt_before = state%dt

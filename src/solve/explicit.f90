@@ -16,6 +16,7 @@ module explicit_m
   use node_motion_m, only : share_tile_forces, keep_tile_forces, move_tile_nodes, &
     sum_special_force, move_special_node
   use state_m, only : state_t
+  use wall_motion_m, only : hold_node
   implicit none
   private
   public :: advance_explicit
@@ -117,10 +118,13 @@ contains
     type(state_t), intent(inout) :: state
     type(cycle_t), intent(in) :: cycle
     integer :: node
+    logical :: has_walls
 
+    has_walls = allocated(state%walls)
     !$omp do schedule(static)
     do node = 1, model%layout%n_special
       state%internal_force(:, node) = sum_special_force(model%layout, state%force_slots, node)
+      if (has_walls .and. .not. cycle%writes) call hold_node(model, cycle%leap, node, state)
       if (.not. cycle%writes) call move_special_node(cycle%leap, node, state)
     end do
     !$omp end do

@@ -5,7 +5,7 @@ module monitor_m
   use controls_m, only : interval_t
   use errors_m, only : error_t
   use history_file_m, only : histories_t, open_histories, append_glstat, append_rcforc, &
-    append_nodout, append_matsum, append_contact, flush_histories, close_histories
+    append_nodout, append_matsum, append_contact, append_rwforc, flush_histories, close_histories
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
@@ -22,12 +22,12 @@ module monitor_m
   !> What is due in one cycle.
   type :: due_t
     logical :: plot = .false., glstat = .false., rcforc = .false., nodout = .false., &
-      matsum = .false.
+      matsum = .false., rwforc = .false.
   end type due_t
 
   !> Files, their schedules, the log, the clock and the progress lines of a run.
   type :: monitor_t
-    type(schedule_t) :: plot, glstat, rcforc, nodout, matsum
+    type(schedule_t) :: plot, glstat, rcforc, nodout, matsum, rwforc
     type(results_file_t) :: results
     type(histories_t) :: histories
     type(snapshot_t) :: snapshot
@@ -77,6 +77,8 @@ contains
       if (size(plan%history_nodes) > 0) &
         call start_schedule(monitor%nodout, plan%nodout, model%curves, end_time)
       call start_schedule(monitor%matsum, plan%matsum, model%curves, end_time)
+      if (allocated(model%walls)) &
+        call start_schedule(monitor%rwforc, plan%rwforc, model%curves, end_time)
       call start_progress(monitor%progress, end_time, plan%status_interval)
     end associate
     call plan_restarts(monitor%restarts, model%controls%output)
@@ -103,6 +105,7 @@ contains
     due%rcforc = everything .or. is_due(monitor%rcforc, time, dt)
     due%nodout = everything .or. is_due(monitor%nodout, time, dt)
     due%matsum = everything .or. is_due(monitor%matsum, time, dt)
+    due%rwforc = everything .or. is_due(monitor%rwforc, time, dt)
   end function find_due
 
   !> Whether anything is due.
@@ -110,7 +113,8 @@ contains
     type(due_t), intent(in) :: due
     logical :: any_of_them
 
-    any_of_them = due%plot .or. due%glstat .or. due%rcforc .or. due%nodout .or. due%matsum
+    any_of_them = due%plot .or. due%glstat .or. due%rcforc .or. due%nodout .or. due%matsum &
+      .or. due%rwforc
   end function any_due
 
   !> Write what is due from the snapshot.
@@ -127,6 +131,7 @@ contains
       if (due%rcforc) call append_rcforc(histories, model, shot)
       if (due%nodout) call append_nodout(histories, model, shot)
       if (due%matsum) call append_matsum(histories, model, shot)
+      if (due%rwforc) call append_rwforc(histories, model, shot)
       if (due%plot) then
         call append_contact(histories, model, shot)
         call append_state(monitor%results, model, shot, error)
@@ -137,6 +142,7 @@ contains
       if (due%rcforc) call mark_written(monitor%rcforc, shot%time, dt)
       if (due%nodout) call mark_written(monitor%nodout, shot%time, dt)
       if (due%matsum) call mark_written(monitor%matsum, shot%time, dt)
+      if (due%rwforc) call mark_written(monitor%rwforc, shot%time, dt)
       if (due%plot) call mark_written(monitor%plot, shot%time, dt)
     end associate
   end subroutine write_due

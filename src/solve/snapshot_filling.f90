@@ -28,6 +28,7 @@ contains
     allocate (snapshot%displacement(2, n_node), snapshot%velocity(2, n_node), &
       snapshot%acceleration(2, n_node), source=0.0_wp)
     allocate (snapshot%parts(size(model%parts)))
+    if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
     allocate (snapshot%interfaces(size(model%contacts)), snapshot%slaves(size(model%contacts)))
     if (.not. (model%controls%output%plot%dt > 0.0_wp .or. model%controls%output%plot%curve > 0)) &
       return

@@ -13,6 +13,7 @@ module start_m
   use model_m, only : model_t
   use rigid_start_m, only : start_rigids
   use state_m, only : state_t
+  use wall_motion_m, only : start_walls
   implicit none
   private
   public :: start_state
@@ -48,6 +49,7 @@ contains
     end do
     call log_elements(model, log)
     call start_rigids(model, log, state)
+    call start_walls(model, state)
     call start_elements(model, state%elements)
     allocate (state%contacts(size(model%contacts)))
     do i = 1, size(model%contacts)

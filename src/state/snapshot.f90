@@ -6,7 +6,7 @@ module snapshot_m
   use energies_m, only : energies_t
   implicit none
   private
-  public :: snapshot_t, interface_result_t, part_result_t, slave_result_t
+  public :: snapshot_t, interface_result_t, part_result_t, slave_result_t, wall_result_t
 
   !> Resultants of one interface.
   type :: interface_result_t
@@ -23,6 +23,15 @@ module snapshot_m
     real(wp) :: momentum(2) = 0.0_wp
     real(wp) :: mass = 0.0_wp
   end type part_result_t
+
+  !> Resultants of one rigid wall, of the force that acts on the nodes.
+  type :: wall_result_t
+    real(wp) :: force(2) = 0.0_wp
+    real(wp) :: normal_force = 0.0_wp
+    real(wp) :: impulse = 0.0_wp
+    real(wp) :: work = 0.0_wp
+    integer :: n_active = 0
+  end type wall_result_t
 
   !> Slave nodes of one interface in walking order; all arrays (n_slave) but the last.
   type :: slave_result_t
@@ -52,6 +61,7 @@ module snapshot_m
     real(wp), allocatable :: plastic_strain(:)   !! (n_element)
     type(interface_result_t), allocatable :: interfaces(:)
     type(part_result_t), allocatable :: parts(:)
+    type(wall_result_t), allocatable :: walls(:) !! only where the deck has any
     type(slave_result_t), allocatable :: slaves(:) !! one per interface
   end type snapshot_t
 

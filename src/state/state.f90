@@ -11,6 +11,7 @@ module state_m
   use contact_state_m, only : contact_state_t
   use energies_m, only : energies_t
   use rigid_state_m, only : rigid_state_t
+  use wall_state_m, only : wall_state_t
   implicit none
   private
   public :: state_t
@@ -37,6 +38,7 @@ module state_m
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)
     type(rigid_state_t), allocatable :: rigids(:)
+    type(wall_state_t), allocatable :: walls(:) !! only where the deck has any
     real(wp) :: external_work = 0.0_wp
     real(wp) :: damping_work = 0.0_wp
     real(wp) :: initial_energy = 0.0_wp

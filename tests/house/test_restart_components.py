@@ -10,8 +10,9 @@ from fortran_source import ROOT, read_source
 #: components that are not kept like that and why)
 KEPT = {
     "state_t": ("state/state.f90", "output/restart_state.f90", "state%", {
-        "contacts": "kept one by one", "rigids": "kept one by one"}),
+        "contacts": "kept one by one", "rigids": "kept one by one", "walls": "kept one by one"}),
     "rigid_state_t": ("state/rigid_state.f90", "output/restart_state.f90", "rigid%", {}),
+    "wall_state_t": ("state/wall_state.f90", "output/restart_state.f90", "wall%", {}),
     "block_state_t": ("state/block_state.f90", "output/restart_state.f90", "elements%", {}),
     "contact_state_t": ("state/contact_state.f90", "output/restart_contact.f90", "contact%", {}),
     "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {}),
@@ -37,7 +38,7 @@ KEPT = {
 }
 #: types of src/state that hold no memory
 WITHOUT_MEMORY = {"snapshot_t", "interface_result_t", "part_result_t", "slave_result_t",
-                  "energies_t"}
+                  "wall_result_t", "energies_t"}
 
 
 def types_of(path):

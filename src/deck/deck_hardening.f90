@@ -1,0 +1,178 @@
+! SPDX-License-Identifier: MIT
+!> *MAT_PIECEWISE_LINEAR_PLASTICITY and *DEFINE_TABLE.
+module deck_hardening_m
+  use kinds_m, only : wp
+  use parts_m, only : material_t, law_piecewise
+  use deck_lines_m, only : deck_t, place_t, line_error, line_warning
+  use deck_fields_m, only : card_t
+  use deck_parameter_table_m, only : parameters_t
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, check_rest, &
+    report_field
+  use deck_material_m, only : elastic_constants, append_material
+  use deck_raw_m, only : raw_t, raw_hardening_t, raw_table_t
+  implicit none
+  private
+  public :: read_piecewise, read_table
+
+  !> FAIL from here on means never.
+  real(wp), parameter :: never = 1.0e19_wp
+
+contains
+
+  !> *MAT_PIECEWISE_LINEAR_PLASTICITY.
+  subroutine read_piecewise(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card, rate, strains, stresses
+    type(material_t) :: material
+    type(raw_hardening_t) :: hardening
+    character(:), allocatable :: title
+
+    call open_cursor(deck, i_block, cursor)
+    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call next_card(deck, parameters, cursor, 1, card)
+    call elastic_constants(deck, cursor, card, material)
+    material%law = law_piecewise
+    if (abs(card%r(7)) > 0.0_wp .and. card%r(7) < never) call report_field(deck, cursor, card, 7, &
+      'asks for failure at a plastic strain, which this version does not have; leave it 0')
+    call next_card(deck, parameters, cursor, 2, rate)
+    call read_rates(deck, cursor, rate, hardening)
+    call next_card(deck, parameters, cursor, 3, strains)
+    call next_card(deck, parameters, cursor, 4, stresses)
+    if (hardening%curve > 0) then
+      if (any(abs(strains%r(:8)) > 0.0_wp) .or. any(abs(stresses%r(:8)) > 0.0_wp)) call line_warning( &
+        deck, strains%line, 'points', 'EPS and ES have no effect where LCSS gives the yield stress')
+    else if (any(abs(strains%r(:8)) > 0.0_wp) .or. any(abs(stresses%r(:8)) > 0.0_wp)) then
+      call read_points(deck, cursor, strains, stresses, hardening)
+    else if (.not. rate%bad(3)) then
+      call read_line(deck, cursor, card, hardening)
+    end if
+    call append_material(raw, material, card)
+    call check_rest(deck, cursor)
+    if (card%bad(1) .or. rate%bad(3)) return
+    hardening%material = size(raw%materials)
+    raw%hardenings = [raw%hardenings, hardening]
+  end subroutine read_piecewise
+
+  !> C, P, LCSS, LCSR and VP.
+  subroutine read_rates(deck, cursor, card, hardening)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_hardening_t), intent(inout) :: hardening
+
+    if (card%r(1) < 0.0_wp) call report_field(deck, cursor, card, 1, 'is negative: the logarithmic ' &
+      //'rate effect is not part of this law')
+    if (card%r(1) > 0.0_wp .and. .not. card%r(2) > 0.0_wp) call report_field(deck, cursor, card, 2, &
+      'is not an exponent (more than 0) for the C beside it')
+    if (card%i(3) < 0) call report_field(deck, cursor, card, 3, 'is not a curve or table number')
+    if (card%i(4) < 0) call report_field(deck, cursor, card, 4, 'is not a curve number')
+    hardening%is_viscoplastic = abs(card%r(5) - 1.0_wp) <= 0.0_wp
+    if (abs(card%r(5)) > 0.0_wp .and. .not. hardening%is_viscoplastic) call report_field(deck, cursor, &
+      card, 5, 'is a rate form that this version does not have (0 scales the yield stress with the ' &
+      //'total strain rate)')
+    hardening%curve = max(card%i(3), 0)
+    hardening%rate_curve = max(card%i(4), 0)
+    if (.not. any(card%bad(1:2))) then
+      hardening%rate_constant = card%r(1)
+      hardening%rate_power = card%r(2)
+    end if
+    hardening%rate_place = place_t(card%line, 2, 1)
+    hardening%curve_place = place_t(card%line, 2, 3)
+    hardening%rate_curve_place = place_t(card%line, 2, 4)
+    hardening%form_place = place_t(card%line, 2, 5)
+  end subroutine read_rates
+
+  !> EPS and ES: as many points as there are up to the last that is not zero.
+  subroutine read_points(deck, cursor, strains, stresses, hardening)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: strains, stresses
+    type(raw_hardening_t), intent(inout) :: hardening
+    integer :: k, n
+
+    n = 1
+    do k = 2, 8
+      if (abs(strains%r(k)) > 0.0_wp .or. abs(stresses%r(k)) > 0.0_wp) n = k
+    end do
+    if (n < 2) call report_field(deck, cursor, strains, 2, 'ends the points, of which there must be ' &
+      //'two or more')
+    if (abs(strains%r(1)) > 0.0_wp) call report_field(deck, cursor, strains, 1, 'is not 0: the first ' &
+      //'point is the initial yield stress')
+    do k = 1, n
+      if (.not. stresses%r(k) > 0.0_wp) call report_field(deck, cursor, stresses, k, &
+        'is not a yield stress (more than 0)')
+    end do
+    do k = 2, n
+      if (strains%r(k) <= strains%r(k - 1)) call report_field(deck, cursor, strains, k, &
+        'is not beyond the point before it: plastic strains must increase')
+    end do
+    if (any(strains%bad) .or. any(stresses%bad)) return
+    hardening%points%abscissa = strains%r(:n)
+    hardening%points%ordinate = stresses%r(:n)
+  end subroutine read_points
+
+  !> SIGY and ETAN.
+  subroutine read_line(deck, cursor, card, hardening)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_hardening_t), intent(inout) :: hardening
+
+    if (card%r(5) <= 0.0_wp) call report_field(deck, cursor, card, 5, &
+      'is not a yield stress (more than 0), and there is neither LCSS nor EPS and ES')
+    if (card%r(6) < 0.0_wp) then
+      call report_field(deck, cursor, card, 6, 'is negative: a falling yield stress needs a curve')
+    else if (card%r(6) >= card%r(3) .and. .not. card%bad(3)) then
+      call report_field(deck, cursor, card, 6, 'is not below E: the tangent modulus of the ' &
+        //'uniaxial stress-strain curve must be')
+    end if
+    if (any(card%bad)) return
+    hardening%points%abscissa = [0.0_wp]
+    hardening%points%ordinate = [card%r(5)]
+    hardening%modulus = card%r(3)*card%r(6)/(card%r(3) - card%r(6))
+  end subroutine read_line
+
+  !> *DEFINE_TABLE: a number, and a value for each of the curves that come next.
+  subroutine read_table(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: head, card
+    type(raw_table_t) :: table
+    character(:), allocatable :: title
+    real(wp), allocatable :: values(:)
+    logical :: found
+    integer :: n
+
+    call open_cursor(deck, i_block, cursor)
+    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call next_card(deck, parameters, cursor, 1, head)
+    if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a number of 1 or more')
+    if (head%r(2) < 0.0_wp) call report_field(deck, cursor, head, 2, &
+      'is negative: it would turn the table round')
+    if (.not. abs(head%r(2)) > 0.0_wp) head%r(2) = 1.0_wp
+    allocate (values(max(cursor%last - cursor%line + 1, 1)))
+    n = 0
+    do
+      call next_row(deck, parameters, cursor, 2, card, found)
+      if (.not. found) exit
+      n = n + 1
+      values(n) = head%r(2)*(card%r(1) + head%r(3))
+      if (n == 1 .or. card%bad(1)) cycle
+      if (values(n) <= values(n - 1)) call report_field(deck, cursor, card, 1, &
+        'is not beyond the value before it: the values of a table must increase')
+    end do
+    if (n == 0) call line_error(deck, head%line, 'the table has no values')
+    if (head%bad(1)) raw%lost%tables = .true.
+    if (head%bad(1)) return
+    table = raw_table_t(head%i(1), head%line, i_block, values(:n))
+    raw%tables = [raw%tables, table]
+  end subroutine read_table
+
+end module deck_hardening_m

@@ -1,0 +1,182 @@
+! SPDX-License-Identifier: MIT
+!> *RIGIDWALL_PLANAR: the card, and the nodes that see the wall.
+module deck_wall_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use text_m, only : read_integer, number_good
+  use model_m, only : model_t
+  use rigids_m, only : mark_rigid_nodes
+  use walls_m, only : wall_t, wall_distance
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, check_rest, report_field
+  use deck_fields_m, only : card_t
+  use deck_lines_m, only : deck_t, place_t, line_error, line_warning
+  use deck_maps_m, only : maps_t, resolve_id
+  use deck_parameter_table_m, only : parameters_t
+  use deck_raw_m, only : raw_t, raw_wall_t
+  implicit none
+  private
+  public :: read_wall, resolve_walls
+
+contains
+
+  !> *RIGIDWALL_PLANAR.
+  subroutine read_wall(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card, place
+    type(raw_wall_t) :: entry
+    character(:), allocatable :: title
+
+    call open_cursor(deck, i_block, cursor)
+    entry%wall%id = size(raw%walls) + 1
+    entry%line = deck%blocks(i_block)%keyword
+    if (deck%blocks(i_block)%titled) then
+      call next_text(deck, cursor, title)
+      call take_number(title, entry%wall%id)
+    end if
+    if (any(raw%walls%wall%id == entry%wall%id)) call line_error(deck, entry%line, 'the wall number ' &
+      //to_text(entry%wall%id)//' belongs to an earlier wall (without a number it is the position ' &
+      //'in the deck)')
+    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, parameters, cursor, 2, place)
+    call check_rest(deck, cursor)
+    if (card%i(1) < 0) call report_field(deck, cursor, card, 1, 'is not a node set, nor 0 (all nodes)')
+    if (card%i(2) < 0) call report_field(deck, cursor, card, 2, 'is not a node set')
+    if (card%r(4) < 0.0_wp) call report_field(deck, cursor, card, 4, 'is negative')
+    if (.not. abs(card%r(6)) > 0.0_wp) card%r(6) = 1.0e20_wp
+    if (card%r(6) <= card%r(5)) call report_field(deck, cursor, card, 6, &
+      'is not after BIRTH "'//to_text(card%r(5))//'"')
+    entry%sets = card%i(1:2)
+    entry%card_line = card%line
+    entry%reach = card%r(4)
+    entry%wall%birth = card%r(5)
+    entry%wall%death = card%r(6)
+    call take_plane(deck, cursor, place, entry%wall)
+    raw%walls = [raw%walls, entry]
+  end subroutine read_wall
+
+  !> The number before a heading, where there is one.
+  pure subroutine take_number(title, number)
+    character(*), intent(in) :: title
+    integer, intent(inout) :: number
+    integer :: value, status
+
+    if (len_trim(title(:min(10, len(title)))) == 0) return
+    call read_integer(trim(adjustl(title(:min(10, len(title))))), value, status)
+    if (status == number_good .and. value > 0) number = value
+  end subroutine take_number
+
+  !> Tail and head: a point of the wall, and its normal.
+  subroutine take_plane(deck, cursor, card, wall)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(wall_t), intent(inout) :: wall
+    real(wp) :: arrow(2)
+
+    wall%foot = card%r(1:2)
+    arrow = card%r(4:5) - card%r(1:2)
+    if (abs(card%r(6) - card%r(3)) > 0.0_wp) then
+      call report_field(deck, cursor, card, 6, 'is not ZT: the normal of the wall must lie in the ' &
+        //'plane of the mesh')
+    else if (.not. maxval(abs(arrow)) > 0.0_wp) then
+      call report_field(deck, cursor, card, 4, 'with YH gives the tail again: the normal points from ' &
+        //'tail (XT, YT) to head (XH, YH)')
+    else
+      arrow = arrow/maxval(abs(arrow))
+      wall%normal = arrow/norm2(arrow)
+    end if
+  end subroutine take_plane
+
+  !> Nodes of all walls. Conditions and rigid bodies have been resolved.
+  subroutine resolve_walls(deck, raw, maps, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    logical :: sees(model%mesh%n_node)
+    integer :: i, k
+
+    if (size(raw%walls) == 0) return
+    if (model%controls%implicit%is_on) call line_error(deck, raw%walls(1)%line, &
+      'rigid walls: the implicit method does not have them')
+    allocate (model%walls(size(raw%walls)))
+    do i = 1, size(raw%walls)
+      model%walls(i) = raw%walls(i)%wall
+      call find_nodes(deck, raw%walls(i), maps, model, sees)
+      if (raw%walls(i)%reach > 0.0_wp) then
+        do k = 1, size(sees)
+          sees(k) = sees(k) .and. wall_distance(model%walls(i), model%mesh%coordinates(:, k), &
+            [0.0_wp, 0.0_wp]) <= raw%walls(i)%reach
+        end do
+      end if
+      model%walls(i)%nodes = pack([(k, k=1, model%mesh%n_node)], sees)
+      call look_at_nodes(deck, raw%walls(i)%line, model, model%walls(i))
+    end do
+  end subroutine resolve_walls
+
+  !> NSID without NSIDEX, without nodes of rigid bodies and such that no element has.
+  subroutine find_nodes(deck, entry, maps, model, sees)
+    type(deck_t), intent(inout) :: deck
+    type(raw_wall_t), intent(in) :: entry
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(in) :: model
+    logical, intent(out) :: sees(:)
+    integer :: k
+
+    sees = entry%sets(1) == 0
+    if (entry%sets(1) > 0) then
+      call resolve_id(deck, maps%node_sets, entry%sets(1), 'node set', &
+        place_t(entry%card_line, 1, 1), k)
+      if (k > 0) sees(known(model%node_sets(k)%nodes)) = .true.
+    end if
+    if (entry%sets(2) > 0) then
+      call resolve_id(deck, maps%node_sets, entry%sets(2), 'node set', &
+        place_t(entry%card_line, 1, 2), k)
+      if (k > 0) sees(known(model%node_sets(k)%nodes)) = .false.
+    end if
+    if (any(sees .and. mark_rigid_nodes(model%rigids, size(sees)))) then
+      call line_warning(deck, entry%line, 'wall and rigid body', &
+        to_text(count(sees .and. mark_rigid_nodes(model%rigids, size(sees)))) &
+        //' node(s) of rigid bodies do not see the wall')
+      sees = sees .and. .not. mark_rigid_nodes(model%rigids, size(sees))
+    end if
+  end subroutine find_nodes
+
+  !> Nodes that are there: those of a set that are not have been reported.
+  pure function known(nodes) result(those)
+    integer, intent(in) :: nodes(:)
+    integer, allocatable :: those(:)
+
+    those = pack(nodes, nodes > 0)
+  end function known
+
+  !> A wall without nodes, and nodes that start behind it.
+  subroutine look_at_nodes(deck, line, model, wall)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line
+    type(model_t), intent(in) :: model
+    type(wall_t), intent(in) :: wall
+    real(wp) :: size_of_mesh
+    integer :: i, n, first
+
+    if (size(wall%nodes) == 0) call line_warning(deck, line, 'wall'//to_text(line), &
+      'no node sees this wall')
+    size_of_mesh = maxval(abs(model%mesh%coordinates))
+    n = 0
+    first = 0
+    do i = 1, size(wall%nodes)
+      if (wall_distance(wall, model%mesh%coordinates(:, wall%nodes(i)), [0.0_wp, 0.0_wp]) &
+        >= -1.0e-12_wp*size_of_mesh) cycle
+      n = n + 1
+      if (first == 0) first = wall%nodes(i)
+    end do
+    if (n > 0) call line_warning(deck, line, 'behind the wall'//to_text(line), to_text(n) &
+      //' node(s) start behind the wall, the first is '//to_text(model%mesh%node_id(first)) &
+      //': they are kept from going further, not brought back')
+  end subroutine look_at_nodes
+
+end module deck_wall_m

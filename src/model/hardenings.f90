@@ -1,0 +1,110 @@
+! SPDX-License-Identifier: MIT
+!> Yield stress against plastic strain, point by point, and its dependence on the strain rate.
+module hardenings_m
+  use kinds_m, only : wp
+  use curves_m, only : curve_t
+  implicit none
+  private
+  public :: hardening_t, make_hardening, depends_on_rate
+
+  !> Hardening of one material: rows of points, one for each strain rate, all at the same plastic strains.
+  !> Between points and between rates the yield stress is linear; outside the rates the outermost row holds.
+  type :: hardening_t
+    real(wp), allocatable :: strain(:)     !! (n) plastic strain of the points, increasing, the first 0
+    real(wp), allocatable :: stress(:, :)  !! (n, n_rate) yield stress at the points
+    real(wp), allocatable :: slope(:, :)   !! (n, n_rate) from each point on; the last goes on for ever
+    real(wp), allocatable :: rate(:)       !! (n_rate) increasing, 1/s; a single row holds at any rate
+    real(wp) :: rate_constant = 0.0_wp     !! C of Cowper and Symonds, 1/s, 0 = none
+    real(wp) :: rate_exponent = 1.0_wp     !! 1/P
+    type(curve_t), allocatable :: rate_factor !! factor on the yield stress against the strain rate
+  end type hardening_t
+
+contains
+
+  !> Rows from curves of yield stress against plastic strain, which start at 0. Each is continued by its last
+  !> slope where that rises, by its last value where it falls; all get the points of all.
+  pure function make_hardening(curves, rates) result(hardening)
+    type(curve_t), intent(in) :: curves(:) !! one for each rate
+    real(wp), intent(in) :: rates(:)       !! increasing
+    type(hardening_t) :: hardening
+    integer :: i, n
+
+    hardening%rate = rates
+    allocate (hardening%strain(0))
+    do i = 1, size(curves)
+      hardening%strain = merged(hardening%strain, curves(i)%abscissa)
+    end do
+    n = size(hardening%strain)
+    allocate (hardening%stress(n, size(curves)), hardening%slope(n, size(curves)))
+    do i = 1, size(curves)
+      call fill_row(curves(i), hardening%strain, hardening%stress(:, i), hardening%slope(:, i))
+    end do
+  end function make_hardening
+
+  !> All values of two increasing lists, each once, increasing.
+  pure function merged(a, b) result(both)
+    real(wp), intent(in) :: a(:), b(:)
+    real(wp), allocatable :: both(:)
+    real(wp) :: values(size(a) + size(b))
+    integer :: i, j, n
+
+    i = 1
+    j = 1
+    n = 0
+    do while (i <= size(a) .or. j <= size(b))
+      n = n + 1
+      if (j > size(b)) then
+        values(n) = a(i)
+      else if (i > size(a)) then
+        values(n) = b(j)
+      else
+        values(n) = min(a(i), b(j))
+      end if
+      do while (i <= size(a))
+        if (a(i) > values(n)) exit
+        i = i + 1
+      end do
+      do while (j <= size(b))
+        if (b(j) > values(n)) exit
+        j = j + 1
+      end do
+    end do
+    both = values(:n)
+  end function merged
+
+  !> Values and slopes of one curve at points that hold its own.
+  pure subroutine fill_row(curve, strain, stress, slope)
+    type(curve_t), intent(in) :: curve
+    real(wp), intent(in) :: strain(:)
+    real(wp), intent(out) :: stress(:), slope(:)
+    integer :: i, k, n
+
+    n = size(curve%abscissa)
+    k = 0
+    do i = 1, size(strain)
+      if (k < n) then
+        if (strain(i) >= curve%abscissa(k + 1)) k = k + 1
+      end if
+      if (k < n) then
+        slope(i) = (curve%ordinate(k + 1) - curve%ordinate(k)) &
+          /(curve%abscissa(k + 1) - curve%abscissa(k))
+      else if (n > 1) then
+        slope(i) = max(0.0_wp, (curve%ordinate(n) - curve%ordinate(n - 1)) &
+          /(curve%abscissa(n) - curve%abscissa(n - 1)))
+      else
+        slope(i) = 0.0_wp
+      end if
+      stress(i) = curve%ordinate(k) + slope(i)*(strain(i) - curve%abscissa(k))
+    end do
+  end subroutine fill_row
+
+  !> Whether the yield stress depends on the strain rate.
+  pure function depends_on_rate(hardening) result(yes)
+    type(hardening_t), intent(in) :: hardening
+    logical :: yes
+
+    yes = size(hardening%rate) > 1 .or. hardening%rate_constant > 0.0_wp &
+      .or. allocated(hardening%rate_factor)
+  end function depends_on_rate
+
+end module hardenings_m

@@ -1,0 +1,33 @@
+! SPDX-License-Identifier: MIT
+!> Rigid walls: fixed planes that nodes do not pass.
+module walls_m
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: wall_t, wall_distance
+
+  !> One *RIGIDWALL_PLANAR.
+  type :: wall_t
+    integer :: id = 0                        !! user id, or the position in the deck
+    real(wp) :: foot(2) = 0.0_wp             !! a point of the wall (tail)
+    real(wp) :: normal(2) = [0.0_wp, 1.0_wp] !! of length 1, into the free side (tail to head)
+    real(wp) :: birth = 0.0_wp               !! the wall is there from this time
+    real(wp) :: death = 1.0e20_wp            !! until this time
+    integer, allocatable :: nodes(:)         !! indices of the nodes that see it
+    integer, allocatable :: place(:)         !! (n_special) where each special node stands in `nodes`, 0 = not there
+  end type wall_t
+
+contains
+
+  !> Distance of a place from the wall, negative behind it.
+  pure function wall_distance(wall, coordinates, displacement) result(distance)
+    type(wall_t), intent(in) :: wall
+    real(wp), intent(in) :: coordinates(2)  !! at time zero
+    real(wp), intent(in) :: displacement(2)
+    real(wp) :: distance
+
+    distance = dot_product(wall%normal, coordinates - wall%foot) &
+      + dot_product(wall%normal, displacement)
+  end function wall_distance
+
+end module walls_m

@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: MIT
+"""Bars and blocks against rigid walls."""
+import subprocess
+
+import numpy as np
+
+from meshes import Deck, grid, lumped_mass, rotate
+
+RHO, YOUNG, SPEED = 8000.0, 2.0e11, 2.0
+LENGTH, HEIGHT, N = 1.0, 0.02, 200
+WAVE = np.sqrt(YOUNG / RHO)
+MASS = RHO * LENGTH * HEIGHT
+CONTACT = 2.0 * LENGTH / WAVE
+
+
+def wall(deck, tail, normal, nodes=0, without=0, times=(0.0, 0.0), title=None):
+    head = np.asarray(tail) + np.asarray(normal)
+    deck.add("*RIGIDWALL_PLANAR" + ("_ID" if title else ""), *([title] if title else []),
+             (nodes, without, 0, 0.0, *times),
+             (float(tail[0]), float(tail[1]), 0.0, float(head[0]), float(head[1]), 0.0))
+    return deck
+
+
+def bar(angle=0.0, shift=(0.0, 0.0), end=1.5 * CONTACT, n=N):
+    """An elastic bar of nu = 0 that flies along -x (turned by `angle`) at a wall; sides free."""
+    deck = Deck("bar and wall")
+    dt = 0.5 * LENGTH / n / WAVE
+    deck.control(end, dt=dt)
+    deck.part(points=4).elastic(RHO, YOUNG, 0.0)
+    coordinates, quads = grid(n, 1, LENGTH, HEIGHT)
+    coordinates = rotate(coordinates, angle) + np.asarray(shift)
+    nodes = deck.mesh(coordinates, quads)
+    normal = np.array([np.cos(angle), np.sin(angle)])
+    deck.add("*INITIAL_VELOCITY", (0,), (*(-SPEED * normal),))
+    deck.node_set(1, nodes[::n + 1])
+    wall(deck, np.asarray(shift), 2.0 * normal, title="         7the wall")
+    deck.output(plot=end / 20.0, glstat=dt, matsum=dt)
+    deck.add("*DATABASE_RWFORC", (dt,))
+    return deck, dt, normal
+
+
+def check_bar(run, name, angle, shift):
+    """Contact for 2L/c, pressure rho c v, then the bar flies back as it came."""
+    deck, _, normal = bar(angle, shift)
+    result = run.program(deck, name=name.replace(" ", "_"))
+    force = result.table("rwforc")
+    run.true(f"{name}: number of the wall", np.all(force["wall"] == 7))
+    plateau = (force["time"] > 0.1 * CONTACT) & (force["time"] < 0.9 * CONTACT)
+    expected = RHO * WAVE * SPEED * HEIGHT
+    run.check(f"{name}: mean force on the plateau", np.mean(force["normal_force"][plateau]), expected, 5e-3,
+              source="rho c v H")
+    run.check(f"{name}: impulse", force["impulse"][-1], 2.0 * MASS * SPEED, 1e-2, source="2 m v")
+    half = force["impulse"][np.searchsorted(force["time"], 0.5 * CONTACT)]
+    run.check(f"{name}: impulse at half of the contact", half, MASS * SPEED, 2e-2, source="m v")
+    run.check(f"{name}: time of contact", 2.0 * MASS * SPEED / np.mean(force["normal_force"][plateau]), CONTACT,
+              5e-3, source="2 L/c")
+    late = force["time"] > 1.1 * CONTACT
+    run.check(f"{name}: force after the rebound", np.mean(force["normal_force"][late]) / expected, 0.0, 2e-2, "abs",
+              "the bar has left")
+    run.check(f"{name}: direction of the force", np.stack([force["fx"], force["fy"]], -1),
+              force["normal_force"][:, None] * normal, 1e-12)
+    momentum = result.table("matsum")
+    rebound = (momentum["momentum_x"][-1] * normal[0] + momentum["momentum_y"][-1] * normal[1]) / MASS
+    run.check(f"{name}: velocity of the rebound", rebound, SPEED, 1e-2, source="v")
+    balance = (momentum["momentum_x"] * normal[0] + momentum["momentum_y"] * normal[1]) + MASS * SPEED
+    run.check(f"{name}: change of momentum is the impulse", balance[-1], force["impulse"][-1], 1e-10,
+              source="momentum balance")
+    energies = result.table("glstat")
+    run.check(f"{name}: energy ratio", energies["energy_ratio"], np.ones_like(energies["time"]), 1e-3)
+    run.check(f"{name}: energy lost in the wall is the external work", energies["external_work"][-1],
+              force["work"][-1], 1e-12)
+    # The nodes on the wall stop at once: half an element of the bar loses its energy, once.
+    lost = 0.5 * (RHO * HEIGHT * 0.5 * LENGTH / N) * SPEED ** 2
+    run.check(f"{name}: energy lost in the wall", -force["work"][-1], lost, 1e-9,
+              source="kinetic energy of the nodes that touch")
+    return 1.0 - rebound / SPEED
+
+
+def check_order(run, last):
+    """What ringing keeps of the rebound falls as the front gets sharper."""
+    missing = []
+    for n in (50, 100):
+        deck, _, normal = bar(n=n)
+        momentum = run.program(deck, name=f"bar_{n}").table("matsum")
+        missing.append(1.0 - momentum["momentum_x"][-1] * normal[0] / MASS / SPEED)
+    missing.append(last)
+    for k in (1, 2):
+        run.check(f"order of the rebound velocity, {25 * 2 ** k} to {50 * 2 ** k} elements",
+                  np.log2(missing[k - 1] / missing[k]), 2.0 / 3.0, 0.1, "abs", "width of a front: n^(1/3) elements")
+
+
+def check_touching(run):
+    """A square flies through a gap that ends inside a step: it stops exactly at the wall."""
+    deck = Deck("rigid stop")
+    dt = 1.0e-6
+    deck.control(40 * dt, dt=dt)
+    deck.part(points=4).elastic(RHO, YOUNG, 0.0)
+    gap = 7.3 * SPEED * dt
+    coordinates, quads = grid(1, 1, 1.0, 1.0, (0.0, gap))
+    nodes = deck.mesh(coordinates, quads)
+    deck.add("*INITIAL_VELOCITY", (0,), (0.5, -SPEED))
+    wall(deck, (0.0, 0.0), (0.0, 1.0))
+    deck.output(glstat=dt, matsum=dt, nodout=dt, nodes=nodes[:1])
+    deck.add("*DATABASE_RWFORC", (dt,))
+    result = run.program(deck, name="touching")
+    node, force = result.node(int(nodes[0])), result.table("rwforc")
+    flight = gap - SPEED * node["time"]
+    run.check("flight to the wall", node["y"][:8], flight[:8], 1e-12)
+    run.check("nodes end on the wall", node["y"][8:11], np.zeros(3), 1e-15, "abs")
+    run.check("nothing passes the wall", node["y"].min(), 0.0, 1e-15, "min")
+    run.check("free along the wall", node["vx"], np.full_like(node["vx"], 0.5), 1e-9)
+    mass = lumped_mass(coordinates, quads, RHO)[:2].sum()
+    run.check("force of the impact", force["normal_force"][7], 0.7 * mass * SPEED / dt, 1e-9,
+              source="m dv/dt, dv = 0.7 v in the first step")
+    momentum = result.table("matsum")
+    run.check("change of momentum is the impulse, at all times", momentum["momentum_y"] + RHO * SPEED, force["impulse"],
+              1e-12, source="momentum balance")
+
+
+def check_corner(run):
+    """Two walls at 60 degrees: a stiff square in the corner is held by both."""
+    deck = Deck("corner")
+    dt = 1.0e-6
+    deck.control(200 * dt, dt=dt)
+    deck.part(points=4).elastic(RHO, YOUNG, 0.0)
+    coordinates, quads = grid(1, 1, 1.0, 1.0)
+    coordinates = rotate(coordinates, np.pi / 4.0)
+    nodes = deck.mesh(coordinates, quads)
+    deck.node_set(1, nodes[:1])
+    deck.node_set(2, nodes[1:])
+    deck.add("*INITIAL_VELOCITY", (0,), (0.3, -SPEED))
+    normals = [np.array([np.sin(a), np.cos(a)]) for a in (np.pi / 3.0, -np.pi / 3.0)]
+    wall(deck, (0.0, 0.0), normals[0], 1)
+    wall(deck, (0.0, 0.0), normals[1], 0, 2)
+    deck.output(glstat=dt, nodout=dt, nodes=nodes[:1])
+    deck.add("*DATABASE_RWFORC", (dt,))
+    result = run.program(deck, name="corner")
+    node, force = result.node(int(nodes[0])), result.table("rwforc")
+    early = force["time"] < 50 * dt
+    run.true("both walls push", all(np.all(force["normal_force"][early & (force["wall"] == k)] > 0.0)
+                                    for k in (1, 2)))
+    for k in (0, 1):
+        run.check(f"wall {k + 1} is not passed", np.min(node["x"] * normals[k][0] + node["y"] * normals[k][1]),
+                  0.0, 1e-15, "min")
+    first = node["time"] < 50 * dt
+    run.check("the corner node rests", np.hypot(node["x"], node["y"])[first], np.zeros(first.sum()), 1e-15, "abs")
+
+
+def check_times(run):
+    """A wall that is there for a time: free flight before, a stop, free flight after."""
+    deck = Deck("birth and death")
+    dt = 1.0e-6
+    deck.control(30 * dt, dt=dt)
+    deck.part(points=4).elastic(RHO, YOUNG, 0.0)
+    nodes = deck.mesh(*grid(1, 1))
+    deck.add("*INITIAL_VELOCITY", (0,), (0.0, -SPEED))
+    wall(deck, (0.0, 0.5), (0.0, 3.0), times=(10.5 * dt, 20.5 * dt))
+    deck.output(glstat=dt, nodout=dt, nodes=nodes)
+    deck.add("*DATABASE_RWFORC", (dt,))
+    result = run.program(deck, name="times")
+    force = result.table("rwforc")
+    there = (force["time"] > 10.5 * dt) & (force["time"] < 20.5 * dt)
+    run.true("force while the wall is there", np.all(force["normal_force"][there] > 0.0))
+    run.true("no force before and after", np.all(force["normal_force"][~there] == 0.0))
+    node = result.node(int(nodes[0]))
+    behind = (node["time"] > 11.5 * dt) & (node["time"] < 20.5 * dt)
+    run.check("a node behind the wall goes no further", np.ptp(node["y"][behind]), 0.0, 1e-15, "abs")
+    run.true("warned of nodes behind the wall", "start behind the wall" in result.stderr + (
+        result.folder / "times.log").read_text())
+
+
+def check_restart(run):
+    """A run that goes on in the middle of the contact makes the same rows."""
+    deck, dt, _ = bar(end=0.8 * CONTACT, n=50)
+    cycles = int(round(0.3 * CONTACT / dt))
+    whole = run.program(deck, name="whole")
+    deck.add("*DATABASE_BINARY_D3DUMP", (cycles,))
+    dumped = run.program(deck, name="dumped")
+    folder = run.work / "goes_on"
+    folder.mkdir()
+    finished = subprocess.run([str(run.program_path), f"r={dumped.folder / 'dumped.dump01.h5'}", f"d={folder}"],
+                              capture_output=True, text=True, timeout=600)
+    run.true("the run goes on", finished.returncode == 0)
+    for name in ("rwforc", "glstat"):
+        run.true(f"{name} is the same to the bit",
+                 (folder / f"dumped.{name}.csv").read_bytes() == whole.csv_path(name).read_bytes())
+
+
+def check(run):
+    check_order(run, check_bar(run, "bar", 0.0, (0.0, 0.0)))
+    check_bar(run, "bar at an oblique wall", np.radians(37.0), (0.3, -0.2))
+    check_touching(run)
+    check_corner(run)
+    check_times(run)
+    check_restart(run)
