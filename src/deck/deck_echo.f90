@@ -40,6 +40,8 @@ contains
     call echo_interval('matsum', model%controls%output%matsum)
     call echo_interval('rcforc', model%controls%output%rcforc)
     call echo_interval('nodout', model%controls%output%nodout)
+    call echo_interval('sleout', model%controls%output%sleout)
+    call echo_interval('spcforc', model%controls%output%spcforc)
 
   contains
 

@@ -14,7 +14,8 @@ module deck_raw_m
     reserve_rows, append_row, append_set, append_member, reserve_nodes, reserve_elements, &
     row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, row_velocity_node, &
     row_velocity_generation, row_load_node, row_load_set, row_pressure, row_pressure_set, &
-    row_body, row_damping, row_motion_rigid, output_plot, output_glstat, output_matsum, output_rcforc, output_nodout
+    row_body, row_damping, row_motion_rigid, output_plot, output_glstat, output_matsum, output_rcforc, &
+    output_nodout, output_sleout, output_spcforc, n_output
 
   !> Kinds of `row_t`.
   integer, parameter :: row_spc_node = 1, row_spc_set = 2, row_motion_node = 3, &
@@ -23,7 +24,7 @@ module deck_raw_m
     row_body = 12, row_damping = 13, row_motion_rigid = 14
   !> Files of the output plan.
   integer, parameter :: output_plot = 1, output_glstat = 2, output_matsum = 3, output_rcforc = 4, &
-    output_nodout = 5
+    output_nodout = 5, output_sleout = 6, output_spcforc = 7, n_output = 7
 
   !> One card of a condition: its fields by position.
   type :: row_t
@@ -67,6 +68,7 @@ module deck_raw_m
     real(wp) :: dt = 0.0_wp
     integer :: curve = 0                !! user id
     integer :: n_state = 0              !! NPLTC
+    logical :: is_text = .false.        !! BINARY asks for a text file
     type(place_t) :: place              !! of the curve's field
   end type history_t
 
@@ -109,7 +111,7 @@ module deck_raw_m
     real(wp) :: spectral_radius = -1.0_wp      !! of the implicit method, negative = not given
     integer :: dt_curve = 0                    !! LCTM, user id
     type(place_t) :: dt_curve_place
-    type(history_t) :: outputs(5)
+    type(history_t) :: outputs(n_output)
     type(raw_set_t) :: history_nodes, history_node_sets
   end type raw_t
 
