@@ -113,8 +113,10 @@ def global_values(run, parts):
                 continue
             of = {name: sums[name][row] for name in sums.columns}
             speed = np.array([of["momentum_x"], of["momentum_y"]]) / (of["mass"] or 1.0)
-            values[6 + k::len(parts)] = [of["internal"], of["kinetic"], *speed, 0.0, of["mass"],
-                                         of["hourglass"]]
+            n = len(parts)
+            values[[6 + k, 6 + n + k, 6 + 5 * n + k, 6 + 6 * n + k]] = [
+                of["internal"], of["kinetic"], of["mass"], of["hourglass"]]
+            values[6 + 2 * n + 3 * k:][:2] = speed
         yield values
 
 
