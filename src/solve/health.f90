@@ -110,7 +110,8 @@ contains
     largest = max(abs(energies%initial), abs(energies%external_work), energies%internal)
     if (energies%contact < -0.05_wp*largest) call warn(log, 'the contact forces created energy: ' &
       //to_text(energies%contact)//' of '//to_text(largest) &
-      //'; the penalty or the time step is too large')
+      //'; the penalty or the time step is too large, or places of the slave came in deep beside the ' &
+      //'end of a surface (SRCH limits that)')
     if (energies%hourglass > 0.1_wp*max(energies%internal, 1.0e-6_wp*largest)) call warn(log, &
       'the hourglass energy '//to_text(energies%hourglass)//' is more than 10 % of the internal ' &
       //'energy '//to_text(energies%internal))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The stability maps: springs, eigenvalues, verdicts, and a few cells with the program."""
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +12,7 @@ from slideline_tools.decks import Grid
 from slideline_tools.study import stability, stability_measures as measures, stability_page
 from slideline_tools.study.job import Options
 from slideline_tools.study.stability_eigen import Model, quad_stiffness
+from slideline_tools.study.stability_failing import keep_failing
 from slideline_tools.study.stability_scenes import SCENES
 from slideline_tools.study.stability_springs import springs
 
@@ -98,18 +100,67 @@ def test_verdicts(change, status, verdict):
         assert measures.judge(0, {**good, **change}, 0.2, np.inf, False) == measures.STABLE
 
 
-def test_rows_below_the_limit_and_their_decks(tmp_path):
+def test_rows_below_the_limit():
     row = {"scene": "patch", "type": 1}
     rows = [{**row, "kind": "limit", "decade": x, "program_limit": y} for x, y in ((0.0, 0.8), (2.0, 0.2))]
-    rows += [{**row, "kind": "map", "decade": 1.0, "step": step, "verdict": "blown up", "run": f"r{step}"}
+    rows += [{**row, "kind": "map", "decade": 1.0, "step": step, "verdict": "blown up"}
              for step in (0.4, 0.6, 0.7)]
-    for name in ("r0.4", "r0.6", "r0.7"):
-        folder = tmp_path / "runs" / name
-        folder.mkdir(parents=True)
-        (folder / "patch.effective.k").write_text(name)
-    stability.keep_failing(stability.mark_below(rows), tmp_path)
-    assert [r.get("below_limit") for r in rows[2:]] == [True, False, False]
-    assert [path.name for path in (tmp_path / "failing").iterdir()] == ["r0.4_blown_up.k"]
+    assert [r.get("below_limit") for r in stability.mark_below(rows)[2:]] == [True, False, False]
+
+
+def cells_with_decks(folder):
+    """Rows of every kind of cell, two meshes among them, and their run folders."""
+    head = "*KEYWORD\n*TITLE\ncell {}\n"
+    mesh = "*NODE\n$ nid x y\n1,0.0,{}\n*ELEMENT_SHELL\n1,1,1,2,3,4\n"
+    rows = []
+    for number, (step, decade, verdict) in enumerate((
+            (0.4, 1.0, "blown up"), (0.6, 1.0, "blown up"), (0.4, 2.0, "blown up"), (0.7, 1.0, "stable"),
+            (0.2, -4.0, "penetrating"), (0.2, -3.5, "penetrating"), (0.2, 0.0, None), (0.2, 0.5, ""))):
+        row = {"scene": "patch", "type": 1, "kind": "map", "decade": decade, "step": step,
+               "run": f"cell_{number}", "state": "finished"}
+        if verdict:
+            row["verdict"] = verdict
+        elif verdict is None:
+            row["state"] = "failed"
+        rows.append(row)
+        run = folder / "runs" / row["run"]
+        run.mkdir(parents=True)
+        (run / "patch.k").write_text("*KEYWORD\n&pen\n*END\n")
+        (run / "patch.effective.k").write_text(
+            head.format(number) + mesh.format(float(number == 4)) + "*CONTROL_ENERGY\n2\n*NODE\n9,9.0,9.0\n*END\n")
+    return rows
+
+
+def test_every_failing_cell_has_its_deck(tmp_path):
+    rows = cells_with_decks(tmp_path)
+    stale = tmp_path / "failing" / "of_another_time.k"
+    stale.parent.mkdir()
+    stale.write_text("")
+    assert keep_failing(rows, tmp_path) == 6
+    names = sorted(path.name for path in (tmp_path / "failing").glob("cell_*.k"))
+    assert names == ["cell_0_blown_up.k", "cell_1_blown_up.k", "cell_2_blown_up.k", "cell_4_penetrating.k",
+                     "cell_5_penetrating.k", "cell_6_not_measured.k"]
+    assert not stale.exists()
+    assert len(list((tmp_path / "failing").glob("mesh_*.k"))) == 2
+    text = (tmp_path / "failing" / "cell_1_blown_up.k").read_text()
+    included = re.search(r"\*INCLUDE\n(mesh_\w+\.k)\n", text).group(1)
+    assert text == f"*KEYWORD\n*TITLE\ncell 1\n*INCLUDE\n{included}\n*CONTROL_ENERGY\n2\n*END\n"
+    assert (tmp_path / "failing" / included).read_text() == (
+        "*KEYWORD\n*NODE\n$ nid x y\n1,0.0,0.0\n*ELEMENT_SHELL\n1,1,1,2,3,4\n*NODE\n9,9.0,9.0\n*END\n")
+
+
+def test_deck_of_a_failing_cell_runs_to_the_same_bits(slideline, tmp_path):
+    scene = SCENES["block"]
+    run = tmp_path / "runs" / "cell"
+    run.mkdir(parents=True)
+    (run / "block.k").write_text(scene.deck(2))
+    subprocess.run([slideline, "i=block.k", "d=.", "ctype=2", "punit=2", "pen=1e5", "dt=1e3", "tssfac=0.7",
+                    "endtim=0.05", *scene.options], cwd=run, capture_output=True, check=False)
+    keep_failing([{"run": "cell", "verdict": "blown up"}], tmp_path)
+    subprocess.run([slideline, "i=cell_blown_up.k", "d=again"], cwd=tmp_path / "failing",
+                   capture_output=True, check=False)
+    again = tmp_path / "failing" / "again" / "cell_blown_up.glstat.csv"
+    assert again.read_bytes() == (run / "block.glstat.csv").read_bytes()
 
 
 def test_texts_on_soft_penalties_follow_the_cells():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command `slideline-tools`: info | plot | animate | compare | advise | binout | d3plot | bless | make-deck."""
+"""The command `slideline-tools`: info | plot | animate | compare | advise | bless | make-deck."""
 import argparse
 import dataclasses
 import os
@@ -8,6 +8,9 @@ import sys
 import tempfile
 
 from slideline_tools import UserError, __version__
+from slideline_tools.commands import draw as draw_command
+from slideline_tools.commands import dyna as dyna_command
+from slideline_tools.commands import report as report_command
 
 OK, FAILED, UNUSABLE = 0, 1, 2
 NO_READER = 141  # what a shell gives for a program that SIGPIPE ends
@@ -264,54 +267,15 @@ def bless(options):
     return OK
 
 
-def add_binout(commands):
-    parser = commands.add_parser(
-        "binout", help="write DYNA's binout from the histories of a run",
-        description="Write all history tables of a run (glstat, rcforc, nodout, matsum, sleout, "
-                    "spcforc) to one binout in DYNA's LSDA format.")
-    parser.add_argument("run_files", metavar="RUN", help="folder of a run, or <job>.vtkhdf")
-    parser.add_argument("--output", "-o", help="file to write (<job>.binout0000 beside the results)")
-    parser.set_defaults(run=run_binout)
-
-
-def run_binout(options):
-    from slideline_tools.binout import write_binout
-    from slideline_tools.finished_run import Run
-    run = Run(options.run_files)
-    path = made_folder(options.output or f"{run.prefix}.binout0000")
-    names = write_binout(run, path)
-    print(f"wrote {path} ({', '.join(names)})")
-    return OK
-
-
-def add_d3plot(commands):
-    parser = commands.add_parser(
-        "d3plot", help="write the d3plot family from the states of a run",
-        description="Write the states of a run as a d3plot family (single precision), for LS-PrePost, "
-                    "lasso-python and VTK's LS-DYNA reader.")
-    parser.add_argument("run_files", metavar="RUN", help="folder of a run, or <job>.vtkhdf")
-    parser.add_argument("--output", "-o", help="first file of the family (<job>.d3plot beside the results)")
-    parser.set_defaults(run=run_d3plot)
-
-
-def run_d3plot(options):
-    from slideline_tools.d3plot import write_d3plot
-    from slideline_tools.finished_run import Run
-    run = Run(options.run_files)
-    path = made_folder(options.output or f"{run.prefix}.d3plot")
-    count = write_d3plot(run, path)
-    print(f"wrote {path} ({count} states)")
-    return OK
-
-
 def build_parser():
     parser = argparse.ArgumentParser(
         prog="slideline-tools",
         description="Look into, draw and compare results of slideline, and write scene decks.")
     parser.add_argument("--version", action="version", version=f"slideline-tools {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (add_info, add_plot, add_animate, add_compare, add_advise, add_binout, add_d3plot,
-                add_make_deck, add_bless):
+    for add in (add_info, add_plot, add_animate, add_compare, add_advise, report_command.add,
+                draw_command.add, dyna_command.add_binout, dyna_command.add_d3plot, add_make_deck,
+                add_bless):
         add(commands)
     return parser
 

@@ -7,13 +7,13 @@ smallest L/c of the elements (TSSFAC, a constant step being refused above it).
 from __future__ import annotations
 
 import re
-import shutil
 
 import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.study.job import Job, Study
-from slideline_tools.study.stability_measures import STABLE, VERDICTS, measure_run
+from slideline_tools.study.stability_failing import keep_failing
+from slideline_tools.study.stability_measures import measure_run
 from slideline_tools.study.stability_page import draw_maps, write_maps_page
 from slideline_tools.study.stability_scenes import SCENES
 from slideline_tools.study.charts import save, styled
@@ -81,24 +81,6 @@ def derive(rows, folder):
     return rows
 
 
-def keep_failing(rows, folder):
-    """Decks of failing cells: the first of each verdict going up in penalty and step, and all below the
-    program's limit; how they ran is their first line."""
-    target = folder / "failing"
-    shutil.rmtree(target, ignore_errors=True)
-    seen = set()
-    for row in sorted((row for row in rows if "verdict" in row), key=lambda row: (row["step"], row["decade"])):
-        key = row["scene"], row["type"], row["verdict"]
-        if row["verdict"] == VERDICTS[STABLE] or (key in seen and not row.get("below_limit")):
-            continue
-        seen.add(key)
-        source = folder / "runs" / row["run"] / f"{row['scene']}.effective.k"
-        if source.is_file():
-            target.mkdir(exist_ok=True)
-            name = f"{row['run']}_{row['verdict'].replace(' ', '_')}.k"
-            shutil.copyfile(source, target / name)
-
-
 def mark_below(rows):
     """`below_limit`: the step lies below the program's limit for that penalty."""
     for (scene, ctype) in {(row["scene"], row["type"]) for row in rows}:
@@ -114,7 +96,8 @@ def mark_below(rows):
 
 def chart(rows, folder):
     """Maps of each scene; decks of failing cells."""
-    keep_failing(mark_below(rows), folder)
+    keep_failing(rows, folder)
+    mark_below(rows)
     for name in SCENES:
         chosen = [row for row in rows if row["scene"] == name]
         if any("verdict" in row for row in chosen):
