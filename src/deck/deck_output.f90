@@ -69,6 +69,7 @@ contains
       if (card%i(2) < 0 .or. card%i(2) > 3) call report_field(deck, cursor, card, 2, &
         'is none of 0, 1 (text file), 2 (binout) and 3 (both)')
       history%is_text = card%i(2) /= 2
+      history%is_binout = card%i(2) >= 2
     end if
     raw%outputs(file) = history
   end subroutine read_database

@@ -68,7 +68,7 @@ module deck_raw_m
     real(wp) :: dt = 0.0_wp
     integer :: curve = 0                !! user id
     integer :: n_state = 0              !! NPLTC
-    logical :: is_text = .false.        !! BINARY asks for a text file
+    logical :: is_text = .false., is_binout = .false. !! what BINARY asks for
     type(place_t) :: place              !! of the curve's field
   end type history_t
 

@@ -146,6 +146,7 @@ contains
 
     interval%dt = history%dt
     interval%is_text = history%is_text
+    interval%is_binout = history%is_binout
     if (history%n_state > 0) interval%dt = model%controls%end_time/real(history%n_state, wp)
     if (history%curve == 0) return
     call resolve_id(deck, maps%curves, history%curve, 'curve', history%place, interval%curve)

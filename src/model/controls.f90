@@ -18,7 +18,8 @@ module controls_m
   type :: interval_t
     real(wp) :: dt = 0.0_wp  !! constant interval
     integer :: curve = 0     !! index of a curve of the interval against time, 0 = none
-    logical :: is_text = .false. !! a DYNA text file is written too (BINARY)
+    logical :: is_text = .false.   !! a DYNA text file is written too (BINARY)
+    logical :: is_binout = .false. !! binout data are asked for (BINARY)
   end type interval_t
 
   !> What is written, and how often.

@@ -92,12 +92,11 @@ contains
     call add_line('', lines, n_line)
     call add_line('', lines, n_line)
     if (nint(row(15)) > 0) then
-      write (line, '(a,i8,a,i8,a,i8)') ' dt of cycle', nint(row(2)), ' is controlled by shell', &
-        nint(row(15)), ' of part', nint(row(16))
+      call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by shell '//number(row(15), 8) &
+        //' of part '//number(row(16), 8), lines, n_line)
     else
-      write (line, '(a,i8,a)') ' dt of cycle', nint(row(2)), ' is controlled by '//control
+      call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by '//control, lines, n_line)
     end if
-    call add_line(line, lines, n_line)
     call add_line('', lines, n_line)
     values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), row(9), row(10), &
       0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(13), row(14), 0.0_wp]
@@ -130,19 +129,22 @@ contains
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
     character(line_size) :: line
+    character(:), allocatable :: id
     integer :: i
 
     do i = 1, 3
       call add_line('', lines, n_line)
     end do
-    write (line, '(a,i8,30x,a,es14.7,a)') ' n o d a l   p r i n t   o u t   f o r   t i m e  s t e p', &
-      nint(rows(11, 1)), '( at time', tidy(rows(1, 1)), ' )'
+    write (line, '(2a,30x,a,es14.7,a)') ' n o d a l   p r i n t   o u t   f o r   t i m e  s t e p', &
+      number(rows(11, 1), 8), '( at time', tidy(rows(1, 1)), ' )'
     call add_line(line, lines, n_line)
     call add_line('', lines, n_line)
     call add_line(' nodal point  x-disp     y-disp      z-disp      x-vel       y-vel       z-vel      ' &
       //'x-accl      y-accl      z-accl      x-coor      y-coor      z-coor', lines, n_line)
     do i = 1, size(rows, 2)
-      write (line, '(i9,es13.4,11es12.4)') nint(rows(2, i)), tidy([rows(5:6, i), 0.0_wp, rows(7:8, i), &
+      id = number(rows(2, i), 9)
+      if (len(id) == 9) id = id//' '
+      write (line, '(a,12es12.4)') id, tidy([rows(5:6, i), 0.0_wp, rows(7:8, i), &
         0.0_wp, rows(9:10, i), 0.0_wp, rows(3:4, i), 0.0_wp])
       call add_line(line, lines, n_line)
     end do
@@ -165,7 +167,7 @@ contains
     do i = 1, size(rows, 2)
       velocity = 0.0_wp
       if (rows(8, i) > 0.0_wp) velocity = rows(6:7, i)/rows(8, i)
-      write (line, '(a,a,4(a,es13.4))') ' mat.#=', part_field(nint(rows(2, i))), &
+      write (line, '(a,a,4(a,es13.4))') ' mat.#=', part_field(rows(2, i)), &
         '          inten=', tidy(rows(4, i)), '     kinen=', tidy(rows(3, i)), &
         '     eroded_ie=', 0.0_wp, '     eroded_ke=', 0.0_wp
       call add_line(line, lines, n_line)
@@ -180,18 +182,25 @@ contains
     end do
   end subroutine form_matsum
 
-  !> Part id in eight columns: short ones stand in the first five.
+  !> Part id in eight columns or more: short ones stand in the first five.
   pure function part_field(id) result(field)
-    integer, intent(in) :: id
-    character(8) :: field
+    real(wp), intent(in) :: id
+    character(:), allocatable :: field
 
-    field = ''
-    if (id < 100000) then
-      write (field(:5), '(i5)') id
-    else
-      write (field, '(i8)') id
-    end if
+    field = number(id, 5)
+    if (len(field) < 8) field = field//repeat(' ', 8 - len(field))
   end function part_field
+
+  !> A whole number at the right of `width` columns, or of as many as it needs.
+  pure function number(value, width) result(text)
+    real(wp), intent(in) :: value
+    integer, intent(in) :: width
+    character(:), allocatable :: text
+    character(12) :: digits
+
+    write (digits, '(i12)') nint(value)
+    text = digits(min(13 - width, verify(digits, ' ')):)
+  end function number
 
   !> Energies of interfaces. Penalty springs act between the sides: each interface has one number, as
   !> DYNA's single-sided contacts do.
@@ -234,7 +243,7 @@ contains
     write (line, '(a,es14.5)') ' output at time =', tidy(rows(1, 1))
     call add_line(line, lines, n_line)
     do i = 1, size(rows, 2)
-      write (line, '(a,i8,a,3es14.4)') ' node=', nint(rows(2, i)), ' local x,y,z forces =', &
+      write (line, '(3a,3es14.4)') ' node=', number(rows(2, i), 8), ' local x,y,z forces =', &
         tidy([rows(3:4, i), 0.0_wp])
       call add_line(line, lines, n_line)
     end do

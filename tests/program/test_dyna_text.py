@@ -216,6 +216,7 @@ def test_binary_says_whether_there_is_text(slideline, tmp_path, binary, written)
     for name in NAMES:
         assert (tmp_path / "b" / f"drop.{name}").exists() == written, name
         assert (tmp_path / "b" / f"drop.{name}.csv").exists(), name
+    assert (tmp_path / "b" / "drop.log").read_text().count("BINARY asks for binout") == (binary in "23")
 
 
 def test_an_unknown_binary_is_refused(slideline):
