@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """All benchmarks: interleaved rounds, one table with ratios to the kernel and the bandwidth.
 
-usage: bench.py --build FOLDER --out FOLDER [--quick] [--rounds N] [--threads N]
+usage: bench.py --build FOLDER --out FOLDER [--quick] [--rounds N] [--threads N] [--parts ...]
 
 Each round measures everything in turn, K and the bandwidth before each size. After each round the table bench.csv
 (medians and quartiles of the least disturbed half) is written anew from samples.csv, which holds every sample: stopped and
@@ -31,7 +31,7 @@ def build_parser():
     parser.add_argument("--build", type=Path, required=True, help="a Release build with -DSLIDELINE_BENCH=ON")
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--quick", action="store_true", help="smallest sizes, one round: does it run?")
-    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--rounds", type=int, default=5, help="0: the table of what is there")
     parser.add_argument("--threads", type=int, default=min(2, os.cpu_count()))
     parser.add_argument("--parts", nargs="+", default=["step", "contact", "search", "files"],
                         choices=["step", "contact", "search", "files"])
@@ -115,15 +115,16 @@ def main():
     options.program = options.build.resolve() / "slideline"
     options.kernel = options.build.resolve() / "tests" / "bench" / "bench_kernel"
     options.contact = options.build.resolve() / "tests" / "bench" / "bench_contact"
-    work = plan(options)
+    work = plan(options) if options.rounds else {}
     elements.write_deck(options.out / "decks" / "unit.k", 64, True)
     samples = Samples(options.out / "samples.csv", options.program)
     for number in range(1 if options.quick else options.rounds):
         print(f"round {number + 1}", flush=True)
         run_round(options, work, samples)
-        rows = write_summary(samples, options.out / "bench.csv")
-        (options.out / "machine.json").write_text(
-            json.dumps(describe_machine(options.program), indent=1), encoding="utf-8")
+        write_summary(samples, options.out / "bench.csv")
+    rows = write_summary(samples, options.out / "bench.csv")
+    (options.out / "machine.json").write_text(
+        json.dumps(describe_machine(options.program), indent=1), encoding="utf-8")
     for row in rows:
         ratio = f" = {row['over_kernel']:6.2f} K" if row["over_kernel"] is not None else ""
         print("{part:8s}{case:28s}{size:>9d} {threads}  {median:10.4g} {unit}".format(**row) + ratio)

@@ -8,7 +8,7 @@ program bench_contact
   use, intrinsic :: iso_fortran_env, only : output_unit
   use contact_factories_m, only : problem_t, make_problem, line
   use contact_force_m, only : start_contact, apply_contact
-  use kinds_m, only : wp, long
+  use kinds_m, only : wp
   implicit none
 
   integer, parameter :: n_type = 7, n_round = 5, sizes(3) = [20, 1000, 100000]

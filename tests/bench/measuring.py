@@ -122,6 +122,11 @@ def write_summary(samples, path):
     return rows
 
 
+def is_fresh(path, script):
+    """Whether a deck is there and was written after the script that writes it."""
+    return path.exists() and path.stat().st_mtime > Path(script).stat().st_mtime
+
+
 def measure_units(kernel, deck, threads, entries):
     """K and the bandwidth of 1 thread and of `threads` on arrays of so many entries, now."""
     found = {}
@@ -131,6 +136,14 @@ def measure_units(kernel, deck, threads, entries):
         found[count] = dict(line.split(",") for line in output.split())
     return Units(float(found[1]["kernel_ns"]),
                  {count: float(values["bandwidth_gb_s"]) for count, values in found.items()})
+
+
+def without_others(value, share, threads):
+    """A time without that in which others had the processor, as far as it can be told.
+
+    With one thread it is in proportion to the processor time; threads that wait for each other use it up.
+    """
+    return value * share if threads == 1 and share < UNDISTURBED else value
 
 
 def phase_seconds(path):

@@ -73,8 +73,8 @@ def test_block_of_about_as_many_elements(tmp_path):
 
 @pytest.mark.parametrize("case", search.CASES)
 def test_search_deck_runs_with_contact(case, tmp_path):
-    text, nodes = search.search_deck(case, 200)
-    assert nodes == 200
+    text = search.search_deck(case, 200)
+    assert search.slave_nodes(case, 200)[0] == 200
     assert text.count("*CONTACT_2D_SLIDELINE") == (50 if case == "interfaces" else 1)
     if "SLIDELINE" not in os.environ:
         pytest.skip("SLIDELINE is not set")
@@ -132,10 +132,19 @@ def test_page_of_speed_judges_the_goals(tmp_path):
     assert (tmp_path / "doc" / "pictures" / "speed_search.png").exists()
 
 
-def test_page_of_speed_says_when_the_machine_was_shared(tmp_path):
+def test_page_of_speed_says_when_the_machine_was_shared():
     bench = speed.Bench.__new__(speed.Bench)
     bench.rows = [measuring.summarise(STEP, [(10.0, 4.0, 8.0, share)]) for share in (1.0, 0.5)]
-    assert "1 of 2" in speed.disturbed(bench)
+    assert "50 to 100 % with 1 thread" in speed.disturbed(bench)
+    assert "shared the machine" in speed.disturbed(bench)
+    bench.rows = bench.rows[:1]
+    assert "shared the machine" not in speed.disturbed(bench)
+
+
+def test_times_of_one_thread_are_freed_of_others():
+    assert measuring.without_others(10.0, 0.5, 1) == 5.0
+    assert measuring.without_others(10.0, 0.98, 1) == 10.0
+    assert measuring.without_others(10.0, 0.5, 2) == 10.0
 
 
 def test_ratios_of_peers_are_taken_round_by_round():
@@ -159,3 +168,33 @@ def test_mesh_of_the_peers_is_that_of_slideline():
     x, y = points[quads[4]].T
     area = 0.5 * sum(x[k] * y[(k + 1) % 4] - x[(k + 1) % 4] * y[k] for k in range(4))
     assert area == pytest.approx(1.0 / 9.0)
+
+
+def test_page_of_peers(tmp_path):
+    waves = [{"round": n, "program": program, "element": element, "elements": 100, "steps": 10,
+              "ns": ns * n, "free_side": 0.5 + error, "exact": 0.5}
+             for n in (1, 2) for program, element, ns, error in (
+                 ("slideline", "one point, large strain", 10.0, 1e-3),
+                 ("slideline", "2x2 points, large strain", 30.0, 1e-3),
+                 ("Other", "2x2 points", 90.0, 2e-3))]
+    contact = [{"round": n, "scene": "patch", "elements": 41, "program": program,
+                "contact": contact, "mean": mean, "exact": 1.0, "deviation": deviation,
+                "processor_seconds": used * n, "seconds": used, "message": message}
+               for n in (1, 2) for program, contact, mean, deviation, used, message in (
+                   ("slideline", "type 5", 1.0, 1e-15, 0.1, ""),
+                   ("CalculiX", "node to surface", 1.02, 0.03, 0.25, ""),
+                   ("CalculiX", "mortar", "nan", "nan", 0.1, "*ERROR: node 17 is tied"))]
+    for name, rows in (("elements", waves), ("contact", contact)):
+        with open(tmp_path / f"{name}.csv", "w", newline="", encoding="ascii") as stream:
+            writer = csv.DictWriter(stream, rows[0].keys())
+            writer.writeheader()
+            writer.writerows(rows)
+    (tmp_path / "versions.txt").write_text("akantu==1.2.3\nThis is Version 2.20\n")
+    assert peers.main([str(tmp_path), str(tmp_path / "doc")]) == 0
+    text = (tmp_path / "doc" / "studies" / "peers.md").read_text(encoding="utf-8")
+    assert "| akantu | 1.2.3 | PyPI, wheel |" in text
+    assert "Other (2x2 points) takes 3.0 to 3.0 times as long as slideline's element with 2x2 points and 9.0 to 9.0" in text
+    assert "within 1e-03 of each other" in text
+    assert "| patch | 41 | CalculiX | node to surface | 1.02 | 2.0e-02 | 3.0e-02 |" in text
+    assert "takes 2.50 times the processor time" in text
+    assert text.count("refused (`*ERROR: node is tied`)") == 1

@@ -20,14 +20,16 @@ from pathlib import Path
 import numpy as np
 
 import calculix
+from slideline_tools.decks import Deck
 from slideline_tools.results import read
 from slideline_tools.scenes.block import block, block_grids
 from slideline_tools.scenes.patch import even_lines, patch, patch_grids
 
 HERE = Path(__file__).resolve().parent
-WAVES = ((32, 400), (100, 100), (316, 30))  # columns, steps
+WAVES = ((32, 200), (100, 100), (316, 30))  # columns, steps
 PATCHES = (5, 40)                           # columns of the upper block
 TYPES = (2, 5, 7)
+PUSH = 1.0e-4                               # of the upper face of the block, m
 ONE = {**os.environ, "OMP_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
 
 
@@ -64,48 +66,70 @@ def processor_seconds(action, *arguments):
     return result, used, time.monotonic() - start
 
 
-def run_slideline(options, name, text, ctype):
+def run_slideline(options, name, text, words):
     """{element: s_yy at the end}."""
     deck = options.runs / f"{name}.k"
     deck.write_text(text, encoding="ascii")
     subprocess.run([options.program, f"i={deck}", f"d={options.runs}", f"jobid={name}",
-                    f"ctype={ctype}", "ncpu=1"], check=True, stdout=subprocess.DEVNULL, env=ONE)
+                    "ncpu=1", *words], check=True, stdout=subprocess.DEVNULL, env=ONE)
     results = read(options.runs / f"{name}.vtkhdf")
     numbers = np.asarray(results.cell_field("element_id")[-1])
     return dict(zip(numbers.tolist(), np.asarray(results.cell_field("stress")[-1])[:, 1].tolist()))
+
+
+def exact(scene):
+    """-s_yy by the closed form, Pa: the load; or two blocks of 0.5 m and the springs, in a row."""
+    if scene == "patch":
+        return 1.0
+    side = float(np.diff(block_grids()[1].points[:, 0, 0])[0])
+    return PUSH / (1.0 / calculix.YOUNG + side / calculix.PENALTY)
 
 
 def contact_row(scene, elements, program, contact, found, used, clock, trouble=""):
     """A row of contact.csv."""
     values = np.array(list(found.values())) if found else np.array([np.nan])
     return {"scene": scene, "elements": elements, "program": program, "contact": contact,
-            "mean": -float(values.mean()),
+            "mean": -float(values.mean()), "exact": exact(scene),
             "deviation": float(np.abs(values / values.mean() - 1.0).max()),
             "processor_seconds": used, "seconds": clock, "message": trouble}
 
 
-def scene_rows(options, scene, grids, text, step, near):
-    """All programs on one scene; stresses of the elements `near` (all if empty)."""
+def pinned(grids):
+    """A node of each block that is held in x."""
+    lower, upper = grids
+    return [int(lower.lower[len(lower.lower) // 2]), int(upper.upper[len(upper.upper) // 2])]
+
+
+def scene_rows(options, scene, grids, text, step, words=()):
+    """All programs on one scene; `words`: further arguments of slideline."""
     lower, upper = grids
     elements = lower.element.size + upper.element.size
-    pinned = [int(lower.lower[len(lower.lower) // 2]), int(upper.upper[len(upper.upper) // 2])]
     rows = []
-
-    def chosen(found):
-        return {k: v for k, v in found.items() if not near or k in near}
-
     for ctype in TYPES:
         found, used, clock = processor_seconds(run_slideline, options, f"{scene}_{elements}", text,
-                                               ctype)
-        rows.append(contact_row(scene, elements, "slideline", f"type {ctype}", chosen(found), used,
+                                               (f"ctype={ctype}", *words))
+        rows.append(contact_row(scene, elements, "slideline", f"type {ctype}", found, used,
                                 clock))
     for contact in calculix.CONTACTS:
         name = f"ccx_{scene}_{elements}_{contact.split()[0].lower()}"
         (found, trouble), used, clock = processor_seconds(
-            calculix.run, options.runs, name, calculix.deck(contact, lower, upper, pinned, step))
-        rows.append(contact_row(scene, elements, "CalculiX", contact.lower(), chosen(found), used,
+            calculix.run, options.runs, name,
+            calculix.deck(contact, lower, upper, pinned(grids), step))
+        rows.append(contact_row(scene, elements, "CalculiX", contact.lower(), found, used,
                                 clock, trouble))
     return rows
+
+
+def static_block(grids):
+    """The block-to-block scene as one static step that pushes the upper face down by PUSH."""
+    lines = block(implicit=True).splitlines()
+    at = lines.index("*CONTROL_IMPLICIT_DYNAMICS")
+    del lines[at:at + 3]
+    more = Deck("pins")
+    more.lines = []
+    more.node_set(9, "held in x", pinned(grids))
+    more.spc_set(9, True, False)
+    return "\n".join(lines[:-1] + more.lines + lines[-1:]) + "\n"
 
 
 def run_contact(options):
@@ -115,11 +139,11 @@ def run_contact(options):
         grids = patch_grids(even_lines(columns), even_lines(columns * 4 // 5))
         rows += scene_rows(options, "patch", grids, patch(grids=grids, static=True,
                                                           penalty=calculix.PENALTY),
-                           calculix.STATIC, set())
-    lower, upper = grids = block_grids()
-    near = set(upper.element[:, 0].tolist()) | set(lower.element[:, -1].tolist())
-    if not options.quick:
-        rows += scene_rows(options, "block", grids, block(implicit=True), calculix.DYNAMIC, near)
+                           calculix.STATIC)
+    grids = block_grids()
+    words = ("p:dt=1.0", "p:endtim=1.0", f"p:v0=-{PUSH}")
+    rows += scene_rows(options, "block", grids, static_block(grids),
+                       calculix.PUSH.format(push=PUSH), words)
     return rows
 
 

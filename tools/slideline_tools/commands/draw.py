@@ -54,6 +54,8 @@ def run(options) -> int:
     model = draw(deck, output, program, options.overrides, options.show, options.zoom)
     print(f"wrote {output} ({len(model.points)} nodes, {len(model.cells)} elements, "
           f"{len(model.parts)} parts, {len(model.interfaces)} interfaces)")
+    for words in model.warnings:
+        print(f"warning: {words}")
     if model.unread:
         print("not drawn: " + ", ".join(f"*{name}" for name in model.unread))
     return 0

@@ -39,7 +39,10 @@ def resolve(deck, program, overrides=()) -> Model:
         path = pathlib.Path(work) / "model.effective.k"
         if not path.exists():
             raise UserError(f"{deck} was refused by {program}:\n{said.strip()}")
-        return read_model(path.read_text(encoding="utf-8", errors="replace"))
+        model = read_model(path.read_text(encoding="utf-8", errors="replace"))
+        model.warnings = [line[len("warning: "):] for line in said.splitlines()
+                          if line.startswith("warning: ")]
+        return model
 
 
 def run_shortly(deck, program, overrides, work) -> str:

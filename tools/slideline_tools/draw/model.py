@@ -123,6 +123,7 @@ class Model:
     history_nodes: list[int] = dataclasses.field(default_factory=list)
     walls: list[tuple[np.ndarray, np.ndarray]] = dataclasses.field(default_factory=list)
     unread: list[str] = dataclasses.field(default_factory=list)
+    warnings: list[str] = dataclasses.field(default_factory=list)  # what the program said of it
 
     def __post_init__(self) -> None:
         self.sort_nodes()

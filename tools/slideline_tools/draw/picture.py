@@ -29,6 +29,7 @@ SLAVE, MASTER = "#d1301f", "#0b559f"
 ARROW_COLOURS = {"velocity": "#1b7f3b", "motion": "#e07b00", "load": "#8e24aa",
                  "pressure": "#8e24aa", "body": "#444444"}
 WIDTH, LONGEST_ARROW, NORMAL_LENGTH = 9.0, 0.42, 0.16   # inches
+LEFT, RIGHT = 0.09, 0.965                               # of the width, ends of the axes
 MOST_ARROWS, MOST_SYMBOLS, MOST_NORMALS, MOST_TIPS = 40, 60, 30, 8
 
 
@@ -37,12 +38,13 @@ def model_figure(model: Model, show=None, zoom=None):
     show = set(show or WHAT)
     low, high = window(model, zoom)
     with plt.rc_context(STYLE):
-        height = float(np.clip(WIDTH * (high[1] - low[1]) / (high[0] - low[0]), 1.2, 9.0))
-        figure, axes = plt.subplots(figsize=(WIDTH, height), dpi=150)
+        ratio = (high[1] - low[1]) / (high[0] - low[0])
+        figure, axes = plt.subplots(
+            figsize=(WIDTH, float(np.clip((RIGHT - LEFT) * WIDTH * ratio, 1.2, 9.0))), dpi=150)
         axes.set_aspect("equal")
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
-        canvas = Canvas(axes, low, high)
+        canvas = Canvas(axes, low, high, show)
         draw_mesh(canvas, model, "mesh" in show)
         for name, drawer in DRAWERS:
             if name in show:
@@ -57,9 +59,10 @@ def model_figure(model: Model, show=None, zoom=None):
 class Canvas:
     """Axes with their window in deck units, and the legend so far."""
 
-    def __init__(self, axes, low: np.ndarray, high: np.ndarray) -> None:
-        self.axes, self.low, self.high = axes, low, high
-        self.inch = float(high[0] - low[0]) / WIDTH  # deck units of an inch of paper, about
+    def __init__(self, axes, low: np.ndarray, high: np.ndarray, show: set[str]) -> None:
+        self.axes, self.low, self.high, self.show = axes, low, high, show
+        # Deck units of an inch of paper, about.
+        self.inch = float(max(high[0] - low[0], high[1] - low[1])) / WIDTH
         self.handles: list = []
 
     def visible(self, places: np.ndarray) -> np.ndarray:
@@ -84,12 +87,12 @@ def window(model: Model, zoom) -> tuple[np.ndarray, np.ndarray]:
 def fit(figure, canvas: Canvas) -> None:
     """Put the legend below the axes and make the figure as high as both need."""
     lines = canvas.handles
-    columns = 2 if max((len(handle.get_label()) for handle in lines), default=0) < 62 else 1
+    columns = 2 if max((len(handle.get_label()) for handle in lines), default=0) < 68 else 1
     legend_height = 0.19 * -(-len(lines) // columns) + 0.15 if lines else 0.0
     width, height = figure.get_size_inches()
-    total = height + legend_height + 0.85
+    total = height + legend_height + 0.97
     figure.set_size_inches(width, total)
-    figure.subplots_adjust(left=0.09, right=0.985, top=1.0 - 0.3 / total,
+    figure.subplots_adjust(left=LEFT, right=RIGHT, top=1.0 - 0.42 / total,
                            bottom=(legend_height + 0.5) / total)
     if lines:
         figure.legend(handles=lines, loc="lower left", ncols=columns, frameon=False, fontsize=8,
@@ -97,10 +100,9 @@ def fit(figure, canvas: Canvas) -> None:
 
 
 def thinned(count: int, most: int) -> np.ndarray:
-    """At most `most` indices of `count`, evenly spread, with the first and the last."""
-    if count <= most:
-        return np.arange(count)
-    return np.unique(np.linspace(0, count - 1, most).round().astype(int))
+    """At most `most` indices of `count` at equal distances."""
+    step = max(-(-count // most), 1)
+    return np.arange((count - 1) % step // 2, count, step)
 
 
 # ---- mesh and sets ------------------------------------------------------------------------------
@@ -155,8 +157,9 @@ def draw_surfaces(canvas: Canvas, model: Model) -> None:
                                       ("master", MASTER, interface.master)):
             draw_surface(canvas, model, surface, colour)
             note = f", {surface.how}" if surface.how else ""
+            where = surface.label.partition(' "')[0] if "sets" in canvas.show else surface.label
             canvas.add(Line2D([], [], color=colour, linewidth=1.8, marker=">", markersize=5,
-                              label=f"{interface.label}: {name}, {surface.label}, "
+                              label=f"{interface.label}: {name}, {where}, "
                                     f"{len(surface.segments)} segments{note}"))
 
 
@@ -171,17 +174,16 @@ def draw_surface(canvas: Canvas, model: Model, surface: Surface, colour: str) ->
         return
     middles, outward = ends.mean(axis=1), normals(model.points, segments)
     seen = np.flatnonzero(canvas.visible(middles))
-    for chosen, most in ((seen, MOST_NORMALS),):
-        picked = chosen[thinned(len(chosen), most)]
-        tips = middles[picked] + NORMAL_LENGTH * canvas.inch * outward[picked]
-        canvas.axes.add_collection(LineCollection(
-            np.stack([middles[picked], tips], axis=1), colors=colour, linewidths=0.8, zorder=4))
+    picked = seen[thinned(len(seen), MOST_NORMALS)]
+    tips = middles[picked] + NORMAL_LENGTH * canvas.inch * outward[picked]
+    canvas.axes.add_collection(LineCollection(
+        np.stack([middles[picked], tips], axis=1), colors=colour, linewidths=0.8, zorder=4))
     for k in seen[thinned(len(seen), MOST_TIPS)]:
         along = ends[k, 1] - ends[k, 0]
         along = along / max(np.linalg.norm(along), 1.0e-300) * 0.02 * canvas.inch
         canvas.axes.annotate("", xy=middles[k] + along, xytext=middles[k] - along, zorder=5,
                              arrowprops={"arrowstyle": "-|>", "color": colour, "shrinkA": 0,
-                                         "shrinkB": 0, "mutation_scale": 11, "linewidth": 0})
+                                         "shrinkB": 0, "mutation_scale": 16, "linewidth": 0})
 
 
 # ---- conditions ---------------------------------------------------------------------------------
@@ -198,7 +200,8 @@ def draw_boundary(canvas: Canvas, model: Model) -> None:
                  "markeredgecolor": "white", "markeredgewidth": 0.4, "linestyle": "none"}
         seen = nodes[canvas.visible(model.points[nodes])]
         seen = seen[np.lexsort(model.points[seen].T)]
-        canvas.axes.plot(*model.points[seen[thinned(len(seen), MOST_SYMBOLS)]].T, **style, zorder=6)
+        canvas.axes.plot(*model.points[seen[thinned(len(seen), MOST_SYMBOLS)]].T, **style, zorder=6,
+                         clip_on=False)
         canvas.add(Line2D([], [], **style, label=f"{label}: {len(nodes)} nodes"))
 
 
@@ -276,7 +279,8 @@ def draw_arrows(canvas: Canvas, arrows: Arrows, largest: float) -> None:
         length = LONGEST_ARROW * np.clip(size[real] / largest, 0.33, 1.0)
         vectors = arrows.vectors[real] / size[real][:, None] * length[:, None]
         canvas.axes.quiver(*arrows.places[real].T, *vectors.T, color=colour, angles="uv",
-                           scale_units="inches", scale=1.0, units="inches", width=0.018, zorder=8,
+                           scale_units="inches", scale=1.0, units="inches", width=0.018,
+                           zorder=3.5 if arrows.kind == "velocity" else 8,
                            headwidth=4.5, headlength=5.5, headaxislength=5.0,
                            pivot="tip" if arrows.kind == "pressure" else "tail")
     canvas.add(Line2D([], [], color=colour, linewidth=1.5, marker=">", markersize=5,

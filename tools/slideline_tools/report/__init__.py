@@ -8,19 +8,23 @@ from __future__ import annotations
 
 import pathlib
 
-from slideline_tools import __version__
+from slideline_tools import UserError, __version__
 from slideline_tools.report import sections
 from slideline_tools.report.gather import Gathered, gather
-from slideline_tools.report.html import page, text, tiles
+from slideline_tools.report.html import Section, page, paragraph, text, tiles
 
 
 def report_html(run: Gathered, fields=(), states=(), scale: float = 1.0) -> str:
     """The page. `fields` such as `mises` or `stress:xy`, `states` numbers or times as texts;
     empty: what the run suggests. `scale` multiplies the displacements in pictures."""
     chosen = sections.chosen_states(run, list(states))
-    found = [sections.summary(run), sections.warnings(run), sections.energies(run),
-             sections.contact(run, chosen), sections.fields(run, list(fields), chosen, scale),
-             sections.nodes(run), sections.understood(run), sections.timing(run),
+    found = [sections.summary(run), sections.warnings(run),
+             attempt("energies", "Energies", sections.energies, run),
+             attempt("contact", "Contact", sections.contact, run, chosen),
+             sections.fields(run, list(fields), chosen, scale),
+             attempt("nodes", "Nodes", sections.nodes, run),
+             attempt("model", "Parts, materials, interfaces", sections.understood, run),
+             attempt("timing", "Timing", sections.timing, run),
              sections.savings(run), sections.files(run)]
     kind = run.ending.kind
     head = (f"<h1>{text(run.title)}</h1>\n<p><span class=\"state {kind}\">"
@@ -28,6 +32,15 @@ def report_html(run: Gathered, fields=(), states=(), scale: float = 1.0) -> str:
             + tiles(sections.tiles_of(run)))
     return page(f"{run.title} - report", head, [item for item in found if item],
                 f"Written by slideline-tools {text(__version__)}.")
+
+
+def attempt(anchor: str, title: str, make, *arguments) -> Section | None:
+    """A section; where its tables lack a column, the section that says so."""
+    try:
+        return make(*arguments)
+    except UserError as problem:
+        return Section(anchor, title, paragraph(f"This section could not be made: {problem}.",
+                                                "note"))
 
 
 def write_report(path, output=None, fields=(), states=(), scale: float = 1.0) -> pathlib.Path:

@@ -10,6 +10,7 @@ from slideline_tools.histories import History
 
 SIZE = (5.2, 2.7)
 MOST_LINES = 8
+STYLE = plots.STYLE | {"svg.hashsalt": "slideline", "axes.formatter.use_mathtext": False}
 ENERGIES = ("kinetic", "internal", "hourglass", "viscous", "damping", "contact", "external_work",
             "total")
 
@@ -17,7 +18,7 @@ ENERGIES = ("kinetic", "internal", "hourglass", "viscous", "damping", "contact",
 def lines(series: list[tuple[str, np.ndarray, np.ndarray]], ylabel: str, xlabel: str = "time",
           marker: str = ""):
     """A figure with one line per (label, x, y)."""
-    with plt.rc_context(plots.STYLE | {"svg.hashsalt": "slideline"}):
+    with plt.rc_context(STYLE):
         figure, axes = plt.subplots(figsize=SIZE, layout="constrained")
         for count, (label, x, y) in enumerate(series):
             axes.plot(x, y, label=label, marker=marker, markersize=2.5,
@@ -85,7 +86,7 @@ def timing(table: History):
              in zip(table["phase"], table["seconds"])
              if phase != "total" and "." not in phase and seconds > 0.0]
     pairs.sort(key=lambda pair: pair[1])
-    with plt.rc_context(plots.STYLE | {"svg.hashsalt": "slideline"}):
+    with plt.rc_context(STYLE):
         figure, axes = plt.subplots(figsize=(SIZE[0], 0.6 + 0.28 * len(pairs)),
                                     layout="constrained")
         bars = axes.barh([name.replace("_", " ") for name, _ in pairs],

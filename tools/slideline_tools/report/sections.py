@@ -92,12 +92,12 @@ def tiles_of(run: Gathered) -> list[tuple[str, str]]:
     found = [("problem time", figures(run.ending.time, 6)), ("cycles", figures(run.ending.cycle))]
     if run.ending.seconds is not None:
         found.append(("wall clock, s", figures(run.ending.seconds, 4)))
-    if glstat := run.rows("glstat"):
+    if (glstat := run.rows("glstat")) and "energy_ratio" in glstat:
         found.append(("energy ratio at the end", figures(float(glstat["energy_ratio"][-1]), 7)))
-    if rcforc := run.rows("rcforc"):
+    if (rcforc := run.rows("rcforc")) and "fx" in rcforc and "fy" in rcforc:
         size = np.hypot(rcforc["fx"], rcforc["fy"])
         found.append(("largest contact force", figures(float(size.max()), 4)))
-    if contact := run.rows("contact"):
+    if (contact := run.rows("contact")) and "pressure" in contact:
         found.append(("largest contact pressure", figures(float(contact["pressure"].max()), 4)))
     found.append(("warnings", figures(len(run.warnings))))
     return found

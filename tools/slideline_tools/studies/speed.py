@@ -181,15 +181,20 @@ def contact_goals(bench):
 
 
 def disturbed(bench):
-    """A warning where the runs did not have the processors to themselves."""
-    shares = [row["share"] for row in bench.of("step")]
-    least = min(shares, default=1.0)
+    """How far the runs had the processors to themselves."""
+    parts = []
+    for threads in sorted({row["threads"] for row in bench.of("step")}):
+        shares = [row["share"] for row in bench.of("step", threads=threads)]
+        parts.append(f"{100.0 * min(shares):.0f} to {100.0 * max(shares):.0f} % with {threads} "
+                     f"thread{'s' * (threads > 1)}")
+    least = min((row["share"] for row in bench.of("step")), default=1.0)
+    text = ("Of the processor time that they asked for the runs of the step got (medians of the better half of the "
+            f"rounds, from size to size) {', '.join(parts)}.")
     if least >= 0.9:
-        return "The runs had the processors to themselves."
-    worst = sum(share < 0.9 for share in shares)
-    return (f"**Other work shared the machine:** in {worst} of {len(shares)} rows of the step the better "
-            f"half of the runs had less than 90 % of the processor time that it asked for (least {100.0 * least:.0f} %), so these times "
-            "are upper bounds.")
+        return text
+    return text + (" **Other work shared the machine.** Times of one thread are corrected: multiplied by that share. Times of "
+                   "two threads can not be, since threads that wait for each other use up processor time: they are upper bounds, "
+                   "and so are the speed-ups lower bounds.")
 
 
 # ---- tables ------------------------------------------------------------------------------------
