@@ -43,6 +43,9 @@ contains
     call echo_interval('rcforc', model%controls%output%rcforc)
     call echo_interval('nodout', model%controls%output%nodout)
     call echo_interval('rwforc', model%controls%output%rwforc)
+    call echo_interval('sleout', model%controls%output%sleout)
+    call echo_interval('spcforc', model%controls%output%spcforc)
+    call echo_binout(model, log)
 
   contains
 
@@ -60,6 +63,18 @@ contains
     end subroutine echo_interval
 
   end subroutine echo_model
+
+  !> Where binout comes from.
+  subroutine echo_binout(model, log)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+
+    associate (plan => model%controls%output)
+      if (any([plan%glstat%is_binout, plan%matsum%is_binout, plan%rcforc%is_binout, plan%nodout%is_binout, &
+        plan%sleout%is_binout, plan%spcforc%is_binout])) call write_log(log, 'BINARY asks for binout: ' &
+        //"'slideline-tools binout' writes it from the results")
+    end associate
+  end subroutine echo_binout
 
   !> Curves that end before the run does: what holds after their end.
   subroutine echo_short_curves(model, log)

@@ -7,7 +7,7 @@ module deck_output_m
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field
   use deck_raw_m, only : raw_t, history_t, output_plot, output_glstat, output_matsum, &
-    output_rcforc, output_nodout, output_rwforc
+    output_rcforc, output_nodout, output_rwforc, output_sleout, output_spcforc
   implicit none
   private
   public :: read_database
@@ -51,6 +51,10 @@ contains
       file = output_rcforc
     case ('DATABASE_RWFORC')
       file = output_rwforc
+    case ('DATABASE_SLEOUT')
+      file = output_sleout
+    case ('DATABASE_SPCFORC')
+      file = output_spcforc
     case default
       file = output_nodout
     end select
@@ -63,6 +67,11 @@ contains
     if (file == output_plot) then
       if (card%i(4) < 0) call report_field(deck, cursor, card, 4, 'is negative')
       history%n_state = max(card%i(4), 0)
+    else
+      if (card%i(2) < 0 .or. card%i(2) > 3) call report_field(deck, cursor, card, 2, &
+        'is none of 0, 1 (text file), 2 (binout) and 3 (both)')
+      history%is_text = card%i(2) /= 2
+      history%is_binout = card%i(2) >= 2
     end if
     raw%outputs(file) = history
   end subroutine read_database

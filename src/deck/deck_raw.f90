@@ -15,8 +15,8 @@ module deck_raw_m
     reserve_rows, append_row, append_set, append_member, reserve_nodes, reserve_elements, &
     row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, row_velocity_node, &
     row_velocity_generation, row_load_node, row_load_set, row_pressure, row_pressure_set, &
-    row_body, row_damping, row_motion_rigid, output_plot, output_glstat, output_matsum, output_rcforc, output_nodout, &
-    output_rwforc, raw_wall_t
+    row_body, row_damping, row_motion_rigid, output_plot, output_glstat, output_matsum, output_rcforc, &
+    output_nodout, output_rwforc, output_sleout, output_spcforc, n_output, raw_wall_t
 
   !> Kinds of `row_t`.
   integer, parameter :: row_spc_node = 1, row_spc_set = 2, row_motion_node = 3, &
@@ -25,7 +25,7 @@ module deck_raw_m
     row_body = 12, row_damping = 13, row_motion_rigid = 14
   !> Files of the output plan.
   integer, parameter :: output_plot = 1, output_glstat = 2, output_matsum = 3, output_rcforc = 4, &
-    output_nodout = 5, output_rwforc = 6
+    output_nodout = 5, output_rwforc = 6, output_sleout = 7, output_spcforc = 8, n_output = 8
 
   !> One card of a condition: its fields by position.
   type :: row_t
@@ -96,6 +96,7 @@ module deck_raw_m
     real(wp) :: dt = 0.0_wp
     integer :: curve = 0                !! user id
     integer :: n_state = 0              !! NPLTC
+    logical :: is_text = .false., is_binout = .false. !! what BINARY asks for
     type(place_t) :: place              !! of the curve's field
   end type history_t
 
@@ -142,7 +143,7 @@ module deck_raw_m
     real(wp) :: spectral_radius = -1.0_wp      !! of the implicit method, negative = not given
     integer :: dt_curve = 0                    !! LCTM, user id
     type(place_t) :: dt_curve_place
-    type(history_t) :: outputs(6)
+    type(history_t) :: outputs(n_output)
     type(raw_set_t) :: history_nodes, history_node_sets
   end type raw_t
 

@@ -12,7 +12,8 @@ module deck_resolve_m
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, row_motion_set, &
-    output_plot, output_glstat, output_matsum, output_rcforc, output_nodout, output_rwforc
+    output_plot, output_glstat, output_matsum, output_rcforc, output_nodout, output_rwforc, &
+    output_sleout, output_spcforc
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
   use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
@@ -112,6 +113,8 @@ contains
       call take_interval(deck, maps, raw%outputs(output_rcforc), model, output%rcforc)
       call take_interval(deck, maps, raw%outputs(output_nodout), model, output%nodout)
       call take_interval(deck, maps, raw%outputs(output_rwforc), model, output%rwforc)
+      call take_interval(deck, maps, raw%outputs(output_sleout), model, output%sleout)
+      call take_interval(deck, maps, raw%outputs(output_spcforc), model, output%spcforc)
     end associate
     if (model%controls%implicit%is_on) call check_implicit(deck, raw, model)
     call resolve_conditions(deck, raw, maps, model)
@@ -148,6 +151,8 @@ contains
     type(interval_t), intent(out) :: interval
 
     interval%dt = history%dt
+    interval%is_text = history%is_text
+    interval%is_binout = history%is_binout
     if (history%n_state > 0) interval%dt = model%controls%end_time/real(history%n_state, wp)
     if (history%curve == 0) return
     call resolve_id(deck, maps%curves, history%curve, 'curve', history%place, interval%curve)

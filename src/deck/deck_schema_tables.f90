@@ -190,15 +190,19 @@ module deck_schema_tables_m
   !> Output.
   character(60), parameter :: table_database(*) = [character(60) :: &
     'DATABASE_GLSTAT', &
-    ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_MATSUM', &
-    ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_RCFORC', &
-    ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_NODOUT', &
-    ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_RWFORC', &
     ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_SLEOUT', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_SPCFORC', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_BINARY_D3PLOT', &
     ' DT:f LCDT:i BEAM:is NPLTC:i PSETID:iw', &
     ' IOOPT:is RATE:fs CUTOFF:fs WINDOW:fs TYPE:is PSET:iw', &
@@ -307,10 +311,8 @@ module deck_schema_tables_m
     'DATABASE_JNTFORC ignored', &
     'DATABASE_DEFORC ignored', &
     'DATABASE_ELOUT ignored', &
-    'DATABASE_SPCFORC ignored', &
     'DATABASE_NCFORC ignored', &
     'DATABASE_NODFOR ignored', &
-    'DATABASE_SLEOUT ignored', &
     'DATABASE_BNDOUT ignored', &
     'DATABASE_RBDOUT ignored', &
     'DATABASE_EXTENT_BINARY ignored', &

@@ -18,6 +18,8 @@ module controls_m
   type :: interval_t
     real(wp) :: dt = 0.0_wp  !! constant interval
     integer :: curve = 0     !! index of a curve of the interval against time, 0 = none
+    logical :: is_text = .false.   !! a DYNA text file is written too (BINARY)
+    logical :: is_binout = .false. !! binout data are asked for (BINARY)
   end type interval_t
 
   !> What is written, and how often.
@@ -28,6 +30,8 @@ module controls_m
     type(interval_t) :: rcforc
     type(interval_t) :: nodout
     type(interval_t) :: rwforc
+    type(interval_t) :: sleout
+    type(interval_t) :: spcforc
     integer, allocatable :: history_nodes(:) !! node indices of *DATABASE_HISTORY_NODE
     integer :: dump_cycles = -1    !! cycles between restart files that stay (*DATABASE_BINARY_D3DUMP), 0 =
                                    !! at the end alone, -1 = none

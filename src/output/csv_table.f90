@@ -2,9 +2,11 @@
 !> One CSV file that grows by rows: comma between values, no blanks, reals with 17 significant
 !> digits. Rows are kept in a buffer of whole lines and reach the file with one system call, at the
 !> latest a second after they came. The values are kept too: the results file takes them over at the
-!> end.
+!> end. A text file in DYNA's layout may grow beside it from the same rows; columns that it alone needs are not
+!> in the CSV file.
 module csv_table_m
   use kinds_m, only : wp, long
+  use dyna_text_m, only : dyna_text_t, add_dyna_row, flush_dyna_text, close_dyna_text
   use errors_m, only : error_t
   use files_m, only : text_file_t, create_text_file, append_text, close_text_file
   implicit none
@@ -27,9 +29,11 @@ module csv_table_m
     character(:), allocatable :: name       !! glstat, rcforc and so on
     character(:), allocatable :: header     !! column names with commas between
     integer, allocatable :: kinds(:)        !! (n_column) `kind_` of each column
+    integer :: n_csv = 0                    !! columns of the CSV file, the first ones
     integer :: n_row = 0                    !! rows so far
     real(wp), allocatable :: values(:, :)   !! (n_column, capacity) all rows; integers are exact
     type(text_file_t) :: file
+    type(dyna_text_t) :: text               !! the file in DYNA's layout, where the deck asks for it
     character(:), allocatable :: buffer     !! lines that wait
     integer :: n_waiting = 0                !! bytes of them
     integer(long) :: flushed = 0            !! clock tick of the last write
@@ -39,20 +43,24 @@ module csv_table_m
 contains
 
   !> Make the file `<prefix>.<name>.csv` and write its header.
-  subroutine open_table(table, prefix, name, header, kinds, error)
+  subroutine open_table(table, prefix, name, header, kinds, error, further)
     type(csv_table_t), intent(out) :: table
     character(*), intent(in) :: prefix   !! directory and job name
     character(*), intent(in) :: name
     character(*), intent(in) :: header   !! column names with commas between
     integer, intent(in) :: kinds(:)      !! `kind_` of each column
     type(error_t), allocatable, intent(out) :: error
+    character(*), intent(in), optional :: further !! names of the columns that the CSV file leaves out
+    integer :: i
 
     call create_text_file(table%file, prefix//'.'//name//'.csv', error)
     if (allocated(error)) return
     call append_text(table%file, header//new_line('a'), error)
     if (allocated(error)) return
     table%name = name
+    table%n_csv = count([(header(i:i) == ',', i=1, len(header))]) + 1
     table%header = header
+    if (present(further)) table%header = header//','//further
     table%kinds = kinds
     table%is_open = .true.
     allocate (table%values(size(kinds), 64))
@@ -98,8 +106,9 @@ contains
     end if
     table%n_row = table%n_row + 1
     table%values(:, table%n_row) = values
-    if (table%n_waiting + value_size*size(values) > buffer_size) call write_waiting(table)
-    call append_line(table%buffer, table%n_waiting, values, table%kinds)
+    if (table%n_waiting + value_size*table%n_csv > buffer_size) call write_waiting(table)
+    call append_line(table%buffer, table%n_waiting, values(:table%n_csv), table%kinds(:table%n_csv))
+    call add_dyna_row(table%text, values)
     call system_clock(now, rate)
     if (now - table%flushed > rate) call write_waiting(table)
   end subroutine add_row
@@ -183,6 +192,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (.not. table%is_open) return
+    call flush_dyna_text(table%text, error)
     call write_waiting(table)
     if (allocated(table%trouble)) error = table%trouble
   end subroutine flush_table
@@ -197,6 +207,8 @@ contains
     call flush_table(table, error)
     call close_text_file(table%file, closing)
     table%is_open = .false.
+    if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
+    call close_dyna_text(table%text, closing)
     if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
   end subroutine close_table
 

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> The histories: one CSV table per quantity. A table whose output was not asked for is not made,
-!> and rows for it are ignored, so that a driver may hand every snapshot to every table that is due.
+!> The histories: one CSV table per quantity, and DYNA's text file beside it where the deck asks for it. A
+!> table whose output was not asked for is not made, and rows for it are ignored, so that a driver may hand
+!> every snapshot to every table that is due.
 module history_file_m
   use kinds_m, only : wp
   use errors_m, only : error_t
@@ -8,17 +9,21 @@ module history_file_m
   use controls_m, only : interval_t
   use energies_m, only : total_energy, energy_ratio
   use snapshot_m, only : snapshot_t
-  use csv_table_m, only : csv_table_t, open_table, add_row, flush_table, close_table, &
+  use csv_table_m, only : csv_table_t, open_table, add_row, flush_table, close_table, n_columns, &
     kind_real, kind_integer, kind_side
+  use dyna_layouts_m, only : layout_glstat, layout_rcforc, layout_nodout, layout_matsum, layout_sleout, &
+    layout_spcforc
+  use dyna_text_m, only : open_dyna_text
   implicit none
   private
   public :: histories_t, open_histories, append_glstat, append_rcforc, append_nodout, &
-    append_matsum, append_contact, append_rwforc, flush_histories, close_histories, n_table, &
-    table_glstat, table_rcforc, table_nodout, table_contact, table_matsum, table_rwforc
+    append_matsum, append_contact, append_rwforc, append_sleout, append_spcforc, flush_histories, &
+    close_histories, n_table, table_glstat, table_rcforc, table_nodout, table_contact, table_matsum, &
+    table_rwforc, table_sleout, table_spcforc
 
-  integer, parameter :: n_table = 6
+  integer, parameter :: n_table = 8
   integer, parameter :: table_glstat = 1, table_rcforc = 2, table_nodout = 3, table_contact = 4, &
-    table_matsum = 5, table_rwforc = 6
+    table_matsum = 5, table_rwforc = 6, table_sleout = 7, table_spcforc = 8
 
   !> Columns of the tables, as users' scripts know them.
   character(*), parameter :: glstat_columns = 'time,cycle,dt,kinetic,internal,hourglass,'// &
@@ -29,6 +34,8 @@ module history_file_m
   character(*), parameter :: matsum_columns = 'time,part,kinetic,internal,hourglass,'// &
     'momentum_x,momentum_y,mass'
   character(*), parameter :: rwforc_columns = 'time,wall,fx,fy,normal_force,impulse,work,n_active'
+  character(*), parameter :: sleout_columns = 'time,cycle,interface,energy'
+  character(*), parameter :: spcforc_columns = 'time,node,fx,fy'
 
   !> All tables of a run.
   type :: histories_t
@@ -38,42 +45,98 @@ module history_file_m
 contains
 
   !> Make the files that were asked for. glstat always; the others with an interval and something to
-  !> write: interfaces for rcforc and contact, history nodes for nodout, rigid walls for rwforc.
+  !> write: interfaces for rcforc, sleout and contact, history nodes for nodout, rigid walls for rwforc, fixed
+  !> nodes for spcforc.
   subroutine open_histories(histories, prefix, model, error)
     type(histories_t), intent(out) :: histories
     character(*), intent(in) :: prefix   !! directory and job name
     type(model_t), intent(in) :: model
     type(error_t), allocatable, intent(out) :: error
     integer, parameter :: r = kind_real, i = kind_integer
+    logical :: wanted(n_table)
+    integer :: k
+
+    wanted = wanted_tables(model)
+    do k = 1, n_table
+      if (.not. wanted(k)) cycle
+      associate (table => histories%tables(k))
+        select case (k)
+        case (table_glstat)
+          call open_table(table, prefix, 'glstat', glstat_columns, &
+            [r, i, r, r, r, r, r, r, r, r, r, r, r, r, i, i], error, 'velocity_x,velocity_y,element,element_part')
+        case (table_rcforc)
+          call open_table(table, prefix, 'rcforc', rcforc_columns, [r, i, kind_side, r, r, i], error)
+        case (table_nodout)
+          call open_table(table, prefix, 'nodout', nodout_columns, [r, i, r, r, r, r, r, r, r, r, i], error, &
+            'cycle')
+        case (table_contact)
+          call open_table(table, prefix, 'contact', contact_columns, [r, i, i, r, r, r, r, r, r, r, r], error)
+        case (table_matsum)
+          call open_table(table, prefix, 'matsum', matsum_columns, [r, i, r, r, r, r, r, r], error)
+        case (table_rwforc)
+          call open_table(table, prefix, 'rwforc', rwforc_columns, [r, i, r, r, r, r, r, i], error)
+        case (table_sleout)
+          call open_table(table, prefix, 'sleout', sleout_columns, [r, i, i, r], error)
+        case (table_spcforc)
+          call open_table(table, prefix, 'spcforc', spcforc_columns, [r, i, r, r], error)
+        end select
+        if (allocated(error)) return
+      end associate
+    end do
+    call open_texts(histories, prefix, model, error)
+  end subroutine open_histories
+
+  !> Which tables the run has.
+  pure function wanted_tables(model) result(wanted)
+    type(model_t), intent(in) :: model
+    logical :: wanted(n_table)
     logical :: has_contacts
 
     has_contacts = .false.
     if (allocated(model%contacts)) has_contacts = size(model%contacts) > 0
-    call open_table(histories%tables(table_glstat), prefix, 'glstat', glstat_columns, &
-      [r, i, r, r, r, r, r, r, r, r, r, r], error)
-    if (allocated(error)) return
-    if (is_asked(model%controls%output%rcforc) .and. has_contacts) then
-      call open_table(histories%tables(table_rcforc), prefix, 'rcforc', rcforc_columns, &
-        [r, i, kind_side, r, r, i], error)
+    associate (plan => model%controls%output)
+      wanted(table_glstat) = .true.
+      wanted(table_rcforc) = is_asked(plan%rcforc) .and. has_contacts
+      wanted(table_nodout) = is_asked(plan%nodout) .and. n_history_node(model) > 0
+      wanted(table_contact) = is_asked(plan%plot) .and. has_contacts
+      wanted(table_matsum) = is_asked(plan%matsum)
+      wanted(table_rwforc) = is_asked(plan%rwforc) .and. allocated(model%walls)
+      wanted(table_sleout) = is_asked(plan%sleout) .and. has_contacts
+      wanted(table_spcforc) = is_asked(plan%spcforc) .and. n_support(model) > 0
+    end associate
+  end function wanted_tables
+
+  !> The files in DYNA's layout.
+  subroutine open_texts(histories, prefix, model, error)
+    type(histories_t), intent(inout) :: histories
+    character(*), intent(in) :: prefix
+    type(model_t), intent(in) :: model
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (plan => model%controls%output)
+      call open_text(table_glstat, plan%glstat, layout_glstat, 1)
+      call open_text(table_rcforc, plan%rcforc, layout_rcforc, 1)
+      call open_text(table_nodout, plan%nodout, layout_nodout, n_history_node(model))
+      call open_text(table_matsum, plan%matsum, layout_matsum, size(model%parts))
+      call open_text(table_sleout, plan%sleout, layout_sleout, size(model%contacts))
+      call open_text(table_spcforc, plan%spcforc, layout_spcforc, n_support(model))
+    end associate
+
+  contains
+
+    !> One file, unless an earlier one failed; `n_row` rows are an instant.
+    subroutine open_text(i_table, interval, layout, n_row)
+      integer, intent(in) :: i_table, layout, n_row
+      type(interval_t), intent(in) :: interval
+
       if (allocated(error)) return
-    end if
-    if (is_asked(model%controls%output%nodout) .and. n_history_node(model) > 0) then
-      call open_table(histories%tables(table_nodout), prefix, 'nodout', nodout_columns, &
-        [r, i, r, r, r, r, r, r, r, r], error)
-      if (allocated(error)) return
-    end if
-    if (is_asked(model%controls%output%plot) .and. has_contacts) then
-      call open_table(histories%tables(table_contact), prefix, 'contact', contact_columns, &
-        [r, i, i, r, r, r, r, r, r, r, r], error)
-      if (allocated(error)) return
-    end if
-    if (is_asked(model%controls%output%matsum)) call open_table(histories%tables(table_matsum), &
-      prefix, 'matsum', matsum_columns, [r, i, r, r, r, r, r, r], error)
-    if (allocated(error)) return
-    if (is_asked(model%controls%output%rwforc) .and. allocated(model%walls)) &
-      call open_table(histories%tables(table_rwforc), prefix, 'rwforc', rwforc_columns, &
-      [r, i, r, r, r, r, r, i], error)
-  end subroutine open_histories
+      associate (table => histories%tables(i_table))
+        if (table%is_open .and. interval%is_text .and. is_asked(interval)) call open_dyna_text(table%text, &
+          prefix//'.'//table%name, layout, model, [n_columns(table), n_row], error)
+      end associate
+    end subroutine open_text
+
+  end subroutine open_texts
 
   !> Whether an output has an interval.
   pure function is_asked(interval) result(asked)
@@ -93,6 +156,19 @@ contains
       n = size(model%controls%output%history_nodes)
   end function n_history_node
 
+  !> Number of nodes with a fixed degree of freedom.
+  pure function n_support(model) result(n)
+    type(model_t), intent(in) :: model
+    integer :: n
+    logical, allocatable :: is_fixed(:)
+
+    n = 0
+    if (.not. allocated(model%conditions%fixed_nodes)) return
+    allocate (is_fixed(model%mesh%n_node), source=.false.)
+    is_fixed(model%conditions%fixed_nodes) = .true.
+    n = count(is_fixed)
+  end function n_support
+
   !> The energy account: one row.
   subroutine append_glstat(histories, snapshot)
     type(histories_t), intent(inout) :: histories
@@ -101,7 +177,8 @@ contains
     associate (e => snapshot%energies)
       call add_row(histories%tables(table_glstat), [snapshot%time, real(snapshot%cycle, wp), &
         snapshot%dt, e%kinetic, e%internal, e%hourglass, e%viscous, e%damping, e%contact, &
-        e%external_work, total_energy(e), energy_ratio(e)])
+        e%external_work, total_energy(e), energy_ratio(e), snapshot%mean_velocity, &
+        real(snapshot%slowest, wp)])
     end associate
   end subroutine append_glstat
 
@@ -137,7 +214,7 @@ contains
         real(model%mesh%node_id(i_node), wp), &
         model%mesh%coordinates(:, i_node) + snapshot%displacement(:, i_node), &
         snapshot%displacement(:, i_node), snapshot%velocity(:, i_node), &
-        snapshot%acceleration(:, i_node)])
+        snapshot%acceleration(:, i_node), real(snapshot%cycle, wp)])
     end do
   end subroutine append_nodout
 
@@ -157,6 +234,34 @@ contains
       end associate
     end do
   end subroutine append_matsum
+
+  !> Energies of interfaces.
+  subroutine append_sleout(histories, model, snapshot)
+    type(histories_t), intent(inout) :: histories
+    type(model_t), intent(in) :: model
+    type(snapshot_t), intent(in) :: snapshot
+    integer :: i
+
+    if (.not. histories%tables(table_sleout)%is_open) return
+    do i = 1, size(model%contacts)
+      call add_row(histories%tables(table_sleout), [snapshot%time, real(snapshot%cycle, wp), &
+        real(model%contacts(i)%id, wp), snapshot%interfaces(i)%energy])
+    end do
+  end subroutine append_sleout
+
+  !> Forces of the constraints on fixed nodes.
+  subroutine append_spcforc(histories, model, snapshot)
+    type(histories_t), intent(inout) :: histories
+    type(model_t), intent(in) :: model
+    type(snapshot_t), intent(in) :: snapshot
+    integer :: i
+
+    if (.not. histories%tables(table_spcforc)%is_open) return
+    do i = 1, size(snapshot%supports)
+      call add_row(histories%tables(table_spcforc), [snapshot%time, &
+        real(model%mesh%node_id(snapshot%supports(i)), wp), snapshot%reaction(:, i)])
+    end do
+  end subroutine append_spcforc
 
   !> Slave nodes of every interface, in walking order.
   subroutine append_contact(histories, model, snapshot)

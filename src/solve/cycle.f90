@@ -26,8 +26,10 @@ module cycle_m
     switch_dump, switch_plot, switch_stop, switch_unknown
   use signals_m, only : stop_requested
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
+  use slowest_element_m, only : find_slowest
   use state_m, only : state_t
   use wall_motion_m, only : hold_nodes, count_walls, fill_walls
+  use support_forces_m, only : fill_explicit_reactions
   use time_step_m, only : step_plan_t, start_steps, first_step, next_step, is_last
   implicit none
   private
@@ -193,7 +195,9 @@ contains
       monitor%snapshot%energies%initial = state%initial_energy
     end if
     if (cycle%due%matsum) call fill_parts(model, monitor%snapshot)
-    if (cycle%due%rcforc) call fill_interfaces(model, state, monitor%snapshot)
+    if (cycle%due%glstat) call find_slowest(model, state, monitor%snapshot)
+    if (cycle%due%rcforc .or. cycle%due%sleout) call fill_interfaces(model, state, monitor%snapshot)
+    if (cycle%due%spcforc) call fill_explicit_reactions(model, state, monitor%snapshot)
     if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
     call write_due(model, cycle%due, state%dt, monitor, cycle%error)
     if (cycle%due%glstat) cycle%ratio = energy_ratio(monitor%snapshot%energies)

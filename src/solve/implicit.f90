@@ -60,7 +60,7 @@ contains
     if (allocated(error)) return
     last = .false.
     state%dt = control%next
-    call report_step(model, state, .false., monitor, written, error)
+    call report_step(model, state, step%old_force, .false., monitor, written, error)
     do while (.not. last .and. .not. allocated(error))
       call take_step(model, state, monitor, control, step, trial, error)
       if (allocated(error)) exit
@@ -74,13 +74,13 @@ contains
         call plan_step(control, state%time)
         state%dt = control%next - state%time
       end if
-      call report_step(model, state, last, monitor, written, error)
+      call report_step(model, state, step%old_force, last, monitor, written, error)
       if (wants_line(monitor%progress, state%cycle, monitor%clock%last)) call show_progress( &
         monitor%progress, monitor%clock, state%cycle, state%time, state%dt_before, &
         energy_ratio(monitor%snapshot%energies), '')
     end do
     if (allocated(error) .and. .not. last) then
-      call report_step(model, state, .true., monitor, written, second)
+      call report_step(model, state, step%old_force, .true., monitor, written, second)
       call hint_at_energy(step, energy_ratio(monitor%snapshot%energies), error)
     end if
     call report_contact_end(model, state, monitor%log)

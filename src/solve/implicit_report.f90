@@ -16,6 +16,7 @@ module implicit_report_m
   use snapshot_m, only : snapshot_t
   use snapshot_filling_m, only : fill_energies, fill_parts, fill_interfaces, fill_plot
   use state_m, only : state_t
+  use support_forces_m, only : fill_reactions
   implicit none
   private
   public :: report_step, reactions_work
@@ -26,9 +27,10 @@ module implicit_report_m
 contains
 
   !> Write what is due; of a state that was reported before, only what was not written then.
-  subroutine report_step(model, state, last, monitor, written, error)
+  subroutine report_step(model, state, force, last, monitor, written, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
+    real(wp), intent(in) :: force(:, :)   !! (2, n_node) internal minus contact and external forces of the state
     logical, intent(in) :: last
     type(monitor_t), intent(inout) :: monitor
     type(due_t), intent(inout) :: written !! of the state reported before; now of this one
@@ -57,7 +59,8 @@ contains
         shot%energies%initial = state%initial_energy
       end if
       if (due%matsum) call fill_consistent_parts(model, shot)
-      if (due%rcforc) call fill_interfaces(model, state, shot)
+      if (due%rcforc .or. due%sleout) call fill_interfaces(model, state, shot)
+      if (due%spcforc) call fill_reactions(model, force + mass_times(model, shot%acceleration), shot)
       if (due%plot) call fill_plot(model, state, shot)
       call write_due(model, due, dt, monitor, error)
       if (due%plot) call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, &
@@ -78,6 +81,8 @@ contains
     left%rcforc = due%rcforc .and. .not. written%rcforc
     left%nodout = due%nodout .and. .not. written%nodout
     left%matsum = due%matsum .and. .not. written%matsum
+    left%sleout = due%sleout .and. .not. written%sleout
+    left%spcforc = due%spcforc .and. .not. written%spcforc
   end function without
 
   !> Parts with the consistent mass.

@@ -5,7 +5,8 @@ module monitor_m
   use controls_m, only : interval_t
   use errors_m, only : error_t
   use history_file_m, only : histories_t, open_histories, append_glstat, append_rcforc, &
-    append_nodout, append_matsum, append_contact, append_rwforc, flush_histories, close_histories
+    append_nodout, append_matsum, append_contact, append_rwforc, append_sleout, append_spcforc, &
+    flush_histories, close_histories
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
@@ -22,12 +23,12 @@ module monitor_m
   !> What is due in one cycle.
   type :: due_t
     logical :: plot = .false., glstat = .false., rcforc = .false., nodout = .false., &
-      matsum = .false., rwforc = .false.
+      matsum = .false., rwforc = .false., sleout = .false., spcforc = .false.
   end type due_t
 
   !> Files, their schedules, the log, the clock and the progress lines of a run.
   type :: monitor_t
-    type(schedule_t) :: plot, glstat, rcforc, nodout, matsum, rwforc
+    type(schedule_t) :: plot, glstat, rcforc, nodout, matsum, rwforc, sleout, spcforc
     type(results_file_t) :: results
     type(histories_t) :: histories
     type(snapshot_t) :: snapshot
@@ -74,6 +75,10 @@ contains
       ! Rows that no file receives must not make a cycle write.
       if (size(model%contacts) > 0) &
         call start_schedule(monitor%rcforc, plan%rcforc, model%curves, end_time)
+      if (size(model%contacts) > 0) &
+        call start_schedule(monitor%sleout, plan%sleout, model%curves, end_time)
+      if (size(model%conditions%fixed_nodes) > 0) &
+        call start_schedule(monitor%spcforc, plan%spcforc, model%curves, end_time)
       if (size(plan%history_nodes) > 0) &
         call start_schedule(monitor%nodout, plan%nodout, model%curves, end_time)
       call start_schedule(monitor%matsum, plan%matsum, model%curves, end_time)
@@ -106,6 +111,8 @@ contains
     due%nodout = everything .or. is_due(monitor%nodout, time, dt)
     due%matsum = everything .or. is_due(monitor%matsum, time, dt)
     due%rwforc = everything .or. is_due(monitor%rwforc, time, dt)
+    due%sleout = everything .or. is_due(monitor%sleout, time, dt)
+    due%spcforc = everything .or. is_due(monitor%spcforc, time, dt)
   end function find_due
 
   !> Whether anything is due.
@@ -114,7 +121,7 @@ contains
     logical :: any_of_them
 
     any_of_them = due%plot .or. due%glstat .or. due%rcforc .or. due%nodout .or. due%matsum &
-      .or. due%rwforc
+      .or. due%rwforc .or. due%sleout .or. due%spcforc
   end function any_due
 
   !> Write what is due from the snapshot.
@@ -132,6 +139,8 @@ contains
       if (due%nodout) call append_nodout(histories, model, shot)
       if (due%matsum) call append_matsum(histories, model, shot)
       if (due%rwforc) call append_rwforc(histories, model, shot)
+      if (due%sleout) call append_sleout(histories, model, shot)
+      if (due%spcforc) call append_spcforc(histories, model, shot)
       if (due%plot) then
         call append_contact(histories, model, shot)
         call append_state(monitor%results, model, shot, error)
@@ -143,6 +152,8 @@ contains
       if (due%nodout) call mark_written(monitor%nodout, shot%time, dt)
       if (due%matsum) call mark_written(monitor%matsum, shot%time, dt)
       if (due%rwforc) call mark_written(monitor%rwforc, shot%time, dt)
+      if (due%sleout) call mark_written(monitor%sleout, shot%time, dt)
+      if (due%spcforc) call mark_written(monitor%spcforc, shot%time, dt)
       if (due%plot) call mark_written(monitor%plot, shot%time, dt)
     end associate
   end subroutine write_due

@@ -146,6 +146,8 @@ contains
     call keep_schedule(archive, 'nodout', time, dt, monitor%nodout)
     call keep_schedule(archive, 'matsum', time, dt, monitor%matsum)
     call keep_schedule(archive, 'rwforc', time, dt, monitor%rwforc)
+    call keep_schedule(archive, 'sleout', time, dt, monitor%sleout)
+    call keep_schedule(archive, 'spcforc', time, dt, monitor%spcforc)
     call keep_histories(archive, 'histories', monitor%histories)
     if (.not. archive%is_read) call keep_times(archive, 'state_times', monitor%results, times)
     call leave(archive)

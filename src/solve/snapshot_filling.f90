@@ -10,6 +10,7 @@ module snapshot_filling_m
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t
   use state_m, only : state_t
+  use support_forces_m, only : find_supports
   implicit none
   private
   public :: start_snapshot, fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
@@ -30,6 +31,7 @@ contains
     allocate (snapshot%parts(size(model%parts)))
     if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
     allocate (snapshot%interfaces(size(model%contacts)), snapshot%slaves(size(model%contacts)))
+    call find_supports(model, snapshot)
     if (.not. (model%controls%output%plot%dt > 0.0_wp .or. model%controls%output%plot%curve > 0)) &
       return
     allocate (snapshot%stress(6, n_element), source=0.0_wp)
@@ -112,10 +114,13 @@ contains
       energies%hourglass = sum(hourglass)
       energies%viscous = sum(viscous)
       energies%kinetic = 0.0_wp
+      snapshot%mean_velocity = 0.0_wp
       do i = 1, model%mesh%n_node
         energies%kinetic = energies%kinetic + 0.5_wp*state%mass(i) &
           *(snapshot%velocity(1, i)**2 + snapshot%velocity(2, i)**2)
+        snapshot%mean_velocity = snapshot%mean_velocity + state%mass(i)*snapshot%velocity(:, i)
       end do
+      snapshot%mean_velocity = snapshot%mean_velocity/sum(state%mass)
       energies%damping = state%damping_work
       energies%contact = sum(state%contacts%energy)
       energies%external_work = state%external_work
@@ -161,6 +166,7 @@ contains
 
     do i = 1, size(model%contacts)
       call interface_resultants(state%contacts(i), snapshot%interfaces(i))
+      snapshot%interfaces(i)%energy = state%contacts(i)%energy
     end do
   end subroutine fill_interfaces
 

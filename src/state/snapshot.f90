@@ -13,6 +13,7 @@ module snapshot_m
     real(wp) :: slave_force(2) = 0.0_wp
     real(wp) :: master_force(2) = 0.0_wp
     integer :: n_active = 0
+    real(wp) :: energy = 0.0_wp  !! minus the work of the contact forces
   end type interface_result_t
 
   !> Sums over one part.
@@ -57,6 +58,10 @@ module snapshot_m
     real(wp), allocatable :: contact_force(:, :) !! (2, n_node)
     real(wp), allocatable :: contact_pressure(:) !! (n_node)
     real(wp), allocatable :: gap(:)              !! (n_node)
+    real(wp) :: mean_velocity(2) = 0.0_wp        !! momentum over mass, of all nodes
+    integer :: slowest(2) = 0                    !! ids of the element that rules the step and of its part, 0 = none
+    integer, allocatable :: supports(:)          !! nodes with a fixed degree of freedom, by rising id
+    real(wp), allocatable :: reaction(:, :)      !! (2, n_support) force of the constraint on the node
     real(wp), allocatable :: stress(:, :)        !! (6, n_element) xx yy zz xy yz xz
     real(wp), allocatable :: plastic_strain(:)   !! (n_element)
     type(interface_result_t), allocatable :: interfaces(:)

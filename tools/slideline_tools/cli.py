@@ -11,6 +11,7 @@ import tempfile
 from slideline_tools import UserError, __version__
 from slideline_tools.commands import completion, help_texts
 from slideline_tools.commands import draw as draw_command
+from slideline_tools.commands import dyna as dyna_command
 from slideline_tools.commands import report as report_command
 
 OK, FAILED, UNUSABLE = 0, 1, 2
@@ -276,7 +277,8 @@ def build_parser():
     parser.add_argument("--version", action="version", version=f"slideline-tools {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for add in (add_info, add_plot, add_animate, add_compare, add_advise, report_command.add,
-                draw_command.add, add_make_deck, add_bless, completion.add):
+                draw_command.add, dyna_command.add_binout, dyna_command.add_d3plot, add_make_deck,
+                add_bless, completion.add):
         add(commands)
     help_texts.add_examples(parser, commands)
     return parser

@@ -55,6 +55,16 @@ A batch: for run in results/*/; do slideline-tools report "$run"; done""",
   slideline-tools draw deck.k
   slideline-tools draw deck.k p:level=2 --show mesh,surfaces --zoom 0 0.02 -0.002 0.002 -o gap.png
   slideline-tools draw results/collision -o collision.png""",
+    "binout": f"""Examples:
+
+  slideline-tools binout {RUN}
+  slideline-tools binout {RUN} -o binout0000
+
+With lasso-python: Binout("binout0000").as_df("rcforc", "y_force").""",
+    "d3plot": f"""Examples:
+
+  slideline-tools d3plot {RUN}           # collision.d3plot, collision.d3plot01, ...
+  slideline-tools d3plot {RUN} -o d3plot""",
     "make-deck": """Examples:
 
   slideline-tools make-deck collision --level 2 -o collision_2.k

@@ -1,0 +1,276 @@
+! SPDX-License-Identifier: MIT
+!> The layouts of DYNA's text files, byte for byte as scripts read them: one block of lines for all rows of one
+!> instant. Rows are those of the history tables (`history_file_m`), forces and energies per unit depth.
+module dyna_layouts_m
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: layout_glstat, layout_rcforc, layout_nodout, layout_matsum, layout_sleout, layout_spcforc, &
+    line_size, n_line_of, form_block
+
+  !> The files.
+  integer, parameter :: layout_glstat = 1, layout_rcforc = 2, layout_nodout = 3, layout_matsum = 4, &
+    layout_sleout = 5, layout_spcforc = 6
+  !> Bytes of the longest line.
+  integer, parameter :: line_size = 160
+  !> Labels of glstat, each with its dots.
+  integer, parameter :: n_label = 19
+  character(32), parameter :: labels(n_label) = [character(32) :: &
+    ' time...........................', &
+    ' time step......................', &
+    ' kinetic energy.................', &
+    ' internal energy................', &
+    ' stonewall energy...............', &
+    ' spring and damper energy.......', &
+    ' hourglass energy ..............', &
+    ' system damping energy..........', &
+    ' sliding interface energy.......', &
+    ' external work..................', &
+    ' eroded kinetic energy..........', &
+    ' eroded internal energy.........', &
+    ' eroded hourglass energy........', &
+    ' total energy...................', &
+    ' total energy / initial energy..', &
+    ' energy ratio w/o eroded energy.', &
+    ' global x velocity..............', &
+    ' global y velocity..............', &
+    ' global z velocity..............']
+
+contains
+
+  !> Lines of a block of `n_row` rows, at most.
+  pure function n_line_of(layout, n_row) result(n)
+    integer, intent(in) :: layout   !! one of `layout_`
+    integer, intent(in) :: n_row
+    integer :: n
+
+    select case (layout)
+    case (layout_glstat)
+      n = n_label + 5
+    case (layout_matsum)
+      n = 4*n_row + 3
+    case default
+      n = n_row + 12
+    end select
+  end function n_line_of
+
+  !> The lines of one instant.
+  pure subroutine form_block(layout, control, rows, lines, n_line)
+    integer, intent(in) :: layout                       !! one of `layout_`
+    character(*), intent(in) :: control                 !! what rules the step where no element does
+    real(wp), intent(in) :: rows(:, :)                  !! (n_column, n_row)
+    character(line_size), intent(inout) :: lines(:)     !! `n_line_of` or more
+    integer, intent(out) :: n_line
+
+    n_line = 0
+    select case (layout)
+    case (layout_glstat)
+      call form_glstat(rows(:, 1), control, lines, n_line)
+    case (layout_rcforc)
+      call form_rcforc(rows, lines, n_line)
+    case (layout_nodout)
+      call form_nodout(rows, lines, n_line)
+    case (layout_matsum)
+      call form_matsum(rows, lines, n_line)
+    case (layout_sleout)
+      call form_sleout(rows, lines, n_line)
+    case (layout_spcforc)
+      call form_spcforc(rows, lines, n_line)
+    end select
+  end subroutine form_block
+
+  !> Energies. DYNA counts the work of the bulk viscosity as internal energy; so the lines add up to the total.
+  pure subroutine form_glstat(row, control, lines, n_line)
+    real(wp), intent(in) :: row(:)
+    character(*), intent(in) :: control
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    real(wp) :: values(n_label)
+    character(line_size) :: line
+    integer :: i
+
+    call add_line('', lines, n_line)
+    call add_line('', lines, n_line)
+    if (nint(row(15)) > 0) then
+      call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by shell '//number(row(15), 8) &
+        //' of part '//number(row(16), 8), lines, n_line)
+    else
+      call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by '//control, lines, n_line)
+    end if
+    call add_line('', lines, n_line)
+    values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), row(9), row(10), &
+      0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(13), row(14), 0.0_wp]
+    do i = 1, n_label
+      write (line, '(a,es14.5)') labels(i), tidy(values(i))
+      call add_line(line, lines, n_line)
+    end do
+    call add_line(' time per zone cycle.(nanosec)..             0', lines, n_line)
+  end subroutine form_glstat
+
+  !> Contact forces, a line for each side.
+  pure subroutine form_rcforc(rows, lines, n_line)
+    real(wp), intent(in) :: rows(:, :)
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    character(line_size) :: line
+    integer :: i
+
+    do i = 1, size(rows, 2)
+      write (line, '(2x,a,i11,a,es12.5,3(a,es12.5),a,es12.5)') merge('slave ', 'master', &
+        nint(rows(3, i)) == 1), nint(rows(2, i)), ' time', tidy(rows(1, i)), '  x ', tidy(rows(4, i)), &
+        '  y ', tidy(rows(5, i)), '  z ', 0.0_wp, ' mass ', 0.0_wp
+      call add_line(line, lines, n_line)
+    end do
+  end subroutine form_rcforc
+
+  !> Motion of nodes.
+  pure subroutine form_nodout(rows, lines, n_line)
+    real(wp), intent(in) :: rows(:, :)
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    character(line_size) :: line
+    character(:), allocatable :: id
+    integer :: i
+
+    do i = 1, 3
+      call add_line('', lines, n_line)
+    end do
+    write (line, '(2a,30x,a,es14.7,a)') ' n o d a l   p r i n t   o u t   f o r   t i m e  s t e p', &
+      number(rows(11, 1), 8), '( at time', tidy(rows(1, 1)), ' )'
+    call add_line(line, lines, n_line)
+    call add_line('', lines, n_line)
+    call add_line(' nodal point  x-disp     y-disp      z-disp      x-vel       y-vel       z-vel      ' &
+      //'x-accl      y-accl      z-accl      x-coor      y-coor      z-coor', lines, n_line)
+    do i = 1, size(rows, 2)
+      id = number(rows(2, i), 9)
+      if (len(id) == 9) id = id//' '
+      write (line, '(a,12es12.4)') id, tidy([rows(5:6, i), 0.0_wp, rows(7:8, i), &
+        0.0_wp, rows(9:10, i), 0.0_wp, rows(3:4, i), 0.0_wp])
+      call add_line(line, lines, n_line)
+    end do
+  end subroutine form_nodout
+
+  !> Sums of parts; the velocity of the body is that of its centre of mass.
+  pure subroutine form_matsum(rows, lines, n_line)
+    real(wp), intent(in) :: rows(:, :)
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    character(*), parameter :: vectors = '(3(a,es13.4))'
+    character(line_size) :: line
+    real(wp) :: velocity(2)
+    integer :: i
+
+    call add_line('', lines, n_line)
+    call add_line('', lines, n_line)
+    write (line, '(a,es13.4)') ' time =', tidy(rows(1, 1))
+    call add_line(line, lines, n_line)
+    do i = 1, size(rows, 2)
+      velocity = 0.0_wp
+      if (rows(8, i) > 0.0_wp) velocity = rows(6:7, i)/rows(8, i)
+      write (line, '(a,a,4(a,es13.4))') ' mat.#=', part_field(rows(2, i)), &
+        '          inten=', tidy(rows(4, i)), '     kinen=', tidy(rows(3, i)), &
+        '     eroded_ie=', 0.0_wp, '     eroded_ke=', 0.0_wp
+      call add_line(line, lines, n_line)
+      write (line, vectors) ' x-mom=', tidy(rows(6, i)), '     y-mom=', tidy(rows(7, i)), &
+        '     z-mom=', 0.0_wp
+      call add_line(line, lines, n_line)
+      write (line, vectors) ' x-rbv=', tidy(velocity(1)), '     y-rbv=', tidy(velocity(2)), &
+        '     z-rbv=', 0.0_wp
+      call add_line(line, lines, n_line)
+      write (line, '(25x,a,es13.4,5x,a,es13.4)') 'hgeng=', tidy(rows(5, i)), '+mass=', tidy(rows(8, i))
+      call add_line(line, lines, n_line)
+    end do
+  end subroutine form_matsum
+
+  !> Part id in eight columns or more: short ones stand in the first five.
+  pure function part_field(id) result(field)
+    real(wp), intent(in) :: id
+    character(:), allocatable :: field
+
+    field = number(id, 5)
+    if (len(field) < 8) field = field//repeat(' ', 8 - len(field))
+  end function part_field
+
+  !> A whole number at the right of `width` columns, or of as many as it needs.
+  pure function number(value, width) result(text)
+    real(wp), intent(in) :: value
+    integer, intent(in) :: width
+    character(:), allocatable :: text
+    character(12) :: digits
+
+    write (digits, '(i12)') nint(value)
+    text = digits(min(13 - width, verify(digits, ' ')):)
+  end function number
+
+  !> Energies of interfaces. Penalty springs act between the sides: each interface has one number, as
+  !> DYNA's single-sided contacts do.
+  pure subroutine form_sleout(rows, lines, n_line)
+    real(wp), intent(in) :: rows(:, :)
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    character(line_size) :: line
+    integer :: i
+
+    do i = 1, 3
+      call add_line('', lines, n_line)
+    end do
+    write (line, '(a,es14.7)') ' contact interface energy file, time=', tidy(rows(1, 1))
+    call add_line(line, lines, n_line)
+    write (line, '(a,i14)') '    #            slave       master        cycle=', nint(rows(2, 1))
+    call add_line(line, lines, n_line)
+    call add_line('', lines, n_line)
+    do i = 1, size(rows, 2)
+      write (line, '(i10,es13.4)') nint(rows(3, i)), tidy(rows(4, i))
+      call add_line(line, lines, n_line)
+    end do
+    call add_line('', lines, n_line)
+    write (line, '(a,es14.7)') ' summary   total slave side=', tidy(sum(rows(4, :)))
+    call add_line(line, lines, n_line)
+    write (line, '(a,es14.7)') '           total mastr side=', 0.0_wp
+    call add_line(line, lines, n_line)
+    write (line, '(a,es14.7)') '           total energy    =', tidy(sum(rows(4, :)))
+    call add_line(line, lines, n_line)
+  end subroutine form_sleout
+
+  !> Forces of constraints on their nodes, and their sum.
+  pure subroutine form_spcforc(rows, lines, n_line)
+    real(wp), intent(in) :: rows(:, :)
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    character(line_size) :: line
+    integer :: i
+
+    write (line, '(a,es14.5)') ' output at time =', tidy(rows(1, 1))
+    call add_line(line, lines, n_line)
+    do i = 1, size(rows, 2)
+      write (line, '(3a,3es14.4)') ' node=', number(rows(2, i), 8), ' local x,y,z forces =', &
+        tidy([rows(3:4, i), 0.0_wp])
+      call add_line(line, lines, n_line)
+    end do
+    write (line, '(a,3es14.4)') '             force resultants   =', tidy([sum(rows(3, :)), &
+      sum(rows(4, :)), 0.0_wp])
+    call add_line(line, lines, n_line)
+  end subroutine form_spcforc
+
+  !> One more line.
+  pure subroutine add_line(line, lines, n_line)
+    character(*), intent(in) :: line
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+
+    n_line = n_line + 1
+    lines(n_line) = line
+  end subroutine add_line
+
+  !> A number whose exponent has two digits, which the columns are made for; NaN stays.
+  pure elemental function tidy(value) result(printed)
+    real(wp), intent(in) :: value
+    real(wp) :: printed
+    real(wp), parameter :: least = 1.0e-99_wp, most = 9.9e99_wp
+
+    printed = value
+    if (abs(value) < least) printed = 0.0_wp
+    if (abs(value) > most) printed = sign(most, value)
+  end function tidy
+
+end module dyna_layouts_m

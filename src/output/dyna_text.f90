@@ -1,0 +1,190 @@
+! SPDX-License-Identifier: MIT
+!> One text file in DYNA's layout (`<job>.glstat`, `.rcforc` and so on), fed with the rows of a history table.
+!> The rows of an instant are kept until they are complete; their lines wait in a buffer of whole lines and
+!> reach the file like those of the table.
+module dyna_text_m
+  use build_info_m, only : version
+  use dyna_layouts_m, only : layout_rcforc, layout_nodout, layout_matsum, layout_spcforc, line_size, &
+    n_line_of, form_block
+  use errors_m, only : error_t
+  use files_m, only : text_file_t, create_text_file, append_text, close_text_file
+  use kinds_m, only : wp, long
+  use model_m, only : model_t
+  implicit none
+  private
+  public :: dyna_text_t, open_dyna_text, add_dyna_row, flush_dyna_text, close_dyna_text
+
+  !> Bytes of the buffer of lines.
+  integer, parameter :: buffer_size = 65536
+  !> Bytes of a title in a legend.
+  integer, parameter :: title_size = 70
+
+  !> One file.
+  type :: dyna_text_t
+    logical :: is_open = .false.             !! rows are taken only while open
+    integer :: layout = 0                    !! one of `layout_`
+    character(:), allocatable :: control     !! what rules the step where no element does
+    integer :: n_row = 0                     !! rows of the present instant so far
+    real(wp), allocatable :: rows(:, :)      !! (n_column, rows of an instant)
+    character(line_size), allocatable :: lines(:) !! of one instant
+    type(text_file_t) :: file
+    character(:), allocatable :: buffer      !! lines that wait
+    integer :: n_waiting = 0                 !! bytes of them
+    integer(long) :: flushed = 0             !! clock tick of the last write
+    type(error_t), allocatable :: trouble    !! first failure; reported by the next flush or close
+  end type dyna_text_t
+
+contains
+
+  !> Make the file `<path>` and write its head.
+  subroutine open_dyna_text(text, path, layout, model, size_of_instant, error)
+    type(dyna_text_t), intent(out) :: text
+    character(*), intent(in) :: path
+    integer, intent(in) :: layout                !! one of `layout_`
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: size_of_instant(2)    !! columns, rows
+    type(error_t), allocatable, intent(out) :: error
+
+    call create_text_file(text%file, path, error)
+    if (allocated(error)) return
+    text%layout = layout
+    text%control = 'load curve'
+    if (model%controls%implicit%is_on) text%control = 'implicit'
+    allocate (text%rows(size_of_instant(1), size_of_instant(2)))
+    allocate (text%lines(n_line_of(layout, size_of_instant(2))))
+    allocate (character(buffer_size) :: text%buffer)
+    text%is_open = .true.
+    call system_clock(text%flushed)
+    call write_head(text, model)
+    if (layout == layout_spcforc) then
+      call put_line(text, ' single point constraint forces')
+      call put_line(text, '')
+    end if
+    call flush_dyna_text(text, error)
+  end subroutine open_dyna_text
+
+  !> Title, program and the legend of entities, where they have titles.
+  subroutine write_head(text, model)
+    type(dyna_text_t), intent(inout) :: text
+    type(model_t), intent(in) :: model
+    logical :: has_legend
+    integer :: i
+
+    call put_line(text, ' '//text_of(model%controls%title))
+    call put_line(text, '                         slideline (version '//version &
+      //')     plane strain, per unit depth')
+    has_legend = .false.
+    select case (text%layout)
+    case (layout_matsum)
+      do i = 1, size(model%parts)
+        call put_entity(text, has_legend, model%parts(i)%id, text_of(model%parts(i)%title))
+      end do
+    case (layout_rcforc)
+      do i = 1, size(model%contacts)
+        call put_entity(text, has_legend, model%contacts(i)%id, text_of(model%contacts(i)%title))
+      end do
+    case (layout_nodout)
+      do i = 1, size(model%controls%output%history_nodes)
+        call put_entity(text, has_legend, model%mesh%node_id(model%controls%output%history_nodes(i)), 'node')
+      end do
+    end select
+    if (.not. has_legend) return
+    call put_line(text, '{END LEGEND}')
+    call put_line(text, '')
+  end subroutine write_head
+
+  !> A text that may be missing.
+  pure function text_of(text) result(known)
+    character(:), allocatable, intent(in) :: text
+    character(:), allocatable :: known
+
+    known = ''
+    if (allocated(text)) known = text
+  end function text_of
+
+  !> One entity of a legend; the first opens it.
+  subroutine put_entity(text, has_legend, id, title)
+    type(dyna_text_t), intent(inout) :: text
+    logical, intent(inout) :: has_legend
+    integer, intent(in) :: id
+    character(*), intent(in) :: title
+    character(9) :: number
+
+    if (len_trim(title) == 0) return
+    if (.not. has_legend) then
+      call put_line(text, '')
+      call put_line(text, '{BEGIN LEGEND}')
+      call put_line(text, ' Entity #        Title')
+      has_legend = .true.
+    end if
+    write (number, '(i9)') id
+    call put_line(text, number//'     '//title(:min(len(title), title_size)))
+  end subroutine put_entity
+
+  !> Take one row of the table; nothing happens to a file that is not open.
+  subroutine add_dyna_row(text, values)
+    type(dyna_text_t), intent(inout) :: text
+    real(wp), intent(in) :: values(:)   !! (n_column)
+    integer(long) :: now, rate
+    integer :: i, n_line
+
+    if (.not. text%is_open) return
+    text%n_row = text%n_row + 1
+    text%rows(:, text%n_row) = values
+    if (text%n_row < size(text%rows, 2)) return
+    text%n_row = 0
+    call form_block(text%layout, text%control, text%rows, text%lines, n_line)
+    do i = 1, n_line
+      call put_line(text, trim(text%lines(i)))
+    end do
+    call system_clock(now, rate)
+    if (now - text%flushed > rate) call write_waiting(text)
+  end subroutine add_dyna_row
+
+  !> One line into the buffer.
+  subroutine put_line(text, line)
+    type(dyna_text_t), intent(inout) :: text
+    character(*), intent(in) :: line
+
+    if (text%n_waiting + len(line) + 1 > buffer_size) call write_waiting(text)
+    text%buffer(text%n_waiting + 1:text%n_waiting + len(line) + 1) = line//new_line('a')
+    text%n_waiting = text%n_waiting + len(line) + 1
+  end subroutine put_line
+
+  !> Write the waiting lines. The first failure is remembered and ends the writing.
+  subroutine write_waiting(text)
+    type(dyna_text_t), intent(inout) :: text
+    type(error_t), allocatable :: error
+
+    if (text%n_waiting > 0 .and. .not. allocated(text%trouble)) then
+      call append_text(text%file, text%buffer(:text%n_waiting), error)
+      if (allocated(error)) call move_alloc(error, text%trouble)
+    end if
+    text%n_waiting = 0
+    call system_clock(text%flushed)
+  end subroutine write_waiting
+
+  !> Bring all complete instants into the file.
+  subroutine flush_dyna_text(text, error)
+    type(dyna_text_t), intent(inout) :: text
+    type(error_t), allocatable, intent(out) :: error
+
+    if (.not. text%is_open) return
+    call write_waiting(text)
+    if (allocated(text%trouble)) error = text%trouble
+  end subroutine flush_dyna_text
+
+  !> Bring all complete instants into the file and close it.
+  subroutine close_dyna_text(text, error)
+    type(dyna_text_t), intent(inout) :: text
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: closing
+
+    if (.not. text%is_open) return
+    call flush_dyna_text(text, error)
+    call close_text_file(text%file, closing)
+    text%is_open = .false.
+    if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
+  end subroutine close_dyna_text
+
+end module dyna_text_m

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: MIT
+"""Write the d3plot family from the states of a run, for LS-PrePost, lasso-python and VTK.
+
+    from slideline_tools.d3plot import write_d3plot
+    write_d3plot("results/collision", "d3plot")        # d3plot, d3plot01, ...
+
+Single precision, as in DYNA. Elements are 2D solids, which d3plot stores among the shells: the stress and plastic strain of
+the element stand at each of three through-thickness points, as DYNA writes them.
+"""
+import pathlib
+
+import numpy as np
+
+from slideline_tools import UserError
+from slideline_tools.finished_run import Run
+
+N_HEADER, N_ID_HEADER = 64, 16
+N_POINT = 3                      # points through the thickness
+TITLE_WORDS, PART_TITLE = 10, 72
+END_MARK = np.array([-999999.0], dtype="<f4").tobytes()
+PART_TITLES = 90001              # kind of the block of part titles
+#: bytes of states in one file of the family
+FILE_LIMIT = 1 << 30
+#: words of the header, numbered from 1
+WORDS = {"file_type": 12, "version": 15, "ndim": 16, "numnp": 17, "icode": 18, "nglbv": 19, "it": 20, "iu": 21,
+         "iv": 22, "ia": 23, "nel4": 32, "nummat4": 33, "nv2d": 34, "maxint": 37, "narbs": 40, "ioshl1": 44,
+         "ioshl2": 45, "ioshl3": 46, "ioshl4": 47, "nmmat": 52}
+
+
+class D3plotError(UserError):
+    """A run without states."""
+
+
+def write_d3plot(run, path, file_limit=FILE_LIMIT):
+    """Write the states of a run (folder, results file, or `Run`) to the family `path`, `path`01 ...; number of states."""
+    run = run if isinstance(run, Run) else Run(run)
+    if run.results is None or not run.results.n_state:
+        raise D3plotError(f"{run.prefix} has no states: the deck asks for none (*DATABASE_BINARY_D3PLOT)")
+    path = pathlib.Path(path)
+    remove_family(path)
+    parts = np.unique(run.results.cell_field("part_id")[0])
+    path.write_bytes(geometry(run, parts))
+    states = (state_words(run.results, k, globals_of) for k, globals_of in
+              enumerate(global_values(run, parts)))
+    return write_states(path, states, file_limit)
+
+
+def remove_family(path):
+    """Remove the files of an earlier family: readers take all that are there."""
+    for old in path.parent.glob(path.name + "*"):
+        if old.name == path.name or old.name[len(path.name):].isdigit():
+            old.unlink()
+
+
+def geometry(run, parts):
+    """The first file: header, mesh, ids and titles."""
+    results = run.results
+    start = results.points[0] - padded(results.point_field("displacement")[0])
+    index = np.searchsorted(parts, results.cell_field("part_id")[0]) + 1
+    cells = np.column_stack([results.cells + 1, index])
+    blocks = [header(results, parts, run.title), reals(start), integers(cells),
+              ids(results, parts), END_MARK, titles(run, parts), END_MARK]
+    return b"".join(blocks)
+
+
+def header(results, parts, title):
+    """The 64 words that say what follows."""
+    words = np.zeros(N_HEADER, dtype="<i4")
+    values = {"file_type": 1, "ndim": 4, "numnp": results.n_node, "icode": 6, "nglbv": 6 + 7 * len(parts),
+              "it": 0, "iu": 1, "iv": 1, "ia": 0, "nel4": results.n_cell, "nummat4": len(parts),
+              "nv2d": 7 * N_POINT, "maxint": N_POINT,
+              "narbs": N_ID_HEADER + results.n_node + results.n_cell + 3 * len(parts),
+              "ioshl1": 1000, "ioshl2": 1000, "ioshl3": 999, "ioshl4": 999, "nmmat": len(parts)}
+    for name, value in values.items():
+        words[WORDS[name] - 1] = value
+    words[:TITLE_WORDS] = np.frombuffer(ascii_text(title, 4 * TITLE_WORDS), dtype="<i4")
+    words[WORDS["version"] - 1] = np.array([971.0], dtype="<f4").view("<i4")[0]
+    return words.tobytes()
+
+
+def ids(results, parts):
+    """User ids of nodes, elements and parts."""
+    head = np.zeros(N_ID_HEADER, dtype=int)
+    head[0], head[5], head[8] = -1, results.n_node, results.n_cell
+    head[13] = head[15] = len(parts)
+    order = np.arange(1, len(parts) + 1)
+    return integers(np.concatenate([head, results.point_field("node_id")[0],
+                                    results.cell_field("element_id")[0], parts, order, parts]))
+
+
+def titles(run, parts):
+    """Titles of the parts."""
+    known = run.part_titles()
+    names = b"".join(integers([part]) + ascii_text(known.get(int(part)) or f"part {part}", PART_TITLE)
+                     for part in parts)
+    return integers([PART_TITLES, len(parts)]) + names
+
+
+def global_values(run, parts):
+    """For each state kinetic, internal and total energy, mean velocity, and the sums of parts, from the rows of the
+    history tables at the time of the state; 0 where there is none."""
+    tables = run.tables()
+    whole, sums = tables.get("glstat"), tables.get("matsum")
+    for time in run.results.times:
+        values = np.zeros(6 + 7 * len(parts))
+        row = row_at(whole, time)
+        if row is not None:
+            columns = ("kinetic", "internal", "total", "velocity_x", "velocity_y")
+            values[:5] = [whole[name][row] if name in whole else 0.0 for name in columns]
+        for k, part in enumerate(parts):
+            row = row_at(sums, time, part)
+            if row is None:
+                continue
+            of = {name: sums[name][row] for name in sums.columns}
+            speed = np.array([of["momentum_x"], of["momentum_y"]]) / (of["mass"] or 1.0)
+            n = len(parts)
+            values[[6 + k, 6 + n + k, 6 + 5 * n + k, 6 + 6 * n + k]] = [
+                of["internal"], of["kinetic"], of["mass"], of["hourglass"]]
+            values[6 + 2 * n + 3 * k:][:2] = speed
+        yield values
+
+
+def row_at(table, time, part=None):
+    """Row of a table at a time (and of a part), None where there is none."""
+    if table is None or not len(table):
+        return None
+    near = np.abs(table["time"] - time) <= 1.0e-9 * max(abs(table["time"][-1]), abs(time))
+    if part is not None:
+        near &= table["part"] == part
+    rows = np.flatnonzero(near)
+    return rows[-1] if len(rows) else None
+
+
+def state_words(results, k, global_row):
+    """One state: time, sums, coordinates, velocities, stress and plastic strain."""
+    stress = results.cell_field("stress")[k]
+    point = np.column_stack([stress[:, :6], results.cell_field("plastic_strain")[k]])
+    return b"".join([reals([results.times[k]]), reals(global_row), reals(results.points[k]),
+                     reals(padded(results.point_field("velocity")[k])),
+                     reals(np.tile(point, (1, N_POINT)))])
+
+
+def write_states(path, states, file_limit):
+    """The states into `path`01 and so on, each file closed by its mark; number of states."""
+    count, number, written, stream = 0, 0, 0, None
+    for state in states:
+        if stream is None or written + len(state) > file_limit:
+            if stream is not None:
+                stream.write(END_MARK)
+                stream.close()
+            number, written = number + 1, 0
+            stream = open(f"{path}{number:02d}", "wb")
+        stream.write(state)
+        written += len(state)
+        count += 1
+    stream.write(END_MARK)
+    stream.close()
+    return count
+
+
+def padded(values):
+    """(n, 3): vectors with a z component."""
+    return values if values.shape[1] == 3 else np.pad(values, ((0, 0), (0, 3 - values.shape[1])))
+
+
+def reals(values):
+    """Bytes of single precision numbers."""
+    return np.asarray(values, dtype="<f4").tobytes()
+
+
+def integers(values):
+    """Bytes of 4-byte integers."""
+    return np.asarray(values, dtype="<i4").tobytes()
+
+
+def ascii_text(text, size):
+    """`size` bytes of text, filled with blanks."""
+    return text.encode("ascii", "replace")[:size].ljust(size)

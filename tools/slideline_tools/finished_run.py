@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: MIT
+"""Find the files of a run from what a user names: its folder, its results file or one of its tables."""
+import pathlib
+import re
+
+from slideline_tools import UserError
+from slideline_tools.histories import read_csv
+from slideline_tools.results import read
+
+TABLES = ("glstat", "rcforc", "nodout", "matsum", "sleout", "spcforc")
+
+
+class RunError(UserError):
+    """Nothing that could be a run, or several runs."""
+
+
+class Run:
+    """Files of one run.
+
+    `prefix`    folder and job name: `prefix`.vtkhdf and so on
+    `results`   the results file, open (results.Results), or None where the run wrote no states
+    """
+
+    def __init__(self, named):
+        """`named`: the folder of a run, its results file, or the path up to the job name."""
+        self.prefix = find_prefix(pathlib.Path(named))
+        states = pathlib.Path(f"{self.prefix}.vtkhdf")
+        self.results = read(states) if states.exists() else None
+
+    def tables(self):
+        """name -> History of all tables that DYNA knows, from the results file or the CSV files."""
+        found = {}
+        for name in TABLES:
+            path = pathlib.Path(f"{self.prefix}.{name}.csv")
+            if self.results and name in self.results.histories:
+                found[name] = self.results.history(name)
+            elif path.exists():
+                found[name] = read_csv(path)
+        return found
+
+    @property
+    def title(self):
+        """Title of the deck, '' where it is not known."""
+        return self.results.run.get("title", "") if self.results else ""
+
+    def part_titles(self):
+        """part id -> heading of *PART, from the deck as run."""
+        text = self.results.run.get("effective_deck", "") if self.results else ""
+        path = pathlib.Path(f"{self.prefix}.effective.k")
+        if not text and path.exists():
+            text = path.read_text(encoding="latin-1")
+        return part_titles(text)
+
+
+def find_prefix(path):
+    """Path up to the job name of the run that `path` names."""
+    if not path.is_dir():
+        stem = re.sub(r"\.(vtkhdf|log|effective\.k|[a-z]+\.csv|glstat)$", "", str(path))
+        if any(path.parent.glob(pathlib.Path(stem).name + ".*")):
+            return pathlib.Path(stem)
+        raise RunError(f"no run {path}: name its folder or its results file")
+    jobs = sorted(file.name[:-len(".glstat.csv")] for file in path.glob("*.glstat.csv"))
+    if len(jobs) != 1:
+        raise RunError(f"{path} holds {'several runs: ' + ', '.join(jobs) if jobs else 'no run'}; "
+                       "name a results file")
+    return path / jobs[0]
+
+
+def part_titles(deck):
+    """part id -> heading of the *PART keywords of a deck."""
+    titles, lines = {}, None
+    for line in deck.splitlines():
+        if line.startswith("$"):
+            continue
+        if line.startswith("*"):
+            lines = [] if line.split()[0].rstrip("+-%").upper() == "*PART" else None
+        elif lines is not None:
+            lines.append(line)
+            if len(lines) % 2 == 0:
+                number = re.match(r"\s*(\d+)", line.split(",")[0] if "," in line else line[:20])
+                if number:
+                    titles[int(number.group(1))] = lines[-2].strip()
+    return titles
