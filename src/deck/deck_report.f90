@@ -9,9 +9,9 @@ module deck_report_m
     emit_errors
 
   !> Messages kept of each kind; what comes later is counted.
-  integer, parameter :: max_kept = 400
+  integer, parameter :: max_kept = 1000
   !> Errors shown; the rest is counted.
-  integer, parameter :: max_shown = 100
+  integer, parameter :: max_shown = 1000
 
   !> One message and the deck line that it belongs to.
   type :: note_t
