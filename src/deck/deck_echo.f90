@@ -3,7 +3,7 @@
 module deck_echo_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
-  use controls_m, only : interval_t
+  use controls_m, only : interval_t, output_plan_t
   use curves_m, only : curve_is_constant
   use model_m, only : model_t
   implicit none
@@ -40,6 +40,7 @@ contains
     call echo_interval('matsum', model%controls%output%matsum)
     call echo_interval('rcforc', model%controls%output%rcforc)
     call echo_interval('nodout', model%controls%output%nodout)
+    call echo_restarts(model%controls%output, log)
 
   contains
 
@@ -57,6 +58,21 @@ contains
     end subroutine echo_interval
 
   end subroutine echo_model
+
+  !> How often restart files are written.
+  subroutine echo_restarts(plan, log)
+    type(output_plan_t), intent(in) :: plan
+    type(log_t), intent(inout) :: log
+
+    if (plan%dump_cycles > 0) then
+      call write_log(log, 'output restart files: every '//to_text(plan%dump_cycles) &
+        //' cycles and at the end')
+    else if (plan%dump_cycles == 0) then
+      call write_log(log, 'output restart file: at the end')
+    end if
+    if (plan%running_cycles > 0) call write_log(log, 'output running restart file: every ' &
+      //to_text(plan%running_cycles)//' cycles')
+  end subroutine echo_restarts
 
   !> Curves that end before the run does: what holds after their end.
   subroutine echo_short_curves(model, log)

@@ -38,7 +38,7 @@ def mesh(deck, part, n_x, n_y, size, corner, first, clockwise=False):
 
 def part(deck, number, material, title="", section=1, hourglass=0):
     deck.append(kwd.Part(parts=pd.DataFrame({
-        "title": [title], "pid": [number], "secid": [section], "mid": [material], "eosid": [0],
+        "heading": [title], "pid": [number], "secid": [section], "mid": [material], "eosid": [0],
         "hgid": [hourglass], "grav": [0], "adpopt": [0], "tmid": [0]})))
 
 
@@ -274,7 +274,7 @@ def unsupported():
                                         fs=0.3))
     deck.append(kwd.MatRigid(mid=13, **STEEL, couple=1.0))
     deck.append(kwd.Part(parts=pd.DataFrame({
-        "title": ["with an equation of state"], "pid": [12], "secid": [12], "mid": [12], "eosid": [3],
+        "heading": ["with an equation of state"], "pid": [12], "secid": [12], "mid": [12], "eosid": [3],
         "hgid": [0], "grav": [0], "adpopt": [0], "tmid": [0]})))
     deck.append(kwd.SectionShell(secid=12, elform=2))
     deck.append(kwd.BoundarySpcSet(nsid=1, cid=4, dofx=1))

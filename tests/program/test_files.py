@@ -42,7 +42,7 @@ def test_other_files(finished):
         assert (folder / f"drop.{suffix}").stat().st_size > 0
     names = {path.name for path in folder.iterdir()}
     assert names == {f"drop.{t}.csv" for t in HEADERS} | {"drop.vtkhdf", "drop.log",
-                                                          "drop.effective.k"}
+                                                          "drop.effective.k", "status.out"}
 
 
 @pytest.mark.parametrize("table", HISTORIES)
