@@ -4,7 +4,8 @@ module arguments_m
   use errors_m, only : error_t, raise, status_input
   implicit none
   private
-  public :: arguments_t, read_arguments, help_text, only_end_time, timing_by_interface, timing_off
+  public :: arguments_t, read_arguments, help_text, file_stem, only_end_time, timing_by_interface, &
+    timing_off
 
   !> Longest single argument.
   integer, parameter :: argument_length = 4096
@@ -241,8 +242,9 @@ contains
       '  endtim=T dt=DT tssfac=F     end time, constant step, safety factor'//n// &
       '  p:NAME=VALUE                a *PARAMETER of the deck'//n//n// &
       'results: JOB.vtkhdf (ParaView), JOB.*.csv, JOB.log, JOB.effective.k (the deck as run)'//n// &
-      'while it runs: a file DIR/d3kil with sw1 (restart file, stop), sw2 (status line), sw3 (restart'//n// &
-      'file), sw4 (plot state) or stop'//n// &
+      'while it runs: status.out (JOB.status.out with jobid=) says how far it is and how long it may take;'//n// &
+      'a file DIR/d3kil with sw1 (restart file, stop), sw2 (status line), sw3 (restart file), sw4 (plot'//n// &
+      'state), swa (histories up to date) or stop; signals TERM and INT (stop), USR1 (sw3), USR2 (sw4)'//n// &
       'exit status: 0 normal, 1 refused input, 2 error termination, 3 files, 4 stopped on request'//n// &
       '--version prints the version, compiler and options'
   end function help_text

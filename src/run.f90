@@ -2,7 +2,7 @@
 !> One run: deck, model, state, driver, files.
 module run_m
   use, intrinsic :: iso_fortran_env, only : output_unit
-  use arguments_m, only : arguments_t, timing_by_interface, timing_off
+  use arguments_m, only : arguments_t, file_stem, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
   use clock_m, only : lap, start_clock, stop_clock, split_contact, phase_input, phase_output
@@ -24,9 +24,10 @@ module run_m
   use results_file_m, only : run_info_t
   use sense_switch_m, only : forget_switch
   use source_version_m, only : source_version
-  use signals_m, only : catch_stop_signals
+  use signals_m, only : catch_signals
   use start_m, only : start_state
   use state_m, only : state_t
+  use status_file_m, only : start_status
   use timing_file_m, only : write_timing
   implicit none
   private
@@ -47,7 +48,7 @@ contains
 
     call start_clock(monitor%clock)
     monitor%clock%is_on = arguments%timing /= timing_off
-    call catch_stop_signals()
+    call catch_signals()
     call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler//', source ' &
       //source_version//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
@@ -80,6 +81,7 @@ contains
     call start_monitor(model, size(state%elements%history) > 0, monitor)
     if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
     if (allocated(error)) return
+    call begin_status(model, state, monitor)
     call lap(monitor%clock, phase_input)
     call drive(arguments, model, prefix, state, monitor, error)
     call close_log(monitor%log)
@@ -166,6 +168,22 @@ contains
     call forget_switch(arguments%directory)
     call forget_files(restarts, error)
   end subroutine prepare_restarts
+
+  !> The file status.out from where the run begins.
+  subroutine begin_status(model, state, monitor)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(monitor_t), intent(inout) :: monitor
+
+    associate (status => monitor%progress%status, restarts => monitor%restarts)
+      status%cycle = state%cycle
+      status%time = state%time
+      status%end_time = model%controls%end_time
+      status%end_cycle = model%controls%end_cycle
+      call start_status(status, restarts%directory, restarts%job, &
+        restarts%job /= file_stem(restarts%deck), monitor%clock)
+    end associate
+  end subroutine begin_status
 
   !> Advance to the end, close the files and say how it ended.
   subroutine drive(arguments, model, prefix, state, monitor, error)

@@ -7,7 +7,7 @@ module log_m
   use errors_m, only : error_t, raise, status_files
   implicit none
   private
-  public :: log_t, open_log, write_log, warn, close_log, to_text
+  public :: log_t, open_log, write_log, warn, flush_log, close_log, to_text
 
   !> Number as text without surrounding blanks, for messages.
   interface to_text
@@ -76,6 +76,13 @@ contains
     call write_log(log, 'warning: '//text)
     write (error_unit, '(a)') 'warning: '//text
   end subroutine warn
+
+  !> Bring what has been written into the file.
+  subroutine flush_log(log)
+    type(log_t), intent(in) :: log
+
+    if (log%is_open) flush (log%unit)
+  end subroutine flush_log
 
   !> Close the file; safe to call when none is open.
   subroutine close_log(log)

@@ -7,13 +7,13 @@ module sense_switch_m
   implicit none
   private
   public :: take_switch, forget_switch, switch_none, switch_dump_and_stop, switch_status, &
-    switch_dump, switch_plot, switch_stop, switch_unknown
+    switch_dump, switch_plot, switch_stop, switch_flush, switch_unknown
 
-  !> What is asked for: nothing; sw1, sw2, sw3, sw4, stop; a word that says nothing.
+  !> What is asked for: nothing; sw1, sw2, sw3, sw4, stop, swa; a word that says nothing.
   integer, parameter :: switch_none = 0, switch_dump_and_stop = 1, switch_status = 2, &
-    switch_dump = 3, switch_plot = 4, switch_stop = 5, switch_unknown = 6
-  !> Words of the first five.
-  character(4), parameter :: words(5) = [character(4) :: 'SW1', 'SW2', 'SW3', 'SW4', 'STOP']
+    switch_dump = 3, switch_plot = 4, switch_stop = 5, switch_flush = 6, switch_unknown = 7
+  !> Words of the first six (`SWA.` too, as old manuals write it).
+  character(4), parameter :: words(6) = [character(4) :: 'SW1', 'SW2', 'SW3', 'SW4', 'STOP', 'SWA']
   character(*), parameter :: file_name = 'd3kil'
 
 contains
@@ -36,8 +36,10 @@ contains
     close (unit)
     if (status /= 0 .or. len_trim(line) == 0) return
     switch = switch_unknown
+    line = upper_case(adjustl(line))
+    if (line(4:) == '.') line(4:) = ''
     do i = 1, size(words)
-      if (upper_case(trim(adjustl(line))) == words(i)) switch = i
+      if (line == words(i)) switch = i
     end do
     call remove_file(join_path(directory, file_name), ignored)
   end subroutine take_switch

@@ -1,16 +1,18 @@
 ! SPDX-License-Identifier: MIT
-!> Requests to stop from outside (SIGTERM, SIGINT) and the question whether a person watches.
-!> A signal handler has no argument to carry a state, so this module holds the only saved variable
-!> of the program.
+!> Requests from outside (SIGTERM and SIGINT: stop, SIGUSR1: restart file, SIGUSR2: plot state) and the question whether a
+!> person watches. A signal handler has no argument to carry a state, so this module holds the only saved
+!> variable of the program.
 module signals_m
   use, intrinsic :: iso_c_binding, only : c_int, c_funptr, c_funloc
   implicit none
   private
-  public :: catch_stop_signals, stop_requested, output_is_terminal
+  public :: catch_signals, stop_requested, take_signals, output_is_terminal
 
-  integer(c_int), parameter :: signal_interrupt = 2, signal_terminate = 15
-  !> Signal received, 0 = none.
-  integer(c_int), volatile, save :: received = 0
+  !> Numbers of the signals, as Linux has them.
+  integer(c_int), parameter :: signal_interrupt = 2, signal_user_1 = 10, signal_user_2 = 12, &
+    signal_terminate = 15
+  !> Signals received: a stop, a restart file, a plot state; 0 = none.
+  integer(c_int), volatile, save :: received(3) = 0
 
   interface
     !> C library: install a handler.
@@ -31,27 +33,46 @@ module signals_m
 
 contains
 
-  !> From now on SIGTERM and SIGINT only ask for a stop.
-  subroutine catch_stop_signals()
+  !> From now on these signals only ask for something.
+  subroutine catch_signals()
     type(c_funptr) :: previous
 
     previous = c_signal(signal_terminate, c_funloc(note_signal))
     previous = c_signal(signal_interrupt, c_funloc(note_signal))
-  end subroutine catch_stop_signals
+    previous = c_signal(signal_user_1, c_funloc(note_signal))
+    previous = c_signal(signal_user_2, c_funloc(note_signal))
+  end subroutine catch_signals
 
   !> The handler.
   subroutine note_signal(number) bind(c)
     integer(c_int), value :: number
 
-    received = number
+    select case (number)
+    case (signal_user_1)
+      received(2) = number
+    case (signal_user_2)
+      received(3) = number
+    case default
+      received(1) = number
+    end select
   end subroutine note_signal
 
   !> Whether a stop was asked for.
   function stop_requested() result(requested)
     logical :: requested
 
-    requested = received /= 0
+    requested = received(1) /= 0
   end function stop_requested
+
+  !> Whether a restart file or a plot state has been asked for since the last question.
+  subroutine take_signals(dump, plot)
+    logical, intent(out) :: dump, plot
+
+    dump = received(2) /= 0
+    if (dump) received(2) = 0
+    plot = received(3) /= 0
+    if (plot) received(3) = 0
+  end subroutine take_signals
 
   !> Whether standard output is a terminal.
   function output_is_terminal() result(terminal)

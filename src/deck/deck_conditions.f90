@@ -11,7 +11,7 @@ module deck_conditions_m
   use deck_raw_m, only : raw_t, row_t, reserve_rows, append_row, row_spc_node, row_spc_set, &
     row_motion_node, row_motion_set, row_velocity, row_velocity_node, row_velocity_generation, &
     row_load_node, row_load_set, row_pressure, row_pressure_set, row_body, row_damping, &
-    row_motion_rigid
+    row_motion_rigid, row_velocity_rigid
   implicit none
   private
   public :: read_condition, read_initial_velocity
@@ -67,6 +67,8 @@ contains
       kind = row_motion_rigid
     case ('INITIAL_VELOCITY_NODE')
       kind = row_velocity_node
+    case ('INITIAL_VELOCITY_RIGID_BODY')
+      kind = row_velocity_rigid
     case ('LOAD_NODE_POINT')
       kind = row_load_node
     case ('LOAD_NODE_SET')

@@ -30,6 +30,9 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     do k = 1, cursor%n_card
+      if (k == 3 .and. deck%blocks(i_block)%name == 'CONTROL_IMPLICIT_SOLUTION') then
+        if (cards(2)%i(1) >= 0) cycle ! the card of strict tolerances comes with a negative DNORM alone
+      end if
       call next_card(deck, parameters, cursor, k, cards(k))
     end do
     call check_rest(deck, cursor)

@@ -3,7 +3,7 @@
 module deck_echo_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
-  use controls_m, only : interval_t
+  use controls_m, only : interval_t, output_plan_t
   use curves_m, only : curve_is_constant
   use hardenings_m, only : hardening_t
   use model_m, only : model_t
@@ -46,6 +46,7 @@ contains
     call echo_interval('sleout', model%controls%output%sleout)
     call echo_interval('spcforc', model%controls%output%spcforc)
     call echo_binout(model, log)
+    call echo_restarts(model%controls%output, log)
 
   contains
 
@@ -75,6 +76,20 @@ contains
         //"'slideline-tools binout' writes it from the results")
     end associate
   end subroutine echo_binout
+  !> How often restart files are written.
+  subroutine echo_restarts(plan, log)
+    type(output_plan_t), intent(in) :: plan
+    type(log_t), intent(inout) :: log
+
+    if (plan%dump_cycles > 0) then
+      call write_log(log, 'output restart files: every '//to_text(plan%dump_cycles) &
+        //' cycles and at the end')
+    else if (plan%dump_cycles == 0) then
+      call write_log(log, 'output restart file: at the end')
+    end if
+    if (plan%running_cycles > 0) call write_log(log, 'output running restart file: every ' &
+      //to_text(plan%running_cycles)//' cycles')
+  end subroutine echo_restarts
 
   !> Curves that end before the run does: what holds after their end.
   subroutine echo_short_curves(model, log)

@@ -15,14 +15,15 @@ module deck_raw_m
     reserve_rows, append_row, append_set, append_member, reserve_nodes, reserve_elements, &
     row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, row_velocity_node, &
     row_velocity_generation, row_load_node, row_load_set, row_pressure, row_pressure_set, &
-    row_body, row_damping, row_motion_rigid, output_plot, output_glstat, output_matsum, output_rcforc, &
-    output_nodout, output_rwforc, output_sleout, output_spcforc, n_output, raw_wall_t
+    row_body, row_damping, row_motion_rigid, row_velocity_rigid, output_plot, output_glstat, &
+    output_matsum, output_rcforc, output_nodout, output_rwforc, output_sleout, output_spcforc, &
+    n_output, raw_wall_t
 
   !> Kinds of `row_t`.
   integer, parameter :: row_spc_node = 1, row_spc_set = 2, row_motion_node = 3, &
     row_motion_set = 4, row_velocity = 5, row_velocity_node = 6, row_velocity_generation = 7, &
     row_load_node = 8, row_load_set = 9, row_pressure = 10, row_pressure_set = 11, &
-    row_body = 12, row_damping = 13, row_motion_rigid = 14
+    row_body = 12, row_damping = 13, row_motion_rigid = 14, row_velocity_rigid = 15
   !> Files of the output plan.
   integer, parameter :: output_plot = 1, output_glstat = 2, output_matsum = 3, output_rcforc = 4, &
     output_nodout = 5, output_rwforc = 6, output_sleout = 7, output_spcforc = 8, n_output = 8

@@ -9,9 +9,9 @@ module deck_report_m
     emit_errors, deck_order
 
   !> Messages kept of each kind; what comes later is counted.
-  integer, parameter :: max_kept = 400
+  integer, parameter :: max_kept = 1000
   !> Errors shown; the rest is counted.
-  integer, parameter :: max_shown = 100
+  integer, parameter :: max_shown = 1000
 
   !> Where a message points to, for programs that read it. Unset: the deck as a whole.
   type :: spot_t

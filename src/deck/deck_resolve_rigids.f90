@@ -13,7 +13,7 @@ module deck_resolve_rigids_m
   use deck_lines_m, only : deck_t, place_t, line_error
   use deck_maps_m, only : maps_t, resolve_id
   use deck_raw_m, only : raw_t, row_t, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
-    row_motion_rigid
+    row_motion_rigid, row_velocity_rigid
   implicit none
   private
   public :: resolve_rigids
@@ -41,6 +41,7 @@ contains
     call own_nodes(deck, raw, model, owner)
     call refuse_conditions(deck, raw, maps, model, owner)
     call collect_rigid_motions(deck, raw, maps, model)
+    call collect_rigid_velocities(deck, raw, maps, model)
     if (size(model%rigids) == 0) return
     if (model%controls%implicit%is_on) call line_error(deck, &
       raw%material_line(model%parts(model%rigids(1)%part)%material), '*MAT_RIGID: the implicit ' &
@@ -204,6 +205,34 @@ contains
       end associate
     end do
   end subroutine collect_rigid_motions
+
+  !> *INITIAL_VELOCITY_RIGID_BODY: it comes before what nodes of the body are given.
+  subroutine collect_rigid_velocities(deck, raw, maps, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    integer :: i, part, body
+
+    do i = 1, raw%n_row
+      associate (row => raw%rows(i))
+        if (row%kind /= row_velocity_rigid) cycle
+        call resolve_id(deck, maps%parts, row%i(1), 'part', place_t(row%line, 1, 1), part)
+        if (part == 0) cycle
+        if (model%parts(part)%material == 0) cycle
+        body = body_of_part(model%rigids, part)
+        if (body == 0) then
+          call reject_field(deck, place_t(row%line, 1, 1), 'is not a rigid part (*MAT_RIGID); ' &
+            //'*INITIAL_VELOCITY_GENERATION gives a part its velocity')
+        else if (model%rigids(body)%has_velocity) then
+          call reject_field(deck, place_t(row%line, 1, 1), 'has a velocity by another card')
+        else
+          model%rigids(body)%has_velocity = .true.
+          model%rigids(body)%velocity = [row%r(2), row%r(3), row%r(7)]
+        end if
+      end associate
+    end do
+  end subroutine collect_rigid_velocities
 
   !> The body of a part, 0 when it is not rigid.
   pure function body_of_part(rigids, part) result(found)

@@ -14,6 +14,8 @@ module deck_schema_m
   public :: keyword_cards, find_keyword, refusal_reason, max_card, &
     known_honoured, known_ignored, known_refused, known_not
 
+  !> Characters by which a canonical name is longer than a short one at most (MAT_024).
+  integer, parameter :: longest_addition = 24
   !> Cards of one keyword at most.
   integer, parameter :: max_card = 6
   !> How a keyword is treated.
@@ -104,7 +106,7 @@ contains
   !> The one spelling of a keyword that the tables hold.
   pure function canonical(given) result(name)
     character(*), intent(in) :: given
-    character(len(given) + 26) :: name
+    character(len(given) + longest_addition) :: name
 
     name = given
     select case (given)

@@ -139,6 +139,8 @@ module deck_schema_tables_m
     'INITIAL_VELOCITY_GENERATION', &
     ' ID:i STYP:i=1 OMEGA:f VX:f VY:f VZ:fw IVATN:is ICID:ir', &
     ' XC:f YC:f ZC:fs NX:f NY:f NZ:f PHASE:ir IRIGID:is', &
+    'INITIAL_VELOCITY_RIGID_BODY', &
+    ' PID:i VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:f ICID:ir', &
     'LOAD_NODE_POINT', &
     ' NID:i DOF:i LCID:i SF:f=1 CID:ir M1:is M2:is M3:is', &
     'LOAD_NODE_SET', &
@@ -230,7 +232,6 @@ module deck_schema_tables_m
     'SET_* this kind of set is', &
     'BOUNDARY_PRESCRIBED_MOTION_RIGID* axes of bodies are', &
     'BOUNDARY_* this condition is', &
-    'INITIAL_VELOCITY_RIGID_BODY* velocities by rigid body are', &
     'INITIAL_* this initial condition is', &
     'LOAD_* this load is', &
     'DAMPING_* this damping is', &

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Rigid bodies: one for each part of *MAT_RIGID.
 module rigids_m
+  use kinds_m, only : wp
   implicit none
   private
   public :: rigid_t, mark_rigid_nodes
@@ -10,6 +11,8 @@ module rigids_m
     integer :: part = 0               !! index into model%parts
     integer, allocatable :: nodes(:)  !! node indices, rising: those that forces reach come first
     logical :: is_fixed(3) = .false.  !! x, y and the turn about z (CON1 and CON2 of *MAT_RIGID)
+    logical :: has_velocity = .false. !! the deck gives the body a velocity of its own:
+    real(wp) :: velocity(3) = 0.0_wp  !! that of the centre of mass and the spin
   end type rigid_t
 
 contains

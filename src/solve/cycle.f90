@@ -11,7 +11,7 @@ module cycle_m
   use external_force_m, only : form_external_force, body_acceleration, damping_rate
   use health_m, only : check_elements, check_step, check_energy, judge_energies
   use kinds_m, only : wp
-  use log_m, only : warn
+  use model_log_m, only : log_smallest_steps
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use motion_sums_m, only : motion_sums_t, plan_sums, count_sums
@@ -19,12 +19,10 @@ module cycle_m
   use prescribed_m, only : find_prescribed_velocities, start_prescribed, impose_prescribed, &
     prescribed_work
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
-  use progress_m, only : show_progress, wants_line
+  use progress_m, only : show_progress, follow_progress
   use restart_m, only : write_dump, write_running, take_up_steps
-  use restart_plan_m, only : wants_dump, wants_running, wants_look
-  use sense_switch_m, only : take_switch, switch_none, switch_dump_and_stop, switch_status, &
-    switch_dump, switch_plot, switch_stop, switch_unknown
-  use signals_m, only : stop_requested
+  use requests_m, only : requests_t, take_requests
+  use restart_plan_m, only : wants_dump, wants_running
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
   use slowest_element_m, only : find_slowest
   use state_m, only : state_t
@@ -180,6 +178,7 @@ contains
     end if
     if (state%cycle == 0) then
       call report_contact_start(model, state, monitor%log)
+      call log_smallest_steps(model, state, monitor%log)
       call prepare_leap(model, state, cycle)
       call start_prescribed(model, cycle%velocity, state)
     end if
@@ -278,8 +277,7 @@ contains
       state%time, state%dt, cycle%error)
     if (allocated(cycle%error)) cycle%finished = .true.
     if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
-    if (wants_line(monitor%progress, state%cycle, monitor%clock%last)) call show_progress( &
-      monitor%progress, monitor%clock, state%cycle, state%time, state%dt, cycle%ratio, '')
+    call follow_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, cycle%ratio)
   end subroutine end_cycle
 
   !> Stop, restart files, states and lines that are due or that someone asks for. The state is that before the
@@ -288,22 +286,15 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(cycle_t), intent(inout) :: cycle
-    integer :: switch
-    logical :: looks, ends, signalled
+    type(requests_t) :: asked
+    logical :: ends
 
-    switch = switch_none
-    call wants_look(monitor%restarts, monitor%clock%is_on, monitor%clock%last, state%cycle, looks)
-    if (looks) call take_switch(monitor%restarts%directory, switch)
-    if (switch == switch_unknown) call warn(monitor%log, 'd3kil holds none of sw1, sw2, sw3, sw4, stop')
-    if (switch == switch_status) call show_progress(monitor%progress, monitor%clock, state%cycle, &
-      state%time, state%dt, cycle%ratio, 'status (sw2)')
-    cycle%plots = switch == switch_plot
+    call take_requests(state, cycle%ratio, .false., monitor, asked, cycle%error)
+    cycle%finished = allocated(cycle%error)
+    cycle%plots = asked%plot
     ends = is_last(cycle%steps, state%cycle, state%time)
-    signalled = stop_requested() .and. .not. ends
-    call write_restarts(switch == switch_dump_and_stop .or. switch == switch_dump, ends, signalled, &
-      state, monitor, cycle)
-    if (ends .or. .not. (signalled .or. switch == switch_dump_and_stop .or. switch == switch_stop)) &
-      return
+    call write_restarts(asked%dump, ends, asked%signalled .and. .not. ends, state, monitor, cycle)
+    if (ends .or. .not. asked%stop) return
     cycle%last = .true.
     cycle%reason = 'stopped on request'
   end subroutine heed_requests
@@ -326,7 +317,7 @@ contains
     if (runs .and. .not. allocated(cycle%error)) call write_running(state, monitor, cycle%steps, &
       cycle%damping, cycle%ratio, cycle%error)
     call lap(monitor%clock, phase_output)
-    cycle%finished = allocated(cycle%error)
+    cycle%finished = cycle%finished .or. allocated(cycle%error)
   end subroutine write_restarts
 
 end module cycle_m

@@ -18,8 +18,8 @@ module implicit_m
   use monitor_m, only : monitor_t, due_t
   use newton_m, only : outcome_t, find_equilibrium
   use prescribed_step_m, only : prescribe_step, prescribe_start, list_changes
-  use progress_m, only : show_progress, wants_line
-  use signals_m, only : stop_requested
+  use progress_m, only : follow_progress
+  use requests_m, only : requests_t, take_requests
   use sparse_m, only : sparse_t, start_matrix, compress_matrix
   use state_m, only : state_t
   use step_control_m, only : step_control_t, start_step_control, plan_step, grow_step, cut_step
@@ -45,6 +45,7 @@ contains
     type(trial_t) :: trial
     type(step_t) :: step
     type(due_t) :: written
+    type(requests_t) :: asked
     type(error_t), allocatable :: second
     real(wp), allocatable :: changes(:)
     logical :: last, stopped
@@ -60,13 +61,16 @@ contains
     if (allocated(error)) return
     last = .false.
     state%dt = control%next
-    call report_step(model, state, step%old_force, .false., monitor, written, error)
+    call report_step(model, state, step%old_force, .false., .false., monitor, written, error)
     do while (.not. last .and. .not. allocated(error))
       call take_step(model, state, monitor, control, step, trial, error)
       if (allocated(error)) exit
       last = control%is_last
       if (model%controls%end_cycle > 0) last = last .or. state%cycle >= model%controls%end_cycle
-      stopped = stop_requested() .and. .not. last
+      call take_requests(state, energy_ratio(monitor%snapshot%energies), .true., monitor, asked, error)
+      if (asked%dump) call warn(monitor%log, 'a restart file was asked for: the implicit method ' &
+        //'writes none')
+      stopped = asked%stop .and. .not. last
       last = last .or. stopped
       if (stopped) reason = 'stopped on request'
       state%dt = control%dt
@@ -74,13 +78,12 @@ contains
         call plan_step(control, state%time)
         state%dt = control%next - state%time
       end if
-      call report_step(model, state, step%old_force, last, monitor, written, error)
-      if (wants_line(monitor%progress, state%cycle, monitor%clock%last)) call show_progress( &
-        monitor%progress, monitor%clock, state%cycle, state%time, state%dt_before, &
-        energy_ratio(monitor%snapshot%energies), '')
+      call report_step(model, state, step%old_force, last, asked%plot, monitor, written, error)
+      call follow_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt_before, &
+        energy_ratio(monitor%snapshot%energies))
     end do
     if (allocated(error) .and. .not. last) then
-      call report_step(model, state, step%old_force, .true., monitor, written, second)
+      call report_step(model, state, step%old_force, .true., .false., monitor, written, second)
       call hint_at_energy(step, energy_ratio(monitor%snapshot%energies), error)
     end if
     call report_contact_end(model, state, monitor%log)

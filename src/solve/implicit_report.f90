@@ -27,11 +27,12 @@ module implicit_report_m
 contains
 
   !> Write what is due; of a state that was reported before, only what was not written then.
-  subroutine report_step(model, state, force, last, monitor, written, error)
+  subroutine report_step(model, state, force, last, plots, monitor, written, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     real(wp), intent(in) :: force(:, :)   !! (2, n_node) internal minus contact and external forces of the state
     logical, intent(in) :: last
+    logical, intent(in) :: plots          !! someone asks for a plot state
     type(monitor_t), intent(inout) :: monitor
     type(due_t), intent(inout) :: written !! of the state reported before; now of this one
     type(error_t), allocatable, intent(out) :: error
@@ -42,6 +43,7 @@ contains
     dt = state%dt
     if (model%controls%implicit%is_automatic) dt = soon*dt
     due = find_due(monitor, state%time, dt, state%cycle == 0 .or. last)
+    due%plot = due%plot .or. (plots .and. monitor%has_plot)
     if (state%cycle == monitor%snapshot%cycle) due = without(due, written)
     written = due
     if (.not. any_due(due)) return

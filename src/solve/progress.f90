@@ -8,9 +8,10 @@ module progress_m
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log
   use signals_m, only : output_is_terminal
+  use status_file_m, only : status_t, keep_status, write_status, seconds_to_go, duration
   implicit none
   private
-  public :: progress_t, start_progress, show_progress, show_note, show_end, wants_line
+  public :: progress_t, start_progress, follow_progress, show_progress, show_note, show_end
 
   !> Seconds between two refreshes on a terminal, and between two lines in a pipe.
   real(wp), parameter :: terminal_interval = 0.25_wp, pipe_interval = 10.0_wp
@@ -23,6 +24,7 @@ module progress_m
     real(wp) :: end_time = 0.0_wp
     integer(long) :: next_tick = 0  !! clock tick of the next line
     integer(long) :: wait = 0       !! ticks between lines
+    type(status_t) :: status        !! the file status.out
   end type progress_t
 
 contains
@@ -42,7 +44,21 @@ contains
     progress%next_tick = now + progress%wait
   end subroutine start_progress
 
-  !> Whether a line is due though no file was written. `tick` is a clock tick read for another purpose.
+  !> A line or the status file where one is due though no result was written. Asked in every cycle, so no clock is read.
+  subroutine follow_progress(progress, clock, cycle, time, dt, ratio)
+    type(progress_t), intent(inout) :: progress
+    type(clock_t), intent(in) :: clock
+    integer, intent(in) :: cycle
+    real(wp), intent(in) :: time, dt, ratio
+
+    if (wants_line(progress, cycle, clock%last)) then
+      call show_progress(progress, clock, cycle, time, dt, ratio, '')
+    else if (clock%last >= progress%status%next_tick) then
+      call keep_status(progress%status, clock, cycle, time, dt, ratio)
+    end if
+  end subroutine follow_progress
+
+  !> Whether a line is due. `tick` is a clock tick read for another purpose.
   pure function wants_line(progress, cycle, tick) result(wanted)
     type(progress_t), intent(in) :: progress
     integer, intent(in) :: cycle
@@ -66,10 +82,10 @@ contains
     character(10) :: hour
 
     progress%next_tick = clock%last + progress%wait
+    call keep_status(progress%status, clock, cycle, time, dt, ratio)
     if (progress%terminal) then
       share = min(1.0_wp, time/progress%end_time)
-      to_go = 0.0_wp
-      if (share > 0.0_wp) to_go = elapsed_seconds(clock)*(1.0_wp - share)/share
+      to_go = max(0.0_wp, seconds_to_go(progress%status, elapsed_seconds(clock)))
       write (output_unit, '(a,es11.4,a,f5.1,a,i0,a,es9.2,a,f8.5,a,a)', advance='no') &
         achar(13)//' t', time, '  ', 100.0_wp*share, ' %  cycle ', cycle, '  dt', dt, &
         '  energy ratio', ratio, '  to go ', duration(to_go)//'   '
@@ -110,6 +126,10 @@ contains
 
     if (progress%line_open) write (output_unit, '()')
     progress%line_open = .false.
+    progress%status%cycle = cycle
+    progress%status%time = time
+    call write_status(progress%status, clock, trim(merge('normal termination', &
+      'error termination ', normal))//': '//first_line(reason))
     seconds = phase_seconds(clock)
     elapsed = elapsed_seconds(clock)
     cost = 0.0_wp
@@ -171,16 +191,12 @@ contains
     call write_log(log, text)
   end subroutine say
 
-  !> Seconds as h:mm:ss.
-  pure function duration(seconds) result(text)
-    real(wp), intent(in) :: seconds
-    character(:), allocatable :: text
-    character(20) :: buffer
-    integer(long) :: whole
+  !> The first line of a text.
+  pure function first_line(text) result(line)
+    character(*), intent(in) :: text
+    character(:), allocatable :: line
 
-    whole = int(min(seconds, 1.0e9_wp), long)
-    write (buffer, '(i0,":",i2.2,":",i2.2)') whole/3600, mod(whole/60, 60_long), mod(whole, 60_long)
-    text = trim(buffer)
-  end function duration
+    line = text(:scan(text//new_line('a'), new_line('a')) - 1)
+  end function first_line
 
 end module progress_m

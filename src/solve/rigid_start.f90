@@ -29,6 +29,7 @@ contains
       associate (body => model%rigids(i), rigid => state%rigids(i))
         call weigh_body(model%mesh%coordinates(:, body%nodes), state%mass(body%nodes), rigid)
         call find_velocity(state%mass(body%nodes), state%motion(3:4, body%nodes), rigid)
+        if (body%has_velocity) rigid%velocity = body%velocity
         call constrain_velocity(model, i, rigid)
         do k = 1, size(body%nodes)
           state%motion(3:4, body%nodes(k)) = velocity_of(rigid%velocity, rigid%arms(:, k))

@@ -10,6 +10,7 @@ module start_m
   use errors_m, only : error_t
   use initial_values_m, only : start_motion
   use log_m, only : log_t
+  use model_log_m, only : log_masses
   use model_m, only : model_t
   use rigid_start_m, only : start_rigids
   use state_m, only : state_t
@@ -48,6 +49,7 @@ contains
       end associate
     end do
     call log_elements(model, log)
+    call log_masses(model, log)
     call start_rigids(model, log, state)
     call start_walls(model, state)
     call start_elements(model, state%elements)

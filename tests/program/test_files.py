@@ -44,7 +44,7 @@ def test_other_files(finished):
     for suffix in ("vtkhdf", "log", "effective.k"):
         assert (folder / f"drop.{suffix}").stat().st_size > 0
     names = {path.name for path in folder.iterdir()}
-    assert names == ({f"drop.{t}.csv" for t in HEADERS} | {"drop.vtkhdf", "drop.log", "drop.effective.k"}
+    assert names == ({f"drop.{t}.csv" for t in HEADERS} | {"drop.vtkhdf", "drop.log", "drop.effective.k", "status.out"}
                      | {f"drop.{t}" for t in ("glstat", "rcforc", "nodout", "matsum")})
 
 

@@ -1,0 +1,82 @@
+! SPDX-License-Identifier: MIT
+!> What the log says of the model once its masses and first forces are there, as d3hsp does.
+module model_log_m
+  use kinds_m, only : wp
+  use log_m, only : log_t, write_log, to_text
+  use model_m, only : model_t
+  use smallest_steps_m, only : find_smallest_steps
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: log_masses, log_smallest_steps
+
+  !> Elements of the list of smallest steps.
+  integer, parameter :: n_listed = 10
+
+contains
+
+  !> Elements, mass and centre of mass of each part and of the whole, per unit depth.
+  subroutine log_masses(model, log)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    real(wp), allocatable :: sums(:, :) !! (3, n_part) mass and its first moments
+    integer, allocatable :: counts(:)
+    real(wp) :: share
+    integer :: i, k
+
+    allocate (sums(3, size(model%parts)), source=0.0_wp)
+    allocate (counts(size(model%parts)), source=0)
+    do i = 1, model%mesh%n_element
+      k = model%mesh%element_part(i)
+      counts(k) = counts(k) + 1
+      associate (nodes => model%mesh%element_nodes(:, i))
+        associate (x => model%mesh%coordinates(:, nodes), &
+          corners => merge(3, 4, nodes(4) == nodes(3)))
+          share = 0.5_wp*model%materials(model%parts(k)%material)%density*((x(1, 3) - x(1, 1)) &
+            *(x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+          sums(:, k) = sums(:, k) + share*[1.0_wp, sum(x(1, :corners))/corners, &
+            sum(x(2, :corners))/corners]
+        end associate
+      end associate
+    end do
+    do k = 1, size(model%parts)
+      call write_log(log, 'part '//to_text(model%parts(k)%id)//': '//mass_text(counts(k), sums(:, k)))
+    end do
+    call write_log(log, 'all parts: '//mass_text(sum(counts), sum(sums, 2))//'; ' &
+      //to_text(count(model%mesh%element_nodes(4, :) == model%mesh%element_nodes(3, :))) &
+      //' of the elements are triangles')
+  end subroutine log_masses
+
+  !> Elements, mass and centre in words.
+  pure function mass_text(n, sums) result(text)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: sums(3)
+    character(:), allocatable :: text
+
+    text = to_text(n)//' elements, mass '//to_text(sums(1))
+    if (sums(1) > 0.0_wp) text = text//', centre of mass '//to_text(sums(2)/sums(1))//', ' &
+      //to_text(sums(3)/sums(1))
+  end function mass_text
+
+  !> The elements that rule the time step.
+  subroutine log_smallest_steps(model, state, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(log_t), intent(inout) :: log
+    integer, allocatable :: found(:)
+    real(wp), allocatable :: steps(:)
+    character(60) :: line
+    integer :: i
+
+    call find_smallest_steps(model, state%elements, state%motion, n_listed, found, steps)
+    if (size(found) == 0) return
+    call write_log(log, 'smallest stable steps of elements (TSSFAC not applied):')
+    call write_log(log, '   element      part   stable step')
+    do i = 1, size(found)
+      write (line, '(2i10,es14.6)') model%mesh%element_id(found(i)), &
+        model%parts(model%mesh%element_part(found(i)))%id, steps(i)
+      call write_log(log, trim(line))
+    end do
+  end subroutine log_smallest_steps
+
+end module model_log_m

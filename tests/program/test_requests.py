@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: MIT
+"""What a run does for those who come by: status.out, words in d3kil, signals, and the log in d3hsp's spirit."""
+import re
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy as np
+import pytest
+from conftest import drop
+from meshes import Deck, grid
+from test_implicit import pulled
+
+LONG = 1.0e5
+
+
+def long_drop():
+    """Minutes of cycles; rows of energies wait up to a second in memory."""
+    text = drop(end_time=LONG, dt=1.0e-4).text()
+    for keyword, interval in (("GLSTAT", 0.05), ("BINARY_D3PLOT", 1.0e4)):
+        text = re.sub(rf"(\*DATABASE_{keyword})\n[0-9.e-]+,", rf"\1\n{interval},", text)
+    return re.sub(r"(\*DATABASE_(?:MATSUM|RCFORC|NODOUT))\n[0-9.e-]+,", rf"\1\n{LONG},", text)
+
+
+def long_press():
+    """Very many implicit steps, of which none writes a plot state."""
+    return pulled(1.0, dt=1.0e-6).text().replace("1000000000.0", "0.5")
+
+
+def wait_for(found, seconds=20.0):
+    end = time.monotonic() + seconds
+    while not found():
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.01)
+
+
+@pytest.fixture
+def started(exe, tmp_path):
+    """started(deck, *words): a run of job.k in the background, ended at the latest with the test."""
+    running = []
+
+    def start(deck, *words):
+        (tmp_path / "job.k").write_text(deck)
+        with open(tmp_path / "said", "w") as out:
+            running.append(subprocess.Popen([exe, "i=job.k", "d=out", *words], cwd=tmp_path, stdout=out,
+                                            stderr=out))
+        wait_for((tmp_path / "out" / "status.out").exists)
+        wait_for(lambda: int(status(tmp_path / "out" / "status.out")["cycle no."]) > 0)
+        return running[0], tmp_path / "out"
+    yield start
+    for process in running:
+        process.kill()
+        process.wait()
+
+
+def status(path):
+    """Lines of status.out by name."""
+    return {line[1:34].strip(): line[34:] for line in path.read_text().splitlines()}
+
+
+def ask(folder, word):
+    (folder / "d3kil").write_text(word + "\n")
+    wait_for(lambda: not (folder / "d3kil").exists())
+
+
+def plot_times(folder):
+    with h5py.File(folder / "job.vtkhdf") as stream:
+        return stream["VTKHDF/Steps/Values"][()]
+
+
+def seconds(text):
+    hours, minutes, rest = map(int, text.split(":"))
+    return 3600 * hours + 60 * minutes + rest
+
+
+def test_status_of_a_finished_run(slideline, tmp_path):
+    assert slideline("d=plain", deck=drop()).returncode == 0
+    assert slideline("d=named", "jobid=mine", deck=drop()).returncode == 0
+    assert not (tmp_path / "named" / "status.out").exists()
+    for path, job in ((tmp_path / "plain" / "status.out", "job"),
+                      (tmp_path / "named" / "mine.status.out", "mine")):
+        said = status(path)
+        assert said["job"] == job
+        assert said["state"].startswith("normal termination: termination time reached")
+        assert int(said["cycle no."]) == 200
+        assert float(said["time"]) == pytest.approx(0.02, rel=1e-6)
+        assert said["estimated clock time to complete"] == "0:00:00"
+    assert not list(tmp_path.rglob("*.part"))
+
+
+def test_status_estimates_the_end(started, tmp_path):
+    process, folder = started(long_drop(), "endtim=1000.0")
+    ask(folder, "sw2")
+    time.sleep(2.0)
+    ask(folder, "sw2")
+    said = status(folder / "status.out")
+    assert said["state"] == "running"
+    share = float(said["time"]) / float(said["termination time"])
+    done = seconds(said["elapsed clock time"])
+    assert done >= 1
+    left = seconds(said["estimated clock time to complete"])
+    assert (done - 0.5) * (1.0 - share) / share - 1.5 <= left <= (done + 1.0) * (1.0 - share) / share + 1.5
+    ask(folder, "stop")
+    assert process.wait(timeout=20) == 4
+    assert "stopped on request" in status(folder / "status.out")["state"]
+
+
+def test_signals_ask_for_files(started, tmp_path):
+    process, folder = started(long_drop())
+    process.send_signal(signal.SIGUSR1)
+    wait_for((folder / "job.dump01.h5").exists)
+    process.send_signal(signal.SIGUSR2)
+    process.send_signal(signal.SIGUSR1)
+    wait_for((folder / "job.dump02.h5").exists)
+    time.sleep(0.1)
+    assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=20) == 4
+    times = plot_times(folder)
+    assert len(times) == 3 and 0.0 < times[1] < times[2]
+    assert not (folder / "job.dump03.h5").exists()
+
+
+def test_swa_brings_histories_up_to_date(started):
+    """Rows go to the file once a second by themselves; asked for, they are there within that second."""
+    process, folder = started(long_drop())
+    path = folder / "job.glstat.csv"
+    for _ in range(5):
+        size = path.stat().st_size
+        wait_for(lambda: path.stat().st_size > size)
+        written, size = time.monotonic(), path.stat().st_size
+        ask(folder, "swa")
+        time.sleep(0.02)
+        grown = path.stat().st_size > size
+        if time.monotonic() - written < 0.95:
+            assert grown
+            break
+    else:
+        pytest.skip("the machine is too busy to tell")
+    assert "smallest stable steps" in (folder / "job.log").read_text()
+    assert process.poll() is None
+
+
+def test_switches_of_an_implicit_run(started, tmp_path):
+    process, folder = started(long_press())
+    ask(folder, "sw2")
+    ask(folder, "sw4")
+    ask(folder, "sw3")
+    ask(folder, "what")
+    assert process.poll() is None
+    ask(folder, "sw1")
+    assert process.wait(timeout=20) == 4
+    said = (tmp_path / "said").read_text()
+    assert "status (sw2)" in said
+    assert said.count("the implicit method writes none") == 2
+    assert "d3kil holds none of" in said
+    assert not list(folder.glob("*.h5"))
+    times = plot_times(folder)
+    assert len(times) == 3 and 0.0 < times[1] < times[2] < 0.5
+
+
+def test_stop_of_an_implicit_run(started):
+    process, folder = started(long_press())
+    ask(folder, "stop")
+    assert process.wait(timeout=20) == 4
+    assert "stopped on request" in status(folder / "status.out")["state"]
+
+
+@pytest.mark.parametrize("points", [1, 4])
+def test_log_names_masses_and_the_elements_that_rule_the_step(slideline, tmp_path, points):
+    """Squares of rising size, one material: the smallest come first; masses and centres in closed form."""
+    rho, young, poisson = 2000.0, 1.0e6, 0.25
+    deck = Deck("squares")
+    deck.control(1.0e-4).part(3, points=points).part(8, 3, points=points).elastic(rho, young, poisson, 3)
+    sizes = 0.1 + 0.05 * np.random.default_rng(4).permutation(14)
+    for k, size in enumerate(sizes):
+        deck.mesh(*grid(1, 1, size, size, (2.0 * k, 0.0)), part=3 if k < 9 else 8)
+    assert slideline("d=out", deck=deck).returncode == 0
+    log = (tmp_path / "out" / "job.log").read_text()
+    for part, chosen in ((3, range(9)), (8, range(9, 14))):
+        found = re.search(rf"part {part}: (\d+) elements, mass (\S+), centre of mass (\S+), (\S+)", log).groups()
+        areas = sizes[chosen.start:chosen.stop] ** 2
+        centres = 2.0 * np.array(chosen) + 0.5 * sizes[chosen.start:chosen.stop]
+        expected = [len(chosen), rho * areas.sum(), areas @ centres / areas.sum(),
+                    0.5 * areas @ np.sqrt(areas) / areas.sum()]
+        assert [float(text) for text in found] == pytest.approx(expected, rel=1e-5)
+    assert f"all parts: 14 elements, mass {rho * (sizes ** 2).sum():.6E}" in log
+    rows = re.search(r"smallest stable steps.*\n.*\n((?:\s+\d+\s+\d+\s+\S+\n)+)", log).group(1).split()
+    elements, steps = [int(text) for text in rows[::3]], [float(text) for text in rows[2::3]]
+    assert elements == [int(k) + 1 for k in np.argsort(sizes)[:10]]
+    speed = np.sqrt(young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)) / rho)
+    if points == 1:
+        assert steps == pytest.approx(np.sort(sizes)[:10] / speed, rel=1e-6)
+    else:
+        assert np.array(steps) / steps[0] == pytest.approx(np.sort(sizes)[:10] / 0.1, rel=1e-6)
+    first = float(re.search(r"smallest L/c of the elements (\S+)", log).group(1))
+    assert steps[0] == pytest.approx(first, rel=1e-6)
