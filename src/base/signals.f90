@@ -3,12 +3,15 @@
 !> A signal handler has no argument to carry a state, so this module holds the only saved variable
 !> of the program.
 module signals_m
-  use, intrinsic :: iso_c_binding, only : c_int, c_funptr, c_funloc
+  use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
   implicit none
   private
   public :: catch_stop_signals, stop_requested, output_is_terminal
 
-  integer(c_int), parameter :: signal_interrupt = 2, signal_terminate = 15
+  integer(c_int), parameter :: signal_interrupt = 2, signal_terminate = 15, signal_cpu_limit = 24, &
+    signal_file_limit = 25
+  !> The handler that ignores (SIG_IGN of all C libraries).
+  integer(c_intptr_t), parameter :: ignore = 1
   !> Signal received, 0 = none.
   integer(c_int), volatile, save :: received = 0
 
@@ -31,12 +34,15 @@ module signals_m
 
 contains
 
-  !> From now on SIGTERM and SIGINT only ask for a stop.
+  !> From now on SIGTERM, SIGINT and a used up processor time (SIGXCPU) only ask for a stop, and a file that
+  !> reaches the largest size allowed (SIGXFSZ) is a failed write and no end of the process.
   subroutine catch_stop_signals()
     type(c_funptr) :: previous
 
     previous = c_signal(signal_terminate, c_funloc(note_signal))
     previous = c_signal(signal_interrupt, c_funloc(note_signal))
+    previous = c_signal(signal_cpu_limit, c_funloc(note_signal))
+    previous = c_signal(signal_file_limit, transfer(ignore, c_null_funptr))
   end subroutine catch_stop_signals
 
   !> The handler.
