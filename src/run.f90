@@ -8,10 +8,11 @@ module run_m
   use clock_m, only : lap, start_clock, stop_clock, split_contact, phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
-  use errors_m, only : error_t, raise, status_stopped, status_files
+  use errors_m, only : error_t, raise, status_stopped
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
-  use files_m, only : make_directory, join_path
+  use files_m, only : make_directory, join_path, text_file_t, create_text_file, append_text, &
+    close_text_file
   use go_on_m, only : take_up_deck
   use log_m, only : open_log, close_log, write_log, warn, to_text
   use model_m, only : model_t
@@ -85,6 +86,8 @@ contains
     call lap(monitor%clock, phase_input)
     call drive(arguments, model, prefix, state, monitor, error)
     call close_log(monitor%log)
+    if (.not. allocated(error) .and. allocated(monitor%log%trouble)) &
+      call move_alloc(monitor%log%trouble, error)
   end subroutine run_deck
 
   !> What the deck layer has to know of the command line and of a restart file.
@@ -133,8 +136,7 @@ contains
     character(*), intent(in) :: prefix, effective
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
-    integer :: unit, status
-    character(200) :: reason
+    type(text_file_t) :: file
 
     call make_directory(arguments%directory, error)
     if (allocated(error)) return
@@ -142,12 +144,9 @@ contains
     if (allocated(error)) return
     call prepare_restarts(arguments, prefix, effective, monitor%restarts, error)
     if (allocated(error)) return
-    open (newunit=unit, file=prefix//'.effective.k', status='replace', action='write', &
-      access='stream', form='unformatted', iostat=status, iomsg=reason)
-    if (status == 0) write (unit, iostat=status, iomsg=reason) effective
-    if (status == 0) close (unit, iostat=status, iomsg=reason)
-    if (status /= 0) call raise(error, 'cannot write '//prefix//'.effective.k: '//trim(reason), &
-      status_files)
+    call create_text_file(file, prefix//'.effective.k', error)
+    if (.not. allocated(error)) call append_text(file, effective, error)
+    if (.not. allocated(error)) call close_text_file(file, error)
   end subroutine open_outputs
 
   !> What restart files need to know; what an earlier run of this name has left of them is removed.
@@ -219,6 +218,7 @@ contains
     call write_timing(prefix//'.timing.csv', monitor%clock, closing_error)
     if (.not. allocated(error) .and. allocated(closing_error)) &
       call move_alloc(closing_error, error)
+    if (.not. allocated(error) .and. allocated(monitor%log%trouble)) error = monitor%log%trouble
     call show_end(monitor%progress, monitor%clock, monitor%log, .not. allocated(error), reason, &
       state%cycle, state%time, model%mesh%n_element)
     if (stopped .and. .not. allocated(error)) call raise(error, &

@@ -6,14 +6,15 @@
 !> reasons that were measured: gfortran's `flush` and `close` report success on a full disk, and one
 !> `write` of whole lines leaves no half line behind when the process is killed.
 module files_m
-  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_size_t, c_ptr, c_loc, c_null_char
+  use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_loc, c_null_char, &
+    c_null_ptr, c_ptr, c_size_t, c_sizeof
   use errors_m, only : error_t, raise, status_files
   use kinds_m, only : long
   implicit none
   private
   public :: join_path, parent_path, file_exists, is_directory, make_directory, &
-    remove_file, rename_file, &
-    text_file_t, create_text_file, append_text, close_text_file
+    remove_file, rename_file, force_to_disk, is_endless, &
+    text_file_t, create_text_file, continue_text_file, append_text, close_text_file
 
   !> Permissions of what is made, before the user's mask: rwx for all, rw for all.
   integer(c_int), parameter :: directory_mode = 511_c_int, file_mode = 438_c_int
@@ -22,6 +23,7 @@ module files_m
   type :: text_file_t
     character(:), allocatable :: path   !! for messages
     integer(c_int) :: descriptor = -1   !! -1 while no file is open
+    type(c_ptr) :: stream = c_null_ptr  !! C stream that owns the descriptor, where there is one
   end type text_file_t
 
   interface
@@ -40,12 +42,12 @@ module files_m
       integer(c_int) :: status
     end function c_rename
 
-    !> C remove; 0 on success.
-    function c_remove(path) bind(c, name='remove') result(status)
+    !> POSIX unlink; 0 on success. Unlike `remove` it takes no directories.
+    function c_unlink(path) bind(c, name='unlink') result(status)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*) !! ends with a null
       integer(c_int) :: status
-    end function c_remove
+    end function c_unlink
 
     !> POSIX creat; a descriptor, or -1.
     function c_creat(path, mode) bind(c, name='creat') result(descriptor)
@@ -70,6 +72,62 @@ module files_m
       integer(c_int), value :: descriptor   !! of the open file
       integer(c_int) :: status
     end function c_close
+
+    !> C fopen; null on failure. (POSIX `open` has a varying number of arguments, which Fortran cannot call.)
+    function c_fopen(path, mode) bind(c, name='fopen') result(stream)
+      import :: c_char, c_ptr
+      character(kind=c_char), intent(in) :: path(*), mode(*) !! end with a null
+      type(c_ptr) :: stream
+    end function c_fopen
+
+    !> POSIX fileno: descriptor of a stream.
+    function c_fileno(stream) bind(c, name='fileno') result(descriptor)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: stream
+      integer(c_int) :: descriptor
+    end function c_fileno
+
+    !> C fclose; 0 on success.
+    function c_fclose(stream) bind(c, name='fclose') result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: stream
+      integer(c_int) :: status
+    end function c_fclose
+
+    !> POSIX fsync; 0 on success.
+    function c_fsync(descriptor) bind(c, name='fsync') result(status)
+      import :: c_int
+      integer(c_int), value :: descriptor   !! of the open file
+      integer(c_int) :: status
+    end function c_fsync
+
+    !> Where the C library of Linux keeps `errno`.
+    function c_errno() bind(c, name='__errno_location') result(place)
+      import :: c_ptr
+      type(c_ptr) :: place
+    end function c_errno
+
+    !> C strerror: a number of `errno` in words.
+    function c_strerror(number) bind(c, name='strerror') result(text)
+      import :: c_int, c_ptr
+      integer(c_int), value :: number
+      type(c_ptr) :: text
+    end function c_strerror
+
+    !> C strlen.
+    function c_strlen(text) bind(c, name='strlen') result(n)
+      import :: c_ptr, c_size_t
+      type(c_ptr), value :: text
+      integer(c_size_t) :: n
+    end function c_strlen
+
+    !> C memcpy.
+    function c_memcpy(to, from, n_byte) bind(c, name='memcpy') result(same)
+      import :: c_ptr, c_size_t
+      type(c_ptr), value :: to, from
+      integer(c_size_t), value :: n_byte
+      type(c_ptr) :: same
+    end function c_memcpy
   end interface
 
 contains
@@ -137,19 +195,20 @@ contains
   recursive subroutine make_directory(path, error)
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: reason
     integer(c_int) :: status
 
     if (is_directory(path)) return
     call make_directory(parent_path(path), error)
     if (allocated(error)) return
     status = c_mkdir(path//c_null_char, directory_mode)
+    reason = system_reason()
     if (is_directory(path)) return
     if (file_exists(path)) then
       call raise(error, 'cannot make the directory '//path//': a file of this name is in the way', &
         status_files)
     else
-      call raise(error, 'cannot make the directory '//path//' (no permission, or no space)', &
-        status_files)
+      call raise(error, 'cannot make the directory '//path//': '//reason, status_files)
     end if
   end subroutine make_directory
 
@@ -160,7 +219,7 @@ contains
     integer(c_int) :: status
 
     if (.not. file_exists(path)) return
-    status = c_remove(path//c_null_char)
+    status = c_unlink(path//c_null_char)
     if (status /= 0) call raise(error, 'cannot replace '//path//': '//open_failure(path), &
       status_files)
   end subroutine remove_file
@@ -172,8 +231,50 @@ contains
     integer(c_int) :: status
 
     status = c_rename(old//c_null_char, new//c_null_char)
-    if (status /= 0) call raise(error, 'cannot rename '//old//' to '//new, status_files)
+    if (status /= 0) call raise(error, 'cannot rename '//old//' to '//new//': '//open_failure(new), &
+      status_files)
   end subroutine rename_file
+
+  !> Bring what has been written to a file onto the disk itself, so that a power failure does not lose it.
+  subroutine force_to_disk(path, error)
+    character(*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    type(c_ptr) :: stream
+    integer(c_int) :: status, ignored
+    character(:), allocatable :: reason
+
+    status = -1
+    ! A directory opens for reading alone.
+    stream = c_fopen(path//c_null_char, 'r'//c_null_char)
+    if (c_associated(stream)) status = c_fsync(c_fileno(stream))
+    reason = system_reason()
+    if (c_associated(stream)) ignored = c_fclose(stream)
+    if (status /= 0) call raise(error, 'cannot bring '//path//' onto the disk: '//reason, status_files)
+  end subroutine force_to_disk
+
+  !> Whether `path` is there and is not a file of known size with something in it: a pipe, a device, or an empty
+  !> file. To open a pipe could wait for ever, and a device may have no end.
+  function is_endless(path) result(endless)
+    character(*), intent(in) :: path
+    logical :: endless
+    integer(long) :: n_byte
+
+    inquire (file=path, exist=endless, size=n_byte)
+    endless = endless .and. n_byte <= 0
+    if (endless) endless = .not. is_directory(path)
+  end function is_endless
+
+  !> What the C library says of its last failure.
+  function system_reason() result(reason)
+    character(:), allocatable, target :: reason
+    integer(c_int), target :: number
+    type(c_ptr) :: text, ignored
+
+    ignored = c_memcpy(c_loc(number), c_errno(), c_sizeof(number))
+    text = c_strerror(number)
+    allocate (character(c_strlen(text)) :: reason)
+    ignored = c_memcpy(c_loc(reason), text, len(reason, c_size_t))
+  end function system_reason
 
   !> Make a text file, empty; one of the same name is emptied.
   subroutine create_text_file(file, path, error)
@@ -187,17 +288,33 @@ contains
       open_failure(path), status_files)
   end subroutine create_text_file
 
-  !> Why a file cannot be made, in words.
+  !> Open a text file to write on behind what it holds; it is made when there is none.
+  subroutine continue_text_file(file, path, error)
+    type(text_file_t), intent(out) :: file
+    character(*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+
+    file%path = path
+    file%stream = c_fopen(path//c_null_char, 'a'//c_null_char)
+    if (c_associated(file%stream)) then
+      file%descriptor = c_fileno(file%stream)
+    else
+      call raise(error, 'cannot write '//path//': '//open_failure(path), status_files)
+    end if
+  end subroutine continue_text_file
+
+  !> Why a file cannot be made, in words; to be asked at once after the failure.
   function open_failure(path) result(reason)
     character(*), intent(in) :: path
-    character(:), allocatable :: reason
+    character(:), allocatable :: reason, from_system
 
+    from_system = system_reason()
     if (is_directory(path)) then
       reason = 'it is a directory'
     else if (.not. is_directory(parent_path(path))) then
       reason = 'its directory does not exist'
     else
-      reason = 'no permission, or no space'
+      reason = from_system
     end if
   end function open_failure
 
@@ -213,8 +330,7 @@ contains
       n_taken = int(c_write(file%descriptor, c_loc(text(n_written + 1:n_written + 1)), &
         int(len(text, long) - n_written, c_size_t)), long)
       if (n_taken <= 0) then
-        call raise(error, 'cannot write on to '//file%path// &
-          ': the file system takes no more (is the disk full?)', status_files)
+        call raise(error, 'cannot write on to '//file%path//': '//system_reason(), status_files)
         return
       end if
       n_written = n_written + n_taken
@@ -228,7 +344,12 @@ contains
     integer(c_int) :: status
 
     if (file%descriptor < 0) return
-    status = c_close(file%descriptor)
+    if (c_associated(file%stream)) then
+      status = c_fclose(file%stream)
+    else
+      status = c_close(file%descriptor)
+    end if
+    file%stream = c_null_ptr
     file%descriptor = -1
     if (status /= 0) call raise(error, 'cannot close '//file%path// &
       ': the file system refused the last bytes', status_files)

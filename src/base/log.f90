@@ -2,12 +2,14 @@
 !> The run log: what was understood, warnings and the summary.
 !> Lines that come before the file is open are kept and written when it opens, since the job name
 !> is known only after the command line and nothing may be lost of a deck that is refused.
+!> A file that takes no more does not end the run: the first failure is kept in `trouble`.
 module log_m
   use, intrinsic :: iso_fortran_env, only : error_unit
-  use errors_m, only : error_t, raise, status_files
+  use errors_m, only : error_t
+  use files_m, only : text_file_t, create_text_file, continue_text_file, append_text, close_text_file
   implicit none
   private
-  public :: log_t, open_log, write_log, warn, flush_log, close_log, to_text
+  public :: log_t, open_log, write_log, warn, close_log, to_text
 
   !> Number as text without surrounding blanks, for messages.
   interface to_text
@@ -18,7 +20,8 @@ module log_m
   !> One log.
   type :: log_t
     logical :: is_open = .false.
-    integer :: unit = 0                   !! Fortran unit of the open file (newunit gives negative ones)
+    type(text_file_t) :: file
+    type(error_t), allocatable :: trouble !! first failure to write
     integer :: n_warning = 0              !! warnings so far
     character(:), allocatable :: waiting  !! lines from before the file was open
   end type log_t
@@ -32,23 +35,16 @@ contains
     character(*), intent(in) :: path
     logical, intent(in) :: goes_on
     type(error_t), allocatable, intent(out) :: error
-    integer :: status
-    character(200) :: reason
 
     if (goes_on) then
-      open (newunit=log%unit, file=path, position='append', action='write', iostat=status, &
-        iomsg=reason)
+      call continue_text_file(log%file, path, error)
     else
-      open (newunit=log%unit, file=path, status='replace', action='write', iostat=status, &
-        iomsg=reason)
+      call create_text_file(log%file, path, error)
     end if
-    if (status /= 0) then
-      call raise(error, 'cannot write the log '//path//': '//trim(reason), status_files)
-      return
-    end if
+    if (allocated(error)) return
     log%is_open = .true.
     if (allocated(log%waiting)) then
-      write (log%unit, '(a)', advance='no') log%waiting
+      call append_text(log%file, log%waiting, error)
       deallocate (log%waiting)
     end if
   end subroutine open_log
@@ -57,9 +53,12 @@ contains
   subroutine write_log(log, text)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
+    type(error_t), allocatable :: error
 
     if (log%is_open) then
-      write (log%unit, '(a)') text
+      if (allocated(log%trouble)) return
+      call append_text(log%file, text//new_line('a'), error)
+      if (allocated(error)) call move_alloc(error, log%trouble)
     else if (allocated(log%waiting)) then
       log%waiting = log%waiting//text//new_line('a')
     else
@@ -71,25 +70,21 @@ contains
   subroutine warn(log, text)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
+    integer :: ignored
 
     log%n_warning = log%n_warning + 1
     call write_log(log, 'warning: '//text)
-    write (error_unit, '(a)') 'warning: '//text
+    write (error_unit, '(a)', iostat=ignored) 'warning: '//text
   end subroutine warn
 
-  !> Bring what has been written into the file.
-  subroutine flush_log(log)
-    type(log_t), intent(in) :: log
-
-    if (log%is_open) flush (log%unit)
-  end subroutine flush_log
-
-  !> Close the file; safe to call when none is open.
+  !> Close the file; safe to call when none is open. What went wrong is in `trouble`.
   subroutine close_log(log)
     type(log_t), intent(inout) :: log
+    type(error_t), allocatable :: error
 
-    if (log%is_open) close (log%unit)
+    if (log%is_open) call close_text_file(log%file, error)
     log%is_open = .false.
+    if (allocated(error) .and. .not. allocated(log%trouble)) call move_alloc(error, log%trouble)
   end subroutine close_log
 
   !> Integer as text.

@@ -2,7 +2,7 @@
 !> Sense switches: a word in a file `d3kil` of the results folder asks a run for something, in the DYNA manner.
 module sense_switch_m
   use errors_m, only : error_t
-  use files_m, only : file_exists, remove_file, join_path
+  use files_m, only : file_exists, is_endless, remove_file, join_path
   use text_m, only : upper_case
   implicit none
   private
@@ -29,6 +29,7 @@ contains
 
     switch = switch_none
     if (.not. file_exists(join_path(directory, file_name))) return
+    if (is_endless(join_path(directory, file_name))) return
     open (newunit=unit, file=join_path(directory, file_name), status='old', action='read', &
       iostat=status)
     if (status /= 0) return

@@ -3,14 +3,16 @@
 !> person watches. A signal handler has no argument to carry a state, so this module holds the only saved
 !> variable of the program.
 module signals_m
-  use, intrinsic :: iso_c_binding, only : c_int, c_funptr, c_funloc
+  use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
   implicit none
   private
   public :: catch_signals, stop_requested, take_signals, output_is_terminal
 
   !> Numbers of the signals, as Linux has them.
   integer(c_int), parameter :: signal_interrupt = 2, signal_user_1 = 10, signal_user_2 = 12, &
-    signal_terminate = 15
+    signal_terminate = 15, signal_cpu_limit = 24, signal_file_limit = 25
+  !> The handler that ignores (SIG_IGN of all C libraries).
+  integer(c_intptr_t), parameter :: ignore = 1
   !> Signals received: a stop, a restart file, a plot state; 0 = none.
   integer(c_int), volatile, save :: received(3) = 0
 
@@ -33,7 +35,8 @@ module signals_m
 
 contains
 
-  !> From now on these signals only ask for something.
+  !> From now on these signals only ask for something: SIGTERM, SIGINT and a used up processor time (SIGXCPU) for
+  !> a stop; a file that reaches the largest size allowed (SIGXFSZ) is a failed write and no end of the process.
   subroutine catch_signals()
     type(c_funptr) :: previous
 
@@ -41,6 +44,8 @@ contains
     previous = c_signal(signal_interrupt, c_funloc(note_signal))
     previous = c_signal(signal_user_1, c_funloc(note_signal))
     previous = c_signal(signal_user_2, c_funloc(note_signal))
+    previous = c_signal(signal_cpu_limit, c_funloc(note_signal))
+    previous = c_signal(signal_file_limit, transfer(ignore, c_null_funptr))
   end subroutine catch_signals
 
   !> The handler.

@@ -3,6 +3,7 @@
 module deck_source_m
   use, intrinsic :: iso_fortran_env, only : int8
   use kinds_m, only : long
+  use files_m, only : is_directory, is_endless
   use text_m, only : upper_case
   use deck_lines_m, only : deck_t, block_t, flag_comma, flag_parameter, flag_blank, &
     format_standard, format_long, format_i10
@@ -21,6 +22,12 @@ contains
     integer(long) :: n_byte
     character(200) :: why
 
+    if (is_directory(path)) then
+      reason = 'it is a directory'
+    else if (is_endless(path)) then
+      reason = 'it is empty, or a pipe or a device and no file'
+    end if
+    if (allocated(reason)) return
     open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
       action='read', iostat=status, iomsg=why)
     if (status /= 0) then

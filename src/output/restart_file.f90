@@ -6,8 +6,9 @@
 !>     checksum 89ABCDEF
 !>
 !> Length and CRC-32 are those of the bytes behind the head. They are compared before HDF5 sees the
-!> file, so that damage never reaches it. The file is written aside as `<path>.part`, its head last, and
-!> then takes its name in one step: under the name there is always a whole file.
+!> file, so that damage never reaches it. The file is written aside as `<path>.part`, its head last, is
+!> forced onto the disk, and then takes its name in one step: under the name there is always a whole file,
+!> after a power failure too.
 module restart_file_m
   use hdf5, only : hid_t, hsize_t, H5P_FILE_CREATE_F, H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, &
     H5F_SCOPE_LOCAL_F, h5fcreate_f, h5fopen_f, h5fclose_f, h5fflush_f, h5pcreate_f, h5pclose_f, &
@@ -15,7 +16,7 @@ module restart_file_m
   use archive_m, only : archive_t, fail_archive
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
   use errors_m, only : error_t, raise, status_files, status_input
-  use files_m, only : rename_file, remove_file
+  use files_m, only : rename_file, remove_file, force_to_disk, is_endless, parent_path
   use hdf5_library_m, only : open_library
   use kinds_m, only : long
   use log_m, only : to_text
@@ -67,13 +68,27 @@ contains
         //' (is the disk full?)', status_files)
     end if
     if (.not. allocated(archive%error)) call write_head(archive%path//unfinished, archive%error)
+    if (.not. allocated(archive%error)) call force_to_disk(archive%path//unfinished, archive%error)
     if (.not. allocated(archive%error)) &
       call rename_file(archive%path//unfinished, archive%path, archive%error)
-    if (.not. allocated(archive%error)) return
+    if (.not. allocated(archive%error)) then
+      ! The new name too; a file system that can not do so has the file all the same.
+      call force_to_disk(folder_of(archive%path), ignored)
+      return
+    end if
     call move_alloc(archive%error, error)
     error%status = status_files
     call remove_file(archive%path//unfinished, ignored)
   end subroutine finish_restart
+
+  !> The directory that a file lies in.
+  pure function folder_of(path) result(folder)
+    character(*), intent(in) :: path
+    character(:), allocatable :: folder
+
+    folder = parent_path(path)
+    if (len(folder) == 0) folder = '.'
+  end function folder_of
 
   !> Length and checksum of what follows the head.
   subroutine write_head(path, error)
@@ -174,6 +189,10 @@ contains
     integer :: unit, status, version, i
 
     head = ''
+    if (is_endless(path)) then
+      reason = 'it is empty, or a pipe or a device and no file'
+      return
+    end if
     open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
       action='read', iostat=status)
     if (status /= 0) then

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> What a person or a script sees while the run goes on: one updating line on a terminal, plain lines in the
-!> DYNA manner in a pipe, and the summary at the end.
+!> DYNA manner in a pipe, and the summary at the end. A screen that takes no more (a closed window, a full disk
+!> behind `>`) does not end a run: the log has the same lines.
 module progress_m
   use, intrinsic :: iso_fortran_env, only : output_unit
   use clock_m, only : clock_t, elapsed_seconds, total_seconds, phase_seconds, lap_seconds, &
@@ -78,6 +79,7 @@ contains
     real(wp), intent(in) :: time, dt, ratio
     character(*), intent(in) :: event
     real(wp) :: share, to_go
+    integer :: ignored
     character(8) :: date
     character(10) :: hour
 
@@ -86,17 +88,17 @@ contains
     if (progress%terminal) then
       share = min(1.0_wp, time/progress%end_time)
       to_go = max(0.0_wp, seconds_to_go(progress%status, elapsed_seconds(clock)))
-      write (output_unit, '(a,es11.4,a,f5.1,a,i0,a,es9.2,a,f8.5,a,a)', advance='no') &
+      write (output_unit, '(a,es11.4,a,f5.1,a,i0,a,es9.2,a,f8.5,a,a)', advance='no', iostat=ignored) &
         achar(13)//' t', time, '  ', 100.0_wp*share, ' %  cycle ', cycle, '  dt', dt, &
         '  energy ratio', ratio, '  to go ', duration(to_go)//'   '
       progress%line_open = .true.
-      flush (output_unit)
     else
       call date_and_time(date, hour)
-      write (output_unit, '(i10,a,es10.4,a,es8.2,1x,a22,10x,a)') cycle, ' t ', time, ' dt ', dt, &
+      write (output_unit, '(i10,a,es10.4,a,es8.2,1x,a22,10x,a)', iostat=ignored) cycle, ' t ', time, ' dt ', dt, &
         event, date(5:6)//'/'//date(7:8)//'/'//date(3:4)//' '//hour(1:2)//':'//hour(3:4)//':' &
         //hour(5:6)
     end if
+    flush (output_unit, iostat=ignored)
   end subroutine show_progress
 
   !> A line of its own to the screen and to the log: a restart, a restart file.
@@ -104,11 +106,12 @@ contains
     type(progress_t), intent(inout) :: progress
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
+    integer :: ignored
 
-    if (progress%line_open) write (output_unit, '()')
+    if (progress%line_open) write (output_unit, '()', iostat=ignored)
     progress%line_open = .false.
     call say(log, text)
-    flush (output_unit)
+    flush (output_unit, iostat=ignored)
   end subroutine show_note
 
   !> The end of the run: how it ended, problem time, cycles, cost and the timing table.
@@ -123,8 +126,9 @@ contains
     integer, intent(in) :: n_element
     real(wp) :: seconds(n_phase), elapsed, cost
     character(100) :: line
+    integer :: ignored
 
-    if (progress%line_open) write (output_unit, '()')
+    if (progress%line_open) write (output_unit, '()', iostat=ignored)
     progress%line_open = .false.
     progress%status%cycle = cycle
     progress%status%time = time
@@ -155,7 +159,7 @@ contains
     write (line, '(a,i0)') ' Warnings            = ', log%n_warning
     call say(log, trim(line))
     if (clock%is_on) call show_timing(log, clock, seconds)
-    flush (output_unit)
+    flush (output_unit, iostat=ignored)
   end subroutine show_end
 
   !> The timing table, and what the timing itself took.
@@ -186,8 +190,9 @@ contains
   subroutine say(log, text)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
+    integer :: ignored
 
-    write (output_unit, '(a)') text
+    write (output_unit, '(a)', iostat=ignored) text
     call write_log(log, text)
   end subroutine say
 

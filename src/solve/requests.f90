@@ -5,7 +5,7 @@ module requests_m
   use errors_m, only : error_t
   use history_file_m, only : flush_histories
   use kinds_m, only : wp
-  use log_m, only : warn, flush_log
+  use log_m, only : warn
   use monitor_m, only : monitor_t
   use progress_m, only : show_progress
   use restart_plan_m, only : wants_look
@@ -53,7 +53,6 @@ contains
       call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, ratio, &
         'status (sw2)')
     case (switch_flush)
-      call flush_log(monitor%log)
       if (.not. allocated(error)) call flush_histories(monitor%histories, error)
     case (switch_unknown)
       call warn(monitor%log, 'd3kil holds none of sw1, sw2, sw3, sw4, swa, stop')
