@@ -15,6 +15,7 @@ from slideline_tools import UserError, scenes
 from slideline_tools.histories import read_csv
 from slideline_tools.report import write_report
 from slideline_tools.report.gather import gather, read_ending
+from slideline_tools.results import read
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
 #: attributes that make a browser fetch something
@@ -124,8 +125,13 @@ def test_report_holds_the_numbers_of_the_run(collision, written):
     missing = {name: words for name, words in expected.items() if words not in page.text}
     assert not missing
     assert {"energies", "contact", "fields", "nodes", "model", "timing"} <= set(page.ids)
-    kinds = [picture["src"].split(";")[0] for picture in page.pictures]
-    assert kinds.count("data:image/png") == 2 and kinds.count("data:image/svg+xml") == 8
+    lines = [one["alt"] for one in page.pictures if one["src"].startswith("data:image/svg+xml")]
+    assert len(lines) == 8
+    fields = [one["alt"] for one in page.pictures if one["src"].startswith("data:image/png")]
+    top = min(read(collision / "collision.vtkhdf").times,
+              key=lambda time: abs(time - slave["time"][np.argmax(slave["fy"])]))
+    for name in ("effective plastic strain", "von Mises stress (deck units)"):
+        assert {f"{name} at time {top:.4g}", f"{name} at time 4e-05"} <= set(fields)
 
 
 def test_timing_of_the_report_is_that_of_the_table(collision, written):
@@ -142,7 +148,7 @@ def test_chosen_fields_and_states(collision, tmp_path, tool):
     assert finished.returncode == 0, finished.stderr
     page = read_page(tmp_path / "new" / "r.html")
     assert [picture["alt"] for picture in page.pictures if "png" in picture["src"][:20]] == [
-        f"{name} at time 2e-05" for name in ("stress:xy", "gap")]
+        f"{name} (deck units) at time 2e-05" for name in ("stress xy", "contact gap")]
     assert tool("report", collision, "--field", "colour", "-o", tmp_path / "s.html").returncode == 2
 
 

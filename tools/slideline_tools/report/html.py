@@ -51,7 +51,8 @@ footer { margin-top: 2.5rem; border-top: 1px solid #d5dce5; padding-top: .5rem; 
 @media print {
   body { max-width: none; padding: 0; font-size: 10pt; }
   nav, .up, details:not([open]) { display: none; }
-  h2 { break-after: avoid; }
+  h2, h3 { break-after: avoid; }
+  figure img { max-height: 20cm; object-fit: contain; }
   figure, table, .tiles, .warning { break-inside: avoid; }
   .wide { overflow: visible; }
   pre { white-space: pre-wrap; }
