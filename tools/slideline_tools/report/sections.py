@@ -365,7 +365,10 @@ def timing(run: Gathered) -> Section | None:
              figures(int(calls))]
             for phase, seconds, share, calls in zip(*(run.timing[name] for name in
                                                       ("phase", "seconds", "share", "calls")))]
-    body = picture(charts.timing(run.timing), "Wall clock by phase") if len(rows) > 1 else ""
+    body = ""
+    if len(rows) > 1:
+        chart = picture(charts.timing(run.timing), "Wall clock by phase")
+        body = f'<div class="grid">\n{chart}</div>\n'
     body += table(["phase", "seconds", "share, %", "calls"], rows, {1, 2, 3})
     return Section("timing", "Timing", body)
 
