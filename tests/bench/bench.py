@@ -46,7 +46,7 @@ def plan(options):
     cases = search.CASES
     if options.quick:
         sizes, chains, searches, large = (100, 300), (10, 20), (500,), 4000
-        elements.WORK = 1.0e6
+        elements.WORK = 1.0e5
     decks = options.out / "decks"
     decks.mkdir(parents=True, exist_ok=True)
     return {"step": elements.write_decks(decks, sizes), "contact": chains,

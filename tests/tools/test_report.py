@@ -15,6 +15,7 @@ from slideline_tools import UserError, scenes
 from slideline_tools.histories import read_csv
 from slideline_tools.report import write_report
 from slideline_tools.report.gather import gather, read_ending
+from slideline_tools.results import read
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
 #: attributes that make a browser fetch something
@@ -112,7 +113,7 @@ def test_report_holds_the_numbers_of_the_run(collision, written):
         "ratio": f"{glstat['energy_ratio'][-1]:.7g} energy ratio at the end",
         "kinetic": f"{glstat['kinetic'][-1]:.7g}", "hourglass": f"{glstat['hourglass'][-1]:.7g}",
         "force": f"{np.hypot(slave['fx'], slave['fy']).max():.6g}",
-        "impulse": f"{np.trapezoid(slave['fy'], slave['time']):.6g}",
+        "impulse": f"{np.dot(slave['fy'][1:] + slave['fy'][:-1], np.diff(slave['time'])) / 2:.6g}",
         "pressure": f"{contact['pressure'].max():.6g}",
         "penetration": f"{-contact['gap'].min():.4g}",
         "mass": f"{matsum.where(part=2)['mass'][-1]:.5g}",
@@ -124,8 +125,13 @@ def test_report_holds_the_numbers_of_the_run(collision, written):
     missing = {name: words for name, words in expected.items() if words not in page.text}
     assert not missing
     assert {"energies", "contact", "fields", "nodes", "model", "timing"} <= set(page.ids)
-    kinds = [picture["src"].split(";")[0] for picture in page.pictures]
-    assert kinds.count("data:image/png") == 2 and kinds.count("data:image/svg+xml") == 8
+    lines = [one["alt"] for one in page.pictures if one["src"].startswith("data:image/svg+xml")]
+    assert len(lines) == 8
+    fields = [one["alt"] for one in page.pictures if one["src"].startswith("data:image/png")]
+    top = min(read(collision / "collision.vtkhdf").times,
+              key=lambda time: abs(time - slave["time"][np.argmax(slave["fy"])]))
+    for name in ("effective plastic strain", "von Mises stress (deck units)"):
+        assert {f"{name} at time {top:.4g}", f"{name} at time 4e-05"} <= set(fields)
 
 
 def test_timing_of_the_report_is_that_of_the_table(collision, written):
@@ -142,7 +148,7 @@ def test_chosen_fields_and_states(collision, tmp_path, tool):
     assert finished.returncode == 0, finished.stderr
     page = read_page(tmp_path / "new" / "r.html")
     assert [picture["alt"] for picture in page.pictures if "png" in picture["src"][:20]] == [
-        f"{name} at time 2e-05" for name in ("stress:xy", "gap")]
+        f"{name} (deck units) at time 2e-05" for name in ("stress xy", "contact gap")]
     assert tool("report", collision, "--field", "colour", "-o", tmp_path / "s.html").returncode == 2
 
 
@@ -165,7 +171,7 @@ def test_killed_run(collision, tmp_path):
     lines = (cut / "collision.glstat.csv").read_text().splitlines()[:21]
     (cut / "collision.glstat.csv").write_text("\n".join(lines) + "\n")
     page = read_page(write_report(cut, tmp_path / "r.html"))
-    assert "not finished" in page.text and "no log" in page.text
+    assert "not finished" in page.text and "the log is empty" in page.text
     ratio = float(lines[-1].split(",")[-1])
     assert f"{ratio:.7g} energy ratio" in page.text
     assert f"{float(lines[-1].split(',')[0]):.6g} problem time" in page.text

@@ -3,8 +3,8 @@
 
     build/venv/bin/python tools/docs/figures.py [--program build/release/slideline]
 
-writes doc/pictures/first_deck.svg, first_stress.png,
-first_history.png and contact_points.svg.
+writes doc/pictures/first_deck.svg, first_model.png,
+first_stress.png, first_history.png and contact_points.svg.
 """
 import argparse
 import pathlib
@@ -112,7 +112,9 @@ def first_deck(program, folder):
     axes.axis("off")
     axes.set_xlim(-0.02, 0.66)
     save(figure, "first_deck.svg")
-    for words in (["plot", str(path), "--field", "stress:yy", "--state", "0.006",
+    for words in (["draw", str(deck), "--program", str(program),
+                   "--output", str(PICTURES / "first_model.png")],
+                  ["plot", str(path), "--field", "stress:yy", "--state", "0.006",
                    "--output", str(PICTURES / "first_stress.png")],
                   ["plot", str(path), "--history", "glstat:kinetic,internal,contact", "--history",
                    "rcforc:fy@side=slave", "--output", str(PICTURES / "first_history.png")]):

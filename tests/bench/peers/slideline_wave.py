@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: MIT
 """slideline on the problem of wave.py. usage: slideline_wave.py PROGRAM FOLDER POINTS COLUMNS STEPS
 
-The time is that of all cycles, with contact, loads, energies and histories: the total less input and output.
+The time is that of all cycles, with contact, loads, energies and histories: the total less input and output, as
+processor time: times the share of the processor that the run had.
 """
 import csv
 import pathlib
+import resource
 import subprocess
 import sys
+import time
 
 import wave
 from slideline_tools.decks import Deck, Grid, spaced
@@ -50,14 +53,18 @@ def main():
     deck = folder / f"wave_{points}_{columns}_{steps}.k"
     if not deck.exists():
         write_deck(deck, points, columns, steps)
+    start = time.monotonic()
     subprocess.run([program, f"i={deck}", f"d={folder}", "jobid=wave", "ncpu=1"], check=True,
                    stdout=subprocess.DEVNULL)
+    clock, used = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    share = min(1.0, (used.ru_utime + used.ru_stime) / clock)
     seconds = {row["phase"]: float(row["seconds"]) for row in read_rows(folder / "wave.timing.csv")}
     rows = read_rows(folder / "wave.nodout.csv")
     last = rows[-1]["time"]
     wave.report("slideline", "2x2 points, large strain" if points == 4 else
                 "one point, large strain", columns, steps,
-                (seconds["total"] - seconds["input"] - seconds["output"]) * steps / (steps + 1),
+                share * (seconds["total"] - seconds["input"] - seconds["output"]) * steps
+                / (steps + 1),
                 [float(row["ux"]) for row in rows if row["time"] == last])
 
 

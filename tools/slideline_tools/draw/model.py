@@ -358,7 +358,7 @@ def read_nodal_load(model: Model, card: Card) -> None:
 def read_segment_load(model: Model, card: Card) -> None:
     """*LOAD_SEGMENT and _SET: positive pressure pushes against the outward normal."""
     by_set = card.name.startswith("LOAD_SEGMENT_SET")
-    groups: dict[str, list] = {}
+    groups: dict[tuple[str, float], list] = {}
     for k in range(len(card.lines)):
         row = card.row(k)
         number, curve = (row.integer(0), row.integer(1)) if by_set else (0, row.integer(0))

@@ -30,7 +30,7 @@ ARROW_COLOURS = {"velocity": "#1b7f3b", "motion": "#e07b00", "load": "#8e24aa",
                  "pressure": "#8e24aa", "body": "#444444"}
 WIDTH, LONGEST_ARROW, NORMAL_LENGTH = 9.0, 0.42, 0.16   # inches
 LEFT, RIGHT = 0.09, 0.965                               # of the width, ends of the axes
-MOST_ARROWS, MOST_SYMBOLS, MOST_NORMALS, MOST_TIPS = 40, 60, 30, 8
+MOST_ARROWS, MOST_SYMBOLS, MOST_NORMALS, MOST_TIPS = 26, 60, 30, 8
 
 
 def model_figure(model: Model, show=None, zoom=None):
@@ -99,6 +99,11 @@ def fit(figure, canvas: Canvas) -> None:
                       bbox_to_anchor=(0.01, 0.0), borderaxespad=0.3, handlelength=2.4)
 
 
+def counted(count: int) -> str:
+    """A number of nodes in words."""
+    return f"{count} node" if count == 1 else f"{count} nodes"
+
+
 def thinned(count: int, most: int) -> np.ndarray:
     """At most `most` indices of `count` at equal distances."""
     step = max(-(-count // most), 1)
@@ -145,7 +150,7 @@ def draw_sets(canvas: Canvas, model: Model) -> None:
         style = {"marker": "o", "markersize": size, "markerfacecolor": "none",
                  "markeredgecolor": colour, "markeredgewidth": 0.7, "linestyle": "none"}
         canvas.axes.plot(*model.points[nodes].T, **style, alpha=0.8, zorder=3)
-        canvas.add(Line2D([], [], **style, label=f"node {one.label}: {len(nodes)} nodes"))
+        canvas.add(Line2D([], [], **style, label=f"node {one.label}: {counted(len(nodes))}"))
 
 
 # ---- surfaces -----------------------------------------------------------------------------------
@@ -202,7 +207,7 @@ def draw_boundary(canvas: Canvas, model: Model) -> None:
         seen = seen[np.lexsort(model.points[seen].T)]
         canvas.axes.plot(*model.points[seen[thinned(len(seen), MOST_SYMBOLS)]].T, **style, zorder=6,
                          clip_on=False)
-        canvas.add(Line2D([], [], **style, label=f"{label}: {len(nodes)} nodes"))
+        canvas.add(Line2D([], [], **style, label=f"{label}: {counted(len(nodes))}"))
 
 
 def draw_walls(canvas: Canvas, model: Model) -> None:
@@ -238,7 +243,7 @@ def draw_velocity(canvas: Canvas, model: Model) -> None:
     if not len(moving):
         return
     picked = spread(model.points[moving], MOST_ARROWS, canvas)
-    label = f"initial velocity, largest {size.max():.4g} ({len(moving)} nodes)"
+    label = f"initial velocity, largest {size.max():.4g} ({counted(len(moving))})"
     draw_arrows(canvas, Arrows("velocity", label, model.points[moving[picked]],
                                model.velocity[moving[picked]]), float(size.max()))
 
@@ -280,7 +285,7 @@ def draw_arrows(canvas: Canvas, arrows: Arrows, largest: float) -> None:
         vectors = arrows.vectors[real] / size[real][:, None] * length[:, None]
         canvas.axes.quiver(*arrows.places[real].T, *vectors.T, color=colour, angles="uv",
                            scale_units="inches", scale=1.0, units="inches", width=0.018,
-                           zorder=3.5 if arrows.kind == "velocity" else 8,
+                           zorder=3.5 if arrows.kind in ("velocity", "motion") else 8,
                            headwidth=4.5, headlength=5.5, headaxislength=5.0,
                            pivot="tip" if arrows.kind == "pressure" else "tail")
     canvas.add(Line2D([], [], color=colour, linewidth=1.5, marker=">", markersize=5,

@@ -6,7 +6,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from slideline_tools import plots
+from slideline_tools.fields import ScalarField
 from slideline_tools.histories import History
+from slideline_tools.results import Results
 
 SIZE = (5.2, 2.7)
 MOST_LINES = 8
@@ -27,6 +29,7 @@ def lines(series: list[tuple[str, np.ndarray, np.ndarray]], ylabel: str, xlabel:
         axes.set_xlabel(xlabel)
         axes.set_ylabel(ylabel)
         axes.margins(x=0.0)
+        axes.locator_params(axis="x", nbins=6)
         axes.grid(True, linewidth=0.3, color="#bbbbbb")
         if len(series) > 1:
             figure.legend(loc="outside upper center", ncols=min(4, len(series)), frameon=False,
@@ -70,7 +73,9 @@ def pressures(contact: History, times: list[float]):
     for time in times:
         rows = contact.where(time=time)
         series.append((f"t = {time:.4g}", rows["s"], rows["pressure"]))
-    return lines(series, "contact pressure", "arc length along the slave surface", "o")
+    figure = lines(series, "contact pressure", "arc length along the slave surface", "o")
+    figure.axes[0].set_ylim(bottom=0.0)
+    return figure
 
 
 def nodes(nodout: History, column: str):
@@ -78,6 +83,29 @@ def nodes(nodout: History, column: str):
     series = [(f"node {entity[0]}", rows["time"], rows[column])
               for entity, rows in nodout.series()[:MOST_LINES]]
     return lines(series, {"ux": "displacement in x", "uy": "displacement in y"}[column])
+
+
+def field_window(results: Results, states: list[int], scale: float) -> tuple[float, ...]:
+    """One window (x0, x1, y0, y1) for all states."""
+    scratch = plt.figure()
+    zoom = plots.frame(scratch.add_subplot(), results, states, scale)
+    plt.close(scratch)
+    return zoom
+
+
+def field(results: Results, shown: ScalarField, state: int, states: list[int], scale: float):
+    """A field at one state, with colours and window common to all `states`."""
+    zoom = field_window(results, states, scale)
+    with plt.rc_context(STYLE):
+        height = plots.panel_height(zoom, SIZE[0] - 1.7)
+        figure, axes = plt.subplots(figsize=(SIZE[0], height + 0.8), layout="constrained")
+        artist = plots.field_panel(axes, results, shown, state, scale, shown.limits(states), zoom)
+        axes.locator_params(axis="x", nbins=6)
+        bar = figure.colorbar(artist, ax=axes, aspect=14, pad=0.02)
+        bar.outline.set_linewidth(0.4)
+        ticks = np.linspace(*artist.get_clim(), 5)
+        bar.set_ticks(ticks, labels=[f"{tick:.3g}" for tick in ticks])
+        return figure
 
 
 def timing(table: History):

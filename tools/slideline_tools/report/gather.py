@@ -190,9 +190,8 @@ def read_ending(log_text: str, tables: dict[str, History], results: Results | No
     seconds = None
     if timing is not None and "total" in timing["phase"]:
         seconds = float(timing["seconds"][timing["phase"] == "total"][0])
-    return Ending("unfinished", "no end in the log: the run was killed, or it still runs"
-                  if log_text else "no log: the run was killed, or it still runs", time, cycle,
-                  seconds)
+    told = "no end in the log" if log_text else "the log is empty or missing"
+    return Ending("unfinished", f"{told}: the run was killed, or it still runs", time, cycle, seconds)
 
 
 def number(pattern: str, text: str) -> float | None:

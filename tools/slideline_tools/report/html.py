@@ -34,7 +34,7 @@ nav a { display: inline-block; padding: .35rem .7rem; margin: 0 .25rem .35rem 0;
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; margin: .5rem 0; font-size: .92rem;
   font-variant-numeric: tabular-nums; }
-th, td { text-align: left; vertical-align: top; padding: .25rem .9rem .25rem 0;
+th, td { text-align: left; vertical-align: top; padding: .25rem .7rem .25rem 0;
   border-bottom: 1px solid #e3e8ee; }
 td.n, th.n { text-align: right; white-space: nowrap; }
 figure { margin: .8rem 0; }
@@ -51,7 +51,8 @@ footer { margin-top: 2.5rem; border-top: 1px solid #d5dce5; padding-top: .5rem; 
 @media print {
   body { max-width: none; padding: 0; font-size: 10pt; }
   nav, .up, details:not([open]) { display: none; }
-  h2 { break-after: avoid; }
+  h2, h3 { break-after: avoid; }
+  figure img { max-height: 20cm; object-fit: contain; }
   figure, table, .tiles, .warning { break-inside: avoid; }
   .wide { overflow: visible; }
   pre { white-space: pre-wrap; }

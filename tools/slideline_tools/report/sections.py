@@ -10,9 +10,9 @@ import time
 
 import numpy as np
 
-from slideline_tools import UserError, advise, plots
+from slideline_tools import UserError, advise
 from slideline_tools.advise import report as advice_report
-from slideline_tools.fields import default_field
+from slideline_tools.fields import default_field, scalar_field
 from slideline_tools.report import charts
 from slideline_tools.report.gather import Gathered
 from slideline_tools.report.html import (Section, figures, folded, paragraph, picture, table,
@@ -261,9 +261,12 @@ def fields(run: Gathered, names: list[str], states: list[int], scale: float) -> 
             names.append("mises")
     body = ""
     for name in names:
-        figure = plots.field_figure(results, name, [str(state) for state in states], scale)
-        times = ", ".join(f"{results.times[state]:.4g}" for state in states)
-        body += picture(figure, f"{name.replace('_', ' ')} at time {times}", "png")
+        shown = scalar_field(results, name)
+        pictures = "".join(picture(charts.field(results, shown, state, states, scale),
+                                   f"{shown.label} at time {results.times[state]:.4g}", "png")
+                           for state in states)
+        body += f'<h3>{text(shown.label[0].upper() + shown.label[1:])}</h3>\n' \
+                f'<div class="grid">\n{pictures}</div>\n'
     return Section("fields", "Fields", body)
 
 
@@ -362,7 +365,10 @@ def timing(run: Gathered) -> Section | None:
              figures(int(calls))]
             for phase, seconds, share, calls in zip(*(run.timing[name] for name in
                                                       ("phase", "seconds", "share", "calls")))]
-    body = picture(charts.timing(run.timing), "Wall clock by phase") if len(rows) > 1 else ""
+    body = ""
+    if len(rows) > 1:
+        chart = picture(charts.timing(run.timing), "Wall clock by phase")
+        body = f'<div class="grid">\n{chart}</div>\n'
     body += table(["phase", "seconds", "share, %", "calls"], rows, {1, 2, 3})
     return Section("timing", "Timing", body)
 
