@@ -25,7 +25,7 @@ module restart_file_m
   public :: create_restart, finish_restart, open_restart, close_restart, file_checksum, unfinished
 
   !> Layout of the file. To be raised when a component of the state comes, goes or changes its meaning.
-  integer, parameter :: format_version = 1
+  integer, parameter :: format_version = 2
   character(*), parameter :: mark = 'slideline restart '
   !> Bytes of the head, and of a block that is read.
   integer, parameter :: head_size = 512, block_size = 65536
