@@ -236,8 +236,8 @@ def test_bad_files_are_refused_with_the_reason(slideline, tmp_path):
         flipped[at] ^= 1 << int(random.integers(8))
         cases.append((bytes(flipped), "damaged"))
     cases += [(good + b" ", "damaged"), (good[:300], "truncated"), (b"", "empty"),
-              (good.replace(b"restart 1", b"restart 0", 1), "an older version"),
-              (good.replace(b"restart 1", b"restart 2", 1), "a newer version"),
+              (good.replace(b"restart 2", b"restart 1", 1), "an older version"),
+              (good.replace(b"restart 2", b"restart 3", 1), "a newer version"),
               (good.replace(b"checksum ", b"checksun ", 1), "damaged"),
               (good[HEAD:], "another HDF5 file"), (b"*KEYWORD\n*END\n", "not a restart file"),
               ((tmp_path / "a" / "job.vtkhdf").read_bytes(), "another HDF5 file")]
