@@ -2,6 +2,7 @@
 !> The layouts of DYNA's text files, byte for byte as scripts read them: one block of lines for all rows of one
 !> instant. Rows are those of the history tables (`history_file_m`), forces and energies per unit depth.
 module dyna_layouts_m
+  use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
   use kinds_m, only : wp
   implicit none
   private
@@ -269,6 +270,7 @@ contains
     real(wp), parameter :: least = 1.0e-99_wp, most = 9.9e99_wp
 
     printed = value
+    if (ieee_is_nan(value)) return
     if (abs(value) < least) printed = 0.0_wp
     if (abs(value) > most) printed = sign(most, value)
   end function tidy

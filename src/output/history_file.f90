@@ -114,29 +114,49 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     associate (plan => model%controls%output)
-      call open_text(table_glstat, plan%glstat, layout_glstat, 1)
-      call open_text(table_rcforc, plan%rcforc, layout_rcforc, 1)
-      call open_text(table_nodout, plan%nodout, layout_nodout, n_history_node(model))
-      call open_text(table_matsum, plan%matsum, layout_matsum, size(model%parts))
-      call open_text(table_sleout, plan%sleout, layout_sleout, size(model%contacts))
-      call open_text(table_spcforc, plan%spcforc, layout_spcforc, n_support(model))
+      call open_text(table_glstat, plan%glstat, layout_glstat)
+      call open_text(table_rcforc, plan%rcforc, layout_rcforc)
+      call open_text(table_nodout, plan%nodout, layout_nodout)
+      call open_text(table_matsum, plan%matsum, layout_matsum)
+      call open_text(table_sleout, plan%sleout, layout_sleout)
+      call open_text(table_spcforc, plan%spcforc, layout_spcforc)
     end associate
 
   contains
 
-    !> One file, unless an earlier one failed; `n_row` rows are an instant.
-    subroutine open_text(i_table, interval, layout, n_row)
-      integer, intent(in) :: i_table, layout, n_row
+    !> One file, unless an earlier one failed.
+    subroutine open_text(i_table, interval, layout)
+      integer, intent(in) :: i_table, layout
       type(interval_t), intent(in) :: interval
 
       if (allocated(error)) return
       associate (table => histories%tables(i_table))
         if (table%is_open .and. interval%is_text .and. is_asked(interval)) call open_dyna_text(table%text, &
-          prefix//'.'//table%name, layout, model, [n_columns(table), n_row], error)
+          prefix//'.'//table%name, layout, model, [n_columns(table), n_row_of_block(model, i_table)], error)
       end associate
     end subroutine open_text
 
   end subroutine open_texts
+
+  !> Rows that make a block of a text file: those of an instant, one where blocks are lines.
+  pure function n_row_of_block(model, i_table) result(n)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_table
+    integer :: n
+
+    select case (i_table)
+    case (table_nodout)
+      n = n_history_node(model)
+    case (table_matsum)
+      n = size(model%parts)
+    case (table_sleout)
+      n = size(model%contacts)
+    case (table_spcforc)
+      n = n_support(model)
+    case default
+      n = 1
+    end select
+  end function n_row_of_block
 
   !> Whether an output has an interval.
   pure function is_asked(interval) result(asked)
