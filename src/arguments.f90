@@ -17,6 +17,8 @@ module arguments_m
   type :: arguments_t
     logical :: help = .false.
     logical :: version = .false.
+    logical :: check = .false.              !! look at the deck, no run
+    logical :: json = .false.               !! what the check finds, for programs
     character(:), allocatable :: deck       !! path of the deck; with a restart, of what changes, or unset
     character(:), allocatable :: restart    !! path of the restart file to go on from, or unset
     character(:), allocatable :: directory  !! where results go
@@ -50,11 +52,16 @@ contains
       call get_command_argument(i, word)
       if (i > 1) arguments%line = arguments%line//' '
       arguments%line = arguments%line//trim(word)
-      call read_word(trim(word), arguments, mistakes)
+      arguments%check = arguments%check .or. (i == 1 .and. word == 'check')
+      if (i > 1 .or. .not. arguments%check) call read_word(trim(word), arguments, mistakes)
     end do
     if (arguments%help .or. arguments%version) return
     if (.not. allocated(arguments%deck) .and. .not. allocated(arguments%restart)) &
       mistakes = mistakes//'no deck given: expected i=DECK (or r=FILE to go on)'//new_line('a')
+    if (arguments%check .and. allocated(arguments%restart)) mistakes = mistakes &
+      //'check looks at a deck: r= has no meaning'//new_line('a')
+    if (arguments%json .and. .not. arguments%check) mistakes = mistakes &
+      //'--json goes with check'//new_line('a')
     if (len(mistakes) > 0) then
       call raise(error, mistakes//'try slideline --help', status_input)
       return
@@ -81,6 +88,9 @@ contains
       return
     else if (word == '--version') then
       arguments%version = .true.
+      return
+    else if (word == '--json') then
+      arguments%json = .true.
       return
     else if (equals == 0 .and. word(1:min(1, len(word))) /= '-') then
       call take(arguments%deck, word, 'deck', mistakes)
@@ -215,7 +225,8 @@ contains
     text = 'slideline: 2D explicit contact dynamics'//n//n// &
       'usage: slideline i=DECK [d=DIR] [jobid=NAME] [ncpu=N] [timing=...] [OVERRIDES]'//n// &
       '       slideline r=FILE [i=CHANGES] [d=DIR] [ncpu=N] [endtim=T]   go on from a restart file'//n// &
-      '       slideline DECK ...     the same'//n//n// &
+      '       slideline DECK ...     the same'//n// &
+      '       slideline check DECK [--json] [OVERRIDES]   all errors and warnings, without a run'//n//n// &
       '  i=DECK        LS-DYNA style keyword deck'//n// &
       '  r=FILE        restart file (JOB.dump01.h5, JOB.runrsf.h5): the run goes on from there, in its'//n// &
       '                folder unless d= says otherwise; i= then names a small deck of changes'//n// &

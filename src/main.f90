@@ -3,10 +3,12 @@
 program slideline
   use, intrinsic :: iso_c_binding, only : c_int
   use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+  use check_m, only : check_deck
   use arguments_m, only : arguments_t, read_arguments, help_text
   use build_info_m, only : version, build_type, compiler, flags, solvers
   use errors_m, only : error_t
   use run_m, only : run_deck
+  use source_version_m, only : source_version
   implicit none
 
   interface
@@ -26,8 +28,10 @@ program slideline
     if (arguments%help) then
       write (output_unit, '(a)') help_text()
     else if (arguments%version) then
-      write (output_unit, '(a)') 'slideline '//version, 'build '//build_type//', '//compiler, &
+      write (output_unit, '(a)') 'slideline '//version//' (source '//source_version//')', 'build '//build_type//', '//compiler, &
         'flags '//flags, 'linear solvers '//solvers
+    else if (arguments%check) then
+      call check_deck(arguments, error)
     else
       call run_deck(arguments, error)
     end if

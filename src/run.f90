@@ -16,6 +16,7 @@ module run_m
   use log_m, only : open_log, close_log, write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
+  use processor_m, only : processor_name
   use progress_m, only : show_end
   use renumber_m, only : renumber_model
   use restart_m, only : take_up_state, take_up_results, take_up_outputs, forget_files
@@ -23,6 +24,7 @@ module run_m
   use results_file_m, only : run_info_t
   use sense_switch_m, only : forget_switch
   use signals_m, only : catch_signals
+  use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t
   use status_file_m, only : start_status
@@ -47,7 +49,8 @@ contains
     call start_clock(monitor%clock)
     monitor%clock%is_on = arguments%timing /= timing_off
     call catch_signals()
-    call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler//')')
+    call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler//', source ' &
+      //source_version//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
     call make_request(arguments, monitor, request, error)
     if (allocated(error)) return
@@ -108,7 +111,7 @@ contains
   end function program_text
 
   !> What the results file keeps about the run, beside the effective deck.
-  pure subroutine describe_run(arguments, model, restarts, info)
+  subroutine describe_run(arguments, model, restarts, info)
     type(arguments_t), intent(in) :: arguments
     type(model_t), intent(in) :: model
     type(restarts_t), intent(in) :: restarts
@@ -119,6 +122,9 @@ contains
     info%version = version
     info%build = build_type//', '//compiler//', '//flags
     info%options = arguments%line
+    info%source = source_version
+    info%machine = processor_name()
+    info%checksum = restarts%effective_deck_checksum
   end subroutine describe_run
 
   !> Make the directory, the log and the effective deck, which restart files will hold.

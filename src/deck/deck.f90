@@ -10,6 +10,7 @@ module deck_m
   use log_m, only : log_t, to_text
   use contacts_m, only : contact_kind_t
   use model_m, only : model_t
+  use deck_findings_m, only : list_findings
   use deck_report_m, only : emit_warnings, emit_errors
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text
   use deck_reader_m, only : read_blocks, cut_deck
@@ -47,13 +48,14 @@ contains
 
   !> Read a deck. `error` holds every mistake of it, one after the other; warnings and the echo of
   !> what was understood go to the log.
-  subroutine read_deck(request, kinds, log, model, effective, error)
+  subroutine read_deck(request, kinds, log, model, effective, error, findings)
     type(deck_request_t), intent(in) :: request
     type(contact_kind_t), intent(in) :: kinds(:)             !! contact types that exist
     type(log_t), intent(inout) :: log
     type(model_t), intent(out) :: model
     character(:), allocatable, intent(out) :: effective      !! the deck as run
     type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable, intent(out), optional :: findings !! all messages, see list_findings
     type(deck_t) :: deck
     character(:), allocatable :: text
 
@@ -62,9 +64,11 @@ contains
       call cut_deck(request%path, text, deck)
     else
       call read_blocks(request%path, deck, error)
+      if (present(findings)) findings = ''
       if (allocated(error)) return
     end if
     call interpret_deck(deck, request, kinds, log, model, effective, error)
+    if (present(findings)) call list_findings(deck%report, findings)
   end subroutine read_deck
 
   !> As `read_deck`, of a deck that has been cut into blocks.

@@ -6,9 +6,9 @@ module deck_fields_m
   use kinds_m, only : wp
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
-  use deck_report_m, only : add_error, is_full
-  use deck_lines_m, only : deck_t, place_t, line_text, where_text, line_warning, marked_line, &
-    format_standard, format_long, format_i10, flag_comma
+  use deck_report_m, only : spot_t, add_error, is_full
+  use deck_lines_m, only : deck_t, place_t, line_text, where_text, line_warning, line_spot, &
+    written_text, shown_text, marked_line, format_standard, format_long, format_i10, flag_comma
   implicit none
   private
   public :: card_t, card_spec_t, make_spec, cut_card, read_numbers, field_text, field_error, &
@@ -264,7 +264,7 @@ contains
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
     character(*), intent(in) :: message
-    character(:), allocatable :: text
+    character(:), allocatable :: text, written
 
     card%bad(k) = .true.
     if (is_full(deck%report)) then
@@ -282,8 +282,29 @@ contains
     text = text//message
     if (card%present) text = text//new_line('a')//marked_line(line_text(deck, card%line), &
       card%first(k), max(card%last(k), card%first(k)))
-    call add_error(deck%report, card%line, text)
+    written = written_text(deck, card%line)
+    if (len(written) > 0) text = text//new_line('a')//'  | written: '//trim(shown_text(written))
+    call add_error(deck%report, card%line, text, field_spot(deck, spec, card, k, message))
   end subroutine field_error
+
+  !> A message that belongs to field `k`.
+  pure function field_spot(deck, spec, card, k, message) result(spot)
+    type(deck_t), intent(in) :: deck
+    type(card_spec_t), intent(in) :: spec
+    type(card_t), intent(in) :: card
+    integer, intent(in) :: k
+    character(*), intent(in) :: message
+    type(spot_t) :: spot
+
+    spot = line_spot(deck, card%line, message)
+    spot%card = spec%number
+    spot%field = k
+    spot%name = spec%names(k)
+    spot%found = printable(field_text(deck, card, k))
+    if (.not. card%present .or. len(written_text(deck, card%line)) > 0) return
+    spot%first = card%first(k)
+    spot%last = max(card%last(k), card%first(k))
+  end function field_spot
 
   !> The text with what is not printable replaced.
   pure function printable(text) result(shown)

@@ -6,12 +6,12 @@
 !> points there (its `first` is negative), so that what is parsed is what the effective deck shows.
 module deck_lines_m
   use, intrinsic :: iso_fortran_env, only : int8
-  use deck_report_m, only : report_t, add_error, add_warning
+  use deck_report_m, only : report_t, spot_t, add_error, add_warning
   use log_m, only : to_text
   implicit none
   private
   public :: deck_t, source_t, block_t, place_t, line_text, block_of_line, where_text, line_error, &
-    line_warning, replace_line, shown_text, marked_line, layout_mark, &
+    line_warning, replace_line, written_text, line_spot, shown_text, marked_line, layout_mark, &
     format_standard, format_long, format_i10, flag_comma, flag_parameter, flag_blank, max_source
 
   !> Column layout of a block.
@@ -62,6 +62,8 @@ module deck_lines_m
     integer :: n_block = 0
     character(:), allocatable :: patch        !! text of changed lines
     integer :: n_patch = 0                    !! characters of it in use
+    integer, allocatable :: replaced(:, :)    !! (3, n) lines in `patch`, and where their file has them
+    integer :: n_replaced = 0
     logical :: incomplete = .false.           !! an included file could not be read
     type(report_t) :: report
   end type deck_t
@@ -128,10 +130,11 @@ contains
     character(*), intent(in) :: message
 
     if (line < 1) then
-      call add_error(deck%report, line, where_text(deck, line)//': '//message)
+      call add_error(deck%report, line, where_text(deck, line)//': '//message, &
+        line_spot(deck, line, message))
     else
       call add_error(deck%report, line, where_text(deck, line)//': '//message//new_line('a') &
-        //'  | '//trim(shown_text(line_text(deck, line))))
+        //'  | '//trim(shown_text(line_text(deck, line))), line_spot(deck, line, message))
     end if
   end subroutine line_error
 
@@ -142,8 +145,25 @@ contains
     character(*), intent(in) :: key
     character(*), intent(in) :: message
 
-    call add_warning(deck%report, line, key, where_text(deck, line)//': '//message)
+    call add_warning(deck%report, line, key, where_text(deck, line)//': '//message, &
+      line_spot(deck, line, message))
   end subroutine line_warning
+
+  !> A message that belongs to a line as a whole.
+  pure function line_spot(deck, line, message) result(spot)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: line
+    character(*), intent(in) :: message
+    type(spot_t) :: spot
+    integer :: i_block
+
+    spot%message = message
+    i_block = block_of_line(deck, line)
+    if (line < 1 .or. i_block < 1) return
+    spot%file = deck%sources(deck%blocks(i_block)%source)%path
+    spot%line = deck%number(line)
+    spot%keyword = deck%blocks(i_block)%given
+  end function line_spot
 
   !> Give a line a new text (free format).
   subroutine replace_line(deck, line, text)
@@ -158,6 +178,7 @@ contains
       larger(:deck%n_patch) = deck%patch(:deck%n_patch)
       call move_alloc(larger, deck%patch)
     end if
+    call note_replaced(deck, line)
     deck%patch(deck%n_patch + 1:deck%n_patch + len(text)) = text
     deck%first(line) = -(deck%n_patch + 1)
     deck%n_patch = deck%n_patch + len(text)
@@ -166,6 +187,38 @@ contains
     if (index(text, ',') > 0) deck%flags(line) = flag_comma
     if (len_trim(text) == 0) deck%flags(line) = flag_blank
   end subroutine replace_line
+
+  !> Keep where the file has a line, for messages.
+  subroutine note_replaced(deck, line)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line
+    integer, allocatable :: larger(:, :)
+
+    if (deck%first(line) < 0) return
+    if (.not. allocated(deck%replaced)) allocate (deck%replaced(3, 64))
+    if (deck%n_replaced == size(deck%replaced, 2)) then
+      allocate (larger(3, 2*deck%n_replaced))
+      larger(:, :deck%n_replaced) = deck%replaced
+      call move_alloc(larger, deck%replaced)
+    end if
+    deck%n_replaced = deck%n_replaced + 1
+    deck%replaced(:, deck%n_replaced) = [line, deck%first(line), deck%last(line)]
+  end subroutine note_replaced
+
+  !> A line as its file has it where something replaced it, otherwise nothing.
+  pure function written_text(deck, line) result(text)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: line
+    character(:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, deck%n_replaced
+      if (deck%replaced(1, i) /= line) cycle
+      text = deck%sources(deck%blocks(block_of_line(deck, line))%source)%text( &
+        deck%replaced(2, i):deck%replaced(3, i))
+    end do
+  end function written_text
 
   !> The text fit for a terminal: other than printable ASCII becomes a question mark.
   pure function shown_text(text) result(shown)

@@ -5,19 +5,32 @@ module deck_report_m
   use log_m, only : log_t, warn, to_text
   implicit none
   private
-  public :: report_t, note_t, add_error, add_warning, has_warning, is_full, emit_warnings, &
-    emit_errors
+  public :: report_t, note_t, spot_t, add_error, add_warning, has_warning, is_full, emit_warnings, &
+    emit_errors, deck_order
 
   !> Messages kept of each kind; what comes later is counted.
   integer, parameter :: max_kept = 1000
   !> Errors shown; the rest is counted.
   integer, parameter :: max_shown = 1000
 
+  !> Where a message points to, for programs that read it. Unset: the deck as a whole.
+  type :: spot_t
+    character(:), allocatable :: message !! without place and card
+    character(:), allocatable :: file
+    integer :: line = 0                  !! in the file, 0: none
+    character(80) :: keyword = ''        !! without asterisk
+    integer :: card = 0, field = 0       !! 0: the line as a whole
+    character(12) :: name = ''              !! of the field
+    integer :: first = 0, last = 0       !! columns of the field; 0 where the line as read is not that of the file
+    character(:), allocatable :: found   !! text of the field
+  end type spot_t
+
   !> One message and the deck line that it belongs to.
   type :: note_t
     integer :: line = 0                !! index of the line in the deck, for the order
     character(:), allocatable :: text
     character(:), allocatable :: key   !! what makes a warning the same as another
+    type(spot_t) :: spot
   end type note_t
 
   !> Messages so far.
@@ -31,16 +44,18 @@ module deck_report_m
 contains
 
   !> One more error, `line` giving its place in the order.
-  subroutine add_error(report, line, text)
+  subroutine add_error(report, line, text, spot)
     type(report_t), intent(inout) :: report
     integer, intent(in) :: line
     character(*), intent(in) :: text
+    type(spot_t), intent(in) :: spot
 
     if (.not. allocated(report%errors)) allocate (report%errors(max_kept))
     report%n_error = report%n_error + 1
     if (report%n_error > max_kept) return
     report%errors(report%n_error)%line = line
     report%errors(report%n_error)%text = text
+    report%errors(report%n_error)%spot = spot
   end subroutine add_error
 
   !> Whether further errors are only counted, so that their text need not be made.
@@ -52,11 +67,12 @@ contains
   end function is_full
 
   !> One more warning; warnings of the same key are given once.
-  subroutine add_warning(report, line, key, text)
+  subroutine add_warning(report, line, key, text, spot)
     type(report_t), intent(inout) :: report
     integer, intent(in) :: line
     character(*), intent(in) :: key
     character(*), intent(in) :: text
+    type(spot_t), intent(in) :: spot
 
     if (.not. allocated(report%warnings)) allocate (report%warnings(max_kept))
     if (report%n_warning >= max_kept) return
@@ -65,6 +81,7 @@ contains
     report%warnings(report%n_warning)%line = line
     report%warnings(report%n_warning)%key = key
     report%warnings(report%n_warning)%text = text
+    report%warnings(report%n_warning)%spot = spot
   end subroutine add_warning
 
   !> Whether a warning of this key has been given.

@@ -2,13 +2,17 @@
 !> What the log says about the elements of each part.
 module element_log_m
   use element_dispatch_m, only : point_count
-  use log_m, only : log_t, write_log, to_text
+  use kinds_m, only : wp
+  use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
-  use parts_m, only : hourglass_stiffness
+  use parts_m, only : part_t, hourglass_stiffness
   use quad_full_m, only : has_mean_dilatation
   implicit none
   private
   public :: log_elements
+
+  !> Coefficient from which on hourglass control of squares rules their stable step, in both forms.
+  real(wp), parameter :: ruling_coefficient = 0.5_wp
 
 contains
 
@@ -35,8 +39,23 @@ contains
         end if
         call write_log(log, 'part '//to_text(part%id)//': '//text//', bulk viscosity Q1 ' &
           //to_text(part%hourglass%quadratic)//' Q2 '//to_text(part%hourglass%linear))
+        if (point_count(model%sections(part%section)) == 1) call warn_of_hourglass(part, log)
       end associate
     end do
   end subroutine log_elements
+
+  !> Warn where hourglass control makes the stable step of squares smaller than L/c (`hourglass_step`).
+  subroutine warn_of_hourglass(part, log)
+    type(part_t), intent(in) :: part
+    type(log_t), intent(inout) :: log
+    real(wp) :: share !! of L/c
+
+    share = ruling_coefficient/part%hourglass%coefficient
+    if (part%hourglass%form == hourglass_stiffness) share = sqrt(share)
+    if (part%hourglass%coefficient <= ruling_coefficient) return
+    call warn(log, 'part '//to_text(part%id)//': hourglass control of QM ' &
+      //to_text(part%hourglass%coefficient)//' lowers the stable step, that of squares to ' &
+      //to_text(share)//' of L/c; QM up to '//to_text(ruling_coefficient)//' would not')
+  end subroutine warn_of_hourglass
 
 end module element_log_m

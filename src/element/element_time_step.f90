@@ -1,11 +1,13 @@
 ! SPDX-License-Identifier: MIT
 !> Stable step of a chunk: L/c with L = area over the longest side or diagonal (ISDO of *CONTROL_TIMESTEP),
-!> and L/(Q + sqrt(Q^2 + c^2)), Q = Q2 c + Q1 L |t|, in compression under bulk viscosity.
+!> and L/(Q + sqrt(Q^2 + c^2)), Q = Q2 c + Q1 L |t|, in compression under bulk viscosity; never above the
+!> step that hourglass control allows (doc/theory/elements.md, "Stable step").
 module element_time_step_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use controls_m, only : length_by_diagonal
   use element_chunk_m, only : element_chunk_t
+  use hourglass_m, only : hourglass_step, harmless_coefficient
   use parts_m, only : hourglass_t
   implicit none
   private
@@ -13,11 +15,12 @@ module element_time_step_m
 
 contains
 
-  !> Smallest L/c of the chunk, and its smallest volume ratio.
-  pure subroutine stable_step(length_rule, sound_speed, viscosity, chunk, limit, volume)
+  !> Smallest stable step of the chunk, and its smallest volume ratio.
+  pure subroutine stable_step(length_rule, sound_speed, hourglass, nodes, chunk, limit, volume)
     integer, intent(in) :: length_rule
     real(wp), intent(in) :: sound_speed
-    type(hourglass_t), intent(in) :: viscosity !! its Q1 and Q2 count
+    type(hourglass_t), intent(in) :: hourglass  !! bulk viscosity too
+    integer, intent(in) :: nodes(4, chunk_size) !! a triangle repeats its third
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(out) :: limit             !! s
     real(wp), intent(out) :: volume            !! smallest A/A0
@@ -38,9 +41,11 @@ contains
       volume = min(volume, 1.0_wp + chunk%stretch(i))
     end do
     limit = 1.0_wp/(sound_speed*sqrt(largest))
-    if (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp) &
-      limit = minval(viscous_limit(1.0_wp/sqrt(squared), sound_speed, viscosity%quadratic, &
-      viscosity%linear, chunk%trace))
+    if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) &
+      limit = minval(viscous_limit(1.0_wp/sqrt(squared), sound_speed, hourglass%quadratic, &
+      hourglass%linear, chunk%trace))
+    if (hourglass%coefficient > harmless_coefficient) &
+      limit = min(limit, hourglass_step(hourglass, sound_speed, nodes, chunk))
   end subroutine stable_step
 
   !> Step of one element under bulk viscosity.

@@ -5,10 +5,15 @@ module hourglass_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use element_chunk_m, only : element_chunk_t
+  use parts_m, only : hourglass_t, hourglass_viscous
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: resist_viscously, resist_elastically
+  public :: resist_viscously, resist_elastically, hourglass_step, harmless_coefficient
+
+  !> Coefficient up to which hourglass control never asks for less than L/c in a convex quad of its initial area
+  !> (doc/theory/elements.md).
+  real(wp), parameter :: harmless_coefficient = 0.25_wp
 
 contains
 
@@ -59,5 +64,36 @@ contains
     end do
     work = 0.5_wp*dt*work
   end subroutine resist_elastically
+
+  !> Smallest step that hourglass control of the chunk allows. With masses rho A0/4 and
+  !> gamma.gamma = 4 + (|d31 x h.x|^2 + |d42 x h.x|^2)/(2 A^2): 2/omega of the stiffness form,
+  !> omega^2 = Q_h c^2 (B.B) gamma.gamma/(A A0); 2/rate of the viscous one, whose force is that of v(n-1/2),
+  !> rate = Q_h c sqrt(A) gamma.gamma/A0. A triangle has no hourglass.
+  pure function hourglass_step(hourglass, sound_speed, nodes, chunk) result(limit)
+    type(hourglass_t), intent(in) :: hourglass
+    real(wp), intent(in) :: sound_speed
+    integer, intent(in) :: nodes(4, chunk_size)  !! a triangle repeats its third
+    type(element_chunk_t), intent(in) :: chunk
+    real(wp) :: limit                            !! s
+    real(wp) :: pattern(chunk_size), inverse(chunk_size), largest
+    integer :: i
+
+    do i = 1, chunk_size
+      inverse(i) = abs(chunk%inverse_area(i))
+      pattern(i) = 4.0_wp + 0.5_wp*inverse(i)**2 &
+        *((chunk%x31(i)*chunk%hy(i) - chunk%y31(i)*chunk%hx(i))**2 &
+        + (chunk%x42(i)*chunk%hy(i) - chunk%y42(i)*chunk%hx(i))**2)
+      pattern(i) = pattern(i)*abs(1.0_wp + chunk%stretch(i))
+      if (nodes(4, i) == nodes(3, i)) pattern(i) = 0.0_wp
+    end do
+    if (hourglass%form == hourglass_viscous) then
+      largest = maxval(pattern*sqrt(inverse))
+      limit = 2.0_wp/max(hourglass%coefficient*sound_speed*largest, tiny(1.0_wp))
+    else
+      largest = maxval(0.5_wp*pattern*inverse**2 &
+        *(chunk%x31**2 + chunk%y31**2 + chunk%x42**2 + chunk%y42**2))
+      limit = 2.0_wp/(sound_speed*sqrt(max(hourglass%coefficient*largest, tiny(1.0_wp))))
+    end if
+  end function hourglass_step
 
 end module hourglass_m

@@ -52,7 +52,7 @@ contains
     call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
     call resist(i_chunk, material, hourglass, dt, stress, elements, chunk)
     call form_forces(stress, chunk)
-    call stable_step(length_rule, material%sound_speed, hourglass, chunk, &
+    call stable_step(length_rule, material%sound_speed, hourglass, nodes, chunk, &
       elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
   end subroutine advance_one_point
 

@@ -20,6 +20,9 @@ module results_tables_m
     character(:), allocatable :: version        !! of the program
     character(:), allocatable :: build          !! compiler and options
     character(:), allocatable :: options        !! command line
+    character(:), allocatable :: source         !! commit that the program was built from
+    character(:), allocatable :: machine        !! processor
+    character(:), allocatable :: checksum       !! CRC-32 of the deck as run
     character(:), allocatable :: effective_deck !! the deck as run
   end type run_info_t
 
@@ -41,6 +44,9 @@ contains
     call write_known(group, 'version', run_info%version, error)
     call write_known(group, 'build', run_info%build, error)
     call write_known(group, 'options', run_info%options, error)
+    call write_known(group, 'source', run_info%source, error)
+    call write_known(group, 'machine', run_info%machine, error)
+    call write_known(group, 'effective_deck_crc32', run_info%checksum, error)
     if (allocated(run_info%effective_deck)) &
       call write_text(group, 'effective_deck', run_info%effective_deck, error)
     call h5gclose_f(group, status)

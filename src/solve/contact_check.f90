@@ -2,6 +2,7 @@
 !> What the run says about its interfaces at its start and at its end.
 module contact_check_m
   use contact_log_m, only : report_initial_contact, report_released
+  use contact_overhang_m, only : report_overhang
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, fitting_scale
   use controls_m, only : contact_step_free, contact_step_rules
   use kinds_m, only : wp
@@ -17,7 +18,8 @@ module contact_check_m
 
 contains
 
-  !> Initial penetrations, and a warning where the penalty demands a smaller step than `state%dt`.
+  !> Initial penetrations, places just beyond ends of the master, and a warning where the penalty demands a smaller step
+  !> than `state%dt`.
   subroutine report_contact_start(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -31,6 +33,7 @@ contains
       state%contact_mass, state%contacts, [(1.0_wp, i=1, size(bounds))], bounds)
     do i = 1, size(model%contacts)
       call report_initial_contact(model%contacts(i), model, state%contacts(i), log)
+      call report_overhang(model%contacts(i), model, state%contacts(i), log)
       if (model%controls%contact_step == contact_step_free) cycle
       if (state%dt <= stable_step(element_limit, bounds(i))) cycle
       call warn_of_step(model, i, state%dt, element_limit, bounds(i), log)

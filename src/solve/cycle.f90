@@ -78,7 +78,8 @@ contains
     type(cycle_t), intent(inout) :: cycle
     integer :: i
 
-    cycle%last = is_last(cycle%steps, state%cycle, state%time) .or. cycle%last
+    cycle%last = is_last(cycle%steps, state%cycle, state%time) .or. cycle%last .or. &
+      monitor%only_checks
     cycle%due = find_due(monitor, state%time, state%dt, state%cycle == 0 .or. cycle%last)
     cycle%due%plot = cycle%due%plot .or. (cycle%plots .and. monitor%has_plot)
     cycle%plots = .false.

@@ -15,7 +15,7 @@ module health_m
 
 contains
 
-  !> Volumes must stay positive and stresses finite.
+  !> Volumes must stay positive, stresses and contact forces finite.
   subroutine check_elements(model, state, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -25,10 +25,34 @@ contains
 
     volumes_good = minval(state%elements%volume_limit) > 0.0_wp
     checksum = sum(state%elements%deviatoric_work) + sum(state%elements%hourglass_work)
+    if (allocated(state%contacts)) checksum = checksum + sum(state%contacts%energy)
     ! Not a number, or beyond all numbers.
     if (volumes_good .and. abs(checksum) <= huge(1.0_wp)) return
-    call name_bad_chunk(model, state, error)
+    if (allocated(state%contacts)) call name_bad_contact(model, state, error)
+    if (.not. allocated(error)) call name_bad_chunk(model, state, error)
   end subroutine check_elements
+
+  !> The interface whose forces are not finite though its nodes are at finite places: that is where it began.
+  subroutine name_bad_contact(model, state, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i, k
+
+    do i = 1, size(state%contacts)
+      associate (contact => state%contacts(i))
+        if (.not. all(abs(contact%places) <= huge(1.0_wp))) cycle
+        do k = 1, size(contact%force, 2)
+          if (all(abs(contact%force(:, k)) <= huge(1.0_wp))) cycle
+          call raise(error, 'a contact force that is not finite at node ' &
+            //to_text(model%mesh%node_id(contact%nodes(k)))//' of interface ' &
+            //to_text(model%contacts(i)%id)//' at cycle '//to_text(state%cycle)//', time ' &
+            //to_text(state%time), status_run)
+          return
+        end do
+      end associate
+    end do
+  end subroutine name_bad_contact
 
   !> Find the element at fault. The nodes have moved on since its forces were formed: a stress that is
   !> not finite has spoilt the corners that neighbours share, so stresses are looked at before areas.
@@ -86,7 +110,8 @@ contains
       //'millionth of it)', status_run)
   end subroutine check_step
 
-  !> The energy ratio must stay within ENDENG per cent of one where the deck sets it, and energies finite.
+  !> Energies must be finite; where the deck sets ENDENG the energy ratio must stay within so many per cent of
+  !> one, and contact forces must not have created more than that of the largest energy.
   subroutine check_energy(controls, energies, error)
     type(controls_t), intent(in) :: controls
     type(energies_t), intent(in) :: energies
@@ -98,8 +123,21 @@ contains
       abs(energy_ratio(energies) - 1.0_wp) > 0.01_wp*controls%energy_limit) then
       call raise(error, 'the energy ratio '//to_text(energy_ratio(energies))//' changed by more than ' &
         //to_text(controls%energy_limit)//' per cent (ENDENG)', status_run)
+    else if (controls%energy_limit > 0.0_wp .and. &
+      energies%contact < -0.01_wp*controls%energy_limit*largest_energy(energies)) then
+      call raise(error, 'the contact forces created energy: '//to_text(-energies%contact)//' of ' &
+        //to_text(largest_energy(energies))//', more than '//to_text(controls%energy_limit) &
+        //' per cent (ENDENG); the penalty or the time step is too large', status_run)
     end if
   end subroutine check_energy
+
+  !> The largest of what came in and what is stored, to measure others by.
+  pure function largest_energy(energies) result(largest)
+    type(energies_t), intent(in) :: energies
+    real(wp) :: largest
+
+    largest = max(abs(energies%initial), abs(energies%external_work), energies%internal)
+  end function largest_energy
 
   !> Warnings at the end of a run whose figures deserve a second look.
   subroutine judge_energies(energies, log)
@@ -107,10 +145,11 @@ contains
     type(log_t), intent(inout) :: log
     real(wp) :: largest
 
-    largest = max(abs(energies%initial), abs(energies%external_work), energies%internal)
+    largest = largest_energy(energies)
     if (energies%contact < -0.05_wp*largest) call warn(log, 'the contact forces created energy: ' &
       //to_text(energies%contact)//' of '//to_text(largest) &
-      //'; the penalty or the time step is too large')
+      //'; the penalty or the time step is too large, or places of the slave came in deep beside the ' &
+      //'end of a surface (SRCH limits that)')
     if (energies%hourglass > 0.1_wp*max(energies%internal, 1.0e-6_wp*largest)) call warn(log, &
       'the hourglass energy '//to_text(energies%hourglass)//' is more than 10 % of the internal ' &
       //'energy '//to_text(energies%internal))

@@ -36,6 +36,7 @@ module monitor_m
     type(progress_t) :: progress
     type(restarts_t) :: restarts
     logical :: has_plot = .false. !! the deck asks for plot states
+    logical :: only_checks = .false. !! the state at time zero is made, and no file
   end type monitor_t
 
 contains
@@ -120,6 +121,7 @@ contains
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
 
+    if (monitor%only_checks) return
     associate (shot => monitor%snapshot, histories => monitor%histories)
       if (due%glstat) call append_glstat(histories, shot)
       if (due%rcforc) call append_rcforc(histories, model, shot)

@@ -8,7 +8,7 @@ program bench_contact
   use, intrinsic :: iso_fortran_env, only : output_unit
   use contact_factories_m, only : problem_t, make_problem, line
   use contact_force_m, only : start_contact, apply_contact
-  use kinds_m, only : wp, long
+  use kinds_m, only : wp
   implicit none
 
   integer, parameter :: n_type = 7, n_round = 5, sizes(3) = [20, 1000, 100000]
@@ -16,7 +16,7 @@ program bench_contact
   !> Steps times slave nodes of a round.
   integer, parameter :: n_work = 200000
   real(wp), parameter :: slip = 1.0e-4_wp
-  integer :: i_scene, i_size, chosen(2)
+  integer :: i_scene, i_size, chosen(2) !! slave nodes and type asked for, 0: all
   character(20) :: argument
 
   chosen = 0
@@ -27,10 +27,13 @@ program bench_contact
   write (output_unit, '(a)') 'scene,slave_nodes,type,points,active,ns_step,ns_step_median,' &
     //'ns_slave_node,ns_point,of_type_1'
   do i_scene = 1, size(scenes)
-    do i_size = 1, size(sizes)
-      if (chosen(1) > 0 .and. chosen(1) /= sizes(i_size)) cycle
-      call time_types(scenes(i_scene), sizes(i_size))
-    end do
+    if (chosen(1) > 0) then
+      call time_types(scenes(i_scene), chosen(1))
+    else
+      do i_size = 1, size(sizes)
+        call time_types(scenes(i_scene), sizes(i_size))
+      end do
+    end if
   end do
 
 contains

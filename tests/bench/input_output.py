@@ -1,25 +1,20 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Reading a large deck and writing states, beside the disk's own rate.
-
-usage: input_output.py --program SLIDELINE --out FOLDER [--elements 1000000] [--states 20] [--repeats 3]
+"""Reading a large deck and writing states, beside the disk's own rate; memory of a run.
 
 Reading: the deck of elements.py, with an initial velocity for each node, and some steps, in which the memory is what
-the run needs. Goals: at most 3 s, and a peak of at most 1.5 times that memory. Writing: states of a quarter as
-many elements, the phase `output` with all that it fills in, beside a plain file of as many bytes written in the same
-minute (neither is forced to the disk). Goal: half that rate. input_output.csv holds the medians.
+the run needs. Goals: at most 3 s for a million elements, a peak of at most 1.5 times that memory, and 250 bytes an
+element. Writing: states of a quarter as many elements, the phase `output` with all that it fills in, beside a plain
+file of as many bytes written in the same minute (neither is forced to the disk). Goal: half that rate.
 """
-import argparse
-import csv
 import os
-import statistics
 import subprocess
 import time
 from pathlib import Path
 
-from elements import phase_seconds, write_deck
+from elements import write_deck
+from measuring import Variant, phase_seconds
 
-READING_STEPS, WRITING_STEPS = 40, 40
+READING_STEPS, WRITING_STEPS, STATES = 40, 40, 20
 PIECE = 1 << 24  # bytes of one write of the plain file
 
 
@@ -47,9 +42,10 @@ def read_once(program, deck, folder):
     if process.returncode:
         raise SystemExit(f"{deck}: the program ended with status {process.returncode}")
     seconds = phase_seconds(folder / "reading.timing.csv")["input"]
-    reading = max(used for at, used, _, _ in samples if at <= seconds)
-    stepping = max(present for at, _, present, _ in samples if at > seconds)
-    return seconds, reading, max(peak for _, _, _, peak in samples), stepping
+    largest = max(peak for _, _, _, peak in samples)
+    reading = max((used for at, used, _, _ in samples if at <= seconds), default=seconds)
+    stepping = max((present for at, _, present, _ in samples if at > seconds), default=largest)
+    return seconds, reading, largest, stepping
 
 
 def write_plain(path, size):
@@ -84,47 +80,43 @@ def states_deck(path, elements, states):
     path.write_text(text.replace("*END", plot), encoding="ascii")
 
 
-def measure(options):
-    """Rows (quantity, unit, median, goal)."""
-    options.out.mkdir(parents=True, exist_ok=True)
-    large, states = options.out / "reading.k", options.out / "states.k"
-    write_deck(large, options.elements, False, steps=READING_STEPS)
-    states_deck(states, options.elements // 4, options.states)
-    reads, writes = [], []
-    for repeat in range(options.repeats):
-        print(f"round {repeat + 1} of {options.repeats}", flush=True)
-        reads.append(read_once(options.program, large, options.out))
-        writes.append(write_once(options.program, states, options.out))
-    middle = statistics.median
+def write_decks(folder, elements):
+    """Decks of reading, of writing and of a run that is nothing but the program, with their elements."""
+    decks = {}
+    for name, count in (("reading", elements), ("nothing", 64)):
+        decks[name] = folder / f"{name}.k", write_deck(folder / f"{name}.k", count, False,
+                                                       steps=READING_STEPS)[0]
+    states_deck(folder / "states.k", elements // 4, STATES)
+    decks["states"] = folder / "states.k", elements // 4
+    return decks
+
+
+def deck_bytes(path):
+    """Bytes of a deck with what it includes."""
+    lines = path.read_text(encoding="ascii").splitlines()
+    included = [path.with_name(name) for line, name in zip(lines, lines[1:]) if line == "*INCLUDE"]
+    return sum(file.stat().st_size for file in [path, *included])
+
+
+def time_files(options, decks):
+    """[(variant, value)] of one run of each deck."""
+    (large, elements), (small, _) = decks["reading"], decks["nothing"]
+    clock, used, peak, stepping = read_once(options.program, large, options.out)
+    empty = read_once(options.program, small, options.out)[3]
+    size, states, plain = write_once(options.program, decks["states"][0], options.out)
+    megabytes = deck_bytes(large) / 1.0e6
+
+    def row(part, case, unit, value, count=elements):
+        return Variant(part, case, count, 1, unit), value
+
     return [
-        ("deck", "MB", large.stat().st_size / 1.0e6, None),
-        ("reading", "s", middle(read[0] for read in reads), 3.0),
-        ("reading, processor time", "s", middle(read[1] for read in reads), 3.0),
-        ("peak memory", "MB", middle(read[2] for read in reads), None),
-        ("memory of the steps", "MB", middle(read[3] for read in reads), None),
-        ("peak over steps", "", middle(read[2] / read[3] for read in reads), 1.5),
-        ("states written", "MB", writes[0][0], None),
-        ("states", "MB/s", middle(write[1] for write in writes), None),
-        ("plain file", "MB/s", middle(write[2] for write in writes), None),
-        ("states over plain file", "", middle(write[1] / write[2] for write in writes), 0.5)]
-
-
-def main():
-    """Measure, write the table and print it."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--program", required=True)
-    parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--elements", type=int, default=1000000)
-    parser.add_argument("--states", type=int, default=20)
-    parser.add_argument("--repeats", type=int, default=3)
-    rows = measure(options := parser.parse_args())
-    with (options.out / "input_output.csv").open("w", newline="", encoding="ascii") as table:
-        writer = csv.writer(table)
-        writer.writerow(("quantity", "unit", "median", "goal"))
-        writer.writerows((name, unit, f"{value:.4g}", goal) for name, unit, value, goal in rows)
-    for name, unit, value, goal in rows:
-        print(f"{name:32s}{value:10.2f} {unit:5s}" + (f" goal {goal}" if goal else ""))
-
-
-if __name__ == "__main__":
-    main()
+        row("input", "deck", "MB", megabytes), row("input", "reading", "s", clock),
+        row("input", "reading, processor time", "s", used),
+        row("input", "rate of reading", "MB/s", megabytes / max(used, 1.0e-3)),
+        row("memory", "steps", "bytes/element", 1.0e6 * (stepping - empty) / elements),
+        row("memory", "peak", "bytes/element", 1.0e6 * (peak - empty) / elements),
+        row("memory", "peak over steps", "", peak / stepping),
+        row("output", "states written", "MB", size, decks["states"][1]),
+        row("output", "states", "MB/s", states, decks["states"][1]),
+        row("output", "plain file", "MB/s", plain, decks["states"][1]),
+        row("output", "states over plain file", "", states / plain, decks["states"][1])]

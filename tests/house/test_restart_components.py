@@ -27,7 +27,7 @@ KEPT = {
     "monitor_t": ("solve/monitor.f90", "solve/restart.f90", "monitor%", {
         "results": "times of its states are kept", "snapshot": "filled anew before it is written",
         "log": "of each run", "clock": "of each run", "progress": "of each run",
-        "restarts": "n_dump is kept", "has_plot": "from the deck"}),
+        "restarts": "n_dump is kept", "has_plot": "from the deck", "only_checks": "of a check"}),
     "cycle_t": ("solve/cycle.f90", "solve/restart.f90", "", {
         "writes": "set in each cycle", "finished": "not when a file is written",
         "last": "found again", "plots": "of the run that was asked", "due": "set in each cycle",

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The result files: names, headers, number format, states, histories in HDF5, VTK."""
 import re
+import zlib
 
 import h5py
 import numpy as np
@@ -326,3 +327,20 @@ def test_triangle_is_a_triangle(slideline, tmp_path):
         assert stream["VTKHDF/Types"][:].tolist() == [9, 5]
         assert stream["VTKHDF/Offsets"][:].tolist() == [0, 4, 7]
         assert stream["VTKHDF/Connectivity"][:].tolist() == [0, 1, 2, 3, 1, 4, 2]
+
+
+def test_a_result_says_what_made_it(slideline, tmp_path):
+    """Source, processor and the checksum that another program finds for the deck as run."""
+    slideline("d=r", deck=drop(end_time=0.002))
+    with h5py.File(tmp_path / "r/job.vtkhdf") as stream:
+        run = dict(stream["run"].attrs)
+    expected = f"{zlib.crc32((tmp_path / 'r/job.effective.k').read_bytes()):08X}"
+    assert text_of(run["effective_deck_crc32"]) == expected
+    version = slideline("--version").stdout
+    assert f"source {text_of(run['source'])})" in version and len(text_of(run["source"])) >= 7
+    assert text_of(run["machine"])
+
+
+def text_of(value):
+    value = np.asarray(value).ravel()[0]
+    return value.decode() if isinstance(value, bytes) else str(value)

@@ -8,7 +8,8 @@ import pytest
 
 from slideline_tools import cli
 
-COMMANDS = ("info", "plot", "animate", "compare", "advise", "make-deck", "bless")
+COMMANDS = ("info", "plot", "animate", "compare", "advise", "report", "draw", "make-deck", "bless",
+            "completion")
 
 
 def test_help_lists_the_commands(tool):

@@ -40,16 +40,17 @@ def test_jobs():
     assert {job.labels["sweep"] for job in quick} == set(shapes.QUICK)
 
 
-@pytest.mark.parametrize("sweep, value, verdict", [
-    ("tilt", 15.0, "stable"), ("hourglass_2", 1.0, "blown up")])
-def test_runs_and_page(slideline, tmp_path, sweep, value, verdict):
+@pytest.mark.parametrize("sweep, value, ctype, verdict", [
+    ("tilt", 15.0, 5, "stable"), ("hourglass_2", 1.0, 5, "stable"), ("overhang", 1.1, 2, "blown up"),
+    ("overhang_srch", 1.1, 2, "stable")])
+def test_runs_and_page(slideline, tmp_path, sweep, value, ctype, verdict):
     case = shapes.SWEEPS[sweep][1][value]
     folder = tmp_path / "runs" / "one"
     folder.mkdir(parents=True)
-    (folder / "impact.k").write_text(deck_of(case, 5))
+    (folder / "impact.k").write_text(deck_of(case, ctype))
     subprocess.run([slideline, "i=impact.k", "d=.", "punit=3"], cwd=folder, capture_output=True,
                    check=False)
-    labels = {"sweep": sweep, "value": value, "type": 5}
+    labels = {"sweep": sweep, "value": value, "type": ctype}
     row = {"run": "one", **labels, **shapes.measure(Job("one", "", "impact", (), labels), folder)}
     assert row["verdict"] == verdict
     shapes.chart([row], tmp_path)

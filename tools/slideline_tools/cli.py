@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The command `slideline-tools`: info | plot | animate | compare | advise | bless | make-deck."""
+"""The command `slideline-tools`: info, plot, animate, compare, advise, make-deck and bless are here,
+the other commands in the package `commands`."""
 import argparse
 import dataclasses
 import os
@@ -8,6 +9,9 @@ import sys
 import tempfile
 
 from slideline_tools import UserError, __version__
+from slideline_tools.commands import completion, help_texts
+from slideline_tools.commands import draw as draw_command
+from slideline_tools.commands import report as report_command
 
 OK, FAILED, UNUSABLE = 0, 1, 2
 NO_READER = 141  # what a shell gives for a program that SIGPIPE ends
@@ -267,12 +271,14 @@ def bless(options):
 def build_parser():
     parser = argparse.ArgumentParser(
         prog="slideline-tools",
-        description="Look into, draw and compare results of slideline, and write scene decks.")
+        description="Look into, draw and compare results of slideline, draw models before their run, "
+                    "and write scene decks.")
     parser.add_argument("--version", action="version", version=f"slideline-tools {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (add_info, add_plot, add_animate, add_compare, add_advise, add_make_deck,
-                add_bless):
+    for add in (add_info, add_plot, add_animate, add_compare, add_advise, report_command.add,
+                draw_command.add, add_make_deck, add_bless, completion.add):
         add(commands)
+    help_texts.add_examples(parser, commands)
     return parser
 
 

@@ -1,12 +1,20 @@
 # SPDX-License-Identifier: MIT
 """History tables: columns over time, as in the CSV files and in `/history` of a results file."""
+from __future__ import annotations
+
 import csv
+import os
 import pathlib
+import typing
 
 import numpy as np
 
 from slideline_tools import UserError
 
+if typing.TYPE_CHECKING:
+    import pandas
+
+TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact")
 TEXT_COLUMNS = ("side", "phase")
 INTEGER_COLUMNS = ("cycle", "interface", "node", "part", "n_active", "calls")
 ENTITY_COLUMNS = ("interface", "side", "node", "part")
@@ -24,46 +32,59 @@ class History:
     series per entity. Values are in the units of the deck; `time` is in its unit of time.
     """
 
-    def __init__(self, name, columns):
+    def __init__(self, name: str, columns: dict[str, np.ndarray]) -> None:
         """`name`: table name such as 'glstat'; `columns`: dict of equally long arrays."""
         self.name = name
         self.columns = dict(columns)
         if len({len(column) for column in self.columns.values()}) > 1:
             raise HistoryError(f"{name}: columns of different length")
 
-    def __getitem__(self, column):
+    def __getitem__(self, column: str) -> np.ndarray:
         try:
             return self.columns[column]
         except KeyError:
             raise HistoryError(f"{self.name} has no column '{column}'; "
                                f"it has {', '.join(self.columns)}") from None
 
-    def __contains__(self, column):
+    def __contains__(self, column: str) -> bool:
         return column in self.columns
 
-    def __len__(self):
+    def __len__(self) -> int:
         """Number of rows."""
         return len(next(iter(self.columns.values()), ()))
 
     @property
-    def entity_columns(self):
+    def entity_columns(self) -> list[str]:
         """Names of the columns that tell the series of this table apart."""
         return [name for name in ENTITY_COLUMNS if name in self.columns]
 
     @property
-    def value_columns(self):
+    def value_columns(self) -> list[str]:
         """Names of the columns that are neither time, entity nor text."""
         return [name for name in self.columns
                 if name != "time" and name not in ENTITY_COLUMNS + TEXT_COLUMNS]
 
-    def where(self, **wanted):
+    def frame(self) -> pandas.DataFrame:
+        """The table as a pandas DataFrame; `attrs["table"]` is its name.
+
+        pandas is an extra: pip install 'slideline-tools[frames]'. HistoryError without it.
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise HistoryError("frames need pandas: pip install 'slideline-tools[frames]'") from None
+        frame = pandas.DataFrame(self.columns)
+        frame.attrs["table"] = self.name
+        return frame
+
+    def where(self, **wanted) -> History:
         """The rows in which each named column has the given value."""
         keep = np.ones(len(self), dtype=bool)
         for name, value in wanted.items():
             keep &= self[name] == value
         return History(self.name, {name: column[keep] for name, column in self.columns.items()})
 
-    def series(self):
+    def series(self) -> list[tuple[tuple, History]]:
         """One (entity, History) per entity in order of appearance; entity = tuple of values."""
         names = self.entity_columns
         if not names:
@@ -75,13 +96,13 @@ class History:
                                           in self.columns.items()}))
                 for key, rows in rows_of.items()]
 
-    def entity_label(self, entity):
+    def entity_label(self, entity: tuple) -> str:
         """Text for one entity, for example 'interface 1, slave'."""
         return ", ".join(str(value) if name == "side" else f"{name} {value}"
                          for name, value in zip(self.entity_columns, entity))
 
 
-def read_csv(path):
+def read_csv(path: str | os.PathLike) -> History:
     """The table in a CSV file of the program or in one of the same form.
 
     Raises HistoryError if the file is missing, empty, ragged or holds text in a number column.
@@ -106,7 +127,7 @@ def read_csv(path):
                                       for name, texts in zip(names, columns)})
 
 
-def table_name(path):
+def table_name(path: str | os.PathLike) -> str:
     """'glstat' for `job.glstat.csv`; the stem of any other CSV file."""
     return pathlib.Path(path).stem.rsplit(".", 1)[-1]
 
@@ -124,7 +145,7 @@ def as_column(path, name, texts):
     return values
 
 
-def from_hdf5(name, group):
+def from_hdf5(name: str, group) -> History:
     """The table in one group of `/history` (one 1-D dataset per column)."""
     columns = {}
     for column in column_order(group):

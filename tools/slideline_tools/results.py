@@ -9,14 +9,22 @@ arrays with the state as first index, points and cells in the order of the deck:
     results.points[-1]                      # (n_node, 3), current coordinates of the last state
     results.cell_field("plastic_strain")    # (n_state, n_cell)
     results.history("glstat")["kinetic"]    # one column of a history table
+    results.frame("glstat")                 # the whole table for pandas
 """
+from __future__ import annotations
+
+import os
 import pathlib
+import typing
 
 import h5py
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.histories import from_hdf5
+from slideline_tools.histories import TABLES, History, from_hdf5, read_csv
+
+if typing.TYPE_CHECKING:
+    import pandas
 
 TRIANGLE, QUAD = 5, 9
 STRESS_COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
@@ -27,22 +35,42 @@ class ResultsError(UserError):
     """A file that is missing, is no results file, or lacks what was asked of it."""
 
 
-def read(path):
+def read(path: str | os.PathLike) -> Results:
     """Open a results file; raises ResultsError if it is none."""
+    return Results(path)
+
+
+def open_run(path: str | os.PathLike) -> Results:
+    """The results of a run by its folder, its results file or another of its files."""
+    path = pathlib.Path(path)
+    if path.is_dir():
+        found = sorted(path.glob("*.vtkhdf"))
+        if len(found) != 1:
+            names = ", ".join(file.name for file in found)
+            raise ResultsError(f"{path}: " + (f"several runs: {names}; name one" if found
+                                              else "no results file (.vtkhdf)"))
+        return Results(found[0])
+    for ending in (".log", ".effective.k", ".timing.csv", *(f".{name}.csv" for name in TABLES)):
+        if path.name.endswith(ending):
+            return Results(path.with_name(path.name[:-len(ending)] + ".vtkhdf"))
     return Results(path)
 
 
 class Results:
     """States, histories and run information of one results file (all read on demand).
 
-    `path`     the file
-    `times`    (n_state,) time of each state, in the unit of time of the deck (s in SI decks)
-    `run`      dict of texts: deck, title, version, build, options, effective_deck
+    `path`          the file
+    `times`         (n_state,) time of each state, in the unit of time of the deck (s in SI decks)
+    `n_node`, `n_cell`, `n_state`
+    `point_fields`, `cell_fields`   names for point_field and cell_field
+    `histories`     names for history and frame
+    `run`           dict of texts: deck, title, version, build, options, effective_deck
+    `version`       of the VTKHDF format
     """
 
-    def __init__(self, path):
+    def __init__(self, path: str | os.PathLike) -> None:
         self.path = pathlib.Path(path)
-        self._arrays = {}
+        self._arrays: dict = {}
         try:
             with h5py.File(self.path, "r") as stream:
                 self._read_structure(stream)
@@ -50,7 +78,7 @@ class Results:
             reason = "no such file" if not self.path.exists() else problem
             raise ResultsError(f"cannot read {self.path}: {reason}") from problem
 
-    def _read_structure(self, stream):
+    def _read_structure(self, stream: h5py.File) -> None:
         root = stream["VTKHDF"]
         kind = root.attrs["Type"]
         kind = kind.decode() if isinstance(kind, bytes) else str(kind)
@@ -63,11 +91,13 @@ class Results:
         self.times = steps["Values"][:int(steps.attrs["NSteps"])].astype(float)
         self.point_fields = list(root.get("PointData", ()))
         self.cell_fields = list(root.get("CellData", ()))
-        self.histories = list(stream.get("history", ()))
+        self._in_file = list(stream.get("history", ()))
+        self.histories = self._in_file + [name for name in TABLES if name not in self._in_file
+                                          and self._table_path(name).exists()]
         self.run = self._run_texts(stream.get("run"))
 
     @staticmethod
-    def _run_texts(group):
+    def _run_texts(group: h5py.Group | None) -> dict[str, str]:
         if group is None:
             return {}
         texts = dict(group.attrs)
@@ -75,11 +105,11 @@ class Results:
         return {name: plain_text(value) for name, value in texts.items()}
 
     @property
-    def n_state(self):
+    def n_state(self) -> int:
         """Number of stored states."""
         return len(self.times)
 
-    def _stacked(self, path, offsets, rows):
+    def _stacked(self, path: str, offsets: str, rows: int) -> np.ndarray:
         """All states of a stacked array: (n_state, rows[, components])."""
         if path not in self._arrays:
             with h5py.File(self.path, "r") as stream:
@@ -93,34 +123,35 @@ class Results:
         return self._arrays[path]
 
     @property
-    def points(self):
+    def points(self) -> np.ndarray:
         """(n_state, n_node, 3): current coordinates in the unit of length of the deck."""
         return self._stacked("Points", "Steps/PointOffsets", self.n_node)
 
-    def point_field(self, name):
+    def point_field(self, name: str) -> np.ndarray:
         """(n_state, n_node) or (n_state, n_node, 3) of a field at the nodes.
 
-        displacement, velocity, contact_force (per unit depth), contact_pressure, gap, node_id.
+        displacement (length), velocity (length/time), contact_force (force per unit depth),
+        contact_pressure (stress), gap (length, negative in penetration), node_id.
         """
         self._require(name, self.point_fields, "point")
         return self._stacked(f"PointData/{name}", f"Steps/PointDataOffsets/{name}", self.n_node)
 
-    def cell_field(self, name):
+    def cell_field(self, name: str) -> np.ndarray:
         """(n_state, n_cell) or (n_state, n_cell, 6) of a field in the elements.
 
-        stress (xx yy zz xy yz xz, tension positive), plastic_strain (dimensionless), pressure
-        (= -trace/3), mises, part_id, element_id.
+        stress (xx yy zz xy yz xz, tension positive), pressure (= -trace/3) and mises in the unit of
+        stress of the deck, plastic_strain (dimensionless), part_id, element_id.
         """
         self._require(name, self.cell_fields, "cell")
         return self._stacked(f"CellData/{name}", f"Steps/CellDataOffsets/{name}", self.n_cell)
 
-    def _require(self, name, present, kind):
+    def _require(self, name: str, present: list[str], kind: str) -> None:
         if name not in present:
             raise ResultsError(f"{self.path}: no {kind} field '{name}'; "
                                f"there are {', '.join(present) or 'none'}")
 
     @property
-    def cells(self):
+    def cells(self) -> np.ndarray:
         """(n_cell, 4) indices of the nodes (from 0); a triangle repeats its last node."""
         if "cells" not in self._arrays:
             with h5py.File(self.path, "r") as stream:
@@ -137,17 +168,39 @@ class Results:
                 axis=1).astype(int)
         return self._arrays["cells"]
 
-    def history(self, name):
-        """A history table (see histories.History): glstat, rcforc, nodout, contact or matsum."""
+    def _table_path(self, name: str) -> pathlib.Path:
+        """The CSV file of a table beside the results file."""
+        return self.path.with_name(f"{self.path.stem}.{name}.csv")
+
+    def history(self, name: str) -> History:
+        """A history table (see histories.History): glstat, rcforc, nodout, contact or matsum.
+
+        The program puts the tables into the results file at the end of the run; before, and of a
+        killed run, they are read from the CSV files beside it. Columns and units: doc/results.md.
+        """
         if name not in self.histories:
             raise ResultsError(f"{self.path}: no history '{name}'; "
                                f"there are {', '.join(self.histories) or 'none'}")
         if name not in self._arrays:
-            with h5py.File(self.path, "r") as stream:
-                self._arrays[name] = from_hdf5(name, stream["history"][name])
+            if name in self._in_file:
+                with h5py.File(self.path, "r") as stream:
+                    self._arrays[name] = from_hdf5(name, stream["history"][name])
+            else:
+                self._arrays[name] = read_csv(self._table_path(name))
         return self._arrays[name]
 
-    def state_index(self, wanted):
+    def frame(self, name: str) -> pandas.DataFrame:
+        """A history table as a pandas DataFrame: columns and rows of the CSV file, time and
+        entities (interface, side, node, part) first.
+
+        `attrs` has the table (`table`) and the title of the run (`title`). pandas is an extra:
+        pip install 'slideline-tools[frames]'.
+        """
+        frame = self.history(name).frame()
+        frame.attrs["title"] = self.run.get("title", "")
+        return frame
+
+    def state_index(self, wanted: int | float | str) -> int:
         """Index of a state: an integer text counts states (-1 = last), a real is a time."""
         if not self.n_state:
             raise ResultsError(f"{self.path}: no states")
@@ -160,7 +213,7 @@ class Results:
             raise ResultsError(f"no state {index}: there are {self.n_state}, from 0 on")
         return index % self.n_state
 
-    def _nearest_state(self, text):
+    def _nearest_state(self, text: str) -> int:
         try:
             time = float(text)
         except ValueError:
@@ -172,7 +225,7 @@ class Results:
         return int(np.argmin(np.abs(self.times - time)))
 
 
-def plain_text(value):
+def plain_text(value) -> str:
     """Text of an HDF5 string attribute or dataset, in whichever form h5py hands it over."""
     if isinstance(value, np.ndarray):
         value = value.ravel()

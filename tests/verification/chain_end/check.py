@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""A slave chain that slides over the end of the master chain and comes back; a master shorter than it."""
+"""A slave chain that slides over the end of the master chain and comes back; a master shorter than it; a slave that
+starts just beyond the end."""
+import pathlib
 import re
+import sys
 
 import numpy as np
 
-from contact_types import TYPES
-from meshes import Deck, grid
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
+
+from contact_types import TYPES  # noqa: E402
+from meshes import Deck, grid  # noqa: E402
+from slideline_tools.study.stability_shapes import Case, deck_of  # noqa: E402
 
 RHO, YOUNG, POISSON, GRAVITY = 1000.0, 1.0e7, 0.3, 10.0
 WIDTH, HEIGHT, CELL = 0.6, 0.3, 0.1
@@ -257,8 +263,40 @@ def check_short_master(run, kind):
                    found[slave - 1].sum() / (DEPTH * PENALTY * 0.64))
 
 
+# --- places of the slave just beyond the end ---------------------------------------------------------
+
+# Overhang in slave elements: a node, virtual node or Gauss point stands up to a tenth beyond the end.
+OVERHANG = {1: 0.1, 2: 1.1, 3: 1.02, 4: 0.3, 5: 0.1, 6: 0.38, 7: 0.1}
+WHOLE_NODE, BESIDE = (1, 2, 3, 4, 6), re.compile(r"node (\d+) stands (\S+) m beyond the end of the master")
+CATCH = 0.1  # of the default limit
+
+
+def check_overhang(run, kind):
+    """A block falls on another, beyond whose end it starts; with the default limit and a tenth of it."""
+    overhang, side, limit = OVERHANG[kind], 0.2, 0.1
+    for catch in (0.0, CATCH):
+        name = f"{TYPES[kind]}, {overhang:g} elements beyond the end, SRCH {catch * limit:g}"
+        result = run.program(deck_of(Case(overhang=overhang, catch=catch), kind), "punit=3", "pen=0.5")
+        energy = result.table("glstat")
+        created = -energy["contact"].min() / energy["kinetic"][0]
+        warned = BESIDE.findall((result.folder / f"{result.job}.log").read_text())
+        if catch or kind not in WHOLE_NODE:
+            run.check(f"{name}: energy created / kinetic energy", created, 0.01, 0.0, "max",
+                      "a hundredth" if catch else "what is beyond the end weighs nothing")
+            run.true(f"{name}: no warning at the start", not warned)
+            continue
+        run.report(f"{name}: energy created / kinetic energy", created)
+        run.check(f"{name}: energy created / kinetic energy", created, 0.02, 0.0, "min",
+                  "caught deep, which is what the warning says")
+        run.true(f"{name}: one warning at the start", len(warned) == 1)
+        place = overhang % 1.0 if kind < 4 else {4: overhang - 0.25, 6: overhang - 0.330009}[kind]
+        run.check(f"{name}: distance in it", float(warned[0][1]), place * side, 1e-4,
+                  source="slave node, quarter of the last segment or third Gauss point of four")
+
+
 def check(run):
     for kind in TYPES:
+        check_overhang(run, kind)
         check_out_and_back(run, kind)
         check_guided(run, kind)
         check_short_master(run, kind)

@@ -1,8 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Hourglass forces: decay rate, frequency, and no force on linear motion."""
+"""Hourglass forces: decay rate, frequency, stable step, and no force on linear motion."""
+import pathlib
+import re
+import sys
+
 import numpy as np
 
-from meshes import Deck, distorted_patch, grid, moduli
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
+
+from meshes import Deck, distorted_patch, grid, lumped_mass, moduli  # noqa: E402
+from slideline_tools.study.stability_eigen import quad_stiffness  # noqa: E402
 
 RHO, YOUNG, POISSON = 1000.0, 1.0e6, 0.3
 _, _, WAVE_MODULUS = moduli(YOUNG, POISSON)
@@ -11,11 +18,12 @@ WIDTH, HEIGHT = 2.0, 1.0
 AREA = WIDTH * HEIGHT
 
 
-def mode_deck(form, coefficient, speed, dt, end_time, n_x=1, n_y=1, dof=1):
-    """n_x by n_y rectangles, each in the hourglass pattern, node (0, 0) with +speed."""
+def mode_deck(form, coefficient, speed, dt, end_time, n_x=1, n_y=1, dof=1, scale=None):
+    """n_x by n_y rectangles, each in the hourglass pattern, node (0, 0) with +speed; `scale` (TSSFAC): `dt` is
+    the interval of the output alone."""
     coordinates, quads = grid(n_x, n_y, WIDTH * n_x, HEIGHT * n_y)
     deck = Deck("hourglass mode")
-    deck.control(end_time, dt=dt).hourglass(form, coefficient)
+    deck.control(end_time, dt=None if scale else dt, scale=scale).hourglass(form, coefficient)
     deck.part().elastic(RHO, YOUNG, POISSON)
     nodes = deck.mesh(coordinates, quads)
     signs = [(-1) ** (k % (n_x + 1) + k // (n_x + 1)) for k in range(len(nodes))]
@@ -82,6 +90,58 @@ def check_stiffness(run):
                np.pi / (np.mean(np.diff(crossings)) * omega))
 
 
+def first_step(result):
+    text = (result.folder / f"{result.job}.log").read_text()
+    return float(re.search(r"first time step ([^,]+),", text).group(1))
+
+
+def eigen_limit(coordinates, quads, coefficient):
+    """2/omega of the largest eigenvalue of M^-1 K of a free mesh."""
+    stiffness = np.zeros((2 * len(coordinates),) * 2)
+    for quad in np.asarray(quads):
+        dofs = np.stack([2 * quad, 2 * quad + 1], axis=1).ravel()
+        stiffness[np.ix_(dofs, dofs)] += quad_stiffness(coordinates[quad], YOUNG, POISSON,
+                                                        coefficient)[0]
+    root = 1.0 / np.sqrt(np.repeat(lumped_mass(coordinates, quads, RHO), 2))
+    return 2.0 / np.sqrt(np.linalg.eigvalsh(root[:, None] * stiffness * root)[-1])
+
+
+def check_step(run):
+    """Large coefficients rule the stable step: just inside the pattern stays, just outside it grows."""
+    side = min(WIDTH, HEIGHT) / SOUND
+    layout = {"n_x": 6, "n_y": 4}
+    coordinates, quads = grid(6, 4, 6 * WIDTH, 4 * HEIGHT)
+    for form, name, coefficient, steps in ((1, "viscous", 1.0, 300.0), (4, "stiffness", 1.0, 30.0),
+                                           (4, "stiffness", 0.5, 30.0)):
+        limit = np.sqrt(AREA) / (2.0 * coefficient * SOUND) if form == 1 else \
+            1.0 / (SOUND * np.sqrt(coefficient * (WIDTH ** -2 + HEIGHT ** -2)))
+        label = f"{name} form, Q = {coefficient:g}"
+        grown = []
+        for scale in (0.97, 1.03):
+            result = run.program(mode_deck(form, coefficient, 1.0e-9, 1.0e-6, steps * limit,
+                                           scale=scale, **layout))
+            run.check(f"{label}: first step / (TSSFAC x limit), TSSFAC {scale:g}",
+                      first_step(result) / (scale * min(limit, side)), 1.0, 1e-6,
+                      source="pattern of a rectangle; L/c where that is smaller")
+            grown.append(np.max(np.abs(result.node(1)["vx"])) / 1.0e-9)
+        if coefficient > 0.5:
+            run.check(f"{label}: velocity just inside / at the start", grown[0], 10.0, 0.0, "max",
+                      "stable")
+            run.check(f"{label}: velocity just outside / at the start", grown[1], 1.0e3, 0.0, "min",
+                      "unstable: the limit is sharp")
+    run.check("stiffness form, Q = 1: limit by eigenvalue / step",
+              eigen_limit(coordinates, quads, 1.0) * SOUND * np.sqrt(WIDTH ** -2 + HEIGHT ** -2), 1.0,
+              1e-9, source="largest eigenvalue of M^-1 K of the mesh")
+    coordinates, quads = distorted_patch()
+    for coefficient in (0.1, 0.6, 1.0, 2.0):
+        deck = Deck("distorted patch").control(1.0e-6, scale=1.0).hourglass(4, coefficient)
+        deck.part().elastic(RHO, YOUNG, POISSON).mesh(coordinates, quads)
+        step = first_step(run.program(deck.output(glstat=1.0)))
+        run.check(f"distorted patch, Q = {coefficient:g}: limit by eigenvalue / step",
+                  eigen_limit(coordinates, quads, coefficient) / step, 1.0, 0.0, "min",
+                  "largest eigenvalue of M^-1 K")
+
+
 def check_linear_motion(run):
     """Rigid motion + uniform strain of a distorted patch: no hourglass work at all."""
     coordinates, quads = distorted_patch()
@@ -106,4 +166,5 @@ def check_linear_motion(run):
 def check(run):
     check_viscous(run)
     check_stiffness(run)
+    check_step(run)
     check_linear_motion(run)

@@ -34,6 +34,7 @@ class Case:
     `ratio`   slave segments per master segment (4 master segments a metre for 1 and above)
     `turn`    of the whole scene; `tilt` of the upper block alone
     `overhang` of the upper block beyond the end of the lower one, in its own elements
+    `catch`   SRCH, deepest first contact that is caught, over its default; 0: the default
     `speed`   sideways, over the wave speed
     `refine`, `hourglass`, `form` of both meshes
     """
@@ -42,6 +43,7 @@ class Case:
     turn: float = 0.0
     tilt: float = 0.0
     overhang: float | None = None
+    catch: float = 0.0
     speed: float = 0.0
     refine: int = 1
     hourglass: float = 0.1
@@ -109,10 +111,16 @@ def deck_of(case, ctype):
     deck.node_set(3, "slave", face)
     deck.node_set(4, "master", lower.upper)
     slideline(deck, 3, 4)
+    if case.catch:
+        default = 0.5 / max(case.counts)
+        deck.card("tbirth tdeath punit pent vdc ipf freq srch", 0.0, 1.0e20, 0, 0.0, 0.0, 0, 0,
+                  case.catch * default)
     lower.write(deck, 1)
     upper.write(deck, 2)
     return deck.text()
 
+
+OVERHANGS = (-0.5, 0.0, 0.02, 0.1, 0.3, 0.4, 0.5, 0.8, 0.9, 1.1, 1.5, 2.5)
 
 SWEEPS = {  # name: (title, unit, {value: case})
     "ratio": ("slave segments per master segment", {
@@ -120,7 +128,9 @@ SWEEPS = {  # name: (title, unit, {value: case})
     "turn": ("angle of the interface, degrees", {
         value: Case(turn=value) for value in (0.0, 17.0, 45.0, 90.0, 163.0)}),
     "overhang": ("overhang of the slave, in its elements", {
-        value: Case(overhang=value) for value in (-0.5, 0.0, 0.1, 0.5, 0.9, 1.5, 2.5)}),
+        value: Case(overhang=value) for value in OVERHANGS}),
+    "overhang_srch": ("overhang, SRCH a tenth of its default", {
+        value: Case(overhang=value, catch=0.1) for value in OVERHANGS}),
     "tilt": ("tilt of the falling block (corner first), degrees", {
         value: Case(tilt=value) for value in (0.1, 0.5, 2.0, 5.0, 15.0, 30.0, 45.0)}),
     "speed": ("sideways speed over the wave speed", {

@@ -1,0 +1,112 @@
+! SPDX-License-Identifier: MIT
+!> `slideline check`: all that is wrong or strange in a deck, and what a run would say at its start, without a run
+!> and without a file.
+module check_m
+  use, intrinsic :: iso_fortran_env, only : output_unit
+  use arguments_m, only : arguments_t
+  use contact_dispatch_m, only : contact_kinds
+  use deck_m, only : deck_request_t, read_deck
+  use deck_findings_m, only : add_finding, json_text
+  use deck_report_m, only : spot_t
+  use errors_m, only : error_t
+  use explicit_m, only : advance_explicit
+  use log_m, only : log_t, to_text
+  use model_m, only : model_t
+  use monitor_m, only : monitor_t
+  use renumber_m, only : renumber_model
+  use snapshot_filling_m, only : start_snapshot
+  use start_m, only : start_state
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: check_deck
+
+contains
+
+  !> Check the deck that the command line names; `error` holds what a run would end with.
+  subroutine check_deck(arguments, error)
+    type(arguments_t), intent(in) :: arguments
+    type(error_t), allocatable, intent(out) :: error
+    type(deck_request_t) :: request
+    type(model_t) :: model
+    type(monitor_t) :: monitor
+    character(:), allocatable :: effective, findings
+
+    request%path = arguments%deck
+    request%overrides = arguments%overrides
+    call read_deck(request, contact_kinds, monitor%log, model, effective, error, findings)
+    if (allocated(error)) then
+      if (index(findings, '"severity": "error"') == 0) &
+        call add_message('error', error%message, findings)
+    else
+      ! The deck's warnings are findings already.
+      if (allocated(monitor%log%waiting)) deallocate (monitor%log%waiting)
+      call start_run(model, monitor, error)
+      call add_warnings(monitor%log, findings)
+      if (allocated(error)) call add_message('error', error%message, findings)
+    end if
+    if (arguments%json) then
+      call show_json(arguments%deck, findings, allocated(error))
+    else if (.not. allocated(error)) then
+      write (output_unit, '(a)') arguments%deck//': accepted, ' &
+        //to_text(model%mesh%n_element)//' elements, '//to_text(model%mesh%n_node)//' nodes, ' &
+        //to_text(size(model%contacts))//' interfaces, '//to_text(monitor%log%n_warning)//' warnings'
+    end if
+  end subroutine check_deck
+
+  !> The state at time zero: forces, step, and what the run says of them. An implicit run says no more than
+  !> that its model can be built.
+  subroutine start_run(model, monitor, error)
+    type(model_t), intent(inout) :: model
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+    type(state_t) :: state
+    character(:), allocatable :: reason
+
+    call renumber_model(model)
+    call start_state(model, monitor%log, state, error)
+    if (allocated(error) .or. model%controls%implicit%is_on) return
+    monitor%only_checks = .true.
+    monitor%clock%is_on = .false.
+    call start_snapshot(model, size(state%elements%history) > 0, monitor%snapshot)
+    call advance_explicit(model, 1, state, monitor, reason, error)
+  end subroutine start_run
+
+  !> The warnings that wait in a log.
+  subroutine add_warnings(log, findings)
+    type(log_t), intent(in) :: log
+    character(:), allocatable, intent(inout) :: findings
+    integer :: start, last
+
+    if (.not. allocated(log%waiting)) return
+    start = 1
+    do while (start <= len(log%waiting))
+      last = start + index(log%waiting(start:), new_line('a')) - 2
+      if (index(log%waiting(start:last), 'warning: ') == 1) &
+        call add_message('warning', log%waiting(start + 9:last), findings)
+      start = last + 2
+    end do
+  end subroutine add_warnings
+
+  !> A finding that no line of the deck is known for.
+  subroutine add_message(severity, message, findings)
+    character(*), intent(in) :: severity, message
+    character(:), allocatable, intent(inout) :: findings
+    type(spot_t) :: spot
+
+    spot%message = message
+    call add_finding(severity, spot, findings)
+  end subroutine add_message
+
+  !> One JSON object on standard output.
+  subroutine show_json(deck, findings, refused)
+    character(*), intent(in) :: deck, findings
+    logical, intent(in) :: refused
+
+    write (output_unit, '(a)') '{', '  "deck": '//json_text(deck)//',', &
+      '  "accepted": '//trim(merge('false', 'true ', refused))//',', '  "findings": ['
+    if (len(findings) > 0) write (output_unit, '(a)') findings
+    write (output_unit, '(a)') '  ]', '}'
+  end subroutine show_json
+
+end module check_m

@@ -1,0 +1,81 @@
+! SPDX-License-Identifier: MIT
+!> The messages of a deck as JSON (RFC 8259), for editors and scripts.
+module deck_findings_m
+  use deck_report_m, only : report_t, note_t, spot_t, deck_order
+  use log_m, only : to_text
+  implicit none
+  private
+  public :: list_findings, add_finding, json_text
+
+contains
+
+  !> All messages kept by the report as JSON objects with commas between them, errors first, each kind
+  !> in deck order; empty when there are none.
+  pure subroutine list_findings(report, findings)
+    type(report_t), intent(in) :: report
+    character(:), allocatable, intent(out) :: findings
+
+    findings = ''
+    if (allocated(report%errors)) &
+      call list_notes(report%errors(:min(report%n_error, size(report%errors))), 'error', findings)
+    if (allocated(report%warnings)) &
+      call list_notes(report%warnings(:report%n_warning), 'warning', findings)
+  end subroutine list_findings
+
+  !> Messages of one kind.
+  pure subroutine list_notes(notes, severity, findings)
+    type(note_t), intent(in) :: notes(:)
+    character(*), intent(in) :: severity
+    character(:), allocatable, intent(inout) :: findings
+    integer :: order(size(notes)), i
+
+    order = deck_order(notes)
+    do i = 1, size(notes)
+      call add_finding(severity, notes(order(i))%spot, findings)
+    end do
+  end subroutine list_notes
+
+  !> One more object; what is not known of its place is left out.
+  pure subroutine add_finding(severity, spot, findings)
+    character(*), intent(in) :: severity !! error or warning
+    type(spot_t), intent(in) :: spot
+    character(:), allocatable, intent(inout) :: findings
+    character(:), allocatable :: text
+
+    text = '{"severity": "'//severity//'"'
+    if (allocated(spot%file)) text = text//', "file": '//json_text(spot%file)
+    if (spot%line > 0) text = text//', "line": '//to_text(spot%line) &
+      //', "keyword": '//json_text('*'//trim(spot%keyword))
+    if (spot%card > 0) text = text//', "card": '//to_text(spot%card)//', "field": ' &
+      //to_text(spot%field)//', "name": '//json_text(trim(spot%name))
+    if (spot%first > 0) text = text//', "first_column": '//to_text(spot%first) &
+      //', "last_column": '//to_text(spot%last)
+    if (allocated(spot%found)) text = text//', "found": '//json_text(spot%found)
+    text = text//', "message": '//json_text(spot%message)//'}'
+    if (len(findings) > 0) findings = findings//','//new_line('a')
+    findings = findings//'    '//text
+  end subroutine add_finding
+
+  !> A JSON string with its quotes. Bytes beyond ASCII pass (UTF-8).
+  pure function json_text(text) result(quoted)
+    character(*), intent(in) :: text
+    character(:), allocatable :: quoted
+    character(6) :: code
+    integer :: i
+
+    quoted = '"'
+    do i = 1, len(text)
+      select case (iachar(text(i:i)))
+      case (34, 92)
+        quoted = quoted//achar(92)//text(i:i)
+      case (0:31, 127)
+        write (code, '(a, z4.4)') achar(92)//'u', iachar(text(i:i))
+        quoted = quoted//code
+      case default
+        quoted = quoted//text(i:i)
+      end select
+    end do
+    quoted = quoted//'"'
+  end function json_text
+
+end module deck_findings_m

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: MIT
+# Writes ${output}: the state of the sources at build time as a Fortran module. Run at every build;
+# the file changes only when the answer does.
+find_package(Git QUIET)
+set(source "unknown")
+if(GIT_FOUND)
+  execute_process(COMMAND ${GIT_EXECUTABLE} describe --always --dirty --abbrev=12
+    WORKING_DIRECTORY ${folder} OUTPUT_VARIABLE answer OUTPUT_STRIP_TRAILING_WHITESPACE
+    RESULT_VARIABLE trouble ERROR_QUIET)
+  if(trouble EQUAL 0)
+    string(REGEX REPLACE "[^A-Za-z0-9._-]" "" source "${answer}")
+  endif()
+endif()
+configure_file(${folder}/src/source_version.f90.in ${output} @ONLY)

@@ -1,0 +1,178 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""slideline beside other programs: the same problems, in the same run.
+
+usage: run.py --program SLIDELINE --peers PYTHON --out FOLDER [--rounds 5] [--quick]
+
+PYTHON is that of an environment with akantu, KratosMultiphysics and KratosStructuralMechanicsApplication; ccx is
+CalculiX. All programs run in turn, one thread each, in each round: elements.csv and contact.csv hold every run.
+"""
+import argparse
+import csv
+import json
+import os
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+import calculix
+from slideline_tools.decks import Deck
+from slideline_tools.results import read
+from slideline_tools.scenes.block import block, block_grids
+from slideline_tools.scenes.patch import even_lines, patch, patch_grids
+
+HERE = Path(__file__).resolve().parent
+WAVES = ((32, 200), (100, 100), (316, 30))  # columns, steps
+PATCHES = (5, 40)                           # columns of the upper block
+TYPES = (2, 5, 7)
+PUSH = 1.0e-4                               # of the upper face of the block, m
+ONE = {**os.environ, "OMP_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
+
+
+def wave_commands(options, columns, steps):
+    """The commands of one size."""
+    size = [str(columns), str(steps)]
+    ours = [sys.executable, str(HERE / "slideline_wave.py"), str(options.program),
+            str(options.runs)]
+    return [[*ours, "1", *size], [*ours, "4", *size],
+            [options.peers, str(HERE / "akantu_wave.py"), *size],
+            [options.peers, str(HERE / "akantu_wave.py"), *size, "large"],
+            [options.peers, str(HERE / "kratos_wave.py"), *size]]
+
+
+def run_waves(options):
+    """One row for each program and size."""
+    rows = []
+    for columns, steps in ((8, 20),) if options.quick else WAVES:
+        for command in wave_commands(options, columns, steps):
+            done = subprocess.run(command, capture_output=True, text=True, env=ONE, check=False)
+            lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
+            if done.returncode or not lines:
+                raise SystemExit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
+            rows.append(json.loads(lines[-1]))
+    return rows
+
+
+def processor_seconds(action, *arguments):
+    """What an action returns, with the processor and the clock time of the programs that it ran."""
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    result = action(*arguments)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    used = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    return result, used, time.monotonic() - start
+
+
+def run_slideline(options, name, text, words):
+    """{element: s_yy at the end}."""
+    deck = options.runs / f"{name}.k"
+    deck.write_text(text, encoding="ascii")
+    subprocess.run([options.program, f"i={deck}", f"d={options.runs}", f"jobid={name}",
+                    "ncpu=1", *words], check=True, stdout=subprocess.DEVNULL, env=ONE)
+    results = read(options.runs / f"{name}.vtkhdf")
+    numbers = np.asarray(results.cell_field("element_id")[-1])
+    return dict(zip(numbers.tolist(), np.asarray(results.cell_field("stress")[-1])[:, 1].tolist()))
+
+
+def exact(scene):
+    """-s_yy by the closed form, Pa: the load; or two blocks of 0.5 m and the springs, in a row."""
+    if scene == "patch":
+        return 1.0
+    side = float(np.diff(block_grids()[1].points[:, 0, 0])[0])
+    return PUSH / (1.0 / calculix.YOUNG + side / calculix.PENALTY)
+
+
+def contact_row(scene, elements, program, contact, found, used, clock, trouble=""):
+    """A row of contact.csv."""
+    values = np.array(list(found.values())) if found else np.array([np.nan])
+    return {"scene": scene, "elements": elements, "program": program, "contact": contact,
+            "mean": -float(values.mean()), "exact": exact(scene),
+            "deviation": float(np.abs(values / values.mean() - 1.0).max()),
+            "processor_seconds": used, "seconds": clock, "message": trouble}
+
+
+def pinned(grids):
+    """A node of each block that is held in x."""
+    lower, upper = grids
+    return [int(lower.lower[len(lower.lower) // 2]), int(upper.upper[len(upper.upper) // 2])]
+
+
+def scene_rows(options, scene, grids, text, step, words=()):
+    """All programs on one scene; `words`: further arguments of slideline."""
+    lower, upper = grids
+    elements = lower.element.size + upper.element.size
+    rows = []
+    for ctype in TYPES:
+        found, used, clock = processor_seconds(run_slideline, options, f"{scene}_{elements}", text,
+                                               (f"ctype={ctype}", *words))
+        rows.append(contact_row(scene, elements, "slideline", f"type {ctype}", found, used,
+                                clock))
+    for contact in calculix.CONTACTS:
+        name = f"ccx_{scene}_{elements}_{contact.split()[0].lower()}"
+        (found, trouble), used, clock = processor_seconds(
+            calculix.run, options.runs, name,
+            calculix.deck(contact, lower, upper, pinned(grids), step))
+        rows.append(contact_row(scene, elements, "CalculiX", contact.lower(), found, used,
+                                clock, trouble))
+    return rows
+
+
+def static_block(grids):
+    """The block-to-block scene as one static step that pushes the upper face down by PUSH."""
+    lines = block(implicit=True).splitlines()
+    at = lines.index("*CONTROL_IMPLICIT_DYNAMICS")
+    del lines[at:at + 3]
+    more = Deck("pins")
+    more.lines = []
+    more.node_set(9, "held in x", pinned(grids))
+    more.spc_set(9, True, False)
+    return "\n".join(lines[:-1] + more.lines + lines[-1:]) + "\n"
+
+
+def run_contact(options):
+    """Contact patches of all sizes and the block."""
+    rows = []
+    for columns in PATCHES[:1] if options.quick else PATCHES:
+        grids = patch_grids(even_lines(columns), even_lines(columns * 4 // 5))
+        rows += scene_rows(options, "patch", grids, patch(grids=grids, static=True,
+                                                          penalty=calculix.PENALTY),
+                           calculix.STATIC)
+    grids = block_grids()
+    words = ("p:dt=1.0", "p:endtim=1.0", f"p:v0=-{PUSH}")
+    rows += scene_rows(options, "block", grids, static_block(grids),
+                       calculix.PUSH.format(push=PUSH), words)
+    return rows
+
+
+def append(path, rows, number):
+    """Add the rows of a round."""
+    new = number == 1
+    with path.open("w" if new else "a", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, ["round", *rows[0]])
+        if new:
+            writer.writeheader()
+        writer.writerows({"round": number, **row} for row in rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--program", type=Path, required=True)
+    parser.add_argument("--peers", required=True, help="Python with the other programs")
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--quick", action="store_true", help="smallest sizes, one round")
+    options = parser.parse_args()
+    options.program, options.out = options.program.resolve(), options.out.resolve()
+    options.runs = options.out / "runs"
+    options.runs.mkdir(parents=True, exist_ok=True)
+    for number in range(1, 2 if options.quick else options.rounds + 1):
+        print(f"round {number}", flush=True)
+        append(options.out / "elements.csv", run_waves(options), number)
+        append(options.out / "contact.csv", run_contact(options), number)
+
+
+if __name__ == "__main__":
+    main()

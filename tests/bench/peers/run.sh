@@ -1,0 +1,27 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# usage: tests/bench/peers/run.sh [--quick | --publish] [--rounds N]
+# slideline beside Akantu and Kratos (wheels from PyPI, into build/venv-peers, about 200 MB) and CalculiX
+# (the Debian package calculix-ccx, which has to be installed: apt-get install calculix-ccx), all on this machine and in one run: tables in
+# results/peers and the page in results/peers/doc (--publish: doc/studies/peers.md). About ten minutes.
+set -eu
+
+root=$(cd "$(dirname "$0")/../../.." && pwd)
+out=$root/results/peers
+doc=$out/doc
+venv=$root/build/venv-peers
+case ${1:-} in
+  --quick) out=$root/results/peers-quick doc=$out/doc ;;
+  --publish) doc=$root/doc; shift ;;
+esac
+
+"$root/tools/build.sh" release
+command -v ccx >/dev/null || { echo "ccx is missing: apt-get install calculix-ccx" >&2; exit 1; }
+[ -x "$venv/bin/python" ] || python3 -m venv "$venv"
+"$venv/bin/pip" install --quiet akantu KratosMultiphysics KratosStructuralMechanicsApplication
+mkdir -p "$out"
+"$venv/bin/pip" list --format=freeze >"$out/versions.txt"
+ccx -v >>"$out/versions.txt"
+"$root/build/venv/bin/python" "$root/tests/bench/peers/run.py" --program "$root/build/release/slideline" \
+  --peers "$venv/bin/python" --out "$out" "$@"
+"$root/build/venv/bin/python" -m slideline_tools.studies.peers "$out" "$doc"

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT
+"""`slideline check`: messages without a run, for people and for programs."""
+import json
+
+from conftest import drop
+
+WRONG = """*KEYWORD
+*PARAMETER
+R  young      -2.0
+*CONTROL_TERMINATION
+       1.0
+*MAT_ELASTIC
+         1      7800    &young       0.3
+*NODEX
+*TITLE
+x
+*DATABASE_ELOUT
+       1.0
+"""
+
+
+def findings(done):
+    answer = json.loads(done.stdout)
+    return answer["accepted"], answer["findings"]
+
+
+def test_a_sound_deck_is_accepted_and_nothing_is_written(slideline, tmp_path):
+    (tmp_path / "deck.k").write_text(drop().text())
+    done = slideline("check", "deck.k")
+    assert done.returncode == 0, done.stderr
+    assert "accepted" in done.stdout and "16 elements" in done.stdout
+    assert [path.name for path in tmp_path.iterdir()] == ["deck.k"]
+    assert findings(slideline("check", "i=deck.k", "--json")) == (True, [])
+
+
+def test_messages_say_where(slideline, tmp_path):
+    (tmp_path / "wrong.k").write_text(WRONG)
+    done = slideline("check", "wrong.k", "--json")
+    assert done.returncode == 1
+    accepted, found = findings(done)
+    assert not accepted
+    young = next(entry for entry in found if entry.get("name") == "E")
+    assert (young["file"], young["line"], young["keyword"]) == ("wrong.k", 7, "*MAT_ELASTIC")
+    assert (young["card"], young["field"], young["severity"]) == (1, 3, "error")
+    unknown = next(entry for entry in found if entry.get("line") == 8)
+    assert unknown["keyword"] == "*NODEX" and "card" not in unknown
+    assert any(entry["severity"] == "warning" and entry["keyword"] == "*DATABASE_ELOUT" for entry in found)
+    assert len(found) == len([line for line in done.stderr.splitlines() if ": *" in line or
+                              line.startswith("wrong.k: the") or line.startswith("wrong.k: has")])
+
+
+def test_a_field_has_its_columns(slideline, tmp_path):
+    text = drop().text().replace("*CONTROL_TERMINATION\n", "*CONTROL_TERMINATION\n       abc\n", 1)
+    (tmp_path / "field.k").write_text(text)
+    _, found = findings(slideline("check", "field.k", "--json"))
+    entry = next(entry for entry in found if entry.get("found") == "abc")
+    line = text.splitlines()[entry["line"] - 1]
+    assert line[entry["first_column"] - 1:entry["last_column"]] == "abc"
+
+
+def test_an_error_shows_the_line_as_it_was_written(slideline, tmp_path):
+    (tmp_path / "wrong.k").write_text(WRONG)
+    done = slideline("i=wrong.k")
+    assert '"-2.0"' in done.stderr and "&young" in done.stderr
+
+
+def test_what_a_run_warns_of_at_its_start(slideline, tmp_path):
+    (tmp_path / "stiff.k").write_text(drop(penalty=1.0e12).text())
+    done = slideline("check", "stiff.k", "--json")
+    assert done.returncode == 0
+    accepted, found = findings(done)
+    assert accepted and any("time step" in entry["message"] for entry in found)
+    told = [line for line in slideline("i=stiff.k", "endtim=1e-4").stderr.splitlines() if "penalty" in line]
+    assert told and told[0] == "warning: " + next(
+        entry["message"] for entry in found if "penalty" in entry["message"])
+
+
+def test_other_words(slideline, tmp_path):
+    (tmp_path / "deck.k").write_text(drop().text())
+    assert slideline("deck.k", "--json").returncode == 1
+    assert slideline("check", "r=some.h5").returncode == 1
+    assert slideline("check").returncode == 1
+    done = slideline("check", "absent.k", "--json")
+    accepted, found = findings(done)
+    assert done.returncode == 1 and not accepted and "absent.k" in found[0]["message"]
+    assert slideline("check", "deck.k", "ctype=9").returncode == 1

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: MIT
+"""What the benchmarks make of samples, their decks, and the pages of speed and peers, from made-up tables."""
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests" / "bench"), str(ROOT / "tests" / "bench" / "peers")]
+
+import calculix  # noqa: E402
+import elements  # noqa: E402
+import measuring  # noqa: E402
+import search  # noqa: E402
+import wave  # noqa: E402
+from slideline_tools.studies import peers, speed  # noqa: E402
+
+STEP = measuring.Variant("step", "elastic", 4000, 1, "ns/element")
+
+
+def test_disturbed_samples_are_left_out():
+    samples = [(10.0, 2.0, 8.0, 0.99), (50.0, 2.0, 8.0, 0.5), (60.0, 2.0, 8.0, 0.4),
+               (11.0, 2.0, 8.0, 0.98), (12.0, 2.0, 8.0, 1.0)]
+    assert sorted(s[0] for s in measuring.least_disturbed(samples)) == [10.0, 11.0, 12.0]
+
+
+def test_the_better_half_is_kept_where_all_are_disturbed():
+    samples = [(float(k), 2.0, 8.0, 0.1 * k) for k in range(1, 6)]
+    assert sorted(s[0] for s in measuring.least_disturbed(samples)) == [3.0, 4.0, 5.0]
+
+
+def test_ratios_are_those_of_the_same_minute():
+    # The second round is twice as slow in everything: the ratio to K must not see it.
+    row = measuring.summarise(STEP, [(10.0, 4.0, 8.0, 1.0), (20.0, 8.0, 4.0, 1.0)])
+    assert row["over_kernel"] == pytest.approx(2.5)
+    assert row["over_bandwidth"] == pytest.approx(10.0 * 8.0 / measuring.BYTES)
+    assert row["over_goal"] == pytest.approx(10.0 / (2.7 * 4.0 + measuring.BYTES / 8.0))
+    assert (row["low"], row["median"], row["high"]) == (12.5, 15.0, 17.5)
+
+
+def test_samples_of_another_program_are_left_alone(tmp_path):
+    first, second = tmp_path / "first", tmp_path / "second"
+    first.write_text("1")
+    second.write_text("2")
+    units = measuring.Units(4.0, {1: 8.0, 2: 16.0})
+    measuring.Samples(tmp_path / "s.csv", first).add(STEP, 10.0, units)
+    samples = measuring.Samples(tmp_path / "s.csv", second)
+    samples.add(STEP, 30.0, units, 0.5)
+    assert samples.of_program() == {STEP: [(30.0, 4.0, 8.0, 0.5)]}
+
+
+def test_bandwidth_is_that_of_as_many_threads(tmp_path):
+    (tmp_path / "program").write_text("1")
+    samples = measuring.Samples(tmp_path / "s.csv", tmp_path / "program")
+    two = measuring.Variant("step", "elastic", 4000, 2, "ns/element")
+    samples.add(two, 10.0, measuring.Units(4.0, {1: 8.0, 2: 16.0}))
+    assert samples.of_program()[two][0][2] == 16.0
+
+
+def test_a_run_that_takes_too_long_is_no_sample(tmp_path, monkeypatch):
+    slow = tmp_path / "slow"
+    slow.write_text("#!/bin/sh\nexec sleep 20\n")
+    slow.chmod(0o755)
+    monkeypatch.setattr(measuring, "LONGEST", 0.2)
+    with pytest.raises(measuring.Disturbed):
+        measuring.run_program(slow, "deck.k", tmp_path)
+
+
+# ---- decks -------------------------------------------------------------------------------------
+
+def test_block_of_about_as_many_elements(tmp_path):
+    count, steps = elements.write_deck(tmp_path / "block.k", 300, True, steps=20)
+    assert abs(count - 300) <= 10 and steps == 20
+    mesh = (tmp_path / "mesh_17x18.inc").read_text().split("*ELEMENT_SHELL\n")
+    assert len(mesh[0].splitlines()) == 2 + 18 * 19
+    assert mesh[1].splitlines()[0].split() == ["1", "1", "1", "20", "21", "2"]
+
+
+@pytest.mark.parametrize("case", search.CASES)
+def test_search_deck_runs_with_contact(case, tmp_path):
+    text = search.search_deck(case, 200)
+    assert search.slave_nodes(case, 200)[0] == 200
+    assert text.count("*CONTACT_2D_SLIDELINE") == (50 if case == "interfaces" else 1)
+    if "SLIDELINE" not in os.environ:
+        pytest.skip("SLIDELINE is not set")
+    (tmp_path / "s.k").write_text(text)
+    text = text.replace("*DATABASE_GLSTAT", f"*DATABASE_RCFORC\n{10.0 * search.STEP:.9g},\n*DATABASE_GLSTAT")
+    (tmp_path / "s.k").write_text(text)
+    subprocess.run([os.environ["SLIDELINE"], f"i={tmp_path}/s.k", f"d={tmp_path}", "jobid=s"],
+                   check=True, capture_output=True)
+    with open(tmp_path / "s.rcforc.csv", newline="", encoding="ascii") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["side"] == "slave"]
+    assert max(float(row["fy"]) for row in rows) > 0.0
+    assert max(int(row["n_active"]) for row in rows) > 0
+
+
+# ---- pages -------------------------------------------------------------------------------------
+
+def bench_rows():
+    """A small table: the elastic step keeps the goal at 4000 elements, the yielding one does not."""
+    rows = []
+    for material, ns in (("elastic", 10.0), ("yielding", 12.0)):
+        for threads, gain in ((1, 1.0), (2, 1.95)):
+            variant = measuring.Variant("step", material, 4000, threads, "ns/element")
+            rows.append(measuring.summarise(variant, [(ns / gain, 4.0, 8.0, 1.0)]))
+    for ctype in range(1, 8):
+        for unit in ("ns/slave node", "ns/point"):
+            variant = measuring.Variant("contact", f"flat type {ctype}", 1000, 1, unit)
+            rows.append(measuring.summarise(variant, [(4.0 * ctype, 4.0, 8.0, 1.0)]))
+    for case in search.CASES:
+        for kind in ("search", "whole"):
+            for size, ns in ((1000, 8.0), (64000, 9.0)):
+                variant = measuring.Variant("search", f"{case} type 1 {kind}", size, 1,
+                                            "ns/slave node")
+                rows.append(measuring.summarise(variant, [(ns, 4.0, 8.0, 1.0)]))
+    for case, unit, value in (("kernel", "ns/element", 4.0), ("bandwidth", "GB/s", 8.0)):
+        rows.append(measuring.summarise(measuring.Variant("unit", case, 64, 1, unit),
+                                        [(value, 4.0, 8.0, 1.0)]))
+    return rows
+
+
+def test_page_of_speed_judges_the_goals(tmp_path):
+    rows = bench_rows()
+    with open(tmp_path / "bench.csv", "w", newline="", encoding="ascii") as stream:
+        writer = csv.DictWriter(stream, rows[0].keys())
+        writer.writeheader()
+        writer.writerows(rows)
+    (tmp_path / "machine.json").write_text(json.dumps({"processor": "of a test"}))
+    assert speed.main([str(tmp_path), str(tmp_path / "doc")]) == 0
+    text = (tmp_path / "doc" / "studies" / "speed.md").read_text(encoding="utf-8")
+    assert "elastic, 4000 to 100 000 elements, step over K, the largest: **2.50**" in text
+    kept = [line.endswith("kept") for line in text.splitlines() if "step over K" in line and "**" in line]
+    assert kept == [True, False]
+    assert "type 1, 1000 slave nodes, K per slave node: **1.00**, goal at most 3.5: kept" in text
+    assert "type 3, 1000 slave nodes and more, K per contact point, the largest: **3.00**" in text
+    assert "processor: of a test" in text
+    assert (tmp_path / "doc" / "pictures" / "speed_search.png").exists()
+
+
+def test_page_of_speed_says_when_the_machine_was_shared():
+    bench = speed.Bench.__new__(speed.Bench)
+    bench.rows = [measuring.summarise(STEP, [(10.0, 4.0, 8.0, share)]) for share in (1.0, 0.5)]
+    assert "50 to 100 % with 1 thread" in speed.disturbed(bench)
+    assert "shared the machine" in speed.disturbed(bench)
+    bench.rows = bench.rows[:1]
+    assert "shared the machine" not in speed.disturbed(bench)
+
+
+def test_times_of_one_thread_are_freed_of_others():
+    assert measuring.without_others(10.0, 0.5, 1) == 5.0
+    assert measuring.without_others(10.0, 0.98, 1) == 10.0
+    assert measuring.without_others(10.0, 0.5, 2) == 10.0
+
+
+def test_ratios_of_peers_are_taken_round_by_round():
+    ours = [{"round": "1", "ns": "10"}, {"round": "2", "ns": "20"}, {"round": "3", "ns": "10"}]
+    other = [{"round": "1", "ns": "40"}, {"round": "2", "ns": "80"}, {"round": "3", "ns": "50"}]
+    assert peers.ratio(other, ours, "ns") == 4.0
+
+
+def test_stresses_of_calculix_are_those_of_the_last_state(tmp_path):
+    head = " stresses (elem, integ.pnt.,sxx,syy,szz,sxy,sxz,syz) for set EALL and time  {}\n\n"
+    line = "{:10d}{:4d} 0.0 {:13.6E} 0.0 0.0 0.0 0.0\n"
+    text = head.format(0.5) + line.format(1, 1, -9.0) + "\n" + head.format(1.0) + line.format(
+        1, 1, -1.0) + line.format(1, 2, -3.0) + line.format(7, 1, -4.0)
+    (tmp_path / "a.dat").write_text(text)
+    assert calculix.stresses(tmp_path / "a.dat") == {1: -2.0, 7: -4.0}
+
+
+def test_mesh_of_the_peers_is_that_of_slideline():
+    points, quads = wave.grid(3)
+    assert len(points) == 16 and len(quads) == 9
+    x, y = points[quads[4]].T
+    area = 0.5 * sum(x[k] * y[(k + 1) % 4] - x[(k + 1) % 4] * y[k] for k in range(4))
+    assert area == pytest.approx(1.0 / 9.0)
+
+
+def test_page_of_peers(tmp_path):
+    waves = [{"round": n, "program": program, "element": element, "elements": 100, "steps": 10,
+              "ns": ns * n, "free_side": 0.5 + error, "exact": 0.5}
+             for n in (1, 2) for program, element, ns, error in (
+                 ("slideline", "one point, large strain", 10.0, 1e-3),
+                 ("slideline", "2x2 points, large strain", 30.0, 1e-3),
+                 ("Other", "2x2 points", 90.0, 2e-3))]
+    contact = [{"round": n, "scene": "patch", "elements": 41, "program": program,
+                "contact": contact, "mean": mean, "exact": 1.0, "deviation": deviation,
+                "processor_seconds": used * n, "seconds": used, "message": message}
+               for n in (1, 2) for program, contact, mean, deviation, used, message in (
+                   ("slideline", "type 5", 1.0, 1e-15, 0.1, ""),
+                   ("CalculiX", "node to surface", 1.02, 0.03, 0.25, ""),
+                   ("CalculiX", "mortar", "nan", "nan", 0.1, "*ERROR: node 17 is tied"))]
+    for name, rows in (("elements", waves), ("contact", contact)):
+        with open(tmp_path / f"{name}.csv", "w", newline="", encoding="ascii") as stream:
+            writer = csv.DictWriter(stream, rows[0].keys())
+            writer.writeheader()
+            writer.writerows(rows)
+    (tmp_path / "versions.txt").write_text("akantu==1.2.3\nThis is Version 2.20\n")
+    assert peers.main([str(tmp_path), str(tmp_path / "doc")]) == 0
+    text = (tmp_path / "doc" / "studies" / "peers.md").read_text(encoding="utf-8")
+    assert "| akantu | 1.2.3 | PyPI, wheel |" in text
+    assert "Other (2x2 points) takes 3.0 to 3.0 times as long as slideline's element with 2x2 points and 9.0 to 9.0" in text
+    assert "within 1e-03 of each other" in text
+    assert "| patch | 41 | CalculiX | node to surface | 1.02 | 2.0e-02 | 3.0e-02 |" in text
+    assert "takes 2.50 times the processor time" in text
+    assert text.count("refused (`*ERROR: node is tied`)") == 1

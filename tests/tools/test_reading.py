@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""`slideline_tools.read`, tables of killed runs, and pandas frames."""
+import builtins
+import subprocess
+import typing
+
+import conftest
+import h5py
+import numpy as np
+import pytest
+
+import slideline_tools
+from slideline_tools import UserError, histories, results
+from slideline_tools.histories import HistoryError
+
+
+@pytest.mark.parametrize("name", ["", "three.vtkhdf", "three.log", "three.glstat.csv",
+                                  "three.effective.k"])
+def test_read_takes_a_folder_or_any_file(results_file, name):
+    found = slideline_tools.read(results_file.parent / name)
+    assert found.path == results_file and found.n_state == 3
+
+
+def test_read_says_what_is_wrong(tmp_path):
+    with pytest.raises(UserError, match="no results file"):
+        slideline_tools.read(tmp_path)
+    for name in ("a", "b"):
+        conftest.write_results(tmp_path / f"{name}.vtkhdf")
+    with pytest.raises(UserError, match="several runs: a.vtkhdf, b.vtkhdf"):
+        slideline_tools.read(str(tmp_path))
+    with pytest.raises(UserError, match="no such file"):
+        slideline_tools.read(tmp_path / "c.log")
+
+
+def test_tables_of_a_killed_run(tmp_path):
+    """No /history in the file: the CSV files beside it."""
+    path = conftest.write_results(tmp_path / "k.vtkhdf", n_claimed=2, history=False)
+    (tmp_path / "k.rcforc.csv").write_text(
+        "time,interface,side,fx,fy,n_active\n0.0,1,slave,0.0,2.5,3\n0.0,1,master,0.0,-2.5,0\n")
+    found = slideline_tools.read(path)
+    assert found.histories == ["rcforc"] and found.n_state == 2
+    assert found.history("rcforc").where(side="slave")["fy"].tolist() == [2.5]
+    with pytest.raises(UserError, match="no history 'glstat'; there are rcforc"):
+        found.history("glstat")
+
+
+def test_the_file_comes_before_the_csv(results_file):
+    (results_file.parent / "three.glstat.csv").write_text("time,kinetic\n0.0,77.0\n")
+    assert slideline_tools.read(results_file).history("glstat")["kinetic"][0] == 1.0
+
+
+def test_frames(results_file):
+    pandas = pytest.importorskip("pandas")
+    frame = slideline_tools.read(results_file).frame("rcforc")
+    assert isinstance(frame, pandas.DataFrame)
+    assert list(frame.columns[:3]) == ["time", "interface", "side"] and len(frame) == 22
+    assert frame.attrs == {"table": "rcforc", "title": "three cells"}
+    peaks = frame.groupby("side")["fy"].max()
+    assert peaks["slave"] == pytest.approx(1.0) and peaks["master"] == pytest.approx(0.0)
+    assert frame["interface"].dtype.kind == "i"
+
+
+def test_frames_without_pandas(results_file, monkeypatch):
+    real = builtins.__import__
+
+    def without(name, *arguments, **named):
+        if name == "pandas":
+            raise ImportError(name)
+        return real(name, *arguments, **named)
+
+    monkeypatch.setattr(builtins, "__import__", without)
+    with pytest.raises(HistoryError, match="slideline-tools\\[frames\\]"):
+        slideline_tools.read(results_file).frame("glstat")
+
+
+def test_what_scripts_use_is_typed_and_documented():
+    for owner in (results.Results, histories.History):
+        for name, member in vars(owner).items():
+            function = member.fget if isinstance(member, property) else member
+            if callable(function) and not name.startswith("_"):
+                assert function.__doc__, name
+                assert "return" in function.__annotations__, name
+    assert "unit" in slideline_tools.read.__doc__
+    assert typing.get_type_hints(results.Results.points.fget)["return"] is np.ndarray
+
+
+def test_frames_of_the_program_are_its_csv(tmp_path, slideline):
+    """Same numbers by either way."""
+    pandas = pytest.importorskip("pandas")
+    deck = conftest.ROOT / "input" / "collision" / "collision.k"
+    subprocess.run([slideline, f"i={deck}", f"d={tmp_path}", "p:endtim=2e-6"], check=True,
+                   capture_output=True)
+    frame = slideline_tools.read(tmp_path).frame("glstat")
+    pandas.testing.assert_frame_equal(frame, pandas.read_csv(tmp_path / "collision.glstat.csv"),
+                                      check_dtype=False, check_like=True)
+    with h5py.File(tmp_path / "collision.vtkhdf") as stream:
+        assert "glstat" in stream["history"]

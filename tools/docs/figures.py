@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: MIT
+"""Draws the figures of the tutorial and the start page from runs of the program.
+
+    build/venv/bin/python tools/docs/figures.py [--program build/release/slideline]
+
+writes doc/pictures/first_deck.svg, first_model.png,
+first_stress.png, first_history.png and contact_points.svg.
+"""
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+from slideline_tools import cli  # noqa: E402
+from slideline_tools.results import read  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PICTURES = ROOT / "doc/pictures"
+SLAVE, MASTER, INK = "#c8553d", "#33658a", "#333333"
+NAMES = ("1  NTS", "2  NTS-AR", "3  two-pass NTS-AR", "4  VTS-PPT", "5  NTS-mAR",
+         "6  mortar", "7  segmented mortar")
+GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
+N_SLAVE, N_MASTER = 4, 5
+
+
+def run(program, deck, folder, *words):
+    done = subprocess.run([program, f"i={deck}", f"d={folder}", *words], capture_output=True,
+                          text=True)
+    if done.returncode:
+        sys.exit(done.stdout + done.stderr)
+    return folder / f"{deck.stem}.vtkhdf"
+
+
+def save(figure, name):
+    """An SVG that is the same whenever it is drawn."""
+    matplotlib.rcParams["svg.hashsalt"] = "slideline"
+    figure.savefig(PICTURES / name, metadata={"Date": None}, bbox_inches="tight")
+    plt.close(figure)
+
+
+def draw_bodies(axes, results, colours, lift):
+    """The mesh at the start, with the nodes of part 1 lifted; returns the places of the nodes."""
+    points = results.points[0][:, :2].copy()
+    parts = results.cell_field("part_id")[0]
+    points[np.unique(results.cells[parts == 1]), 1] += lift
+    for cell, number in zip(results.cells, parts):
+        axes.fill(*points[cell].T, facecolor=colours[int(number)], alpha=0.25, edgecolor=INK,
+                  linewidth=0.6)
+    return points
+
+
+# --- the deck of the tutorial ----------------------------------------------------------------
+
+def tutorial_deck(folder):
+    """The deck as the tutorial gives it."""
+    page = (ROOT / "doc/tutorial.md").read_text(encoding="utf-8")
+    path = folder / "first.k"
+    path.write_text(re.search(r'```text title="first.k"\n(.*?)```', page, re.S).group(1))
+    return path
+
+
+def node_set(deck, number):
+    """The nodes of one set of the tutorial's deck, in order."""
+    body = re.search(rf"\*SET_NODE_LIST\n{number},\n([\d, ]+)\n", deck.read_text()).group(1)
+    return [int(word) for word in body.split(",")]
+
+
+def draw_surface(axes, places, label, colour, side):
+    """A surface with arrows in walking order."""
+    for start, end in zip(places[:-1], places[1:]):
+        axes.annotate("", xy=start + 0.8 * (end - start), xytext=start + 0.2 * (end - start),
+                      arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 2.2})
+    axes.plot(*places.T, color=colour, linewidth=1.2)
+    right = places[places[:, 0].argmax()]
+    axes.annotate(label, right, xytext=(0.46, right[1] + side), color=colour, va="center",
+                  arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.6,
+                              "relpos": (0.0, 0.5)})
+
+
+def first_deck(program, folder):
+    """Mesh and surfaces, and the pictures that the tutorial's commands make."""
+    deck = tutorial_deck(folder)
+    path = run(program, deck, folder / "first")
+    results = read(path)
+    ids = results.point_field("node_id")[0].astype(int).tolist()
+    figure, axes = plt.subplots(figsize=(7.2, 4.0))
+    points = draw_bodies(axes, results, {1: SLAVE, 2: MASTER}, 0.035)
+    for number, (x, y) in zip(ids, points):
+        axes.annotate(str(number), (x, y), xytext=(4, 4 if number < 16 else -12),
+                      textcoords="offset points", fontsize=8, color=INK)
+    axes.plot(*points.T, "o", markersize=3, color=INK)
+    for number, label, colour, side in ((2, "slave: set 2 (1, 2, 3),\nblock on the left hand",
+                                         SLAVE, 0.03),
+                                        (3, "master: set 3 (20, 19 ... 16),\nplate on the left hand",
+                                         MASTER, -0.02)):
+        places = np.array([points[ids.index(node)] for node in node_set(deck, number)])
+        draw_surface(axes, places, label, colour, side)
+    fixed = np.array([points[ids.index(node)] for node in node_set(deck, 1)])
+    axes.plot(*(fixed - [0.0, 0.006]).T, "^", color=INK, markersize=8)
+    axes.annotate("", xy=(0.24, 0.235), xytext=(0.24, 0.275),
+                  arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.6})
+    axes.text(0.246, 0.255, "v0", color=INK)
+    axes.set_aspect("equal")
+    axes.axis("off")
+    axes.set_xlim(-0.02, 0.66)
+    save(figure, "first_deck.svg")
+    for words in (["draw", str(deck), "--program", str(program),
+                   "--output", str(PICTURES / "first_model.png")],
+                  ["plot", str(path), "--field", "stress:yy", "--state", "0.006",
+                   "--output", str(PICTURES / "first_stress.png")],
+                  ["plot", str(path), "--history", "glstat:kinetic,internal,contact", "--history",
+                   "rcforc:fy@side=slave", "--output", str(PICTURES / "first_history.png")]):
+        if cli.main(words):
+            sys.exit("the picture could not be drawn")
+
+
+# --- contact points of the seven formulations ------------------------------------------------
+
+def blocks_deck(folder):
+    """A block of four segments pressed by 0.001 into one of five: its forces at time zero are drawn."""
+    lines = ["*KEYWORD", "*TITLE", "uniform penetration", "*CONTROL_TERMINATION", "1.0e-6,",
+             "*PART", "slave", "1,1,1", "*PART", "master", "2,1,1", "*SECTION_SHELL", "1,13,1.0,4",
+             "*MAT_ELASTIC", "1,1000.0,1.0e6,0.3", "*NODE"]
+    sides = []
+    for first, n, low in ((1, N_SLAVE, -0.001), (101, N_MASTER, -0.3)):
+        for row in range(2):
+            lines += [f"{first + row * (n + 1) + k},{k / n!r},{low + 0.3 * row!r}"
+                      for k in range(n + 1)]
+        sides.append((first, n))
+    lines.append("*ELEMENT_SHELL")
+    for number, (first, n) in enumerate(sides, 1):
+        lines += [f"{first + k},{number},{first + k},{first + k + 1},{first + n + k + 2},"
+                  f"{first + n + k + 1}" for k in range(n)]
+    slave = ",".join(str(1 + k) for k in range(N_SLAVE + 1))
+    master = ",".join(str(101 + 2 * N_MASTER + 1 - k) for k in range(N_MASTER + 1))
+    lines += ["*SET_NODE_LIST", "1,", slave, "*SET_NODE_LIST", "2,", master,
+              "*CONTACT_2D_SLIDELINE", "-1,-2,1,2,1.0e5", "0.0,0.0,1",
+              "*DATABASE_BINARY_D3PLOT", "1.0e-6,", "*END", ""]
+    path = folder / "points.k"
+    path.write_text("\n".join(lines))
+    return path
+
+
+def spots(kind):
+    """Where a formulation looks: (x, side) with side 1 slave, 2 master."""
+    slave, master = np.linspace(0, 1, N_SLAVE + 1), np.linspace(0, 1, N_MASTER + 1)
+
+    def gauss(cuts):
+        middle, half = (cuts[1:] + cuts[:-1]) / 2, np.diff(cuts) / 2
+        return (middle[:, None] + half[:, None] * GAUSS).ravel()
+
+    quarter = (slave[:-1, None] + np.diff(slave)[:, None] * [0.25, 0.75]).ravel()
+    on_slave = {1: slave, 2: slave, 3: slave, 4: quarter, 5: slave, 6: gauss(slave),
+                7: gauss(np.union1d(slave.round(9), master.round(9)))}[kind]
+    on_master = {3: master, 5: master[1:-1]}.get(kind, [])
+    return [(x, 1) for x in on_slave] + [(x, 2) for x in on_master]
+
+
+def contact_points(program, folder):
+    """Seven panels: spots, and the nodal forces of the program."""
+    deck = blocks_deck(folder)
+    figure, panels = plt.subplots(4, 2, figsize=(9.0, 7.2))
+    lift = 0.12  # the bodies are drawn apart, so that both surfaces can be seen
+    for kind, axes in enumerate(panels.flat[:7], 1):
+        results = read(run(program, deck, folder / f"type_{kind}", f"ctype={kind}"))
+        ids = results.point_field("node_id")[0].astype(int)
+        x = results.points[0][:, 0]
+        force = results.point_field("contact_force")[0][:, 1]
+        scale = 0.30 / (1.0e5 * 0.001 / N_SLAVE * 1.6)
+        for side, n, base, first in ((SLAVE, N_SLAVE, lift, 1),
+                                     (MASTER, N_MASTER, 0.0, 101 + N_MASTER + 1)):
+            sign = 1 if first == 1 else -1
+            lines = np.linspace(0, 1, n + 1)
+            axes.fill_between([0, 1], base, base + sign * 0.34, color=side, alpha=0.16, linewidth=0)
+            axes.plot([0, 1], [base, base], color=side, linewidth=1.4)
+            axes.plot(lines, 0 * lines + base, "o", color=side, markersize=4)
+            for node in range(first, first + n + 1):
+                k = int(np.flatnonzero(ids == node)[0])
+                if abs(force[k]) > 1e-9:
+                    axes.annotate("", xy=(x[k], base + scale * force[k]), xytext=(x[k], base),
+                                  arrowprops={"arrowstyle": "-|>", "color": side, "linewidth": 1.6,
+                                              "shrinkA": 0, "shrinkB": 0})
+        for place, side in spots(kind):
+            axes.plot(place, lift / 2 + (0.022 if side == 1 else -0.022), "x", markersize=6,
+                      color=SLAVE if side == 1 else MASTER, markeredgewidth=1.6)
+        axes.set_title(NAMES[kind - 1], fontsize=10, loc="left", color=INK)
+        axes.set_ylim(-0.36, 0.48)
+        axes.axis("off")
+    key = panels.flat[7]
+    key.axis("off")
+    for row, (mark, colour, text) in enumerate((
+            ("x", SLAVE, "looks from the slave surface at the master"),
+            ("x", MASTER, "looks from the master surface at the slave"),
+            ("o", SLAVE, "slave node"), ("o", MASTER, "master node"))):
+        key.plot(0.02, 0.85 - 0.18 * row, mark, color=colour, markersize=7, markeredgewidth=1.8)
+        key.text(0.07, 0.85 - 0.18 * row, text, va="center", fontsize=10, color=INK)
+    key.text(0.0, 0.08, "arrows: nodal forces of the program,\none uniform penetration", fontsize=10,
+             color=INK, va="center")
+    key.set_xlim(0, 1)
+    key.set_ylim(0, 1)
+    figure.tight_layout(h_pad=1.0)
+    save(figure, "contact_points.svg")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", default=str(ROOT / "build/release/slideline"))
+    program = parser.parse_args().program
+    with tempfile.TemporaryDirectory() as folder:
+        first_deck(program, pathlib.Path(folder))
+        contact_points(program, pathlib.Path(folder))
+
+
+if __name__ == "__main__":
+    main()

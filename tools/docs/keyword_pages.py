@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: MIT
+"""One page for each keyword of doc/keywords.md: cards, fields, remarks, examples."""
+import dataclasses
+import re
+
+import examples
+
+MEANING = {
+    "honoured": "",
+    "no effect": "read, without effect",
+    "warning": "without effect, with one warning",
+    "refused": "an error unless blank, 0 or the default",
+}
+
+
+@dataclasses.dataclass
+class Keyword:
+    """One section of doc/keywords.md."""
+
+    name: str
+    group: str
+    titled: bool      #: takes _TITLE or _ID with a text line
+    remarks: str
+    fields: list      #: rows (card, field, columns, kind, default, treatment, meaning)
+
+    @property
+    def file(self):
+        return f"{self.name.lower()}.md"
+
+
+def read_keywords(text):
+    """The keywords of doc/keywords.md in their order."""
+    found, group = [], ""
+    for part in re.split(r"^(?=##)", text, flags=re.M):
+        head, _, body = part.partition("\n")
+        if head.startswith("## "):
+            group = head[3:].strip()
+        if not head.startswith("### *"):
+            continue
+        rows = [[cell.strip() for cell in line.strip().strip("|").split("|")]
+                for line in body.splitlines() if re.match(r"\| \d", line)]
+        remarks = "\n".join(line for line in body.splitlines() if not line.startswith("|")).strip()
+        name, _, mark = head[5:].partition(" ")
+        found.append(Keyword(name, group, mark.strip() == "(title)", remarks,
+                             [row + [""] * (7 - len(row)) for row in rows]))
+    return found
+
+
+def card_table(rows):
+    """The card as manuals draw it: one column for each field."""
+    lines = [["Columns", *(row[2] for row in rows)], ["Field", *(row[1] for row in rows)],
+             ["Type", *({"integer": "I", "real": "F", "text": "A"}[row[3]] for row in rows)]]
+    if any(row[4] for row in rows):
+        lines.append(["Default", *(row[4] for row in rows)])
+    head, *rest = ["| " + " | ".join(line) + " |" for line in lines]
+    return [head, "|" + "---|" * (len(rows) + 1), *rest]
+
+
+def field_table(rows):
+    """What the fields mean, card by card."""
+    lines = ["| card | field | treatment | meaning |", "|---|---|---|---|"]
+    for card, field, _, _, _, treatment, meaning in rows:
+        lines.append(f"| {card} | **{field}** | {treatment} | {meaning or MEANING[treatment]} |")
+    return lines
+
+
+def card_lines(keyword):
+    cards = sorted({int(row[0]) for row in keyword.fields})
+    lines = ["## Cards", ""]
+    if keyword.titled:
+        lines += [f"`*{keyword.name}_TITLE` and `*{keyword.name}_ID` have one more line, a title, "
+                  "before card 1.", ""]
+    for card in cards:
+        rows = [row for row in keyword.fields if int(row[0]) == card]
+        lines += [f"Card {card}", "", '<div class="card" markdown>', "", *card_table(rows), "",
+                  "</div>", ""]
+    return lines + ["## Fields", "", *field_table(keyword.fields), ""]
+
+
+def expectation_table(example):
+    """What the run must give, and what the test finds it to be."""
+    if not example.expectations:
+        return []
+    lines = ["The run is tested for:", "", '<div class="expect" markdown>', "",
+             "| quantity | closed form | value | within |", "|---|---|---|---|"]
+    for entry in example.expectations:
+        where = ", ".join(f"{key} {value}" for key, value in entry.where.items())
+        where = f" of {where}" if where else ""
+        table = "element field" if entry.table == "cell" else entry.table
+        pick = {"rows": "number of rows"}.get(entry.pick, entry.pick)
+        column = "" if entry.pick == "rows" else f" `{entry.column}`"
+        lines.append(f"| {pick}{column}{where} ({table}) | `{entry.formula}` | "
+                     f"{entry.value:.6g} | {entry.tolerance:g} |")
+    return [*lines, "", "</div>", ""]
+
+
+def deck_block(path, keyword):
+    """A deck as a code block with its name and the keyword marked, without the head of the example."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    lines = lines[next(k for k, line in enumerate(lines) if not line.startswith("$")):]
+    marked, inside = [], False
+    for number, line in enumerate(lines, 1):
+        if line.startswith("*"):
+            inside = re.fullmatch(rf"\*{keyword}(_TITLE|_ID)?", line.strip()) is not None
+        if inside:
+            marked.append(str(number))
+    mark = f' hl_lines="{" ".join(marked)}"' if marked else ""
+    return [f'```text title="{path.relative_to(examples.ROOT)}"{mark}', *lines, "```", ""]
+
+
+def example_lines(example, keyword):
+    lines = [f"## Example: {example.title[0].lower()}{example.title[1:]}", ""]
+    for paragraph in example.paragraphs:
+        lines += [paragraph, ""]
+    lines += ["```sh", example.command, "```", ""]
+    lines += expectation_table(example)
+    lines += [f"The log says: `{text}`", ""] if (text := "; ".join(example.log_texts)) else []
+    if example.files:
+        lines += ["It leaves " + ", ".join(f"`{name}`" for name in example.files) + ".", ""]
+    for path in [example.path, *examples.included_files(example)]:
+        lines += deck_block(path, keyword)
+    return lines
+
+
+def page(keyword, shown, others):
+    """The page of a keyword; `others` are examples that use it in passing."""
+    lines = [f"# *{keyword.name}", "", f"[{keyword.group}](index.md)", ""]
+    if keyword.remarks:
+        lines += [keyword.remarks, ""]
+    if keyword.fields:
+        lines += card_lines(keyword)
+    for example in shown:
+        lines += example_lines(example, keyword.name)
+    if others:
+        names = ", ".join(f"`{example.path.name}`" for example in others)
+        lines += ["## Also used in", "", f"{names} of `doc/examples`.", ""]
+    return "\n".join(lines)
+
+
+def index_page(keywords, shown):
+    """The list of all keywords by group."""
+    lines = ["# Keyword manual", "",
+             "One page for each keyword: its cards, what each field does here, and a deck that runs "
+             "in a moment. [How lines and fields are read](../keywords.md#lines) and what is ignored "
+             "or refused by name stands on the [page with all keywords](../keywords.md).", ""]
+    group = None
+    for keyword in keywords:
+        if keyword.group != group:
+            group = keyword.group
+            lines += [f"## {group}", "", "| keyword | example |", "|---|---|"]
+            lines_of_group = len(lines)
+        titles = "; ".join(example.title for example in shown[keyword.name])
+        lines.append(f"| [*{keyword.name}]({keyword.file}) | {titles} |")
+        following = keywords.index(keyword) + 1
+        if following == len(keywords) or keywords[following].group != group:
+            assert len(lines) > lines_of_group
+            lines.append("")
+    return "\n".join(lines)
+
+
+def write_pages(text, folder):
+    """All keyword pages into a folder; returns the keywords."""
+    keywords = read_keywords(text)
+    decks = examples.read_examples()
+    shown = {keyword.name: [deck for deck in decks if keyword.name in deck.keywords]
+             for keyword in keywords}
+    folder.mkdir(parents=True, exist_ok=True)
+    for keyword in keywords:
+        uses = re.compile(rf"^\*{keyword.name}(_TITLE|_ID)?\s*$", re.M | re.I)
+        others = [deck for deck in decks if deck not in shown[keyword.name]
+                  and uses.search(deck.path.read_text(encoding="utf-8"))]
+        (folder / keyword.file).write_text(page(keyword, shown[keyword.name], others),
+                                           encoding="utf-8")
+    (folder / "index.md").write_text(index_page(keywords, shown), encoding="utf-8")
+    return keywords

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+"""The command `slideline-tools draw`."""
+from __future__ import annotations
+
+import argparse
+import os
+import pathlib
+
+# The names of draw.picture.WHAT, here without its slow imports.
+WHAT = ("mesh", "sets", "surfaces", "boundary", "motion", "velocity", "loads", "walls", "history")
+EPILOG = """Slave surfaces are red, master surfaces blue, with arrow heads in their walking direction
+(the body lies on the left) and short lines along the outward normals. Arrows of velocities, motions
+and loads have the length of the largest value over time, within each kind."""
+
+
+def add(commands) -> None:
+    """Add the command and its options."""
+    parser = commands.add_parser(
+        "draw", help="picture of a model before its run",
+        description="Draw the model of a deck: mesh by part, node sets, contact surfaces with walking "
+                    "direction and outward normals, held nodes, motions, initial velocities, loads, "
+                    "pressures, rigid bodies. The program reads the deck, so that the picture shows "
+                    "what would run.", epilog=EPILOG)
+    parser.add_argument("deck", metavar="DECK", help="keyword deck; or a results folder or "
+                                                     "<job>.effective.k, which need no program")
+    parser.add_argument("overrides", nargs="*", metavar="OVERRIDE",
+                        help="as for the program, for example p:ctype=5")
+    parser.add_argument("--output", "-o", metavar="FILE",
+                        help="picture (.png, .pdf, .svg; default: <deck>.png in this folder)")
+    parser.add_argument("--show", metavar="WHAT,...", type=wanted,
+                        help=f"only these of: {', '.join(WHAT)} (default: all)")
+    parser.add_argument("--zoom", type=float, nargs=4, metavar=("X0", "X1", "Y0", "Y1"),
+                        help="window to show")
+    parser.add_argument("--program", help="default: $SLIDELINE or build/release/slideline")
+    parser.set_defaults(run=run)
+
+
+def wanted(text: str) -> list[str]:
+    """The names of a comma list, each one of WHAT."""
+    names = [name for name in text.split(",") if name]
+    for name in names:
+        if name not in WHAT:
+            raise argparse.ArgumentTypeError(f"unknown '{name}'; there are {', '.join(WHAT)}")
+    return names
+
+
+def run(options) -> int:
+    """Draw, and say what could not be shown."""
+    from slideline_tools.draw import draw
+    deck = pathlib.Path(options.deck)
+    output = pathlib.Path(options.output or f"{stem(deck)}.png")
+    output.parent.mkdir(parents=True, exist_ok=True)
+    program = options.program or os.environ.get("SLIDELINE") or default_program()
+    model = draw(deck, output, program, options.overrides, options.show, options.zoom)
+    print(f"wrote {output} ({len(model.points)} nodes, {len(model.cells)} elements, "
+          f"{len(model.parts)} parts, {len(model.interfaces)} interfaces)")
+    for words in model.warnings:
+        print(f"warning: {words}")
+    if model.unread:
+        print("not drawn: " + ", ".join(f"*{name}" for name in model.unread))
+    return 0
+
+
+def stem(deck: pathlib.Path) -> str:
+    """The name of a picture: that of the deck without its endings."""
+    name = deck.resolve().name
+    for ending in (".effective.k", ".k", ".key", ".dyn"):
+        if name.endswith(ending):
+            return name.removesuffix(ending)
+    return name
+
+
+def default_program() -> str:
+    """The program of the repository that holds these tools; else that of the path."""
+    built = pathlib.Path(__file__).resolve().parents[3] / "build" / "release" / "slideline"
+    return str(built) if built.exists() else "slideline"

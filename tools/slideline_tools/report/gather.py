@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: MIT
+"""Everything that a run has left, as far as it is there: also of one killed or still running."""
+from __future__ import annotations
+
+import dataclasses
+import os
+import pathlib
+import re
+
+import numpy as np
+
+from slideline_tools import UserError
+from slideline_tools.advise.finished import TABLES, endings, find_job, put_back, read_text
+from slideline_tools.advise.run_log import RunLog, read_log
+from slideline_tools.draw.model import Model, read_model
+from slideline_tools.histories import History, HistoryError, read_csv
+from slideline_tools.results import Results, ResultsError, read
+
+GOES_ON = "goes on from the restart file"
+MORE_ENDINGS = (".vtkhdf.part",)
+
+
+@dataclasses.dataclass
+class Ending:
+    """How a run ended; numbers are None where nothing tells them.
+
+    `kind` is `normal`, `error` or `unfinished` (killed, or it still runs).
+    """
+
+    kind: str
+    reason: str
+    time: float | None = None
+    cycle: int | None = None
+    seconds: float | None = None
+
+
+@dataclasses.dataclass
+class Gathered:
+    """A run; `results`, `model` and `timing` are None where their files are missing."""
+
+    folder: pathlib.Path
+    job: str
+    log_text: str
+    log: RunLog
+    ending: Ending
+    tables: dict[str, History]
+    results: Results | None
+    timing: History | None
+    model: Model | None
+    files: list[tuple[str, int]]
+    notes: list[str]
+
+    @property
+    def title(self) -> str:
+        """Title of the deck, or the name of the job."""
+        return (self.told("title") or (self.model.title if self.model else "")
+                or self.job)
+
+    def told(self, name: str) -> str:
+        """What the results file or the log says of `title`, `deck`, `version`, `options`."""
+        if self.results is not None and self.results.run.get(name):
+            return self.results.run[name]
+        pattern = {"title": r"^title: (.*)", "deck": r"^deck: (.*)", "version": r"^slideline (\S+)",
+                   "options": r"^command line: (.*)", "build": r"^slideline \S+ \((.*)\)"}[name]
+        found = re.search(pattern, self.log_text, re.M)
+        return found[1].strip() if found else ""
+
+    @property
+    def warnings(self) -> list[str]:
+        """The warnings of the log in their order."""
+        return [line[len("warning: "):] for line in self.log_text.splitlines()
+                if line.startswith("warning: ")]
+
+    def rows(self, table: str) -> History | None:
+        """A table that is there and has rows."""
+        found = self.tables.get(table)
+        return found if found is not None and len(found) else None
+
+    @property
+    def interfaces(self) -> list[int]:
+        """Numbers of the interfaces that anything tells of."""
+        numbers = set(self.log.interfaces)
+        numbers |= {interface.id for interface in self.model.interfaces} if self.model else set()
+        for name in ("rcforc", "contact"):
+            if rows := self.rows(name):
+                numbers |= {int(number) for number in rows["interface"]}
+        return sorted(numbers)
+
+
+def gather(path) -> Gathered:
+    """The run whose folder, or any file, is `path`; the access times of its files stay."""
+    folder, job = find_run(pathlib.Path(path))
+    prefix = folder / job
+    stamps = {ending: os.stat(f"{prefix}{ending}") for ending in [*endings(), *MORE_ENDINGS]
+              if os.path.exists(f"{prefix}{ending}")}
+    if not stamps:
+        raise UserError(f"{prefix}: no file of a run")
+    try:
+        return read_all(folder, job, stamps)
+    finally:
+        put_back(prefix, stamps)
+
+
+def find_run(path: pathlib.Path) -> tuple[pathlib.Path, str]:
+    """Folder and job; a folder without a log may still hold one results file."""
+    if not path.exists():
+        raise UserError(f"{path}: no such folder or file")
+    if path.is_dir() and not list(path.glob("*.log")):
+        found = sorted(path.glob("*.vtkhdf"))
+        if len(found) == 1:
+            path = found[0]
+    return find_job(path)
+
+
+def read_all(folder: pathlib.Path, job: str, stamps: dict) -> Gathered:
+    """Read what there is, and note what there is not."""
+    prefix, notes = folder / job, []
+    log_text = read_text(f"{prefix}.log")
+    results = read_results(prefix, stamps, notes)
+    tables = {name: table for name in TABLES
+              if (table := read_table(prefix, name, results, notes)) is not None}
+    timing = None
+    if ".timing.csv" in stamps:
+        timing = read_table(prefix, "timing", None, notes)
+    log = read_log(log_text)
+    if not log_text:
+        notes.append("The log is empty or missing: parts, interfaces and warnings are known as far "
+                     "as the deck and the tables tell.")
+    return Gathered(folder, job, log_text, log, read_ending(log_text, tables, results, timing),
+                    tables, results, timing, read_deck(prefix, results, notes),
+                    [(f"{job}{ending}", stamp.st_size) for ending, stamp in stamps.items()], notes)
+
+
+def read_results(prefix, stamps: dict, notes: list[str]) -> Results | None:
+    """The states; a note where they cannot be read or are none."""
+    if ".vtkhdf" not in stamps:
+        notes.append("No states: the run ended before it had written the first one."
+                     if ".vtkhdf.part" in stamps else "No results file (.vtkhdf).")
+        return None
+    try:
+        results = read(f"{prefix}.vtkhdf")
+    except ResultsError as problem:
+        notes.append(f"No states: {problem}.")
+        return None
+    if not results.n_state:
+        notes.append("The results file holds no state.")
+    return results
+
+
+def read_table(prefix, name: str, results: Results | None, notes: list[str]) -> History | None:
+    """A table from its CSV file, else from the results file."""
+    path = pathlib.Path(f"{prefix}.{name}.csv")
+    try:
+        if path.exists():
+            return read_csv(path)
+        if results is not None and name in results.histories:
+            return results.history(name)
+    except HistoryError as problem:
+        notes.append(f"{problem}.")
+    return None
+
+
+def read_deck(prefix, results: Results | None, notes: list[str]) -> Model | None:
+    """The model of the effective deck, from its file or from the results file."""
+    text = read_text(f"{prefix}.effective.k") or (results.run.get("effective_deck", "")
+                                                   if results else "")
+    try:
+        return read_model(text) if text else None
+    except (UserError, ValueError, IndexError) as problem:
+        notes.append(f"The deck as run could not be read: {problem}.")
+        return None
+
+
+def read_ending(log_text: str, tables: dict[str, History], results: Results | None,
+                timing: History | None) -> Ending:
+    """How the run ended, by the last part of its log."""
+    tail = log_text[log_text.rfind(GOES_ON) + 1:]
+    normal, error = "N o r m a l" in tail, "E r r o r" in tail
+    if normal or error:
+        reasons = re.findall(r"^ \*\*\* (.*) \*\*\*$", tail, re.M)
+        return Ending("normal" if normal else "error", reasons[-1] if reasons else "",
+                      number(r"Problem time\s+=\s+(\S+)", tail),
+                      as_int(number(r"Problem cycle\s+=\s+(\S+)", tail)),
+                      number(r"Elapsed time\s+=\s+(\S+)", tail))
+    time, cycle = None, None
+    if len(glstat := tables.get("glstat", ())):
+        time, cycle = float(glstat["time"][-1]), as_int(glstat["cycle"][-1])
+    elif results is not None and results.n_state:
+        time = float(results.times[-1])
+    seconds = None
+    if timing is not None and "total" in timing["phase"]:
+        seconds = float(timing["seconds"][timing["phase"] == "total"][0])
+    told = "no end in the log" if log_text else "the log is empty or missing"
+    return Ending("unfinished", f"{told}: the run was killed, or it still runs", time, cycle, seconds)
+
+
+def number(pattern: str, text: str) -> float | None:
+    """The last number that a pattern finds."""
+    found = re.findall(pattern, text)
+    try:
+        return float(found[-1]) if found else None
+    except ValueError:
+        return None
+
+
+def as_int(value) -> int | None:
+    """A whole number, or None."""
+    return None if value is None or not np.isfinite(value) else int(value)

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+"""The page doc/studies/peers.md, from the tables of tests/bench/peers/run.sh.
+
+    python -m slideline_tools.studies.peers FOLDER DOC
+
+FOLDER holds elements.csv, contact.csv and versions.txt.
+"""
+import argparse
+import csv
+import math
+import pathlib
+import statistics
+import sys
+
+from slideline_tools import UserError
+from slideline_tools.studies.common import markdown_table, write_page
+from slideline_tools.study.runner import processor
+
+PEERS = ("akantu", "KratosMultiphysics", "KratosStructuralMechanicsApplication", "CalculiX")
+
+PAGE = """# Side by side with other programs
+
+This page is written by `tests/bench/peers/run.sh --publish`: do not edit it. All programs run in turn on one machine,
+one thread each, {rounds} rounds; times are medians, with the quartiles in brackets. Other work on the machine hits all alike.
+
+| program | version | from |
+|---|---|---|
+{versions}
+
+{processor}, 1 thread. The times of Akantu and Kratos are those of their released wheels, built for any x86-64 processor;
+slideline is built for this one, as its README says. Theirs are general programs with many elements, laws and dimensions, driven from
+Python; slideline does one thing. The ratios say what that is worth, not which program is better.
+
+## The element step
+
+A square block of elastic quads (plane strain, no lateral contraction), held on its left side, swings in its slowest longitudinal mode with a
+very small amplitude: the closed form is `u = V/w sin(w t) sin(pi x / 2 L)`. The same mesh, lumped mass, central differences and
+constant step (half of the side over the wave speed) in all programs. The time is the processor time of the steps alone: for slideline all cycles with the energy
+account, for the others the calls of their `solveStep` and `Solve`. The error is that of the displacement of the free side over V/w at the end.
+
+{elements}
+
+{words}
+
+Small-strain elements need less work than large-strain ones: they keep the shape functions of the start. slideline's elements are always
+for large strains. One point with hourglass control is its usual element; two by two points are what the others have.
+
+## Contact patch and block-to-block
+
+Implicit, one static step; fully integrated plane-strain quads (slideline: NIP 4 with mean dilatation; CalculiX: CPE4), contact springs of the
+same slope: pressure over penetration is the penalty of a node over the length of a slave segment. *Patch*: two blocks of 1 m with n and
+4/5 n columns under a pressure of 1 Pa. *Block*: the meshes of [block-to-block](block_to_block_implicit.md) (51 and 50 columns), the upper face pushed down by 0.1 mm. No
+lateral contraction, so the same s_yy everywhere is exact: the load, or blocks and springs in a row (small strain). *Deviation*: the largest of the elements'
+means of s_yy from their mean over all elements. Processor time is that of the whole process, reading and writing included.
+
+{contact}
+
+{contact_words}
+
+CalculiX prints seven digits of a stress, hence *< 1e-6*. In large strains the block is stiffer than the closed form by
+some 3e-5.
+"""
+
+
+def read_table(path):
+    """Rows of a table, numbers as floats where they are numbers."""
+    if not path.exists():
+        raise UserError(f"{path} is missing: run tests/bench/peers/run.sh")
+    with path.open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def grouped(rows, *names):
+    """{key: rows} in the order of the table."""
+    found = {}
+    for row in rows:
+        found.setdefault(tuple(row[name] for name in names), []).append(row)
+    return found
+
+
+def middle(rows, name):
+    """Median, lower and upper quartile of a column."""
+    values = [float(row[name]) for row in rows]
+    if len(values) == 1:
+        return values * 3
+    low, centre, high = statistics.quantiles(values, n=4, method="inclusive")
+    return centre, low, high
+
+
+def ratio(rows, others, name):
+    """Median over the rounds of the ratio to `others` of the same round."""
+    base = {row["round"]: float(row[name]) for row in others}
+    return statistics.median(float(row[name]) / base[row["round"]] for row in rows)
+
+
+def element_table(rows):
+    """One row per program and size; ratios are to slideline's element with 2x2 points."""
+    lines = []
+    for (elements,), same in grouped(rows, "elements").items():
+        programs = grouped(same, "program", "element")
+        ours = programs[("slideline", "2x2 points, large strain")]
+        for (program, element), runs in programs.items():
+            centre, low, high = middle(runs, "ns")
+            error = float(runs[0]["free_side"]) - float(runs[0]["exact"])
+            lines.append([elements, program, element, f"{centre:.3g} ({low:.3g} to {high:.3g})",
+                          f"{ratio(runs, ours, 'ns'):.2f}", f"{float(runs[0]['free_side']):.8f}",
+                          f"{error:+.1e}"])
+    return markdown_table(["elements", "program", "element", "ns per element and step",
+                           "over slideline, 2x2", "free side", "error"], lines)
+
+
+def element_words(rows):
+    """What the element step shows, in one paragraph."""
+    programs, spread = {}, 0.0
+    for (_,), same in grouped(rows, "elements").items():
+        by_program = grouped(same, "program", "element")
+        ours = by_program[("slideline", "2x2 points, large strain")]
+        one = by_program[("slideline", "one point, large strain")]
+        ends = [float(runs[0]["free_side"]) for runs in by_program.values()]
+        spread = max(spread, max(ends) - min(ends))
+        for (program, element), runs in by_program.items():
+            if program != "slideline":
+                programs.setdefault(f"{program} ({element})", []).append(
+                    (ratio(runs, ours, "ns"), ratio(runs, one, "ns")))
+    parts = [f"- {name} takes {spanned([r[0] for r in found])} times as long as slideline's element with "
+             f"2x2 points and {spanned([r[1] for r in found])} times as long as that with one."
+             for name, found in programs.items()]
+    return ("In this run, over all sizes:\n\n" + "\n".join(parts) + "\n\nThe answers of all programs lie within "
+            f"{spread:.0e} of each other at every size, far less than the error of the mesh: they solve the same problem equally well.")
+
+
+def spanned(values):
+    """'3.1 to 12'."""
+    return " to ".join(f"{value:.0f}" if value >= 10.0 else f"{value:.1f}"
+                       for value in (min(values), max(values)))
+
+
+def contact_table(rows):
+    """One row per scene, size, program and contact."""
+    lines = []
+    for (scene, elements, program, contact), runs in grouped(
+            rows, "scene", "elements", "program", "contact").items():
+        used = middle(runs, "processor_seconds")
+        mean, deviation = float(runs[0]["mean"]), float(runs[0]["deviation"])
+        exact = float(runs[0]["exact"])
+        answer = ["refused", "", ""] if math.isnan(mean) else [
+            f"{mean:.6g}", size(mean / exact - 1.0), size(deviation)]
+        lines.append([scene, elements, program, contact, *answer,
+                      f"{used[0]:.3g} ({used[1]:.3g} to {used[2]:.3g})"])
+    return markdown_table(["scene", "elements", "program", "contact", "-s_yy, mean, Pa", "error",
+                           "deviation", "processor time, s"], lines)
+
+
+def size(value):
+    """A relative error; those that CalculiX's seven digits can not tell from none by their bound."""
+    return f"{value:.1e}" if abs(value) >= 1.0e-6 else "< 1e-6"
+
+
+def contact_words(rows):
+    """Ratios of the times and what was refused, in a list."""
+    lines = []
+    for (scene, elements), same in grouped(rows, "scene", "elements").items():
+        ours = [row for row in same if row["contact"] == "type 5"]
+        for (program, contact), runs in grouped(same, "program", "contact").items():
+            if program != "slideline" and not math.isnan(float(runs[0]["mean"])):
+                lines.append(f"- {scene}, {elements} elements: {program}, {contact}, takes "
+                             f"{ratio(runs, ours, 'processor_seconds'):.2f} times the processor time "
+                             "of slideline with type 5.")
+    refused = {(row["contact"], re_message(row["message"])) for row in rows if row["message"]}
+    lines += [f"- CalculiX, {contact}: refused (`{message}`); its plane elements become solids whose "
+              "nodes are tied, and this contact takes no tied nodes." for contact, message
+              in sorted(refused)]
+    return "\n".join(lines)
+
+
+def re_message(text):
+    """A message without its numbers, so that runs of all sizes say the same."""
+    return " ".join(word for word in text.split() if not word.strip(",").isdigit())
+
+
+def version_rows(path):
+    """Markdown rows of the programs and their versions."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    found = dict(line.split("==") for line in lines if "==" in line)
+    found["CalculiX"] = next((line.split()[-1] for line in lines if "Version" in line), "")
+    return "\n".join(f"| {name} | {found[name]} | "
+                     f"{'Debian package calculix-ccx' if name == 'CalculiX' else 'PyPI, wheel'} |"
+                     for name in PEERS if found.get(name))
+
+
+def write(folder, doc):
+    """The page."""
+    elements, contact = (read_table(folder / f"{name}.csv") for name in ("elements", "contact"))
+    write_page(doc, "peers", PAGE.format(
+        rounds=max(int(row["round"]) for row in elements), processor=processor(),
+        versions=version_rows(folder / "versions.txt"), elements=element_table(elements),
+        words=element_words(elements), contact=contact_table(contact),
+        contact_words=contact_words(contact)))
+
+
+def main(arguments=None):
+    """Returns the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("doc", type=pathlib.Path)
+    options = parser.parse_args(arguments)
+    try:
+        write(options.folder, options.doc)
+    except UserError as problem:
+        print(problem, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

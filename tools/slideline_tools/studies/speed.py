@@ -1,0 +1,380 @@
+# SPDX-License-Identifier: MIT
+"""The page doc/studies/speed.md and its pictures, from the table of tests/bench/run.sh.
+
+    python -m slideline_tools.studies.speed FOLDER DOC
+
+FOLDER holds bench.csv and machine.json; the page goes to DOC/studies, its pictures to DOC/pictures.
+"""
+import argparse
+import csv
+import json
+import math
+import pathlib
+import sys
+
+from slideline_tools import UserError
+from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
+from slideline_tools.studies.common import (TYPES, colour, label, markdown_table, save_small,
+                                            write_page)
+
+BYTES = 320.0  # moved per element and step, as in tests/bench/measuring.py
+STYLES = {("elastic", 1): ("-", "o"), ("elastic", 2): ("--", "o"),
+          ("yielding", 1): ("-", "s"), ("yielding", 2): ("--", "s")}
+SEARCHES = {"still": "pressed, not sliding", "sliding": "sliding fast",
+            "folding": "folding chains", "interfaces": "50 interfaces, sliding fast"}
+
+PAGE = """# Speed
+
+This page and its pictures are written by `tests/bench/run.sh --publish`: do not edit it. All figures are medians of
+interleaved rounds on one machine; quartiles, repeats and all the rest are in the table that the command leaves in
+`results/bench/bench.csv`.
+
+## In plain words
+
+- **K** is the time of the arithmetic of one element: the kernel of one-point plastic quads, alone, on data in the L1 cache. Here
+  {kernel:.2f} ns. No step can take less on one thread than K for each element.
+- **R** is the time in which the memory can move what an element reads and writes in a step ({bytes:.0f} bytes): {memory:.2f} ns on one
+  thread ({bandwidth:.1f} GB/s). It counts where the model is larger than the caches.
+- The **roofline** is the larger of the two. What the step takes beyond it is for the nodes: gathering, summing, moving them,
+  boundary conditions, the energy account. The **goal** for large models is 1.2 (2.7 K + R).
+- All ratios are of K and R measured within the same minute: the machine's pace drifts, ratios less so.
+
+{disturbed}
+
+## The element step
+
+{step_goals}
+
+![Cost of a step and of contact over the size](../pictures/speed.png)
+
+Left: time per element and step, whole (elements and nodes, with boundary conditions and energies), of square blocks, elastic or
+yielding everywhere. Right: time of contact per slave node and step, whole (search, placing, pressure, scatter, energy), of a flat chain all
+of whose nodes touch and slide. Both axes are logarithmic: a cost that is proportional to the size is a level line.
+
+{step_table}
+
+## Contact
+
+{contact_goals}
+
+ns per slave node and step, in brackets per contact point over K. *flat*: all slave nodes touch; *crown*: a third of them.
+
+{contact_table}
+
+## The search stays linear
+
+Decks that try the contact search (`tests/bench/search.py` writes them): strips of elements pressed upon each other; the same
+sliding at 400 m/s, some 2.7 % of a segment in a step; both strips thrown into waves that fold at up to 300 m/s; 50 pairs that slide, each
+an interface of its own. ns of search and pairing per slave node and step; the whole of contact is drawn thinner. A search that compared all with all
+would rise {ratio:.0f} times from left to right.
+
+![Contact search over the size](../pictures/speed_search.png)
+
+{search_table}
+
+## Memory, reading and writing
+
+{file_table}
+
+*Steps*: resident memory while stepping, less that of the program alone. The plain file is written with as many bytes
+in the same minute; neither is forced to the disk.
+
+## Machine
+
+{machine}
+"""
+
+
+class Bench:
+    """The rows of bench.csv."""
+
+    def __init__(self, path):
+        if not path.exists():
+            raise UserError(f"{path} is missing: run tests/bench/run.sh")
+        with path.open(newline="", encoding="ascii") as stream:
+            self.rows = list(csv.DictReader(stream))
+        for row in self.rows:
+            row["size"], row["threads"] = int(row["size"]), int(row["threads"])
+            for name in ("median", "low", "high", "over_kernel", "over_bandwidth", "over_goal",
+                         "kernel_ns", "bandwidth_gb_s", "share"):
+                row[name] = float(row[name]) if row[name] else math.nan
+
+    def of(self, part, case=None, threads=None, unit=None):
+        """Rows of a part, smallest size first."""
+        found = [row for row in self.rows if row["part"] == part
+                 and (case is None or row["case"] == case)
+                 and (threads is None or row["threads"] == threads)
+                 and (unit is None or row["unit"] == unit)]
+        return sorted(found, key=lambda row: row["size"])
+
+    def value(self, part, case, threads=1, name="median"):
+        """One figure; nan where it was not measured."""
+        found = self.of(part, case, threads)
+        return found[0][name] if found else math.nan
+
+
+# ---- words -------------------------------------------------------------------------------------
+
+def verdict(name, value, goal, most=True):
+    """A line of a list: the figure, and whether it keeps to the goal."""
+    kept = value <= goal if most else value >= goal
+    return f"- {name}: **{value:.2f}**, goal {'at most' if most else 'at least'} {goal:g}: " + (
+        "kept" if kept else "missed")
+
+
+def speed_up(bench, material, size):
+    """Time of one thread over that of two."""
+    times = {row["threads"]: row["median"] for row in bench.of("step", material)
+             if row["size"] == size}
+    return times[1] / times[2] if {1, 2} <= set(times) else math.nan
+
+
+def step_goals(bench):
+    """The goals of the step, one line each."""
+    lines = []
+    for material in ("elastic", "yielding"):
+        rows = bench.of("step", material, 1)
+        small = [row for row in rows if 250 <= row["size"] <= 350]
+        middle = [row for row in rows if 3500 <= row["size"] <= 110000]
+        large = [row for row in rows if row["size"] >= 900000]
+        if small:
+            lines.append(verdict(f"{material}, {small[0]['size']} elements, step over K",
+                                 small[0]["over_kernel"], 3.3))
+        if middle:
+            lines.append(verdict(f"{material}, 4000 to 100 000 elements, step over K, the largest",
+                                 max(row["over_kernel"] for row in middle), 2.8))
+            ups = [up for up in (speed_up(bench, material, row["size"]) for row in middle)
+                   if not math.isnan(up)]
+            if ups:
+                lines.append(verdict(f"{material}, the same sizes, speed-up of two threads, the least",
+                                     min(ups), 1.9, most=False))
+        if large:
+            lines.append(verdict(f"{material}, a million elements and more, step over 2.7 K + R, "
+                                 "the largest", max(row["over_goal"] for row in large), 1.2))
+    return "\n".join(lines)
+
+
+def contact_rows(bench, scene, ctype, unit="ns/slave node"):
+    return bench.of("contact", f"{scene} type {ctype}", 1, unit)
+
+
+def contact_goals(bench):
+    """The goals of contact, one line each, flat chain."""
+    lines = []
+    first = {row["size"]: row for row in contact_rows(bench, "flat", 1)}
+    for size, goal in ((1000, 3.5), (100000, 2.5)):
+        if size in first:
+            lines.append(verdict(f"type 1, {size} slave nodes, K per slave node",
+                                 first[size]["over_kernel"], goal))
+    for ctype in TYPES:
+        rows = [row for row in contact_rows(bench, "flat", ctype, "ns/point")
+                if row["size"] >= 1000]
+        if ctype > 1 and rows:
+            lines.append(verdict(f"type {ctype}, 1000 slave nodes and more, K per contact point, the largest",
+                                 max(row["over_kernel"] for row in rows), 2.0))
+    small = [row["median"] * row["size"] / 1.0e3 for ctype in TYPES
+             for row in contact_rows(bench, "flat", ctype) if row["size"] == 20]
+    if small:
+        lines.append(verdict("20 slave nodes, the dearest type, microseconds a step", max(small),
+                             0.4))
+    return "\n".join(lines)
+
+
+def disturbed(bench):
+    """How far the runs had the processors to themselves."""
+    parts = []
+    for threads in sorted({row["threads"] for row in bench.of("step")}):
+        shares = [row["share"] for row in bench.of("step", threads=threads)]
+        parts.append(f"{100.0 * min(shares):.0f} to {100.0 * max(shares):.0f} % with {threads} "
+                     f"thread{'s' * (threads > 1)}")
+    least = min((row["share"] for row in bench.of("step")), default=1.0)
+    text = ("Of the processor time that they asked for the runs of the step got (medians of the better half of the "
+            f"rounds, from size to size) {', '.join(parts)}.")
+    if least >= 0.9:
+        return text
+    return text + (" **Other work shared the machine.** Times of one thread are corrected: multiplied by that share. Times of "
+                   "two threads can not be, since threads that wait for each other use up processor time: they are upper bounds, "
+                   "and so are the speed-ups lower bounds.")
+
+
+# ---- tables ------------------------------------------------------------------------------------
+
+def step_table(bench):
+    sizes = sorted({row["size"] for row in bench.of("step")})
+    names, columns = ["elements"], []
+    for material in ("elastic", "yielding"):
+        for threads in sorted({row["threads"] for row in bench.of("step")}):
+            names.append(f"{material}, {threads} thread{'s' * (threads > 1)}")
+            columns.append({row["size"]: row for row in bench.of("step", material, threads)})
+    lines = []
+    for size in sizes:
+        cells = [f"{column[size]['median']:.2f} ns = {column[size]['over_kernel']:.2f} K"
+                 f" ({column[size]['over_goal']:.2f})" if size in column else ""
+                 for column in columns]
+        lines.append([f"{size:,}".replace(",", " "), *cells])
+    return ("ns per element and step, over K, and in brackets over 2.7 K + R:\n\n"
+            + markdown_table(names, lines))
+
+
+def contact_table(bench):
+    sizes = sorted({row["size"] for row in bench.of("contact")})
+    lines = []
+    for scene in ("flat", "crown"):
+        for ctype in TYPES:
+            nodes = {row["size"]: row for row in contact_rows(bench, scene, ctype)}
+            points = {row["size"]: row for row in contact_rows(bench, scene, ctype, "ns/point")}
+            if nodes:
+                lines.append([f"{scene}, {label(ctype)}", *(
+                    f"{nodes[size]['median']:.1f} ({points[size]['over_kernel']:.2f} K)"
+                    if size in nodes else "" for size in sizes)])
+    return markdown_table(["slave nodes", *(f"{size}" for size in sizes)], lines)
+
+
+def search_lines(bench, what):
+    """{(case, type): rows}."""
+    found = {}
+    for row in bench.of("search"):
+        case, _, ctype, kind = row["case"].split()
+        if kind == what:
+            found.setdefault((case, int(ctype)), []).append(row)
+    return found
+
+
+def search_table(bench):
+    lines = []
+    for (case, ctype), rows in search_lines(bench, "search").items():
+        lines.append([f"{SEARCHES[case]}, type {ctype}",
+                      *(f"{row['median']:.2f}" for row in rows)])
+    rows = next(iter(search_lines(bench, "search").values()), [])
+    return markdown_table(["slave nodes", *(f"{row['size']}" for row in rows)], lines)
+
+
+def file_table(bench):
+    goals = {"reading": "at most 3 s", "peak over steps": "at most 1.5",
+             "steps": "at most 250", "states over plain file": "at least 0.5"}
+    lines = [[f"{row['part']}: {row['case']}", f"{row['size']}", f"{row['median']:.3g} {row['unit']}",
+              goals.get(row["case"], "")]
+             for part in ("memory", "input", "output") for row in bench.of(part)]
+    return markdown_table(["quantity", "elements", "median", "goal"], lines)
+
+
+# ---- pictures ----------------------------------------------------------------------------------
+
+def draw_steps(axes, bench):
+    """Cost of the element step with its bounds."""
+    for (material, threads), (line, marker) in STYLES.items():
+        rows = bench.of("step", material, threads)
+        if rows:
+            axes.plot([r["size"] for r in rows], [r["median"] for r in rows], line + marker,
+                      color="#0b559f" if material == "elastic" else "#c23b22", markersize=3,
+                      label=f"{material}, {threads} thread{'s' * (threads > 1)}")
+    rows = bench.of("step", "elastic", 1)
+    if rows:
+        sizes = [row["size"] for row in rows]
+        kernel = [row["kernel_ns"] for row in rows]
+        memory = [BYTES / row["bandwidth_gb_s"] for row in rows]
+        axes.plot(sizes, [max(pair) for pair in zip(kernel, memory)], color="black", lw=1.6,
+                  label="roofline: larger of K and R")
+        axes.plot(sizes, kernel, color="black", lw=0.8, ls=":", label="K, arithmetic alone")
+        axes.plot(sizes, [2.7 * k + r for k, r in zip(kernel, memory)], color="grey", lw=0.8,
+                  ls="--", label="2.7 K + R")
+    axes.set_xlabel("elements")
+    axes.set_ylabel("ns per element, or per slave node, and step")
+
+
+def draw_contact(axes, bench):
+    """Cost of contact per slave node."""
+    for ctype in TYPES:
+        rows = contact_rows(bench, "flat", ctype)
+        if rows:
+            axes.plot([r["size"] for r in rows], [r["median"] for r in rows], "-o", markersize=3,
+                      color=colour(ctype), label=label(ctype))
+    rows = contact_rows(bench, "flat", 1)
+    if rows:
+        axes.plot([r["size"] for r in rows], [r["kernel_ns"] for r in rows], color="black", lw=0.8,
+                  ls=":", label="K")
+    axes.set_xlabel("slave nodes")
+
+
+def scale_chart(bench, path):
+    """The chart of the scale: elements and contact, both axes logarithmic, one scale of time."""
+    with plt.rc_context({**STYLE, "legend.fontsize": 6.5}):
+        figure, panels = plt.subplots(1, 2, sharey=True, layout="constrained",
+                                      figsize=(PAGE_WIDTH + 1.5, 4.2))
+        draw_steps(panels[0], bench)
+        draw_contact(panels[1], bench)
+        for axes in panels:
+            axes.set_xscale("log")
+            axes.set_yscale("log")
+            axes.grid(True, which="both", lw=0.3, alpha=0.5)
+            axes.legend(ncols=2, loc="upper right")
+        low, high = panels[0].get_ylim()
+        panels[0].set_ylim(low, 3.0 * high)
+        save_small(figure, path, lines=True)
+
+
+def search_chart(bench, path):
+    """Search over the number of slave nodes, a panel for each type."""
+    found, whole = search_lines(bench, "search"), search_lines(bench, "whole")
+    types = sorted({ctype for _, ctype in found})
+    with plt.rc_context({**STYLE, "legend.fontsize": 6.5}):
+        figure, panels = plt.subplots(1, max(1, len(types)), sharey=True, squeeze=False,
+                                      layout="constrained", figsize=(PAGE_WIDTH + 1.5, 3.2))
+        for axes, ctype in zip(panels[0], types):
+            for k, case in enumerate(SEARCHES):
+                rows = found.get((case, ctype), [])
+                sizes = [row["size"] for row in rows]
+                axes.plot(sizes, [row["median"] for row in rows], "-o", color=colour(k + 1),
+                          markersize=3, label=SEARCHES[case])
+                axes.plot(sizes, [row["median"] for row in whole.get((case, ctype), [])],
+                          color=colour(k + 1), lw=0.5)
+            axes.set_xscale("log")
+            axes.set_yscale("log")
+            axes.grid(True, which="both", lw=0.3, alpha=0.5)
+            axes.set_title(label(ctype), loc="left")
+            axes.set_xlabel("slave nodes")
+        panels[0, 0].set_ylabel("ns per slave node and step")
+        panels[0, 0].legend()
+        save_small(figure, path, lines=True)
+
+
+# ---- the page ----------------------------------------------------------------------------------
+
+def machine_text(path):
+    """The machine in words."""
+    machine = json.loads(path.read_text(encoding="utf-8"))
+    return "\n".join(f"- {name}: {value}" for name, value in machine.items())
+
+
+def write(folder, doc):
+    """Page and pictures."""
+    bench = Bench(folder / "bench.csv")
+    scale_chart(bench, doc / "pictures" / "speed.png")
+    search_chart(bench, doc / "pictures" / "speed_search.png")
+    bandwidth = bench.value("unit", "bandwidth")
+    sizes = [row["size"] for row in bench.of("search")] or [1]
+    write_page(doc, "speed", PAGE.format(
+        kernel=bench.value("unit", "kernel"), bytes=BYTES, memory=BYTES / bandwidth,
+        bandwidth=bandwidth, disturbed=disturbed(bench), step_goals=step_goals(bench),
+        step_table=step_table(bench), contact_goals=contact_goals(bench),
+        contact_table=contact_table(bench), search_table=search_table(bench),
+        ratio=max(sizes) / min(sizes), file_table=file_table(bench),
+        machine=machine_text(folder / "machine.json")))
+
+
+def main(arguments=None):
+    """Returns the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("doc", type=pathlib.Path)
+    options = parser.parse_args(arguments)
+    try:
+        write(options.folder, options.doc)
+    except UserError as problem:
+        print(problem, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
