@@ -24,8 +24,8 @@ module run_m
   use restart_plan_m, only : restarts_t
   use results_file_m, only : run_info_t
   use sense_switch_m, only : forget_switch
-  use source_version_m, only : source_version
   use signals_m, only : catch_signals
+  use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t
   use status_file_m, only : start_status

@@ -15,7 +15,7 @@ import pandas as pd
 from ansys.dyna.core import Deck, __version__, keywords as kwd
 from ansys.dyna.core.lib.format_type import format_type
 
-from stock_list import RUN, UNSUPPORTED
+from stock_list import DEFAULTS, RUN, UNSUPPORTED
 
 STEEL = {"ro": 7800.0, "e": 2.1e11, "pr": 0.3}
 
@@ -253,6 +253,50 @@ def implicit():
     deck.append(kwd.BoundaryPrescribedMotionSet(nsid=2, dof=1, vad=2, lcid=1, sf=0.0))
     deck.append(kwd.Contact2DAutomaticSurfaceToSurfaceMortar(surfa=1, surfb=2))
     output(deck, 1.0)
+    return {"": deck}
+
+
+def titles():
+    """A title or an id with a heading wherever a keyword can have one; commas and blanks in them."""
+    deck = Deck("titles, and more, with commas")
+    deck.append(kwd.ControlTermination(endtim=4.0e-5))
+    keywords = [kwd.SectionShell(secid=1, elform=13), kwd.MatElastic(mid=1, **STEEL),
+                kwd.MatPlasticKinematic(mid=2, ro=7800.0, e=2.1e11, pr=0.3, sigy=3.0e8),
+                kwd.MatRigid(mid=3, **STEEL)]
+    for k in range(1, 4):
+        part(deck, k, k, f"part {k}, 1, 2, 3")
+    blocks = [mesh(deck, k, 2, 2, (0.01, 0.01), (0.0, 0.02 * k), 100 * k) for k in range(1, 4)]
+    keywords += [kwd.DefineCurve(lcid=4, curves=pd.DataFrame([(0.0, 1.0), (1.0, 1.0)], columns=["a1", "o1"])),
+                 kwd.SetPartList(sid=1), kwd.SetNodeListGenerate(sid=2, b1beg=100, b1end=102),
+                 kwd.SetSegment(sid=5, segments=pd.DataFrame({"n1": blocks[1][-1, :-1], "n2": blocks[1][-1, 1:],
+                                                              "n3": 0, "n4": 0}))]
+    keywords[5].parts.append(3)
+    for k, keyword in enumerate(keywords):
+        keyword.options["TITLE"].active = True
+        keyword.title = f"title {k}, 7, 8, 9"
+    conditions = [kwd.BoundarySpcSet(nsid=2, dofx=1, dofy=1),
+                  kwd.BoundarySpcNode(nodes=pd.DataFrame({
+                      "nid": blocks[1][0], "cid": 0, "dofx": 1, "dofy": 1, "dofz": 0, "dofrx": 0, "dofry": 0,
+                      "dofrz": 0})),
+                  kwd.BoundaryPrescribedMotionRigid(pid=3, dof=1, vad=0, lcid=4)]
+    for k, keyword in enumerate(conditions):
+        keyword.options["ID"].active = True
+        keyword.id, keyword.heading = k + 1, f"heading {k}, 5, 6"
+    for keyword in keywords + conditions:
+        deck.append(keyword)
+    deck.append(kwd.LoadSegmentSet(ssid=5, lcid=4, sf=1.0e5))
+    output(deck, 4.0e-5)
+    return {"": deck}
+
+
+def defaults():
+    """The impact with every control and output keyword once more, nothing filled in."""
+    deck = impact("defaults everywhere")[""]
+    for name in DEFAULTS:
+        keyword = class_of(name)()
+        keyword.write()  # ends what some classes still have to fill in
+        deck.append(keyword)
+    deck.append(kwd.DatabaseGlstat(dt=1.0e-6))
     return {"": deck}
 
 

@@ -2,7 +2,20 @@
 """The stock decks by name, and what the one that is refused asks for."""
 
 #: Decks that run.
-RUN = ("impact", "impact_long", "impact_clockwise", "pressure", "contacts", "includes", "rigid", "implicit")
+RUN = ("impact", "impact_long", "impact_clockwise", "pressure", "contacts", "includes", "rigid", "implicit",
+       "titles", "defaults")
+
+#: Keywords of the deck `defaults`, each with nothing filled in.
+DEFAULTS = (
+    "CONTROL_HOURGLASS", "CONTROL_BULK_VISCOSITY", "CONTROL_CONTACT", "CONTROL_ENERGY", "CONTROL_OUTPUT",
+    "CONTROL_IMPLICIT_GENERAL", "CONTROL_IMPLICIT_DYNAMICS", "CONTROL_IMPLICIT_SOLUTION",
+    "CONTROL_IMPLICIT_AUTO", "CONTROL_SHELL", "CONTROL_SOLID", "CONTROL_PARALLEL", "CONTROL_SOLUTION",
+    "CONTROL_ACCURACY", "CONTROL_IMPLICIT_SOLVER", "CONTROL_UNITS", "CONTROL_RIGID", "CONTROL_ALE",
+    "CONTROL_SPH", "DATABASE_GLSTAT", "DATABASE_MATSUM", "DATABASE_RCFORC", "DATABASE_NODOUT",
+    "DATABASE_BINARY_D3PLOT", "DATABASE_BINARY_D3DUMP", "DATABASE_BINARY_RUNRSF", "DATABASE_BINARY_D3THDT",
+    "DATABASE_BINARY_INTFOR", "DATABASE_FORMAT", "DATABASE_SECFORC", "DATABASE_ELOUT", "DATABASE_SPCFORC",
+    "DATABASE_NCFORC", "DATABASE_NODFOR", "DATABASE_SLEOUT", "DATABASE_BNDOUT", "DATABASE_RWFORC",
+    "DATABASE_RBDOUT", "DATABASE_EXTENT_BINARY", "DATABASE_JNTFORC", "DATABASE_DEFORC", "DAMPING_GLOBAL")
 
 #: What the deck `unsupported` asks for and the program does not have: keyword, and field where the
 #: keyword itself is known.

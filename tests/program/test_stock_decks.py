@@ -139,6 +139,21 @@ def test_implicit_press_is_static(results):
     assert force == pytest.approx(force[-1] * table(folder, "rcforc", side="slave")["time"], rel=1e-3)
 
 
+def test_titles_are_no_cards(results):
+    folder = results("titles")
+    log = (folder / "job.log").read_text()
+    assert 'part 2 "part 2, 1, 2, 3": 4 elements' in log
+    assert "12 fixed and 0 moved degrees of freedom, 0 nodal loads, 2 pressure edges" in log
+    assert table(folder, "matsum", part=3)["momentum_x"] == pytest.approx(7800.0 * 1.0e-4, rel=1e-9)
+
+
+def test_defaults_change_nothing_but_the_bulk_viscosity_and_hourglass_control(results):
+    """Fields as a client leaves them ask for nothing that is not had."""
+    rows = table(results("defaults"), "glstat")
+    assert rows["kinetic"][0] == pytest.approx(0.5 * 0.78 * 50.0 ** 2, rel=1e-12)
+    assert "is not" not in (results("defaults") / "job.log").read_text()
+
+
 def test_everything_that_is_not_had_is_listed(exe, decks, tmp_path):
     deck = decks / "stock_unsupported.k"
     done = subprocess.run([exe, f"i={deck}", f"d={tmp_path}"], capture_output=True, text=True, timeout=60)
