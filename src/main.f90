@@ -7,6 +7,7 @@ program slideline
   use arguments_m, only : arguments_t, read_arguments, help_text
   use build_info_m, only : version, build_type, compiler, flags, solvers
   use errors_m, only : error_t
+  use files_m, only : fill_standard_streams
   use run_m, only : run_deck
   use source_version_m, only : source_version
   implicit none
@@ -22,7 +23,9 @@ program slideline
   type(arguments_t) :: arguments
   type(error_t), allocatable :: error
   integer(c_int) :: status
+  integer :: ignored
 
+  call fill_standard_streams()
   call read_arguments(arguments, error)
   if (.not. allocated(error)) then
     if (arguments%help) then
@@ -37,9 +40,9 @@ program slideline
     end if
   end if
   if (allocated(error)) then
-    write (error_unit, '(a)') error%message
-    flush (output_unit)
-    flush (error_unit)
+    write (error_unit, '(a)', iostat=ignored) error%message
+    flush (output_unit, iostat=ignored)
+    flush (error_unit, iostat=ignored)
     status = int(error%status, c_int)
     deallocate (error)
     call c_exit(status)

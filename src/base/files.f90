@@ -14,6 +14,7 @@ module files_m
   private
   public :: join_path, parent_path, file_exists, is_directory, make_directory, &
     remove_file, rename_file, force_to_disk, is_endless, &
+    fill_standard_streams, &
     text_file_t, create_text_file, continue_text_file, append_text, close_text_file
 
   !> Permissions of what is made, before the user's mask: rwx for all, rw for all.
@@ -263,6 +264,22 @@ contains
     endless = endless .and. n_byte <= 0
     if (endless) endless = .not. is_directory(path)
   end function is_endless
+
+  !> Open the null device in place of standard streams that the caller has closed: a result file would take
+  !> their number otherwise, and what is meant for the screen would go into it.
+  subroutine fill_standard_streams()
+    type(c_ptr) :: stream
+    integer(c_int) :: ignored
+
+    do
+      stream = c_fopen('/dev/null'//c_null_char, 'r+'//c_null_char)
+      if (.not. c_associated(stream)) exit
+      if (c_fileno(stream) > 2) then
+        ignored = c_fclose(stream)
+        exit
+      end if
+    end do
+  end subroutine fill_standard_streams
 
   !> What the C library says of its last failure.
   function system_reason() result(reason)
