@@ -97,7 +97,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)
     real(wp) :: travel, others
-    integer :: k
+    integer :: k, seen
 
     travel = huge(1.0_wp)
     others = -segment_length(memory%places(:, ends(1)), memory%places(:, ends(2)))
@@ -108,13 +108,20 @@ contains
         else
           others = others + tracking%recheck(ends(k)) - memory%travel
           travel = min(travel, tracking%wake(ends(k)) - memory%travel)
-          if (travel <= 0.0_wp) exit
-          travel = min(travel, distance_of_nodes(contact, memory, ends, &
-            tracking%segment(ends(k))))
+          if (.not. travel > 0.0_wp) exit
         end if
       end do
+      travel = max(0.0_wp, min(travel, others/3.0_wp))
+      seen = 0
+      do k = 1, 2
+        if (.not. travel > 0.0_wp) return
+        associate (segment => tracking%segment(ends(k)))
+          if (segment == 0 .or. segment == seen) cycle
+          travel = min(travel, distance_of_nodes(contact, memory, ends, segment))
+          seen = segment
+        end associate
+      end do
     end associate
-    travel = max(0.0_wp, min(travel, others/3.0_wp))
   end function safe_travel
 
   !> Distance from a slave segment to the nodes of the master segments round a given one.

@@ -66,7 +66,7 @@ contains
     real(wp), intent(in) :: motion(4, *)
     real(wp), intent(inout) :: places(4, *)
     real(wp), intent(out) :: spread !! m
-    real(wp) :: low(2, n_lane), high(2, n_lane)
+    real(wp) :: low(2, n_lane), high(2, n_lane), change(2)
     integer :: i, k
 
     low = huge(1.0_wp)
@@ -74,12 +74,18 @@ contains
     do i = n_lane, size(nodes), n_lane
       do k = 1, n_lane
         associate (j => i - n_lane + k)
-          call take_place(motion(1, nodes(j)), places(1, j), low(1, k), high(1, k))
+          change = motion(1:2, nodes(j)) - places(3:4, j)
+          places(3:4, j) = motion(1:2, nodes(j))
+          low(:, k) = merge(change, low(:, k), change < low(:, k))
+          high(:, k) = merge(change, high(:, k), change > high(:, k))
         end associate
       end do
     end do
     do i = size(nodes) - modulo(size(nodes), n_lane) + 1, size(nodes)
-      call take_place(motion(1, nodes(i)), places(1, i), low(1, 1), high(1, 1))
+      change = motion(1:2, nodes(i)) - places(3:4, i)
+      places(3:4, i) = motion(1:2, nodes(i))
+      low(:, 1) = merge(change, low(:, 1), change < low(:, 1))
+      high(:, 1) = merge(change, high(:, 1), change > high(:, 1))
     end do
     do k = 2, n_lane
       low(:, 1) = merge(low(:, k), low(:, 1), low(:, k) < low(:, 1))
@@ -87,18 +93,6 @@ contains
     end do
     spread = sqrt((high(1, 1) - low(1, 1))**2 + (high(2, 1) - low(2, 1))**2)
   end subroutine take_places
-
-  !> Copy u of one node and widen the box of changes.
-  pure subroutine take_place(motion, place, low, high)
-    real(wp), intent(in) :: motion(4)
-    real(wp), intent(inout) :: place(4), low(2), high(2)
-    real(wp) :: change(2)
-
-    change = motion(1:2) - place(3:4)
-    low = merge(change, low, change < low)
-    high = merge(change, high, change > high)
-    place(3:4) = motion(1:2)
-  end subroutine take_place
 
   !> Add the forces of the interface to those of the mesh, and their power to `power`.
   pure subroutine add_force(nodes, contact_force, motion, force, power)

@@ -5,8 +5,9 @@
 !> pieces, each facing one master segment; there is no search (doc/theory/contact.md, section 3.5).
 module contact_overlap_m
   use contact_placing_m, only : tracked_foot
-  use contact_projection_m, only : foot_t, closest_foot, plain_foot, follow_contact, &
-    walk_to_closest, see_segment, turns_gently, side_on
+  use contact_plain_foot_m, only : plain_foot
+  use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest, &
+    see_segment, turns_gently, side_on
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, separation

@@ -155,36 +155,27 @@ contains
     integer, intent(in) :: n, slave_nodes(n_side, *)
     real(wp), intent(in) :: slave_weights(n_side, *), area(*), gap(*)
     real(wp), intent(inout) :: nodal(2, *)
-    real(wp) :: part(2), sums(2, n_side)
-    integer :: p, k
+    real(wp) :: gap_1, area_1, gap_2, area_2
+    integer :: p
     logical :: is_last
 
-    sums = 0.0_wp
+    gap_1 = 0.0_wp; area_1 = 0.0_wp; gap_2 = 0.0_wp; area_2 = 0.0_wp
     do p = 1, n
-      part = [area(p)*gap(p), area(p)]
-      do k = 1, n_side
-        sums(:, k) = sums(:, k) + slave_weights(k, p)*part
-      end do
+      gap_1 = gap_1 + slave_weights(1, p)*(area(p)*gap(p))
+      area_1 = area_1 + slave_weights(1, p)*area(p)
+      gap_2 = gap_2 + slave_weights(2, p)*(area(p)*gap(p))
+      area_2 = area_2 + slave_weights(2, p)*area(p)
       is_last = p == n
       if (.not. is_last) is_last = slave_nodes(1, p) /= slave_nodes(1, p + 1) .or. &
         slave_nodes(2, p) /= slave_nodes(2, p + 1)
-      if (is_last) call give_sums(slave_nodes(1, p), sums, nodal)
+      if (.not. is_last) cycle
+      associate (a => slave_nodes(1, p), b => slave_nodes(2, p))
+        nodal(:, a) = nodal(:, a) + [gap_1, area_1]
+        nodal(:, b) = nodal(:, b) + [gap_2, area_2]
+      end associate
+      gap_1 = 0.0_wp; area_1 = 0.0_wp; gap_2 = 0.0_wp; area_2 = 0.0_wp
     end do
   end subroutine sum_gaps
-
-  !> Add the sums of a run to its two nodes and forget them.
-  pure subroutine give_sums(nodes, sums, nodal)
-    integer, intent(in) :: nodes(n_side)
-    real(wp), intent(inout) :: sums(2, n_side)
-    real(wp), intent(inout) :: nodal(2, *)
-    integer :: k
-
-    do k = 1, n_side
-      nodal(1, nodes(k)) = nodal(1, nodes(k)) + sums(1, k)
-      nodal(2, nodes(k)) = nodal(2, nodes(k)) + sums(2, k)
-    end do
-    sums = 0.0_wp
-  end subroutine give_sums
 
   !> Energy of the springs of all points as pressed, J/m; holds for both rules of pressure.
   pure function stored_energy(points) result(energy)

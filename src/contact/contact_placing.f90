@@ -8,7 +8,7 @@ module contact_placing_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: add_touching_nodes, add_segment_point, tracked_foot, place_on_segment, &
+  public :: add_touching_nodes, add_segment_point, add_plain_point, tracked_foot, place_on_segment, &
     competence_length
 
 contains
@@ -66,6 +66,30 @@ contains
       points%gap(p) = foot%gap
     end associate
   end subroutine add_segment_point
+
+  !> The same for a foot of which each part is known.
+  pure subroutine add_plain_point(ends, xi, nodes, foot, normal, gap, points)
+    integer, intent(in) :: ends(2), nodes(2) !! local numbers of slave and master nodes
+    real(wp), intent(in) :: xi, foot         !! place on the slave and on the master segment
+    real(wp), intent(in) :: normal(2)
+    real(wp), intent(in) :: gap              !! m
+    type(contact_points_t), intent(inout) :: points
+    integer :: p
+
+    p = points%n + 1
+    points%n = p
+    points%slave_nodes(1, p) = ends(1)
+    points%slave_nodes(2, p) = ends(2)
+    points%slave_weights(1, p) = 1.0_wp - xi
+    points%slave_weights(2, p) = xi
+    points%master_nodes(1, p) = nodes(1)
+    points%master_nodes(2, p) = nodes(2)
+    points%master_weights(1, p) = 1.0_wp - foot
+    points%master_weights(2, p) = foot
+    points%normal(1, p) = normal(1)
+    points%normal(2, p) = normal(2)
+    points%gap(p) = gap
+  end subroutine add_plain_point
 
   !> Foot of a spot in contact as the tracking knows it.
   pure function tracked_foot(tracking, i) result(foot)

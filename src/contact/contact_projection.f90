@@ -3,12 +3,12 @@
 !> Two ways to find it: `closest_foot` knows nothing of the past; `follow_contact` keeps a spot that
 !> is in contact on the face through which it came (doc/theory/contact.md, section 3).
 module contact_projection_m
-  use geometry_m, only : sight_t, sight_of_segment, separation, closest_distance, sight_normal
+  use geometry_m, only : sight_t, sight_of_segment, closest_distance, sight_normal
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: foot_t, see_segment, closest_foot, plain_foot, face_foot, follow_contact, walk_to_closest, &
+  public :: foot_t, see_segment, closest_foot, face_foot, follow_contact, walk_to_closest, &
     is_over_segment, turns_gently, end_tolerance, side_on
 
   !> Overshoot accepted beyond the end of a chain, as a part of the segment; not clamped.
@@ -16,11 +16,6 @@ module contact_projection_m
   !> Cosine of the turn between two segments up to which their corner is gentle: a spot in
   !> contact changes over to the nearer one. At sharper corners it stays on its face until the face ends.
   real(wp), parameter :: gentle_turn = 0.5_wp
-
-  !> Part of a segment next to its ends where round-off may decide which node or segment is closer.
-  real(wp), parameter :: well_inside = 1.0e-9_wp
-  !> Segments looked at by `plain_foot`.
-  integer, parameter :: n_walk = 3
   !> Cosine of the angle between two outward normals from which on surfaces do not face each other (a block's
   !> side that stands on a surface has no part in its contact).
   real(wp), parameter :: side_on = -0.1_wp
@@ -105,64 +100,6 @@ contains
       foot = corner_foot(sight, see_segment(surface, chain, spot, neighbour), segment)
     end if
   end function closest_foot
-
-  !> The common case of `walk_to_closest` and `closest_foot`: a segment at or next to the start that the spot
-  !> is over, while the closest points of all neighbours seen on the way are the nodes in common, which
-  !> are farther away. One root and no distances.
-  pure subroutine plain_foot(surface, chain, spot, start, is_found, foot)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :)
-    real(wp), intent(in) :: spot(4)
-    integer, intent(in) :: start
-    logical, intent(out) :: is_found
-    type(foot_t), intent(inout) :: foot !! left alone unless found
-    type(sight_t) :: sight
-    integer :: segment, neighbour, i_step
-    logical :: backwards
-
-    is_found = .false.
-    segment = start
-    sight = see_segment(surface, chain, spot, segment)
-    backwards = sight%along < 0.0_wp
-    do i_step = 1, n_walk
-      if (sight%along > well_inside*sight%square &
-        .and. sight%along < (1.0_wp - well_inside)*sight%square) exit
-      if (i_step == n_walk .or. (backwards .neqv. sight%along < 0.0_wp)) return
-      if (i_step == 1 .and. .not. is_past(surface, chain, sight, segment, .not. backwards)) return
-      neighbour = merge(surface%previous(segment), surface%next(segment), backwards)
-      if (neighbour == 0) return
-      segment = neighbour
-      sight = see_segment(surface, chain, spot, segment)
-    end do
-    if (.not. is_past(surface, chain, sight, segment, .true.)) return
-    if (.not. is_past(surface, chain, sight, segment, .false.)) return
-    is_found = .true.
-    foot = face_foot(sight, segment)
-  end subroutine plain_foot
-
-  !> Whether the closest point of a neighbour is the node in common with the segment that the spot is seen from.
-  pure function is_past(surface, chain, sight, segment, backwards)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :)
-    type(sight_t), intent(in) :: sight
-    integer, intent(in) :: segment
-    logical, intent(in) :: backwards !! of the neighbour before, else after
-    logical :: is_past
-    real(wp) :: t(2)
-    integer :: neighbour
-
-    neighbour = merge(surface%previous(segment), surface%next(segment), backwards)
-    is_past = neighbour == 0
-    if (is_past) return
-    associate (ends => surface%segments(:, neighbour))
-      t = separation(chain(:, ends(2)), chain(:, ends(1)))
-    end associate
-    if (backwards) then
-      is_past = sight%d(1)*t(1) + sight%d(2)*t(2) >= 0.0_wp
-    else
-      is_past = (sight%d(1) - sight%t(1))*t(1) + (sight%d(2) - sight%t(2))*t(2) <= 0.0_wp
-    end if
-  end function is_past
 
   !> Foot on the line of a segment; beyond the tolerance it is not on the chain.
   pure function face_foot(sight, segment) result(foot)

@@ -60,7 +60,8 @@ contains
   end subroutine scatter_each
 
   !> The forces of a run of points are summed before they are given to its nodes: a sum in memory has to be
-  !> stored before it can be read again.
+  !> stored before it can be read again. Scalars, since small arrays went to memory and
+  !> back at each point.
   pure subroutine scatter_in_runs(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
     pressure, area, force)
     integer, intent(in) :: n
@@ -68,25 +69,37 @@ contains
     real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
     real(wp), intent(in) :: normal(2, *), pressure(*), area(*)
     real(wp), intent(inout) :: force(2, *)
-    real(wp) :: f(2), slave(2, n_side), master(2, n_side)
-    integer :: p, k
+    real(wp) :: total, fx, fy, sx1, sy1, sx2, sy2, mx1, my1, mx2, my2
+    integer :: p, next
 
-    slave = 0.0_wp
-    master = 0.0_wp
+    sx1 = 0.0_wp; sy1 = 0.0_wp; sx2 = 0.0_wp; sy2 = 0.0_wp
+    mx1 = 0.0_wp; my1 = 0.0_wp; mx2 = 0.0_wp; my2 = 0.0_wp
     do p = 1, n
-      f = pressure(p)*area(p)*normal(:, p)
-      do k = 1, n_side
-        slave(:, k) = slave(:, k) + slave_weights(k, p)*f
-        master(:, k) = master(:, k) - master_weights(k, p)*f
-      end do
-      if (p < n) then
-        if (any_differs(slave_nodes(1, p), slave_nodes(1, p + 1))) &
-          call give_run(slave_nodes(1, p), slave, force)
-        if (any_differs(master_nodes(1, p), master_nodes(1, p + 1))) &
-          call give_run(master_nodes(1, p), master, force)
-      else
-        call give_run(slave_nodes(1, p), slave, force)
-        call give_run(master_nodes(1, p), master, force)
+      total = pressure(p)*area(p)
+      fx = total*normal(1, p)
+      fy = total*normal(2, p)
+      sx1 = sx1 + slave_weights(1, p)*fx
+      sy1 = sy1 + slave_weights(1, p)*fy
+      sx2 = sx2 + slave_weights(2, p)*fx
+      sy2 = sy2 + slave_weights(2, p)*fy
+      mx1 = mx1 - master_weights(1, p)*fx
+      my1 = my1 - master_weights(1, p)*fy
+      mx2 = mx2 - master_weights(2, p)*fx
+      my2 = my2 - master_weights(2, p)*fy
+      next = min(p + 1, n)
+      if (p == n .or. any_differs(slave_nodes(1, p), slave_nodes(1, next))) then
+        associate (a => slave_nodes(1, p), b => slave_nodes(2, p))
+          force(:, a) = force(:, a) + [sx1, sy1]
+          force(:, b) = force(:, b) + [sx2, sy2]
+        end associate
+        sx1 = 0.0_wp; sy1 = 0.0_wp; sx2 = 0.0_wp; sy2 = 0.0_wp
+      end if
+      if (p == n .or. any_differs(master_nodes(1, p), master_nodes(1, next))) then
+        associate (a => master_nodes(1, p), b => master_nodes(2, p))
+          force(:, a) = force(:, a) + [mx1, my1]
+          force(:, b) = force(:, b) + [mx2, my2]
+        end associate
+        mx1 = 0.0_wp; my1 = 0.0_wp; mx2 = 0.0_wp; my2 = 0.0_wp
       end if
     end do
   end subroutine scatter_in_runs
@@ -98,17 +111,6 @@ contains
 
     any_differs = nodes(1) /= others(1) .or. nodes(2) /= others(2)
   end function any_differs
-
-  !> Add the forces of a run to its two nodes and forget them.
-  pure subroutine give_run(nodes, run, force)
-    integer, intent(in) :: nodes(n_side)
-    real(wp), intent(inout) :: run(2, n_side)
-    real(wp), intent(inout) :: force(2, *)
-
-    force(:, nodes(1)) = force(:, nodes(1)) + run(:, 1)
-    force(:, nodes(2)) = force(:, nodes(2)) + run(:, 2)
-    run = 0.0_wp
-  end subroutine give_run
 
   !> What the rounding of places, one part in 1/epsilon of them, makes of the nodal forces of all pressed points: a gap along
   !> n is known to n_x X and n_y Y. Times epsilon it is a force.

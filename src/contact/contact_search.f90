@@ -3,7 +3,7 @@
 !> miss something, asleep where nothing can touch (doc/theory/contact.md, section 4).
 module contact_search_m
   use contact_buckets_m, only : nearest_t, fill_grid, slip_limit, box_distance, find_nearest
-  use contact_keeping_m, only : keep_contacts, list_kept, n_together
+  use contact_keeping_m, only : keep_contacts, list_kept
   use contact_projection_m, only : foot_t, see_segment, closest_foot, follow_contact, &
     walk_to_closest, is_over_segment, turns_gently, end_tolerance, &
     side_on
@@ -38,22 +38,18 @@ contains
     n_touching = 0
     i = 0
     do while (i < tracking%n)
-      if (i + n_together <= tracking%n) then
-        if (all(tracking%is_kept(i + 1:i + n_together))) then
-          call list_kept(tracking%touching, tracking%is_kept, i, n_touching)
-          next_wake = -huge(1.0_wp)
-          cycle
-        end if
+      if (tracking%is_kept(i + 1)) then
+        call list_kept(tracking%n, tracking%is_kept, i, tracking%touching, n_touching)
+        next_wake = -huge(1.0_wp)
+        cycle
       end if
       i = i + 1
       if (travel < tracking%wake(i)) then
         next_wake = min(next_wake, tracking%wake(i))
         cycle
       end if
-      if (.not. tracking%is_kept(i)) &
-        call update_spot(tracking, surface, chain, spots, i, travel, n_released)
+      call update_spot(tracking, surface, chain, spots, i, travel, n_released)
       next_wake = min(next_wake, tracking%wake(i))
-      tracking%is_kept(i) = .false.
       if (tracking%status(i) /= is_touching) cycle
       n_touching = n_touching + 1
       tracking%touching(n_touching) = i

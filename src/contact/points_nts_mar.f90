@@ -36,7 +36,7 @@ contains
       if (is_asleep(memory, s, contact%slave%segments(:, s))) cycle
       call find_plain_cover(contact, memory, s, plain)
       if (plain%n_piece > 0) then
-        call share_plain_segment(memory, s, plain)
+        call share_plain_segment(contact, memory, s, plain)
       else
         call share_segment(contact, memory, s)
       end if
@@ -95,33 +95,36 @@ contains
   end function is_tip
 
   !> The common case of `share_segment`.
-  pure subroutine share_plain_segment(memory, s, cover)
+  pure subroutine share_plain_segment(contact, memory, s, cover)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: s
     type(plain_cover_t), intent(in) :: cover
-    real(wp) :: length, half, before, gap
-    logical :: is_deep
-    integer :: k
+    real(wp) :: length, half, before, gap, deepest
+    logical :: counts
+    integer :: k, n_before
 
+    n_before = memory%points%n
     length = sqrt(cover%square)
     half = 0.5_wp*cover%cuts(1)*length
-    associate (points => memory%points, p => memory%mark(cover%ends(1)))
-      points%area(p) = points%area(p) + half
-    end associate
-    is_deep = .false.
+    call add_area(memory, cover%ends(1), half)
+    deepest = huge(1.0_wp)
     do k = 1, cover%n_piece - 1
       before = half
       half = 0.5_wp*(cover%cuts(k + 1) - cover%cuts(k))*length
       gap = cover%across(k)/length
       if (cover%across(k) >= 0.0_wp .and. gap >= memory%closed_gap) cycle
-      is_deep = is_deep .or. gap < memory%closed_gap
+      deepest = min(deepest, gap)
       call add_cut(memory, cover%ends, cover%nodes(k), cover%cuts(k), gap, &
         [-cover%t(2)/length, cover%t(1)/length], before + half)
     end do
-    associate (points => memory%points, p => memory%mark(cover%ends(2)))
-      points%area(p) = points%area(p) + half
-    end associate
-    call note_plain_contact(memory, s, is_deep)
+    call add_area(memory, cover%ends(2), half)
+    if (cover%touches) then
+      call note_plain_contact(memory, s, deepest < memory%closed_gap)
+      return
+    end if
+    call judge_segment(contact, memory, s, cover%ends, deepest, counts)
+    if (.not. counts) memory%points%n = n_before
   end subroutine share_plain_segment
 
   !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
@@ -145,7 +148,8 @@ contains
     length = sqrt(sight%square)
     call first_piece(contact, memory, cover, piece)
     if (contact%strict .and. (piece%is_last .or. .not. all(cover%feet%is_on))) then
-      call add_area(memory, cover%ends, 0.5_wp*length)
+      call add_area(memory, cover%ends(1), 0.5_wp*length)
+      call add_area(memory, cover%ends(2), 0.5_wp*length)
       piece%is_last = .true.
     end if
     before = 0.0_wp
@@ -164,7 +168,7 @@ contains
         if (before + half > 0.0_wp) &
           call add_master_node(memory, cover, piece%low_node, before + half)
       else
-        call add_area(memory, cover%ends(1:1), half)
+        call add_area(memory, cover%ends(1), half)
       end if
       before = half
       node_before = piece%high_node
@@ -172,24 +176,22 @@ contains
     if (before > 0.0_wp .and. node_before > 0) then
       call add_master_node(memory, cover, node_before, before)
     else
-      call add_area(memory, cover%ends(2:2), before)
+      call add_area(memory, cover%ends(2), before)
     end if
     deepest = minval(memory%points%gap(n_before + 1:memory%points%n))
     call judge_segment(contact, memory, s, cover%ends, deepest, counts)
     if (.not. counts) memory%points%n = n_before
   end subroutine share_segment
 
-  !> Give length to the points at slave nodes, where there are any.
-  pure subroutine add_area(memory, nodes, length)
+  !> Give length to the point at a slave node, where there is one.
+  pure subroutine add_area(memory, node, length)
     type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: nodes(:)
+    integer, intent(in) :: node
     real(wp), intent(in) :: length
-    integer :: k, p
+    integer :: p
 
-    do k = 1, size(nodes)
-      p = memory%mark(nodes(k))
-      if (p > 0) memory%points%area(p) = memory%points%area(p) + length
-    end do
+    p = memory%mark(node)
+    if (p > 0) memory%points%area(p) = memory%points%area(p) + length
   end subroutine add_area
 
   !> A point at a master node behind the slave segment, with the normal of that segment.
@@ -216,7 +218,7 @@ contains
     real(wp), intent(in) :: normal(2)    !! against the segment's own
     real(wp), intent(in) :: area         !! m
 
-    call make_room(memory%points, 1)
+    if (memory%points%n + 1 > size(memory%points%gap)) call make_room(memory%points, 1)
     associate (points => memory%points, p => memory%points%n)
       p = p + 1
       points%slave_nodes(1, p) = ends(1)

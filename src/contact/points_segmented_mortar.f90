@@ -6,9 +6,10 @@ module points_segmented_mortar_m
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     local_foot, facing_share
   use contact_plain_cover_m, only : plain_cover_t, find_plain_cover, note_plain_contact
-  use contact_placing_m, only : add_segment_point, place_on_segment
+  use contact_placing_m, only : add_segment_point, add_plain_point, place_on_segment
+  use contact_plain_foot_m, only : is_plainly_behind, is_plainly_over
   use contact_projection_m, only : foot_t
-  use contact_state_m, only : contact_state_t, contact_points_t, make_room
+  use contact_state_m, only : contact_state_t, make_room
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, sight_normal
   use kinds_m, only : wp
@@ -28,7 +29,7 @@ contains
   pure subroutine place_segmented_mortar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    type(cover_t) :: cover
+    logical :: touches
     integer :: s
 
     if (all_asleep(memory)) return
@@ -45,8 +46,7 @@ contains
       if (memory%cover%is_placed(s)) cycle
       if (memory%mark(contact%slave%segments(1, s)) == 0 &
         .and. memory%mark(contact%slave%segments(2, s)) == 0) cycle
-      call find_cover(contact, memory, s, cover)
-      call add_pieces(contact, memory, cover)
+      call cover_segment(contact, memory, s, touches)
     end do
     memory%mark = 0
   end subroutine place_segmented_mortar
@@ -56,32 +56,46 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: s
-    type(plain_cover_t) :: plain
-    type(cover_t) :: cover
     real(wp) :: deepest
-    logical :: counts
-    integer :: n_before
+    logical :: counts, touches
+    integer :: n_before, ends(2)
 
     n_before = memory%points%n
-    call find_plain_cover(contact, memory, s, plain)
-    if (plain%n_piece > 0) then
-      call add_plain_pieces(contact, memory, plain)
-      deepest = minval(memory%points%gap(n_before + 1:memory%points%n))
-      call note_plain_contact(memory, s, deepest < memory%closed_gap)
-      if (deepest < memory%closed_gap) memory%mark(plain%ends) = 1
-      return
-    end if
-    call find_cover(contact, memory, s, cover)
-    call add_pieces(contact, memory, cover)
+    ends = contact%slave%segments(:, s)
+    call cover_segment(contact, memory, s, touches)
     deepest = minval(memory%points%gap(n_before + 1:memory%points%n))
-    call judge_segment(contact, memory, s, cover%ends, deepest, counts)
+    if (touches) then
+      counts = .true.
+      call note_plain_contact(memory, s, deepest < memory%closed_gap)
+    else
+      call judge_segment(contact, memory, s, ends, deepest, counts)
+    end if
     if (.not. counts) then
       memory%points%n = n_before
     else if (deepest < memory%closed_gap) then
-      memory%mark(cover%ends(1)) = 1
-      memory%mark(cover%ends(2)) = 1
+      memory%mark(ends(1)) = 1
+      memory%mark(ends(2)) = 1
     end if
   end subroutine place_segment
+
+  !> Cut a segment and place its points.
+  pure subroutine cover_segment(contact, memory, s, touches)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: s
+    logical, intent(out) :: touches !! the common case, and both ends are in contact
+    type(plain_cover_t) :: plain
+    type(cover_t) :: cover
+
+    call find_plain_cover(contact, memory, s, plain)
+    touches = plain%n_piece > 0 .and. plain%touches
+    if (plain%n_piece > 0) then
+      call add_plain_pieces(contact, memory, plain)
+    else
+      call find_cover(contact, memory, s, cover)
+      call add_pieces(contact, memory, cover)
+    end if
+  end subroutine cover_segment
 
   !> The points of one segment.
   pure subroutine add_pieces(contact, memory, cover)
@@ -130,73 +144,49 @@ contains
     end associate
   end subroutine add_gauss_point
 
-  !> The common case of `add_pieces`: a Gauss point behind the master segment of its piece, and not nearer to a
-  !> neighbour of that than to it, has its foot there (as contact_projection has it); others are left to
-  !> `add_gauss_point`. Two roots and two quotients a piece instead of ten.
+  !> The common case of `add_pieces`: a Gauss point not nearer to a neighbour of the master segment of its piece than to
+  !> that has its foot there (as contact_projection has it); others are left to `add_gauss_point`. Two roots and
+  !> two quotients a piece instead of ten.
   pure subroutine add_plain_pieces(contact, memory, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(in) :: cover
     type(sight_t) :: sight, slave
-    real(wp) :: length, master_length, weight, xi
+    real(wp) :: length, master_length, weight, xi, normal(2)
+    real(wp), dimension(4) :: one, two, a, b !! places of the nodes, in registers
     integer :: k, q, nodes(2)
+    logical :: is_plain
 
     length = sqrt(cover%square)
+    one = memory%places(:, cover%ends(1))
+    two = memory%places(:, cover%ends(2))
     call make_room(memory%points, cover%n_piece*size(gauss_xi))
     do k = 1, cover%n_piece
       nodes = contact%master%segments(:, cover%segments(k)) + memory%n_slave
+      a = memory%places(:, nodes(1))
+      b = memory%places(:, nodes(2))
       weight = 0.5_wp*(cover%cuts(k) - cover%cuts(k - 1))
       do q = 1, size(gauss_xi)
         xi = cover%cuts(k - 1) + gauss_xi(q)*(cover%cuts(k) - cover%cuts(k - 1))
-        sight = sight_of_segment(place_on_segment(memory%places, cover%ends, xi), &
-          memory%places(:, nodes(1)), memory%places(:, nodes(2)))
-        if (q == 1) master_length = sqrt(sight%square)
-        if (is_plainly_behind(sight)) then
-          call add_foot(memory%points, cover%ends, xi, nodes, sight, master_length)
+        sight = sight_of_segment((1.0_wp - xi)*one + xi*two, a, b)
+        if (q == 1) then
+          master_length = sqrt(sight%square)
+          normal = [sight%t(2), -sight%t(1)]/master_length
+        end if
+        is_plain = is_plainly_behind(sight)
+        if (.not. is_plain) is_plain = is_plainly_over(contact%master, &
+          memory%places(:, memory%n_slave + 1:), sight, cover%segments(k))
+        if (is_plain) then
+          call add_plain_point(cover%ends, xi, nodes, sight%along/sight%square, normal, &
+            sight%across/master_length, memory%points)
           memory%points%area(memory%points%n) = weight*length
           memory%points%stiffness(memory%points%n) = memory%slave_penalty
         else
-          slave = sight_of_segment(memory%places(:, cover%ends(2)), memory%places(:, cover%ends(1)), &
-            memory%places(:, cover%ends(2)))
+          slave = sight_of_segment(two, one, two)
           call add_gauss_point(contact, memory, cover%ends, slave, cover%segments(k), xi, weight)
         end if
       end do
     end do
   end subroutine add_plain_pieces
-
-  !> Whether a place has its foot on a segment without a look at the neighbours.
-  pure function is_plainly_behind(sight) result(is_behind)
-    type(sight_t), intent(in) :: sight
-    logical :: is_behind
-
-    is_behind = sight%across < 0.0_wp .and. sight%across + sight%along >= 0.0_wp &
-      .and. sight%across + sight%square >= sight%along
-  end function is_plainly_behind
-
-  !> Append a point that stands on the segment it is seen from.
-  pure subroutine add_foot(points, ends, xi, nodes, sight, length)
-    type(contact_points_t), intent(inout) :: points
-    integer, intent(in) :: ends(2), nodes(2) !! local numbers of slave and master nodes
-    real(wp), intent(in) :: xi               !! place on the slave segment
-    type(sight_t), intent(in) :: sight       !! from the master segment
-    real(wp), intent(in) :: length           !! of that, m
-    real(wp) :: foot
-
-    foot = sight%along/sight%square
-    points%n = points%n + 1
-    associate (p => points%n)
-      points%slave_nodes(1, p) = ends(1)
-      points%slave_nodes(2, p) = ends(2)
-      points%slave_weights(1, p) = 1.0_wp - xi
-      points%slave_weights(2, p) = xi
-      points%master_nodes(1, p) = nodes(1)
-      points%master_nodes(2, p) = nodes(2)
-      points%master_weights(1, p) = 1.0_wp - foot
-      points%master_weights(2, p) = foot
-      points%normal(1, p) = sight%t(2)/length
-      points%normal(2, p) = -sight%t(1)/length
-      points%gap(p) = sight%across/length
-    end associate
-  end subroutine add_foot
 
 end module points_segmented_mortar_m

@@ -5,9 +5,8 @@
 !> All portions have the gap and the normal of the virtual node, so P2 holds for directions only in parallel: the net
 !> moment is not exactly zero on a kinked master.
 module points_vts_ppt_m
-  use contact_placing_m, only : add_segment_point, place_on_segment, tracked_foot
+  use contact_placing_m, only : add_plain_point, place_on_segment
   use contact_portions_m, only : mark_t, walk_from
-  use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t, make_room
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, segment_length
@@ -35,39 +34,35 @@ contains
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: spot
     type(mark_t) :: marks(2)
-    type(foot_t) :: foot
     type(sight_t) :: sights(2)
     real(wp) :: xi, half, low, high
-    integer :: ends(2), segment, n_before, k
+    integer :: ends(2), start, segment, n_before, k
 
     ends = contact%slave%segments(:, (spot + 1)/2)
     xi = memory%spot_xi(2 - mod(spot, 2))
     half = 0.5_wp*segment_length(memory%places(:, ends(1)), memory%places(:, ends(2)))
-    foot = tracked_foot(memory%slave_tracking, spot)
-    call see_ends(contact, memory, ends, xi, foot%segment, sights)
+    start = memory%slave_tracking%segment(spot)
+    call see_ends(contact, memory, ends, xi, start, sights)
     if (all(sights%along >= 0.0_wp .and. sights%along <= sights%square) .and. &
       sights(2)%along > sights(1)%along) then
-      foot%xi = 0.5_wp*(sights(1)%along + sights(2)%along)/sights(1)%square
-      call make_room(memory%points, 1)
-      call add_segment_point(contact%master, memory%n_slave, ends, xi, foot, memory%points)
-      memory%points%area(memory%points%n) = half
-      memory%points%stiffness(memory%points%n) = memory%slave_penalty
+      call add_part(contact, memory, spot, ends, start, 0.5_wp*(sights(1)%along + sights(2)%along) &
+        /sights(1)%square, half)
       return
     end if
     do k = 1, 2
       marks(k) = walk_from(contact%master, memory%places(:, memory%n_slave + 1:), &
-        place_on_segment(memory%places, ends, end_of_half(xi, k)), foot%segment, sights(k))
+        place_on_segment(memory%places, ends, end_of_half(xi, k)), start, sights(k))
     end do
     n_before = memory%points%n
     segment = marks(1)%segment
     do k = 0, marks(2)%n_step - marks(1)%n_step
       low = merge(marks(1)%xi, 0.0_wp, k == 0)
       high = merge(marks(2)%xi, 1.0_wp, segment == marks(2)%segment)
-      if (high > low) call add_portion(contact, memory, ends, xi, foot, segment, low, high)
+      if (high > low) call add_portion(contact, memory, spot, ends, segment, low, high)
       segment = contact%master%next(segment)
     end do
-    if (memory%points%n == n_before) call add_portion(contact, memory, ends, xi, foot, &
-      foot%segment, foot%xi - 0.5_wp, foot%xi + 0.5_wp)
+    if (memory%points%n == n_before) call add_portion(contact, memory, spot, ends, start, &
+      memory%slave_tracking%xi(spot) - 0.5_wp, memory%slave_tracking%xi(spot) + 0.5_wp)
     associate (area => memory%points%area(n_before + 1:memory%points%n))
       area = area*(half/sum(area))
     end associate
@@ -101,26 +96,40 @@ contains
   end subroutine see_ends
 
   !> One portion: from `low` to `high` on a master segment, whose centre takes the force; area = its length until all are known.
-  pure subroutine add_portion(contact, memory, ends, xi, foot, segment, low, high)
+  pure subroutine add_portion(contact, memory, spot, ends, segment, low, high)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: ends(2)     !! nodes of the slave segment
-    real(wp), intent(in) :: xi         !! where the virtual node is on it
-    type(foot_t), intent(in) :: foot   !! of the virtual node: gap and normal
+    integer, intent(in) :: spot, ends(2)
     integer, intent(in) :: segment     !! of the master
     real(wp), intent(in) :: low, high
-    type(foot_t) :: centre
+    real(wp) :: length
 
-    centre = foot
-    centre%segment = segment
-    centre%xi = 0.5_wp*(low + high)
-    call make_room(memory%points, 1)
-    call add_segment_point(contact%master, memory%n_slave, ends, xi, centre, memory%points)
-    associate (p => memory%points%n, nodes => contact%master%segments(:, segment))
-      memory%points%area(p) = (high - low)*segment_length( &
-        memory%places(:, memory%n_slave + nodes(1)), memory%places(:, memory%n_slave + nodes(2)))
-      memory%points%stiffness(p) = memory%slave_penalty
+    associate (nodes => contact%master%segments(:, segment))
+      length = segment_length(memory%places(:, memory%n_slave + nodes(1)), &
+        memory%places(:, memory%n_slave + nodes(2)))
     end associate
+    call add_part(contact, memory, spot, ends, segment, 0.5_wp*(low + high), (high - low)*length)
   end subroutine add_portion
+
+  !> A point with the gap and the normal of the virtual node and a place of its own on the master.
+  pure subroutine add_part(contact, memory, spot, ends, segment, master_xi, area)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: spot            !! the virtual node
+    integer, intent(in) :: ends(2)         !! nodes of its slave segment
+    integer, intent(in) :: segment         !! of the master
+    real(wp), intent(in) :: master_xi      !! place on that
+    real(wp), intent(in) :: area           !! m
+    integer :: nodes(2)
+
+    if (memory%points%n == size(memory%points%gap)) call make_room(memory%points, 1)
+    nodes = memory%n_slave + contact%master%segments(:, segment)
+    associate (tracking => memory%slave_tracking, points => memory%points)
+      call add_plain_point(ends, memory%spot_xi(2 - mod(spot, 2)), nodes, master_xi, &
+        tracking%normal(:, spot), tracking%gap(spot), points)
+      points%area(points%n) = area
+      points%stiffness(points%n) = memory%slave_penalty
+    end associate
+  end subroutine add_part
 
 end module points_vts_ppt_m
