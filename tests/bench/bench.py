@@ -49,6 +49,7 @@ def plan(options):
         elements.WORK = 1.0e5
     decks = options.out / "decks"
     decks.mkdir(parents=True, exist_ok=True)
+    elements.write_deck(decks / "unit.k", 64, True)
     return {"step": elements.write_decks(decks, sizes), "contact": chains,
             "search": search.write_decks(decks, searches, cases),
             "files": input_output.write_decks(decks, large)}
@@ -121,7 +122,6 @@ def main():
     options.kernel = options.build.resolve() / "tests" / "bench" / "bench_kernel"
     options.contact = options.build.resolve() / "tests" / "bench" / "bench_contact"
     work = plan(options) if options.rounds else {}
-    elements.write_deck(options.out / "decks" / "unit.k", 64, True)
     samples = Samples(options.out / "samples.csv", options.program)
     for number in range(1 if options.quick else options.rounds):
         print(f"round {number + 1}", flush=True)

@@ -26,7 +26,7 @@ from slideline_tools.scenes.block import block, block_grids
 from slideline_tools.scenes.patch import even_lines, patch, patch_grids
 
 HERE = Path(__file__).resolve().parent
-WAVES = ((32, 200), (100, 100), (316, 30))  # columns, steps
+WAVES = ((32, 200), (100, 100), (316, 15))  # columns, steps
 PATCHES = (5, 40)                           # columns of the upper block
 TYPES = (2, 5, 7)
 PUSH = 1.0e-4                               # of the upper face of the block, m

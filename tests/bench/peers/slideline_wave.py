@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: MIT
 """slideline on the problem of wave.py. usage: slideline_wave.py PROGRAM FOLDER POINTS COLUMNS STEPS
 
-The time is that of all cycles, with contact, loads, energies and histories: the total less input and output, as
-processor time: times the share of the processor that the run had.
+The time is what MORE times as many steps take more of the processor: all of a cycle, nothing of start and end.
 """
 import csv
 import pathlib
 import resource
 import subprocess
 import sys
-import time
 
 import wave
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import elastic, energies_on, part, plane_strain
+
+MORE = 20
 
 
 def write_deck(path, points, columns, steps):
@@ -46,25 +46,33 @@ def read_rows(path):
         return list(csv.DictReader(stream))
 
 
+def processor_seconds():
+    """Of all programs run so far."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def run(program, folder, points, columns, steps):
+    """Processor seconds of one run; its histories are in the folder."""
+    deck = folder / f"wave_{points}_{columns}_{steps}.k"
+    if not deck.exists():
+        write_deck(deck, points, columns, steps)
+    before = processor_seconds()
+    subprocess.run([program, f"i={deck}", f"d={folder}", "jobid=wave", "ncpu=1"], check=True,
+                   stdout=subprocess.DEVNULL)
+    return processor_seconds() - before
+
+
 def main():
     program, folder, points, columns, steps = sys.argv[1], pathlib.Path(sys.argv[2]), *map(
         int, sys.argv[3:6])
     folder.mkdir(parents=True, exist_ok=True)
-    deck = folder / f"wave_{points}_{columns}_{steps}.k"
-    if not deck.exists():
-        write_deck(deck, points, columns, steps)
-    start = time.monotonic()
-    subprocess.run([program, f"i={deck}", f"d={folder}", "jobid=wave", "ncpu=1"], check=True,
-                   stdout=subprocess.DEVNULL)
-    clock, used = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
-    share = min(1.0, (used.ru_utime + used.ru_stime) / clock)
-    seconds = {row["phase"]: float(row["seconds"]) for row in read_rows(folder / "wave.timing.csv")}
+    longer = run(program, folder, points, columns, MORE * steps)
+    seconds = (longer - run(program, folder, points, columns, steps)) / (MORE - 1)
     rows = read_rows(folder / "wave.nodout.csv")
     last = rows[-1]["time"]
     wave.report("slideline", "2x2 points, large strain" if points == 4 else
-                "one point, large strain", columns, steps,
-                share * (seconds["total"] - seconds["input"] - seconds["output"]) * steps
-                / (steps + 1),
+                "one point, large strain", columns, steps, seconds,
                 [float(row["ux"]) for row in rows if row["time"] == last])
 
 

@@ -18,6 +18,7 @@ from slideline_tools.studies.common import (TYPES, colour, label, markdown_table
                                             write_page)
 
 BYTES = 320.0  # moved per element and step, as in tests/bench/measuring.py
+IN_MEMORY = 20000  # elements: from there on a model is larger than the caches of a core
 STYLES = {("elastic", 1): ("-", "o"), ("elastic", 2): ("--", "o"),
           ("yielding", 1): ("-", "s"), ("yielding", 2): ("--", "s")}
 SEARCHES = {"still": "pressed, not sliding", "sliding": "sliding fast",
@@ -34,7 +35,8 @@ interleaved rounds on one machine; quartiles, repeats and all the rest are in th
 - **K** is the time of the arithmetic of one element: the kernel of one-point plastic quads, alone, on data in the L1 cache. Here
   {kernel:.2f} ns. No step can take less on one thread than K for each element.
 - **R** is the time in which the memory can move what an element reads and writes in a step ({bytes:.0f} bytes): {memory:.2f} ns on one
-  thread ({bandwidth:.1f} GB/s). It counts where the model is larger than the caches.
+  thread ({bandwidth:.1f} GB/s). It counts where the model is larger than the
+  caches of a core: from some 20 000 elements on.
 - The **roofline** is the larger of the two. What the step takes beyond it is for the nodes: gathering, summing, moving them,
   boundary conditions, the energy account. The **goal** for large models is 1.2 (2.7 K + R).
 - All ratios are of K and R measured within the same minute: the machine's pace drifts, ratios less so.
@@ -209,10 +211,10 @@ def step_table(bench):
     lines = []
     for size in sizes:
         cells = [f"{column[size]['median']:.2f} ns = {column[size]['over_kernel']:.2f} K"
-                 f" ({column[size]['over_goal']:.2f})" if size in column else ""
-                 for column in columns]
+                 + f" ({column[size]['over_goal']:.2f})" * (size >= IN_MEMORY)
+                 if size in column else "" for column in columns]
         lines.append([f"{size:,}".replace(",", " "), *cells])
-    return ("ns per element and step, over K, and in brackets over 2.7 K + R:\n\n"
+    return ("ns per element and step, over K, and from 20 000 elements on in brackets over 2.7 K + R:\n\n"
             + markdown_table(names, lines))
 
 
@@ -272,7 +274,7 @@ def draw_steps(axes, bench):
     if rows:
         sizes = [row["size"] for row in rows]
         kernel = [row["kernel_ns"] for row in rows]
-        memory = [BYTES / row["bandwidth_gb_s"] for row in rows]
+        memory = [BYTES / row["bandwidth_gb_s"] if row["size"] >= IN_MEMORY else 0.0 for row in rows]
         axes.plot(sizes, [max(pair) for pair in zip(kernel, memory)], color="black", lw=1.6,
                   label="roofline: larger of K and R")
         axes.plot(sizes, kernel, color="black", lw=0.8, ls=":", label="K, arithmetic alone")
@@ -334,7 +336,8 @@ def search_chart(bench, path):
             axes.set_title(label(ctype), loc="left")
             axes.set_xlabel("slave nodes")
         panels[0, 0].set_ylabel("ns per slave node and step")
-        panels[0, 0].legend()
+        if found:
+            panels[0, 0].legend()
         save_small(figure, path, lines=True)
 
 
