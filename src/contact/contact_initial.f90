@@ -4,10 +4,12 @@
 !> body behind the chain: nodes beyond the far side of a body are no penetrations
 !> (doc/theory/contact.md, section 3.4).
 module contact_initial_m
+  use contact_buckets_m, only : nearest_t, fill_grid, find_nearest
   use contact_projection_m, only : foot_t, see_segment, closest_foot, follow_contact
   use contact_search_m, only : update_tracking, most_facing, begin_contact
   use contact_spots_m, only : list_owners, list_chords
-  use contact_state_m, only : contact_state_t, tracking_t, allocate_tracking, is_free, is_touching
+  use contact_state_m, only : contact_state_t, tracking_t, bucket_grid_t, allocate_tracking, &
+    is_free, is_touching
   use contacts_m, only : contact_t
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
   use geometry_m, only : closest_distance
@@ -20,6 +22,8 @@ module contact_initial_m
 
   !> Smallest cell of the grid, as a part of the search reach.
   real(wp), parameter :: least_cell = 0.01_wp
+  !> Cells about a place that are looked into before all segments are.
+  integer, parameter :: near_cells = 16
 
 contains
 
@@ -63,6 +67,7 @@ contains
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
     type(element_finder_t) :: finder
+    type(tracking_t) :: scratch !! for its grid
     integer :: i, segment
 
     allocate (memory%cover%status(contact%slave%n_segment), source=is_free)
@@ -70,11 +75,13 @@ contains
     allocate (memory%cover%is_placed(contact%slave%n_segment), source=.false.)
     if (contact%birth > 0.0_wp) return
     call start_finder(model, contact%slave%segment_element, finder)
+    call allocate_tracking(scratch, 0, contact%slave%n_segment)
+    call fill_grid(scratch%grid, contact%slave, memory%places(:, :memory%n_slave), 0.0_wp)
     do i = 1, contact%master%n_node
       associate (node => contact%master%nodes(i))
         if (.not. is_inside_body(finder, model, model%mesh%coordinates(:, node), [node])) cycle
       end associate
-      segment = nearest_segment(contact%slave, memory%places(:, :memory%n_slave), &
+      segment = nearest_segment(scratch%grid, contact%slave, memory%places(:, :memory%n_slave), &
         memory%places(:, memory%n_slave + i))
       memory%cover%status(segment) = is_touching
     end do
@@ -188,11 +195,13 @@ contains
     integer :: i
 
     call start_finder(model, surface%segment_element, finder)
+    call fill_grid(tracking%grid, surface, chain, 0.0_wp)
     do i = 1, tracking%n
       if (tracking%status(i) == is_touching) cycle
       if (.not. is_inside_body(finder, model, model%mesh%coordinates(:, surface%nodes(1)) &
         + (spots(1:2, i) - chain(1:2, 1)), own%nodes(own_nodes(own, owners(:, i))))) cycle
-      foot = closest_foot(surface, chain, spots(:, i), nearest_segment(surface, chain, spots(:, i)))
+      foot = closest_foot(surface, chain, spots(:, i), nearest_segment(tracking%grid, surface, chain, &
+        spots(:, i)))
       if (.not. foot%is_on .or. foot%gap >= 0.0_wp) cycle
       tracking%segment(i) = foot%segment
       tracking%status(i) = is_touching
@@ -215,15 +224,29 @@ contains
     end if
   end function own_nodes
 
-  !> Segment of a chain that is nearest to a place, by looking at all.
-  pure function nearest_segment(surface, chain, place) result(segment)
+  !> Segment of a chain that is nearest to a place, the first of equally near ones: by the grid, or by looking at
+  !> all where none is near.
+  pure function nearest_segment(grid, surface, chain, place) result(segment)
+    type(bucket_grid_t), intent(in) :: grid !! filled at a travel of 0
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :)
     real(wp), intent(in) :: place(4)
-    integer :: segment, k
+    integer :: segment, k, neighbours(2)
     real(wp) :: square, nearest
+    type(nearest_t) :: found
 
-    segment = 0
+    call find_nearest(grid, surface, chain, place, 0.0_wp, near_cells*grid%cell, found)
+    segment = found%segment
+    if (segment > 0) then
+      neighbours = [surface%previous(segment), surface%next(segment)]
+      nearest = closest_distance(see_segment(surface, chain, place, segment))
+      do k = 1, 2
+        if (neighbours(k) == 0 .or. neighbours(k) >= segment) cycle
+        if (closest_distance(see_segment(surface, chain, place, neighbours(k))) <= nearest) &
+          segment = neighbours(k)
+      end do
+      return
+    end if
     nearest = huge(1.0_wp)
     do k = 1, surface%n_segment
       square = closest_distance(see_segment(surface, chain, place, k))
