@@ -103,6 +103,7 @@ def write_decks(folder, sizes):
 def time_steps(options, deck, elements, steps, material, threads):
     """The variant, ns per element and step of one run, and its share of the processors."""
     seconds, share = run_program(options.program, deck, options.out, threads)
-    step = 1.0e9 * (seconds["elements"] + seconds["nodes"]) / elements / (steps + 1)
+    stepping = seconds["elements"] + seconds["nodes"]
+    step = 1.0e9 * stepping / elements / (steps + 1)
     return (Variant("step", material, elements, threads, "ns/element"),
-            without_others(step, share, threads), share)
+            without_others(step, share, threads, stepping), share)

@@ -17,6 +17,7 @@ from pathlib import Path
 
 BYTES = 320.0  # moved per element and step: state read and written, nodes, connectivity
 UNDISTURBED = 0.97  # share of the processors that a run had
+TURNS = 0.1  # s; some turns of the scheduler
 LONGEST = 120.0  # s; a run that takes longer waits for processors that others have: no sample
 
 
@@ -145,12 +146,15 @@ def measure_units(kernel, deck, threads, entries):
                  {count: float(values["bandwidth_gb_s"]) for count, values in found.items()})
 
 
-def without_others(value, share, threads):
+def without_others(value, share, threads, seconds):
     """A time without that in which others had the processor, as far as it can be told.
 
-    With one thread it is in proportion to the processor time; threads that wait for each other use it up.
+    With one thread it is in proportion to the processor time; threads that wait for each other use it up. What took
+    fewer `seconds` than some turns of the scheduler may have had the processor to itself: it stays.
     """
-    return value * share if threads == 1 and share < UNDISTURBED else value
+    if threads == 1 and share < UNDISTURBED and seconds > TURNS:
+        return value * share
+    return value
 
 
 def phase_seconds(path):

@@ -105,4 +105,4 @@ def time_search(options, case, deck, nodes, ctype):
     found = seconds["contact_search"] + seconds["contact_pairing"]
     whole = found + seconds["contact_force"]
     return [(Variant("search", f"{case} type {ctype} {what}", nodes, 1, "ns/slave node"),
-             without_others(scale * value, share, 1), share) for what, value in (("search", found), ("whole", whole))]
+             without_others(scale * value, share, 1, whole), share) for what, value in (("search", found), ("whole", whole))]

@@ -151,9 +151,10 @@ def test_page_of_speed_says_when_the_machine_was_shared():
 
 
 def test_times_of_one_thread_are_freed_of_others():
-    assert measuring.without_others(10.0, 0.5, 1) == 5.0
-    assert measuring.without_others(10.0, 0.98, 1) == 10.0
-    assert measuring.without_others(10.0, 0.5, 2) == 10.0
+    assert measuring.without_others(10.0, 0.5, 1, 1.0) == 5.0
+    assert measuring.without_others(10.0, 0.98, 1, 1.0) == 10.0
+    assert measuring.without_others(10.0, 0.5, 2, 1.0) == 10.0
+    assert measuring.without_others(10.0, 0.5, 1, 0.01) == 10.0
 
 
 def test_ratios_of_peers_are_taken_round_by_round():

@@ -21,7 +21,7 @@ PEERS = ("akantu", "KratosMultiphysics", "KratosStructuralMechanicsApplication",
 PAGE = """# Side by side with other programs
 
 This page is written by `tests/bench/peers/run.sh --publish`: do not edit it. All programs run in turn on one machine,
-one thread each, {rounds} rounds; times are medians, with the quartiles in brackets. Other work on the machine hits all alike.
+one thread each; times are medians of {rounds}, with the quartiles in brackets. Processor time is what counts: the machine may be shared.
 
 | program | version | from |
 |---|---|---|
@@ -178,6 +178,11 @@ def re_message(text):
     return " ".join(word for word in text.split() if not word.strip(",").isdigit())
 
 
+def rounds_in_words(count):
+    """'one round', '5 rounds'."""
+    return "one round" if count == 1 else f"{count} rounds"
+
+
 def version_rows(path):
     """Markdown rows of the programs and their versions."""
     lines = path.read_text(encoding="utf-8").splitlines()
@@ -192,7 +197,7 @@ def write(folder, doc):
     """The page."""
     elements, contact = (read_table(folder / f"{name}.csv") for name in ("elements", "contact"))
     write_page(doc, "peers", PAGE.format(
-        rounds=max(int(row["round"]) for row in elements), processor=processor(),
+        rounds=rounds_in_words(max(int(row["round"]) for row in elements)), processor=processor(),
         versions=version_rows(folder / "versions.txt"), elements=element_table(elements),
         words=element_words(elements), contact=contact_table(contact),
         contact_words=contact_words(contact)))
