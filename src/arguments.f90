@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The command line: `i=DECK r=FILE d=DIR jobid=NAME ncpu=N timing=... memory=... OVERRIDES`; a bare path works as i=.
+!> The command line: `i=DECK r=FILE d=DIR jobid=NAME ncpu=N perthread=N timing=... memory=... OVERRIDES`; a bare path works as i=.
 module arguments_m
   use errors_m, only : error_t, raise, status_input
   implicit none
@@ -24,7 +24,9 @@ module arguments_m
     character(:), allocatable :: directory  !! where results go
     character(:), allocatable :: job        !! stem of the result files
     character(:), allocatable :: line       !! all arguments in one line, for the record
-    integer :: n_thread = 1
+    integer :: n_thread = 1                 !! at most
+    integer :: thread_share = 150           !! elements for each of several threads, at least: below, waiting costs
+                                            !! more than sharing saves
     integer :: timing = timing_by_phase     !! one of the `timing_` constants
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
   end type arguments_t
@@ -80,7 +82,7 @@ contains
     type(arguments_t), intent(inout) :: arguments
     character(:), allocatable, intent(inout) :: mistakes
     character(:), allocatable :: name, value
-    integer :: equals, status
+    integer :: equals
 
     equals = index(word, '=')
     if (word == '--help' .or. word == '-h') then
@@ -110,10 +112,9 @@ contains
       if (index(value, '/') > 0) mistakes = mistakes//'jobid="'//value &
         //'": expected a name without /'//new_line('a')
     case ('ncpu')
-      read (value, *, iostat=status) arguments%n_thread
-      if (status /= 0 .or. verify(value, '0123456789') > 0 .or. arguments%n_thread < 1 &
-        .or. arguments%n_thread > 1024) mistakes = mistakes//'ncpu="'//value &
-        //'": expected a number from 1 to 1024'//new_line('a')
+      call read_count(word, 1024, arguments%n_thread, mistakes)
+    case ('perthread')
+      call read_count(word, 1000000000, arguments%thread_share, mistakes)
     case ('timing')
       call read_timing(value, arguments%timing, mistakes)
     case ('memory', 'memory2')
@@ -125,6 +126,24 @@ contains
       end if
     end select
   end subroutine read_word
+
+  !> Understand `name=N` with a number from 1 to `most`.
+  subroutine read_count(word, most, count, mistakes)
+    character(*), intent(in) :: word
+    integer, intent(in) :: most
+    integer, intent(inout) :: count
+    character(:), allocatable, intent(inout) :: mistakes
+    character(12) :: limit
+    integer :: equals, status
+
+    equals = index(word, '=')
+    status = verify(word(equals + 1:), '0123456789')
+    if (status == 0) read (word(equals + 1:), *, iostat=status) count
+    if (status == 0 .and. count >= 1 .and. count <= most) return
+    write (limit, '(i0)') most
+    mistakes = mistakes//word(:equals)//'"'//word(equals + 1:)//'": expected a number from 1 to ' &
+      //trim(limit)//new_line('a')
+  end subroutine read_count
 
   !> Understand the value of timing=.
   subroutine read_timing(value, timing, mistakes)
@@ -232,7 +251,8 @@ contains
       '                folder unless d= says otherwise; i= then names a small deck of changes'//n// &
       '  d=DIR         folder of the results, made with its parents (default: .)'//n// &
       '  jobid=NAME    stem of the result files (default: the deck''s)'//n// &
-      '  ncpu=N        threads (default 1); the results have the same bits at any number'//n// &
+      '  ncpu=N        threads at most (default 1); the results have the same bits at any number'//n// &
+      '  perthread=N   elements for each of several threads, at least (default 150)'//n// &
       '  timing=HOW    phase: wall clock by phase (default); interface: contact phases of each'//n// &
       '                interface too; off: the total alone'//n// &
       '  memory=...    accepted and ignored'//n//n// &

@@ -184,6 +184,15 @@ contains
     end associate
   end subroutine begin_status
 
+  !> Threads that have enough to do.
+  pure function useful_threads(arguments, n_element) result(n_thread)
+    type(arguments_t), intent(in) :: arguments
+    integer, intent(in) :: n_element
+    integer :: n_thread
+
+    n_thread = max(1, min(arguments%n_thread, n_element/arguments%thread_share))
+  end function useful_threads
+
   !> Advance to the end, close the files and say how it ended.
   subroutine drive(arguments, model, prefix, state, monitor, error)
     type(arguments_t), intent(in) :: arguments
@@ -204,7 +213,8 @@ contains
         //'explicit method alone: this run writes none')
       call advance_implicit(model, state, monitor, reason, error)
     else
-      call advance_explicit(model, arguments%n_thread, state, monitor, reason, error)
+      call advance_explicit(model, useful_threads(arguments, model%mesh%n_element), state, monitor, &
+        reason, error)
     end if
     stopped = reason == 'stopped on request'
     if (stopped) reason = reason//' (exit status '//to_text(status_stopped)//') before the ' &

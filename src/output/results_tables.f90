@@ -113,38 +113,40 @@ contains
     valid = valid .and. n_to_come == 0
   end function is_utf8
 
-  !> Write all tables below /history, which is there.
+  !> Write all tables below /history, which is there. Columns that no CSV file has go below /dyna.
   subroutine write_histories(id, histories, error)
     integer(hid_t), intent(in) :: id                   !! open file
     type(histories_t), intent(in) :: histories
     type(error_t), allocatable, intent(inout) :: error
     integer :: i
 
+    call make_group(id, 'dyna', error)
     do i = 1, n_table
       call write_table(id, histories%tables(i), error)
     end do
   end subroutine write_histories
 
-  !> Write one table below /history, one dataset per column; nothing for one that was never open.
+  !> Write one table, one dataset per column; nothing for one that was never open.
   subroutine write_table(id, table, error)
     integer(hid_t), intent(in) :: id                   !! open file
     type(csv_table_t), intent(in) :: table
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable, target :: reals(:)
     integer, allocatable, target :: integers(:)
+    character(:), allocatable :: name
     integer :: i
 
     if (.not. allocated(table%name)) return
     call make_group(id, 'history/'//table%name, error)
+    if (n_columns(table) > table%n_csv) call make_group(id, 'dyna/'//table%name, error)
     do i = 1, n_columns(table)
+      name = trim(merge('history/', 'dyna/   ', i <= table%n_csv))//table%name//'/'//column_name(table, i)
       reals = table%values(i, :table%n_row)
       if (table%kinds(i) == kind_real) then
-        call write_rows(id, 'history/'//table%name//'/'//column_name(table, i), as_real, &
-          size(reals), c_loc(reals), error)
+        call write_rows(id, name, as_real, size(reals), c_loc(reals), error)
       else
         integers = nint(reals)
-        call write_rows(id, 'history/'//table%name//'/'//column_name(table, i), as_integer, &
-          size(integers), c_loc(integers), error)
+        call write_rows(id, name, as_integer, size(integers), c_loc(integers), error)
       end if
     end do
   end subroutine write_table

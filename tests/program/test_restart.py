@@ -93,7 +93,7 @@ def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
         active, at = numbers(whole / "job.rcforc.csv", "n_active"), middle / cycles
         assert active[int(at * len(active)):].max() > 0
     rest = part_of(whole, tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
-    done = slideline("r=rest/job.dump01.h5", f"ncpu={2 if (scene, kind) == ('block', 3) else 1}")
+    done = slideline("r=rest/job.dump01.h5", f"ncpu={2 if (scene, kind) == ('block', 3) else 1}", "perthread=1")
     assert done.returncode == 0, done.stderr
     assert numbers(rest / "job.glstat.csv", "cycle")[-1] == cycles
     assert_same(whole, rest)
@@ -134,13 +134,13 @@ def test_any_thread_counts(slideline, tmp_path):
     for deck, name, cycles in ((everything(), "e", 40), (longer_drop(), "l", 60)):
         deck = with_files(deck, dump=cycles)
         assert slideline(f"d={name}1", "ncpu=1", deck=deck).returncode == 0
-        assert slideline(f"d={name}3", "ncpu=3", deck=deck).returncode == 0
+        assert slideline(f"d={name}3", "ncpu=3", "perthread=1", deck=deck).returncode == 0
         count = numbers(tmp_path / f"{name}1" / "job.glstat.csv", "cycle")[-1]
         assert count > 1.2 * cycles
         for before, after in ((1, 3), (3, 1)):
             rest = part_of(tmp_path / f"{name}{before}", tmp_path / f"{name}{before}{after}",
                            "job.dump01.h5", "job.vtkhdf")
-            done = slideline(f"r={rest}/job.dump01.h5", f"ncpu={after}")
+            done = slideline(f"r={rest}/job.dump01.h5", f"ncpu={after}", "perthread=1")
             assert done.returncode == 0, done.stderr
             assert_same(tmp_path / f"{name}1", rest)
 

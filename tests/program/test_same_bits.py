@@ -99,7 +99,7 @@ def is_debug(exe):
 def check_same(program, is_debug, folder, text, words):
     """Run with every number of threads; returns what the last run wrote."""
     numbers = DEBUG_THREADS if is_debug else THREADS
-    runs = [run(program, folder, text, (*words, f"ncpu={threads}"), f"run_{k}")
+    runs = [run(program, folder, text, (*words, f"ncpu={threads}", "perthread=1"), f"run_{k}")
             for k, threads in enumerate(numbers)]
     for threads, found in zip(numbers[1:], runs[1:]):
         assert found.keys() == runs[0].keys()

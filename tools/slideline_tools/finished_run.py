@@ -3,8 +3,10 @@
 import pathlib
 import re
 
+import h5py
+
 from slideline_tools import UserError
-from slideline_tools.histories import read_csv
+from slideline_tools.histories import History, read_csv
 from slideline_tools.results import read
 
 TABLES = ("glstat", "rcforc", "nodout", "matsum", "sleout", "spcforc")
@@ -33,7 +35,7 @@ class Run:
         for name in TABLES:
             path = pathlib.Path(f"{self.prefix}.{name}.csv")
             if self.results and name in self.results.histories:
-                found[name] = self.results.history(name)
+                found[name] = with_further(self.results, self.results.history(name))
             elif path.exists():
                 found[name] = read_csv(path)
         return found
@@ -50,6 +52,14 @@ class Run:
         if not text and path.exists():
             text = path.read_text(encoding="latin-1")
         return part_titles(text)
+
+
+def with_further(results, table):
+    """A table with the columns of /dyna behind its own."""
+    with h5py.File(results.path, "r") as stream:
+        group = stream.get(f"dyna/{table.name}", {})
+        further = {name: group[name][()] for name in group}
+    return History(table.name, table.columns | further)
 
 
 def find_prefix(path):
