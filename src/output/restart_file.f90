@@ -78,6 +78,7 @@ contains
     end if
     call move_alloc(archive%error, error)
     error%status = status_files
+    if (index(error%message, archive%path) == 0) error%message = archive%path//': '//error%message
     call remove_file(archive%path//unfinished, ignored)
   end subroutine finish_restart
 

@@ -200,8 +200,8 @@ contains
     if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
     call write_due(model, cycle%due, state%dt, monitor, cycle%error)
     if (cycle%due%glstat) cycle%ratio = energy_ratio(monitor%snapshot%energies)
-    if (cycle%due%plot) call show_progress(monitor%progress, monitor%clock, state%cycle, &
-      state%time, state%dt, cycle%ratio, 'write vtkhdf state')
+    if (cycle%due%plot .and. .not. allocated(cycle%error)) call show_progress(monitor%progress, &
+      monitor%clock, state%cycle, state%time, state%dt, cycle%ratio, 'write vtkhdf state')
     if (.not. allocated(cycle%error) .and. cycle%due%glstat) call check_energy(model%controls, &
       monitor%snapshot%energies, cycle%error)
     cycle%finished = cycle%last .or. allocated(cycle%error)

@@ -65,8 +65,8 @@ contains
       if (due%spcforc) call fill_reactions(model, force + mass_times(model, shot%acceleration), shot)
       if (due%plot) call fill_plot(model, state, shot)
       call write_due(model, due, dt, monitor, error)
-      if (due%plot) call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, &
-        state%dt, energy_ratio(shot%energies), 'write vtkhdf state')
+      if (due%plot .and. .not. allocated(error)) call show_progress(monitor%progress, monitor%clock, &
+        state%cycle, state%time, state%dt, energy_ratio(shot%energies), 'write vtkhdf state')
       if (.not. allocated(error)) call check_energy(model%controls, shot%energies, error)
       if (last .and. .not. allocated(error)) call judge_energies(shot%energies, monitor%log)
     end associate

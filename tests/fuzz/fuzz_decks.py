@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: MIT
 """Run the program on broken decks: it may refuse them, but not crash, hang, or eat the memory.
 
-Each deck goes through `slideline check`; one that is accepted then runs a few cycles. What breaks a rule
-is kept with its command and what was said, one folder per kind of failure.
+Each deck goes through `slideline check`, some with words behind it; one that is accepted then runs a few cycles.
+Decks of changes go on from a restart file. What breaks a rule is kept with its words and what was said, one folder
+for each kind of failure.
 """
 import argparse
 import os
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -19,8 +21,9 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from mutate import Mutator, corpus, read, short
+from mutate import CHANGES, Mutator, corpus, read, short
 
+ROOT = Path(__file__).resolve().parents[2]
 CRASH = re.compile(r"Sanitizer|runtime error|received signal|Backtrace for this error|Error termination\. Backtrace"
                    r"|Fortran runtime|HDF5-DIAG|stack smashing|double free|corrupted", re.IGNORECASE)
 #: a checked build stops where a number leaves the range; the Release one goes on to a named error
@@ -36,6 +39,7 @@ class Judge:
         self.sanitized = b"__asan_init" in Path(program).read_bytes()
         self.counts: Counter = Counter()
         self.lock = threading.Lock()
+        self.prepared = Path()
 
     def restrict(self) -> None:
         """Limits of one run; the sanitiser reserves address space and has a limit of its own."""
@@ -78,19 +82,42 @@ class Judge:
         elif not rule and len(said) > 300_000:
             rule = "talks too much"
         with self.lock:
-            self.counts[f"{words[0] if words[0] == 'check' else 'run'}: {rule or f'status {status}'}"] += 1
+            mode = {"c": "check", "r": "restart", "i": "run"}[words[0][0]]
+            self.counts[f"{mode}: {rule or f'status {status}'}"] += 1
         return rule, status, said
 
-    def judge(self, data: bytes) -> tuple[str, str, str]:
-        """(broken rule or '', mode, what was said) of one deck."""
+    def prepare(self, folder: Path) -> None:
+        """A run with a restart file, for the decks of changes."""
+        lines = read(ROOT / "doc/examples/contact_2d_slideline.k")
+        at = next(i for i in reversed(range(len(lines))) if lines[i].startswith("*END"))
+        (folder / "job.k").write_text("\n".join([*short(lines[:at], 8), "*DATABASE_BINARY_D3PLOT", "1.0e-6,",
+                                                     "*DATABASE_BINARY_D3DUMP", "4,", "*END", ""]))
+        done = subprocess.run([self.program, "i=job.k", "d=."], cwd=folder, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise SystemExit(f"the run before the restarts failed:\n{done.stderr}")
+        self.prepared = folder
+
+    def judge_changes(self, data: bytes) -> tuple[str, str, str]:
+        """(broken rule or '', mode, what was said) of a deck of changes."""
+        with tempfile.TemporaryDirectory(prefix="fuzz") as name:
+            folder = Path(name)
+            for path in self.prepared.glob("job.*"):
+                shutil.copy(path, folder)
+            (folder / "deck.k").write_bytes(data)
+            os.mkfifo(folder / "fifo")
+            rule, _, said = self.run(["r=job.dump01.h5", "i=deck.k"], folder)
+            return rule, "restart", said
+
+    def judge(self, data: bytes, words: list[str]) -> tuple[str, str, str]:
+        """(broken rule or '', mode, what was said) of one deck with words behind it."""
         with tempfile.TemporaryDirectory(prefix="fuzz") as name:
             folder = Path(name)
             (folder / "deck.k").write_bytes(data)
             os.mkfifo(folder / "fifo")
-            rule, status, said = self.run(["check", "deck.k"], folder)
+            rule, status, said = self.run(["check", "deck.k", *words], folder)
             if rule or status not in (0, 2):
                 return rule, "check", said
-            rule, _, said = self.run(["i=deck.k", "d=out"], folder)
+            rule, _, said = self.run(["i=deck.k", "d=out", *words], folder)
             return rule, "run", said
 
 
@@ -121,13 +148,17 @@ def main() -> int:
     # Most refused decks stay refused, whatever else is broken.
     weights = [0.1 if name.startswith("tests/rejected") else 1.0 for name, _ in named]
 
-    def deck(k: int) -> bytes:
+    def deck(k: int) -> tuple[bytes, list[str], bool]:
+        """Deck k of the seed, words behind it, and whether it is one of changes."""
         mutator = Mutator(options.seed * 1_000_003 + k, decks)
         base = mutator.random.choices(decks, weights)[0]
-        return mutator.mutate(base, mutator.random.choice((0, 1, 1, 1, 2, 2, 3, 5, 10)))
+        changes = mutator.random.random() < 0.05
+        if changes:
+            base = mutator.random.choice(CHANGES).splitlines()
+        return mutator.mutate(base, mutator.random.choice((0, 1, 1, 1, 2, 2, 3, 5, 10))), mutator.words(), changes
 
     if options.only is not None:
-        sys.stdout.buffer.write(deck(options.only))
+        sys.stdout.buffer.write(deck(options.only)[0])
         return 0
     if not options.program:
         parser.error("--program or SLIDELINE is needed")
@@ -141,8 +172,8 @@ def main() -> int:
                 k = next(numbers, None)
             if k is None:
                 return
-            data = deck(k)
-            rule, mode, said = judge.judge(data)
+            data, words, changes = deck(k)
+            rule, mode, said = judge.judge_changes(data) if changes else judge.judge(data, words)
             with lock:
                 done[0] += 1
                 if not rule or (rule == "trap" and not options.traps):
@@ -154,10 +185,11 @@ def main() -> int:
                 place = options.keep / kind
                 place.mkdir(parents=True, exist_ok=True)
                 (place / f"{options.seed}_{k}.k").write_bytes(data)
-                (place / f"{options.seed}_{k}.txt").write_text(f"{mode}: {rule}\n{said[:20000]}")
+                (place / f"{options.seed}_{k}.txt").write_text(f"{mode} {words}: {rule}\n{said[:20000]}")
                 print(f"FAILED deck {k} of seed {options.seed} ({mode}): {kind}", flush=True)
 
-    with ThreadPoolExecutor(options.jobs) as pool:
+    with tempfile.TemporaryDirectory(prefix="fuzz") as name, ThreadPoolExecutor(options.jobs) as pool:
+        judge.prepare(Path(name))
         list(pool.map(work, range(options.jobs)))
     print(f"{done[0]} decks of seed {options.seed}, {sum(kinds.values())} failed in {len(kinds)} ways")
     for name, count in sorted(judge.counts.items()):

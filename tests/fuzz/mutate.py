@@ -15,6 +15,11 @@ EDGES = ("0", "-0", "-0.0", "1", "-1", "2", "-2", "3", "7", "0.5", "1e-308", "4.
          "1 2", "abc", "&", "&x", "-&nothing", "<1+1>", "&(1/0)", "'", '"', "*", "$", "1.e+", "\x00", "\xff",
          "999999999", "99999999", "1000000", "8", "9", "10", "13", "100")
 
+#: decks of changes for runs that go on
+CHANGES = ("*CONTROL_TERMINATION\n0.004,\n", "*DATABASE_BINARY_RUNRSF\n3,\n*DATABASE_GLSTAT\n1.0e-3,\n",
+           "*KEYWORD\n*DATABASE_BINARY_D3PLOT\n1.0e-3,\n*DATABASE_RCFORC\n0.0005,\n*END\n",
+           "*CONTROL_TERMINATION\n0.004,60\n*DATABASE_BINARY_D3DUMP\n7,\n*DATABASE_NODOUT\n1e-3,\n")
+
 WORDS = re.compile(r"[^\s,]+")
 
 
@@ -219,6 +224,15 @@ class Mutator:
         at = self.random.choice(self.blocks(lines) or [(0, 0)])[0]
         lines[at:at] = [self.random.choice(("*INCLUDE", "*INCLUDE_PATH", "*INCLUDE_PATH_RELATIVE")),
                         self.random.choice(names)]
+
+    def words(self) -> list[str]:
+        """Words behind the deck on the command line: mostly none."""
+        names = ("ctype", "ngauss", "pen", "punit", "pent", "vdc", "endtim", "dt", "tssfac", "p:ctype", "p:q", "p:",
+                 "ncpu", "timing", "jobid", "memory", "ctype.1", "pen.99999999999", "x", "", "-", "r", "i")
+        if self.random.random() < 0.8:
+            return []
+        return [(self.random.choice(names) + "=" + self.value()).replace("\x00", "")
+                for _ in range(self.random.choice((1, 1, 2, 5)))]
 
     def bytes(self, data: bytes) -> bytes:
         """Damage that knows nothing of lines."""

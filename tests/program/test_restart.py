@@ -346,7 +346,7 @@ def test_stop_signal_writes_what_the_deck_asks_for(exe, slideline, tmp_path):
     process = start(exe, tmp_path, deck, "cut")
     process.send_signal(signal.SIGTERM)
     assert process.wait(timeout=20) == 4
-    end = f"endtim={1.05 * numbers(tmp_path / 'cut' / 'job.glstat.csv', 'time')[-1]:.3f}"
+    end = f"endtim={1.05 * numbers(tmp_path / 'cut' / 'job.glstat.csv', 'time')[-1] + 0.01:.3f}"
     assert slideline("d=whole", end, deck=long_drop()).returncode == 0
     for name in ("dump01", "runrsf"):
         done = slideline(f"r=cut/job.{name}.h5", end)
