@@ -18,7 +18,7 @@ module contact_initial_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: start_slave_tracking, start_master_tracking, start_cover
+  public :: start_slave_tracking, start_master_tracking, start_cover, nearest_segment
 
   !> Smallest cell of the grid, as a part of the search reach.
   real(wp), parameter :: least_cell = 0.01_wp
@@ -224,8 +224,8 @@ contains
     end if
   end function own_nodes
 
-  !> Segment of a chain that is nearest to a place, the first of equally near ones: by the grid, or by looking at
-  !> all where none is near.
+  !> Segment of a surface that is nearest to a place, the first of equally near neighbours: by the grid, or by looking
+  !> at all where none is near.
   pure function nearest_segment(grid, surface, chain, place) result(segment)
     type(bucket_grid_t), intent(in) :: grid !! filled at a travel of 0
     type(surface_t), intent(in) :: surface
