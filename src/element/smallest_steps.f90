@@ -29,7 +29,7 @@ contains
     integer, allocatable, intent(out) :: found(:)     !! element indices
     real(wp), allocatable, intent(out) :: steps(:)    !! s
     logical, allocatable :: seen(:)
-    real(wp) :: step
+    real(wp) :: step, reference(6)
     integer :: i, i_chunk, i_slot
 
     allocate (found(0), steps(0))
@@ -39,7 +39,8 @@ contains
       seen(i_chunk) = .true.
       do i_slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
         if (model%layout%slot_element(i_slot) == 0) cycle
-        step = step_of_slot(model, elements%reference(i_slot, :), i_slot, motion)
+        reference = elements%reference(i_slot, :)
+        step = step_of_slot(model, reference, i_slot, motion)
         call insert(n, model%layout%slot_element(i_slot), step, found, steps)
       end do
     end do
