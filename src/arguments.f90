@@ -25,7 +25,7 @@ module arguments_m
     character(:), allocatable :: job        !! stem of the result files
     character(:), allocatable :: line       !! all arguments in one line, for the record
     integer :: n_thread = 1                 !! at most
-    integer :: thread_share = 150           !! elements for each of several threads, at least: below, waiting costs
+    integer :: thread_share = 300           !! elements for each of several threads, at least: below, waiting costs
                                             !! more than sharing saves
     integer :: timing = timing_by_phase     !! one of the `timing_` constants
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
@@ -252,7 +252,7 @@ contains
       '  d=DIR         folder of the results, made with its parents (default: .)'//n// &
       '  jobid=NAME    stem of the result files (default: the deck''s)'//n// &
       '  ncpu=N        threads at most (default 1); the results have the same bits at any number'//n// &
-      '  perthread=N   elements for each of several threads, at least (default 150)'//n// &
+      '  perthread=N   elements for each of several threads, at least (default 300)'//n// &
       '  timing=HOW    phase: wall clock by phase (default); interface: contact phases of each'//n// &
       '                interface too; off: the total alone'//n// &
       '  memory=...    accepted and ignored'//n//n// &
