@@ -173,6 +173,8 @@ contains
     if (allocated(target_text)) then
       mistakes = mistakes//name//' is given twice: "'//target_text//'" and "'//value//'"' &
         //new_line('a')
+      if (name == 'deck') mistakes = mistakes//'(the one command that may come before a deck is check)' &
+        //new_line('a')
     else if (len_trim(value) == 0) then
       mistakes = mistakes//name//' is empty'//new_line('a')
     else

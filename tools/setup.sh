@@ -180,7 +180,7 @@ build() {
       exit 1
     fi
   fi
-  say "building build/$type${2:+ with its tests}"
+  say "building build/$type${2:+ with its tests} (some minutes where it is new)"
   if [ -t 1 ]; then
     cmake --build "$folder" --target "$target" --parallel "$(nproc)" || exit 1
   elif ! cmake --build "$folder" --target "$target" --parallel "$(nproc)" >"$log" 2>&1; then

@@ -151,11 +151,9 @@ contains
     call say(log, trim(line))
     write (line, '(a,i0)') ' Problem cycle       = ', cycle
     call say(log, trim(line))
-    write (line, '(a,f0.3,a)') ' Elapsed time        = ', elapsed, ' seconds'
-    call say(log, trim(line))
-    write (line, '(a,f0.2,a)') ' Time per zone cycle = ', cost, ' nanoseconds (output and input ' &
-      //trim(merge('apart   ', 'included', clock%is_on))//')'
-    call say(log, trim(line))
+    call say(log, ' Elapsed time        = '//fixed(elapsed, 3)//' seconds')
+    call say(log, ' Time per zone cycle = '//fixed(cost, 2)//' nanoseconds (output and input ' &
+      //trim(merge('apart   ', 'included', clock%is_on))//')')
     write (line, '(a,i0)') ' Warnings            = ', log%n_warning
     call say(log, trim(line))
     if (clock%is_on) call show_timing(log, clock, seconds)
@@ -203,5 +201,19 @@ contains
 
     line = text(:scan(text//new_line('a'), new_line('a')) - 1)
   end function first_line
+
+  !> A number of 0 or more with `digits` behind the point and at least one before it.
+  pure function fixed(number, digits) result(text)
+    real(wp), intent(in) :: number
+    integer, intent(in) :: digits
+    character(:), allocatable :: text
+    character(40) :: buffer
+    character(8) :: layout
+
+    write (layout, '(a,i0,a)') '(f0.', digits, ')'
+    write (buffer, layout) number
+    text = trim(buffer)
+    if (text(1:1) == '.') text = '0'//text
+  end function fixed
 
 end module progress_m
