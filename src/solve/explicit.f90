@@ -39,9 +39,14 @@ contains
       call move_alloc(cycle%error, error)
       return
     end if
-    !$omp parallel num_threads(n_thread) default(none) shared(model, state, monitor, cycle)
-    call run_cycles(model, state, monitor, cycle)
-    !$omp end parallel
+    if (n_thread == 1) then
+      ! Outside of a parallel region: in a team of one every barrier still is a system call.
+      call run_cycles(model, state, monitor, cycle)
+    else
+      !$omp parallel num_threads(n_thread) default(none) shared(model, state, monitor, cycle)
+      call run_cycles(model, state, monitor, cycle)
+      !$omp end parallel
+    end if
     reason = cycle%reason
     if (allocated(cycle%error)) call move_alloc(cycle%error, error)
   end subroutine advance_explicit
