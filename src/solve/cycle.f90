@@ -277,7 +277,8 @@ contains
       state%time, state%dt, cycle%error)
     if (allocated(cycle%error)) cycle%finished = .true.
     if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
-    call follow_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, cycle%ratio)
+    call follow_progress(monitor%progress, monitor%clock, state%cycle, .false., state%time, state%dt, &
+      cycle%ratio)
   end subroutine end_cycle
 
   !> Stop, restart files, states and lines that are due or that someone asks for. The state is that before the

@@ -79,8 +79,8 @@ contains
         state%dt = control%next - state%time
       end if
       call report_step(model, state, step%old_force, last, asked%plot, monitor, written, error)
-      call follow_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt_before, &
-        energy_ratio(monitor%snapshot%energies))
+      call follow_progress(monitor%progress, monitor%clock, state%cycle, .true., state%time, &
+        state%dt_before, energy_ratio(monitor%snapshot%energies))
     end do
     if (allocated(error) .and. .not. last) then
       call report_step(model, state, step%old_force, .true., .false., monitor, written, second)
