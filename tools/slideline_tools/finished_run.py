@@ -6,10 +6,10 @@ import re
 import h5py
 
 from slideline_tools import UserError
-from slideline_tools.histories import History, read_csv
+from slideline_tools.histories import TABLES, History, read_csv
 from slideline_tools.results import read
 
-TABLES = ("glstat", "rcforc", "nodout", "matsum", "sleout", "spcforc")
+NOT_WRITTEN = ("contact", "rwforc")  # tables without a branch in the binout
 
 
 class RunError(UserError):
@@ -30,9 +30,11 @@ class Run:
         self.results = read(states) if states.exists() else None
 
     def tables(self):
-        """name -> History of all tables that DYNA knows, from the results file or the CSV files."""
+        """name -> History of all tables that go into a binout, from the results file or the CSV files."""
         found = {}
         for name in TABLES:
+            if name in NOT_WRITTEN:
+                continue
             path = pathlib.Path(f"{self.prefix}.{name}.csv")
             if self.results and name in self.results.histories:
                 found[name] = with_further(self.results, self.results.history(name))

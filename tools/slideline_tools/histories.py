@@ -14,10 +14,10 @@ from slideline_tools import UserError
 if typing.TYPE_CHECKING:
     import pandas
 
-TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact")
+TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact", "rwforc", "sleout", "spcforc")
 TEXT_COLUMNS = ("side", "phase")
-INTEGER_COLUMNS = ("cycle", "interface", "node", "part", "n_active", "calls")
-ENTITY_COLUMNS = ("interface", "side", "node", "part")
+INTEGER_COLUMNS = ("cycle", "interface", "wall", "node", "part", "n_active", "calls")
+ENTITY_COLUMNS = ("interface", "side", "wall", "node", "part")
 SIDES = {1: "slave", 2: "master"}
 
 
@@ -28,7 +28,7 @@ class HistoryError(UserError):
 class History:
     """One table: equally long columns by name.
 
-    Columns that name an entity (`interface`, `side`, `node`, `part`) split the rows into one
+    Columns that name an entity (`interface`, `side`, `wall`, `node`, `part`) split the rows into one
     series per entity. Values are in the units of the deck; `time` is in its unit of time.
     """
 
