@@ -32,15 +32,13 @@ contains
     character(:), allocatable :: title
 
     call open_cursor(deck, i_block, cursor)
-    entry%wall%id = size(raw%walls) + 1
     entry%line = deck%blocks(i_block)%keyword
     if (deck%blocks(i_block)%titled) then
       call next_text(deck, cursor, title)
       call take_number(title, entry%wall%id)
     end if
-    if (any(raw%walls%wall%id == entry%wall%id)) call line_error(deck, entry%line, 'the wall number ' &
-      //to_text(entry%wall%id)//' belongs to an earlier wall (without a number it is the position ' &
-      //'in the deck)')
+    if (entry%wall%id > 0 .and. any(raw%walls%wall%id == entry%wall%id)) call line_error(deck, &
+      entry%line, 'the wall number '//to_text(entry%wall%id)//' belongs to an earlier wall')
     call next_card(deck, parameters, cursor, 1, card)
     call next_card(deck, parameters, cursor, 2, place)
     call check_rest(deck, cursor)
@@ -119,7 +117,22 @@ contains
       call look_at_nodes(deck, raw%walls(i)%line, model, model%walls(i))
       call look_at_motions(deck, raw%walls(i)%line, model, model%walls(i))
     end do
+    call number_walls(model%walls)
   end subroutine resolve_walls
+
+  !> Numbers of walls that have none (0): the position in the deck, or the next number that is free.
+  pure subroutine number_walls(walls)
+    type(wall_t), intent(inout) :: walls(:)
+    integer :: i
+
+    do i = 1, size(walls)
+      if (walls(i)%id > 0) cycle
+      walls(i)%id = i
+      do while (count(walls%id == walls(i)%id) > 1)
+        walls(i)%id = walls(i)%id + 1
+      end do
+    end do
+  end subroutine number_walls
 
   !> NSID without NSIDEX and nodes of rigid bodies.
   subroutine find_nodes(deck, entry, maps, model, sees)

@@ -310,6 +310,7 @@ contains
     type(cycle_t), intent(inout) :: cycle
     logical :: dumps, runs
 
+    if (allocated(cycle%error)) return
     dumps = asked .or. wants_dump(monitor%restarts, state%cycle, ends .or. signalled)
     runs = wants_running(monitor%restarts, state%cycle, signalled)
     if (.not. dumps .and. .not. runs) return

@@ -68,6 +68,7 @@ contains
       last = control%is_last
       if (model%controls%end_cycle > 0) last = last .or. state%cycle >= model%controls%end_cycle
       call take_requests(state, energy_ratio(monitor%snapshot%energies), .true., monitor, asked, error)
+      if (allocated(error)) exit
       if (asked%dump) call warn(monitor%log, 'a restart file was asked for: the implicit method ' &
         //'writes none')
       stopped = asked%stop .and. .not. last

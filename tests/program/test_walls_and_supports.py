@@ -46,6 +46,27 @@ def test_moved_nodes_that_pass_a_wall_are_named(slideline, tmp_path, normal, mot
     assert told == ([(str(number), str(first))] if number else [])
 
 
+@pytest.mark.parametrize("order, ids", [
+    ([2, None], ["2", "3"]), ([None, None], ["1", "2"]), ([None, 1], ["2", "1"]), ([7, None], ["7", "2"])])
+def test_walls_without_a_number_get_a_free_one(slideline, tmp_path, order, ids):
+    deck = block(wall_normal=None)
+    for number in order:
+        deck.add("*RIGIDWALL_PLANAR" + ("_ID" if number else ""), *([f"{number:10d}a wall"] if number else []),
+                 (0,), (0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
+    deck.add("*DATABASE_RWFORC", (1.0e-4,))
+    done = slideline("d=o", deck=deck)
+    assert done.returncode == 0, done.stderr
+    assert columns(tmp_path / "o" / "job.rwforc.csv")["wall"][:2] == ids
+
+
+def test_two_walls_of_one_number_are_refused(slideline):
+    deck = block(wall_normal=None)
+    for _ in range(2):
+        deck.add("*RIGIDWALL_PLANAR_ID", "         4", (0,), (0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
+    done = slideline("d=o", deck=deck)
+    assert done.returncode == 1 and "the wall number 4 belongs to an earlier wall" in done.stderr
+
+
 def test_a_node_without_elements_sees_no_wall(slideline, tmp_path):
     assert slideline("d=o", deck=block(loose=True)).returncode == 0
     assert "seen by 25 nodes" in (tmp_path / "o" / "job.log").read_text()

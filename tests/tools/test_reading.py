@@ -11,6 +11,8 @@ import pytest
 
 import slideline_tools
 from slideline_tools import UserError, histories, results
+from slideline_tools.binout import write_binout
+from slideline_tools.finished_run import Run
 from slideline_tools.histories import HistoryError
 
 
@@ -50,6 +52,17 @@ def test_every_table_of_a_killed_run(tmp_path):
         (tmp_path / f"k.{name}.csv").write_text("time,value\n0.0,1.5\n")
     assert {"rwforc", "sleout", "spcforc"} < set(slideline_tools.read(path).histories)
     assert slideline_tools.read(path).history("sleout")["value"].tolist() == [1.5]
+
+
+def test_binout_of_a_killed_run(tmp_path):
+    """The last instant of a table may lack rows, and a table may have none at all."""
+    (tmp_path / "k.glstat.csv").write_text("time,cycle,kinetic,internal,viscous,energy_ratio\n0.0,0,1.0,2.0,0.0,1.0\n")
+    (tmp_path / "k.spcforc.csv").write_text(
+        "time,node,fx,fy\n0.0,4,1.0,2.0\n0.0,9,1.0,2.0\n0.1,4,3.0,2.0\n0.1,9,1.0,2.0\n0.2,4,5.0,2.0\n")
+    (tmp_path / "k.nodout.csv").write_text("time,node,x,y,ux,uy,vx,vy,ax,ay\n")
+    run = Run(tmp_path)
+    assert run.tables()["spcforc"]["time"].tolist() == [0.0, 0.0, 0.1, 0.1]
+    assert write_binout(run, tmp_path / "binout0000") == ["glstat", "spcforc"]
 
 
 def test_walls_are_entities(tmp_path):

@@ -4,6 +4,7 @@ import pathlib
 import re
 
 import h5py
+import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.histories import TABLES, History, read_csv
@@ -40,7 +41,7 @@ class Run:
                 found[name] = with_further(self.results, self.results.history(name))
             elif path.exists():
                 found[name] = read_csv(path)
-        return found
+        return {name: whole_instants(table) for name, table in found.items() if len(table)}
 
     @property
     def title(self):
@@ -54,6 +55,12 @@ class Run:
         if not text and path.exists():
             text = path.read_text(encoding="latin-1")
         return part_titles(text)
+
+
+def whole_instants(table):
+    """A table without the rows of a last instant that lacks some: the run was killed while they waited in memory."""
+    size = int(np.count_nonzero(table["time"] == table["time"][0]))
+    return table.rows(slice(len(table) // size * size))
 
 
 def with_further(results, table):
