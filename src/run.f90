@@ -5,7 +5,7 @@ module run_m
   use arguments_m, only : arguments_t, file_stem, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
-  use clock_m, only : lap, start_clock, stop_clock, split_contact, phase_input, phase_output
+  use clock_m, only : lap, start_clock, look_at_clock, split_contact, phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
   use errors_m, only : error_t, raise, status_stopped
@@ -224,7 +224,7 @@ contains
     if (.not. allocated(error) .and. allocated(closing_error)) &
       call move_alloc(closing_error, error)
     call lap(monitor%clock, phase_output)
-    call stop_clock(monitor%clock)
+    call look_at_clock(monitor%clock)
     call write_timing(prefix//'.timing.csv', monitor%clock, closing_error)
     if (.not. allocated(error) .and. allocated(closing_error)) &
       call move_alloc(closing_error, error)

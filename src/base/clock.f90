@@ -6,7 +6,7 @@ module clock_m
   use kinds_m, only : wp, long
   implicit none
   private
-  public :: clock_t, start_clock, stop_clock, lap, split_contact, share_contact, lap_seconds, &
+  public :: clock_t, start_clock, look_at_clock, lap, split_contact, share_contact, lap_seconds, &
     elapsed_seconds, total_seconds, phase_seconds, phase_names, n_phase, n_contact_phase, &
     phase_elements, phase_contact_search, phase_contact_pairing, phase_contact_force, &
     phase_nodes, phase_output, phase_input, phase_solver
@@ -24,7 +24,7 @@ module clock_m
   type :: clock_t
     logical :: is_on = .true.           !! laps are taken; else only the total is known
     integer(long) :: first = 0          !! tick at the start
-    integer(long) :: last = 0           !! tick of the last lap
+    integer(long) :: last = 0           !! tick of the last lap or look
     integer(long) :: ticks(n_phase) = 0 !! ticks spent in each phase
     integer(long) :: calls(n_phase) = 0 !! laps given to each phase
     !> (n_contact_phase, 0:n_interface) ticks and laps of the contact phases by interface, in column 0 those
@@ -55,12 +55,12 @@ contains
     clock%last = now
   end subroutine lap
 
-  !> The end of what is timed, where no laps are taken.
-  subroutine stop_clock(clock)
+  !> What time it is, where no laps tell: at the end of what is timed, and now and then for those who watch.
+  subroutine look_at_clock(clock)
     type(clock_t), intent(inout) :: clock
 
     if (.not. clock%is_on) call system_clock(clock%last)
-  end subroutine stop_clock
+  end subroutine look_at_clock
 
   !> Keep the contact phases by interface from now on.
   pure subroutine split_contact(clock, n_interface)

@@ -5,6 +5,7 @@ module deck_resolve_conditions_m
   use log_m, only : to_text
   use conditions_m, only : conditions_t, prescribed_motion_t, nodal_load_t, body_load_t
   use model_m, only : model_t
+  use supports_m, only : mark_meshed_nodes
   use deck_lines_m, only : deck_t, place_t, line_warning, line_error
   use deck_cards_m, only : reject_field
   use deck_maps_m, only : maps_t, resolve_id
@@ -25,8 +26,8 @@ contains
     logical, allocatable :: fixed(:, :), meshed(:)
     integer, allocatable :: motion_lines(:)
 
-    allocate (fixed(2, model%mesh%n_node), meshed(model%mesh%n_node), source=.false.)
-    call mark_meshed(model, meshed)
+    allocate (fixed(2, model%mesh%n_node), source=.false.)
+    meshed = mark_meshed_nodes(model)
     if (raw%lost%elements .or. deck%incomplete) meshed = .true.
     call collect_fixed(deck, raw, maps, model, meshed, fixed)
     call collect_motions(deck, raw, maps, model, motion_lines)
@@ -35,19 +36,6 @@ contains
     call collect_global(deck, raw, maps, model)
     call list_fixed(fixed, model%conditions)
   end subroutine resolve_conditions
-
-  !> Nodes that belong to an element.
-  pure subroutine mark_meshed(model, meshed)
-    type(model_t), intent(in) :: model
-    logical, intent(inout) :: meshed(:)
-    integer :: i, k
-
-    do i = 1, model%mesh%n_element
-      do k = 1, 4
-        if (model%mesh%element_nodes(k, i) > 0) meshed(model%mesh%element_nodes(k, i)) = .true.
-      end do
-    end do
-  end subroutine mark_meshed
 
   !> Nodes that a row is about: one node, or those of a set, each once. Empty when the id is wrong.
   subroutine row_nodes(deck, maps, model, row, is_set, nodes)

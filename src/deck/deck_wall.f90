@@ -6,6 +6,7 @@ module deck_wall_m
   use text_m, only : read_integer, number_good
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
+  use supports_m, only : mark_meshed_nodes
   use walls_m, only : wall_t, wall_distance
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, check_rest, report_field
   use deck_fields_m, only : card_t
@@ -31,15 +32,13 @@ contains
     character(:), allocatable :: title
 
     call open_cursor(deck, i_block, cursor)
-    entry%wall%id = size(raw%walls) + 1
     entry%line = deck%blocks(i_block)%keyword
     if (deck%blocks(i_block)%titled) then
       call next_text(deck, cursor, title)
       call take_number(title, entry%wall%id)
     end if
-    if (any(raw%walls%wall%id == entry%wall%id)) call line_error(deck, entry%line, 'the wall number ' &
-      //to_text(entry%wall%id)//' belongs to an earlier wall (without a number it is the position ' &
-      //'in the deck)')
+    if (entry%wall%id > 0 .and. any(raw%walls%wall%id == entry%wall%id)) call line_error(deck, &
+      entry%line, 'the wall number '//to_text(entry%wall%id)//' belongs to an earlier wall')
     call next_card(deck, parameters, cursor, 1, card)
     call next_card(deck, parameters, cursor, 2, place)
     call check_rest(deck, cursor)
@@ -91,7 +90,7 @@ contains
     end if
   end subroutine take_plane
 
-  !> Nodes of all walls. Conditions and rigid bodies have been resolved.
+  !> Nodes of all walls, such that an element has. Conditions and rigid bodies have been resolved.
   subroutine resolve_walls(deck, raw, maps, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
@@ -107,6 +106,7 @@ contains
     do i = 1, size(raw%walls)
       model%walls(i) = raw%walls(i)%wall
       call find_nodes(deck, raw%walls(i), maps, model, sees)
+      if (.not. (raw%lost%elements .or. deck%incomplete)) sees = sees .and. mark_meshed_nodes(model)
       if (raw%walls(i)%reach > 0.0_wp) then
         do k = 1, size(sees)
           sees(k) = sees(k) .and. wall_distance(model%walls(i), model%mesh%coordinates(:, k), &
@@ -115,10 +115,26 @@ contains
       end if
       model%walls(i)%nodes = pack([(k, k=1, model%mesh%n_node)], sees)
       call look_at_nodes(deck, raw%walls(i)%line, model, model%walls(i))
+      call look_at_motions(deck, raw%walls(i)%line, model, model%walls(i))
     end do
+    call number_walls(model%walls)
   end subroutine resolve_walls
 
-  !> NSID without NSIDEX, without nodes of rigid bodies and such that no element has.
+  !> Numbers of walls that have none (0): the position in the deck, or the next number that is free.
+  pure subroutine number_walls(walls)
+    type(wall_t), intent(inout) :: walls(:)
+    integer :: i
+
+    do i = 1, size(walls)
+      if (walls(i)%id > 0) cycle
+      walls(i)%id = i
+      do while (count(walls%id == walls(i)%id) > 1)
+        walls(i)%id = walls(i)%id + 1
+      end do
+    end do
+  end subroutine number_walls
+
+  !> NSID without NSIDEX and nodes of rigid bodies.
   subroutine find_nodes(deck, entry, maps, model, sees)
     type(deck_t), intent(inout) :: deck
     type(raw_wall_t), intent(in) :: entry
@@ -139,7 +155,7 @@ contains
       if (k > 0) sees(known(model%node_sets(k)%nodes)) = .false.
     end if
     if (any(sees .and. mark_rigid_nodes(model%rigids, size(sees)))) then
-      call line_warning(deck, entry%line, 'wall and rigid body', &
+      call line_warning(deck, entry%line, 'wall and rigid body'//to_text(entry%line), &
         to_text(count(sees .and. mark_rigid_nodes(model%rigids, size(sees)))) &
         //' node(s) of rigid bodies do not see the wall')
       sees = sees .and. .not. mark_rigid_nodes(model%rigids, size(sees))
@@ -178,5 +194,39 @@ contains
       //' node(s) start behind the wall, the first is '//to_text(model%mesh%node_id(first)) &
       //': they are kept from going further, not brought back')
   end subroutine look_at_nodes
+
+  !> Nodes that can not give way: wherever the wall pushes, a motion is prescribed or the node is fixed. Nodes that
+  !> are fixed in all such directions never come nearer, so they are no reason for a warning.
+  subroutine look_at_motions(deck, line, model, wall)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line
+    type(model_t), intent(in) :: model
+    type(wall_t), intent(in) :: wall
+    logical :: is_free(2, model%mesh%n_node), is_moved(model%mesh%n_node)
+    integer, allocatable :: blind(:)
+    integer :: i
+
+    is_free = spread(abs(wall%normal) > 0.0_wp, 2, model%mesh%n_node)
+    is_moved = .false.
+    associate (conditions => model%conditions)
+      do i = 1, size(conditions%fixed_nodes)
+        is_free(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .false.
+      end do
+      do i = 1, size(conditions%motions)
+        associate (motion => conditions%motions(i))
+          is_moved(motion%node) = is_moved(motion%node) .or. is_free(motion%direction, motion%node)
+        end associate
+      end do
+      do i = 1, size(conditions%motions)
+        is_free(conditions%motions(i)%direction, conditions%motions(i)%node) = .false.
+      end do
+    end associate
+    is_moved = is_moved .and. .not. any(is_free, 1)
+    blind = pack(wall%nodes, is_moved(wall%nodes))
+    if (size(blind) > 0) call line_warning(deck, line, 'wall and motion'//to_text(line), &
+      to_text(size(blind))//' node(s) do not see the wall while their motion is prescribed ' &
+      //'(*BOUNDARY_PRESCRIBED_MOTION), the first is '//to_text(model%mesh%node_id(blind(1))) &
+      //': they pass through it')
+  end subroutine look_at_motions
 
 end module deck_wall_m

@@ -8,7 +8,7 @@ module walls_m
 
   !> One *RIGIDWALL_PLANAR.
   type :: wall_t
-    integer :: id = 0                        !! user id, or the position in the deck
+    integer :: id = 0                        !! user id, or one that the deck layer gives
     real(wp) :: foot(2) = 0.0_wp             !! a point of the wall (tail)
     real(wp) :: normal(2) = [0.0_wp, 1.0_wp] !! of length 1, into the free side (tail to head)
     real(wp) :: birth = 0.0_wp               !! the wall is there from this time

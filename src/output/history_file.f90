@@ -9,6 +9,7 @@ module history_file_m
   use controls_m, only : interval_t
   use energies_m, only : total_energy, energy_ratio
   use snapshot_m, only : snapshot_t
+  use supports_m, only : mark_supports
   use csv_table_m, only : csv_table_t, open_table, add_row, flush_table, close_table, n_columns, &
     kind_real, kind_integer, kind_side
   use dyna_layouts_m, only : layout_glstat, layout_rcforc, layout_nodout, layout_matsum, layout_sleout, &
@@ -102,7 +103,7 @@ contains
       wanted(table_matsum) = is_asked(plan%matsum)
       wanted(table_rwforc) = is_asked(plan%rwforc) .and. allocated(model%walls)
       wanted(table_sleout) = is_asked(plan%sleout) .and. has_contacts
-      wanted(table_spcforc) = is_asked(plan%spcforc) .and. n_support(model) > 0
+      wanted(table_spcforc) = is_asked(plan%spcforc) .and. any(mark_supports(model))
     end associate
   end function wanted_tables
 
@@ -152,7 +153,7 @@ contains
     case (table_sleout)
       n = size(model%contacts)
     case (table_spcforc)
-      n = n_support(model)
+      n = count(mark_supports(model))
     case default
       n = 1
     end select
@@ -175,19 +176,6 @@ contains
     if (allocated(model%controls%output%history_nodes)) &
       n = size(model%controls%output%history_nodes)
   end function n_history_node
-
-  !> Number of nodes with a fixed degree of freedom.
-  pure function n_support(model) result(n)
-    type(model_t), intent(in) :: model
-    integer :: n
-    logical, allocatable :: is_fixed(:)
-
-    n = 0
-    if (.not. allocated(model%conditions%fixed_nodes)) return
-    allocate (is_fixed(model%mesh%n_node), source=.false.)
-    is_fixed(model%conditions%fixed_nodes) = .true.
-    n = count(is_fixed)
-  end function n_support
 
   !> The energy account: one row.
   subroutine append_glstat(histories, snapshot)

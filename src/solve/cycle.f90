@@ -277,7 +277,8 @@ contains
       state%time, state%dt, cycle%error)
     if (allocated(cycle%error)) cycle%finished = .true.
     if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
-    call follow_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, cycle%ratio)
+    call follow_progress(monitor%progress, monitor%clock, state%cycle, .false., state%time, state%dt, &
+      cycle%ratio)
   end subroutine end_cycle
 
   !> Stop, restart files, states and lines that are due or that someone asks for. The state is that before the
@@ -309,6 +310,7 @@ contains
     type(cycle_t), intent(inout) :: cycle
     logical :: dumps, runs
 
+    if (allocated(cycle%error)) return
     dumps = asked .or. wants_dump(monitor%restarts, state%cycle, ends .or. signalled)
     runs = wants_running(monitor%restarts, state%cycle, signalled)
     if (.not. dumps .and. .not. runs) return

@@ -68,6 +68,7 @@ contains
       last = control%is_last
       if (model%controls%end_cycle > 0) last = last .or. state%cycle >= model%controls%end_cycle
       call take_requests(state, energy_ratio(monitor%snapshot%energies), .true., monitor, asked, error)
+      if (allocated(error)) exit
       if (asked%dump) call warn(monitor%log, 'a restart file was asked for: the implicit method ' &
         //'writes none')
       stopped = asked%stop .and. .not. last
@@ -79,8 +80,8 @@ contains
         state%dt = control%next - state%time
       end if
       call report_step(model, state, step%old_force, last, asked%plot, monitor, written, error)
-      call follow_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt_before, &
-        energy_ratio(monitor%snapshot%energies))
+      call follow_progress(monitor%progress, monitor%clock, state%cycle, .true., state%time, &
+        state%dt_before, energy_ratio(monitor%snapshot%energies))
     end do
     if (allocated(error) .and. .not. last) then
       call report_step(model, state, step%old_force, .true., .false., monitor, written, second)

@@ -16,6 +16,7 @@ module monitor_m
   use results_file_m, only : results_file_t, run_info_t, open_results, append_state, finish_results
   use snapshot_m, only : snapshot_t
   use snapshot_filling_m, only : start_snapshot
+  use supports_m, only : mark_supports
   implicit none
   private
   public :: monitor_t, open_files, start_monitor, find_due, any_due, write_due, finish_monitor, due_t
@@ -77,7 +78,7 @@ contains
         call start_schedule(monitor%rcforc, plan%rcforc, model%curves, end_time)
       if (size(model%contacts) > 0) &
         call start_schedule(monitor%sleout, plan%sleout, model%curves, end_time)
-      if (size(model%conditions%fixed_nodes) > 0) &
+      if (any(mark_supports(model))) &
         call start_schedule(monitor%spcforc, plan%spcforc, model%curves, end_time)
       if (size(plan%history_nodes) > 0) &
         call start_schedule(monitor%nodout, plan%nodout, model%curves, end_time)

@@ -4,7 +4,7 @@
 !> behind `>`) does not end a run: the log has the same lines.
 module progress_m
   use, intrinsic :: iso_fortran_env, only : output_unit
-  use clock_m, only : clock_t, elapsed_seconds, total_seconds, phase_seconds, lap_seconds, &
+  use clock_m, only : clock_t, look_at_clock, elapsed_seconds, total_seconds, phase_seconds, lap_seconds, &
     phase_names, n_phase, phase_input, phase_output
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log
@@ -14,6 +14,8 @@ module progress_m
   private
   public :: progress_t, start_progress, follow_progress, show_progress, show_note, show_end
 
+  !> Cycles between two looks at a clock that takes no laps.
+  integer, parameter :: look_cycles = 64
   !> Seconds between two refreshes on a terminal, and between two lines in a pipe.
   real(wp), parameter :: terminal_interval = 0.25_wp, pipe_interval = 10.0_wp
 
@@ -45,13 +47,16 @@ contains
     progress%next_tick = now + progress%wait
   end subroutine start_progress
 
-  !> A line or the status file where one is due though no result was written. Asked in every cycle, so no clock is read.
-  subroutine follow_progress(progress, clock, cycle, time, dt, ratio)
+  !> A line or the status file where one is due though no result was written. Asked in every cycle: that the clock
+  !> is read for it is rare where steps are short.
+  subroutine follow_progress(progress, clock, cycle, steps_are_long, time, dt, ratio)
     type(progress_t), intent(inout) :: progress
-    type(clock_t), intent(in) :: clock
+    type(clock_t), intent(inout) :: clock
     integer, intent(in) :: cycle
+    logical, intent(in) :: steps_are_long
     real(wp), intent(in) :: time, dt, ratio
 
+    if (steps_are_long .or. mod(cycle, look_cycles) == 0) call look_at_clock(clock)
     if (wants_line(progress, cycle, clock%last)) then
       call show_progress(progress, clock, cycle, time, dt, ratio, '')
     else if (clock%last >= progress%status%next_tick) then
@@ -79,11 +84,13 @@ contains
     real(wp), intent(in) :: time, dt, ratio
     character(*), intent(in) :: event
     real(wp) :: share, to_go
+    integer(long) :: now
     integer :: ignored
     character(8) :: date
     character(10) :: hour
 
-    progress%next_tick = clock%last + progress%wait
+    call system_clock(now)
+    progress%next_tick = now + progress%wait
     call keep_status(progress%status, clock, cycle, time, dt, ratio)
     if (progress%terminal) then
       share = min(1.0_wp, time/progress%end_time)

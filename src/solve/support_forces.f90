@@ -7,24 +7,24 @@ module support_forces_m
   use snapshot_m, only : snapshot_t
   use sorting_m, only : sorted_order
   use state_m, only : state_t
+  use supports_m, only : mark_supports
   implicit none
   private
   public :: find_supports, fill_reactions, fill_explicit_reactions
 
 contains
 
-  !> Nodes with a fixed degree of freedom by rising id; none where the deck does not ask for their forces.
+  !> Nodes with mass and a fixed degree of freedom by rising id; none where the deck does not ask for their forces.
   subroutine find_supports(model, snapshot)
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(inout) :: snapshot
-    logical :: is_fixed(model%mesh%n_node)
     integer :: i
 
-    is_fixed = .false.
+    allocate (snapshot%supports(0))
     associate (interval => model%controls%output%spcforc)
-      if (interval%dt > 0.0_wp .or. interval%curve > 0) is_fixed(model%conditions%fixed_nodes) = .true.
+      if (interval%dt > 0.0_wp .or. interval%curve > 0) &
+        snapshot%supports = pack([(i, i=1, model%mesh%n_node)], mark_supports(model))
     end associate
-    snapshot%supports = pack([(i, i=1, model%mesh%n_node)], is_fixed)
     snapshot%supports = snapshot%supports(sorted_order(int(model%mesh%node_id(snapshot%supports), long)))
     allocate (snapshot%reaction(2, size(snapshot%supports)), source=0.0_wp)
   end subroutine find_supports

@@ -210,6 +210,31 @@ def test_the_element_that_rules_the_step_is_named(slideline, tmp_path):
     assert len(controls) == 3 and set(controls) == {("3", "4")}
 
 
+def squares(viscosity=(0.0, 0.0), speed=0.0):
+    """Element 1 is a square of 1, element 2 one of 0.9 apart from it; the first is squeezed at `speed`."""
+    deck = Deck("two squares")
+    deck.add("*CONTROL_TERMINATION", (1.0e-6,)).add("*CONTROL_TIMESTEP", (0.0, 0.9))
+    deck.part().elastic(8000.0, 2.0e11, 0.3)
+    wide = deck.mesh(*grid(1, 1), part=1)
+    deck.mesh(*grid(1, 1, 0.9, 0.9, (3.0, 0.0)), part=1)
+    deck.add("*CONTROL_BULK_VISCOSITY", viscosity)
+    if speed:
+        deck.add("*INITIAL_VELOCITY_NODE", *[(int(node), -speed, 0.0) for node in wide[1::2]])
+    return deck.output(glstat=1.0e-6)
+
+
+@pytest.mark.parametrize("deck, element", [
+    (squares(), "2"),                                          # the shorter one
+    (squares(viscosity=(1.5, 0.06), speed=1500.0), "1"),       # squeezed against viscosity
+])
+def test_the_named_element_is_the_first_of_the_log(slideline, tmp_path, deck, element):
+    assert slideline("d=o", deck=deck).returncode == 0
+    listed = re.search(r"element +part +stable step\n +(\d+) +(\d+) ", (tmp_path / "o" / "job.log").read_text())
+    named = re.search(r"dt of cycle +0 is controlled by shell +(\d+) of part +(\d+)",
+                      (tmp_path / "o" / "job.glstat").read_text())
+    assert named.groups() == listed.groups() == (element, "1")
+
+
 @pytest.mark.parametrize("binary, written", [("0", True), ("1", True), ("2", False), ("3", True)])
 def test_binary_says_whether_there_is_text(slideline, tmp_path, binary, written):
     assert slideline("d=b", deck=with_all(drop(end_time=0.002), binary), name="drop").returncode == 0

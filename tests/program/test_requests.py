@@ -106,6 +106,18 @@ def test_status_estimates_the_end(started, tmp_path):
     assert "stopped on request" in status(folder / "status.out")["state"]
 
 
+@pytest.mark.parametrize("deck", [long_drop(), long_press()], ids=["explicit", "implicit"])
+def test_status_without_timing(started, deck):
+    """With timing=off the clock takes no laps; `started` waits for a cycle above 0 in status.out."""
+    process, folder = started(deck, "timing=off")
+    first = int(status(folder / "status.out")["cycle no."])
+    wait_for(lambda: int(status(folder / "status.out")["cycle no."]) > first, 6.0)
+    said = status(folder / "status.out")
+    assert said["state"] == "running" and seconds(said["elapsed clock time"]) >= 1
+    ask(folder, "stop")
+    assert process.wait(timeout=20) == 4
+
+
 def test_signals_ask_for_files(started, tmp_path):
     process, folder = started(long_drop())
     process.send_signal(signal.SIGUSR1)

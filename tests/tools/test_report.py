@@ -109,6 +109,8 @@ def test_report_holds_the_numbers_of_the_run(collision, written):
     glstat, rcforc, contact, matsum = (read_csv(collision / f"collision.{name}.csv") for name in
                                        ("glstat", "rcforc", "contact", "matsum"))
     slave = rcforc.where(side="slave")
+    results = read(collision / "collision.vtkhdf")
+    assert results.run["machine"] and results.run["source"]
     expected = {
         "ratio": f"{glstat['energy_ratio'][-1]:.7g} energy ratio at the end",
         "kinetic": f"{glstat['kinetic'][-1]:.7g}", "hourglass": f"{glstat['hourglass'][-1]:.7g}",
@@ -120,7 +122,8 @@ def test_report_holds_the_numbers_of_the_run(collision, written):
         "cycles": "400 cycles", "ending": "normal termination termination time reached",
         "title": "collision of a projectile with a plate", "mesh": "310 nodes, 240 elements, 2 parts",
         "law": "*MAT_PLASTIC_KINEMATIC", "density": "7850", "interface": "Interface 1 (NTS-AR, type 2)",
-        "machine": "the run does not record its machine", "deck": "*CONTACT_2D_SLIDELINE",
+        "machine": f"machine {results.run['machine']}", "source": f"source {results.run['source']}",
+        "deck": "*CONTACT_2D_SLIDELINE",
     }
     missing = {name: words for name, words in expected.items() if words not in page.text}
     assert not missing

@@ -11,7 +11,7 @@ from slideline_tools import scenes
 from slideline_tools.histories import read_csv
 from slideline_tools.results import read
 
-TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact")
+HISTORIES = ("glstat", "rcforc", "nodout", "matsum", "contact")
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +43,7 @@ def test_mesh_and_states(run):
     assert "*CONTACT_2D_SLIDELINE" in results.run["effective_deck"]
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("name", HISTORIES)
 def test_histories_are_the_csv_files(run, name):
     table, stored = (read_csv(run / f"collision.{name}.csv"),
                      read(run / "collision.vtkhdf").history(name))

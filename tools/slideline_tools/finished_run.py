@@ -4,12 +4,13 @@ import pathlib
 import re
 
 import h5py
+import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.histories import History, read_csv
+from slideline_tools.histories import TABLES, History, read_csv
 from slideline_tools.results import read
 
-TABLES = ("glstat", "rcforc", "nodout", "matsum", "sleout", "spcforc")
+NOT_WRITTEN = ("contact", "rwforc")  # tables without a branch in the binout
 
 
 class RunError(UserError):
@@ -30,15 +31,17 @@ class Run:
         self.results = read(states) if states.exists() else None
 
     def tables(self):
-        """name -> History of all tables that DYNA knows, from the results file or the CSV files."""
+        """name -> History of all tables that go into a binout, from the results file or the CSV files."""
         found = {}
         for name in TABLES:
+            if name in NOT_WRITTEN:
+                continue
             path = pathlib.Path(f"{self.prefix}.{name}.csv")
             if self.results and name in self.results.histories:
                 found[name] = with_further(self.results, self.results.history(name))
             elif path.exists():
                 found[name] = read_csv(path)
-        return found
+        return {name: whole_instants(table) for name, table in found.items() if len(table)}
 
     @property
     def title(self):
@@ -52,6 +55,12 @@ class Run:
         if not text and path.exists():
             text = path.read_text(encoding="latin-1")
         return part_titles(text)
+
+
+def whole_instants(table):
+    """A table without the rows of a last instant that lacks some: the run was killed while they waited in memory."""
+    size = int(np.count_nonzero(table["time"] == table["time"][0]))
+    return table.rows(slice(len(table) // size * size))
 
 
 def with_further(results, table):

@@ -14,10 +14,10 @@ from slideline_tools import UserError
 if typing.TYPE_CHECKING:
     import pandas
 
-TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact")
+TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact", "rwforc", "sleout", "spcforc")
 TEXT_COLUMNS = ("side", "phase")
-INTEGER_COLUMNS = ("cycle", "interface", "node", "part", "n_active", "calls")
-ENTITY_COLUMNS = ("interface", "side", "node", "part")
+INTEGER_COLUMNS = ("cycle", "interface", "wall", "node", "part", "n_active", "calls")
+ENTITY_COLUMNS = ("interface", "side", "wall", "node", "part")
 SIDES = {1: "slave", 2: "master"}
 
 
@@ -28,7 +28,7 @@ class HistoryError(UserError):
 class History:
     """One table: equally long columns by name.
 
-    Columns that name an entity (`interface`, `side`, `node`, `part`) split the rows into one
+    Columns that name an entity (`interface`, `side`, `wall`, `node`, `part`) split the rows into one
     series per entity. Values are in the units of the deck; `time` is in its unit of time.
     """
 
@@ -82,7 +82,11 @@ class History:
         keep = np.ones(len(self), dtype=bool)
         for name, value in wanted.items():
             keep &= self[name] == value
-        return History(self.name, {name: column[keep] for name, column in self.columns.items()})
+        return self.rows(keep)
+
+    def rows(self, chosen) -> History:
+        """Some of the rows: a slice, a mask or a list of numbers."""
+        return History(self.name, {name: column[chosen] for name, column in self.columns.items()})
 
     def series(self) -> list[tuple[tuple, History]]:
         """One (entity, History) per entity in order of appearance; entity = tuple of values."""
@@ -92,9 +96,7 @@ class History:
         rows_of = {}
         for row, key in enumerate(zip(*(self[name].tolist() for name in names))):
             rows_of.setdefault(key, []).append(row)
-        return [(key, History(self.name, {name: column[rows] for name, column
-                                          in self.columns.items()}))
-                for key, rows in rows_of.items()]
+        return [(key, self.rows(rows)) for key, rows in rows_of.items()]
 
     def entity_label(self, entity: tuple) -> str:
         """Text for one entity, for example 'interface 1, slave'."""

@@ -173,7 +173,7 @@ class Results:
         return self.path.with_name(f"{self.path.stem}.{name}.csv")
 
     def history(self, name: str) -> History:
-        """A history table (see histories.History): glstat, rcforc, nodout, contact or matsum.
+        """A history table (see histories.History): one of histories.TABLES.
 
         The program puts the tables into the results file at the end of the run; before, and of a
         killed run, they are read from the CSV files beside it. Columns and units: doc/results.md.
@@ -191,7 +191,7 @@ class Results:
 
     def frame(self, name: str) -> pandas.DataFrame:
         """A history table as a pandas DataFrame: columns and rows of the CSV file, time and
-        entities (interface, side, node, part) first.
+        entities (interface, side, wall, node, part) first.
 
         `attrs` has the table (`table`) and the title of the run (`title`). pandas is an extra:
         pip install 'slideline-tools[frames]'.

@@ -9,10 +9,9 @@ import pathlib
 from slideline_tools import UserError
 from slideline_tools.advise.run_deck import Block, read_blocks
 from slideline_tools.advise.run_log import RunLog, read_log
-from slideline_tools.histories import History, read_csv
+from slideline_tools.histories import TABLES, History, read_csv
 from slideline_tools.results import Results, ResultsError, read
 
-TABLES = ("glstat", "matsum", "rcforc", "nodout", "contact", "rwforc", "sleout", "spcforc")
 OTHER_ENDINGS = (".vtkhdf", ".timing.csv", ".log", ".effective.k")
 # File systems that keep access times the way POSIX says, unless mounted noatime.
 TRUSTED = ("ext2", "ext3", "ext4", "xfs", "btrfs", "tmpfs", "f2fs", "zfs")

@@ -10,10 +10,10 @@ import re
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.advise.finished import TABLES, endings, find_job, put_back, read_text
+from slideline_tools.advise.finished import endings, find_job, put_back, read_text
 from slideline_tools.advise.run_log import RunLog, read_log
 from slideline_tools.draw.model import Model, read_model
-from slideline_tools.histories import History, HistoryError, read_csv
+from slideline_tools.histories import TABLES, History, HistoryError, read_csv
 from slideline_tools.results import Results, ResultsError, read
 
 GOES_ON = "goes on from the restart file"
@@ -57,12 +57,14 @@ class Gathered:
                 or self.job)
 
     def told(self, name: str) -> str:
-        """What the results file or the log says of `title`, `deck`, `version`, `options`."""
+        """What the results file or the log says of `title`, `deck`, `version`, `options`, `build`,
+        `source` and (the results file alone) `machine`; '' where nothing does."""
         if self.results is not None and self.results.run.get(name):
             return self.results.run[name]
         pattern = {"title": r"^title: (.*)", "deck": r"^deck: (.*)", "version": r"^slideline (\S+)",
-                   "options": r"^command line: (.*)", "build": r"^slideline \S+ \((.*)\)"}[name]
-        found = re.search(pattern, self.log_text, re.M)
+                   "options": r"^command line: (.*)", "build": r"^slideline \S+ \((.*?)(?:, source .*)?\)",
+                   "source": r"^slideline .*, source (\S+)\)"}.get(name)
+        found = re.search(pattern, self.log_text, re.M) if pattern else None
         return found[1].strip() if found else ""
 
     @property

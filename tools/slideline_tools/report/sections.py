@@ -4,7 +4,6 @@ run has nothing for it."""
 from __future__ import annotations
 
 import os
-import platform
 import re
 import time
 
@@ -32,6 +31,8 @@ def summary(run: Gathered) -> Section:
             ["command line", run.told("options")],
             ["program", " ".join(filter(None, ("slideline", run.told("version"),
                                                bracketed(run.told("build")))))],
+            ["source", run.told("source")],
+            ["machine", run.told("machine") or "unknown: only the results file names it"],
             ["threads", threads(run.told("options"))],
             ["ended", KINDS[end.kind] + (f": {end.reason}" if end.reason else "")],
             ["problem time", figures(end.time, 9)], ["cycles", figures(end.cycle)],
@@ -46,8 +47,7 @@ def summary(run: Gathered) -> Section:
     if run.results is not None and run.results.n_state:
         times = run.results.times
         rows.append(["states", f"{len(times)}, time {times[0]:g} to {times[-1]:g}"])
-    rows += [["files written", written(run)],
-             ["this report", f"made on {machine()}; the run does not record its machine"]]
+    rows.append(["files written", written(run)])
     body = table([], [row for row in rows if row[1]])
     body += "".join(paragraph(note, "note") for note in run.notes)
     body += paragraph("All numbers are in the units of the deck; forces, energies, masses and momenta "
@@ -72,19 +72,6 @@ def written(run: Gathered) -> str:
     first, last = (time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(stamp))
                    for stamp in (min(stamps), max(stamps)))
     return last if first == last else f"{first} to {last}"
-
-
-def machine() -> str:
-    """Name, system and processor of this machine."""
-    processor = platform.processor()
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8") as stream:
-            names = re.findall(r"^model name\s*:\s*(.*)$", stream.read(), re.M)
-        processor = names[0] if names else processor
-    except OSError:
-        pass
-    return ", ".join(filter(None, (platform.node(), f"{platform.system()} {platform.machine()}",
-                                   processor)))
 
 
 def tiles_of(run: Gathered) -> list[tuple[str, str]]:

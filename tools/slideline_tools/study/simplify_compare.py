@@ -11,11 +11,10 @@ import time
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.histories import read_csv
+from slideline_tools.histories import TABLES, read_csv
 from slideline_tools.results import read
 from slideline_tools.study.runner import RECORD
 
-TABLES = ("glstat", "matsum", "rcforc", "nodout", "contact")
 KEPT, PATIENCE, PAUSE = "memory.json", 1.5, 0.005
 
 

@@ -1,0 +1,36 @@
+! SPDX-License-Identifier: MIT
+!> Nodes that the deck supports.
+module supports_m
+  use model_m, only : model_t
+  implicit none
+  private
+  public :: mark_meshed_nodes, mark_supports
+
+contains
+
+  !> (n_node) nodes that some element has, so that they have mass.
+  pure function mark_meshed_nodes(model) result(is_meshed)
+    type(model_t), intent(in) :: model
+    logical :: is_meshed(model%mesh%n_node)
+    integer :: i, k
+
+    is_meshed = .false.
+    do i = 1, model%mesh%n_element
+      do k = 1, 4
+        if (model%mesh%element_nodes(k, i) > 0) is_meshed(model%mesh%element_nodes(k, i)) = .true.
+      end do
+    end do
+  end function mark_meshed_nodes
+
+  !> (n_node) nodes with mass and a fixed degree of freedom.
+  pure function mark_supports(model) result(is_support)
+    type(model_t), intent(in) :: model
+    logical :: is_support(model%mesh%n_node)
+
+    is_support = .false.
+    if (.not. allocated(model%conditions%fixed_nodes)) return
+    is_support(model%conditions%fixed_nodes) = .true.
+    is_support = is_support .and. mark_meshed_nodes(model)
+  end function mark_supports
+
+end module supports_m
