@@ -4,7 +4,7 @@
 # Runs a deck with every combination of values of what may be changed on the command line (ctype, pen, dt, tssfac,
 # p:NAME for a parameter of the deck ...), each into OUT/<values>/, and prints a table of how the runs have ended.
 # What has ended well is passed over the next time; run_list.sh explains the options and the exit status. Example:
-#   tools/batch/sweep.sh -j 4 -o results/sweep input/collision/collision.k ctype=1,2,5 p:speed=-40.0,-80.0
+#   tools/batch/sweep.sh -j 4 -o results/sweep input/collision/collision.k ctype=1,2,5 p:v0=-40.0,-80.0
 set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)
