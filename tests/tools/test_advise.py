@@ -214,6 +214,16 @@ def test_log():
     assert read_log(LOG.format(body=2)).driven
 
 
+def test_log_of_a_material_with_points_of_hardening():
+    log = read_log("material 3: density 8.0E+03, E 2.0E+11, c 5.8E+03, yield 3.0E+08, hardening by 2 point(s) to plastic "
+                   "strain 1.0E-01, then modulus 1.0E+09, 2 strain rates from 0.0E+00 to 1.0E+02, Cowper-Symonds C "
+                   "4.0E+01, P 5.0E+00, rate factor by curve 7\n")
+    assert log.materials[3] == {
+        "density": 8.0e3, "E": 2.0e11, "c": 5.8e3, "yield": 3.0e8, "points of hardening": 2.0, "last plastic strain": 0.1,
+        "last plastic modulus": 1.0e9, "strain rates": 2.0, "lowest strain rate": 0.0, "highest strain rate": 100.0,
+        "Cowper-Symonds C": 40.0, "Cowper-Symonds P": 5.0, "rate factor by curve": 7.0}
+
+
 def test_log_of_an_automatic_penalty():
     """The penalties come in a line of their own; a restart has none."""
     share = "  penalty: 1.000000E+00 of the largest stable one\n"

@@ -3,8 +3,12 @@
 import csv
 import os
 import pathlib
+import re
+import shlex
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -99,6 +103,66 @@ def test_what_has_ended_well_is_passed_over(place, decks):
     assert again("endtim=1.0") == [3, 5]
     call(place, "run_folder.sh", "--fresh", "-o", results, "my decks", "endtim=1.0")
     assert len(told(results / "first one")) == 4
+
+
+def test_another_build_runs_anew(place, decks):
+    """A build from edited sources may say the same of itself."""
+    program = place / "the program"
+    for more, times in (("", 1), ("", 1), ("# edited\n", 2)):
+        program.write_text(program.read_text() + more)
+        call(place, "run_folder.sh", "my decks")
+        assert len(told(decks / "results" / "first one")) == times
+
+
+def signalled(place, program, there, *words):
+    """A folder run whose process group gets SIGUSR1 once `there()`; its exit status."""
+    running = subprocess.Popen([BATCH / "run_folder.sh", "my decks", *words], cwd=place, start_new_session=True,
+                               env={**os.environ, "SLIDELINE": str(program)}, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+    try:
+        end = time.monotonic() + 20.0
+        while not there():
+            assert time.monotonic() < end, "waited too long"
+            time.sleep(0.02)
+        os.killpg(running.pid, signal.SIGUSR1)
+        return running.wait(timeout=60)
+    finally:
+        if running.poll() is None:
+            os.killpg(running.pid, signal.SIGKILL)
+            running.wait()
+
+
+def test_signal_for_the_runs_leaves_the_scripts_alone(place):
+    """Schedulers signal every process of a job (scancel --full): the runs go on and the table is made."""
+    deck(place / "my decks" / "one.k")
+    program, results = place / "the program", place / "my decks" / "results"
+    program.write_text(FAKE.replace("exit \"$(sed", "sleep 0.5\nexit \"$(sed"))
+    assert signalled(place, program, (results / "one" / "one.rcforc.csv").exists) == 0
+    assert summary(results)["one"]["meaning"] == "normal"
+
+
+def test_signal_reaches_the_program(place, slideline):
+    """What the scripts ignore the program takes: a restart file, and the run goes on to its end."""
+    (place / "my decks").mkdir()
+    text = (ROOT / "input/collision/collision.k").read_text()
+    (place / "my decks" / "one.k").write_text(text)
+    folder = place / "my decks" / "results" / "one"
+
+    def runs():
+        found = folder / "status.out"
+        return found.exists() and re.search(r"cycle no\. +[1-9]", found.read_text())
+    assert signalled(place, slideline, runs, "endtim=6.0e-3") == 0
+    assert (folder / "one.dump01.h5").exists()
+    assert summary(folder.parent)["one"]["meaning"] == "normal"
+
+
+def test_example_of_the_sweep(place, slideline):
+    """The call in the head of the script is taken by the program (each run cut short)."""
+    example = re.search(r"^#   tools/batch/sweep.sh (.*)$", (BATCH / "sweep.sh").read_text(), re.M)[1]
+    words = [str(ROOT / word) if word.startswith("input/") else word for word in shlex.split(example)]
+    done = call(place, "sweep.sh", *words, "endtim=1.0e-6", program=slideline)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert len(summary(place / "results" / "sweep")) == 6
 
 
 def test_sweep_runs_every_combination(place):

@@ -172,6 +172,21 @@ def test_initial_velocity(model):
     np.testing.assert_allclose(model.velocity[model.part_nodes([2])], 0.0)
 
 
+def test_velocity_of_a_rigid_body():
+    """Translation and spin about the centre of mass, before what its nodes get; held directions stay at rest."""
+    text = (conftest.ROOT / "doc/examples/initial_velocity_rigid_body.k").read_text()
+    node = "*INITIAL_VELOCITY_NODE\n         4       9.0       9.0\n*DEFINE_TABLE\n         5\n       0.0\n*END\n"
+    model = read_model(text.replace("*END\n", node))
+    assert model.unread == []
+    np.testing.assert_allclose(model.velocity[model.index(4)], [1.0 - 10.0 * 0.5, 10.0 * 0.5])
+    np.testing.assert_allclose(model.velocity.mean(axis=0), [1.0, 0.0], atol=1e-12)
+    rigid = "         1    1000.0    2.1E11       0.3\n"
+    held = read_model(text.replace(rigid, rigid + "       1.0       1.0       7.0\n"))
+    np.testing.assert_allclose(held.velocity, 0.0)
+    other = read_model(text.replace("*END\n", "*INITIAL_VELOCITY_OTHER\n         1\n*END\n"))
+    assert other.unread == ["INITIAL_VELOCITY_OTHER"]
+
+
 def test_surfaces_of_part_sets(model):
     """Two chains for the ring, body on the left: normals point away from it."""
     interface = model.interfaces[0]

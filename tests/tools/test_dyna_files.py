@@ -175,9 +175,11 @@ def near_or_zero(found, exact):
 
 def test_a_family_of_several_files(run, tmp_path):
     path = tmp_path / "few"
-    (tmp_path / "few07").write_bytes(b"of an earlier run")
+    for k in range(1, 60):
+        (tmp_path / f"few{k:02d}").write_bytes(b"of an earlier run")
     assert write_d3plot(run, path, file_limit=100000) == run.results.n_state
     files = sorted(file.name for file in tmp_path.iterdir())
+    assert len(files) < 60
     assert len(files) > 3 and files == ["few"] + [f"few{k:02d}" for k in range(1, len(files))]
     near(D3plot(str(path)).arrays["node_displacement"], run.results.points)
     reader = vtkLSDynaReader()
@@ -187,6 +189,17 @@ def test_a_family_of_several_files(run, tmp_path):
     reader.SetTimeStep(run.results.n_state - 1)
     reader.Update()
     check_grid(blocks(reader)["plate"], run.results, 30, run.results.n_state - 1)
+
+
+def test_files_of_the_user_stay(run, tmp_path):
+    """A number behind the name makes no member of the family; brackets in a name are no pattern."""
+    for name in ("few2019", "few[1]2019"):
+        (tmp_path / name).write_bytes(b"mine")
+    (tmp_path / "few[1]02").write_bytes(b"of an earlier run")
+    for name in ("few", "few[1]"):
+        write_d3plot(run, tmp_path / name)
+        assert (tmp_path / f"{name}2019").read_bytes() == b"mine"
+    assert not (tmp_path / "few[1]02").exists()
 
 
 def test_binout_glstat(run, binout):
@@ -243,6 +256,24 @@ def test_a_killed_run_gives_binout_from_its_csv_files(run, tmp_path):
     assert np.array_equal(Binout(str(tmp_path / "b")).read("nodout", "x_velocity").ravel(), table["vx"])
     with pytest.raises(D3plotError, match="no states"):
         write_d3plot(tmp_path, tmp_path / "d")
+
+
+def test_binout_of_a_killed_run_leaves_a_cut_instant_out(run, tmp_path):
+    """Rows reach the file by the size of a buffer; a table may have its header alone."""
+    text = pathlib.Path(f"{run.prefix}.nodout.csv").read_text().splitlines(keepends=True)
+    n_node = len(np.unique(run.results.history("nodout")["node"]))
+    assert n_node > 1
+    (tmp_path / "hit.glstat.csv").write_bytes(pathlib.Path(f"{run.prefix}.glstat.csv").read_bytes())
+    (tmp_path / "hit.nodout.csv").write_text("".join(text[:1 + 2 * n_node + 1]))
+    (tmp_path / "hit.rcforc.csv").write_text("time,interface,side,fx,fy,n_active\n")
+    assert write_binout(tmp_path, tmp_path / "b") == ["glstat", "nodout"]
+    found = Binout(str(tmp_path / "b"))
+    times = run.results.history("nodout")["time"][::n_node]
+    assert np.array_equal(found.read("nodout", "time"), times[:2])
+    assert np.array_equal(found.read("nodout", "x_velocity").ravel(), run.results.history("nodout")["vx"][:2 * n_node])
+    (tmp_path / "hit.nodout.csv").write_text("".join(text[:1 + 2 * n_node]))
+    write_binout(tmp_path, tmp_path / "c")
+    assert np.array_equal(Binout(str(tmp_path / "c")).read("nodout", "time"), times[:2])
 
 
 def test_commands(run, tool, tmp_path):

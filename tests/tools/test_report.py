@@ -210,6 +210,23 @@ def test_run_without_plot_states_or_contact(tmp_path, slideline):
     assert "contact" not in page.ids and "energies" in page.ids
 
 
+def test_material_with_points_and_rates(tmp_path, slideline):
+    """The words of the log's line of *MAT_024 become columns that say what they hold."""
+    text = scenes.symmetric_plate(8, 4, False, "viscous", None)
+    block = re.search(r"^\*MAT_[^*]*", text, re.M)
+    number = re.search(r"^ *(\d+)", block[0].split("\n", 1)[1].lstrip("$#").split("\n", 1)[-1], re.M)[1]
+    law = (f"*MAT_024\n{number},2700.0,6.9E10,0.33,2.76E8,1.0E9\n0.0,0.0,77\n*DEFINE_TABLE\n77,\n0.0,\n100.0,\n"
+           "*DEFINE_CURVE\n771,\n0.0,2.76E8\n0.1,3.5E8\n*DEFINE_CURVE\n772,\n0.0,3.0E8\n0.2,4.0E8\n")
+    (tmp_path / "plate.k").write_text(text.replace(block[0], law))
+    folder = run_program(slideline, tmp_path / "plate.k", tmp_path / "run", "endtim=1e-5")
+    page = read_page(write_report(folder, tmp_path / "r.html"))
+    heads = re.search(r"<h3>Materials</h3>.*?</tr>", (tmp_path / "r.html").read_text(), re.S)[0]
+    assert re.findall(r"<th[^>]*>([^<]*)</th>", heads)[-6:] == [
+        "points of hardening", "last plastic strain", "last plastic modulus", "strain rates", "lowest strain rate",
+        "highest strain rate"]
+    assert "Keywords that this report does not read" not in page.text
+
+
 def test_implicit_run(tmp_path, slideline):
     deck = tmp_path / "hertz.k"
     deck.write_text(scenes.hertz(1, static=True))

@@ -4,7 +4,7 @@
 # Runs all decks of a folder (*.k, *.key, *.dyn; not those that another deck there includes), each into
 # OUT/<name of the deck>/ (OUT: FOLDER/results), and prints a table of how they have ended. What has ended well is
 # passed over the next time; run_list.sh explains the other options and the exit status. Example:
-#   tools/batch/run_folder.sh -j 4 "my decks" ctype=5 p:speed=-80.0
+#   tools/batch/run_folder.sh -j 4 "my decks" ctype=5 p:v0=-80.0
 set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)

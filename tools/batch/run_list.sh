@@ -13,6 +13,10 @@
 # have not, 2 the call is wrong.
 set -eu
 
+# These signals are for the runs (restart file, end): a scheduler sends them to all processes of a job, and the shells and
+# xargs must outlive them. The program sets its own handlers.
+trap '' USR1 USR2
+
 here=$(cd "$(dirname "$0")" && pwd)
 program=${SLIDELINE:-$here/../../build/release/slideline}
 
@@ -50,7 +54,8 @@ run_line() {
   shift 2
   folder=$out/$name
   mkdir -p "$folder"
-  now=$({ files_of "$deck" | tr '\n' '\0' | xargs -0 cksum; printf '%s\n' "$@"; "$program" --version; } | cksum)
+  now=$({ files_of "$deck" | tr '\n' '\0' | xargs -0 cksum; printf '%s\n' "$@"; "$program" --version
+    cksum <"$(command -v "$program")"; } | cksum)
   if [ "$fresh" = no ] && [ "$(cat "$folder/run.status" 2>/dev/null)" = 0 ] \
     && [ "$(cat "$folder/run.inputs" 2>/dev/null)" = "$now" ]; then
     echo "== $name: has run already"

@@ -10,6 +10,7 @@ import numpy as np
 
 from slideline_tools import UserError, __version__
 from slideline_tools.finished_run import Run
+from slideline_tools.histories import History
 from slideline_tools.lsda import Writer
 
 #: variable in binout -> column of the table
@@ -33,7 +34,9 @@ class BinoutError(UserError):
 def write_binout(run, path):
     """Write all tables of a run (folder, results file, or `Run`) to one binout; their names."""
     run = run if isinstance(run, Run) else Run(run)
-    tables = run.tables()
+    tables = {name: whole_instants(table) for name, table in run.tables().items()
+              if name in FORMS}
+    tables = {name: table for name, table in tables.items() if len(table)}
     if not tables:
         raise BinoutError(f"{run.prefix} has no history tables")
     with Writer(path) as file:
@@ -67,6 +70,17 @@ def glstat_branch(table, _):
         states["ts_eltype"] = np.ones(len(table), dtype=int)
         states["ts_element"], states["ts_part"] = table["element"], table["element_part"]
     return {"element_types": "shell"}, states
+
+
+def whole_instants(table):
+    """The table without a last instant that a killed run did not write to the end."""
+    if table.name == "glstat" or not len(table):
+        return table
+    times = table["time"]
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(times)) + 1, [len(times)]])
+    sizes = np.diff(starts)
+    end = starts[-2] if sizes[-1] < sizes[0] else len(times)
+    return History(table.name, {name: column[:end] for name, column in table.columns.items()})
 
 
 def by_instant(table, size, columns):

@@ -37,19 +37,25 @@ def write_d3plot(run, path, file_limit=FILE_LIMIT):
     if run.results is None or not run.results.n_state:
         raise D3plotError(f"{run.prefix} has no states: the deck asks for none (*DATABASE_BINARY_D3PLOT)")
     path = pathlib.Path(path)
-    remove_family(path)
     parts = np.unique(run.results.cell_field("part_id")[0])
     path.write_bytes(geometry(run, parts))
     states = (state_words(run.results, k, globals_of) for k, globals_of in
               enumerate(global_values(run, parts)))
-    return write_states(path, states, file_limit)
+    count, last = write_states(path, states, file_limit)
+    remove_rest(path, last + 1)
+    return count
 
 
-def remove_family(path):
-    """Remove the files of an earlier family: readers take all that are there."""
-    for old in path.parent.glob(path.name + "*"):
-        if old.name == path.name or old.name[len(path.name):].isdigit():
-            old.unlink()
+def member(path, number):
+    """File of the family that holds states."""
+    return pathlib.Path(f"{path}{number:02d}")
+
+
+def remove_rest(path, number):
+    """Remove what follows of a longer earlier family, up to its first gap: readers take all that follow."""
+    while member(path, number).is_file():
+        member(path, number).unlink()
+        number += 1
 
 
 def geometry(run, parts):
@@ -141,7 +147,7 @@ def state_words(results, k, global_row):
 
 
 def write_states(path, states, file_limit):
-    """The states into `path`01 and so on, each file closed by its mark; number of states."""
+    """The states into `path`01 and so on, each file closed by its mark; number of states and of files."""
     count, number, written, stream = 0, 0, 0, None
     for state in states:
         if stream is None or written + len(state) > file_limit:
@@ -149,13 +155,13 @@ def write_states(path, states, file_limit):
                 stream.write(END_MARK)
                 stream.close()
             number, written = number + 1, 0
-            stream = open(f"{path}{number:02d}", "wb")
+            stream = open(member(path, number), "wb")
         stream.write(state)
         written += len(state)
         count += 1
     stream.write(END_MARK)
     stream.close()
-    return count
+    return count, number
 
 
 def padded(values):

@@ -67,11 +67,7 @@ def read_log(text: str) -> RunLog:
         read_part(log, line)
         read_interface(log, line)
         if found := re.match(r"material (\d+): (.*)", line):
-            log.materials[int(found[1])] = {
-                name: float(value)
-                for name, value in re.findall(rf"([A-Za-z ]+?) {NUMBER}(?:,|$)", found[2])}
-            log.materials[int(found[1])] = {name.strip(): value for name, value
-                                            in log.materials[int(found[1])].items()}
+            log.materials[int(found[1])] = material_data(found[2])
         elif found := re.match(r"conditions: \d+ fixed and (\d+) moved degrees of freedom, "
                                r"(\d+) nodal loads, (\d+) pressure edges, (\d+) body loads", line):
             log.driven = any(int(count) for count in found.groups())
@@ -86,6 +82,17 @@ def read_log(text: str) -> RunLog:
         elif line.startswith("goes on from the restart file"):
             log.is_restart = log.element_limit == 0.0
     return log
+
+
+def material_data(text: str) -> dict[str, float]:
+    """name -> value of the line of a material; hardening by points and its strain rates in words of their own."""
+    text = re.sub(rf"hardening by (\d+) point\(s\) to plastic strain {NUMBER}, then modulus ",
+                  r"points of hardening \1, last plastic strain \2, last plastic modulus ", text)
+    text = re.sub(rf"(\d+) strain rates from {NUMBER} to ",
+                  r"strain rates \1, lowest strain rate \2, highest strain rate ", text)
+    text = text.replace(", P ", ", Cowper-Symonds P ")
+    return {name: float(value) for name, value
+            in re.findall(rf"([A-Za-z][A-Za-z -]*?) {NUMBER}(?:, |$)", text)}
 
 
 def read_part(log: RunLog, line: str) -> None:

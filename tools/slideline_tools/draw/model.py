@@ -20,7 +20,7 @@ from slideline_tools.draw.chains import Surface, list_surface, parts_surface
 
 # Keywords that put nothing into a picture of the model.
 SILENT = ("KEYWORD", "END", "TITLE", "COMMENT", "PARAMETER", "CONTROL_", "DATABASE_", "SECTION_",
-          "HOURGLASS", "DAMPING_", "INCLUDE")
+          "HOURGLASS", "DAMPING_", "INCLUDE", "DEFINE_TABLE")
 DIRECTIONS = {1: "x", 2: "y", 7: "turn about z"}
 QUANTITIES = {0: "velocity", 1: "acceleration", 2: "displacement"}
 TWO_DIRECTIONS = {1: (True, False), 2: (False, True), 4: (True, True), 5: (False, True),
@@ -184,7 +184,7 @@ def read_model(text: str) -> Model:
     left = [card for card in later if not read_condition(model, card)]
     read_initial_velocities(model, left)
     for card in left:
-        known = card.name.startswith(("INITIAL_VELOCITY",) + SILENT)
+        known = card.name in VELOCITIES or card.name.startswith(SILENT)
         if not known and card.name not in model.unread:
             model.unread.append(card.name)
     return model
@@ -453,8 +453,13 @@ READERS = (
 
 # ---- initial velocities -------------------------------------------------------------------------
 
+VELOCITIES = ("INITIAL_VELOCITY", "INITIAL_VELOCITY_NODE", "INITIAL_VELOCITY_GENERATION",
+              "INITIAL_VELOCITY_RIGID_BODY")
+
+
 def read_initial_velocities(model: Model, cards: list[Card]) -> None:
-    """Later keywords win; *INITIAL_VELOCITY_GENERATION comes after all others."""
+    """Later keywords win; *INITIAL_VELOCITY_GENERATION comes after all others for nodes, and
+    *INITIAL_VELOCITY_RIGID_BODY after it for the nodes of its bodies."""
     model.velocity = np.zeros_like(model.points)
     for card in cards:
         if card.name == "INITIAL_VELOCITY":
@@ -467,6 +472,24 @@ def read_initial_velocities(model: Model, cards: list[Card]) -> None:
         if card.name == "INITIAL_VELOCITY_GENERATION":
             for k in range(0, len(card.lines), 2):
                 generate_velocity(model, card.row(k), card.row(k + 1))
+    for card in cards:
+        if card.name == "INITIAL_VELOCITY_RIGID_BODY":
+            for k in range(len(card.lines)):
+                move_body(model, card.row(k))
+
+
+def move_body(model: Model, row) -> None:
+    """A part of *MAT_RIGID: velocity of its centre of mass and spin about it, as far as it is free."""
+    part = row.integer(0)
+    nodes = model.part_nodes([part])
+    if not len(nodes):
+        return
+    speed, spin = np.array([row.real(1), row.real(2)]), row.real(6)
+    if part in model.parts:
+        speed = np.where(model.parts[part].held, 0.0, speed)
+        spin = 0.0 if model.parts[part].turn_held else spin
+    arm = model.points[nodes] - model.centre(part)
+    model.velocity[nodes] = speed + spin * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
 
 
 def read_velocity(model: Model, card: Card) -> None:
