@@ -67,7 +67,7 @@ contains
     if (file == output_plot) then
       if (card%i(4) < 0) call report_field(deck, cursor, card, 4, 'is negative')
       history%n_state = max(card%i(4), 0)
-    else
+    else if (file /= output_rwforc) then
       if (card%i(2) < 0 .or. card%i(2) > 3) call report_field(deck, cursor, card, 2, &
         'is none of 0, 1 (text file), 2 (binout) and 3 (both)')
       history%is_text = card%i(2) /= 2
