@@ -180,7 +180,8 @@ build() {
       exit 1
     fi
   fi
-  say "building build/$type${2:+ with its tests} (some minutes where it is new)"
+  say "building build/$type${2:+ with its tests}"
+  [ -t 1 ] || say "this takes minutes the first time; how far it is stands in build/$type.log"
   if [ -t 1 ]; then
     cmake --build "$folder" --target "$target" --parallel "$(nproc)" || exit 1
   elif ! cmake --build "$folder" --target "$target" --parallel "$(nproc)" >"$log" 2>&1; then

@@ -37,6 +37,15 @@ def test_info(tool, results_file):
         assert text in finished.stdout
 
 
+def test_folder_of_a_run_will_do(tool, results_file):
+    """As for the commands report, advise, d3plot and binout."""
+    assert tool("info", results_file.parent).stdout == tool("info", results_file).stdout != ""
+    for command, picture in (("plot", "x.png"), ("animate", "x.gif")):
+        finished = tool(command, results_file.parent, "-o", results_file.parent / picture)
+        assert finished.returncode == 0, finished.stderr
+    assert tool("info", results_file.parent / "none").returncode == 2
+
+
 @pytest.mark.parametrize("command", ["info", "plot", "animate"])
 def test_missing_results(tmp_path, tool, command):
     more = [] if command == "info" else ["--output", tmp_path / "x.gif"]

@@ -93,19 +93,19 @@ def write_deck(options, scene, *arguments, **named):
 def add_info(commands):
     parser = commands.add_parser("info", help="say what a results file holds",
                                  description="Print what a results file holds.")
-    parser.add_argument("results", help="<job>.vtkhdf")
+    parser.add_argument("results", help="<job>.vtkhdf, or the folder of one run")
     parser.set_defaults(run=info)
 
 
 def info(options):
     from slideline_tools.describe import describe
-    from slideline_tools.results import read
-    print("\n".join(describe(read(options.results))))
+    from slideline_tools.results import open_run
+    print("\n".join(describe(open_run(options.results))))
     return OK
 
 
 def add_picture_options(parser):
-    parser.add_argument("results", help="<job>.vtkhdf")
+    parser.add_argument("results", help="<job>.vtkhdf, or the folder of one run")
     parser.add_argument("--field", help="for example plastic_strain, mises, velocity:y, stress:xy")
     parser.add_argument("--scale", type=float, default=1.0, help="factor on the displacements")
     parser.add_argument("--zoom", type=float, nargs=4, metavar=("X0", "X1", "Y0", "Y1"),
@@ -131,8 +131,8 @@ def add_plot(commands):
 
 def plot(options):
     from slideline_tools import plots
-    from slideline_tools.results import read
-    results = read(options.results)
+    from slideline_tools.results import open_run
+    results = open_run(options.results)
     states = options.state or ["-1"]
     if options.history and options.contact:
         raise ToolError("choose one of --history and --contact")
@@ -160,8 +160,8 @@ def add_animate(commands):
 
 def animate(options):
     from slideline_tools import animation
-    from slideline_tools.results import read
-    count = animation.animate(read(options.results), made_folder(options.output), options.field,
+    from slideline_tools.results import open_run
+    count = animation.animate(open_run(options.results), made_folder(options.output), options.field,
                               options.scale, options.rate, options.zoom)
     print(f"wrote {options.output} ({count} states)")
     return OK

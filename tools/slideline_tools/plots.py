@@ -181,6 +181,9 @@ def number(text):
 
 def draw_history(axes, results, request):
     """Lines of one request such as 'glstat:kinetic,internal'."""
+    if request in results.histories:
+        raise ResultsError(f"'{request}': expected TABLE:COLUMN,COLUMN[@ENTITY=VALUE] with columns of "
+                           + ", ".join(results.history(request).value_columns))
     table, columns, wanted = parse_history(request)
     history = results.history(table).where(**wanted)
     if not len(history):
