@@ -80,7 +80,7 @@ contains
     integer :: i, k, n
 
     n = size(curve%abscissa)
-    k = 0
+    k = 1 ! a curve with mistakes may begin beyond the first value
     do i = 1, size(strain)
       if (k < n) then
         if (strain(i) >= curve%abscissa(k + 1)) k = k + 1

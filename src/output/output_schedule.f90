@@ -57,10 +57,12 @@ contains
     type(schedule_t), intent(in) :: schedule
     real(wp), intent(in) :: time, dt   !! s
     logical :: due
+    real(wp) :: step
 
     due = schedule%active
-    if (due) due = schedule%next <= schedule%end_time + forgiven*dt .and. &
-      schedule%next <= time + (0.5_wp + forgiven)*dt
+    step = min(dt, schedule%end_time)
+    if (due) due = schedule%next <= schedule%end_time + forgiven*step .and. &
+      schedule%next <= time + (0.5_wp + forgiven)*step
   end function is_due
 
   !> Move on to the first output time that a later state is nearest to. Several intervals that fell
@@ -70,7 +72,7 @@ contains
     real(wp), intent(in) :: time, dt   !! s, as given to `is_due`
 
     if (.not. schedule%varies .and. schedule%active) schedule%count = max(schedule%count, &
-      int((time + (0.5_wp + forgiven)*dt)/schedule%interval, long) - 1)
+      int((time + (0.5_wp + forgiven)*min(dt, schedule%end_time))/schedule%interval, long) - 1)
     do while (is_due(schedule, time, dt))
       call advance(schedule)
     end do
