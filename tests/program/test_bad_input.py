@@ -87,11 +87,11 @@ def test_many_includes_end(exe, tmp_path):
 
 def test_includes_outside_the_folder_of_the_deck(exe, tmp_path):
     """Any file that can be read may be included, by any path; the effective deck holds its text."""
-    (tmp_path / "work").mkdir()
+    (tmp_path / "decks").mkdir()
     (tmp_path / "damping.k").write_text("*DAMPING_GLOBAL\n0,0.5\n")
-    for name in ("../damping.k", str(tmp_path / "damping.k"), "../work/../damping.k"):
-        (tmp_path / "work" / "job.k").write_text(drop().text().rsplit("*END", 1)[0] + f"*INCLUDE\n{name}\n*END\n")
-        done = subprocess.run([exe, "i=work/job.k", "d=out", "endtim=0.001"], cwd=tmp_path, capture_output=True,
+    for name in ("../damping.k", str(tmp_path / "damping.k"), "../decks/../damping.k"):
+        (tmp_path / "decks" / "job.k").write_text(drop().text().rsplit("*END", 1)[0] + f"*INCLUDE\n{name}\n*END\n")
+        done = subprocess.run([exe, "i=decks/job.k", "d=out", "endtim=0.001"], cwd=tmp_path, capture_output=True,
                               text=True, check=False)
         assert done.returncode == 0, done.stderr
         assert "*DAMPING_GLOBAL" in (tmp_path / "out" / "job.effective.k").read_text()
