@@ -99,6 +99,23 @@ def study_main(text, write, arguments=None):
     return 0
 
 
+def page_main(text, write, arguments=None):
+    """Command line `FOLDER DOC` of what is measured already; returns the exit status.
+
+    `write(folder, doc)` reads the tables in FOLDER and writes below DOC.
+    """
+    parser = argparse.ArgumentParser(description=text.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("doc", type=pathlib.Path)
+    options = parser.parse_args(arguments)
+    try:
+        write(options.folder, options.doc)
+    except UserError as problem:
+        print(problem, file=sys.stderr)
+        return 2
+    return 0
+
+
 def decks_and_page_main(text, write_decks, write, arguments=None):
     """Command line of a study that writes its own decks; returns the exit status.
 

@@ -5,7 +5,6 @@
 
 FOLDER holds elements.csv, contact.csv and versions.txt.
 """
-import argparse
 import csv
 import math
 import pathlib
@@ -13,7 +12,7 @@ import statistics
 import sys
 
 from slideline_tools import UserError
-from slideline_tools.studies.common import markdown_table, write_page
+from slideline_tools.studies.common import markdown_table, page_main, write_page
 from slideline_tools.study.runner import processor
 
 PEERS = ("akantu", "KratosMultiphysics", "KratosStructuralMechanicsApplication", "CalculiX")
@@ -205,16 +204,7 @@ def write(folder, doc):
 
 def main(arguments=None):
     """Returns the exit status."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("doc", type=pathlib.Path)
-    options = parser.parse_args(arguments)
-    try:
-        write(options.folder, options.doc)
-    except UserError as problem:
-        print(problem, file=sys.stderr)
-        return 2
-    return 0
+    return page_main(__doc__, write, arguments)
 
 
 if __name__ == "__main__":

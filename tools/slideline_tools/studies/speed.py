@@ -5,7 +5,6 @@
 
 FOLDER holds bench.csv and machine.json; the page goes to DOC/studies, its pictures to DOC/pictures.
 """
-import argparse
 import csv
 import json
 import math
@@ -14,7 +13,7 @@ import sys
 
 from slideline_tools import UserError
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
-from slideline_tools.studies.common import (TYPES, colour, label, markdown_table, save_small,
+from slideline_tools.studies.common import (TYPES, colour, label, markdown_table, page_main, save_small,
                                             write_page)
 
 BYTES = 320.0  # moved per element and step, as in tests/bench/measuring.py
@@ -367,16 +366,7 @@ def write(folder, doc):
 
 def main(arguments=None):
     """Returns the exit status."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("doc", type=pathlib.Path)
-    options = parser.parse_args(arguments)
-    try:
-        write(options.folder, options.doc)
-    except UserError as problem:
-        print(problem, file=sys.stderr)
-        return 2
-    return 0
+    return page_main(__doc__, write, arguments)
 
 
 if __name__ == "__main__":
