@@ -6,7 +6,7 @@
 !> small arrays on their way to memory and back took two thirds of the pairing.
 module contact_plain_cover_m
   use contact_overlap_m, only : face_on
-  use contact_plain_foot_m, only : see_plain_segment
+  use contact_plain_foot_m, only : see_plain_segment, well_inside
   use contact_state_m, only : contact_state_t, is_free, is_touching
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t
@@ -164,8 +164,8 @@ contains
       low = 0.0_wp
       is_plain = .true.
       do k = cover%last(i - 1) + 1, cover%last(i) - 1
-        is_plain = is_plain .and. cover%facing(k) > 0.0_wp .and. cover%high(k) > low &
-          .and. cover%high(k) < 1.0_wp
+        is_plain = is_plain .and. cover%facing(k) > 0.0_wp .and. cover%high(k) > low + well_inside &
+          .and. cover%high(k) < 1.0_wp - well_inside
         cover%low(k) = low
         low = cover%high(k)
       end do

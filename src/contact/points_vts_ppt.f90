@@ -61,7 +61,8 @@ contains
     parts%n = 0
     befores%n = 0
     do k = 1, halves%n
-      if (halves%low(k) >= 0.0_wp .and. halves%high(k) <= 1.0_wp .and. halves%high(k) > halves%low(k)) then
+      if (halves%low(k) >= 0.0_wp .and. halves%high(k) <= 1.0_wp &
+        .and. halves%high(k) > halves%low(k)) then
         parts%n = parts%n + 1
         call put_part(halves, k, 0.5_wp*(halves%low(k) + halves%high(k)), halves%half(k), parts%n, parts)
         cycle
