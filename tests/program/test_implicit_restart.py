@@ -12,6 +12,7 @@ from test_implicit import implicit, pulled
 from test_restart import arrays, assert_same, histories, part_of, start, wait_for, with_files
 
 GROUPS = ("state", "outputs", "steps")
+TABLES = ("glstat", "rcforc", "nodout", "matsum", "sleout", "spcforc")
 
 
 def blocks(deck, kind):
@@ -25,7 +26,7 @@ def blocks(deck, kind):
 
 
 def tables(deck, interval, nodes):
-    """All outputs there are, with ASCII twins."""
+    """All outputs there are."""
     deck.output(plot=4 * interval, glstat=interval, matsum=interval, rcforc=interval, nodout=interval, nodes=nodes)
     return deck.add("*DATABASE_SLEOUT", (interval,)).add("*DATABASE_SPCFORC", (interval,))
 
@@ -78,6 +79,11 @@ def go_on(slideline, file, *words):
     return done
 
 
+def texts(folder):
+    """DYNA's text files."""
+    return [(folder / f"job.{name}").read_bytes() for name in TABLES]
+
+
 @pytest.mark.parametrize("scene, kind", [(scene, kind) for scene in SCENES for kind in range(1, 8)])
 def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
     make, interval, shown = SCENES[scene]
@@ -91,6 +97,7 @@ def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
         rest = part_of(whole, tmp_path / name, name, "job.vtkhdf")
         go_on(slideline, rest / name, f"ncpu={thread}", "perthread=1")
         assert_same(whole, rest)
+        assert texts(whole) == texts(rest)
         assert arrays(whole / dumps[-1], *GROUPS) == arrays(rest / dumps[-1], *GROUPS)
         assert sorted(path.name for path in rest.glob("job.dump*")) == dumps[thread - 1:]
 
@@ -137,12 +144,12 @@ def test_later_files_are_the_same(slideline, tmp_path):
 
 def test_sparse_solver(slideline, tmp_path):
     """A mesh too wide for a band."""
-    deck = implicit(1.0, 0.25).part(points=4).plastic(1000.0, 1.0e6, 0.3, 1.0e3, 1.0e5)
+    deck = implicit(1.0, 0.5).part(points=4).plastic(1000.0, 1.0e6, 0.3, 1.0e3, 1.0e5)
     nodes = deck.mesh(*grid(42, 42))
-    deck.fix(nodes[:43], x=1, y=1).curve(1, [(0.0, 0.0), (1.0, -0.01)])
+    deck.fix(nodes[:43], x=1, y=1).curve(1, [(0.0, 0.0), (1.0, -0.002)])
     for node in nodes[-43:]:
         deck.prescribe(int(node), 2, 2, 1)
-    run_whole(slideline, deck.output(glstat=1.0e-9, plot=0.5), dump=2)
+    run_whole(slideline, deck.output(glstat=1.0e-9, plot=0.5), dump=0)
     log = (tmp_path / "whole" / "job.log").read_text()
     if "UMFPACK" not in log:
         pytest.skip("built without UMFPACK")
