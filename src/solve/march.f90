@@ -75,7 +75,10 @@ contains
 
     call keep_march(source, march%control, march%step, march%trial, march%ratio)
     call close_restart(source, error)
-    if (.not. allocated(error)) march%step%old_force = net_force(march%trial)
+    if (allocated(error)) return
+    march%step%old_force = net_force(march%trial)
+    ! The end may have come nearer while a whole step is under way.
+    march%control%target = min(march%control%target, march%control%end_time)
   end subroutine take_up_march
 
 end module march_m

@@ -186,6 +186,16 @@ def test_earlier_end(slideline, tmp_path):
         assert list(stream["VTKHDF/Steps/Values"]) == [0.0, 0.5]
 
 
+def test_an_end_within_a_divided_step(slideline, tmp_path):
+    """A motion is born at 0.0042, within the whole step to 0.0045; the run that goes on from there ends before that."""
+    run_whole(slideline, struck(2), dump=9)
+    with h5py.File(tmp_path / "whole" / "job.dump01.h5") as stream:
+        assert stream["state/time"][0] == 0.0042 and stream["steps/target"][0] == pytest.approx(0.0045)
+    rest = part_of(tmp_path / "whole", tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
+    go_on(slideline, rest / "job.dump01.h5", "endtim=0.0043")
+    assert numbers(rest / "job.glstat.csv", "time")[-1] == 0.0043
+
+
 @pytest.mark.parametrize("automatic", [False, True])
 def test_small_deck_changes_end_and_intervals(slideline, tmp_path, automatic):
     deck = pulled(1.0e3, dt=0.05, automatic=(0.05, 0.05) if automatic else None)
