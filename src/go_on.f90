@@ -11,7 +11,7 @@ module go_on_m
   use log_m, only : log_t, write_log
   use model_m, only : model_t
   use monitor_m, only : monitor_t
-  use restart_m, only : take_up_file
+  use restart_reading_m, only : take_up_file
   implicit none
   private
   public :: take_up_deck
@@ -41,7 +41,7 @@ contains
         return
       end if
       if (is_whole_deck(changes)) then
-        call take_whole_deck(arguments, deck, request, error)
+        call take_whole_deck(arguments, deck, monitor%restarts%is_implicit, request, error)
         return
       end if
       call merge_decks(deck, changes, arguments%deck, request%text, error)
@@ -54,9 +54,10 @@ contains
   end subroutine take_up_deck
 
   !> A whole deck beside the restart file must be that of the file but for what may change.
-  subroutine take_whole_deck(arguments, deck, request, error)
+  subroutine take_whole_deck(arguments, deck, is_implicit, request, error)
     type(arguments_t), intent(in) :: arguments
     character(*), intent(in) :: deck               !! that of the file
+    logical, intent(in) :: is_implicit             !! method of the run that wrote it
     type(deck_request_t), intent(inout) :: request
     type(error_t), allocatable, intent(out) :: error
     type(deck_request_t) :: whole
@@ -67,7 +68,11 @@ contains
     whole%overrides = arguments%overrides
     call read_deck(whole, contact_kinds, unused, model, request%text, error)
     if (allocated(error)) return
-    if (deck_identity(request%text) == deck_identity(deck)) then
+    if (model%controls%implicit%is_on .neqv. is_implicit) then
+      call raise(error, 'the restart file '//arguments%restart//' is refused: it is of '//trim(merge( &
+        'an implicit run', 'an explicit run', is_implicit))//', and '//arguments%deck//' asks for the ' &
+        //trim(merge('explicit', 'implicit', is_implicit))//' method', status_input)
+    else if (deck_identity(request%text) == deck_identity(deck)) then
       deallocate (request%overrides) ! they are in the text
     else
       call raise(error, 'the restart file '//arguments%restart//' is refused: it belongs to another ' &

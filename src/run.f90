@@ -14,14 +14,15 @@ module run_m
   use files_m, only : make_directory, join_path, text_file_t, create_text_file, append_text, &
     close_text_file
   use go_on_m, only : take_up_deck
-  use log_m, only : open_log, close_log, write_log, warn, to_text
+  use log_m, only : open_log, close_log, write_log, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name
   use progress_m, only : show_end
   use renumber_m, only : renumber_model
-  use restart_m, only : take_up_state, take_up_results, take_up_outputs, forget_files
+  use restart_m, only : forget_files
   use restart_plan_m, only : restarts_t
+  use restart_reading_m, only : take_up_state, take_up_results, take_up_outputs
   use results_file_m, only : run_info_t
   use sense_switch_m, only : forget_switch
   use signals_m, only : catch_signals
@@ -208,9 +209,6 @@ contains
     if (model%controls%check_only) then
       reason = 'model checked, no solution asked for (NOSOL)'
     else if (model%controls%implicit%is_on) then
-      if (model%controls%output%dump_cycles >= 0 .or. model%controls%output%running_cycles > 0) &
-        call warn(monitor%log, 'restart files (*DATABASE_BINARY_D3DUMP, RUNRSF) are written by the ' &
-        //'explicit method alone: this run writes none')
       call advance_implicit(model, state, monitor, reason, error)
     else
       call advance_explicit(model, useful_threads(arguments, model%mesh%n_element), state, monitor, &

@@ -4,15 +4,17 @@
 !> interval that varies (a curve of time) leads from each output time to the next.
 module output_schedule_m
   use kinds_m, only : wp, long
-  use controls_m, only : interval_t
+  use controls_m, only : interval_t, controls_t
   use curves_m, only : curve_t, curve_value
   implicit none
   private
-  public :: schedule_t, start_schedule, is_due, mark_written, is_active
+  public :: schedule_t, start_schedule, is_due, mark_written, is_active, output_reach
 
   !> A tie of two cycles round an output time goes to the first, although sums of steps carry
   !> rounding: this fraction of a step is forgiven.
   real(wp), parameter :: forgiven = 1.0e-6_wp
+  !> Part of a step that a state may be early for an output time where steps can be cut.
+  real(wp), parameter :: soon = 1.0e-6_wp
   !> Shortest interval as a fraction of the run, so that every count stays finite.
   real(wp), parameter :: shortest = 1.0e-9_wp
 
@@ -50,6 +52,17 @@ contains
 
     active = schedule%active
   end function is_active
+
+  !> The step by which the state nearest to an output time is found. A planned implicit step may be cut: then the state at
+  !> or after an output time counts, not the nearest.
+  pure function output_reach(controls, dt) result(reach)
+    type(controls_t), intent(in) :: controls
+    real(wp), intent(in) :: dt     !! step that leads away from the state, s
+    real(wp) :: reach
+
+    reach = dt
+    if (controls%implicit%is_on .and. controls%implicit%is_automatic) reach = soon*dt
+  end function output_reach
 
   !> Whether the state at `time` is the nearest to an output time that has not been written;
   !> `dt` is the step between states.

@@ -21,7 +21,7 @@ contains
   subroutine keep_schedule(archive, name, time, dt, schedule)
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
-    real(wp), intent(in) :: time, dt                !! of the state, and the step that led to it
+    real(wp), intent(in) :: time, dt                !! of the state before, as given to `is_due` then
     type(schedule_t), intent(inout) :: schedule     !! planned from the deck
     type(schedule_t) :: kept
 
@@ -41,7 +41,7 @@ contains
       schedule%count = kept%count
       schedule%next = kept%next
     else
-      call mark_written(schedule, time - dt, dt)
+      call mark_written(schedule, time, dt)
     end if
   end subroutine keep_schedule
 

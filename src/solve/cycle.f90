@@ -20,9 +20,9 @@ module cycle_m
     prescribed_work
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
   use progress_m, only : show_progress, follow_progress
-  use restart_m, only : write_dump, write_running, take_up_steps
   use requests_m, only : requests_t, take_requests
-  use restart_plan_m, only : wants_dump, wants_running
+  use restart_plan_m, only : wanted_files
+  use restart_steps_m, only : write_restarts, take_up_steps
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
   use slowest_element_m, only : find_slowest
   use state_m, only : state_t
@@ -281,8 +281,8 @@ contains
       cycle%ratio)
   end subroutine end_cycle
 
-  !> Stop, restart files, states and lines that are due or that someone asks for. The state is that before the
-  !> next cycle; a run that goes on from it repeats that cycle.
+  !> Stop, restart files, states and lines that are due or that someone asks for; for restart files a stop by a signal
+  !> counts as an end. The state is that before the next cycle; a run that goes on from it repeats that cycle.
   subroutine heed_requests(state, monitor, cycle)
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -291,35 +291,15 @@ contains
     logical :: ends
 
     call take_requests(state, cycle%ratio, .false., monitor, asked, cycle%error)
-    cycle%finished = allocated(cycle%error)
     cycle%plots = asked%plot
     ends = is_last(cycle%steps, state%cycle, state%time)
-    call write_restarts(asked%dump, ends, asked%signalled .and. .not. ends, state, monitor, cycle)
+    if (.not. allocated(cycle%error)) call write_restarts(wanted_files(monitor%restarts, state%cycle, asked%dump, &
+      ends, asked%signalled .and. .not. ends), state, monitor, cycle%steps, cycle%damping, cycle%ratio, &
+      cycle%error)
+    cycle%finished = allocated(cycle%error)
     if (ends .or. .not. asked%stop) return
     cycle%last = .true.
     cycle%reason = 'stopped on request'
   end subroutine heed_requests
-
-  !> Write the restart files that are due. A stop by a signal counts as an end.
-  subroutine write_restarts(asked, ends, signalled, state, monitor, cycle)
-    logical, intent(in) :: asked       !! someone asks for one
-    logical, intent(in) :: ends        !! the next cycle is the last one
-    logical, intent(in) :: signalled   !! a signal asks for a stop
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(cycle_t), intent(inout) :: cycle
-    logical :: dumps, runs
-
-    if (allocated(cycle%error)) return
-    dumps = asked .or. wants_dump(monitor%restarts, state%cycle, ends .or. signalled)
-    runs = wants_running(monitor%restarts, state%cycle, signalled)
-    if (.not. dumps .and. .not. runs) return
-    call lap(monitor%clock, phase_nodes)
-    if (dumps) call write_dump(state, monitor, cycle%steps, cycle%damping, cycle%ratio, cycle%error)
-    if (runs .and. .not. allocated(cycle%error)) call write_running(state, monitor, cycle%steps, &
-      cycle%damping, cycle%ratio, cycle%error)
-    call lap(monitor%clock, phase_output)
-    cycle%finished = cycle%finished .or. allocated(cycle%error)
-  end subroutine write_restarts
 
 end module cycle_m

@@ -16,7 +16,7 @@ module forces_m
   use state_m, only : state_t
   implicit none
   private
-  public :: trial_t, start_trial, assemble_forces, trouble_of
+  public :: trial_t, start_trial, assemble_forces, net_force, trouble_of
 
   !> What a trial displacement makes of a committed state.
   type :: trial_t
@@ -95,6 +95,14 @@ contains
       trial%internal(:, node) = sum_special_force(model%layout, trial%slots, node)
     end do
   end subroutine assemble_internal
+
+  !> Internal minus contact and external forces.
+  pure function net_force(trial) result(force)
+    type(trial_t), intent(in) :: trial
+    real(wp) :: force(2, size(trial%internal, 2))
+
+    force = trial%internal - trial%contact - trial%external
+  end function net_force
 
   !> What is wrong with a trial in words; empty where all volumes are positive and all forces finite.
   pure function trouble_of(trial) result(trouble)

@@ -3,27 +3,26 @@
 !> (doc/theory/implicit.md, section 4).
 module implicit_m
   use kinds_m, only : wp
-  use clock_m, only : lap, phase_nodes, phase_output, phase_solver
+  use clock_m, only : lap, phase_nodes
   use contact_check_m, only : report_contact_end
-  use element_mass_m, only : add_mass, mass_times
   use energies_m, only : energy_ratio
-  use equations_m, only : equations_t, number_equations, find_equation, take_free
+  use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
-  use forces_m, only : trial_t, start_trial, assemble_forces
-  use health_m, only : check_energy
+  use forces_m, only : trial_t, start_trial, net_force
   use implicit_report_m, only : reactions_work, report_step
-  use linear_solver_m, only : report_t, solve_linear
-  use log_m, only : write_log, warn, to_text
+  use implicit_start_m, only : begin_march, plan_next, has_ended
+  use log_m, only : write_log, to_text
+  use march_m, only : march_t, write_restarts
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, due_t
+  use monitor_m, only : monitor_t, any_due
   use newton_m, only : outcome_t, find_equilibrium
-  use prescribed_step_m, only : prescribe_step, prescribe_start, list_changes
+  use prescribed_step_m, only : prescribe_step
   use progress_m, only : follow_progress
   use requests_m, only : requests_t, take_requests
-  use sparse_m, only : sparse_t, start_matrix, compress_matrix
+  use restart_plan_m, only : wanted_files
   use state_m, only : state_t
-  use step_control_m, only : step_control_t, start_step_control, plan_step, grow_step, cut_step
-  use tangent_m, only : step_t, new_acceleration, new_velocity, assemble_residual
+  use step_control_m, only : step_control_t, plan_step, grow_step, cut_step
+  use tangent_m, only : step_t, new_acceleration, new_velocity
   implicit none
   private
   public :: advance_implicit
@@ -33,7 +32,7 @@ module implicit_m
 
 contains
 
-  !> From the state at time zero to the end of the run. When a step finds no equilibrium the last converged state is
+  !> From where the run begins to its end. When a step finds no equilibrium the last converged state is
   !> written and stays.
   subroutine advance_implicit(model, state, monitor, reason, error)
     type(model_t), intent(in) :: model
@@ -41,126 +40,73 @@ contains
     type(monitor_t), intent(inout) :: monitor
     character(:), allocatable, intent(out) :: reason
     type(error_t), allocatable, intent(out) :: error
-    type(step_control_t) :: control
-    type(trial_t) :: trial
-    type(step_t) :: step
-    type(due_t) :: written
+    type(march_t) :: march
     type(requests_t) :: asked
     type(error_t), allocatable :: second
-    real(wp), allocatable :: changes(:)
-    logical :: last, stopped
+    logical :: last
 
     reason = 'termination time reached'
-    call list_changes(model, changes)
-    control = start_step_control(model%controls, changes)
-    if (abs(control%dt - model%controls%implicit%dt) > 0.0_wp) call warn(monitor%log, 'the first step ' &
-      //to_text(model%controls%implicit%dt)//' does not lie between DTMIN and DTMAX of ' &
-      //'*CONTROL_IMPLICIT_AUTO; it is '//to_text(control%dt))
-    call plan_step(control, 0.0_wp)
-    call start_implicit(model, control%next, state, monitor, step, trial, error)
+    call begin_march(model, state, monitor, march, last, error)
     if (allocated(error)) return
-    last = .false.
-    state%dt = control%next
-    call report_step(model, state, step%old_force, .false., .false., monitor, written, error)
+    call report_march(model, state, last, .false., monitor, march, error)
     do while (.not. last .and. .not. allocated(error))
-      call take_step(model, state, monitor, control, step, trial, error)
+      call take_step(model, state, monitor, march%control, march%step, march%trial, error)
       if (allocated(error)) exit
-      last = control%is_last
-      if (model%controls%end_cycle > 0) last = last .or. state%cycle >= model%controls%end_cycle
-      call take_requests(state, energy_ratio(monitor%snapshot%energies), .true., monitor, asked, error)
+      call heed_requests(model, state, monitor, march, asked, last, error)
       if (allocated(error)) exit
-      if (asked%dump) call warn(monitor%log, 'a restart file was asked for: the implicit method ' &
-        //'writes none')
-      stopped = asked%stop .and. .not. last
-      last = last .or. stopped
-      if (stopped) reason = 'stopped on request'
-      state%dt = control%dt
-      if (.not. last) then
-        call plan_step(control, state%time)
-        state%dt = control%next - state%time
-      end if
-      call report_step(model, state, step%old_force, last, asked%plot, monitor, written, error)
+      if (asked%stop) reason = 'stopped on request'
+      call report_march(model, state, last, asked%plot, monitor, march, error)
       call follow_progress(monitor%progress, monitor%clock, state%cycle, .true., state%time, &
-        state%dt_before, energy_ratio(monitor%snapshot%energies))
+        state%dt_before, march%ratio)
     end do
     if (allocated(error) .and. .not. last) then
-      call report_step(model, state, step%old_force, .true., .false., monitor, written, second)
-      call hint_at_energy(step, energy_ratio(monitor%snapshot%energies), error)
+      call report_march(model, state, .true., .false., monitor, march, second)
+      call hint_at_energy(march%step, march%ratio, error)
     end if
     call report_contact_end(model, state, monitor%log)
   end subroutine advance_implicit
 
-  !> Forces and acceleration at time zero.
-  subroutine start_implicit(model, dt, state, monitor, step, trial, error)
+  !> Write what is due of the state.
+  subroutine report_march(model, state, last, plots, monitor, march, error)
     type(model_t), intent(in) :: model
-    real(wp), intent(in) :: dt !! first step
     type(state_t), intent(inout) :: state
+    logical, intent(in) :: last
+    logical, intent(in) :: plots         !! someone asks for a plot state
     type(monitor_t), intent(inout) :: monitor
-    type(step_t), intent(out) :: step
-    type(trial_t), intent(out) :: trial
+    type(march_t), intent(inout) :: march
     type(error_t), allocatable, intent(out) :: error
 
-    associate (implicit => model%controls%implicit)
-      step%is_dynamic = implicit%is_dynamic
-      step%alpha_m = implicit%alpha_m
-      step%alpha_f = implicit%alpha_f
-      step%gamma = implicit%gamma
-      step%beta = implicit%beta
-      call write_log(monitor%log, 'implicit method: '//trim(merge('dynamic', 'static ', &
-        implicit%is_dynamic))//', first step '//to_text(implicit%dt))
-      if (implicit%is_dynamic) call write_log(monitor%log, '  '//implicit%scheme//': alpha_m ' &
-        //to_text(implicit%alpha_m)//', alpha_f '//to_text(implicit%alpha_f)//', gamma ' &
-        //to_text(implicit%gamma)//', beta '//to_text(implicit%beta))
-    end associate
-    allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
-    if (step%is_dynamic) then
-      call prescribe_start(model, dt, state)
-    else
-      state%motion(3:4, :) = 0.0_wp
-    end if
-    call start_trial(model, state, trial)
-    call assemble_forces(model, state, 0.0_wp, .false., monitor%clock, trial)
-    state%contacts = trial%contacts
-    step%old_force = trial%internal - trial%contact - trial%external
-    if (step%is_dynamic) call find_first_acceleration(model, monitor, step, state, error)
-    call lap(monitor%clock, phase_solver)
-  end subroutine start_implicit
+    call report_step(model, state, march%step%old_force, last, plots, monitor, march%written, error)
+    if (any_due(march%written)) march%ratio = energy_ratio(monitor%snapshot%energies)
+  end subroutine report_march
 
-  !> M a(0) = -f(0) on the free degrees of freedom; those of prescribed ones, which the state has, act on them.
-  subroutine find_first_acceleration(model, monitor, step, state, error)
+  !> After a step: what someone asks for, the plan of the next step, and the restart files that are due. A run that
+  !> goes on from one reports the state as this one is about to.
+  subroutine heed_requests(model, state, monitor, march, asked, last, error)
     type(model_t), intent(in) :: model
-    type(monitor_t), intent(inout) :: monitor
-    type(step_t), intent(in) :: step
     type(state_t), intent(inout) :: state
-    type(error_t), allocatable, intent(out) :: error
-    type(equations_t) :: equations
-    type(sparse_t) :: matrix
-    type(report_t) :: report
-    real(wp), allocatable :: x(:)
-    integer :: i, k
+    type(monitor_t), intent(inout) :: monitor
+    type(march_t), intent(inout) :: march
+    type(requests_t), intent(out) :: asked  !! a stop only where there was a step left
+    logical, intent(out) :: last            !! the state is the last one
+    type(error_t), allocatable, intent(inout) :: error
+    type(step_control_t) :: planned
+    logical :: ends
 
-    call number_equations(model, state, 0.0_wp, equations)
-    call start_matrix(matrix, equations%n)
-    call add_mass(model, 1.0_wp, merge(equations%number, 0, equations%number <= equations%n_free), &
-      matrix)
-    matrix%n = equations%n_free
-    call compress_matrix(matrix)
-    allocate (x(equations%n_free))
-    call solve_linear(matrix, -take_free(equations, step%old_force &
-      + mass_times(model, state%acceleration)), x, report)
-    if (.not. report%is_solved) then
-      call raise(error, 'no acceleration at time zero: '//report%message, status_run)
-      return
-    end if
-    call write_log(monitor%log, '  equations: '//to_text(equations%n_free)//' free, ' &
-      //to_text(equations%n - equations%n_free)//' prescribed; mass solved by '//report%method)
-    do i = 1, model%mesh%n_node
-      do k = 1, 2
-        if (equations%number(k, i) > 0 .and. equations%number(k, i) <= equations%n_free) &
-          state%acceleration(k, i) = x(equations%number(k, i))
-      end do
-    end do
-  end subroutine find_first_acceleration
+    last = .false.
+    call take_requests(state, march%ratio, .true., monitor, asked, error)
+    if (allocated(error)) return
+    last = has_ended(model, state, march%control)
+    asked%stop = asked%stop .and. .not. last
+    asked%signalled = asked%signalled .and. .not. last
+    last = last .or. asked%stop
+    planned = march%control
+    call plan_next(model, last, state, planned, ends)
+    call write_restarts(wanted_files(monitor%restarts, state%cycle, asked%dump, ends, asked%signalled), &
+      state, monitor, march, error)
+    last = last .and. .not. allocated(error)
+    march%control = planned
+  end subroutine heed_requests
 
   !> One step, tried again with a shorter one while that is allowed.
   subroutine take_step(model, state, monitor, control, step, trial, error)
@@ -250,7 +196,7 @@ contains
     state%motion(1:2, :) = attempt%motion(1:2, :)
     state%elements = attempt%elements
     state%contacts = attempt%contacts
-    step%old_force = attempt%internal - attempt%contact - attempt%external
+    step%old_force = net_force(attempt)
     trial = attempt
     state%time = step%time
     state%dt_before = step%dt

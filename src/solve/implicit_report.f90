@@ -12,6 +12,7 @@ module implicit_report_m
   use health_m, only : check_energy, judge_energies
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
+  use output_schedule_m, only : output_reach
   use progress_m, only : show_progress
   use snapshot_m, only : snapshot_t
   use snapshot_filling_m, only : fill_energies, fill_parts, fill_interfaces, fill_plot
@@ -20,9 +21,6 @@ module implicit_report_m
   implicit none
   private
   public :: report_step, reactions_work
-
-  !> Part of a step that a state may be early for an output time where steps can be cut.
-  real(wp), parameter :: soon = 1.0e-6_wp
 
 contains
 
@@ -39,9 +37,7 @@ contains
     type(due_t) :: due
     real(wp) :: dt
 
-    ! A planned step may be cut: then the state at or after an output time counts, not the nearest.
-    dt = state%dt
-    if (model%controls%implicit%is_automatic) dt = soon*dt
+    dt = output_reach(model%controls, state%dt)
     due = find_due(monitor, state%time, dt, state%cycle == 0 .or. last)
     due%plot = due%plot .or. (plots .and. monitor%has_plot)
     if (state%cycle == monitor%snapshot%cycle) due = without(due, written)

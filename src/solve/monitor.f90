@@ -87,7 +87,7 @@ contains
         call start_schedule(monitor%rwforc, plan%rwforc, model%curves, end_time)
       call start_progress(monitor%progress, end_time, plan%status_interval)
     end associate
-    call plan_restarts(monitor%restarts, model%controls%output)
+    call plan_restarts(monitor%restarts, model%controls)
     call start_snapshot(model, has_history, monitor%snapshot)
   end subroutine start_monitor
 

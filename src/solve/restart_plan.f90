@@ -2,12 +2,17 @@
 !> When a run writes restart files and under which names, and the one that it goes on from.
 module restart_plan_m
   use archive_m, only : archive_t
-  use controls_m, only : output_plan_t
+  use controls_m, only : controls_t
   use kinds_m, only : wp, long
+  use log_m, only : to_text
+  use state_m, only : state_t
   implicit none
   private
-  public :: restarts_t, plan_restarts, dump_path, running_path, wants_dump, wants_running, &
-    wants_look
+  public :: restarts_t, plan_restarts, dump_path, running_path, place_text, wanted_files, &
+    numbered_file, running_file, wants_look
+
+  !> Kinds of restart files: those that stay, and the one that is replaced again and again.
+  integer, parameter :: numbered_file = 1, running_file = 2
 
   !> Seconds between two looks for a sense switch, and cycles where no clock is read anyhow.
   real(wp), parameter :: look_interval = 0.5_wp
@@ -21,6 +26,7 @@ module restart_plan_m
     character(:), allocatable :: deck      !! file name of the deck
     character(:), allocatable :: program   !! version and build
     character(:), allocatable :: effective_deck_checksum !! of the file `<prefix>.effective.k`
+    logical :: is_implicit = .false.       !! method of the run
     integer :: dump_cycles = -1            !! as in output_plan_t
     integer :: running_cycles = 0
     integer :: n_dump = 0                  !! numbered files so far
@@ -34,12 +40,13 @@ module restart_plan_m
 contains
 
   !> Take the plan from the deck.
-  pure subroutine plan_restarts(restarts, plan)
+  pure subroutine plan_restarts(restarts, controls)
     type(restarts_t), intent(inout) :: restarts
-    type(output_plan_t), intent(in) :: plan
+    type(controls_t), intent(in) :: controls
 
-    restarts%dump_cycles = plan%dump_cycles
-    restarts%running_cycles = plan%running_cycles
+    restarts%is_implicit = controls%implicit%is_on
+    restarts%dump_cycles = controls%output%dump_cycles
+    restarts%running_cycles = controls%output%running_cycles
   end subroutine plan_restarts
 
   !> Path of the numbered file `i`.
@@ -61,27 +68,38 @@ contains
     path = restarts%prefix//'.runrsf.h5'
   end function running_path
 
-  !> Whether a numbered file is due before cycle `cycle`: at its interval, and before the last one.
-  pure function wants_dump(restarts, cycle, is_last) result(wanted)
+  !> Time and cycle for a message.
+  pure function place_text(state) result(text)
+    type(state_t), intent(in) :: state
+    character(:), allocatable :: text
+
+    text = ' at time '//to_text(state%time)//', cycle '//to_text(state%cycle)
+  end function place_text
+
+  !> Which kinds of files are due before cycle `cycle`: at their intervals; before the last cycle the numbered one; before a
+  !> stop by a signal both that the deck asks for.
+  pure function wanted_files(restarts, cycle, asked, is_last, stops) result(wanted)
     type(restarts_t), intent(in) :: restarts
     integer, intent(in) :: cycle
-    logical, intent(in) :: is_last
-    logical :: wanted
+    logical, intent(in) :: asked    !! someone asks for a numbered one
+    logical, intent(in) :: is_last  !! that cycle is the last one
+    logical, intent(in) :: stops    !! a signal asks for a stop
+    logical :: wanted(2)            !! numbered_file, running_file
 
-    wanted = restarts%dump_cycles >= 0 .and. is_last
-    if (restarts%dump_cycles > 0) wanted = wanted .or. mod(cycle, restarts%dump_cycles) == 0
-  end function wants_dump
+    wanted(numbered_file) = asked .or. (restarts%dump_cycles >= 0 .and. (is_last .or. stops)) &
+      .or. ends_interval(cycle, restarts%dump_cycles)
+    wanted(running_file) = (restarts%running_cycles > 0 .and. stops) &
+      .or. ends_interval(cycle, restarts%running_cycles)
+  end function wanted_files
 
-  !> Whether the running file is due before cycle `cycle`: at its interval, and before a stop on request.
-  pure function wants_running(restarts, cycle, stops) result(wanted)
-    type(restarts_t), intent(in) :: restarts
-    integer, intent(in) :: cycle
-    logical, intent(in) :: stops
-    logical :: wanted
+  !> Whether a file is due at its interval; none at the start, nor where there is no interval.
+  pure function ends_interval(cycle, interval) result(ends)
+    integer, intent(in) :: cycle, interval
+    logical :: ends
 
-    wanted = .false.
-    if (restarts%running_cycles > 0) wanted = stops .or. mod(cycle, restarts%running_cycles) == 0
-  end function wants_running
+    ends = .false.
+    if (interval > 0 .and. cycle > 0) ends = mod(cycle, interval) == 0
+  end function ends_interval
 
   !> Whether it is time to look for a sense switch. `tick` is the last clock tick known; where none is
   !> read in a cycle, one is read now and then.

@@ -20,22 +20,37 @@ KEPT = {
     "bucket_grid_t": ("state/contact_state.f90", "output/restart_contact.f90", "grid%", {}),
     "cover_memory_t": ("state/contact_state.f90", "output/restart_contact.f90", "cover%", {}),
     "contact_points_t": ("state/contact_state.f90", "output/restart_contact.f90", "points%", {}),
-    "step_plan_t": ("solve/time_step.f90", "solve/restart.f90", "steps%", {}),
-    "spring_bound_t": ("contact/contact_step_limit.f90", "solve/restart.f90", "springs(i)%", {}),
+    "step_plan_t": ("solve/time_step.f90", "solve/restart_steps.f90", "steps%", {}),
+    "spring_bound_t": ("contact/contact_step_limit.f90", "solve/restart_steps.f90", "springs(i)%", {}),
     "schedule_t": ("output/output_schedule.f90", "output/restart_history.f90", "kept%", {
         "end_time": "from the deck, which may change it", "curve": "kept as two arrays"}),
     "histories_t": ("output/history_file.f90", "output/restart_history.f90", "histories%", {
         "tables": "kept one by one"}),
-    "monitor_t": ("solve/monitor.f90", "solve/restart.f90", "monitor%", {
+    "monitor_t": ("solve/monitor.f90", "solve/restart_run.f90", "monitor%", {
         "results": "times of its states are kept", "snapshot": "filled anew before it is written",
         "log": "of each run", "clock": "of each run", "progress": "of each run",
         "restarts": "n_dump is kept", "has_plot": "from the deck", "only_checks": "of a check"}),
-    "cycle_t": ("solve/cycle.f90", "solve/restart.f90", "", {
+    "cycle_t": ("solve/cycle.f90", "solve/restart_steps.f90", "", {
         "writes": "set in each cycle", "finished": "not when a file is written",
         "last": "found again", "plots": "of the run that was asked", "due": "set in each cycle",
         "leap": "made in each cycle", "sums": "formed in each cycle", "steps": "kept as step_plan_t",
         "timed_motions": "from the deck", "velocity": "made in each cycle",
         "displacement": "made in each cycle", "reason": "of each run", "error": "of each run"}),
+    "march_t": ("solve/march.f90", "solve/march.f90", "", {
+        "control": "kept as step_control_t", "step": "kept as step_t", "trial": "kept as trial_t",
+        "written": "of another state"}),
+    "step_control_t": ("solve/step_control.f90", "solve/march.f90", "control%", {
+        "next": "planned anew", "is_last": "planned anew", "end_time": "from the deck, which may change it",
+        "is_automatic": "from the deck", "least": "from the deck", "most": "from the deck", "few": "from the deck",
+        "many": "from the deck", "changes": "from the deck"}),
+    "step_t": ("solve/tangent.f90", "solve/march.f90", "step%", {
+        "time": "set in each step", "dt": "set in each step", "is_dynamic": "from the deck",
+        "alpha_m": "from the deck", "alpha_f": "from the deck", "gamma": "from the deck", "beta": "from the deck",
+        "old_force": "formed from those of trial_t", "equations": "numbered in each step",
+        "prescribed": "found in each step"}),
+    "trial_t": ("solve/forces.f90", "solve/march.f90", "trial%", {
+        "motion": "of the step that is over", "elements": "those of the state", "contacts": "those of the state",
+        "slots": "formed with each force"}),
 }
 #: types of src/state that hold no memory
 WITHOUT_MEMORY = {"snapshot_t", "interface_result_t", "part_result_t", "slave_result_t",
@@ -76,6 +91,28 @@ def test_every_component_is_kept(kind):
 def test_every_type_of_the_state_is_looked_at():
     types = {name for path in (ROOT / "src/state").glob("*.f90") for name in types_of(path)}
     assert types - WITHOUT_MEMORY <= set(KEPT)
+
+
+#: driver -> (procedure with the loop over cycles or steps, what lives there and need not be kept, and why)
+DRIVERS = {
+    "solve/explicit.f90": ("advance_explicit", {"cycle": "kept as cycle_t"}),
+    "solve/implicit.f90": ("advance_implicit", {
+        "march": "kept as march_t", "asked": "of the present step", "second": "of the end of a run that fails",
+        "last": "found again"}),
+}
+
+
+@pytest.mark.parametrize("path", DRIVERS)
+def test_a_driver_remembers_nothing_else(path):
+    """What lives across cycles or steps lies in the types above: a new variable beside the loop must be explained."""
+    name, explained = DRIVERS[path]
+    source = read_source(ROOT / "src" / path)
+    loop, = [one for one in source.procedures if one.name == name]
+    found = set()
+    for line, statement in source.statements:
+        if loop.first < line < loop.last and "::" in statement and "intent" not in statement:
+            found |= {entry.split("=")[0].split("(")[0].strip() for entry in statement.split("::", 1)[1].split(",")}
+    assert found == set(explained)
 
 
 def test_a_name_is_kept_once_in_each_procedure():

@@ -72,10 +72,8 @@ class Job:
         end, count = float(last["time"]), int(last["cycle"])
         for keyword in ("DATABASE_BINARY_D3PLOT", "DATABASE_RCFORC", "DATABASE_NODOUT", "DATABASE_MATSUM"):
             text = first_field(text, keyword, f"{end / 20:.6e},")
-        self.restarts = "CONTROL_IMPLICIT_GENERAL" not in text
-        if self.restarts:
-            text = text.rsplit("*END", 1)[0] + (f"*DATABASE_BINARY_D3DUMP\n{max(count // 4, 1)},\n"
-                                                f"*DATABASE_BINARY_RUNRSF\n{max(count // 15, 1)},\n*END\n")
+        text = text.rsplit("*END", 1)[0] + (f"*DATABASE_BINARY_D3DUMP\n{max(count // 4, 1)},\n"
+                                            f"*DATABASE_BINARY_RUNRSF\n{max(count // 15, 1)},\n*END\n")
         self.write(text)
         shutil.rmtree(self.folder / "first")
         start = time.monotonic()

@@ -255,6 +255,14 @@ def test_restart_in_a_folder_of_its_own_says_what_it_lacks(runs, slideline, tmp_
     assert not any("restart" in note for note in advise(runs["none"])[2])
 
 
+def test_a_log_that_is_continued_is_no_restart_alone():
+    """The log of the run before stands above, of either method."""
+    on = "goes on from the restart file a/job.runrsf.h5\n"
+    assert read_log(on).is_restart
+    assert not read_log(LOG.format(body=0) + on).is_restart
+    assert not read_log("implicit method: static, first step 1.0E-01\n" + on).is_restart
+
+
 @pytest.mark.parametrize("rigid_die", [False, True])
 def test_automatic_penalty_leaves_the_step_alone(slideline, tmp_path, rigid_die):
     """The penalty would follow a longer step: nothing is said of either."""

@@ -57,6 +57,7 @@ class RunLog:
     capped: bool = False         # a curve caps the step
     element_limit: float = 0.0   # smallest L/c at time zero, 0 = unknown
     normal: bool = False         # ended normally
+    is_implicit: bool = False    # it begins as an implicit run
     is_restart: bool = False     # the log of a restart alone, which does not describe the model again
 
 
@@ -79,8 +80,10 @@ def read_log(text: str) -> RunLog:
             log.element_limit = float(found[1])
         elif "N o r m a l" in line:
             log.normal = True
+        elif line.startswith("implicit method:"):
+            log.is_implicit = True
         elif line.startswith("goes on from the restart file"):
-            log.is_restart = log.element_limit == 0.0
+            log.is_restart = log.element_limit == 0.0 and not log.is_implicit
     return log
 
 

@@ -1,0 +1,179 @@
+! SPDX-License-Identifier: MIT
+!> Where an implicit run begins: at time zero, or where a restart file says.
+module implicit_start_m
+  use kinds_m, only : wp
+  use clock_m, only : lap, phase_solver
+  use element_mass_m, only : add_mass, mass_times
+  use equations_m, only : equations_t, number_equations, take_free
+  use errors_m, only : error_t, raise, status_run
+  use forces_m, only : start_trial, assemble_forces, net_force
+  use linear_solver_m, only : report_t, solve_linear
+  use log_m, only : log_t, write_log, warn, to_text
+  use march_m, only : march_t, take_up_march, write_restarts
+  use model_m, only : model_t
+  use monitor_m, only : monitor_t
+  use prescribed_step_m, only : prescribe_start, list_changes
+  use restart_plan_m, only : wanted_files
+  use sparse_m, only : sparse_t, start_matrix, compress_matrix
+  use state_m, only : state_t
+  use step_control_m, only : step_control_t, start_step_control, plan_step, is_over
+  use tangent_m, only : step_t
+  implicit none
+  private
+  public :: begin_march, plan_next, has_ended
+
+contains
+
+  !> The march up to the first report, and the plan of the first step.
+  subroutine begin_march(model, state, monitor, march, last, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(march_t), intent(out) :: march
+    logical, intent(out) :: last       !! there is no step left
+    type(error_t), allocatable, intent(out) :: error
+    type(step_control_t) :: planned
+    real(wp), allocatable :: changes(:)
+    logical :: ends
+
+    call list_changes(model, changes)
+    march%control = start_step_control(model%controls, changes)
+    call set_scheme(model, march%step)
+    last = .false.
+    if (monitor%restarts%goes_on) then
+      call take_up_march(monitor%restarts%source, march, error)
+      if (allocated(error)) return
+      last = has_ended(model, state, march%control)
+    else
+      call log_method(model, march%control, monitor%log)
+    end if
+    planned = march%control
+    call plan_next(model, last, state, planned, ends)
+    if (.not. monitor%restarts%goes_on) then
+      call start_implicit(model, planned%next, state, monitor, march, error)
+      if (.not. allocated(error)) call write_restarts(wanted_files(monitor%restarts, state%cycle, &
+        .false., ends, .false.), state, monitor, march, error)
+    end if
+    march%control = planned
+  end subroutine begin_march
+
+  !> Plan the step that leads away from the state, unless there is none.
+  pure subroutine plan_next(model, last, state, control, ends)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: last
+    type(state_t), intent(inout) :: state   !! gets its step
+    type(step_control_t), intent(inout) :: control
+    logical, intent(out) :: ends            !! that step is meant to be the last one
+
+    state%dt = control%dt
+    ends = .false.
+    if (last) return
+    call plan_step(control, state%time)
+    state%dt = control%next - state%time
+    ends = control%is_last
+    if (model%controls%end_cycle > 0) ends = ends .or. state%cycle + 1 >= model%controls%end_cycle
+  end subroutine plan_next
+
+  !> Whether the run has come to its end.
+  pure function has_ended(model, state, control) result(ended)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_control_t), intent(in) :: control
+    logical :: ended
+
+    ended = is_over(control, state%time)
+    if (model%controls%end_cycle > 0) ended = ended .or. state%cycle >= model%controls%end_cycle
+  end function has_ended
+
+  !> The weights of the two instants of a step.
+  pure subroutine set_scheme(model, step)
+    type(model_t), intent(in) :: model
+    type(step_t), intent(inout) :: step
+
+    associate (implicit => model%controls%implicit)
+      step%is_dynamic = implicit%is_dynamic
+      step%alpha_m = implicit%alpha_m
+      step%alpha_f = implicit%alpha_f
+      step%gamma = implicit%gamma
+      step%beta = implicit%beta
+    end associate
+  end subroutine set_scheme
+
+  !> Tell the log of the method.
+  subroutine log_method(model, control, log)
+    type(model_t), intent(in) :: model
+    type(step_control_t), intent(in) :: control
+    type(log_t), intent(inout) :: log
+
+    associate (implicit => model%controls%implicit)
+      if (abs(control%dt - implicit%dt) > 0.0_wp) call warn(log, 'the first step ' &
+        //to_text(implicit%dt)//' does not lie between DTMIN and DTMAX of ' &
+        //'*CONTROL_IMPLICIT_AUTO; it is '//to_text(control%dt))
+      call write_log(log, 'implicit method: '//trim(merge('dynamic', 'static ', &
+        implicit%is_dynamic))//', first step '//to_text(implicit%dt))
+      if (implicit%is_dynamic) call write_log(log, '  '//implicit%scheme//': alpha_m ' &
+        //to_text(implicit%alpha_m)//', alpha_f '//to_text(implicit%alpha_f)//', gamma ' &
+        //to_text(implicit%gamma)//', beta '//to_text(implicit%beta))
+    end associate
+  end subroutine log_method
+
+  !> Forces and acceleration at time zero.
+  subroutine start_implicit(model, dt, state, monitor, march, error)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: dt !! first step
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(march_t), intent(inout) :: march
+    type(error_t), allocatable, intent(out) :: error
+
+    allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
+    if (march%step%is_dynamic) then
+      call prescribe_start(model, dt, state)
+    else
+      state%motion(3:4, :) = 0.0_wp
+    end if
+    call start_trial(model, state, march%trial)
+    call assemble_forces(model, state, 0.0_wp, .false., monitor%clock, march%trial)
+    state%contacts = march%trial%contacts
+    march%step%old_force = net_force(march%trial)
+    if (march%step%is_dynamic) call find_first_acceleration(model, monitor, march%step, state, error)
+    call lap(monitor%clock, phase_solver)
+  end subroutine start_implicit
+
+  !> M a(0) = -f(0) on the free degrees of freedom; those of prescribed ones, which the state has, act on them.
+  subroutine find_first_acceleration(model, monitor, step, state, error)
+    type(model_t), intent(in) :: model
+    type(monitor_t), intent(inout) :: monitor
+    type(step_t), intent(in) :: step
+    type(state_t), intent(inout) :: state
+    type(error_t), allocatable, intent(out) :: error
+    type(equations_t) :: equations
+    type(sparse_t) :: matrix
+    type(report_t) :: report
+    real(wp), allocatable :: x(:)
+    integer :: i, k
+
+    call number_equations(model, state, 0.0_wp, equations)
+    call start_matrix(matrix, equations%n)
+    call add_mass(model, 1.0_wp, merge(equations%number, 0, equations%number <= equations%n_free), &
+      matrix)
+    matrix%n = equations%n_free
+    call compress_matrix(matrix)
+    allocate (x(equations%n_free))
+    call solve_linear(matrix, -take_free(equations, step%old_force &
+      + mass_times(model, state%acceleration)), x, report)
+    if (.not. report%is_solved) then
+      call raise(error, 'no acceleration at time zero: '//report%message, status_run)
+      return
+    end if
+    call write_log(monitor%log, '  equations: '//to_text(equations%n_free)//' free, ' &
+      //to_text(equations%n - equations%n_free)//' prescribed; mass solved by '//report%method)
+    do i = 1, model%mesh%n_node
+      do k = 1, 2
+        if (equations%number(k, i) > 0 .and. equations%number(k, i) <= equations%n_free) &
+          state%acceleration(k, i) = x(equations%number(k, i))
+      end do
+    end do
+  end subroutine find_first_acceleration
+
+end module implicit_start_m

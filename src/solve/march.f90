@@ -1,0 +1,84 @@
+! SPDX-License-Identifier: MIT
+!> What the implicit driver hands from step to step besides the state, and its part of a restart file.
+module march_m
+  use archive_m, only : archive_t, keep, enter, leave
+  use clock_m, only : lap, phase_nodes, phase_output
+  use errors_m, only : error_t
+  use forces_m, only : trial_t, net_force
+  use kinds_m, only : wp
+  use monitor_m, only : monitor_t, due_t
+  use restart_file_m, only : close_restart
+  use restart_m, only : begin_file, end_file
+  use state_m, only : state_t
+  use step_control_m, only : step_control_t
+  use tangent_m, only : step_t
+  implicit none
+  private
+  public :: march_t, write_restarts, take_up_march
+
+  !> The march through the steps.
+  type :: march_t
+    type(step_control_t) :: control
+    type(step_t) :: step
+    type(trial_t) :: trial     !! forces of the state
+    type(due_t) :: written     !! of the state that was reported last
+    real(wp) :: ratio = 1.0_wp !! last energy ratio known
+  end type march_t
+
+contains
+
+  !> Write restart files after a step. The march is that of the state, its next step not planned yet.
+  subroutine write_restarts(wanted, state, monitor, march, error)
+    logical, intent(in) :: wanted(:)   !! numbered_file, running_file
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(march_t), intent(inout) :: march
+    type(error_t), allocatable, intent(out) :: error
+    type(archive_t) :: archive
+    integer :: kind
+
+    if (.not. any(wanted)) return
+    call lap(monitor%clock, phase_nodes)
+    do kind = 1, size(wanted)
+      if (.not. wanted(kind) .or. allocated(error)) cycle
+      call begin_file(kind, state, monitor, archive)
+      call keep_march(archive, march%control, march%step, march%trial, march%ratio)
+      call end_file(kind, state, monitor, archive, error)
+    end do
+    call lap(monitor%clock, phase_output)
+  end subroutine write_restarts
+
+  !> Write or read what the next step has to know of those before.
+  subroutine keep_march(archive, control, step, trial, ratio)
+    type(archive_t), intent(inout) :: archive
+    type(step_control_t), intent(inout) :: control
+    type(step_t), intent(inout) :: step
+    type(trial_t), intent(inout) :: trial
+    real(wp), intent(inout) :: ratio
+
+    call enter(archive, 'steps')
+    call keep(archive, 'dt', control%dt)
+    call keep(archive, 'target', control%target)
+    call keep(archive, 'searches', step%searches)
+    call keep(archive, 'internal', trial%internal)
+    call keep(archive, 'contact', trial%contact)
+    call keep(archive, 'external', trial%external)
+    call keep(archive, 'ratio', ratio)
+    call leave(archive)
+  end subroutine keep_march
+
+  !> Read it into a march that is set up from the deck, and close the file.
+  subroutine take_up_march(source, march, error)
+    type(archive_t), intent(inout) :: source
+    type(march_t), intent(inout) :: march
+    type(error_t), allocatable, intent(out) :: error
+
+    call keep_march(source, march%control, march%step, march%trial, march%ratio)
+    call close_restart(source, error)
+    if (allocated(error)) return
+    march%step%old_force = net_force(march%trial)
+    ! The end may have come nearer while a whole step is under way.
+    march%control%target = min(march%control%target, march%control%end_time)
+  end subroutine take_up_march
+
+end module march_m

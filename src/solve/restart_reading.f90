@@ -1,0 +1,108 @@
+! SPDX-License-Identifier: MIT
+!> Going on from a restart file: what it says of the run, its state and its outputs, and the files of the run before.
+module restart_reading_m
+  use archive_m, only : archive_t, enter, leave
+  use errors_m, only : error_t, raise, status_input
+  use kinds_m, only : wp
+  use log_m, only : warn, to_text
+  use model_m, only : model_t
+  use monitor_m, only : monitor_t
+  use output_schedule_m, only : output_reach
+  use progress_m, only : show_note
+  use restart_file_m, only : open_restart
+  use restart_history_m, only : keep_times
+  use restart_plan_m, only : restarts_t, place_text
+  use restart_run_m, only : keep_run, keep_outputs
+  use restart_state_m, only : keep_state
+  use results_copy_m, only : check_old_results, copy_states
+  use results_file_m, only : results_file_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: take_up_file, take_up_results, take_up_state, take_up_outputs
+
+  !> Part of the last step by which an implicit run may pass its end; an explicit one may by all of it.
+  real(wp), parameter :: round_off = 1.0e-9_wp
+
+contains
+
+  !> Open the file to go on from; what it says of the run, and the deck as run.
+  subroutine take_up_file(path, restarts, effective_deck, error)
+    character(*), intent(in) :: path
+    type(restarts_t), intent(inout) :: restarts
+    character(:), allocatable, intent(out) :: effective_deck
+    type(error_t), allocatable, intent(out) :: error
+
+    call open_restart(path, restarts%source, error)
+    if (allocated(error)) return
+    restarts%goes_on = .true.
+    call keep_run(restarts%source, restarts, effective_deck)
+    if (allocated(restarts%source%error)) error = restarts%source%error
+  end subroutine take_up_file
+
+  !> Look for the results file whose states the run takes over; before anything is written.
+  subroutine take_up_results(restarts, model, path, error)
+    type(restarts_t), intent(inout) :: restarts
+    type(model_t), intent(in) :: model
+    character(*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    type(results_file_t) :: nothing
+
+    call enter(restarts%source, 'outputs')
+    call keep_times(restarts%source, 'state_times', nothing, restarts%state_times)
+    call leave(restarts%source)
+    if (allocated(restarts%source%error)) then
+      error = restarts%source%error
+    else
+      call check_old_results(path, model%mesh%n_node, restarts%state_times, &
+        restarts%finds_states, error)
+    end if
+  end subroutine take_up_results
+
+  !> Read the state.
+  subroutine take_up_state(source, model, state, error)
+    type(archive_t), intent(inout) :: source
+    type(model_t), intent(in) :: model
+    type(state_t), intent(out) :: state
+    type(error_t), allocatable, intent(out) :: error
+
+    call keep_state(source, state)
+    if (allocated(source%error)) then
+      error = source%error
+    else if (size(state%motion, 2) /= model%mesh%n_node &
+      .or. size(state%contacts) /= size(model%contacts)) then
+      call raise(error, 'the restart file '//source%path//' is of another model', status_input)
+    else if (state%time - model%controls%end_time > merge(round_off, 1.0_wp, &
+      model%controls%implicit%is_on)*state%dt_before) then
+      call raise(error, 'the restart file '//source%path//' is of time '//to_text(state%time) &
+        //', after the end time '//to_text(model%controls%end_time), status_input)
+    end if
+  end subroutine take_up_state
+
+  !> Read how far the outputs are; the rows and states before the restart go into the new files.
+  subroutine take_up_outputs(model, state, monitor, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+
+    call keep_outputs(monitor%restarts%source, state%time - state%dt_before, &
+      output_reach(model%controls, state%dt_before), monitor)
+    if (allocated(monitor%restarts%source%error)) then
+      error = monitor%restarts%source%error
+      return
+    end if
+    call show_note(monitor%progress, monitor%log, 'restart from '//monitor%restarts%source%path &
+      //place_text(state))
+    if (.not. monitor%has_plot) return
+    associate (restarts => monitor%restarts)
+      if (restarts%finds_states) then
+        call copy_states(monitor%results, model, restarts%state_times, error)
+      else if (size(restarts%state_times) > 0) then
+        call warn(monitor%log, 'there is no results file of the run before the restart: the new ' &
+          //'one has the states from time '//to_text(state%time)//' on')
+      end if
+    end associate
+  end subroutine take_up_outputs
+
+end module restart_reading_m
