@@ -50,6 +50,18 @@ def test_wrong_words_are_refused(slideline, word, said):
     assert said in done.stderr.lower()
 
 
+@pytest.mark.parametrize("name", ["d=", "memory=", "p:x=", "", "i="])
+def test_a_word_that_is_too_long_is_refused(slideline, tmp_path, name):
+    """None is cut: 4096 characters are taken, one more is not."""
+    word = name + "x" * (4097 - len(name))
+    done = slideline(word, deck=drop(end_time=0.002))
+    assert done.returncode == 1
+    assert word[:50] in done.stderr and "has 4097 characters: an argument may have 4096" in done.stderr
+    assert not (tmp_path / "job.log").exists()
+    if name == "memory=":
+        assert slideline(word[:-1], deck=drop(end_time=0.002)).returncode == 0
+
+
 def test_no_argument_says_how(slideline):
     done = slideline()
     assert done.returncode == 1
