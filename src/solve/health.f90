@@ -11,7 +11,7 @@ module health_m
   use state_m, only : state_t
   implicit none
   private
-  public :: check_elements, check_step, check_energy, judge_energies
+  public :: check_elements, check_step, check_cycle, check_energy, judge_energies
 
 contains
 
@@ -109,6 +109,17 @@ contains
       //' fell below its floor '//to_text(floor_dt)//' (DTMIN times the first step, at least a ' &
       //'millionth of it)', status_run)
   end subroutine check_step
+
+  !> Cycles are counted no further than a default integer reaches.
+  subroutine check_cycle(cycle, time, error)
+    integer, intent(in) :: cycle
+    real(wp), intent(in) :: time
+    type(error_t), allocatable, intent(out) :: error
+
+    if (cycle < huge(cycle)) return
+    call raise(error, 'cycle '//to_text(cycle)//' at time '//to_text(time)//' is the last that can be ' &
+      //'counted: a run has to end before', status_run)
+  end subroutine check_cycle
 
   !> Energies must be finite; where the deck sets ENDENG the energy ratio must stay within so many per cent of
   !> one, and contact forces must not have created more than that of the largest energy.

@@ -21,7 +21,7 @@ module restart_m
   use results_copy_m, only : check_old_results, copy_states
   use results_file_m, only : results_file_t
   use state_m, only : state_t
-  use time_step_m, only : step_plan_t
+  use time_step_m, only : step_plan_t, cycles_in
   implicit none
   private
   public :: write_dump, write_running, take_up_file, take_up_results, take_up_state, &
@@ -290,8 +290,8 @@ contains
     call keep_steps(source, steps, damping, ratio)
     steps%end_time = model%controls%end_time
     steps%end_cycle = model%controls%end_cycle
-    if (steps%constant > 0.0_wp) steps%n_cycle = max(1, &
-      nint((steps%end_time - steps%start_time)/steps%constant))
+    if (steps%constant > 0.0_wp) steps%n_cycle = &
+      cycles_in(steps%end_time - steps%start_time, steps%constant)
     call close_restart(source, error)
   end subroutine take_up_steps
 

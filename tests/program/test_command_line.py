@@ -83,6 +83,14 @@ def test_end_time_and_step(slideline, tmp_path):
     assert np.all(numbers(glstat, "dt") == 2.0e-4)
 
 
+def test_end_that_no_cycle_reaches(slideline, tmp_path):
+    """1e10 cycles to the end, more than are counted: ENDCYC ends the run and not the first cycle."""
+    deck = drop().text().replace("*CONTROL_TERMINATION\n0.02,", "*CONTROL_TERMINATION\n0.02,23")
+    done = slideline("d=e", "endtim=1.0e6", "dt=1.0e-4", deck=deck)
+    assert done.returncode == 0, done.stderr
+    assert numbers(tmp_path / "e" / "job.glstat.csv", "cycle")[-1] == 23
+
+
 def test_step_factor(slideline, tmp_path):
     deck = drop(end_time=0.003)
     text = deck.text().replace("0.0,0.9,0,0.0,0.0,9001", "0.0,0.9,0,0.0,0.0,0")
