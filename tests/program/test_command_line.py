@@ -91,6 +91,13 @@ def test_end_that_no_cycle_reaches(slideline, tmp_path):
     assert numbers(tmp_path / "e" / "job.glstat.csv", "cycle")[-1] == 23
 
 
+def test_end_far_before_the_first_step(slideline, tmp_path):
+    """One cycle, and an end: intervals of outputs are cut to the run."""
+    done = slideline("d=e", "endtim=1.0e-39", "tssfac=0.5", deck=drop(), timeout=20)
+    assert done.returncode == 0, done.stderr
+    assert len(numbers(tmp_path / "e" / "job.glstat.csv", "cycle")) == 2
+
+
 def test_step_factor(slideline, tmp_path):
     deck = drop(end_time=0.003)
     text = deck.text().replace("0.0,0.9,0,0.0,0.0,9001", "0.0,0.9,0,0.0,0.0,0")
