@@ -45,13 +45,17 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(argument_length) :: word
     character(:), allocatable :: mistakes
-    integer :: i
+    integer :: i, length
 
     allocate (arguments%overrides(0))
     arguments%line = ''
     mistakes = ''
     do i = 1, command_argument_count()
-      call get_command_argument(i, word)
+      call get_command_argument(i, word, length=length)
+      if (length > argument_length) then
+        call refuse_length(word, length, mistakes)
+        cycle
+      end if
       if (i > 1) arguments%line = arguments%line//' '
       arguments%line = arguments%line//trim(word)
       arguments%check = arguments%check .or. (i == 1 .and. word == 'check')
@@ -75,6 +79,20 @@ contains
     if (.not. allocated(arguments%directory)) arguments%directory = '.'
     if (.not. allocated(arguments%job)) arguments%job = file_stem(arguments%deck)
   end subroutine read_arguments
+
+  !> An argument of which only the first part was read.
+  pure subroutine refuse_length(word, length, mistakes)
+    character(*), intent(in) :: word !! as far as it was read
+    integer, intent(in) :: length
+    character(:), allocatable, intent(inout) :: mistakes
+    integer, parameter :: shown = 60
+    character(12) :: found, limit
+
+    write (found, '(i0)') length
+    write (limit, '(i0)') argument_length
+    mistakes = mistakes//'"'//word(:shown)//'..." has '//trim(found) &
+      //' characters: an argument may have '//trim(limit)//new_line('a')
+  end subroutine refuse_length
 
   !> Understand one argument.
   subroutine read_word(word, arguments, mistakes)

@@ -12,13 +12,14 @@ module deck_fields_m
   implicit none
   private
   public :: card_t, card_spec_t, make_spec, cut_card, read_numbers, field_text, field_error, &
-    place_error, max_field
+    place_error, max_field, largest_value, smallest_value
 
   !> Fields of one card at most.
   integer, parameter :: max_field = 16
 
-  !> Numbers beyond this are refused, so that squares and products of deck values stay finite.
-  real(wp), parameter :: largest_value = 1.0e100_wp
+  !> Numbers beyond the largest are refused, those below the smallest are zero, so that products of deck values and of
+  !> what follows from them stay finite. Both lie beyond what single precision holds.
+  real(wp), parameter :: largest_value = 1.0e40_wp, smallest_value = 1.0e-40_wp
 
   !> What a card may hold.
   type :: card_spec_t
@@ -209,6 +210,7 @@ contains
       else
         call read_real(text, card%r(k), status)
         if (abs(card%r(k)) > largest_value) status = number_range
+        if (abs(card%r(k)) < smallest_value) card%r(k) = 0.0_wp
       end if
     end subroutine read_field
 
@@ -232,7 +234,7 @@ contains
     else if (status == number_range .and. spec%kinds(k) == 'i') then
       call field_error(deck, spec, card, k, 'is too large: whole numbers reach 2147483647')
     else if (status == number_range) then
-      call field_error(deck, spec, card, k, 'is too large: numbers reach 1e100')
+      call field_error(deck, spec, card, k, 'is too large: numbers reach 1e40')
     else if (spec%kinds(k) == 'i') then
       call field_error(deck, spec, card, k, 'is not a whole number')
     else

@@ -3,6 +3,7 @@
 module deck_overrides_m
   use kinds_m, only : wp
   use text_m, only : upper_case, read_real, read_integer, number_good
+  use deck_fields_m, only : largest_value, smallest_value
   use deck_lines_m, only : deck_t, line_error
   use deck_parameter_table_m, only : parameters_t, override_parameter
   implicit none
@@ -97,11 +98,11 @@ contains
     case default
       call read_real(item%text, value, status)
       if (status == number_good) then
-        if (value > 0.0_wp .and. value < 1.0e100_wp) return
+        if (value >= smallest_value .and. value <= largest_value) return
         if (item%name == 'VDC' .and. .not. abs(value) > 0.0_wp) return
       end if
       call line_error(deck, 0, '"'//text//'" on the command line: the value is not a number ' &
-        //'above 0')
+        //'above 0 (numbers reach 1e40)')
       item%text = ''
     end select
   end subroutine check_number

@@ -50,9 +50,9 @@ contains
     type(log_t), intent(inout) :: log
     real(wp) :: share !! of L/c
 
+    if (part%hourglass%coefficient <= ruling_coefficient) return
     share = ruling_coefficient/part%hourglass%coefficient
     if (part%hourglass%form == hourglass_stiffness) share = sqrt(share)
-    if (part%hourglass%coefficient <= ruling_coefficient) return
     call warn(log, 'part '//to_text(part%id)//': hourglass control of QM ' &
       //to_text(part%hourglass%coefficient)//' lowers the stable step, that of squares to ' &
       //to_text(share)//' of L/c; QM up to '//to_text(ruling_coefficient)//' would not')

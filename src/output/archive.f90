@@ -98,7 +98,7 @@ contains
       call h5dclose_f(dataset, status(4))
     end if
     if (minval(status) < 0) call fail_archive(archive, 'cannot write '//archive%path &
-      //' (is the disk full?)', status_files)
+      //' (is the disk full, or a quota used up?)', status_files)
     call h5sclose_f(space, status(1))
   end subroutine put_array
 

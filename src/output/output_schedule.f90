@@ -84,8 +84,10 @@ contains
     type(schedule_t), intent(inout) :: schedule
     real(wp), intent(in) :: time, dt   !! s, as given to `is_due`
 
+    ! A first state may lie far beyond the end.
     if (.not. schedule%varies .and. schedule%active) schedule%count = max(schedule%count, &
-      int((time + (0.5_wp + forgiven)*min(dt, schedule%end_time))/schedule%interval, long) - 1)
+      int((min(time, schedule%end_time) + (0.5_wp + forgiven)*min(dt, schedule%end_time)) &
+      /schedule%interval, long) - 1)
     do while (is_due(schedule, time, dt))
       call advance(schedule)
     end do

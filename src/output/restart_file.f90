@@ -65,7 +65,7 @@ contains
       ! A file that could not be flushed is left: closing it would make HDF5 try again, and crash.
       if (status >= 0) call h5fclose_f(archive%id, status)
       if (status < 0) call fail_archive(archive, 'cannot write '//archive%path &
-        //' (is the disk full?)', status_files)
+        //' (is the disk full, or a quota used up?)', status_files)
     end if
     if (.not. allocated(archive%error)) call write_head(archive%path//unfinished, archive%error)
     if (.not. allocated(archive%error)) call force_to_disk(archive%path//unfinished, archive%error)

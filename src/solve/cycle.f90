@@ -9,7 +9,7 @@ module cycle_m
   use energies_m, only : energy_ratio, total_energy
   use errors_m, only : error_t
   use external_force_m, only : form_external_force, body_acceleration, damping_rate
-  use health_m, only : check_elements, check_step, check_energy, judge_energies
+  use health_m, only : check_elements, check_step, check_cycle, check_energy, judge_energies
   use kinds_m, only : wp
   use model_log_m, only : log_smallest_steps
   use model_m, only : model_t
@@ -275,6 +275,7 @@ contains
     call next_step(model, state%elements, monitor%log, state%cycle, cycle%steps, state%time, state%dt)
     if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
       state%time, state%dt, cycle%error)
+    if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     if (allocated(cycle%error)) cycle%finished = .true.
     if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
     call follow_progress(monitor%progress, monitor%clock, state%cycle, .false., state%time, state%dt, &

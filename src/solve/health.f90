@@ -6,12 +6,16 @@ module health_m
   use element_state_m, only : smallest_ratio
   use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
+  use layout_m, only : chunk_size
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use state_m, only : state_t
   implicit none
   private
-  public :: check_elements, check_step, check_energy, judge_energies
+  public :: check_elements, check_step, check_cycle, check_energy, judge_energies
+
+  !> Work beyond this means nothing any more; it is found before numbers overflow, which a checked build would stop at.
+  real(wp), parameter :: most_work = 1.0e150_wp
 
 contains
 
@@ -26,8 +30,8 @@ contains
     volumes_good = minval(state%elements%volume_limit) > 0.0_wp
     checksum = sum(state%elements%deviatoric_work) + sum(state%elements%hourglass_work)
     if (allocated(state%contacts)) checksum = checksum + sum(state%contacts%energy)
-    ! Not a number, or beyond all numbers.
-    if (volumes_good .and. abs(checksum) <= huge(1.0_wp)) return
+    ! Not a number, or beyond all that means something.
+    if (volumes_good .and. abs(checksum) <= most_work) return
     if (allocated(state%contacts)) call name_bad_contact(model, state, error)
     if (.not. allocated(error)) call name_bad_chunk(model, state, error)
   end subroutine check_elements
@@ -50,6 +54,11 @@ contains
             //to_text(state%time), status_run)
           return
         end do
+        if (abs(contact%energy) <= most_work) cycle
+        call raise(error, 'the work '//to_text(-contact%energy)//' of the contact forces of interface ' &
+          //to_text(model%contacts(i)%id)//' at cycle '//to_text(state%cycle)//', time ' &
+          //to_text(state%time)//' is beyond all measure', status_run)
+        return
       end associate
     end do
   end subroutine name_bad_contact
@@ -78,9 +87,30 @@ contains
         'values that are not finite', ratio <= 0.0_wp), error)
       return
     end do
-    call raise(error, 'negative area or values that are not finite at cycle ' &
+    call name_wild_chunk(model, state, error)
+    if (.not. allocated(error)) call raise(error, 'negative area or values that are not finite at cycle ' &
       //to_text(state%cycle)//', time '//to_text(state%time), status_run)
   end subroutine name_bad_chunk
+
+  !> The element that is under the largest stress of those whose chunk has done work beyond all measure.
+  subroutine name_wild_chunk(model, state, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(error_t), allocatable, intent(out) :: error
+    integer :: chunk, first, last
+
+    associate (work => abs(state%elements%deviatoric_work) + abs(state%elements%hourglass_work))
+      chunk = maxloc(work, 1)
+      if (.not. any(work > 0.5_wp*most_work)) return
+      first = (chunk - 1)*chunk_size + 1
+      last = min(chunk*chunk_size, model%layout%n_slot)
+      associate (elements => model%layout%slot_element(first:last), &
+        stress => maxval(abs(state%elements%deviator(first:last, :)), 2))
+        call blame(model, state, elements(maxloc(stress, 1, elements > 0)), 'work beyond all measure', &
+          error)
+      end associate
+    end associate
+  end subroutine name_wild_chunk
 
   !> The error that names an element.
   subroutine blame(model, state, element, what, error)
@@ -109,6 +139,17 @@ contains
       //' fell below its floor '//to_text(floor_dt)//' (DTMIN times the first step, at least a ' &
       //'millionth of it)', status_run)
   end subroutine check_step
+
+  !> Cycles are counted no further than a default integer reaches.
+  subroutine check_cycle(cycle, time, error)
+    integer, intent(in) :: cycle
+    real(wp), intent(in) :: time
+    type(error_t), allocatable, intent(out) :: error
+
+    if (cycle < huge(cycle)) return
+    call raise(error, 'cycle '//to_text(cycle)//' at time '//to_text(time)//' is the last that can be ' &
+      //'counted: a run has to end before', status_run)
+  end subroutine check_cycle
 
   !> Energies must be finite; where the deck sets ENDENG the energy ratio must stay within so many per cent of
   !> one, and contact forces must not have created more than that of the largest energy.

@@ -12,7 +12,7 @@ module restart_steps_m
   use restart_file_m, only : close_restart
   use restart_m, only : begin_file, end_file
   use state_m, only : state_t
-  use time_step_m, only : step_plan_t
+  use time_step_m, only : step_plan_t, cycles_in
   implicit none
   private
   public :: write_restarts, take_up_steps
@@ -101,8 +101,8 @@ contains
     call keep_steps(source, steps, damping, ratio)
     steps%end_time = model%controls%end_time
     steps%end_cycle = model%controls%end_cycle
-    if (steps%constant > 0.0_wp) steps%n_cycle = max(1, &
-      nint((steps%end_time - steps%start_time)/steps%constant))
+    if (steps%constant > 0.0_wp) steps%n_cycle = &
+      cycles_in(steps%end_time - steps%start_time, steps%constant)
     call close_restart(source, error)
   end subroutine take_up_steps
 

@@ -12,7 +12,7 @@ module time_step_m
   use model_m, only : model_t
   implicit none
   private
-  public :: step_plan_t, start_steps, first_step, next_step, plain_step, is_last
+  public :: step_plan_t, start_steps, first_step, next_step, plain_step, is_last, cycles_in
 
   !> How the steps go on.
   type :: step_plan_t
@@ -63,7 +63,7 @@ contains
     if (model%controls%dt_curve > 0 .and. .not. steps%warned) then
       if (curve_is_constant(model%curves(model%controls%dt_curve))) then
         steps%constant = dt
-        steps%n_cycle = max(1, nint((steps%end_time - steps%start_time)/dt))
+        steps%n_cycle = cycles_in(steps%end_time - steps%start_time, dt)
       end if
     end if
     call write_log(log, 'first time step '//to_text(dt)//', smallest L/c of the elements ' &
@@ -71,6 +71,15 @@ contains
     if (allocated(steps%springs)) call write_log(log, 'stable step of elements and contact ' &
       //'springs '//to_text(limit))
   end subroutine first_step
+
+  !> Constant steps `dt` in a time, at least one and no more than can be counted.
+  pure function cycles_in(time, dt) result(n)
+    real(wp), intent(in) :: time, dt !! s
+    integer :: n
+
+    n = huge(n)
+    if (time < 0.5_wp*huge(n)*dt) n = max(1, nint(time/dt))
+  end function cycles_in
 
   !> Smallest L/c of the elements, and below it what contact springs leave of it.
   pure function stable_limit(elements, steps) result(limit)

@@ -28,6 +28,7 @@ CRASH = re.compile(r"Sanitizer|runtime error|received signal|Backtrace for this 
                    r"|Fortran runtime|HDF5-DIAG|stack smashing|double free|corrupted", re.IGNORECASE)
 #: a checked build stops where a number leaves the range; the Release one goes on to a named error
 TRAP = "Floating-point exception"
+NOT_FINITE = re.compile(r"\b(nan|inf|infinity)\b", re.IGNORECASE)
 STATUSES = {0, 1, 2, 3, 4}
 
 
@@ -117,7 +118,10 @@ class Judge:
             rule, status, said = self.run(["check", "deck.k", *words], folder)
             if rule or status not in (0, 2):
                 return rule, "check", said
-            rule, _, said = self.run(["i=deck.k", "d=out", *words], folder)
+            rule, status, said = self.run(["i=deck.k", "d=out", *words], folder)
+            if not rule and status == 0 and any(NOT_FINITE.search(path.read_text()) for path in folder.glob("out/*.csv")):
+                rule = "ends well with values that are not finite"
+                self.counts[f"run: {rule}"] += 1
             return rule, "run", said
 
 

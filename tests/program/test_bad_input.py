@@ -97,7 +97,7 @@ def test_includes_outside_the_folder_of_the_deck(exe, tmp_path):
         assert "*DAMPING_GLOBAL" in (tmp_path / "out" / "job.effective.k").read_text()
 
 
-@pytest.mark.parametrize("value", ["1e308", "-1e308", "1e309", "NaN", "inf", "-inf", "1e101"])
+@pytest.mark.parametrize("value", ["1e308", "-1e308", "1e309", "NaN", "inf", "-inf", "1e101", "1.1e40"])
 @pytest.mark.parametrize("card", [r"^\*CONTROL_TERMINATION\n", r"^\*NODE\n *\d+", r"^\*INITIAL_VELOCITY\n.*\n",
                                   r"^\*MAT_ELASTIC.*\n +\d+,|^\*MAT_ELASTIC.*\n *\d+"])
 def test_numbers_that_are_too_large_are_refused(exe, tmp_path, value, card):
@@ -188,7 +188,9 @@ def test_stop_while_files_are_read_or_written(exe, tmp_path, moment):
     time.sleep(moment)
     process.send_signal(signal.SIGTERM)
     _, said = process.communicate(timeout=60)
-    assert process.returncode in ((4, -signal.SIGTERM) if moment < 0.1 else (4,)), said
+    # On a loaded machine the program may take its time to begin.
+    unheard = moment < 0.4 and not (tmp_path / "out").exists()
+    assert process.returncode in ((4, -signal.SIGTERM) if unheard else (4,)), said
     if process.returncode == 4:
         assert "stopped on request" in said
         assert (tmp_path / "out" / "job.vtkhdf").exists()

@@ -50,6 +50,18 @@ def test_wrong_words_are_refused(slideline, word, said):
     assert said in done.stderr.lower()
 
 
+@pytest.mark.parametrize("name", ["d=", "memory=", "p:x=", "", "i="])
+def test_a_word_that_is_too_long_is_refused(slideline, tmp_path, name):
+    """None is cut: 4096 characters are taken, one more is not."""
+    word = name + "x" * (4097 - len(name))
+    done = slideline(word, deck=drop(end_time=0.002))
+    assert done.returncode == 1
+    assert word[:50] in done.stderr and "has 4097 characters: an argument may have 4096" in done.stderr
+    assert not (tmp_path / "job.log").exists()
+    if name == "memory=":
+        assert slideline(word[:-1], deck=drop(end_time=0.002)).returncode == 0
+
+
 def test_no_argument_says_how(slideline):
     done = slideline()
     assert done.returncode == 1
@@ -69,6 +81,21 @@ def test_end_time_and_step(slideline, tmp_path):
     assert numbers(glstat, "time")[-1] == pytest.approx(0.004, rel=1e-12)
     assert numbers(glstat, "cycle")[-1] == 20
     assert np.all(numbers(glstat, "dt") == 2.0e-4)
+
+
+def test_end_that_no_cycle_reaches(slideline, tmp_path):
+    """1e10 cycles to the end, more than are counted: ENDCYC ends the run and not the first cycle."""
+    deck = drop().text().replace("*CONTROL_TERMINATION\n0.02,", "*CONTROL_TERMINATION\n0.02,23")
+    done = slideline("d=e", "endtim=1.0e6", "dt=1.0e-4", deck=deck)
+    assert done.returncode == 0, done.stderr
+    assert numbers(tmp_path / "e" / "job.glstat.csv", "cycle")[-1] == 23
+
+
+def test_end_far_before_the_first_step(slideline, tmp_path):
+    """One cycle, and an end: intervals of outputs are cut to the run."""
+    done = slideline("d=e", "endtim=1.0e-39", "tssfac=0.5", deck=drop(), timeout=20)
+    assert done.returncode == 0, done.stderr
+    assert len(numbers(tmp_path / "e" / "job.glstat.csv", "cycle")) == 2
 
 
 def test_step_factor(slideline, tmp_path):

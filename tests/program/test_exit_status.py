@@ -72,6 +72,37 @@ def test_contact_too_stiff_for_the_step_is_warned_of(slideline, tmp_path):
     assert "warning" not in done.stderr.lower()
 
 
+def test_energy_that_contact_created_is_warned_of(slideline, tmp_path):
+    """A contact far too stiff for its step gives more than it took: the warning names the sum of the table."""
+    done = slideline("d=p", "pen=1.0e10", deck=drop())
+    created = numbers(tmp_path / "p" / "job.glstat.csv", "contact")[-1]
+    said = re.search(r"warning: the contact forces created energy: (\S+) of (\S+);", done.stderr)
+    assert created < 0.0 and said and float(said[1]) == pytest.approx(created, rel=1e-6), done.stderr
+    assert "created energy" not in slideline("d=q", deck=drop()).stderr
+
+
+def bent_beam(points):
+    """A clamped beam, one element thick, that swings: elements of one point bend by hourglasses alone."""
+    deck = Deck("beam").control(0.2, scale=0.8).hourglass(4, 0.1)
+    deck.part(points=points).elastic(1000.0, 1.0e6, 0.3)
+    nodes = deck.mesh(*grid(8, 1, 2.0, 0.25)).reshape(2, 9)
+    deck.fix(nodes[:, 0], x=1, y=1).node_set(1, nodes[:, -1])
+    deck.add("*INITIAL_VELOCITY", (1,), (0.0, 0.5))
+    return deck.output(plot=0.1, glstat=0.01)
+
+
+@pytest.mark.parametrize("points", [1, 4])
+def test_hourglass_energy_above_a_tenth_is_warned_of(slideline, tmp_path, points):
+    done = slideline("d=h", deck=bent_beam(points))
+    assert done.returncode == 0, done.stderr
+    last = {name: numbers(tmp_path / "h" / "job.glstat.csv", name)[-1] for name in ("hourglass", "internal")}
+    said = re.search(r"warning: the hourglass energy (\S+) is more than 10 % of the internal energy (\S+)", done.stderr)
+    assert (last["hourglass"] > 0.1 * last["internal"]) == (points == 1), last
+    assert bool(said) == (points == 1), done.stderr
+    if said:
+        assert [float(text) for text in said.groups()] == pytest.approx([last["hourglass"], last["internal"]], rel=1e-6)
+
+
 def pushed_in(depth):
     """The drop with its blocks overlapping by `depth` at the start."""
     deck = Deck("overlap").control(0.002, dt=1.0e-4).part(1).elastic(1000.0, 1.0e6, 0.3)

@@ -167,6 +167,83 @@ def test_user_without_the_right(job, tmp_path):
     assert status == 3 and "Permission denied" in complaint
 
 
+#: stands between program and C library: a user who may write so many bytes, and a server that tells of it late
+QUOTA = """
+#include <dlfcn.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+static long left = -1;
+static int refused(int file, size_t count) {
+  struct stat about;
+  if (fstat(file, &about) || !S_ISREG(about.st_mode)) return 0;
+  if (left < 0) left = atol(getenv("QUOTA_BYTES"));
+  if ((long)count <= left) { left -= count; return 0; }
+  errno = EDQUOT;
+  return 1;
+}
+ssize_t write(int file, const void *data, size_t count) {
+  ssize_t (*next)(int, const void *, size_t) = dlsym(RTLD_NEXT, "write");
+  return refused(file, count) ? -1 : next(file, data, count);
+}
+ssize_t pwrite(int file, const void *data, size_t count, off_t at) {
+  ssize_t (*next)(int, const void *, size_t, off_t) = dlsym(RTLD_NEXT, "pwrite");
+  return refused(file, count) ? -1 : next(file, data, count, at);
+}
+ssize_t pwrite64(int file, const void *data, size_t count, off_t at) { return pwrite(file, data, count, at); }
+int fsync(int file) {
+  int (*next)(int) = dlsym(RTLD_NEXT, "fsync");
+  if (!getenv("QUOTA_LATE")) return next(file);
+  errno = EDQUOT;
+  return -1;
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def quota(tmp_path_factory):
+    """A library that gives the program a quota."""
+    compiler = shutil.which("cc") or shutil.which("gcc")
+    if not compiler:
+        pytest.skip("no C compiler")
+    folder = tmp_path_factory.mktemp("quota")
+    (folder / "quota.c").write_text("#define _GNU_SOURCE\n" + QUOTA)
+    subprocess.run([compiler, "-shared", "-fPIC", "-O1", "quota.c", "-o", "quota.so", "-ldl"], cwd=folder, check=True)
+    return folder / "quota.so"
+
+
+def run_with_quota(job, library, size, folder, **more):
+    """Run with a quota; (status, standard output, standard error)."""
+    done = subprocess.run([job.exe, "i=job.k", f"d={folder}"], cwd=job.folder, capture_output=True, text=True, timeout=60,
+                          check=False, env={**os.environ, "LD_PRELOAD": str(library), "QUOTA_BYTES": str(size),
+                                            "ASAN_OPTIONS": "verify_asan_link_order=0:detect_leaks=0", **more})
+    assert "HDF5-DIAG" not in done.stderr + done.stdout and "Backtrace" not in done.stderr, done.stderr
+    return done.returncode, done.stdout, done.stderr
+
+
+@pytest.mark.parametrize("share", [0.0, 0.02, 0.1, 0.3, 0.5, 0.7, 0.9])
+def test_quota(job, quota, share):
+    size = sum(path.stat().st_size for path in job.whole.iterdir())
+    shutil.rmtree(job.folder / "quota", ignore_errors=True)
+    status, said, complaint = run_with_quota(job, quota, int(share * size), "quota")
+    # Of HDF5 files the reason is not known.
+    assert status == 3 and ("Disk quota exceeded" in complaint or "quota used up?" in complaint), complaint
+    assert "quota/job." in complaint, complaint
+    check_left(job, job.folder / "quota", said)
+    assert run_with_quota(job, quota, 100 * size, "quota")[0] == 0
+    kill_runs.check_end(job, job.folder / "quota")
+
+
+def test_quota_that_a_server_tells_of_late(job, quota):
+    """All bytes are taken and the disk refuses them at the end: no restart file takes its name."""
+    shutil.rmtree(job.folder / "quota", ignore_errors=True)
+    status, said, complaint = run_with_quota(job, quota, 10**12, "quota", QUOTA_LATE="1")
+    assert status == 3 and "Disk quota exceeded" in complaint and ".h5" in complaint, complaint
+    check_left(job, job.folder / "quota", said)
+    assert not list((job.folder / "quota").glob("*.h5"))
+
+
 def test_the_restart_of_a_run_whose_disk_was_full(job):
     """What a full disk has left goes on to the same end: the last bytes of the results file do not fit."""
     shutil.rmtree(job.folder / "later", ignore_errors=True)
