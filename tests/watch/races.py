@@ -12,10 +12,9 @@ import re
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 
-from watching import HERE, ROOT, build, jobs_of_machine, run_or_stop, side_by_side
+from watching import HERE, ROOT, Plant, build, build_with, copy_tree, jobs_of_machine, run_or_stop, side_by_side
 
 from test_same_bits import SCENES, TYPES, everything  # noqa: E402  (watching sets the path)
 
@@ -23,17 +22,6 @@ FLAGS = "-O1 -g -fsanitize=thread"
 #: the locks are all inside libgfortran, whose order the sanitiser dislikes
 OPTIONS = "detect_deadlocks=0:exitcode=66"
 PLACE = re.compile(r"#\d+ \S+ \S*/src/(\S+?\.f90:\d+)")
-
-
-@dataclass
-class Plant:
-    """A mistake to make."""
-
-    name: str
-    file: str     #: of src/
-    old: str      #: text that is there
-    new: str      #: text in its place
-    where: str    #: file that a report must name
 
 
 PLANTS = (
@@ -56,16 +44,6 @@ PLANTS = (
           "    !$omp parallel do num_threads(2)\n    do i = 1, size(model%contacts)\n      call apply_contact",
           "contact/contact_motion.f90"),
 )
-
-
-def copy_tree(copy: Path) -> None:
-    """The sources as they are, files that have not changed left alone, so that little is built anew."""
-    for path in [ROOT / "CMakeLists.txt", *(ROOT / "src").rglob("*")]:
-        if path.is_file():
-            target = copy / path.relative_to(ROOT)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            if not target.exists() or target.read_bytes() != path.read_bytes():
-                target.write_bytes(path.read_bytes())
 
 
 def build_program(work: Path, jobs: int) -> Path:
@@ -120,17 +98,11 @@ def plant_all(work: Path, jobs: int) -> int:
     missed = 0
     text = two_interfaces()
     for number, plant in enumerate(PLANTS):
-        path = work / "tree" / "src" / plant.file
-        whole = path.read_text()
-        if whole.count(plant.old) != 1:
+        program = build_with(plant, work / "tree", lambda: build_program(work, jobs))
+        if program is None:
             print(f"{plant.name}: not to be planted in {plant.file} as it is")
             missed += 1
             continue
-        path.write_text(whole.replace(plant.old, plant.new))
-        try:
-            program = build_program(work, jobs)
-        finally:
-            path.write_text(whole)
         _, places, _ = run(program, work / f"plant_{number}", text, (), 2)
         found = sorted(place for place in places if place.startswith(plant.where))
         missed += not found

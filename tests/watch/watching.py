@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -42,3 +43,37 @@ def side_by_side(work: Callable, cases: Iterable, jobs: int) -> list:
 def jobs_of_machine() -> int:
     """Cores to use unless told otherwise."""
     return os.cpu_count() or 1
+
+
+@dataclass
+class Plant:
+    """A mistake to make on purpose."""
+
+    name: str
+    file: str         #: of src/
+    old: str          #: text that is there, once
+    new: str          #: text in its place
+    where: str = ""   #: file that a report must name
+
+
+def copy_tree(copy: Path) -> None:
+    """The sources as they are, files that have not changed left alone, so that little is built anew."""
+    for path in [ROOT / "CMakeLists.txt", *(ROOT / "src").rglob("*")]:
+        if path.is_file():
+            target = copy / path.relative_to(ROOT)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            if not target.exists() or target.read_bytes() != path.read_bytes():
+                target.write_bytes(path.read_bytes())
+
+
+def build_with(plant: Plant, tree: Path, build_tree: Callable[[], Path]) -> Path | None:
+    """The program with one mistake made in a copy of the tree, which is left as it was; None if the text is not there."""
+    path = tree / "src" / plant.file
+    whole = path.read_text()
+    if whole.count(plant.old) != 1:
+        return None
+    path.write_text(whole.replace(plant.old, plant.new))
+    try:
+        return build_tree()
+    finally:
+        path.write_text(whole)
