@@ -34,7 +34,7 @@ def read_notes(notes: Path) -> dict:
             return json.load(stream)
 
 
-def collect(build: Path, jobs: int) -> Counts:
+def collect(build: Path, tree: Path, jobs: int) -> Counts:
     """How often each line of src/ ran, over all object files of its file: {file: {line: count}}."""
     counts: Counts = defaultdict(lambda: defaultdict(int))
     notes = [path for path in build.rglob("*.gcno") if "/src/" in str(path) and "/tests/" not in str(path)]
@@ -48,7 +48,7 @@ def collect(build: Path, jobs: int) -> Counts:
                 for line in entry["lines"]:
                     counts[name][line["line_number"]] += line["count"]
     for name, lines in counts.items():
-        source = (ROOT / name).read_text().splitlines()
+        source = (tree / name).read_text().splitlines()
         for number in [number for number in lines if END.match(source[number - 1])]:
             del lines[number]
     return counts
@@ -81,11 +81,11 @@ def reason_of(name: str, text: str, reasons: list[Reason]) -> int | None:
     return None
 
 
-def unreached(counts: Counts, reasons: list[Reason]) -> tuple[list[str], int, set[int]]:
+def unreached(counts: Counts, tree: Path, reasons: list[Reason]) -> tuple[list[str], int, set[int]]:
     """Listing of the lines that never ran, how many of them have no reason, the reasons used."""
     listing, bare, used = [], 0, set()
     for name in sorted(counts):
-        source = (ROOT / name).read_text().splitlines()
+        source = (tree / name).read_text().splitlines()
         missed = sorted(number for number, count in counts[name].items() if count == 0)
         if missed:
             listing.append(name)
@@ -104,13 +104,14 @@ def main() -> int:
     parser.add_argument("build", type=Path, help="folder of the build")
     parser.add_argument("--least", type=float, default=90.0, help="least share of lines in percent (90)")
     parser.add_argument("--output", type=Path, help="page to write (coverage.txt in the build)")
+    parser.add_argument("--tree", type=Path, default=ROOT, help="the sources as they were built, if they have changed")
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
-    counts = collect(options.build, options.jobs)
+    counts = collect(options.build, options.tree, options.jobs)
     if not counts:
         raise SystemExit(f"no counts below {options.build}")
     reasons = read_reasons(REASONS)
-    listing, bare, used = unreached(counts, reasons)
+    listing, bare, used = unreached(counts, options.tree, reasons)
     folders = table(counts, lambda name: str(Path(name).parent))
     (total,) = table(counts, lambda name: "all")
     page = options.output or options.build / "coverage.txt"
