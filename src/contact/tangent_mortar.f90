@@ -75,7 +75,7 @@ contains
     call add_nodal_tangent(contact, memory, list, equations, matrix)
   end subroutine add_segmented_mortar_tangent
 
-  !> Append the points of one piece.
+  !> Append the points of one piece that counts (share above 0).
   pure subroutine vary_piece(contact, memory, cover, before, piece, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -87,7 +87,6 @@ contains
     type(foot_t) :: foot
     integer :: q
 
-    if (.not. piece%share > 0.0_wp) return
     call take_piece(memory, cover, before, piece, point)
     xi = piece_ends(memory%places, point%nodes, piece)
     length = (xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2)

@@ -201,13 +201,12 @@ contains
     if (.not. card%bad(k)) call field_error(deck, cursor%specs(card%number), card, k, message)
   end subroutine report_field
 
-  !> An error of a field of a card that was read some time ago.
+  !> An error of a field that was given, on a card that was read some time ago.
   subroutine reject_field(deck, place, message)
     type(deck_t), intent(inout) :: deck
     type(place_t), intent(in) :: place
     character(*), intent(in) :: message
     type(card_spec_t) :: specs(max_card)
-    type(card_t) :: card
     integer :: n_card, i_block
 
     if (is_full(deck%report)) then
@@ -216,12 +215,7 @@ contains
     end if
     i_block = block_of_line(deck, place%line)
     call get_specs(deck, i_block, specs, n_card)
-    if (place%line > deck%blocks(i_block)%keyword) then
-      call place_error(deck, specs(place%card), place, deck%blocks(i_block)%source, message)
-    else
-      card%line = place%line
-      call field_error(deck, specs(place%card), card, place%field, message)
-    end if
+    call place_error(deck, specs(place%card), place, deck%blocks(i_block)%source, message)
   end subroutine reject_field
 
 end module deck_cards_m

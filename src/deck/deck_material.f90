@@ -135,7 +135,7 @@ contains
     if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a number of 1 or more')
     if (head%r(3) < 0.0_wp) call report_field(deck, cursor, head, 3, &
       'is negative: it would turn the curve round')
-    if (.not. abs(head%r(3)) > 0.0_wp) head%r(3) = 1.0_wp
+    if (.not. head%r(3) > 0.0_wp) head%r(3) = 1.0_wp
     if (.not. abs(head%r(4)) > 0.0_wp) head%r(4) = 1.0_wp
     allocate (points(2, max(cursor%last - cursor%line + 1, 1)))
     n = 0
@@ -143,8 +143,6 @@ contains
       call next_row(deck, parameters, cursor, 2, card, found)
       if (.not. found) exit
       n = n + 1
-      call check_product(deck, cursor, card, 1, head%r(3), head%r(5))
-      call check_product(deck, cursor, card, 2, head%r(4), head%r(6))
       points(1, n) = head%r(3)*(card%r(1) + head%r(5))
       points(2, n) = head%r(4)*(card%r(2) + head%r(6))
       if (n == 1 .or. card%bad(1)) cycle
@@ -163,19 +161,6 @@ contains
     curve%ordinate = points(2, :n)
     call append_curve(raw, curve, head%line)
   end subroutine read_curve
-
-  !> A point that leaves the range of numbers when it is scaled is refused and becomes zero.
-  subroutine check_product(deck, cursor, card, k, factor, offset)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    integer, intent(in) :: k
-    real(wp), intent(in) :: factor, offset
-
-    if (exponent(card%r(k) + offset) + exponent(factor) < 900) return
-    call report_field(deck, cursor, card, k, 'is too large with the curve''s factor')
-    card%r(k) = -offset
-  end subroutine check_product
 
   !> One more curve.
   subroutine append_curve(raw, curve, line)

@@ -3,7 +3,7 @@
 module deck_resolve_mesh_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use parts_m, only : hourglass_t, find_id
+  use parts_m, only : hourglass_t
   use mesh_m, only : mesh_t
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning

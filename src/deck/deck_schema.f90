@@ -218,8 +218,6 @@ contains
       text = 'asks for mass scaling, which this version does not have; leave it 0'
     case ('ERODE', 'TDEL')
       text = 'asks for deletion of elements, which this version does not have; leave it 0'
-    case ('IMFLAG')
-      text = 'asks for the implicit solver, which this version does not have; leave it 0'
     case ('EOSID')
       text = 'is an equation of state, which this version does not have; leave it 0'
     case ('N5', 'N6', 'N7', 'N8')

@@ -5,7 +5,7 @@ module parts_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: part_t, section_t, material_t, hourglass_t, find_id, &
+  public :: part_t, section_t, material_t, hourglass_t, &
     form_one_point, form_full, law_elastic, law_plastic, law_piecewise, &
     hourglass_viscous, hourglass_stiffness
 
@@ -58,19 +58,5 @@ module parts_m
     integer :: material = 0           !! index into model%materials
     type(hourglass_t) :: hourglass    !! what holds for this part
   end type part_t
-
-contains
-
-  !> Index of `id` in `ids`, 0 when it is not there (short lists only: it looks at each).
-  pure function find_id(ids, id) result(index_found)
-    integer, intent(in) :: ids(:)
-    integer, intent(in) :: id
-    integer :: index_found
-
-    do index_found = size(ids), 1, -1
-      if (ids(index_found) == id) return
-    end do
-    index_found = 0
-  end function find_id
 
 end module parts_m

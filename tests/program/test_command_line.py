@@ -43,7 +43,8 @@ def test_memory_is_accepted_and_ignored(slideline, tmp_path):
 @pytest.mark.parametrize("word, said", [("nonsense=1", "nonsense"), ("--nonsense", "nonsense"),
                                         ("ctype=two", "two"), ("ctype.7=2", "interface 7"),
                                         ("ncpu=0", "ncpu"), ("ncpu=1025", "1024"), ("ncpu=two", "ncpu"), ("perthread=0", "perthread"), ("timing=often", "phase, interface or off"), ("endtim=", "endtim"),
-                                        ("endtim=soon", "soon"), ("p:nowhere=3", "nowhere")])
+                                        ("endtim=soon", "soon"), ("p:nowhere=3", "nowhere"),
+                                        ("jobid=a/b", "expected a name without /"), ("jobid=", "jobid= is empty")])
 def test_wrong_words_are_refused(slideline, word, said):
     done = slideline("d=w", word, deck=drop(end_time=0.002))
     assert done.returncode == 1

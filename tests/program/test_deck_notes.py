@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""What is said of decks that run, and small mistakes that other decks do not make."""
+import numpy as np
+import pytest
+from conftest import drop, numbers
+from meshes import Deck, grid
+
+
+def said_by(slideline, tmp_path, *cards, words=()):
+    """Status, and screen and log together, of the drop with more cards behind it."""
+    text = drop(end_time=0.001).text().rsplit("*END", 1)[0] + "\n".join(cards) + "\n*END\n"
+    done = slideline("d=out", *words, deck=text)
+    log = tmp_path / "out" / "job.log"
+    return done.returncode, done.stderr + (log.read_text() if log.exists() else "")
+
+
+POINTS = "0.0,0.1\n2.0e4,3.0e4"
+PIECEWISE = "*MAT_PIECEWISE_LINEAR_PLASTICITY\n5,1000.0,1.0e6,0.3,2.0e4,1.0e5\n"
+CURVE = "*DEFINE_CURVE\n5,\n0.0,2.0e4\n1.0,3.0e4"
+FACTOR = "*DEFINE_CURVE\n6,\n0.0,1.0\n100.0,2.0"
+TABLE = "*DEFINE_TABLE\n7,\n0.0,\n10.0,\n*DEFINE_CURVE\n8,\n0.0,2.0e4\n1.0,3.0e4\n*DEFINE_CURVE\n9,\n0.0,3.0e4\n1.0,4.0e4"
+
+
+@pytest.mark.parametrize("cards, words", [
+    ("*CONTROL_HOURGLASS\n4,0.0", "means the default 0.1"),
+    ("*MAT_RIGID\n5,1000.0,1.0e6,0.3\n0.0,7,7", "CON1 and CON2 have no effect while CMO is 0"),
+    (PIECEWISE + "0.0,0.0,5\n0.0,0.1\n2.0e4,3.0e4\n" + CURVE, "EPS and ES have no effect where LCSS"),
+    (PIECEWISE + "40.0,5.0,7\n" + TABLE, "a table (LCSS) gives the rate effect: LCSR, C and P have none"),
+    (PIECEWISE + "40.0,5.0,5,6\n" + CURVE + "\n" + FACTOR, "LCSR gives the rate effect: C and P have none"),
+    (PIECEWISE + "0.0,0.0,0,0,1.0", "VP has no effect: the material has no rate effect"),
+])
+def test_cards_without_effect_are_named(slideline, tmp_path, cards, words):
+    status, said = said_by(slideline, tmp_path, cards)
+    assert status == 0, said
+    assert words in said, said
+    assert said.count("warning: ") > 0
+
+
+@pytest.mark.parametrize("cards, words, line", [
+    ("*PARAMETER_EXPRESSION\n,2*3", "a parameter needs a name", ()),
+    ("*PARAMETER\nR stiff,2.0", 'p:STIFF on the command line: "hard" is not a number', ("p:stiff=hard",)),
+    ("", "is not a share of the largest stable one", ("punit=3", "pen=2.0")),
+])
+def test_small_mistakes(slideline, tmp_path, cards, words, line):
+    status, said = said_by(slideline, tmp_path, cards, words=line)
+    assert status == 1 and words in said, said
+
+
+def test_a_deck_of_many_parameters_with_a_byte_order_mark(slideline, tmp_path):
+    """Twenty parameters, more than a list starts with; one given as +2.0 is taken as -2.0 by a minus before its name."""
+    text = drop(end_time=0.001).text()
+    names = "\n".join(f"R name{k:02d},+{k}.5" for k in range(20))
+    parametric = text.replace("*CONTROL_TERMINATION", f"*PARAMETER\n{names}\nR   down,+2.0\n*CONTROL_TERMINATION", 1)
+    assert "0.3,-2.0" in parametric
+    parametric = parametric.replace("0.3,-2.0", "0.3,-&down")
+    (tmp_path / "marked.k").write_bytes(b"\xef\xbb\xbf" + parametric.encode())
+    assert slideline("i=marked.k", "d=marked").returncode == 0
+    assert slideline("d=plain", deck=text).returncode == 0
+    assert (tmp_path / "marked/marked.glstat.csv").read_bytes() == (tmp_path / "plain/job.glstat.csv").read_bytes()
+
+
+def test_all_nodes_at_one_height(slideline, tmp_path):
+    """A plane at z = 0.5 is as good as one at 0, and is said to be ignored."""
+    deck = Deck("raised").control(1.0e-3, dt=1.0e-4).part(1).elastic(1000.0, 1.0e6, 0.3)
+    deck.mesh(*grid(2, 1))
+    text = deck.output(glstat=1.0e-4).text()
+    raised = "\n".join(line + ",0.5" if line.count(",") == 2 and at in range(start, stop) else line
+                       for (start, stop) in [node_lines(text)] for at, line in enumerate(text.splitlines()))
+    done = slideline("d=out", deck=raised)
+    assert done.returncode == 0, done.stderr
+    assert "z is the same for all nodes and is ignored" in done.stderr + (tmp_path / "out/job.log").read_text()
+
+
+def node_lines(text):
+    """First line and line behind the last one of the nodes."""
+    lines = text.splitlines()
+    start = lines.index("*NODE") + 1
+    stop = next(at for at in range(start, len(lines)) if lines[at].startswith("*"))
+    return start, stop
+
+
+def test_more_mistakes_than_are_told(slideline):
+    """1100 sets that are not there: the first thousand in words, all of them in the sum."""
+    text = drop().text().rsplit("*END", 1)[0]
+    text += "".join(f"*BOUNDARY_SPC_SET\n{1000 + k},0,1,1\n" for k in range(1100)) + "*END\n"
+    done = slideline("d=out", deck=text)
+    assert done.returncode == 1
+    assert "refused, 1100 errors" in done.stderr
+    assert done.stderr.count("BOUNDARY_SPC_SET card") == 1000
+
+
+def test_names_of_the_alternative_spelling(slideline, tmp_path):
+    """SET_PART is SET_PART_LIST and DATABASE_D3PLOT is DATABASE_BINARY_D3PLOT."""
+    text = drop(end_time=0.002).text()
+    assert "*DATABASE_BINARY_D3PLOT" in text
+    other = text.replace("*DATABASE_BINARY_D3PLOT", "*DATABASE_D3PLOT").rsplit("*END", 1)[0]
+    assert slideline("d=other", deck=other + "*SET_PART\n4,\n1,2\n*END\n").returncode == 0
+    assert slideline("d=plain", deck=text).returncode == 0
+    assert np.array_equal(numbers(tmp_path / "other/job.glstat.csv", "time"),
+                          numbers(tmp_path / "plain/job.glstat.csv", "time"))
+    assert (tmp_path / "other/job.vtkhdf").exists()
