@@ -166,6 +166,8 @@ def operators(text: str) -> Iterator[tuple[str, int, int, str]]:
 def numbers(text: str) -> Iterator[tuple[str, int, int, str]]:
     """Broken numbers; a literal subscript is moved to its neighbour."""
     for found in NUMBER.finditer(text):
+        if re.search(r"\b(?:tiny|huge|epsilon)\($", text[:found.start()]):
+            continue  # asks for the kind only
         literal, start, end = found.group(1), found.start(1), found.end(1)
         if "." in literal:
             plain = f"{2.0*float(literal.lower().replace('d', 'e'))!r}"

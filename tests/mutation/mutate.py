@@ -52,10 +52,8 @@ def baseline(trial: Trial, layer: str, units_only: bool) -> list[Check]:
     path = trial.units.folder / "mutation_costs.json"
     costs = json.loads(path.read_text()) if path.exists() else {}
     checks = [check for check in list_checks(layer) if check.is_unit or not units_only]
-    fresh = [check for check in checks if check.name not in costs]
-    if fresh:
-        kept = [check.name for check in measure(trial, fresh, layer)]
-        costs |= {check.name: check.seconds if check.name in kept else -1.0 for check in fresh}
+    for check in measure(trial, [check for check in checks if check.name not in costs], layer):
+        costs = (json.loads(path.read_text()) if path.exists() else {}) | {check.name: check.seconds}
         path.write_text(json.dumps(costs, indent=1))
     for check in checks:
         check.seconds = costs[check.name]
@@ -65,7 +63,7 @@ def baseline(trial: Trial, layer: str, units_only: bool) -> list[Check]:
 def run(options: argparse.Namespace) -> None:
     """Draw and try."""
     units, program = Build(options.build), Build(options.program_build or options.build)
-    scratch = units.folder / "mutation"
+    scratch = units.folder / "mutation" / options.out.stem
     layers = options.layers or ["contact", "material"]
     checks = {layer: [check for check in baseline(Trial(units, program, scratch / "costs"), layer,
                                                   options.units_only)

@@ -47,6 +47,7 @@ def afters(body: str, rule: str) -> list[str]:
     ("x = 0.5_wp*y", "number", ["x = 1.0_wp*y"]),
     ("x = 3.0_wp", "number", ["x = 6.0_wp"]),
     ("k = i + 1", "number", ["k = i + 2"]),
+    ("x = max(y, tiny(1.0_wp))", "number", []),
     ("x = max(y, abs(z))", "function", ["x = min(y, abs(z))", "x = max(y, (z))"]),
     ("x = y", "left out", ["continue"]),
     ("if (q) x = y", "left out", ["if (q) continue"]),

@@ -14,9 +14,11 @@ import shlex
 import shutil
 import subprocess
 import sys
-import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+
+from replay import does_the_same, finish_recording, start_recording
 
 ROOT = Path(__file__).resolve().parents[2]
 #: layer -> unit tests that run it
@@ -27,7 +29,6 @@ CASES = {"contact": ("block_to_block*", "chain_end", "closed_chains", "collision
                      "hertz", "implicit_press", "momentum_and_third_law", "oblique_impact", "stable_step"),
          "material": ("element_*", "rigid_spin", "bar_wave", "collision_*", "full_integration",
                       "implicit_*", "symmetric_plate*")}
-PROGRAM_TESTS = {"contact": ("implicit", "same_bits"), "material": ("implicit",)}
 MOST_MEMORY = 4 << 30
 PATIENCE, LEAST_SECONDS = 10.0, 5.0  # processor time allowed: this many times that of the original
 
@@ -99,10 +100,6 @@ def list_checks(layer: str) -> list[Check]:
                 checks.append(Check(f"{label}.{path.parent.name}", "slideline",
                                     (python, f"{tests}/{label}/run_case.py", path.parent.name,
                                      "--program", "{program}", "--work", "{work}")))
-    for name in PROGRAM_TESTS[layer]:
-        checks.append(Check(f"program.{name}", "slideline", (
-            python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider",
-            f"{tests}/program/test_{name}.py")))
     return checks
 
 
@@ -132,6 +129,7 @@ class Trial:
         self.units = units       # the build of the unit tests
         self.program = program   # the build of the program
         self.scratch = scratch.resolve()
+        self.records = units.folder / "mutation" / "records"
         self.source = ("", "")   # layer and file of the mutant
         self.made: set[str] = set()
 
@@ -152,8 +150,8 @@ class Trial:
         self.made.add(build.folder.name)
         return done.returncode == 0
 
-    def run(self, check: Check, seconds: float) -> tuple[str, float]:
-        """How a check ends ("" if all is well) and the processor time it took."""
+    def link(self, check: Check) -> Path:
+        """The program that a check runs, with the mutant in it."""
         build = self.units if check.is_unit else self.program
         if build.folder.name not in self.made and not self.compile(build):
             raise RuntimeError(f"{self.source[1]} does not compile in {build.folder}")
@@ -161,12 +159,35 @@ class Trial:
             subprocess.run(build.link_command(check.target, self.scratch), cwd=build.folder,
                            check=True, capture_output=True)
             self.made.add(check.target)
-        names = {"program": str(self.scratch / check.target), "work": str(self.scratch / "work")}
+        return self.scratch / check.target
+
+    def run(self, check: Check, seconds: float, program: Path | None = None,
+            work: Path | None = None) -> tuple[str, float]:
+        """How a check ends ("" if all is well) and the processor time it took."""
+        program = program or self.link(check)
+        names = {"program": str(program), "work": str(work or self.scratch / "work")}
         command = [word.format(**names) for word in check.command]
         status, used = run_limited(command, seconds, self.scratch,
                                    self.scratch if check.is_unit else ROOT)
         shutil.rmtree(self.scratch / "work", ignore_errors=True)
         return verdict(status, used, seconds), used
+
+    def record(self, check: Check) -> tuple[str, float]:
+        """Run a case with the original, and write down what its runs leave behind."""
+        folder = self.records / check.name
+        how, used = self.run(check, 600.0, start_recording(folder, self.link(check)), folder / "work")
+        if not how:
+            finish_recording(folder)
+        return how, used
+
+    def try_out(self, check: Check) -> str:
+        """How a check of the mutant ends; "" also where all its runs do what those of the original did."""
+        seconds = max(LEAST_SECONDS, PATIENCE*check.seconds)
+        if not check.is_unit and does_the_same(
+                self.records / check.name, self.link(check), self.scratch,
+                lambda command, where: run_limited(command, seconds, self.scratch, where)):
+            return ""
+        return self.run(check, seconds)[0]
 
 
 def verdict(status: int, used: float, seconds: float) -> str:
@@ -178,20 +199,16 @@ def verdict(status: int, used: float, seconds: float) -> str:
     return "crash" if status < 0 else "failed"
 
 
-def measure(trial: Trial, checks: list[Check], layer: str) -> list[Check]:
-    """Run all checks with an original in the place of the mutant; those that fail are left out."""
+def measure(trial: Trial, checks: list[Check], layer: str) -> Iterator[Check]:
+    """Run checks with an original in the place of the mutant: costs; -1 for a check that fails."""
     path = sorted((ROOT / "src" / layer).glob("*.f90"))[0]
     if not trial.start(layer, path.name, path.read_text()):
         raise SystemExit(f"{path} does not compile: is {trial.units.folder} up to date?")
-    kept = []
     for check in checks:
-        begin = time.monotonic()
-        how, check.seconds = trial.run(check, 600.0)
-        print(f"{check.name}: {how or 'passed'}, {check.seconds:.2f} s, "
-              f"{time.monotonic() - begin:.1f} s on the clock", flush=True)
-        if not how:
-            kept.append(check)
-    return kept
+        how, used = trial.run(check, 600.0) if check.is_unit else trial.record(check)
+        check.seconds = -1.0 if how else used
+        print(f"{check.name}: {how or 'passed'}, {used:.2f} s", flush=True)
+        yield check
 
 
 def try_mutant(trial: Trial, checks: list[Check], layer: str, name: str, text: str) -> tuple[str, str]:
@@ -203,7 +220,7 @@ def try_mutant(trial: Trial, checks: list[Check], layer: str, name: str, text: s
                   [check for check in checks if check.is_unit and check.name != own],
                   [check for check in checks if not check.is_unit]):
         for check in sorted(stage, key=lambda check: -check.promise):
-            how, _ = trial.run(check, max(LEAST_SECONDS, PATIENCE*check.seconds))
+            how = trial.try_out(check)
             check.n_run += 1
             if how:
                 check.n_noticed += 1
