@@ -188,7 +188,8 @@ contains
       cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
     call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
     call fill_rigids(model, state, monitor%snapshot)
-    if (cycle%due%glstat .or. cycle%due%matsum) call fill_energies(model, state, monitor%snapshot)
+    if (cycle%due%glstat .or. cycle%due%matsum) call fill_energies(model, state, &
+      cycle%damping, monitor%snapshot)
     if (state%cycle == 0) then
       state%initial_energy = total_energy(monitor%snapshot%energies)
       monitor%snapshot%energies%initial = state%initial_energy

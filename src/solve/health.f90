@@ -6,6 +6,7 @@ module health_m
   use element_state_m, only : smallest_ratio
   use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
+  use layout_m, only : slot_part
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use state_m, only : state_t
@@ -66,7 +67,7 @@ contains
     do slot = 1, model%layout%n_slot
       element = model%layout%slot_element(slot)
       if (element == 0 .or. all(abs(state%elements%deviator(slot, :)) <= huge(ratio))) cycle
-      call blame(model, state, element, 'values that are not finite', error)
+      call blame(model, state, slot, 'values that are not finite', error)
       return
     end do
     do slot = 1, model%layout%n_slot
@@ -74,7 +75,7 @@ contains
       if (element == 0) cycle
       ratio = smallest_ratio(model, state%motion, state%elements, slot)
       if (ratio > 0.0_wp .and. ratio <= huge(ratio)) cycle
-      call blame(model, state, element, merge('negative area             ', &
+      call blame(model, state, slot, merge('negative area             ', &
         'values that are not finite', ratio <= 0.0_wp), error)
       return
     end do
@@ -82,16 +83,17 @@ contains
       //to_text(state%cycle)//', time '//to_text(state%time), status_run)
   end subroutine name_bad_chunk
 
-  !> The error that names an element.
-  subroutine blame(model, state, element, what, error)
+  !> The error that names the element in a slot.
+  subroutine blame(model, state, slot, what, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    integer, intent(in) :: element
+    integer, intent(in) :: slot
     character(*), intent(in) :: what
     type(error_t), allocatable, intent(out) :: error
 
-    call raise(error, trim(what)//' in element '//to_text(model%mesh%element_id(element)) &
-      //' of part '//to_text(model%parts(model%mesh%element_part(element))%id)//' at cycle ' &
+    call raise(error, trim(what)//' in element '//to_text(model%mesh%element_id( &
+      model%layout%slot_element(slot)))//' of part ' &
+      //to_text(model%parts(slot_part(model%layout, slot))%id)//' at cycle ' &
       //to_text(state%cycle)//', time '//to_text(state%time), status_run)
   end subroutine blame
 
