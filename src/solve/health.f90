@@ -1,20 +1,55 @@
 ! SPDX-License-Identifier: MIT
 !> Checks that end a run which has gone wrong, with the cause in words.
 module health_m
+  use block_state_m, only : block_state_t
+  use contact_state_m, only : contact_state_t
   use controls_m, only : controls_t
   use energies_m, only : energies_t, energy_ratio, total_energy
   use element_state_m, only : smallest_ratio
   use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
-  use layout_m, only : slot_part
+  use layout_m, only : slot_part, tile_t
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use state_m, only : state_t
   implicit none
   private
-  public :: check_elements, check_step, check_energy, judge_energies
+  public :: tile_check_t, check_tile, are_sound, check_elements, check_step, check_energy, &
+    judge_energies
+
+  !> What the elements of one tile have come to in a cycle. One cache line each: threads fill them side by side.
+  type :: tile_check_t
+    real(wp) :: time_limit = huge(1.0_wp)   !! smallest L/c, s
+    real(wp) :: checksum = 0.0_wp           !! of the works: finite as long as all of them are
+    logical :: has_volume = .true.          !! all A/A0 are positive
+    real(wp) :: unused(5) = 0.0_wp
+  end type tile_check_t
 
 contains
+
+  !> Look through the chunks of a tile while they are in the cache of the thread that advanced them.
+  pure function check_tile(tile, elements) result(check)
+    type(tile_t), intent(in) :: tile
+    type(block_state_t), intent(in) :: elements
+    type(tile_check_t) :: check
+    integer :: i
+
+    do i = tile%first_chunk, tile%last_chunk
+      check%time_limit = min(check%time_limit, elements%time_limit(i))
+      check%has_volume = check%has_volume .and. elements%volume_limit(i) > 0.0_wp
+      check%checksum = check%checksum + (elements%deviatoric_work(i) + elements%hourglass_work(i))
+    end do
+  end function check_tile
+
+  !> Whether all tiles and interfaces are as `check_elements` wants them.
+  pure function are_sound(checks, contacts) result(sound)
+    type(tile_check_t), intent(in) :: checks(:)
+    type(contact_state_t), intent(in) :: contacts(:)
+    logical :: sound
+
+    sound = all(checks%has_volume) &
+      .and. abs(sum(checks%checksum) + sum(contacts%energy)) <= huge(1.0_wp)
+  end function are_sound
 
   !> Volumes must stay positive, stresses and contact forces finite.
   subroutine check_elements(model, state, error)
