@@ -15,11 +15,12 @@ module run_m
     close_text_file
   use go_on_m, only : take_up_deck
   use log_m, only : open_log, close_log, write_log, to_text
+  use memory_m, only : give_back_memory
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name
   use progress_m, only : show_end
-  use renumber_m, only : renumber_model
+  use renumber_m, only : renumber_model, forget_start
   use restart_m, only : forget_files
   use restart_plan_m, only : restarts_t
   use restart_reading_m, only : take_up_state, take_up_results, take_up_outputs
@@ -77,10 +78,9 @@ contains
     deallocate (info%effective_deck)
     if (.not. monitor%restarts%goes_on) call start_state(model, monitor%log, state, error)
     if (allocated(error)) return
-    ! Used up: the state holds it now.
-    if (allocated(model%conditions%initial_velocity)) &
-      deallocate (model%conditions%initial_velocity)
     call start_monitor(model, size(state%elements%history) > 0, monitor)
+    call forget_start(model)
+    call give_back_memory()
     if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
     if (allocated(error)) return
     call begin_status(model, state, monitor)

@@ -32,7 +32,7 @@ module deck_m
   use deck_contact_m, only : read_contact
   use deck_wall_m, only : read_wall
   use deck_resolve_m, only : resolve_model
-  use deck_effective_m, only : write_effective
+  use deck_effective_m, only : forget_places, write_effective
   use deck_echo_m, only : echo_model
   implicit none
   private
@@ -116,6 +116,7 @@ contains
     call emit_errors(deck%report, request%path, error)
     if (allocated(error)) return
     call echo_model(model, request%path, log)
+    call forget_places(deck)
     call write_effective(deck, parameters, tail, effective)
   end subroutine interpret_deck
 

@@ -8,10 +8,10 @@ module deck_conditions_m
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, check_rest, &
     report_field
-  use deck_raw_m, only : raw_t, row_t, reserve_rows, append_row, row_spc_node, row_spc_set, &
-    row_motion_node, row_motion_set, row_velocity, row_velocity_node, row_velocity_generation, &
-    row_load_node, row_load_set, row_pressure, row_pressure_set, row_body, row_damping, &
-    row_motion_rigid, row_velocity_rigid
+  use deck_raw_m, only : raw_t, row_t, reserve_rows, append_row, reserve_velocities, &
+    append_velocity, row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, &
+    row_velocity_node, row_velocity_generation, row_load_node, row_load_set, row_pressure, &
+    row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid
   implicit none
   private
   public :: read_condition, read_initial_velocity
@@ -35,7 +35,12 @@ contains
     if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
     row%kind = row_kind(trim(deck%blocks(i_block)%name))
     row%direction = merge(2, 1, deck%blocks(i_block)%name == 'LOAD_BODY_Y')
-    call reserve_rows(raw, deck%blocks(i_block)%last - deck%blocks(i_block)%first + 1)
+    n_row = deck%blocks(i_block)%last - deck%blocks(i_block)%first + 1
+    if (row%kind == row_velocity_node) then
+      call reserve_velocities(raw, n_row)
+    else
+      call reserve_rows(raw, n_row)
+    end if
     n_row = 0
     do
       call next_row(deck, parameters, cursor, 1, card, found)
@@ -91,6 +96,10 @@ contains
     type(row_t), intent(inout) :: row
 
     if (any(card%bad)) return
+    if (row%kind == row_velocity_node) then
+      call append_velocity(raw, card%line, card%i(1), card%r(2:3))
+      return
+    end if
     row%line = card%line
     row%i = card%i(1:8)
     row%r = card%r(1:8)

@@ -4,9 +4,10 @@
 module deck_effective_m
   use deck_lines_m, only : deck_t, layout_mark
   use deck_parameter_table_m, only : parameters_t, parameter_comments
+  use memory_m, only : give_back_memory
   implicit none
   private
-  public :: write_effective
+  public :: forget_places, write_effective
 
   !> A text that is first counted, then written.
   type :: buffer_t
@@ -16,9 +17,18 @@ module deck_effective_m
 
 contains
 
-  !> The text of the effective deck.
+  !> Give up what only messages need, before a second text of the deck takes room.
+  subroutine forget_places(deck)
+    type(deck_t), intent(inout) :: deck
+
+    if (allocated(deck%number)) deallocate (deck%number)
+    if (allocated(deck%flags)) deallocate (deck%flags)
+    call give_back_memory()
+  end subroutine forget_places
+
+  !> The text of the effective deck. The files that it is made of are given up on the way.
   subroutine write_effective(deck, parameters, tail, effective)
-    type(deck_t), intent(in) :: deck
+    type(deck_t), intent(inout) :: deck
     type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: tail  !! keywords besides those of the deck
     character(:), allocatable, intent(out) :: effective
@@ -33,16 +43,20 @@ contains
 
   !> Put the deck together; only counted while the buffer has no text.
   subroutine compose(deck, parameters, tail, buffer)
-    type(deck_t), intent(in) :: deck
+    type(deck_t), intent(inout) :: deck !! loses its text when it is written
     type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: tail
     type(buffer_t), intent(inout) :: buffer
-    integer :: i, line, source
+    integer :: i, line, source, last_block(deck%n_source)
 
+    do i = 1, deck%n_block
+      last_block(deck%blocks(i)%source) = i
+    end do
     call put(buffer, '$ The deck as run: includes, parameters and command line resolved.')
     call put_text(buffer, parameter_comments(parameters))
     call put(buffer, '*KEYWORD')
     do i = 1, deck%n_block
+      if (i > 1 .and. allocated(buffer%text)) call forget_text(deck, last_block, i - 1)
       if (deck%blocks(i)%dropped) cycle
       if (allocated(deck%blocks(i)%replacement)) then
         call put_text(buffer, deck%blocks(i)%replacement)
@@ -61,6 +75,17 @@ contains
     call put_text(buffer, tail)
     call put(buffer, '*END')
   end subroutine compose
+
+  !> Give up the text of a file behind its last block.
+  subroutine forget_text(deck, last_block, i_block)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: last_block(:) !! by file
+    integer, intent(in) :: i_block
+
+    associate (source => deck%blocks(i_block)%source)
+      if (last_block(source) == i_block) deallocate (deck%sources(source)%text)
+    end associate
+  end subroutine forget_text
 
   !> Append a line.
   subroutine put(buffer, line)

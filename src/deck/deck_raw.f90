@@ -12,7 +12,7 @@ module deck_raw_m
   implicit none
   private
   public :: raw_t, lost_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_set_t, raw_contact_t, row_t, history_t, &
-    reserve_rows, append_row, append_set, append_member, reserve_nodes, reserve_elements, &
+    reserve_rows, append_row, reserve_velocities, append_velocity, append_set, append_member, reserve_nodes, reserve_elements, &
     row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, row_velocity_node, &
     row_velocity_generation, row_load_node, row_load_set, row_pressure, row_pressure_set, &
     row_body, row_damping, row_motion_rigid, row_velocity_rigid, output_plot, output_glstat, &
@@ -36,6 +36,14 @@ module deck_raw_m
     integer :: i(8) = 0
     real(wp) :: r(8) = 0.0_wp
   end type row_t
+
+  !> One card of *INITIAL_VELOCITY_NODE: a large deck may have one for each node.
+  type :: node_velocity_t
+    integer :: line = 0
+    integer :: node = 0          !! user id
+    integer :: n_row = 0         !! rows that the deck has before
+    real(wp) :: velocity(2) = 0.0_wp
+  end type node_velocity_t
 
   !> Hardening of a *MAT_PIECEWISE_LINEAR_PLASTICITY, until its curves are known.
   type :: raw_hardening_t
@@ -134,6 +142,8 @@ module deck_raw_m
     integer :: n_node_set = 0, n_part_set = 0, n_segment_set = 0
     type(row_t), allocatable :: rows(:)
     integer :: n_row = 0
+    type(node_velocity_t), allocatable :: node_velocities(:)
+    integer :: n_node_velocity = 0
     type(raw_contact_t), allocatable :: contacts(:)
     type(raw_wall_t), allocatable :: walls(:)
     type(controls_t) :: controls
@@ -157,12 +167,12 @@ contains
     allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%materials(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
       raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%tables(0), raw%contacts(0), &
-      raw%walls(0), raw%rows(64), raw%node_sets(16), raw%part_sets(16), raw%segment_sets(16))
+      raw%walls(0), raw%rows(64), raw%node_velocities(0), raw%node_sets(16), raw%part_sets(16), raw%segment_sets(16))
     call reserve_nodes(raw, 0)
     call reserve_elements(raw, 0)
   end subroutine start_raw
 
-  !> Room for `n_more` rows: a large deck may have one for each node.
+  !> Room for `n_more` rows.
   subroutine reserve_rows(raw, n_more)
     type(raw_t), intent(inout) :: raw
     integer, intent(in) :: n_more
@@ -183,6 +193,31 @@ contains
     raw%n_row = raw%n_row + 1
     raw%rows(raw%n_row) = row
   end subroutine append_row
+
+  !> Room for `n_more` velocities of nodes.
+  subroutine reserve_velocities(raw, n_more)
+    type(raw_t), intent(inout) :: raw
+    integer, intent(in) :: n_more
+    type(node_velocity_t), allocatable :: longer(:)
+
+    associate (n => raw%n_node_velocity)
+      if (n + n_more <= size(raw%node_velocities)) return
+      allocate (longer(n + max(n_more, n)))
+      longer(:n) = raw%node_velocities(:n)
+    end associate
+    call move_alloc(longer, raw%node_velocities)
+  end subroutine reserve_velocities
+
+  !> One more velocity of a node.
+  subroutine append_velocity(raw, line, node, velocity)
+    type(raw_t), intent(inout) :: raw
+    integer, intent(in) :: line, node
+    real(wp), intent(in) :: velocity(2)
+
+    call reserve_velocities(raw, 1)
+    raw%n_node_velocity = raw%n_node_velocity + 1
+    raw%node_velocities(raw%n_node_velocity) = node_velocity_t(line, node, raw%n_row, velocity)
+  end subroutine append_velocity
 
   !> One more set in a list.
   subroutine append_set(sets, n, set)

@@ -5,7 +5,7 @@ module deck_resolve_velocity_m
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t
   use deck_maps_m, only : maps_t, resolve_id
-  use deck_raw_m, only : raw_t, row_t, row_velocity, row_velocity_node, row_velocity_generation
+  use deck_raw_m, only : raw_t, row_t, row_velocity, row_velocity_generation
   implicit none
   private
   public :: resolve_velocity
@@ -19,39 +19,51 @@ contains
     type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     real(wp), allocatable :: velocity(:, :)
-    integer :: pass, i, found
+    integer :: i, next
 
-    do i = 1, raw%n_row
-      if (is_velocity(raw%rows(i)%kind)) exit
-    end do
-    if (i > raw%n_row) return
+    if (raw%n_node_velocity == 0 .and. .not. any(is_velocity(raw%rows(:raw%n_row)%kind))) return
     allocate (velocity(2, model%mesh%n_node), source=0.0_wp)
-    do pass = 1, 2
-      do i = 1, raw%n_row
-        if (.not. is_velocity(raw%rows(i)%kind)) cycle
-        if ((raw%rows(i)%kind == row_velocity_generation) .neqv. pass == 2) cycle
-        select case (raw%rows(i)%kind)
-        case (row_velocity)
-          call set_velocity(deck, maps, model, raw%rows(i), velocity)
-        case (row_velocity_node)
-          call resolve_id(deck, maps%nodes, raw%rows(i)%i(1), 'node', &
-            place_t(raw%rows(i)%line, 1, 1), found)
-          if (found > 0) velocity(:, found) = raw%rows(i)%r(2:3)
-        case default
-          call generate_velocity(deck, maps, model, raw%rows(i), velocity)
-        end select
-      end do
+    next = 1
+    do i = 1, raw%n_row
+      if (raw%rows(i)%kind /= row_velocity) cycle
+      call set_node_velocities(deck, raw, maps, i - 1, next, velocity)
+      call set_velocity(deck, maps, model, raw%rows(i), velocity)
+    end do
+    call set_node_velocities(deck, raw, maps, raw%n_row, next, velocity)
+    do i = 1, raw%n_row
+      if (raw%rows(i)%kind == row_velocity_generation) &
+        call generate_velocity(deck, maps, model, raw%rows(i), velocity)
     end do
     call move_alloc(velocity, model%conditions%initial_velocity)
   end subroutine resolve_velocity
 
   !> Whether a row gives an initial velocity.
-  pure function is_velocity(kind) result(yes)
+  pure elemental function is_velocity(kind) result(yes)
     integer, intent(in) :: kind
     logical :: yes
 
-    yes = kind == row_velocity .or. kind == row_velocity_node .or. kind == row_velocity_generation
+    yes = kind == row_velocity .or. kind == row_velocity_generation
   end function is_velocity
+
+  !> *INITIAL_VELOCITY_NODE: the cards with at most `n_row` rows before them; `next` moves past them.
+  subroutine set_node_velocities(deck, raw, maps, n_row, next, velocity)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    integer, intent(in) :: n_row
+    integer, intent(inout) :: next
+    real(wp), intent(inout) :: velocity(:, :)
+    integer :: found
+
+    do while (next <= raw%n_node_velocity)
+      associate (card => raw%node_velocities(next))
+        if (card%n_row > n_row) return
+        call resolve_id(deck, maps%nodes, card%node, 'node', place_t(card%line, 1, 1), found)
+        if (found > 0) velocity(:, found) = card%velocity
+      end associate
+      next = next + 1
+    end do
+  end subroutine set_node_velocities
 
   !> *INITIAL_VELOCITY: a set or all nodes, less those of a second set, which have a velocity of
   !> their own.

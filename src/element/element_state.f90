@@ -4,7 +4,7 @@ module element_state_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use element_dispatch_m, only : point_count
-  use layout_m, only : chunk_size
+  use layout_m, only : chunk_size, slot_part
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
   use parts_m, only : hourglass_stiffness
@@ -111,26 +111,27 @@ contains
   end subroutine lump_mass
 
   !> Cauchy stress of all elements in deck order: xx yy zz xy (yz and xz stay zero in plane strain); the mean
-  !> over the present volume where an element has several points.
+  !> over the present volume where an element has several points. The slots are walked, whose streams and
+  !> nodes lie side by side.
   subroutine element_stresses(model, motion, elements, stress)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout) :: stress(:, :) !! (6, n_element)
-    real(wp) :: volumetric, bulk, stretch(n_point), start(n_point), now(n_point)
+    real(wp) :: volumetric, stretch(n_point), start(n_point), now(n_point), s(3)
     integer :: i, n, slot
 
-    do i = 1, model%mesh%n_element
-      slot = model%layout%element_slot(i)
-      call volume_ratios(model, motion, elements, slot, n, stretch, start)
-      if (model%materials(model%parts(model%mesh%element_part(i))%material)%is_rigid) stretch = 0.0_wp
-      bulk = model%materials(model%parts(model%mesh%element_part(i))%material)%bulk
-      now = start*(1.0_wp + stretch)
-      volumetric = bulk*(sum(now(:n)*log_ratio(stretch(:n)))/sum(now(:n)))
-      stress(1, i) = elements%deviator(slot, 1) + volumetric
-      stress(2, i) = elements%deviator(slot, 2) + volumetric
-      stress(3, i) = volumetric - (elements%deviator(slot, 1) + elements%deviator(slot, 2))
-      stress(4, i) = elements%deviator(slot, 3)
+    do slot = 1, model%layout%n_slot
+      i = model%layout%slot_element(slot)
+      if (i == 0) cycle
+      associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
+        call volume_ratios(model, motion, elements, slot, n, stretch, start)
+        if (material%is_rigid) stretch = 0.0_wp
+        now(:n) = start(:n)*(1.0_wp + stretch(:n))
+        volumetric = material%bulk*(sum(now(:n)*log_ratio(stretch(:n)))/sum(now(:n)))
+      end associate
+      s = elements%deviator(slot, :)
+      stress(1:4, i) = [s(1) + volumetric, s(2) + volumetric, volumetric - (s(1) + s(2)), s(3)]
     end do
   end subroutine element_stresses
 
@@ -145,17 +146,17 @@ contains
     integer :: i, k, slot, i_chunk, first, stride
 
     plastic_strain = 0.0_wp
-    do i = 1, model%mesh%n_element
-      slot = model%layout%element_slot(i)
+    do slot = 1, model%layout%n_slot
+      i = model%layout%slot_element(slot)
       i_chunk = (slot - 1)/chunk_size + 1
-      if (elements%history_start(i_chunk) == 0) cycle
+      if (i == 0 .or. elements%history_start(i_chunk) == 0) cycle
       first = elements%history_start(i_chunk) + mod(slot - 1, chunk_size)
       if (elements%point_start(i_chunk) == 0) then
         plastic_strain(i) = elements%history(first)
       else
         reference = elements%reference(slot, :)
         call point_ratios(reference, none, stretch, start)
-        stride = chunk_size*history_size(model%materials(model%parts(model%mesh%element_part(i)) &
+        stride = chunk_size*history_size(model%materials(model%parts(model%layout%chunk_part(i_chunk)) &
           %material))
         plastic_strain(i) = sum([(start(k)*elements%history(first + (k - 1)*stride), &
           k = 1, n_point)])/sum(start)

@@ -4,8 +4,8 @@ module controls_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: controls_t, implicit_t, output_plan_t, interval_t, length_by_side, length_by_diagonal, &
-    contact_step_warns, contact_step_free, contact_step_rules
+  public :: controls_t, implicit_t, output_plan_t, interval_t, is_asked, length_by_side, &
+    length_by_diagonal, contact_step_warns, contact_step_free, contact_step_rules
 
   !> Element length of the stable step (ISDO): area over longest side, or over longest diagonal.
   integer, parameter :: length_by_side = 0, length_by_diagonal = 1
@@ -80,5 +80,15 @@ module controls_m
     type(implicit_t) :: implicit
     type(output_plan_t) :: output
   end type controls_t
+
+contains
+
+  !> Whether the deck asks for this output.
+  pure function is_asked(interval) result(asked)
+    type(interval_t), intent(in) :: interval
+    logical :: asked
+
+    asked = interval%dt > 0.0_wp .or. interval%curve > 0
+  end function is_asked
 
 end module controls_m

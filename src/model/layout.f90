@@ -13,7 +13,7 @@
 module layout_m
   implicit none
   private
-  public :: layout_t, tile_t, chunk_size
+  public :: layout_t, tile_t, chunk_size, slot_part
 
   !> Elements per chunk; from 32 to 128 the speed hardly differs, beyond that chunks leave the L1 cache.
   integer, parameter :: chunk_size = 64
@@ -22,6 +22,7 @@ module layout_m
   type :: tile_t
     integer :: first_chunk = 1, last_chunk = 0
     integer :: first_node = 1, last_node = 0     !! interior nodes
+    integer :: first_owned = 1, last_owned = 0   !! special nodes that it is the first to touch
     integer :: first_special = 1, last_special = 0 !! its range in the list of force slots
   end type tile_t
 
@@ -42,5 +43,15 @@ module layout_m
     integer, allocatable :: node_slots(:)    !! (n_special + 1) where each special node's list starts ...
     integer, allocatable :: slot_list(:)     !! ... in this list of force slots
   end type layout_t
+
+contains
+
+  !> Part index of the element in a slot.
+  pure integer function slot_part(layout, slot)
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: slot
+
+    slot_part = layout%chunk_part((slot - 1)/chunk_size + 1)
+  end function slot_part
 
 end module layout_m

@@ -128,9 +128,12 @@ contains
     allocate (placed(mesh%n_node), source=.false.)
     n_placed = 0
     do i_tile = 1, size(layout%tiles)
+      layout%tiles(i_tile)%first_owned = n_placed + 1
       call place_tile_nodes(mesh, layout, i_tile, is_special, placed, order, n_placed)
+      layout%tiles(i_tile)%last_owned = n_placed
     end do
     call place_rest(is_special, placed, order, n_placed)
+    layout%tiles(size(layout%tiles))%last_owned = n_placed
     layout%n_special = n_placed
     do i_tile = 1, size(layout%tiles)
       layout%tiles(i_tile)%first_node = n_placed + 1

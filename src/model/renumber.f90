@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Puts a finished model into the order of the step: nodes renumbered everywhere, layout built.
 module renumber_m
+  use controls_m, only : is_asked
   use kinds_m, only : wp, long
   use layout_building_m, only : build_slots, order_nodes, build_local_numbers
   use model_m, only : model_t
@@ -8,7 +9,7 @@ module renumber_m
   use sorting_m, only : sorted_order
   implicit none
   private
-  public :: renumber_model
+  public :: renumber_model, forget_start
 
 contains
 
@@ -39,6 +40,20 @@ contains
     if (allocated(model%walls)) call renumber_walls(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
   end subroutine renumber_model
+
+  !> Give up what only the start of an explicit run reads: elements stand in the layout, initial velocities
+  !> and sets in the state and the conditions.
+  subroutine forget_start(model)
+    type(model_t), intent(inout) :: model
+
+    if (allocated(model%conditions%initial_velocity)) &
+      deallocate (model%conditions%initial_velocity)
+    if (allocated(model%node_sets)) deallocate (model%node_sets)
+    if (allocated(model%segment_sets)) deallocate (model%segment_sets)
+    if (model%controls%implicit%is_on) return
+    deallocate (model%mesh%element_nodes, model%mesh%element_part)
+    if (.not. is_asked(model%controls%output%plot)) deallocate (model%mesh%deck_node)
+  end subroutine forget_start
 
   !> Nodes that contact, loads, prescribed motion or walls touch.
   subroutine mark_touched_nodes(model, is_special)

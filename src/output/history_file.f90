@@ -6,7 +6,7 @@ module history_file_m
   use kinds_m, only : wp
   use errors_m, only : error_t
   use model_m, only : model_t
-  use controls_m, only : interval_t
+  use controls_m, only : interval_t, is_asked
   use energies_m, only : total_energy, energy_ratio
   use snapshot_m, only : snapshot_t
   use supports_m, only : mark_supports
@@ -158,14 +158,6 @@ contains
       n = 1
     end select
   end function n_row_of_block
-
-  !> Whether an output has an interval.
-  pure function is_asked(interval) result(asked)
-    type(interval_t), intent(in) :: interval
-    logical :: asked
-
-    asked = interval%dt > 0.0_wp .or. interval%curve > 0
-  end function is_asked
 
   !> Number of history nodes.
   pure function n_history_node(model) result(n)

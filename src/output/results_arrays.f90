@@ -23,7 +23,7 @@ module results_arrays_m
   implicit none
   private
   public :: results_file_t, create_file, create_steps, create_fields, planned_states, &
-    states_per_chunk, unfinished, n_point_field, n_cell_field, n_step_array, &
+    states_per_chunk, block_rows, unfinished, n_point_field, n_cell_field, n_step_array, &
     point_names, point_columns, cell_names, cell_columns, step_values, step_points, step_ones
 
   !> Fields, in the order in which `append_state` writes them, and their numbers of columns.
@@ -47,6 +47,8 @@ module results_arrays_m
   !> Rows per chunk of the arrays below Steps, at least: a row that needs a new chunk appears with
   !> several writes.
   integer, parameter :: least_step_rows = 1024
+  !> Rows of a field that are put together for one write: they stay in the cache until then.
+  integer, parameter :: block_rows = 16384
   !> Bound on the number of states that is planned for.
   integer, parameter :: most_planned = 4096
   !> Behind the name of a file without a state.
@@ -64,9 +66,7 @@ module results_arrays_m
     type(growing_t) :: point_fields(n_point_field)
     type(growing_t) :: cell_fields(n_cell_field)
     type(growing_t) :: steps(n_step_array)
-    real(wp), allocatable :: point_rows(:, :)   !! (3, n_node) work space
-    real(wp), allocatable :: point_values(:)    !! (n_node) work space
-    real(wp), allocatable :: cell_values(:)     !! (n_element) work space
+    real(wp), allocatable :: rows(:)            !! (3*block_rows) work space of one write
   end type results_file_t
 
 contains

@@ -18,9 +18,9 @@ module results_file_m
   use snapshot_m, only : snapshot_t
   use history_file_m, only : histories_t
   use results_tables_m, only : run_info_t, write_run, write_histories
-  use results_mesh_m, only : write_mesh, deck_order
+  use results_mesh_m, only : write_mesh
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
-    planned_states, unfinished, n_point_field, n_cell_field, n_step_array, step_values, &
+    planned_states, block_rows, unfinished, n_point_field, n_cell_field, n_step_array, step_values, &
     step_points, step_ones
   use hdf5_writing_m, only : append_rows, close_growing, make_group, write_string_attribute, &
     write_index_attribute, check_status
@@ -63,8 +63,7 @@ contains
     call make_group(file%id, 'history', error)
     call publish(file, error)
     call h5gclose_f(group, status)
-    allocate (file%point_rows(3, model%mesh%n_node), source=0.0_wp)
-    allocate (file%point_values(model%mesh%n_node), file%cell_values(model%mesh%n_element))
+    allocate (file%rows(3*block_rows))
     call note_failure(file, error)
   end subroutine open_results
 
@@ -117,62 +116,89 @@ contains
     file%is_named = .not. allocated(error)
   end subroutine take_name
 
-  !> Append the fields of the nodes, in deck order.
+  !> Append the fields of the nodes, in deck order; those that are missing are zero.
   subroutine append_point_fields(file, model, snapshot, error)
     type(results_file_t), intent(inout), target :: file
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in) :: snapshot
     type(error_t), allocatable, intent(inout) :: error
-    integer :: order(model%mesh%n_node)
+    integer :: i, first, n
 
-    order = deck_order(model%mesh)
-    file%point_rows(:2, :) = model%mesh%coordinates(:, order) + snapshot%displacement(:, order)
-    call append_rows(file%point_fields(1), size(order), c_loc(file%point_rows), error)
-    call append_vectors(2, snapshot%displacement)
-    call append_vectors(3, snapshot%velocity)
-    call append_vectors(4, snapshot%contact_force)
-    call append_scalars(5, snapshot%contact_pressure)
-    call append_scalars(6, snapshot%gap)
-
-  contains
-
-    subroutine append_vectors(i_field, vectors)
-      integer, intent(in) :: i_field
-      real(wp), allocatable, intent(in) :: vectors(:, :)   !! zero where missing
-
-      file%point_rows(:2, :) = 0.0_wp
-      if (allocated(vectors)) file%point_rows(:2, :) = vectors(:, order)
-      call append_rows(file%point_fields(i_field), size(order), c_loc(file%point_rows), error)
-    end subroutine append_vectors
-
-    subroutine append_scalars(i_field, values)
-      integer, intent(in) :: i_field
-      real(wp), allocatable, intent(in) :: values(:)   !! zero where missing
-
-      file%point_values = 0.0_wp
-      if (allocated(values)) file%point_values = values(order)
-      call append_rows(file%point_fields(i_field), size(order), c_loc(file%point_values), error)
-    end subroutine append_scalars
-
+    do i = 1, n_point_field
+      file%rows = 0.0_wp
+      do first = 1, model%mesh%n_node, block_rows
+        n = min(block_rows, model%mesh%n_node - first + 1)
+        associate (nodes => model%mesh%deck_node(first:first + n - 1))
+          select case (i)
+          case (1); call gather_vectors(nodes, snapshot%displacement, file%rows, model%mesh%coordinates)
+          case (2); call gather_vectors(nodes, snapshot%displacement, file%rows)
+          case (3); call gather_vectors(nodes, snapshot%velocity, file%rows)
+          case (4); call gather_vectors(nodes, snapshot%contact_force, file%rows)
+          case (5); call gather_scalars(nodes, snapshot%contact_pressure, file%rows)
+          case (6); call gather_scalars(nodes, snapshot%gap, file%rows)
+          end select
+        end associate
+        call append_rows(file%point_fields(i), n, c_loc(file%rows), error)
+      end do
+    end do
   end subroutine append_point_fields
+
+  !> Rows (x, y, 0) of some nodes; the third component stays as it is, and all of them where there are no vectors.
+  pure subroutine gather_vectors(nodes, vectors, rows, origins)
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in), allocatable :: vectors(:, :)       !! (2, n_node)
+    real(wp), intent(inout) :: rows(3, *)
+    real(wp), intent(in), contiguous, optional :: origins(:, :) !! (2, n_node) to be added
+    integer :: i
+
+    if (.not. allocated(vectors)) return
+    if (present(origins)) then
+      do i = 1, size(nodes)
+        rows(1:2, i) = origins(:, nodes(i)) + vectors(:, nodes(i))
+      end do
+    else
+      do i = 1, size(nodes)
+        rows(1:2, i) = vectors(:, nodes(i))
+      end do
+    end if
+  end subroutine gather_vectors
+
+  !> Values of some nodes; they stay as they are where there are none.
+  pure subroutine gather_scalars(nodes, values, rows)
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in), allocatable :: values(:) !! (n_node)
+    real(wp), intent(inout) :: rows(*)
+
+    if (allocated(values)) rows(:size(nodes)) = values(nodes)
+  end subroutine gather_scalars
 
   !> Append the fields of the elements: stress (xx yy zz xy yz xz), plastic strain, pressure, mises.
   subroutine append_cell_fields(file, snapshot, error)
     type(results_file_t), intent(inout), target :: file
     type(snapshot_t), intent(in), target :: snapshot
     type(error_t), allocatable, intent(inout) :: error
-    integer :: n
+    integer :: i, first, n, n_cell
 
-    n = size(file%cell_values)
-    call append_rows(file%cell_fields(1), n, c_loc(snapshot%stress), error)
-    file%cell_values = 0.0_wp
-    if (allocated(snapshot%plastic_strain)) file%cell_values = snapshot%plastic_strain
-    call append_rows(file%cell_fields(2), n, c_loc(file%cell_values), error)
-    file%cell_values = -sum(snapshot%stress(:3, :), 1)/3.0_wp
-    call append_rows(file%cell_fields(3), n, c_loc(file%cell_values), error)
-    file%cell_values = mises_stress(snapshot%stress(1, :), snapshot%stress(2, :), &
-      snapshot%stress(3, :), snapshot%stress(4, :))
-    call append_rows(file%cell_fields(4), n, c_loc(file%cell_values), error)
+    n_cell = size(snapshot%stress, 2)
+    call append_rows(file%cell_fields(1), n_cell, c_loc(snapshot%stress), error)
+    do i = 2, n_cell_field
+      file%rows = 0.0_wp
+      do first = 1, n_cell, block_rows
+        n = min(block_rows, n_cell - first + 1)
+        associate (stress => snapshot%stress(:, first:first + n - 1))
+          select case (i)
+          case (2)
+            if (allocated(snapshot%plastic_strain)) &
+              file%rows(:n) = snapshot%plastic_strain(first:first + n - 1)
+          case (3)
+            file%rows(:n) = -sum(stress(:3, :), 1)/3.0_wp
+          case (4)
+            file%rows(:n) = mises_stress(stress(1, :), stress(2, :), stress(3, :), stress(4, :))
+          end select
+        end associate
+        call append_rows(file%cell_fields(i), n, c_loc(file%rows), error)
+      end do
+    end do
   end subroutine append_cell_fields
 
   !> Von Mises stress of a plane-strain state: sqrt(3/2 s:s).

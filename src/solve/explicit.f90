@@ -1,14 +1,15 @@
 ! SPDX-License-Identifier: MIT
 !> Central difference in leap-frog form: v lives at half steps.
-!> One parallel region spans the whole run. Each cycle has four parts with a barrier behind each:
-!> contact and loads on the special nodes (one thread); elements, tile by tile, whose interior nodes move at
-!> once; special nodes; and the end of the cycle (one thread). A cycle that writes keeps the forces and
+!> One parallel region spans the whole run. Each cycle has three parts with a barrier behind each: elements,
+!> tile by tile, whose interior nodes move at once; special nodes; and the end of the cycle with contact and
+!> loads on the special nodes for the next (one thread). A cycle that writes keeps the forces and
 !> moves the nodes after writing, so that what is written belongs to one instant.
 module explicit_m
   use clock_m, only : lap, phase_elements, phase_nodes, phase_output
   use cycle_m, only : cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
   use element_dispatch_m, only : add_tile_forces
   use errors_m, only : error_t
+  use health_m, only : check_tile
   use kinds_m, only : wp
   use model_m, only : model_t
   use motion_sums_m, only : sum_motion, sum_blocks
@@ -51,26 +52,30 @@ contains
     if (allocated(cycle%error)) call move_alloc(cycle%error, error)
   end subroutine advance_explicit
 
-  !> The cycles, run by every thread of the team.
+  !> The cycles, run by every thread of the team. The end of a cycle and the beginning of the next are one
+  !> piece of serial work; `cycle` may then already speak of the next one, so that what others still ask it
+  !> is kept.
   subroutine run_cycles(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(cycle_t), intent(inout) :: cycle
     real(wp), allocatable :: force(:, :)
+    logical :: writes
 
     allocate (force(2, model%layout%n_local))
+    !$omp master
+    call begin_cycle(model, state, monitor, cycle)
+    !$omp end master
+    !$omp barrier
     do
-      !$omp master
-      call begin_cycle(model, state, monitor, cycle)
-      !$omp end master
-      !$omp barrier
+      writes = cycle%writes
       call advance_tiles(model, state, cycle, force)
       !$omp master
       call lap(monitor%clock, phase_elements)
       !$omp end master
       call advance_special_nodes(model, state, cycle)
-      if (cycle%writes) then
+      if (writes) then
         !$omp master
         call lap(monitor%clock, phase_nodes)
         call report_cycle(model, state, monitor, cycle)
@@ -82,6 +87,7 @@ contains
       !$omp master
       call end_cycle(model, state, monitor, cycle)
       call lap(monitor%clock, phase_nodes)
+      if (.not. cycle%finished) call begin_cycle(model, state, monitor, cycle)
       !$omp end master
       !$omp barrier
       if (cycle%finished) exit
@@ -103,6 +109,7 @@ contains
     do i_tile = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i_tile))
         call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+        cycle%checks(i_tile) = check_tile(tile, state%elements)
         call share_tile_forces(tile, force, state%force_slots)
         if (sums) cycle%sums%parts(:, i_tile) = sum_motion(tile%first_node, tile%last_node, &
           state%mass, state%motion)
@@ -117,20 +124,23 @@ contains
     !$omp end do
   end subroutine advance_tiles
 
-  !> Sum the forces of special nodes; they move at once unless this cycle writes.
+  !> Sum the forces of special nodes; they move at once unless this cycle writes. Each thread has the nodes
+  !> of its own tiles: what it reads here it has mostly written itself.
   subroutine advance_special_nodes(model, state, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(cycle_t), intent(in) :: cycle
-    integer :: node
+    integer :: i_tile, node
     logical :: has_walls
 
     has_walls = allocated(state%walls)
     !$omp do schedule(static)
-    do node = 1, model%layout%n_special
-      state%internal_force(:, node) = sum_special_force(model%layout, state%force_slots, node)
-      if (has_walls .and. .not. cycle%writes) call hold_node(model, cycle%leap, node, state)
-      if (.not. cycle%writes) call move_special_node(cycle%leap, node, state)
+    do i_tile = 1, size(model%layout%tiles)
+      do node = model%layout%tiles(i_tile)%first_owned, model%layout%tiles(i_tile)%last_owned
+        state%internal_force(:, node) = sum_special_force(model%layout, state%force_slots, node)
+        if (has_walls .and. .not. cycle%writes) call hold_node(model, cycle%leap, node, state)
+        if (.not. cycle%writes) call move_special_node(cycle%leap, node, state)
+      end do
     end do
     !$omp end do
   end subroutine advance_special_nodes

@@ -1,23 +1,58 @@
 ! SPDX-License-Identifier: MIT
 !> Checks that end a run which has gone wrong, with the cause in words.
 module health_m
+  use block_state_m, only : block_state_t
+  use contact_state_m, only : contact_state_t
   use controls_m, only : controls_t
   use energies_m, only : energies_t, energy_ratio, total_energy
   use element_state_m, only : smallest_ratio
   use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
-  use layout_m, only : chunk_size
+  use layout_m, only : chunk_size, slot_part, tile_t
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use state_m, only : state_t
   implicit none
   private
-  public :: check_elements, check_step, check_cycle, check_energy, judge_energies
+  public :: tile_check_t, check_tile, are_sound, check_elements, check_step, check_cycle, &
+    check_energy, judge_energies
 
   !> Work beyond this means nothing any more; it is found before numbers overflow, which a checked build would stop at.
   real(wp), parameter :: most_work = 1.0e150_wp
 
+  !> What the elements of one tile have come to in a cycle. One cache line each: threads fill them side by side.
+  type :: tile_check_t
+    real(wp) :: time_limit = huge(1.0_wp)   !! smallest L/c, s
+    real(wp) :: checksum = 0.0_wp           !! of the works: finite as long as all of them are
+    logical :: has_volume = .true.          !! all A/A0 are positive
+    real(wp) :: unused(5) = 0.0_wp
+  end type tile_check_t
+
 contains
+
+  !> Look through the chunks of a tile while they are in the cache of the thread that advanced them.
+  pure function check_tile(tile, elements) result(check)
+    type(tile_t), intent(in) :: tile
+    type(block_state_t), intent(in) :: elements
+    type(tile_check_t) :: check
+    integer :: i
+
+    do i = tile%first_chunk, tile%last_chunk
+      check%time_limit = min(check%time_limit, elements%time_limit(i))
+      check%has_volume = check%has_volume .and. elements%volume_limit(i) > 0.0_wp
+      check%checksum = check%checksum + (elements%deviatoric_work(i) + elements%hourglass_work(i))
+    end do
+  end function check_tile
+
+  !> Whether all tiles and interfaces are as `check_elements` wants them.
+  pure function are_sound(checks, contacts) result(sound)
+    type(tile_check_t), intent(in) :: checks(:)
+    type(contact_state_t), intent(in) :: contacts(:)
+    logical :: sound
+
+    sound = all(checks%has_volume) &
+      .and. abs(sum(checks%checksum) + sum(contacts%energy)) <= most_work
+  end function are_sound
 
   !> Volumes must stay positive, stresses and contact forces finite.
   subroutine check_elements(model, state, error)
@@ -75,7 +110,7 @@ contains
     do slot = 1, model%layout%n_slot
       element = model%layout%slot_element(slot)
       if (element == 0 .or. all(abs(state%elements%deviator(slot, :)) <= huge(ratio))) cycle
-      call blame(model, state, element, 'values that are not finite', error)
+      call blame(model, state, slot, 'values that are not finite', error)
       return
     end do
     do slot = 1, model%layout%n_slot
@@ -83,7 +118,7 @@ contains
       if (element == 0) cycle
       ratio = smallest_ratio(model, state%motion, state%elements, slot)
       if (ratio > 0.0_wp .and. ratio <= huge(ratio)) cycle
-      call blame(model, state, element, merge('negative area             ', &
+      call blame(model, state, slot, merge('negative area             ', &
         'values that are not finite', ratio <= 0.0_wp), error)
       return
     end do
@@ -106,22 +141,23 @@ contains
       last = min(chunk*chunk_size, model%layout%n_slot)
       associate (elements => model%layout%slot_element(first:last), &
         stress => maxval(abs(state%elements%deviator(first:last, :)), 2))
-        call blame(model, state, elements(maxloc(stress, 1, elements > 0)), 'work beyond all measure', &
+        call blame(model, state, first - 1 + maxloc(stress, 1, elements > 0), 'work beyond all measure', &
           error)
       end associate
     end associate
   end subroutine name_wild_chunk
 
-  !> The error that names an element.
-  subroutine blame(model, state, element, what, error)
+  !> The error that names the element in a slot.
+  subroutine blame(model, state, slot, what, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    integer, intent(in) :: element
+    integer, intent(in) :: slot
     character(*), intent(in) :: what
     type(error_t), allocatable, intent(out) :: error
 
-    call raise(error, trim(what)//' in element '//to_text(model%mesh%element_id(element)) &
-      //' of part '//to_text(model%parts(model%mesh%element_part(element))%id)//' at cycle ' &
+    call raise(error, trim(what)//' in element '//to_text(model%mesh%element_id( &
+      model%layout%slot_element(slot)))//' of part ' &
+      //to_text(model%parts(slot_part(model%layout, slot))%id)//' at cycle ' &
       //to_text(state%cycle)//', time '//to_text(state%time), status_run)
   end subroutine blame
 

@@ -50,7 +50,7 @@ contains
       shot%displacement = state%motion(1:2, :)
       shot%velocity = state%motion(3:4, :)
       shot%acceleration = state%acceleration
-      call fill_energies(model, state, shot)
+      call fill_energies(model, state, [0.0_wp, 0.0_wp], shot)
       shot%energies%kinetic = 0.5_wp*sum(shot%velocity*mass_times(model, shot%velocity))
       if (state%cycle == 0) then
         state%initial_energy = total_energy(shot%energies)

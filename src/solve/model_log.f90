@@ -2,6 +2,7 @@
 !> What the log says of the model once its masses and first forces are there, as d3hsp does.
 module model_log_m
   use kinds_m, only : wp
+  use layout_m, only : slot_part
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
   use smallest_steps_m, only : find_smallest_steps
@@ -74,7 +75,7 @@ contains
     call write_log(log, '   element      part   stable step')
     do i = 1, size(found)
       write (line, '(2i10,es14.6)') model%mesh%element_id(found(i)), &
-        model%parts(model%mesh%element_part(found(i)))%id, steps(i)
+        model%parts(slot_part(model%layout, model%layout%element_slot(found(i))))%id, steps(i)
       call write_log(log, trim(line))
     end do
   end subroutine log_smallest_steps

@@ -2,7 +2,7 @@
 !> Watches a run for the files: what is due, and writing it.
 module monitor_m
   use clock_m, only : clock_t
-  use controls_m, only : interval_t
+  use controls_m, only : is_asked
   use errors_m, only : error_t
   use history_file_m, only : histories_t, open_histories, append_glstat, append_rcforc, &
     append_nodout, append_matsum, append_contact, append_rwforc, append_sleout, append_spcforc, &
@@ -90,14 +90,6 @@ contains
     call plan_restarts(monitor%restarts, model%controls)
     call start_snapshot(model, has_history, monitor%snapshot)
   end subroutine start_monitor
-
-  !> Whether the deck asks for this output.
-  pure function is_asked(interval) result(asked)
-    type(interval_t), intent(in) :: interval
-    logical :: asked
-
-    asked = interval%dt > 0.0_wp .or. interval%curve > 0
-  end function is_asked
 
   !> What is due at `time`; `everything` for the first and the last state.
   pure function find_due(monitor, time, dt, everything) result(due)

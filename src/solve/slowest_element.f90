@@ -3,6 +3,7 @@
 module slowest_element_m
   use curves_m, only : curve_value
   use kinds_m, only : wp
+  use layout_m, only : slot_part
   use model_m, only : model_t
   use smallest_steps_m, only : find_smallest_steps
   use snapshot_m, only : snapshot_t
@@ -28,7 +29,7 @@ contains
     call find_smallest_steps(model, state%elements, state%motion, 1, found, steps)
     if (size(found) == 0) return
     snapshot%slowest = [model%mesh%element_id(found(1)), &
-      model%parts(model%mesh%element_part(found(1)))%id]
+      model%parts(slot_part(model%layout, model%layout%element_slot(found(1))))%id]
   end subroutine find_slowest
 
 end module slowest_element_m

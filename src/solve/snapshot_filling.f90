@@ -6,7 +6,9 @@ module snapshot_filling_m
   use constraints_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains
+  use controls_m, only : is_asked
   use energies_m, only : energies_t
+  use layout_m, only : slot_part
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t
   use state_m, only : state_t
@@ -15,9 +17,12 @@ module snapshot_filling_m
   private
   public :: start_snapshot, fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
 
+  !> Nodes whose motion is summed at a time.
+  integer, parameter :: block_size = 512
+
 contains
 
-  !> Allocate what this run can ask for.
+  !> Allocate what this run can ask for: motion of all nodes only where a file or an override needs it.
   subroutine start_snapshot(model, has_history, snapshot)
     type(model_t), intent(in) :: model
     logical, intent(in) :: has_history !! some part keeps a plastic strain
@@ -26,14 +31,15 @@ contains
 
     n_node = model%mesh%n_node
     n_element = model%mesh%n_element
-    allocate (snapshot%displacement(2, n_node), snapshot%velocity(2, n_node), &
+    if (keeps_motion(model)) allocate (snapshot%displacement(2, n_node), &
       snapshot%acceleration(2, n_node), source=0.0_wp)
+    if (keeps_motion(model) .or. is_asked(model%controls%output%matsum)) &
+      allocate (snapshot%velocity(2, n_node), source=0.0_wp)
     allocate (snapshot%parts(size(model%parts)))
     if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
     allocate (snapshot%interfaces(size(model%contacts)), snapshot%slaves(size(model%contacts)))
     call find_supports(model, snapshot)
-    if (.not. (model%controls%output%plot%dt > 0.0_wp .or. model%controls%output%plot%curve > 0)) &
-      return
+    if (.not. is_asked(model%controls%output%plot)) return
     allocate (snapshot%stress(6, n_element), source=0.0_wp)
     if (has_history) &
       allocate (snapshot%plastic_strain(n_element), source=0.0_wp)
@@ -41,36 +47,62 @@ contains
       snapshot%contact_pressure(n_node), snapshot%gap(n_node), source=0.0_wp)
   end subroutine start_snapshot
 
-  !> Displacement, velocity and acceleration of the present instant. `velocity_next` is v(n+1/2) of the
-  !> prescribed degrees of freedom.
+  !> Whether the motion of all nodes is kept: for files, or since that of some comes from elsewhere.
+  pure function keeps_motion(model) result(keeps)
+    type(model_t), intent(in) :: model
+    logical :: keeps
+
+    keeps = is_asked(model%controls%output%plot) .or. size(model%controls%output%history_nodes) > 0 &
+      .or. size(model%conditions%motions) > 0 .or. size(model%rigids) > 0 &
+      .or. model%controls%implicit%is_on
+  end function keeps_motion
+
+  !> Displacement, velocity and acceleration of the present instant, where they are kept. `velocity_next` is
+  !> v(n+1/2) of the prescribed degrees of freedom.
   subroutine fill_motion(model, state, damping, velocity_next, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: damping(2)       !! D per direction
     real(wp), intent(in) :: velocity_next(:) !! (n_motion)
     type(snapshot_t), intent(inout) :: snapshot
-    real(wp) :: force, acceleration
-    integer :: i, k
+    real(wp) :: velocity(2), acceleration(2)
+    integer :: i
 
     snapshot%time = state%time
     snapshot%cycle = state%cycle
     snapshot%dt = state%dt
+    if (.not. allocated(snapshot%velocity)) return
     do i = 1, model%mesh%n_node
-      do k = 1, 2
-        force = -state%internal_force(k, i)
-        if (i <= model%layout%n_special) force = force + state%force_special(k, i)
-        acceleration = force*state%inverse_mass(k, i)
-        if (state%inverse_mass(k, i) > 0.0_wp) acceleration = acceleration &
-          + state%body_acceleration(k)
-        acceleration = (acceleration - damping(k)*state%motion(2 + k, i)) &
-          /(1.0_wp + 0.5_wp*damping(k)*state%dt_before)
-        snapshot%displacement(k, i) = state%motion(k, i)
-        snapshot%acceleration(k, i) = acceleration
-        snapshot%velocity(k, i) = state%motion(2 + k, i) + 0.5_wp*state%dt_before*acceleration
-      end do
+      call find_motion(model%layout%n_special, state, damping, i, velocity, acceleration)
+      snapshot%velocity(:, i) = velocity
+      if (.not. allocated(snapshot%displacement)) cycle
+      snapshot%displacement(:, i) = state%motion(1:2, i)
+      snapshot%acceleration(:, i) = acceleration
     end do
-    call fill_prescribed(model, state, velocity_next, snapshot)
+    if (allocated(snapshot%displacement)) &
+      call fill_prescribed(model, state, velocity_next, snapshot)
   end subroutine fill_motion
+
+  !> Velocity and acceleration of a node that moves freely, at the present instant.
+  pure subroutine find_motion(n_special, state, damping, node, velocity, acceleration)
+    integer, intent(in) :: n_special
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)
+    integer, intent(in) :: node
+    real(wp), intent(out) :: velocity(2), acceleration(2)
+    real(wp) :: force, a
+    integer :: k
+
+    do k = 1, 2
+      force = -state%internal_force(k, node)
+      if (node <= n_special) force = force + state%force_special(k, node)
+      a = force*state%inverse_mass(k, node)
+      if (state%inverse_mass(k, node) > 0.0_wp) a = a + state%body_acceleration(k)
+      a = (a - damping(k)*state%motion(2 + k, node))/(1.0_wp + 0.5_wp*damping(k)*state%dt_before)
+      acceleration(k) = a
+      velocity(k) = state%motion(2 + k, node) + 0.5_wp*state%dt_before*a
+    end do
+  end subroutine find_motion
 
   !> Prescribed degrees of freedom: the mean of their two half-step velocities.
   subroutine fill_prescribed(model, state, velocity_next, snapshot)
@@ -94,14 +126,15 @@ contains
     end do
   end subroutine fill_prescribed
 
-  !> The energy account; `motion` must be filled.
-  subroutine fill_energies(model, state, snapshot)
+  !> The energy account; motion must be filled where it is kept.
+  subroutine fill_energies(model, state, damping, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2) !! D per direction
     type(snapshot_t), intent(inout) :: snapshot
     real(wp) :: internal(size(model%parts)), hourglass(size(model%parts)), &
-      viscous(size(model%parts))
-    integer :: i
+      viscous(size(model%parts)), v(2, block_size)
+    integer :: first, n
 
     internal = 0.0_wp
     hourglass = 0.0_wp
@@ -115,10 +148,10 @@ contains
       energies%viscous = sum(viscous)
       energies%kinetic = 0.0_wp
       snapshot%mean_velocity = 0.0_wp
-      do i = 1, model%mesh%n_node
-        energies%kinetic = energies%kinetic + 0.5_wp*state%mass(i) &
-          *(snapshot%velocity(1, i)**2 + snapshot%velocity(2, i)**2)
-        snapshot%mean_velocity = snapshot%mean_velocity + state%mass(i)*snapshot%velocity(:, i)
+      do first = 1, model%mesh%n_node, block_size
+        n = min(block_size, model%mesh%n_node - first + 1)
+        call find_velocities(model%layout%n_special, state, damping, first, n, snapshot, v)
+        call add_motion(n, state%mass(first), v, energies%kinetic, snapshot%mean_velocity)
       end do
       snapshot%mean_velocity = snapshot%mean_velocity/sum(state%mass)
       energies%damping = state%damping_work
@@ -128,21 +161,62 @@ contains
     end associate
   end subroutine fill_energies
 
-  !> Kinetic energy, momentum and mass of each part (energies are there already).
+  !> Present velocities of `n` nodes from the node `first` on.
+  pure subroutine find_velocities(n_special, state, damping, first, n, snapshot, velocities)
+    integer, intent(in) :: n_special
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)
+    integer, intent(in) :: first, n
+    type(snapshot_t), intent(in) :: snapshot !! may keep them
+    real(wp), intent(inout) :: velocities(:, :)
+    real(wp) :: acceleration(2)
+    integer :: i
+
+    do i = 1, n
+      if (allocated(snapshot%velocity)) then
+        velocities(:, i) = snapshot%velocity(:, first + i - 1)
+      else
+        call find_motion(n_special, state, damping, first + i - 1, velocities(:, i), acceleration)
+      end if
+    end do
+  end subroutine find_velocities
+
+  !> Add kinetic energy and momentum of some nodes. Products first, then sums: fused multiply-adds in one
+  !> copy of a loop and not in another would make the bits depend on where a block ends.
+  pure subroutine add_motion(n, mass, velocity, kinetic, momentum)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: mass(n), velocity(2, n)
+    real(wp), intent(inout) :: kinetic, momentum(2)
+    real(wp) :: products(3, block_size)
+    integer :: i
+
+    do i = 1, n
+      products(1, i) = 0.5_wp*mass(i)*(velocity(1, i)**2 + velocity(2, i)**2)
+      products(2:3, i) = mass(i)*velocity(:, i)
+    end do
+    do i = 1, n
+      kinetic = kinetic + products(1, i)
+      momentum = momentum + products(2:3, i)
+    end do
+  end subroutine add_motion
+
+  !> Kinetic energy, momentum and mass of each part (energies are there already), where velocities are kept.
   subroutine fill_parts(model, snapshot)
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(inout) :: snapshot
     real(wp) :: x(2, 4), share, v(2)
-    integer :: i, k, corners
+    integer :: i, k, corners, slot, i_part
 
+    if (.not. allocated(snapshot%velocity)) return
     snapshot%parts%kinetic = 0.0_wp
     snapshot%parts%momentum(1) = 0.0_wp
     snapshot%parts%momentum(2) = 0.0_wp
     snapshot%parts%mass = 0.0_wp
     do i = 1, model%mesh%n_element
-      associate (nodes => model%mesh%element_nodes(:, i), &
-        part => snapshot%parts(model%mesh%element_part(i)), &
-        material => model%materials(model%parts(model%mesh%element_part(i))%material))
+      slot = model%layout%element_slot(i)
+      i_part = slot_part(model%layout, slot)
+      associate (nodes => model%layout%slot_nodes(:, slot), part => snapshot%parts(i_part), &
+        material => model%materials(model%parts(i_part)%material))
         x = model%mesh%coordinates(:, nodes)
         corners = merge(3, 4, nodes(4) == nodes(3))
         share = material%density/corners*0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &

@@ -50,7 +50,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: limit
 
-    limit = stable_limit(elements, steps)
+    limit = stable_limit(minval(elements%time_limit), steps)
     dt = choose_step(model, limit, steps%start_time, log, steps)
     if (model%controls%dt_initial > 0.0_wp .and. model%controls%dt_curve == 0) &
       dt = min(dt, model%controls%dt_initial)
@@ -81,13 +81,13 @@ contains
     if (time < 0.5_wp*huge(n)*dt) n = max(1, nint(time/dt))
   end function cycles_in
 
-  !> Smallest L/c of the elements, and below it what contact springs leave of it.
-  pure function stable_limit(elements, steps) result(limit)
-    type(block_state_t), intent(in) :: elements
+  !> Smallest L/c of the elements, or below it what contact springs leave of it.
+  pure function stable_limit(element_limit, steps) result(limit)
+    real(wp), intent(in) :: element_limit !! smallest L/c
     type(step_plan_t), intent(in) :: steps
     real(wp) :: limit
 
-    limit = minval(elements%time_limit)
+    limit = element_limit
     if (allocated(steps%springs)) limit = minval([limit, stable_step(limit, steps%springs)])
   end function stable_limit
 
@@ -129,9 +129,9 @@ contains
   end function plain_step
 
   !> Time of cycle `cycle` and the step that leads away from it. A constant step counts time as n dt.
-  subroutine next_step(model, elements, log, cycle, steps, time, dt)
+  subroutine next_step(model, element_limit, log, cycle, steps, time, dt)
     type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
+    real(wp), intent(in) :: element_limit     !! smallest L/c
     type(log_t), intent(inout) :: log
     integer, intent(in) :: cycle              !! number of the new cycle
     type(step_plan_t), intent(inout) :: steps
@@ -143,7 +143,7 @@ contains
     else
       time = time + dt
     end if
-    dt = choose_step(model, stable_limit(elements, steps), time, log, steps)
+    dt = choose_step(model, stable_limit(element_limit, steps), time, log, steps)
     if (steps%warned) steps%constant = 0.0_wp
   end subroutine next_step
 

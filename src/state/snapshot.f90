@@ -46,7 +46,7 @@ module snapshot_m
   end type slave_result_t
 
   !> The instant. Node arrays are in model order (the writer maps through mesh%deck_node); element
-  !> arrays in deck order.
+  !> arrays in deck order. Arrays that nothing in the deck asks for are not there.
   type :: snapshot_t
     real(wp) :: time = 0.0_wp
     real(wp) :: dt = 0.0_wp

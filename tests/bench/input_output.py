@@ -4,7 +4,9 @@
 Reading: the deck of elements.py, with an initial velocity for each node, and some steps, in which the memory is what
 the run needs. Goals: at most 3 s for a million elements, a peak of at most 1.5 times that memory, and 250 bytes an
 element. Writing: states of a quarter as many elements, the phase `output` with all that it fills in, beside a plain
-file of as many bytes written in the same minute (neither is forced to the disk). Goal: half that rate.
+file of as many bytes written in the same minute (neither is forced to the disk). Both stand on the disk until both are
+written: a file that takes the memory which another has just given up is written up to ten times as fast. Goal: half
+that rate.
 """
 import os
 import subprocess
@@ -16,6 +18,7 @@ from measuring import Variant, phase_seconds
 
 READING_STEPS, WRITING_STEPS, STATES = 40, 40, 20
 PIECE = 1 << 24  # bytes of one write of the plain file
+LATER = 0.1  # s that the program's clock may start later than ours
 
 
 def look_at(pid):
@@ -44,20 +47,19 @@ def read_once(program, deck, folder):
     seconds = phase_seconds(folder / "reading.timing.csv")["input"]
     largest = max(peak for _, _, _, peak in samples)
     reading = max((used for at, used, _, _ in samples if at <= seconds), default=seconds)
-    stepping = max((present for at, _, present, _ in samples if at > seconds), default=largest)
+    stepping = max((present for at, _, present, _ in samples if at > seconds + LATER),
+                   default=largest)
     return seconds, reading, largest, stepping
 
 
 def write_plain(path, size):
-    """Seconds to write a file of so many bytes; it is removed."""
+    """Seconds to write a file of so many bytes."""
     piece = os.urandom(PIECE)
     start = time.monotonic()
     with path.open("wb", buffering=0) as stream:
         for at in range(0, size, PIECE):
             stream.write(piece[:min(PIECE, size - at)])
-    seconds = time.monotonic() - start
-    path.unlink()
-    return seconds
+    return time.monotonic() - start
 
 
 def write_once(program, deck, folder):
@@ -67,8 +69,11 @@ def write_once(program, deck, folder):
                    stdout=subprocess.DEVNULL)
     seconds = phase_seconds(folder / "writing.timing.csv")["output"]
     size = results.stat().st_size - (folder / "writing.effective.k").stat().st_size
+    plain = folder / "plain"
+    states_rate, plain_rate = size / 1.0e6 / seconds, size / 1.0e6 / write_plain(plain, size)
     results.unlink()
-    return size / 1.0e6, size / 1.0e6 / seconds, size / 1.0e6 / write_plain(folder / "plain", size)
+    plain.unlink()
+    return size / 1.0e6, states_rate, plain_rate
 
 
 def states_deck(path, elements, states):

@@ -33,7 +33,8 @@ KEPT = {
     "cycle_t": ("solve/cycle.f90", "solve/restart_steps.f90", "", {
         "writes": "set in each cycle", "finished": "not when a file is written",
         "last": "found again", "plots": "of the run that was asked", "due": "set in each cycle",
-        "leap": "made in each cycle", "sums": "formed in each cycle", "steps": "kept as step_plan_t",
+        "leap": "made in each cycle", "sums": "formed in each cycle",
+        "checks": "filled in each cycle", "steps": "kept as step_plan_t",
         "timed_motions": "from the deck", "velocity": "made in each cycle",
         "displacement": "made in each cycle", "reason": "of each run", "error": "of each run"}),
     "march_t": ("solve/march.f90", "solve/march.f90", "", {

@@ -130,3 +130,28 @@ def test_plate_has_the_same_bits(exe, is_debug, tmp_path, elastoplastic):
     found = check_same(exe, is_debug, tmp_path, text, ("endtim=0.03", "p:dtplot=1e-2"))
     plate = np.frombuffer(found["VTKHDF/PointData/velocity"])
     assert np.abs(plate).max() > 0.0
+
+
+@pytest.mark.parametrize("kind", [1, 7])
+def test_energies_do_not_depend_on_what_else_is_written(slideline, tmp_path, kind):
+    """Motion of all nodes is kept for plot states and histories of nodes, velocities for sums of parts, and nothing
+    where energies alone are asked for."""
+    tables = []
+    for name, others in (("alone", {}), ("parts", {"matsum": 1.0e-3}), ("states", {"plot": 1.0e-3}),
+                         ("nodes", {"nodout": 1.0e-3, "nodes": [1, 30]})):
+        deck = Deck("two blocks")
+        deck.control(0.01, dt=1.0e-4)
+        deck.part(1).elastic(1000.0, 1.0e6, 0.3, 1)
+        deck.part(2).plastic(1000.0, 1.0e6, 0.3, 2.0e4, 1.0e5, 0.5, 2)
+        upper = deck.mesh(*grid(30, 21, 0.6, 0.4, (0.2, 0.002)), part=1)
+        lower = deck.mesh(*grid(50, 20, 1.0, 0.4, (0.0, -0.4)), part=2)
+        deck.node_set(1, upper).node_set(2, upper[:31]).node_set(3, lower[-51:][::-1])
+        deck.fix(lower[:51], x=1, y=1)
+        deck.add("*INITIAL_VELOCITY", (1,), (0.3, -2.0))
+        deck.curve(1, [(0.0, 9.81), (10.0, 9.81)]).add("*LOAD_BODY_Y", (1, 1.0))
+        deck.contact(2, 3, kind, 2.0e5)
+        done = slideline(f"d={name}", deck=deck.output(glstat=1.0e-3, **others))
+        assert done.returncode == 0, done.stderr + done.stdout
+        tables.append((tmp_path / name / "job.glstat.csv").read_bytes())
+    assert len(tables[0].splitlines()) > 8
+    assert all(table == tables[0] for table in tables)
