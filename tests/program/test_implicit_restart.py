@@ -84,6 +84,11 @@ def texts(folder):
     return [(folder / f"job.{name}").read_bytes() for name in TABLES]
 
 
+def iterations(folder):
+    """What the log says of steps and iterations, figures included."""
+    return [line for line in (folder / "job.log").read_text().splitlines() if line.startswith("step to ")]
+
+
 @pytest.mark.parametrize("scene, kind", [(scene, kind) for scene in SCENES for kind in range(1, 8)])
 def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
     make, interval, shown = SCENES[scene]
@@ -98,6 +103,8 @@ def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
         go_on(slideline, rest / name, f"ncpu={thread}", "perthread=1")
         assert_same(whole, rest)
         assert texts(whole) == texts(rest)
+        after = iterations(rest)
+        assert len(after) > 1 and after == iterations(whole)[-len(after):]
         assert arrays(whole / dumps[-1], *GROUPS) == arrays(rest / dumps[-1], *GROUPS)
         assert sorted(path.name for path in rest.glob("job.dump*")) == dumps[thread - 1:]
 
