@@ -341,6 +341,8 @@ def test_a_result_says_what_made_it(slideline, tmp_path):
     assert text_of(run["effective_deck_crc32"]) == expected
     version = slideline("--version").stdout
     assert f"source {text_of(run['source'])})" in version and len(text_of(run["source"])) >= 7
+    build, flags = re.search(r"build (.*)\nflags (.*)\n", version).groups()
+    assert text_of(run["build"]) == f"{build}, {flags}" and "-O" in flags
     assert text_of(run["machine"])
 
 
