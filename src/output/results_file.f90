@@ -18,7 +18,7 @@ module results_file_m
   use snapshot_m, only : snapshot_t
   use history_file_m, only : histories_t
   use results_tables_m, only : run_info_t, write_run, write_histories
-  use results_mesh_m, only : write_mesh
+  use results_mesh_m, only : write_mesh, deck_nodes
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
     planned_states, block_rows, unfinished, n_point_field, n_cell_field, n_step_array, step_values, &
     step_points, step_ones
@@ -128,7 +128,7 @@ contains
       file%rows = 0.0_wp
       do first = 1, model%mesh%n_node, block_rows
         n = min(block_rows, model%mesh%n_node - first + 1)
-        associate (nodes => model%mesh%deck_node(first:first + n - 1))
+        associate (nodes => deck_nodes(model%mesh, first, n))
           select case (i)
           case (1); call gather_vectors(nodes, snapshot%displacement, file%rows, model%mesh%coordinates)
           case (2); call gather_vectors(nodes, snapshot%displacement, file%rows)

@@ -10,7 +10,7 @@ module results_mesh_m
   use hdf5_writing_m, only : as_integer, as_index, write_rows
   implicit none
   private
-  public :: write_mesh, deck_order, cell_nodes, cell_starts
+  public :: write_mesh, deck_order, deck_nodes, cell_nodes, cell_starts
 
   !> VTK's numbers of the cell types.
   integer, parameter :: vtk_triangle = 5, vtk_quad = 9
@@ -60,14 +60,23 @@ contains
   pure function deck_order(mesh) result(order)
     type(mesh_t), intent(in) :: mesh
     integer :: order(mesh%n_node)
-    integer :: i_node
+
+    order = deck_nodes(mesh, 1, mesh%n_node)
+  end function deck_order
+
+  !> The same of `n` nodes from the k-th on.
+  pure function deck_nodes(mesh, k, n) result(nodes)
+    type(mesh_t), intent(in) :: mesh
+    integer, intent(in) :: k, n
+    integer :: nodes(n)
+    integer :: i
 
     if (allocated(mesh%deck_node)) then
-      order = mesh%deck_node
+      nodes = mesh%deck_node(k:k + n - 1)
     else
-      order = [(i_node, i_node=1, mesh%n_node)]
+      nodes = [(i, i=k, k + n - 1)]
     end if
-  end function deck_order
+  end function deck_nodes
 
   !> Where the nodes of each cell start in the list of `cell_nodes`, from zero, and its length at
   !> the end. A triangle repeats its third node in the mesh and has three entries in the list.
