@@ -77,9 +77,7 @@ contains
     character(:), allocatable :: text
     integer :: source
 
-    if (line < 1 .or. line > deck%n_line) then
-      text = ''
-    else if (deck%first(line) < 0) then
+    if (deck%first(line) < 0) then
       text = deck%patch(-deck%first(line):deck%last(line))
     else
       source = deck%blocks(block_of_line(deck, line))%source

@@ -62,15 +62,19 @@ def test_automatic_penalties_without_room(slideline, tmp_path):
 
 
 def test_many_interfaces_changed_by_the_command_line(slideline, tmp_path):
-    """Eighty interfaces, more changed lines than are kept room for at first, against the deck that says so itself."""
+    """Eighty interfaces, more changed lines than there is room for at first, against the deck that says so itself."""
     text = drop(end_time=0.002).text()
     card = text[text.index("*CONTACT_2D_SLIDELINE"):]
     card = card[:card.index("\n*", 1) + 1]
     many = text.replace(card, 80 * "*CONTACT_2D_SLIDELINE\n-2,-3,2,2,1000.0\n0.0,1.0e20,0\n")
     assert slideline("d=changed", "ctype=5", "pen=2500.0", deck=many).returncode == 0
     assert slideline("d=given", deck=many.replace("-2,-3,2,2,1000.0", "-2,-3,5,2,2500.0")).returncode == 0
-    for name in ("glstat", "rcforc"):
-        assert (tmp_path / f"changed/job.{name}.csv").read_bytes() == (tmp_path / f"given/job.{name}.csv").read_bytes()
+    named = many.replace("-2,-3,2,2,1000.0\n0.0,1.0e20,0", "-2,-3,5,2,&pen\n0.0,1.0e20,0,&pen")
+    named = named.replace("*CONTROL_TERMINATION", "*PARAMETER\nR    pen,2500.000000000000\n*CONTROL_TERMINATION", 1)
+    assert slideline("d=named", deck=named).returncode == 0
+    for folder in ("changed", "named"):
+        for name in ("glstat", "rcforc"):
+            assert (tmp_path / f"{folder}/job.{name}.csv").read_bytes() == (tmp_path / f"given/job.{name}.csv").read_bytes()
     effective = (tmp_path / "changed/job.effective.k").read_text()
     assert len(re.findall(r"^-2,-3,5,2,2\.50*E\+003$", effective, re.MULTILINE)) == 80
 

@@ -66,7 +66,7 @@ def table(counts: Counts, key) -> list[str]:
 
 def read_reasons(path: Path) -> list[Reason]:
     """The lines `file | part of the line | reason` of unreached.txt."""
-    rows = [line.split("|") for line in path.read_text().splitlines() if line.strip() and not line.startswith("#")]
+    rows = [line.split(" | ") for line in path.read_text().splitlines() if line.strip() and not line.startswith("#")]
     wrong = [row for row in rows if len(row) != 3 or not all(part.strip() for part in row)]
     if wrong:
         raise SystemExit(f"{path.name}: not `file | part of the line | reason`: {wrong[0]}")

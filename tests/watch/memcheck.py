@@ -7,6 +7,7 @@ purpose in a copy of the tree: each must be found. libraries.supp says what of t
 minutes in all.
 """
 import argparse
+import re
 import shutil
 import subprocess
 import sys
@@ -132,7 +133,7 @@ def main() -> int:
     """The true program, then the planted mistakes."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "memcheck", help="folder to work in")
-    parser.add_argument("--only", default="", help="cases whose name holds this")
+    parser.add_argument("--only", default="", help="cases whose name fits this pattern")
     parser.add_argument("--seconds", type=float, default=1800.0, help="longest time of one run")
     parser.add_argument("--jobs", type=int, default=jobs_of_machine())
     options = parser.parse_args()
@@ -145,8 +146,14 @@ def main() -> int:
         return build(work / "tree", work / "build", "Memcheck", FLAGS, "-DSLIDELINE_TESTS=OFF", jobs=options.jobs)
 
     program = build_tree()
-    cases = [case for case in all_cases() if options.only in case.name]
-    results = side_by_side(lambda case: run(program, work, case, options.seconds), cases, options.jobs)
+    cases = [case for case in all_cases() if re.search(options.only, case.name)]
+
+    def one(case: Case) -> list[str]:
+        wrong = run(program, work, case, options.seconds)
+        print(case.name, "wrong" if wrong else "sound", flush=True)
+        return wrong
+
+    results = side_by_side(one, cases, options.jobs)
     wrong = [line for lines in results for line in lines]
     print("\n".join([*wrong, f"{len(cases)} cases, {len(wrong)} wrong"]), flush=True)
     return int(plant_all(work, build_tree, options.seconds) + len(wrong) > 0)
