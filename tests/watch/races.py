@@ -89,7 +89,7 @@ def look(program: Path, work: Path, jobs: int, scenes: list[str]) -> int:
         if status or places or "ThreadSanitizer" in said:
             wrong += 1
             print(f"{scene} type {kind}, {threads} threads: status {status}: {' '.join(sorted(places))}")
-    print(f"{len(cases)} runs, {wrong} with a report or another end than the normal one")
+    print(f"{len(cases)} runs, {wrong} with a report or another end than the normal one", flush=True)
     return wrong
 
 
@@ -106,7 +106,8 @@ def plant_all(work: Path, jobs: int) -> int:
         _, places, _ = run(program, work / f"plant_{number}", text, (), 2)
         found = sorted(place for place in places if place.startswith(plant.where))
         missed += not found
-        print(f"{plant.name}: {'found, ' + found[0] if found else 'MISSED'} ({len(places)} places reported)")
+        told = f"found, {found[0]}" if found else f"MISSED among {' '.join(sorted(places))}"
+        print(f"{plant.name}: {told} ({len(places)} places reported)", flush=True)
     return missed
 
 
