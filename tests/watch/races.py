@@ -33,7 +33,7 @@ PLANTS = (
           "    end do\n    !$omp end do nowait\n  end subroutine advance_tiles", "solve/node_motion.f90"),
     Plant("no barrier behind the loop over special nodes", "solve/explicit.f90",
           "    end do\n    !$omp end do\n  end subroutine advance_special_nodes",
-          "    end do\n    !$omp end do nowait\n  end subroutine advance_special_nodes", "solve/node_motion.f90"),
+          "    end do\n    !$omp end do nowait\n  end subroutine advance_special_nodes", "solve/cycle.f90"),
     Plant("all tiles share the same force slots", "solve/node_motion.f90",
           "      force_slots(1, i) =", "      force_slots(1, i - tile%first_special + 1) =", "solve/node_motion.f90"),
     Plant("a tile goes on into the first chunk of the next", "element/element_dispatch.f90",
