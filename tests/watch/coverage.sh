@@ -23,4 +23,4 @@ if [ $# -eq 0 ]; then
 fi
 ctest --test-dir "$folder" --output-on-failure --parallel "$jobs" "$@" >"$folder/tests.log" 2>&1 ||
   sed -n '/The following tests FAILED/,$p' "$folder/tests.log"
-exec "$python" "$here/coverage.py" "$folder" --jobs "$jobs"
+exec "$python" "$here/line_coverage.py" "$folder" --jobs "$jobs"

@@ -76,7 +76,7 @@ def all_cases() -> list[Case]:
     cases.append(Case("threads", everything(5), ("ncpu=2", "perthread=1", "endtim=1e-3")))
     cases.append(Case("sparse", sparse_patch()))
     cases.append(Case("collision", with_restarts(with_end(scenes.collision(1, 3), 60), 50),
-                      then=(("r=out/job.runrsf.h5", "d=out", "endtim=2e-6"),)))
+                      then=(("r=out/job.runrsf.h5", "d=out", "endtim=7e-6"),)))
     cases.append(Case("die", with_end(scenes.sliding(1, 7, rigid_die=True), 60)))
     cases.append(Case("check", with_end(scenes.collision(1, 6), 60), ("check", "--json")))
     cases += [Case(f"example_{path.stem}", path) for path in sorted((ROOT / "doc/examples").glob("*.k"))]

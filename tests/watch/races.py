@@ -33,7 +33,7 @@ PLANTS = (
           "    end do\n    !$omp end do nowait\n  end subroutine advance_tiles", "solve/node_motion.f90"),
     Plant("no barrier behind the loop over special nodes", "solve/explicit.f90",
           "    end do\n    !$omp end do\n  end subroutine advance_special_nodes",
-          "    end do\n    !$omp end do nowait\n  end subroutine advance_special_nodes", "solve/node_motion.f90"),
+          "    end do\n    !$omp end do nowait\n  end subroutine advance_special_nodes", "solve/cycle.f90"),
     Plant("all tiles share the same force slots", "solve/node_motion.f90",
           "      force_slots(1, i) =", "      force_slots(1, i - tile%first_special + 1) =", "solve/node_motion.f90"),
     Plant("a tile goes on into the first chunk of the next", "element/element_dispatch.f90",
@@ -89,7 +89,7 @@ def look(program: Path, work: Path, jobs: int, scenes: list[str]) -> int:
         if status or places or "ThreadSanitizer" in said:
             wrong += 1
             print(f"{scene} type {kind}, {threads} threads: status {status}: {' '.join(sorted(places))}")
-    print(f"{len(cases)} runs, {wrong} with a report or another end than the normal one")
+    print(f"{len(cases)} runs, {wrong} with a report or another end than the normal one", flush=True)
     return wrong
 
 
@@ -106,7 +106,8 @@ def plant_all(work: Path, jobs: int) -> int:
         _, places, _ = run(program, work / f"plant_{number}", text, (), 2)
         found = sorted(place for place in places if place.startswith(plant.where))
         missed += not found
-        print(f"{plant.name}: {'found, ' + found[0] if found else 'MISSED'} ({len(places)} places reported)")
+        told = f"found, {found[0]}" if found else f"MISSED among {' '.join(sorted(places))}"
+        print(f"{plant.name}: {told} ({len(places)} places reported)", flush=True)
     return missed
 
 

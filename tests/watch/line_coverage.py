@@ -55,10 +55,13 @@ def collect(build: Path, tree: Path, jobs: int) -> Counts:
 
 
 def table(counts: Counts, key) -> list[str]:
-    """Rows `share run lines name`, least first, of the files grouped by `key`."""
+    """Rows `share run lines name`, least first, of the files grouped by `key`.
+
+    A process whose files may not grow tears the counters that it adds to, so that a line which ran may have a negative sum.
+    """
     sums: dict[str, list[int]] = defaultdict(lambda: [0, 0])
     for name, lines in counts.items():
-        sums[key(name)][0] += sum(count > 0 for count in lines.values())
+        sums[key(name)][0] += sum(count != 0 for count in lines.values())
         sums[key(name)][1] += len(lines)
     rows = sorted(sums.items(), key=lambda row: (row[1][0] / max(1, row[1][1]), row[0]))
     return [f"{100 * run / max(1, all_):7.2f} % {run:6d} of {all_:6d}  {name}" for name, (run, all_) in rows]
