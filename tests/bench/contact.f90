@@ -53,7 +53,7 @@ contains
       call start_problem(problems(i_type), scene, n, i_type)
       call take_steps(problems(i_type), 3, best)
     end do
-    n_step = max(3, n_work/n)
+    n_step = max(20, n_work/n)
     do i_round = 1, n_round
       do i_type = 1, n_type
         if (chosen(2) > 0 .and. chosen(2) /= i_type) cycle
