@@ -26,8 +26,10 @@ PLACE = re.compile(r"#\d+ \S+ \S*/src/(\S+?\.f90:\d+)")
 
 PLANTS = (
     Plant("elements start before the contact forces are there", "solve/explicit.f90",
-          "      !$omp end master\n      !$omp barrier\n      call advance_tiles",
-          "      !$omp end master\n      call advance_tiles", "solve/cycle.f90"),
+          "      if (.not. cycle%finished) call begin_cycle(model, state, monitor, cycle)\n      !$omp end master\n      !$omp barrier\n",
+          "      !$omp end master\n      !$omp barrier\n      !$omp master\n"
+          "      if (.not. cycle%finished) call begin_cycle(model, state, monitor, cycle)\n      !$omp end master\n",
+          "solve/cycle.f90"),
     Plant("no barrier behind the loop over tiles", "solve/explicit.f90",
           "    end do\n    !$omp end do\n  end subroutine advance_tiles",
           "    end do\n    !$omp end do nowait\n  end subroutine advance_tiles", "solve/node_motion.f90"),
