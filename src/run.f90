@@ -14,8 +14,8 @@ module run_m
   use files_m, only : make_directory, join_path, text_file_t, create_text_file, append_text, &
     close_text_file
   use go_on_m, only : take_up_deck
+  use heap_m, only : give_back_memory
   use log_m, only : open_log, close_log, write_log, to_text
-  use memory_m, only : give_back_memory
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name

@@ -1,21 +1,11 @@
 ! SPDX-License-Identifier: MIT
 !> How much memory there is. Linux hands out more than it has and ends the program that uses it, so
-!> that asking for memory is no test of whether it is there. And giving back what is not used.
+!> that asking for memory is no test of whether it is there.
 module memory_m
-  use, intrinsic :: iso_c_binding, only : c_int, c_size_t
   use kinds_m, only : long
   implicit none
   private
-  public :: available_bytes, give_back_memory
-
-  interface
-    !> GNU C library: hand free pages of the heap back to the system, but for so many bytes at its end.
-    function c_malloc_trim(pad) bind(c, name='malloc_trim') result(status)
-      import :: c_int, c_size_t
-      integer(c_size_t), value :: pad
-      integer(c_int) :: status
-    end function c_malloc_trim
-  end interface
+  public :: available_bytes
 
 contains
 
@@ -39,13 +29,6 @@ contains
     used = used - max(number_in(top//'/sys/fs/cgroup/memory.stat', 'inactive_file '), 0_long)
     bytes = min(bytes, max(limit - used, 0_long))
   end function available_bytes
-
-  !> Hand back what has been deallocated: the C library keeps arrays of up to 32 MB for later.
-  subroutine give_back_memory()
-    integer(c_int) :: status
-
-    status = c_malloc_trim(0_c_size_t)
-  end subroutine give_back_memory
 
   !> The number behind a label at the start of a line; -1 without file, label or number.
   function number_in(file, label) result(number)

@@ -4,7 +4,7 @@
 module deck_effective_m
   use deck_lines_m, only : deck_t, layout_mark
   use deck_parameter_table_m, only : parameters_t, parameter_comments
-  use memory_m, only : give_back_memory
+  use heap_m, only : give_back_memory
   implicit none
   private
   public :: forget_places, write_effective

@@ -22,7 +22,8 @@ module layout_m
   type :: tile_t
     integer :: first_chunk = 1, last_chunk = 0
     integer :: first_node = 1, last_node = 0     !! interior nodes
-    integer :: first_owned = 1, last_owned = 0   !! special nodes that it is the first to touch
+    integer :: first_owned = 1, last_owned = 0   !! special nodes that it is the first to touch; of the last
+                                                 !! tile also those that none touches
     integer :: first_special = 1, last_special = 0 !! its range in the list of force slots
   end type tile_t
 

@@ -20,12 +20,12 @@ module health_m
   !> Work beyond this means nothing any more; it is found before numbers overflow, which a checked build would stop at.
   real(wp), parameter :: most_work = 1.0e150_wp
 
-  !> What the elements of one tile have come to in a cycle. One cache line each: threads fill them side by side.
+  !> What the elements of one tile have come to in a cycle. As long as a cache line: threads fill them side by side.
   type :: tile_check_t
     real(wp) :: time_limit = huge(1.0_wp)   !! smallest L/c, s
     real(wp) :: checksum = 0.0_wp           !! of the works: finite as long as all of them are
     logical :: has_volume = .true.          !! all A/A0 are positive
-    real(wp) :: unused(5) = 0.0_wp
+    real(wp) :: unused(5) = 0.0_wp          !! fills the cache line
   end type tile_check_t
 
 contains

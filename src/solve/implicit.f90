@@ -225,13 +225,13 @@ contains
     end if
   end subroutine raise_failure
 
-  !> Say so where a run that failed had gained energy before.
+  !> Say so where a run that found no equilibrium had gained energy before.
   subroutine hint_at_energy(step, ratio, error)
     type(step_t), intent(in) :: step
     real(wp), intent(in) :: ratio !! of the last converged state
     type(error_t), intent(inout) :: error
 
-    if (.not. step%is_dynamic .or. ratio <= gained) return
+    if (error%status /= status_run .or. .not. step%is_dynamic .or. ratio <= gained) return
     error%message = error%message//'; its energy ratio is '//to_text(ratio) &
       //': the steps gain energy (shorter steps, or a spectral radius below 1)'
   end subroutine hint_at_energy

@@ -123,10 +123,10 @@ class Batch:
         enough += self.ended(names)
         started = self.start(mode)
         sessions = {process.pid for process in started}
-        due, before = chance.uniform(1, 2 * every), 0
+        due = chance.uniform(1, 2 * every)
         while any(process.poll() is None for process in started):
             begun = self.begun()
-            if begun > before and self.ended(names) >= enough:
+            if self.ended(names) >= enough and programs(sessions):
                 for process in started:
                     if process.poll() is None:
                         os.killpg(process.pid, signal.SIGKILL)
@@ -140,7 +140,6 @@ class Batch:
                         os.kill(chance.choice(running), signal.SIGKILL)
                     except ProcessLookupError:
                         pass  # had just ended
-            before = begun
             time.sleep(0.01)
         for process in started:
             process.wait()
@@ -213,9 +212,9 @@ def run_load(exe, folder, count, seed, cuts, say=None):
     batch, first = Batch(exe, folder / "decks", folder / "out"), time.monotonic()
     sums = {"jobs": count, "begun": 0, "killed alone": 0, "cut off": 0}
     for cut in range(cuts):
-        mode = MODES[cut % len(MODES)]
+        mode, left = MODES[cut % len(MODES)], count - batch.ended(names)
         begun = batch.disturbed(mode, chance, max(count // 60, 2), names, count // (cuts + 2))
-        assert begun > 0, f"a batch ({mode}) did not begin"
+        assert begun > 0 or not left, f"a batch ({mode}) did not begin"
         sums["begun"] += begun
         kept = list(batch.statuses(names).values())
         sums["killed alone"] += kept.count("137")
