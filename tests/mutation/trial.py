@@ -18,6 +18,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from mutants import Mutant
 from replay import does_the_same, finish_recording, start_recording
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -211,8 +212,10 @@ def measure(trial: Trial, checks: list[Check], layer: str) -> Iterator[Check]:
         yield check
 
 
-def try_mutant(trial: Trial, checks: list[Check], layer: str, name: str, text: str) -> tuple[str, str]:
-    """(verdict, name of the check that noticed it) of a mutated source text."""
+def try_mutant(trial: Trial, checks: list[Check], mutant: Mutant) -> tuple[str, str]:
+    """(verdict, name of the check that noticed it) of a mutant."""
+    layer, name = mutant.file.split("/")
+    text = mutant.apply((ROOT / "src" / mutant.file).read_text(encoding="utf-8"))
     if not trial.start(layer, name, text):
         return "not compiled", ""
     own = f"unit.{layer}.test_{Path(name).stem}"
