@@ -69,9 +69,9 @@ def run(options: argparse.Namespace) -> None:
                                                   options.units_only)
                       if check.seconds <= options.longest] for layer in layers}
     done = {row["key"]: row for row in read_rows(options.out)}
-    for row in done.values():
+    for row in [*done.values(), *(row for path in options.learn for row in read_rows(path))]:
         for check in checks.get(row["file"].split("/")[0], []):
-            check.n_run += check.name == row["test"]
+            check.n_run += 1
             check.n_noticed += check.name == row["test"]
     drawn = draw(layers, options.number, options.seed, options.every)
     todo = [mutant for mutant in drawn if mutant.key not in done
@@ -153,6 +153,8 @@ def main() -> None:
     trying.add_argument("--seed", type=int, default=1)
     trying.add_argument("--jobs", type=int, default=1)
     trying.add_argument("--again", action="store_true", help="try survivors once more")
+    trying.add_argument("--learn", type=Path, action="append", default=[],
+                        help="another table, to learn from which tests to begin with")
     trying.add_argument("--units-only", action="store_true", help="run no more than the unit tests")
     trying.add_argument("--longest", type=float, default=1e9, help="leave out tests above these seconds")
     summary = commands.add_parser("summary")
