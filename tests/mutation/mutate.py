@@ -74,10 +74,11 @@ def run(options: argparse.Namespace) -> None:
             check.n_run += 1
             check.n_noticed += check.name == row["test"]
     drawn = draw(layers, options.number, options.seed, options.every)
-    todo = [mutant for mutant in drawn if mutant.key not in done
-            or (options.again and done[mutant.key]["verdict"] == "survived")]
-    print(f"{len(drawn)} mutants, {len(todo)} to try", flush=True)
     reasons = read_reasons()
+    todo = [mutant for mutant in drawn if mutant.key not in done
+            or (options.again and done[mutant.key]["verdict"] == "survived"
+                and (mutant.file, mutant.before, mutant.after) not in reasons)]
+    print(f"{len(drawn)} mutants, {len(todo)} to try", flush=True)
     lock, trials = threading.Lock(), [Trial(units, program, scratch / str(k))
                                       for k in range(options.jobs)]
     fresh = not options.out.exists()
@@ -152,7 +153,7 @@ def main() -> None:
     trying.add_argument("--every", action="append", help="a layer of which all mutants are tried")
     trying.add_argument("--seed", type=int, default=1)
     trying.add_argument("--jobs", type=int, default=1)
-    trying.add_argument("--again", action="store_true", help="try survivors once more")
+    trying.add_argument("--again", action="store_true", help="try unexplained survivors once more")
     trying.add_argument("--learn", type=Path, action="append", default=[],
                         help="another table, to learn from which tests to begin with")
     trying.add_argument("--units-only", action="store_true", help="run no more than the unit tests")
