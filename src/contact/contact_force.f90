@@ -8,7 +8,7 @@ module contact_force_m
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
   use contact_initial_m, only : start_slave_tracking, start_master_tracking, start_cover
   use contact_log_m, only : log_contact
-  use contact_motion_m, only : gather_motion, gather_places, take_force, add_force
+  use contact_motion_m, only : gather_places, take_force, keep_former, add_force
   use contact_penalty_m, only : set_penalties, press_points, stored_energy, damp_points
   use contact_scatter_m, only : scatter_points, scatter_runs
   use contact_search_m, only : update_tracking, wake_all
@@ -38,8 +38,8 @@ contains
     memory%n_slave = n_slave
     memory%n_master = n_master
     memory%nodes = [contact%slave%nodes, contact%master%nodes]
-    allocate (memory%force(2, n_slave + n_master), memory%places(4, n_slave + n_master), &
-      source=0.0_wp)
+    allocate (memory%force(2, n_slave + n_master), memory%former_force(2, n_slave + n_master), &
+      memory%places(4, n_slave + n_master), source=0.0_wp)
     do i = 1, size(memory%nodes)
       memory%places(1:2, i) = model%mesh%coordinates(:, memory%nodes(i)) &
         - model%mesh%coordinates(:, memory%nodes(1))
@@ -73,30 +73,33 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     real(wp) :: power
+    logical :: had_force
 
     if (time < contact%birth .or. time > contact%death) then
       call suspend_contact(motion, dt, memory)
       return
     end if
     if (memory%is_stale) call refresh_memory(motion, memory)
-    call gather_motion(motion, memory, power)
+    call gather_places(motion, memory)
     if (allocated(memory%spots)) &
       call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
     call search_pairs(contact, cycle, memory)
     call lap(clock, phase_contact_search)
     call place_points(contact, memory)
     if (memory%laps_pairing) call lap(clock, phase_contact_pairing)
+    had_force = memory%n_active > 0
     memory%n_active = 0
-    if (memory%points%n > 0) then
+    if (memory%points%n > 0 .or. had_force) then
+      call keep_former(had_force, memory)
       call press_points(memory)
       ! Springs loaded at time zero hold energy that no force has put in.
       if (cycle == 0) memory%energy = stored_energy(memory%points)
       if (contact%damping > 0.0_wp) &
         call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
       call scatter(memory)
-      call add_force(memory%nodes, memory%force, motion, force, power)
+      call add_force(memory%nodes, memory%former_force, memory%force, motion, force, power)
+      memory%energy = memory%energy - 0.5_wp*dt*power
     end if
-    memory%energy = memory%energy - 0.5_wp*dt*power
     call lap(clock, phase_contact_force)
   end subroutine apply_contact
 

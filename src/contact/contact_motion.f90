@@ -7,26 +7,15 @@ module contact_motion_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: gather_motion, gather_places, take_force, add_force
+  public :: gather_places, take_force, keep_former, add_force
 
   !> Chains of sums kept side by side.
   integer, parameter :: n_lane = 4
 
 contains
 
-  !> Take the present motion into the memory, let its travel grow by a bound on how far any two nodes have
-  !> moved relative to each other since the last call, find the power of the last forces and forget these.
-  pure subroutine gather_motion(motion, memory, power)
-    real(wp), intent(in), contiguous :: motion(:, :)
-    type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(out) :: power !! of the previous forces with the present velocity, W/m
-
-    power = 0.0_wp
-    if (memory%n_active > 0) call take_force(memory%nodes, motion, memory%force, power)
-    call gather_places(motion, memory)
-  end subroutine gather_motion
-
-  !> The same without forces.
+  !> Take the present displacements into the memory and let its travel grow by a bound on how far any two nodes have
+  !> moved relative to each other since the last call.
   pure subroutine gather_places(motion, memory)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
@@ -35,6 +24,30 @@ contains
     call take_places(memory%nodes, motion, memory%places, spread)
     memory%travel = memory%travel + spread
   end subroutine gather_places
+
+  !> Set the forces of the last call aside, where there were any, and start with none.
+  pure subroutine keep_former(had_force, memory)
+    logical, intent(in) :: had_force
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), allocatable :: spare(:, :)
+
+    if (had_force) then
+      call move_alloc(memory%former_force, spare)
+      call move_alloc(memory%force, memory%former_force)
+      call move_alloc(spare, memory%force)
+      call clear(size(memory%force), memory%force)
+    else
+      call clear(size(memory%former_force), memory%former_force)
+    end if
+  end subroutine keep_former
+
+  !> No forces; in one piece, since node by node it takes as long as to add them.
+  pure subroutine clear(n, force)
+    integer, intent(in) :: n
+    real(wp), intent(out) :: force(n)
+
+    force = 0.0_wp
+  end subroutine clear
 
   !> Power of nodal forces with the velocities of the nodes; the forces are zero afterwards.
   pure subroutine take_force(nodes, motion, force, power)
@@ -94,12 +107,13 @@ contains
     spread = sqrt((high(1, 1) - low(1, 1))**2 + (high(2, 1) - low(2, 1))**2)
   end subroutine take_places
 
-  !> Add the forces of the interface to those of the mesh, and their power to `power`.
-  pure subroutine add_force(nodes, contact_force, motion, force, power)
+  !> Add the forces of the interface to those of the mesh. Their power and that of the former ones, with the same
+  !> velocity, are formed on the way: v is read once.
+  pure subroutine add_force(nodes, former, present, motion, force, power)
     integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in) :: contact_force(2, *), motion(4, *)
+    real(wp), intent(in) :: former(2, *), present(2, *), motion(4, *)
     real(wp), intent(inout) :: force(2, *)
-    real(wp), intent(inout) :: power
+    real(wp), intent(out) :: power !! of both, W/m
     real(wp) :: lanes(n_lane)
     integer :: i, k
 
@@ -107,24 +121,24 @@ contains
     do i = n_lane, size(nodes), n_lane
       do k = 1, n_lane
         associate (j => i - n_lane + k)
-          call add_to_node(contact_force(1, j), motion(1, nodes(j)), force(1, nodes(j)), lanes(k))
+          call add_to_node(former(1, j), present(1, j), motion(1, nodes(j)), force(1, nodes(j)), lanes(k))
         end associate
       end do
     end do
     do i = size(nodes) - modulo(size(nodes), n_lane) + 1, size(nodes)
-      call add_to_node(contact_force(1, i), motion(1, nodes(i)), force(1, nodes(i)), lanes(1))
+      call add_to_node(former(1, i), present(1, i), motion(1, nodes(i)), force(1, nodes(i)), lanes(1))
     end do
-    power = power + sum(lanes)
+    power = sum(lanes)
   end subroutine add_force
 
   !> Add the force of one node, and its power.
-  pure subroutine add_to_node(contact_force, motion, force, power)
-    real(wp), intent(in) :: contact_force(2), motion(4)
+  pure subroutine add_to_node(former, present, motion, force, power)
+    real(wp), intent(in) :: former(2), present(2), motion(4)
     real(wp), intent(inout) :: force(2), power
 
-    force(1) = force(1) + contact_force(1)
-    force(2) = force(2) + contact_force(2)
-    power = power + (motion(3)*contact_force(1) + motion(4)*contact_force(2))
+    force(1) = force(1) + present(1)
+    force(2) = force(2) + present(2)
+    power = power + (motion(3)*(former(1) + present(1)) + motion(4)*(former(2) + present(2)))
   end subroutine add_to_node
 
 end module contact_motion_m

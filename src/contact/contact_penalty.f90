@@ -127,7 +127,10 @@ contains
     real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave or more) scratch
     integer :: node
 
-    nodal(:, :n_slave) = 0.0_wp
+    do node = 1, n_slave
+      nodal(1, node) = 0.0_wp
+      nodal(2, node) = 0.0_wp
+    end do
     call sum_gaps(points%n, points%slave_nodes, points%slave_weights, points%area, points%gap, nodal)
     do node = 1, n_slave
       nodal(1, node) = max(0.0_wp, -nodal(1, node))/max(nodal(2, node), tiny(1.0_wp))

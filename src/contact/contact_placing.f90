@@ -2,14 +2,14 @@
 !> What the placements share: points at tracked nodes, points on slave segments, competence lengths.
 module contact_placing_m
   use contact_projection_m, only : foot_t
-  use contact_state_m, only : contact_points_t, tracking_t
+  use contact_state_m, only : contact_points_t, tracking_t, n_side
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: add_touching_nodes, add_segment_point, add_plain_point, tracked_foot, place_on_segment, &
-    competence_length
+  public :: add_touching_nodes, add_segment_point, add_plain_point, put_sides, put_gaps, put_springs, &
+    tracked_foot, place_on_segment, competence_length, put_competence
 
 contains
 
@@ -91,6 +91,55 @@ contains
     points%gap(p) = gap
   end subroutine add_plain_point
 
+  !> Nodes and weights on one side of `m` points on each of `n` segments.
+  pure subroutine put_sides(n, m, ends, xi, nodes, weights)
+    integer, intent(in) :: n, m, ends(n_side, n)
+    real(wp), intent(in) :: xi(m, n) !! places on the segment, 0 to 1
+    integer, intent(inout) :: nodes(n_side, m, n)
+    real(wp), intent(inout) :: weights(n_side, m, n)
+    integer :: k, q
+
+    do k = 1, n
+      do q = 1, m
+        nodes(1, q, k) = ends(1, k)
+        nodes(2, q, k) = ends(2, k)
+        weights(1, q, k) = 1.0_wp - xi(q, k)
+        weights(2, q, k) = xi(q, k)
+      end do
+    end do
+  end subroutine put_sides
+
+  !> Gaps, and the normals of their segments.
+  pure subroutine put_gaps(n, m, gap, normal, gaps, normals)
+    integer, intent(in) :: n, m
+    real(wp), intent(in) :: gap(m, n), normal(2, n)
+    real(wp), intent(inout) :: gaps(m, n), normals(2, m, n)
+    integer :: k, q
+
+    do k = 1, n
+      do q = 1, m
+        gaps(q, k) = gap(q, k)
+        normals(1, q, k) = normal(1, k)
+        normals(2, q, k) = normal(2, k)
+      end do
+    end do
+  end subroutine put_gaps
+
+  !> Areas, and one stiffness for all.
+  pure subroutine put_springs(n, m, area, stiffness, areas, stiffnesses)
+    integer, intent(in) :: n, m
+    real(wp), intent(in) :: area(n), stiffness
+    real(wp), intent(inout) :: areas(m, n), stiffnesses(m, n)
+    integer :: k, q
+
+    do k = 1, n
+      do q = 1, m
+        areas(q, k) = area(k)
+        stiffnesses(q, k) = stiffness
+      end do
+    end do
+  end subroutine put_springs
+
   !> Foot of a spot in contact as the tracking knows it.
   pure function tracked_foot(tracking, i) result(foot)
     type(tracking_t), intent(in) :: tracking
@@ -127,5 +176,32 @@ contains
     if (surface%outgoing(i_node) > 0) length = length + 0.5_wp*segment_length( &
       places(:, i_node), places(:, surface%segments(2, surface%outgoing(i_node))))
   end function competence_length
+
+  !> The same for the tracked nodes of some points, one after the other: a segment between two of them is measured once.
+  pure subroutine put_competence(surface, places, n, nodes, offset, areas)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    integer, intent(in) :: n
+    integer, intent(in) :: nodes(n_side, n)  !! local numbers
+    integer, intent(in) :: offset            !! local number before the first node of the surface
+    real(wp), intent(inout) :: areas(n)
+    real(wp) :: half
+    integer :: p, k, s, measured
+
+    measured = 0
+    half = 0.0_wp
+    do p = 1, n
+      areas(p) = 0.0_wp
+      do k = 1, 2
+        if (k == 1) s = surface%incoming(nodes(1, p) - offset)
+        if (k == 2) s = surface%outgoing(nodes(1, p) - offset)
+        if (s == 0) cycle
+        if (s /= measured) half = 0.5_wp*segment_length(places(:, surface%segments(1, s)), &
+          places(:, surface%segments(2, s)))
+        measured = s
+        areas(p) = areas(p) + half
+      end do
+    end do
+  end subroutine put_competence
 
 end module contact_placing_m

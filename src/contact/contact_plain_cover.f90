@@ -1,104 +1,254 @@
 ! SPDX-License-Identifier: MIT
 !> The common case of contact_overlap: both ends of a slave segment are in contact or plainly over the master, a few
 !> master segments face it entirely and the nodes between these cut it one after the other. What is found is the
-!> same; only the decisions that have no part in this case are left out. (In sliding, the two segments at the
-!> edges of the contact and their neighbours took 80 % of the pairing while they went the general way.)
+!> same; only the decisions that have no part in this case are left out. Segments are listed first and then cut many at a
+!> time, so that the roots and quotients of a list are formed together: one by one, waiting for these and for
+!> small arrays on their way to memory and back took two thirds of the pairing.
 module contact_plain_cover_m
   use contact_overlap_m, only : face_on
-  use contact_plain_foot_m, only : see_plain_segment
+  use contact_plain_foot_m, only : see_plain_segment, well_inside
   use contact_state_m, only : contact_state_t, is_free, is_touching
   use contacts_m, only : contact_t
-  use geometry_m, only : sight_t, sight_of_segment, separation
+  use geometry_m, only : sight_t
   use kinds_m, only : wp
   implicit none
   private
-  public :: plain_cover_t, find_plain_cover, note_plain_contact
+  public :: plain_cover_t, clear_list, list_touching, list_segment, cut_segments, see_pieces, &
+    note_plain_contact, n_room
 
-  !> Most pieces of a segment.
-  integer, parameter :: n_most = 6
+  !> Most pieces of a segment, and of a list.
+  integer, parameter :: n_most = 6, n_room = 64
+  !> In a closed chain of so many segments the way forwards may be the shorter one.
+  integer, parameter :: short_chain = 2*n_most
 
-  !> A slave segment cut into pieces. Without default values, which would be written before each use.
+  !> Slave segments cut into pieces, one piece behind the other. Without default values, which would be written
+  !> before each use.
   type :: plain_cover_t
-    integer :: n_piece             !! 0: this is not the common case
-    logical :: touches             !! both ends are in contact
-    integer :: ends(2)             !! nodes of the slave segment
-    integer :: segments(n_most)    !! (n_piece) of the master
-    integer :: nodes(n_most)       !! (n_piece - 1) master node behind each piece but the last
-    real(wp) :: cuts(0:n_most)     !! (0:n_piece) 0, projections of these nodes, 1
-    real(wp) :: across(n_most)     !! (n_piece - 1) gaps of these nodes times the length
-    real(wp) :: t(2)               !! vector of the slave segment, m
-    real(wp) :: square             !! its square, m^2
+    integer :: n_segment
+    integer :: n_piece
+    logical :: is_full                  !! no other segment may fit
+    integer :: slave(n_room)            !! (n_segment) of the slave
+    integer :: last(0:n_room)           !! (0:n_segment) last piece of each
+    logical :: touches(n_room)          !! (n_segment) both ends are in contact
+    logical :: is_plain(n_room)         !! (n_segment) this is the common case indeed
+    integer :: ends(2, n_room)          !! (n_piece) nodes of the slave segment
+    integer :: master(n_room)           !! (n_piece) segment of the master
+    integer :: nodes(2, n_room)         !! (n_piece) local numbers of its nodes
+    real(wp) :: own(2, n_room)          !! (n_piece) vector of the slave segment, m
+    real(wp) :: other(2, n_room)        !! (n_piece) vector of the master segment, m
+    real(wp) :: way(2, n_room)          !! (n_piece) from the master segment's first node to the first end, m
+    real(wp) :: length(n_room)          !! (n_piece) of the slave segment, m
+    real(wp) :: inverse(n_room)         !! (n_piece) 1/length, 1/m
+    real(wp) :: low(n_room)             !! (n_piece) where it starts on the slave segment, 0 to 1
+    real(wp) :: high(n_room)            !! (n_piece) where it ends: projection of the master segment's first node, or 1
+    real(wp) :: gap(n_room)             !! (n_piece) of that node to the slave segment, m
+    real(wp) :: facing(n_room)          !! (n_piece) more than 0 where it faces the slave segment entirely
   end type plain_cover_t
 
 contains
 
-  !> Cut a slave segment. Feet on a node, corners, and whatever else needs a decision is left to contact_overlap.
-  pure subroutine find_plain_cover(contact, memory, s, cover)
+  !> Start a list.
+  pure subroutine clear_list(cover)
+    type(plain_cover_t), intent(inout) :: cover
+
+    cover%n_segment = 0
+    cover%n_piece = 0
+    cover%last(0) = 0
+    cover%is_full = .false.
+  end subroutine clear_list
+
+  !> Put slave segments from s on with both ends in contact on the list, up to the first that is of another kind or
+  !> has no room: s is then that one.
+  pure subroutine list_touching(contact, memory, s, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s !! slave segment
-    type(plain_cover_t), intent(out) :: cover
-    type(sight_t) :: sight
-    real(wp), dimension(4) :: one, two, a !! places of nodes, in registers
-    integer :: segment, last, n
+    integer, intent(inout) :: s
+    type(plain_cover_t), intent(inout) :: cover
 
-    cover%n_piece = 0
-    cover%ends = contact%slave%segments(:, s)
-    call find_ends(contact, memory, cover%ends, segment, last, cover%touches)
-    if (segment == 0 .or. last == 0) return
-    ! In a short closed chain the way forwards may be the shorter one.
-    if (segment /= last .and. contact%master%n_segment <= 2*n_most) return
-    cover%cuts(0) = 0.0_wp
-    one = memory%places(:, cover%ends(1))
-    two = memory%places(:, cover%ends(2))
+    if (contact%master%n_segment <= short_chain) return
+    associate (tracking => memory%slave_tracking)
+      call list_run(contact%slave%n_segment, contact%slave%segments, tracking%status, &
+        tracking%segment, tracking%xi, contact%master%previous, s, cover)
+    end associate
+  end subroutine list_touching
+
+  !> The same on arrays of known shape.
+  pure subroutine list_run(n_segment, ends, status, segment, xi, previous, s, cover)
+    integer, intent(in) :: n_segment, ends(2, n_segment)   !! of the slave
+    integer, intent(in) :: status(*), segment(*)           !! of the slave nodes
+    real(wp), intent(in) :: xi(*)
+    integer, intent(in) :: previous(*)                     !! of the master
+    integer, intent(inout) :: s
+    type(plain_cover_t), intent(inout) :: cover
+    integer :: one, two
+    logical :: is_listed
+
+    do while (s <= n_segment .and. .not. cover%is_full)
+      one = ends(1, s)
+      two = ends(2, s)
+      if (status(one) /= is_touching .or. status(two) /= is_touching) return
+      if (.not. (is_inside(xi(one)) .and. is_inside(xi(two)))) return
+      call list_pieces(s, ends(1, s), segment(one), segment(two), previous, .true., cover, is_listed)
+      if (.not. is_listed) return
+      s = s + 1
+    end do
+  end subroutine list_run
+
+  !> Put the pieces of a slave segment on the list, from the master segment below its first end back to that below
+  !> the second one, if these are not too many.
+  pure subroutine list_pieces(s, ends, first, last, previous, touches, cover, is_listed)
+    integer, intent(in) :: s, ends(2)   !! slave segment and its nodes
+    integer, intent(in) :: first, last
+    integer, intent(in) :: previous(*)  !! of the master
+    logical, intent(in) :: touches      !! both ends are in contact
+    type(plain_cover_t), intent(inout) :: cover
+    logical, intent(out) :: is_listed
+    integer :: segment, n, k
+
+    is_listed = .false.
+    segment = first
+    k = cover%n_piece
     do n = 1, n_most
-      cover%segments(n) = segment
-      a = memory%places(:, memory%n_slave + contact%master%segments(1, segment))
-      sight = sight_of_segment(a, one, two)
-      if (.not. faces(sight, separation(memory%places(:, memory%n_slave &
-        + contact%master%segments(2, segment)), a))) return
+      k = k + 1
+      cover%ends(1, k) = ends(1)
+      cover%ends(2, k) = ends(2)
+      cover%master(k) = segment
       if (segment == last) exit
-      cover%cuts(n) = sight%along/sight%square
-      if (.not. (cover%cuts(n) > cover%cuts(n - 1) .and. cover%cuts(n) < 1.0_wp)) return
-      cover%nodes(n) = contact%master%segments(1, segment)
-      cover%across(n) = sight%across
-      segment = contact%master%previous(segment)
+      segment = previous(segment)
       if (segment == 0) return
     end do
     if (n > n_most) return
-    cover%cuts(n) = 1.0_wp
-    cover%t = sight%t
-    cover%square = sight%square
-    cover%n_piece = n
-  end subroutine find_plain_cover
+    is_listed = .true.
+    cover%n_segment = cover%n_segment + 1
+    cover%slave(cover%n_segment) = s
+    cover%last(cover%n_segment) = k
+    cover%touches(cover%n_segment) = touches
+    cover%n_piece = k
+    cover%is_full = k > n_room - n_most
+  end subroutine list_pieces
 
-  !> Master segments below both ends of a slave segment; free ends are looked for from where contact_overlap does.
-  pure subroutine find_ends(contact, memory, ends, first, second, touch)
+  !> Put any other slave segment on the list. Feet on a node, corners, and whatever else needs a decision is left to
+  !> contact_overlap.
+  pure subroutine list_segment(contact, memory, s, cover, is_listed)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: ends(2)
+    integer, intent(in) :: s !! slave segment
+    type(plain_cover_t), intent(inout) :: cover
+    logical, intent(out) :: is_listed
+    integer :: first, last
+    logical :: touches
+
+    is_listed = .false.
+    call find_ends(contact, memory, contact%slave%segments(1, s), contact%slave%segments(2, s), &
+      first, last, touches)
+    if (first == 0 .or. last == 0) return
+    if (first /= last .and. contact%master%n_segment <= short_chain) return
+    call list_pieces(s, contact%slave%segments(1, s), first, last, contact%master%previous, touches, &
+      cover, is_listed)
+  end subroutine list_segment
+
+  !> Cut the segments on the list.
+  pure subroutine cut_segments(contact, memory, cover)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(plain_cover_t), intent(inout) :: cover
+    real(wp) :: low
+    integer :: i, k
+    logical :: is_plain
+
+    call see_pieces(cover%n_piece, cover%ends, cover%master, contact%master%segments, memory%n_slave, &
+      memory%places, cover%nodes, cover%own, cover%other, cover%way)
+    call cut_pieces(cover%n_piece, cover%own, cover%other, cover%way, cover%length, cover%inverse, &
+      cover%high, cover%gap, cover%facing)
+    do i = 1, cover%n_segment
+      low = 0.0_wp
+      is_plain = .true.
+      do k = cover%last(i - 1) + 1, cover%last(i) - 1
+        is_plain = is_plain .and. cover%facing(k) > 0.0_wp .and. cover%high(k) > low + well_inside &
+          .and. cover%high(k) < 1.0_wp - well_inside
+        cover%low(k) = low
+        low = cover%high(k)
+      end do
+      cover%low(k) = low
+      cover%high(k) = 1.0_wp
+      cover%is_plain(i) = is_plain .and. cover%facing(k) > 0.0_wp
+    end do
+  end subroutine cut_segments
+
+  !> Vectors of the pieces.
+  pure subroutine see_pieces(n, ends, master, segments, n_slave, places, nodes, own, other, way)
+    integer, intent(in) :: n, ends(2, *), master(*), segments(2, *)
+    integer, intent(in) :: n_slave !! local number before the first master node
+    real(wp), intent(in) :: places(4, *)
+    integer, intent(inout) :: nodes(2, *)
+    real(wp), dimension(2, n_room), intent(inout) :: own, other, way
+    real(wp), dimension(4) :: along_slave, along_master, across
+    integer :: k, a, b
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      a = n_slave + segments(1, master(k))
+      b = n_slave + segments(2, master(k))
+      nodes(1, k) = a
+      nodes(2, k) = b
+      along_slave = places(:, ends(2, k)) - places(:, ends(1, k))
+      along_master = places(:, b) - places(:, a)
+      across = places(:, ends(1, k)) - places(:, a)
+      own(:, k) = along_slave(1:2) + along_slave(3:4)
+      other(:, k) = along_master(1:2) + along_master(3:4)
+      way(:, k) = across(1:2) + across(3:4)
+    end do
+  end subroutine see_pieces
+
+  !> Projections of the pieces' master nodes on the slave segments.
+  pure subroutine cut_pieces(n, own, other, way, length, inverse, high, gap, facing)
+    integer, intent(in) :: n
+    real(wp), dimension(2, n_room), intent(in) :: own, other, way
+    real(wp), dimension(n_room), intent(inout) :: length, inverse, high, gap, facing
+    real(wp) :: square, product
+    integer :: k
+
+    do k = 1, n
+      square = max(own(1, k)*own(1, k) + own(2, k)*own(2, k), tiny(1.0_wp))
+      product = own(1, k)*other(1, k) + own(2, k)*other(2, k)
+      ! A number, since a loop that keeps logicals is not vectorized.
+      facing(k) = min(-product, product*product - face_on**2*(square &
+        *(other(1, k)*other(1, k) + other(2, k)*other(2, k))))
+      inverse(k) = 1.0_wp/sqrt(square)
+      length(k) = square*inverse(k)
+      high(k) = -(way(1, k)*own(1, k) + way(2, k)*own(2, k))*(inverse(k)*inverse(k))
+      gap(k) = (way(2, k)*own(1, k) - way(1, k)*own(2, k))*inverse(k)
+    end do
+  end subroutine cut_pieces
+
+  !> Master segments below both ends of a slave segment; free ends are looked for from where contact_overlap does.
+  pure subroutine find_ends(contact, memory, one, two, first, second, touch)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: one, two       !! the ends
     integer, intent(out) :: first, second !! 0: a decision is needed
     logical, intent(out) :: touch         !! both ends are in contact
     type(sight_t) :: sight
-    logical :: touches(2)
+    logical :: one_touches, two_touches
     integer :: start
 
     associate (tracking => memory%slave_tracking, chain => memory%places(:, memory%n_slave + 1:))
-      touches = tracking%status(ends) == is_touching
-      touch = all(touches)
-      first = tracking%segment(ends(1))
-      second = tracking%segment(ends(2))
-      if (touches(1) .and. .not. is_inside(tracking%xi(ends(1)))) first = 0
-      if (touches(2) .and. .not. is_inside(tracking%xi(ends(2)))) second = 0
-      if (touch .or. (touches(1) .and. first == 0) .or. (touches(2) .and. second == 0)) return
-      if (.not. touches(1)) then
-        start = merge(second, first, touches(2) .or. first == 0)
+      one_touches = tracking%status(one) == is_touching
+      two_touches = tracking%status(two) == is_touching
+      touch = one_touches .and. two_touches
+      first = tracking%segment(one)
+      second = tracking%segment(two)
+      if (one_touches .and. .not. is_inside(tracking%xi(one))) first = 0
+      if (two_touches .and. .not. is_inside(tracking%xi(two))) second = 0
+      if (touch .or. (one_touches .and. first == 0) .or. (two_touches .and. second == 0)) return
+      if (.not. one_touches) then
+        start = merge(second, first, two_touches .or. first == 0)
         if (start == 0) return
-        call see_plain_segment(contact%master, chain, memory%places(:, ends(1)), start, first, sight)
+        call see_plain_segment(contact%master, chain, memory%places(:, one), start, first, sight)
       end if
-      if (first == 0 .or. touches(2)) return
+      if (first == 0 .or. two_touches) return
       start = first
-      call see_plain_segment(contact%master, chain, memory%places(:, ends(2)), start, second, sight)
+      call see_plain_segment(contact%master, chain, memory%places(:, two), start, second, sight)
     end associate
   end subroutine find_ends
 
@@ -109,18 +259,6 @@ contains
 
     is_inside = min(xi, 1.0_wp - xi) > 0.0_wp
   end function is_inside
-
-  !> Whether a master segment faces the slave segment entirely.
-  pure function faces(sight, t)
-    type(sight_t), intent(in) :: sight !! from the slave segment
-    real(wp), intent(in) :: t(2)       !! vector of the master segment
-    logical :: faces
-    real(wp) :: product
-
-    product = sight%t(1)*t(1) + sight%t(2)*t(2)
-    faces = product < 0.0_wp .and. product*product >= face_on**2*(sight%square &
-      *(t(1)*t(1) + t(2)*t(2)))
-  end function faces
 
   !> What contact_admission notes of a segment with both ends in contact: it stays.
   pure subroutine note_plain_contact(memory, s, is_deep)

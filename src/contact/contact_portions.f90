@@ -7,7 +7,7 @@ module contact_portions_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: mark_t, walk_to_mark, walk_from
+  public :: mark_t, walk_to_mark
 
   !> A place on a chain.
   type :: mark_t
@@ -27,24 +27,12 @@ contains
     real(wp), intent(in) :: place(4)
     integer, intent(in) :: start
     type(mark_t) :: mark
-
-    mark = walk_from(surface, chain, place, start, see_segment(surface, chain, place, start))
-  end function walk_to_mark
-
-  !> The same for a place that has been seen from there.
-  pure function walk_from(surface, chain, place, start, seen) result(mark)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :)
-    real(wp), intent(in) :: place(4)
-    integer, intent(in) :: start
-    type(sight_t), intent(in) :: seen !! the place, from the start
-    type(mark_t) :: mark
     type(sight_t) :: sight, other
     logical :: backwards
     integer :: neighbour, i_step
 
     mark%segment = start
-    sight = seen
+    sight = see_segment(surface, chain, place, start)
     backwards = sight%along < 0.0_wp
     do i_step = 1, surface%n_segment
       mark%xi = sight%along/sight%square
@@ -62,6 +50,6 @@ contains
       mark%n_step = mark%n_step + merge(-1, 1, backwards)
     end do
     mark%xi = max(0.0_wp, min(1.0_wp, mark%xi))
-  end function walk_from
+  end function walk_to_mark
 
 end module contact_portions_m

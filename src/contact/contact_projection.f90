@@ -9,7 +9,7 @@ module contact_projection_m
   implicit none
   private
   public :: foot_t, see_segment, closest_foot, face_foot, follow_contact, walk_to_closest, &
-    is_over_segment, turns_gently, end_tolerance, side_on
+    is_over_segment, turns_gently, end_tolerance, gentle_turn, side_on
 
   !> Overshoot accepted beyond the end of a chain, as a part of the segment; not clamped.
   real(wp), parameter :: end_tolerance = 0.01_wp

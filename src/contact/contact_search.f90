@@ -34,6 +34,11 @@ contains
     end if
     call keep_contacts(tracking%touching(:tracking%n_touching), tracking%segment, &
       surface%segments, chain, spots, tracking%xi, tracking%gap, tracking%normal, tracking%is_kept)
+    if (all(tracking%is_kept)) then
+      ! The list of spots in contact stays as it is.
+      tracking%is_kept = .false.
+      return
+    end if
     next_wake = huge(1.0_wp)
     n_touching = 0
     i = 0

@@ -4,12 +4,14 @@
 !> (doc/theory/contact.md, section 5.5).
 module points_nts_mar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
+  use contact_cuts_m, only : add_cuts
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     see_master_node, facing_share
-  use contact_plain_cover_m, only : plain_cover_t, find_plain_cover, note_plain_contact
+  use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
+    cut_segments, note_plain_contact
   use contact_placing_m, only : add_touching_nodes, competence_length
   use contact_projection_m, only : see_segment
-  use contact_state_m, only : contact_state_t, make_room
+  use contact_state_m, only : contact_state_t, make_room, n_side
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal
   use kinds_m, only : wp
@@ -24,52 +26,70 @@ contains
   pure subroutine place_nts_mar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    type(plain_cover_t) :: plain
-    integer :: s, n_before
+    type(plain_cover_t) :: cover
+    integer :: s, n
 
     if (all_asleep(memory)) return
-    n_before = memory%points%n
     call add_touching_nodes(memory%slave_tracking, contact%master, 0, memory%n_slave, &
       memory%points)
-    call mark_points(memory, n_before)
-    do s = 1, contact%slave%n_segment
-      if (is_asleep(memory, s, contact%slave%segments(:, s))) cycle
-      call find_plain_cover(contact, memory, s, plain)
-      if (plain%n_piece > 0) then
-        call share_plain_segment(contact, memory, s, plain)
-      else
-        call share_segment(contact, memory, s)
+    n = memory%points%n
+    call mark_points(n, memory%points%slave_nodes, memory%mark, memory%points%area)
+    memory%points%stiffness(:n) = memory%slave_penalty
+    call clear_list(cover)
+    s = 1
+    do while (s <= contact%slave%n_segment)
+      call list_touching(contact, memory, s, cover)
+      if (cover%is_full) then
+        call share_list(contact, memory, cover)
+      else if (s <= contact%slave%n_segment) then
+        call take_segment(contact, memory, s, cover)
+        s = s + 1
       end if
     end do
+    call share_list(contact, memory, cover)
     call note_next_wake(memory)
-    call finish_nodes(contact, memory, n_before)
+    call finish_nodes(contact, memory, n)
   end subroutine place_nts_mar
 
-  !> Remember which point stands at which slave node; areas start at zero.
-  pure subroutine mark_points(memory, n_before)
+  !> Put a segment that may touch on the list, or divide it at once where that is not the common case.
+  pure subroutine take_segment(contact, memory, s, cover)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: n_before
-    integer :: p
+    integer, intent(in) :: s
+    type(plain_cover_t), intent(inout) :: cover
+    logical :: is_listed
 
-    do p = n_before + 1, memory%points%n
-      memory%mark(memory%points%slave_nodes(1, p)) = p
-      memory%points%area(p) = 0.0_wp
-      memory%points%stiffness(p) = memory%slave_penalty
+    if (is_asleep(memory, s, contact%slave%segments(:, s))) return
+    call list_segment(contact, memory, s, cover, is_listed)
+    if (.not. is_listed) call share_segment(contact, memory, s)
+    if (cover%is_full) call share_list(contact, memory, cover)
+  end subroutine take_segment
+
+  !> Remember which point stands at which slave node; areas start at zero.
+  pure subroutine mark_points(n, nodes, mark, area)
+    integer, intent(in) :: n, nodes(n_side, *)
+    integer, intent(inout) :: mark(*)
+    real(wp), intent(inout) :: area(*)
+    integer :: k
+
+    do k = 1, n
+      mark(nodes(1, k)) = k
+      area(k) = 0.0_wp
     end do
   end subroutine mark_points
 
   !> Forget that. Nodes at a tip keep their whole competence length.
-  pure subroutine finish_nodes(contact, memory, n_before)
+  pure subroutine finish_nodes(contact, memory, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: n_before
-    integer :: k, p, node
+    integer, intent(in) :: n !! points at slave nodes
+    integer :: p, node
 
-    do k = 1, memory%slave_tracking%n_touching
-      p = n_before + k
-      node = memory%points%slave_nodes(1, p)
-      memory%mark(node) = 0
+    memory%mark = 0
+    if (all(memory%points%area(:n) > 0.0_wp)) return
+    do p = 1, n
       if (memory%points%area(p) > 0.0_wp) cycle
+      node = memory%points%slave_nodes(1, p)
       if (is_tip(contact%slave, memory, node)) memory%points%area(p) = competence_length( &
         contact%slave, memory%places(:, :memory%n_slave), node)
     end do
@@ -94,37 +114,55 @@ contains
     end do
   end function is_tip
 
-  !> The common case of `share_segment`.
-  pure subroutine share_plain_segment(contact, memory, s, cover)
+  !> Divide the segments on a list, and clear it.
+  pure subroutine share_list(contact, memory, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: s
-    type(plain_cover_t), intent(in) :: cover
-    real(wp) :: length, half, before, gap, deepest
-    logical :: counts
-    integer :: k, n_before
+    type(plain_cover_t), intent(inout) :: cover
+    integer :: i, n, cuts(n_room)
 
-    n_before = memory%points%n
-    length = sqrt(cover%square)
-    half = 0.5_wp*cover%cuts(1)*length
-    call add_area(memory, cover%ends(1), half)
-    deepest = huge(1.0_wp)
-    do k = 1, cover%n_piece - 1
-      before = half
-      half = 0.5_wp*(cover%cuts(k + 1) - cover%cuts(k))*length
-      gap = cover%across(k)/length
-      if (cover%across(k) >= 0.0_wp .and. gap >= memory%closed_gap) cycle
-      deepest = min(deepest, gap)
-      call add_cut(memory, cover%ends, cover%nodes(k), cover%cuts(k), gap, &
-        [-cover%t(2)/length, cover%t(1)/length], before + half)
+    call cut_segments(contact, memory, cover)
+    n = 0
+    do i = 1, cover%n_segment
+      if (cover%is_plain(i)) then
+        call share_plain_segment(contact, memory, cover, i, cuts, n)
+      else
+        call share_segment(contact, memory, cover%slave(i))
+      end if
     end do
-    call add_area(memory, cover%ends(2), half)
-    if (cover%touches) then
-      call note_plain_contact(memory, s, deepest < memory%closed_gap)
+    if (n > 0) call add_cuts(memory, cover, n, cuts)
+    call clear_list(cover)
+  end subroutine share_list
+
+  !> The common case of `share_segment`; the pieces that end at a master node in contact are noted.
+  pure subroutine share_plain_segment(contact, memory, cover, i, cuts, n)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(plain_cover_t), intent(in) :: cover
+    integer, intent(in) :: i                        !! of the list
+    integer, intent(inout) :: cuts(n_room), n
+    real(wp) :: deepest
+    logical :: counts
+    integer :: k, n_before, first, last
+
+    n_before = n
+    first = cover%last(i - 1) + 1
+    last = cover%last(i)
+    call add_area(memory, cover%ends(1, first), 0.5_wp*cover%high(first)*cover%length(first))
+    call add_area(memory, cover%ends(2, first), 0.5_wp*(1.0_wp - cover%low(last))*cover%length(first))
+    deepest = huge(1.0_wp)
+    do k = first, last - 1
+      if (cover%gap(k) >= 0.0_wp .and. cover%gap(k) >= memory%closed_gap) cycle
+      deepest = min(deepest, cover%gap(k))
+      n = n + 1
+      cuts(n) = k
+    end do
+    if (cover%touches(i)) then
+      call note_plain_contact(memory, cover%slave(i), deepest < memory%closed_gap)
       return
     end if
-    call judge_segment(contact, memory, s, cover%ends, deepest, counts)
-    if (.not. counts) memory%points%n = n_before
+    call judge_segment(contact, memory, cover%slave(i), cover%ends(:, first), deepest, counts)
+    if (.not. counts) n = n_before
   end subroutine share_plain_segment
 
   !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its

@@ -5,8 +5,10 @@ module points_segmented_mortar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     local_foot, facing_share
-  use contact_plain_cover_m, only : plain_cover_t, find_plain_cover, note_plain_contact
-  use contact_placing_m, only : add_segment_point, add_plain_point, place_on_segment
+  use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
+    cut_segments, note_plain_contact
+  use contact_placing_m, only : add_segment_point, place_on_segment, put_sides, put_gaps, &
+    put_springs
   use contact_plain_foot_m, only : is_plainly_behind, is_plainly_over
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t, make_room
@@ -17,10 +19,23 @@ module points_segmented_mortar_m
   private
   public :: place_segmented_mortar, gauss_xi
 
-  !> Gauss points of a piece on 0 .. 1; both have weight one half. They integrate the product of shape
+  !> Gauss points of a piece.
+  integer, parameter :: n_gauss = 2
+  !> Where they are on 0 .. 1; both have weight one half. They integrate the product of shape
   !> functions and a linear gap exactly up to the curvature of the chain.
-  real(wp), parameter :: gauss_xi(2) = [0.5_wp - sqrt(1.0_wp/12.0_wp), &
+  real(wp), parameter :: gauss_xi(n_gauss) = [0.5_wp - sqrt(1.0_wp/12.0_wp), &
     0.5_wp + sqrt(1.0_wp/12.0_wp)]
+
+  !> Gauss points of the pieces on a list. Without default values, which would be written before each use.
+  type :: plain_points_t
+    real(wp) :: xi(n_gauss, n_room)        !! place on the slave segment
+    real(wp) :: foot(n_gauss, n_room)      !! place on the master segment
+    real(wp) :: gap(n_gauss, n_room)       !! m
+    real(wp) :: normal(2, n_room)          !! of the master
+    real(wp) :: area(n_room)               !! of each, m
+    real(wp) :: depth(n_room)              !! more than 0 where both are behind the master segment and nearer to it than
+                                           !! to its ends
+  end type plain_points_t
 
 contains
 
@@ -29,14 +44,25 @@ contains
   pure subroutine place_segmented_mortar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    logical :: touches
-    integer :: s
+    type(plain_cover_t) :: cover
+    integer :: s, first
 
     if (all_asleep(memory)) return
-    do s = 1, contact%slave%n_segment
-      memory%cover%is_placed(s) = .not. is_asleep(memory, s, contact%slave%segments(:, s))
-      if (memory%cover%is_placed(s)) call place_segment(contact, memory, s)
+    call clear_list(cover)
+    s = 1
+    do while (s <= contact%slave%n_segment)
+      first = s
+      call list_touching(contact, memory, s, cover)
+      memory%cover%is_placed(first:s - 1) = .true.
+      if (cover%is_full) then
+        call place_list(contact, memory, .true., cover)
+      else if (s <= contact%slave%n_segment) then
+        memory%cover%is_placed(s) = .not. is_asleep(memory, s, contact%slave%segments(:, s))
+        if (memory%cover%is_placed(s)) call take_segment(contact, memory, s, .true., cover)
+        s = s + 1
+      end if
     end do
+    call place_list(contact, memory, .true., cover)
     call note_next_wake(memory)
     if (.not. any(memory%mark > 0)) then
       memory%points%n = 0
@@ -46,56 +72,133 @@ contains
       if (memory%cover%is_placed(s)) cycle
       if (memory%mark(contact%slave%segments(1, s)) == 0 &
         .and. memory%mark(contact%slave%segments(2, s)) == 0) cycle
-      call cover_segment(contact, memory, s, touches)
+      call take_segment(contact, memory, s, .false., cover)
     end do
+    call place_list(contact, memory, .false., cover)
     memory%mark = 0
   end subroutine place_segmented_mortar
 
-  !> The points of a segment that may touch; marks its nodes if it does.
-  pure subroutine place_segment(contact, memory, s)
+  !> Put a segment on the list, or place its points at once where that is not the common case.
+  pure subroutine take_segment(contact, memory, s, may_touch, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: s
-    real(wp) :: deepest
-    logical :: counts, touches
-    integer :: n_before, ends(2)
+    logical, intent(in) :: may_touch
+    type(plain_cover_t), intent(inout) :: cover
+    logical :: is_listed
+
+    call list_segment(contact, memory, s, cover, is_listed)
+    if (.not. is_listed) call place_segment(contact, memory, s, may_touch)
+    if (cover%is_full) call place_list(contact, memory, may_touch, cover)
+  end subroutine take_segment
+
+  !> The points of one segment; one that may touch is judged by them.
+  pure subroutine place_segment(contact, memory, s, may_touch)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: s
+    logical, intent(in) :: may_touch
+    type(cover_t) :: cover
+    logical :: counts
+    integer :: n_before
 
     n_before = memory%points%n
+    call find_cover(contact, memory, s, cover)
+    call add_pieces(contact, memory, cover)
+    if (.not. may_touch) return
+    call judge_points(contact, memory, s, .false., minval(memory%points%gap(n_before + 1:memory%points%n)), &
+      counts)
+    if (.not. counts) memory%points%n = n_before
+  end subroutine place_segment
+
+  !> Whether the points of a segment count; marks its nodes if one of them is in contact.
+  pure subroutine judge_points(contact, memory, s, touches, deepest, counts)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: s
+    logical, intent(in) :: touches  !! the common case, and both ends are in contact
+    real(wp), intent(in) :: deepest !! smallest gap of its points, m
+    logical, intent(out) :: counts
+    integer :: ends(2)
+
+    counts = .true.
     ends = contact%slave%segments(:, s)
-    call cover_segment(contact, memory, s, touches)
-    deepest = minval(memory%points%gap(n_before + 1:memory%points%n))
     if (touches) then
-      counts = .true.
       call note_plain_contact(memory, s, deepest < memory%closed_gap)
     else
       call judge_segment(contact, memory, s, ends, deepest, counts)
     end if
-    if (.not. counts) then
-      memory%points%n = n_before
-    else if (deepest < memory%closed_gap) then
-      memory%mark(ends(1)) = 1
-      memory%mark(ends(2)) = 1
-    end if
-  end subroutine place_segment
+    if (.not. (counts .and. deepest < memory%closed_gap)) return
+    memory%mark(ends(1)) = 1
+    memory%mark(ends(2)) = 1
+  end subroutine judge_points
 
-  !> Cut a segment and place its points.
-  pure subroutine cover_segment(contact, memory, s, touches)
+  !> Place the points of the segments on a list, and clear it.
+  pure subroutine place_list(contact, memory, may_touch, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: s
-    logical, intent(out) :: touches !! the common case, and both ends are in contact
-    type(plain_cover_t) :: plain
-    type(cover_t) :: cover
+    logical, intent(in) :: may_touch
+    type(plain_cover_t), intent(inout) :: cover
+    type(plain_points_t) :: found
+    integer :: i, first, last
+    logical :: counts
 
-    call find_plain_cover(contact, memory, s, plain)
-    touches = plain%n_piece > 0 .and. plain%touches
-    if (plain%n_piece > 0) then
-      call add_plain_pieces(contact, memory, plain)
-    else
-      call find_cover(contact, memory, s, cover)
-      call add_pieces(contact, memory, cover)
-    end if
-  end subroutine cover_segment
+    call cut_segments(contact, memory, cover)
+    call find_points(cover%n_piece, cover%own, cover%other, cover%way, cover%low, cover%high, &
+      cover%length, found)
+    call make_room(memory%points, n_gauss*cover%n_piece)
+    first = 1
+    do i = 1, cover%n_segment
+      last = cover%last(i)
+      if (.not. is_plain(contact, memory, cover, found, i)) then
+        call put_points(memory, cover, found, first, cover%last(i - 1))
+        call place_segment(contact, memory, cover%slave(i), may_touch)
+        call make_room(memory%points, n_gauss*(cover%n_piece - last))
+        first = last + 1
+      else if (may_touch) then
+        call judge_points(contact, memory, cover%slave(i), cover%touches(i), &
+          minval(found%gap(:, cover%last(i - 1) + 1:last)), counts)
+        if (counts) cycle
+        call put_points(memory, cover, found, first, cover%last(i - 1))
+        first = last + 1
+      end if
+    end do
+    call put_points(memory, cover, found, first, cover%n_piece)
+    call clear_list(cover)
+  end subroutine place_list
+
+  !> Gauss points of pieces. On a piece the foot and the gap are linear along the slave segment.
+  pure subroutine find_points(n, own, other, way, low, high, length, found)
+    integer, intent(in) :: n
+    real(wp), dimension(2, n_room), intent(in) :: own, other, way
+    real(wp), dimension(n_room), intent(in) :: low, high, length
+    type(plain_points_t), intent(inout) :: found
+    real(wp) :: square, inverse, along, across, slope, turn, xi, x, y
+    integer :: k, q
+
+    !$omp simd private(square, inverse, along, across, slope, turn, xi, x, y, q)
+    do k = 1, n
+      square = max(other(1, k)*other(1, k) + other(2, k)*other(2, k), tiny(1.0_wp))
+      slope = own(1, k)*other(1, k) + own(2, k)*other(2, k)
+      turn = own(1, k)*other(2, k) - own(2, k)*other(1, k)
+      along = way(1, k)*other(1, k) + way(2, k)*other(2, k)
+      across = way(1, k)*other(2, k) - way(2, k)*other(1, k)
+      inverse = 1.0_wp/sqrt(square)
+      found%depth(k) = huge(1.0_wp)
+      do q = 1, n_gauss
+        xi = low(k) + gauss_xi(q)*(high(k) - low(k))
+        x = along + xi*slope
+        y = across + xi*turn
+        found%depth(k) = min(found%depth(k), -y, y + x, y + (square - x))
+        found%xi(q, k) = xi
+        found%foot(q, k) = x*(inverse*inverse)
+        found%gap(q, k) = y*inverse
+      end do
+      found%normal(1, k) = other(2, k)*inverse
+      found%normal(2, k) = -other(1, k)*inverse
+      found%area(k) = 0.5_wp*(high(k) - low(k))*length(k)
+    end do
+  end subroutine find_points
 
   !> The points of one segment.
   pure subroutine add_pieces(contact, memory, cover)
@@ -144,49 +247,54 @@ contains
     end associate
   end subroutine add_gauss_point
 
-  !> The common case of `add_pieces`: a Gauss point not nearer to a neighbour of the master segment of its piece than to
-  !> that has its foot there (as contact_projection has it); others are left to `add_gauss_point`. Two roots and
-  !> two quotients a piece instead of ten.
-  pure subroutine add_plain_pieces(contact, memory, cover)
+  !> Whether all points of a listed segment are where the list has them: on the master segment of their piece. A
+  !> Gauss point that is nearer to a neighbour of that has its foot there (as contact_projection has it).
+  pure function is_plain(contact, memory, cover, found, i)
     type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(plain_cover_t), intent(in) :: cover
+    type(plain_points_t), intent(in) :: found
+    integer, intent(in) :: i !! of the list
+    logical :: is_plain
+    type(sight_t) :: sight
+    integer :: k, q
+
+    is_plain = cover%is_plain(i)
+    do k = cover%last(i - 1) + 1, cover%last(i)
+      if (.not. is_plain) return
+      if (found%depth(k) > 0.0_wp) cycle
+      associate (chain => memory%places(:, memory%n_slave + 1:), ends => contact%master%segments(:, cover%master(k)))
+        do q = 1, n_gauss
+          sight = sight_of_segment(place_on_segment(memory%places, cover%ends(:, k), found%xi(q, k)), &
+            chain(:, ends(1)), chain(:, ends(2)))
+          if (is_plainly_behind(sight)) cycle
+          is_plain = is_plain .and. is_plainly_over(contact%master, chain, sight, cover%master(k))
+        end do
+      end associate
+    end do
+  end function is_plain
+
+  !> Append the points of the pieces from one to another.
+  pure subroutine put_points(memory, cover, found, first, last)
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(in) :: cover
-    type(sight_t) :: sight, slave
-    real(wp) :: length, master_length, weight, xi, normal(2)
-    real(wp), dimension(4) :: one, two, a, b !! places of the nodes, in registers
-    integer :: k, q, nodes(2)
-    logical :: is_plain
+    type(plain_points_t), intent(in) :: found
+    integer, intent(in) :: first, last
+    integer :: n
 
-    length = sqrt(cover%square)
-    one = memory%places(:, cover%ends(1))
-    two = memory%places(:, cover%ends(2))
-    call make_room(memory%points, cover%n_piece*size(gauss_xi))
-    do k = 1, cover%n_piece
-      nodes = contact%master%segments(:, cover%segments(k)) + memory%n_slave
-      a = memory%places(:, nodes(1))
-      b = memory%places(:, nodes(2))
-      weight = 0.5_wp*(cover%cuts(k) - cover%cuts(k - 1))
-      do q = 1, size(gauss_xi)
-        xi = cover%cuts(k - 1) + gauss_xi(q)*(cover%cuts(k) - cover%cuts(k - 1))
-        sight = sight_of_segment((1.0_wp - xi)*one + xi*two, a, b)
-        if (q == 1) then
-          master_length = sqrt(sight%square)
-          normal = [sight%t(2), -sight%t(1)]/master_length
-        end if
-        is_plain = is_plainly_behind(sight)
-        if (.not. is_plain) is_plain = is_plainly_over(contact%master, &
-          memory%places(:, memory%n_slave + 1:), sight, cover%segments(k))
-        if (is_plain) then
-          call add_plain_point(cover%ends, xi, nodes, sight%along/sight%square, normal, &
-            sight%across/master_length, memory%points)
-          memory%points%area(memory%points%n) = weight*length
-          memory%points%stiffness(memory%points%n) = memory%slave_penalty
-        else
-          slave = sight_of_segment(two, one, two)
-          call add_gauss_point(contact, memory, cover%ends, slave, cover%segments(k), xi, weight)
-        end if
-      end do
-    end do
-  end subroutine add_plain_pieces
+    n = last - first + 1
+    if (n == 0) return
+    associate (points => memory%points, p => memory%points%n + 1)
+      call put_sides(n, n_gauss, cover%ends(1, first), found%xi(1, first), points%slave_nodes(1, p), &
+        points%slave_weights(1, p))
+      call put_sides(n, n_gauss, cover%nodes(1, first), found%foot(1, first), &
+        points%master_nodes(1, p), points%master_weights(1, p))
+      call put_gaps(n, n_gauss, found%gap(1, first), found%normal(1, first), points%gap(p), &
+        points%normal(1, p))
+      call put_springs(n, n_gauss, found%area(first), memory%slave_penalty, points%area(p), &
+        points%stiffness(p))
+      points%n = points%n + n_gauss*n
+    end associate
+  end subroutine put_points
 
 end module points_segmented_mortar_m

@@ -37,6 +37,7 @@ contains
     call keep(archive, 'mark', contact%mark)
     call keep(archive, 'closed_gap', contact%closed_gap)
     call keep(archive, 'force', contact%force)
+    if (.not. allocated(contact%former_force)) allocate (contact%former_force, source=contact%force)
     call keep(archive, 'slave_penalty', contact%slave_penalty)
     call keep(archive, 'master_penalty', contact%master_penalty)
     call keep(archive, 'node_penalty', contact%node_penalty)
