@@ -69,13 +69,15 @@ def run(options: argparse.Namespace) -> None:
                                                   options.units_only)
                       if check.seconds <= options.longest] for layer in layers}
     done = {row["key"]: row for row in read_rows(options.out)}
-    for row in done.values():
+    for row in [*done.values(), *(row for path in options.learn for row in read_rows(path))]:
         for check in checks.get(row["file"].split("/")[0], []):
-            check.n_run += check.name == row["test"]
+            check.n_run += 1
             check.n_noticed += check.name == row["test"]
     drawn = draw(layers, options.number, options.seed, options.every)
+    reasons = read_reasons()
     todo = [mutant for mutant in drawn if mutant.key not in done
-            or (options.again and done[mutant.key]["verdict"] == "survived")]
+            or (options.again and done[mutant.key]["verdict"] == "survived"
+                and (mutant.file, mutant.before, mutant.after) not in reasons)]
     print(f"{len(drawn)} mutants, {len(todo)} to try", flush=True)
     lock, trials = threading.Lock(), [Trial(units, program, scratch / str(k))
                                       for k in range(options.jobs)]
@@ -86,11 +88,11 @@ def run(options: argparse.Namespace) -> None:
             writer.writerow(COLUMNS)
 
         def attempt(mutant: Mutant) -> None:
-            layer, name = mutant.file.split("/")
-            text = (ROOT / "src" / mutant.file).read_text(encoding="utf-8")
+            own = [check for check in checks[mutant.file.split("/")[0]]
+                   if check.is_unit or (mutant.file, mutant.before, mutant.after) not in reasons]
             with lock:
                 trial = trials.pop()
-            how, test = try_mutant(trial, checks[layer], layer, name, mutant.apply(text))
+            how, test = try_mutant(trial, own, mutant)
             with lock:
                 trials.append(trial)
                 writer.writerow([mutant.file, mutant.line, mutant.rule, mutant.before, mutant.after,
@@ -105,15 +107,18 @@ def run(options: argparse.Namespace) -> None:
     summarise(read_rows(options.out))
 
 
-def known(row: dict[str, str], table: list[dict[str, str]]) -> str:
-    """The reason for which a mutant changes nothing that a test could notice, or nothing."""
-    return next((entry["reason"] for entry in table if entry["file"] == row["file"]
-                 and entry["before"] == row["before"] and entry["after"] == row["after"]), "")
+def read_reasons() -> dict[tuple[str, str, str], str]:
+    """Mutants, as (file, before, after), that change nothing a test could notice, and why."""
+    return {(row["file"], row["before"], row["after"]): row["reason"] for row in read_rows(EQUIVALENT)}
 
 
 def summarise(rows: list[dict[str, str]]) -> None:
     """Print the figures by layer and the survivors."""
-    table = read_rows(EQUIVALENT)
+    reasons = read_reasons()
+
+    def known(row: dict[str, str]) -> str:
+        return reasons.get((row["file"], row["before"], row["after"]), "")
+
     print("| layer | tried | compiled | noticed | by unit tests | survived | of these without effect | noticed of the rest |")
     print("|---|---|---|---|---|---|---|---|")
     for layer in (*sorted({row["file"].split("/")[0] for row in rows}), "all"):
@@ -121,7 +126,7 @@ def summarise(rows: list[dict[str, str]]) -> None:
         compiled = [row for row in own if row["verdict"] != "not compiled"]
         noticed = [row for row in compiled if row["verdict"] in NOTICED]
         left = [row for row in compiled if row["verdict"] == "survived"]
-        n_known = sum(bool(known(row, table)) for row in left)
+        n_known = sum(bool(known(row)) for row in left)
         rest = len(compiled) - n_known
         print(f"| {layer} | {len(own)} | {len(compiled)} | {len(noticed)} | "
               f"{sum(row['test'].startswith('unit.') for row in noticed)} | {len(left)} | {n_known} | "
@@ -131,7 +136,7 @@ def summarise(rows: list[dict[str, str]]) -> None:
                                            if row["verdict"] in NOTICED)))
     for row in rows:
         if row["verdict"] == "survived":
-            print(f"{row['file']}:{row['line']} ({known(row, table) or 'NOT EXPLAINED'})\n    "
+            print(f"{row['file']}:{row['line']} ({known(row) or 'NOT EXPLAINED'})\n    "
                   f"{row['before']}\n    {row['after']}")
 
 
@@ -148,7 +153,9 @@ def main() -> None:
     trying.add_argument("--every", action="append", help="a layer of which all mutants are tried")
     trying.add_argument("--seed", type=int, default=1)
     trying.add_argument("--jobs", type=int, default=1)
-    trying.add_argument("--again", action="store_true", help="try survivors once more")
+    trying.add_argument("--again", action="store_true", help="try unexplained survivors once more")
+    trying.add_argument("--learn", type=Path, action="append", default=[],
+                        help="another table, to learn from which tests to begin with")
     trying.add_argument("--units-only", action="store_true", help="run no more than the unit tests")
     trying.add_argument("--longest", type=float, default=1e9, help="leave out tests above these seconds")
     summary = commands.add_parser("summary")

@@ -9,10 +9,10 @@ module contact_tangents_m
   private
   public :: n_place, places, make_place, valley, needle, solve_dense
 
-  integer, parameter :: n_place = 12, valley = 1, needle = 6
+  integer, parameter :: n_place = 13, valley = 1, needle = 6
   character(16), parameter :: places(n_place) = [character(16) :: 'valley', 'ridge', 'overhang', &
     'one end', 'steep tip', 'needle', 'disc on plane', 'plane on disc', 'disc in ring', 'two chains', &
-    'overlapped', 'chain at end']
+    'overlapped', 'chain at end', 'backwards']
 
 contains
 
@@ -74,10 +74,14 @@ contains
       master = line([1.1_wp, 0.0_wp], [-0.1_wp, 0.0_wp], 6)
       master(1, 4) = 0.499_wp
       master(2, :) = -0.2_wp*abs(master(1, :) - 0.5_wp)
+    case ('backwards')
+      ! The last slave segment runs as the master does and faces away from it, below its surface for a part.
+      slave = reshape([0.1_wp, 0.0_wp, 0.5_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.7_wp, 0.03_wp], [2, 4])
+      master = line([1.3_wp, 0.0_wp], [-0.3_wp, 0.0_wp], 7)
     end select
     call make_problem(problem, slave, master, 0.3_wp, slave_is_closed=k == 7 .or. k == 9, &
       master_is_closed=k == 8 .or. k == 9)
-    if (k > 9) call cut_chain(problem%contact%master, 4)
+    if (k > 9 .and. k < 13) call cut_chain(problem%contact%master, 4)
     n = size(slave, 2)
     do i = 1, n
       problem%motion(1:2, i) = [0.0_wp, -down] + 0.05_wp*down*[sin(3.0_wp*i), cos(5.0_wp*i)]
