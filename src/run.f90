@@ -81,6 +81,7 @@ contains
     call start_monitor(model, size(state%elements%history) > 0, monitor)
     call forget_start(model)
     call give_back_memory()
+    monitor%progress%first_cycle = state%cycle
     if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
     if (allocated(error)) return
     call begin_status(model, state, monitor)

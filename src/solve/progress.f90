@@ -25,6 +25,7 @@ module progress_m
     logical :: line_open = .false.  !! an updating line waits for its end
     integer :: status_interval = 0  !! cycles between lines, 0 = by time only
     real(wp) :: end_time = 0.0_wp
+    integer :: first_cycle = 0      !! from which this run goes on
     integer(long) :: next_tick = 0  !! clock tick of the next line
     integer(long) :: wait = 0       !! ticks between lines
     type(status_t) :: status        !! the file status.out
@@ -144,8 +145,8 @@ contains
     seconds = phase_seconds(clock)
     elapsed = elapsed_seconds(clock)
     cost = 0.0_wp
-    if (cycle > 0) cost = 1.0e9_wp*(total_seconds(clock) - sum(seconds([phase_output, phase_input]))) &
-      /real(cycle, wp)/n_element
+    if (cycle > progress%first_cycle) cost = 1.0e9_wp*(total_seconds(clock) - sum(seconds([phase_output, phase_input]))) &
+      /real(cycle - progress%first_cycle, wp)/n_element
     call say(log, '')
     call say(log, ' *** '//reason//' ***')
     if (normal) then

@@ -120,7 +120,7 @@ def time_files(options, decks):
         row("input", "rate of reading", "MB/s", megabytes / max(used, 1.0e-3)),
         row("memory", "steps", "bytes/element", 1.0e6 * (stepping - empty) / elements),
         row("memory", "peak", "bytes/element", 1.0e6 * (peak - empty) / elements),
-        row("memory", "peak over steps", "", peak / stepping),
+        row("memory", "peak over steps", "", peak / max(stepping, 1.0)),
         row("output", "states written", "MB", size, decks["states"][1]),
         row("output", "states", "MB/s", states, decks["states"][1]),
         row("output", "plain file", "MB/s", plain, decks["states"][1]),

@@ -172,6 +172,23 @@ def test_without_the_states_before(slideline, tmp_path):
         assert 0.008 < stream["VTKHDF/Steps/Values"][0] < 0.02
 
 
+def test_cost_is_that_of_the_cycles_run(slideline, tmp_path):
+    """The time per zone cycle of a run that goes on, against its own timing table, to the rounding of the table."""
+    assert slideline("d=run", deck=with_files(drop(), dump=90)).returncode == 0
+    done = slideline("r=run/job.dump01.h5")
+    assert done.returncode == 0, done.stderr
+    said = (tmp_path / "run" / "job.log").read_text().split("restart from ")[1]
+    last = int(re.search(r"Problem cycle\s+= (\d+)", said)[1])
+    cost = float(re.search(r"Time per zone cycle = (\S+)", said)[1])
+    with h5py.File(tmp_path / "run" / "job.vtkhdf") as stream:
+        elements = stream["VTKHDF/NumberOfCells"][0]
+    rows = [line.split(",") for line in (tmp_path / "run" / "job.timing.csv").read_text().split()]
+    seconds = {row[0]: float(row[1]) for row in rows if row[0] in ("total", "output", "input")}
+    spent = seconds["total"] - seconds["output"] - seconds["input"]
+    assert last > 90
+    assert cost*elements*(last - 90) == pytest.approx(1.0e9*spent, rel=0.02, abs=0.02*elements*last)
+
+
 def test_later_end(slideline, tmp_path):
     """A finished run goes on to a later end as if it had been meant from the start."""
     assert slideline("d=long", "endtim=0.03", deck=drop()).returncode == 0

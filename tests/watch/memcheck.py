@@ -139,6 +139,9 @@ def main() -> int:
     options = parser.parse_args()
     if not shutil.which("valgrind"):
         raise SystemExit("valgrind is not installed (apt-get install valgrind)")
+    cases = [case for case in all_cases() if re.search(options.only, case.name)]
+    if not cases:
+        raise SystemExit("no case is named so; there are: " + " ".join(case.name for case in all_cases()))
     work = options.work.resolve()
     copy_tree(work / "tree")
 
@@ -146,7 +149,6 @@ def main() -> int:
         return build(work / "tree", work / "build", "Memcheck", FLAGS, "-DSLIDELINE_TESTS=OFF", jobs=options.jobs)
 
     program = build_tree()
-    cases = [case for case in all_cases() if re.search(options.only, case.name)]
 
     def one(case: Case) -> list[str]:
         wrong = run(program, work, case, options.seconds)
