@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from slideline_tools.compare import Tolerance, Unusable, compare
-from slideline_tools.histories import History
+from slideline_tools.histories import History, HistoryError, read_csv
 
 TIME = np.linspace(0.0, 2.0, 201)
 
@@ -169,3 +169,11 @@ def test_command_line_missing_file(tmp_path, tool):
     finished = tool("compare", tmp_path / "a.csv", tmp_path / "b.csv")
     assert finished.returncode == 2
     assert "cannot read" in finished.stderr
+
+
+def test_what_is_no_table_is_said(tmp_path):
+    (tmp_path / "a.vtkhdf").write_bytes(b"\x89HDF\r\n\x1a\n")
+    with pytest.raises(HistoryError, match="no text; wanted is a CSV table"):
+        read_csv(tmp_path / "a.vtkhdf")
+    with pytest.raises(HistoryError, match="compare_folder"):
+        read_csv(tmp_path)

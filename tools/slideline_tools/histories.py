@@ -113,7 +113,13 @@ def read_csv(path: str | os.PathLike) -> History:
     try:
         with open(path, newline="", encoding="utf-8") as stream:
             rows = [row for row in csv.reader(stream) if row]
-    except (OSError, UnicodeDecodeError) as problem:
+    except UnicodeDecodeError as problem:
+        raise HistoryError(f"cannot read {path}: it is no text; wanted is a CSV table of the program") \
+            from problem
+    except IsADirectoryError as problem:
+        raise HistoryError(f"cannot read {path}: it is a folder; wanted is a CSV table (all tables of two "
+                           "folders: tools/batch/compare_folder.sh)") from problem
+    except OSError as problem:
         raise HistoryError(f"cannot read {path}: {problem}") from problem
     if not rows:
         raise HistoryError(f"{path}: the file is empty")
