@@ -13,7 +13,7 @@
 module layout_m
   implicit none
   private
-  public :: layout_t, tile_t, chunk_size, slot_part
+  public :: layout_t, tile_t, chunk_size, slot_part, first_slot, last_slot
 
   !> Elements per chunk; from 32 to 128 the speed hardly differs, beyond that chunks leave the L1 cache.
   integer, parameter :: chunk_size = 64
@@ -22,7 +22,7 @@ module layout_m
   type :: tile_t
     integer :: first_chunk = 1, last_chunk = 0
     integer :: first_node = 1, last_node = 0     !! interior nodes
-    integer :: first_owned = 1, last_owned = 0   !! special nodes that it is the first to touch; of the last
+    integer :: first_owned = 1, last_owned = 0   !! special nodes that its thread sums and moves; of the last
                                                  !! tile also those that none touches
     integer :: first_special = 1, last_special = 0 !! its range in the list of force slots
   end type tile_t
@@ -54,5 +54,19 @@ contains
 
     slot_part = layout%chunk_part((slot - 1)/chunk_size + 1)
   end function slot_part
+
+  !> First element slot of a tile.
+  pure integer function first_slot(tile)
+    type(tile_t), intent(in) :: tile
+
+    first_slot = (tile%first_chunk - 1)*chunk_size + 1
+  end function first_slot
+
+  !> Last element slot of a tile.
+  pure integer function last_slot(tile)
+    type(tile_t), intent(in) :: tile
+
+    last_slot = tile%last_chunk*chunk_size
+  end function last_slot
 
 end module layout_m

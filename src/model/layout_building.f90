@@ -1,14 +1,14 @@
 ! SPDX-License-Identifier: MIT
-!> Makes the layout of a mesh: elements along a Hilbert curve, cut into tiles and chunks; nodes in the
-!> order in which the tiles touch them.
+!> Makes the layout of a mesh: elements along a Hilbert curve, cut into tiles and chunks; numbers of their nodes
+!> in the tiles.
 module layout_building_m
   use kinds_m, only : wp, long
-  use layout_m, only : layout_t, tile_t, chunk_size
+  use layout_m, only : layout_t, tile_t, chunk_size, first_slot, last_slot
   use mesh_m, only : mesh_t
   use sorting_m, only : sorted_order
   implicit none
   private
-  public :: build_slots, order_nodes, build_local_numbers
+  public :: build_slots, build_local_numbers
 
   !> Elements of a tile: its nodes and forces stay in the fast caches, and few nodes are shared.
   integer, parameter :: tile_elements = 512
@@ -111,101 +111,6 @@ contains
     end do
   end subroutine fill_chunks
 
-  !> New order of the nodes: special ones first, then the interior nodes of each tile, last those of rigid
-  !> bodies that nothing touches; in the first classes in the order in which the elements touch them. Fills the
-  !> tiles' node ranges.
-  subroutine order_nodes(mesh, is_rigid, is_special, layout, order)
-    type(mesh_t), intent(in) :: mesh
-    logical, intent(in) :: is_rigid(:)      !! (n_node) of a rigid body
-    logical, intent(inout) :: is_special(:) !! (n_node) in: wanted special; out: all special nodes
-    type(layout_t), intent(inout) :: layout
-    integer, allocatable, intent(out) :: order(:) !! (n_node) present index of each new node
-    logical, allocatable :: placed(:)
-    integer :: i_tile, n_placed
-
-    call mark_shared_nodes(mesh, is_rigid, layout, is_special)
-    allocate (order(mesh%n_node))
-    allocate (placed(mesh%n_node), source=.false.)
-    n_placed = 0
-    do i_tile = 1, size(layout%tiles)
-      layout%tiles(i_tile)%first_owned = n_placed + 1
-      call place_tile_nodes(mesh, layout, i_tile, is_special, placed, order, n_placed)
-      layout%tiles(i_tile)%last_owned = n_placed
-    end do
-    call place_rest(is_special, placed, order, n_placed)
-    layout%tiles(size(layout%tiles))%last_owned = n_placed
-    layout%n_special = n_placed
-    do i_tile = 1, size(layout%tiles)
-      layout%tiles(i_tile)%first_node = n_placed + 1
-      call place_tile_nodes(mesh, layout, i_tile, .not. is_special, placed, order, n_placed)
-      layout%tiles(i_tile)%last_node = n_placed
-    end do
-    call place_rest(.not. is_special, placed, order, n_placed)
-  end subroutine order_nodes
-
-  !> Nodes that several tiles touch are special; so is a node without any element, and a node of a rigid body
-  !> with an element that is not rigid.
-  subroutine mark_shared_nodes(mesh, is_rigid, layout, is_special)
-    type(mesh_t), intent(in) :: mesh
-    logical, intent(in) :: is_rigid(:)
-    type(layout_t), intent(in) :: layout
-    logical, intent(inout) :: is_special(:)
-    integer, allocatable :: tile_of(:)
-    integer :: i_tile, slot, k, node
-
-    allocate (tile_of(mesh%n_node), source=0)
-    do i_tile = 1, size(layout%tiles)
-      do slot = first_slot(layout%tiles(i_tile)), last_slot(layout%tiles(i_tile))
-        if (layout%slot_element(slot) == 0) cycle
-        do k = 1, 4
-          node = mesh%element_nodes(k, layout%slot_element(slot))
-          if (tile_of(node) /= 0 .and. tile_of(node) /= i_tile) is_special(node) = .true.
-          tile_of(node) = i_tile
-        end do
-      end do
-    end do
-    is_special = is_special .or. (tile_of == 0 .neqv. is_rigid)
-  end subroutine mark_shared_nodes
-
-  !> Place those nodes of a tile that are wanted and not yet placed.
-  subroutine place_tile_nodes(mesh, layout, i_tile, wanted, placed, order, n_placed)
-    type(mesh_t), intent(in) :: mesh
-    type(layout_t), intent(in) :: layout
-    integer, intent(in) :: i_tile
-    logical, intent(in) :: wanted(:)
-    logical, intent(inout) :: placed(:)
-    integer, intent(inout) :: order(:)
-    integer, intent(inout) :: n_placed
-    integer :: slot, k, node
-
-    do slot = first_slot(layout%tiles(i_tile)), last_slot(layout%tiles(i_tile))
-      if (layout%slot_element(slot) == 0) cycle
-      do k = 1, 4
-        node = mesh%element_nodes(k, layout%slot_element(slot))
-        if (placed(node) .or. .not. wanted(node)) cycle
-        placed(node) = .true.
-        n_placed = n_placed + 1
-        order(n_placed) = node
-      end do
-    end do
-  end subroutine place_tile_nodes
-
-  !> Place nodes that are wanted and not yet placed.
-  pure subroutine place_rest(wanted, placed, order, n_placed)
-    logical, intent(in) :: wanted(:)
-    logical, intent(inout) :: placed(:)
-    integer, intent(inout) :: order(:)
-    integer, intent(inout) :: n_placed
-    integer :: node
-
-    do node = 1, size(wanted)
-      if (placed(node) .or. .not. wanted(node)) cycle
-      placed(node) = .true.
-      n_placed = n_placed + 1
-      order(n_placed) = node
-    end do
-  end subroutine place_rest
-
   !> Node numbers of the slots, global and local to the tile, and the force slots of special nodes.
   !> `mesh` holds the new node order.
   subroutine build_local_numbers(mesh, layout)
@@ -247,7 +152,7 @@ contains
     type(mesh_t), intent(in) :: mesh
     integer, intent(in) :: i_tile
     type(layout_t), intent(inout) :: layout
-    integer, intent(inout) :: local(:)        !! local number + offset of this tile, by node
+    integer, intent(inout) :: local(:)        !! (n_node) last force slot of each special node
     integer, intent(inout) :: special(:)      !! node of each force slot
     integer, intent(inout) :: n_special_slots
     integer :: n_interior, first_special, slot, k, node, sink
@@ -255,20 +160,14 @@ contains
     associate (tile => layout%tiles(i_tile))
       n_interior = tile%last_node - tile%first_node + 1
       first_special = n_special_slots + 1
+      call list_special(mesh, layout, tile, local, special, n_special_slots)
       do slot = first_slot(tile), last_slot(tile)
         if (layout%slot_element(slot) == 0) cycle
         do k = 1, 4
           node = mesh%element_nodes(k, layout%slot_element(slot))
           layout%slot_nodes(k, slot) = node
           if (node > layout%n_special) then
-            local(node) = node - tile%first_node + 1
-          else if (local(node) < first_special) then
-            n_special_slots = n_special_slots + 1
-            special(n_special_slots) = node
-            local(node) = n_special_slots
-          end if
-          if (node > layout%n_special) then
-            layout%slot_local(k, slot) = local(node)
+            layout%slot_local(k, slot) = node - tile%first_node + 1
           else
             layout%slot_local(k, slot) = n_interior + local(node) - first_special + 1
           end if
@@ -285,6 +184,34 @@ contains
       layout%n_local = max(layout%n_local, sink)
     end associate
   end subroutine number_tile
+
+  !> Append the special nodes of a tile, by number: those that one thread shares with another then lie together.
+  subroutine list_special(mesh, layout, tile, local, special, n_special_slots)
+    type(mesh_t), intent(in) :: mesh
+    type(layout_t), intent(in) :: layout
+    type(tile_t), intent(in) :: tile
+    integer, intent(inout) :: local(:), special(:)
+    integer, intent(inout) :: n_special_slots
+    integer :: first, slot, k, node
+
+    first = n_special_slots + 1
+    do slot = first_slot(tile), last_slot(tile)
+      if (layout%slot_element(slot) == 0) cycle
+      do k = 1, 4
+        node = mesh%element_nodes(k, layout%slot_element(slot))
+        if (node > layout%n_special .or. local(node) >= first) cycle
+        n_special_slots = n_special_slots + 1
+        special(n_special_slots) = node
+        local(node) = n_special_slots
+      end do
+    end do
+    associate (nodes => special(first:n_special_slots))
+      nodes = nodes(sorted_order(int(nodes, long)))
+      do k = 1, size(nodes)
+        local(nodes(k)) = first + k - 1
+      end do
+    end associate
+  end subroutine list_special
 
   !> For each special node the force slots that hold its parts, in rising order.
   subroutine list_node_slots(layout)
@@ -309,20 +236,6 @@ contains
       position(node) = position(node) + 1
     end do
   end subroutine list_node_slots
-
-  !> First element slot of a tile.
-  pure integer function first_slot(tile)
-    type(tile_t), intent(in) :: tile
-
-    first_slot = (tile%first_chunk - 1)*chunk_size + 1
-  end function first_slot
-
-  !> Last element slot of a tile.
-  pure integer function last_slot(tile)
-    type(tile_t), intent(in) :: tile
-
-    last_slot = tile%last_chunk*chunk_size
-  end function last_slot
 
   !> Position of each element's centre along a Hilbert curve over the bounding box.
   pure function hilbert_keys(mesh) result(keys)

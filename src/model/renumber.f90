@@ -3,8 +3,9 @@
 module renumber_m
   use controls_m, only : is_asked
   use kinds_m, only : wp, long
-  use layout_building_m, only : build_slots, order_nodes, build_local_numbers
+  use layout_building_m, only : build_slots, build_local_numbers
   use model_m, only : model_t
+  use node_order_m, only : order_nodes
   use rigids_m, only : mark_rigid_nodes
   use sorting_m, only : sorted_order
   implicit none

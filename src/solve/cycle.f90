@@ -263,7 +263,7 @@ contains
     type(cycle_t), intent(in) :: cycle
 
     if (.not. allocated(state%walls)) return
-    call hold_nodes(model, cycle%leap, state)
+    call hold_nodes(model, cycle%leap, 1, model%layout%n_special, state)
     call count_walls(model, .true., .false., state)
     if (cycle%due%rwforc) call fill_walls(model, state, monitor%snapshot%walls)
   end subroutine report_walls

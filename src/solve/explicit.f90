@@ -15,9 +15,9 @@ module explicit_m
   use motion_sums_m, only : sum_motion, sum_blocks
   use monitor_m, only : monitor_t
   use node_motion_m, only : share_tile_forces, keep_tile_forces, move_tile_nodes, &
-    sum_special_force, move_special_node
+    sum_special_forces, move_special_nodes
   use state_m, only : state_t
-  use wall_motion_m, only : hold_node
+  use wall_motion_m, only : hold_nodes
   implicit none
   private
   public :: advance_explicit
@@ -130,17 +130,18 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(cycle_t), intent(in) :: cycle
-    integer :: i_tile, node
-    logical :: has_walls
+    integer :: i_tile
 
-    has_walls = allocated(state%walls)
     !$omp do schedule(static)
     do i_tile = 1, size(model%layout%tiles)
-      do node = model%layout%tiles(i_tile)%first_owned, model%layout%tiles(i_tile)%last_owned
-        state%internal_force(:, node) = sum_special_force(model%layout, state%force_slots, node)
-        if (has_walls .and. .not. cycle%writes) call hold_node(model, cycle%leap, node, state)
-        if (.not. cycle%writes) call move_special_node(cycle%leap, node, state)
-      end do
+      associate (first => model%layout%tiles(i_tile)%first_owned, &
+        last => model%layout%tiles(i_tile)%last_owned)
+        call sum_special_forces(model%layout, state%force_slots, first, last, state%internal_force)
+        if (.not. cycle%writes) then
+          if (allocated(state%walls)) call hold_nodes(model, cycle%leap, first, last, state)
+          call move_special_nodes(cycle%leap, first, last, state)
+        end if
+      end associate
     end do
     !$omp end do
   end subroutine advance_special_nodes
@@ -150,19 +151,15 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(cycle_t), intent(in) :: cycle
-    integer :: i_tile, node
+    integer :: i_tile
 
     !$omp do schedule(static)
     do i_tile = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i_tile))
         if (tile%last_node >= tile%first_node) call move_tile_nodes(cycle%leap, tile%first_node, &
           tile%last_node, state%internal_force(1, tile%first_node), state%inverse_mass, state%motion)
+        call move_special_nodes(cycle%leap, tile%first_owned, tile%last_owned, state)
       end associate
-    end do
-    !$omp end do
-    !$omp do schedule(static)
-    do node = 1, model%layout%n_special
-      call move_special_node(cycle%leap, node, state)
     end do
     !$omp end do
   end subroutine move_all_nodes

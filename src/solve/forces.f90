@@ -12,7 +12,7 @@ module forces_m
   use element_mass_m, only : mass_times
   use external_force_m, only : form_external_force, body_acceleration
   use model_m, only : model_t
-  use node_motion_m, only : share_tile_forces, keep_tile_forces, sum_special_force
+  use node_motion_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
   use state_m, only : state_t
   implicit none
   private
@@ -80,7 +80,7 @@ contains
     type(state_t), intent(in) :: state
     type(trial_t), intent(inout) :: trial
     real(wp), allocatable :: force(:, :)
-    integer :: i_tile, node
+    integer :: i_tile
 
     trial%elements = state%elements
     allocate (force(2, model%layout%n_local))
@@ -91,9 +91,7 @@ contains
         call keep_tile_forces(tile, force, trial%internal)
       end associate
     end do
-    do node = 1, model%layout%n_special
-      trial%internal(:, node) = sum_special_force(model%layout, trial%slots, node)
-    end do
+    call sum_special_forces(model%layout, trial%slots, 1, model%layout%n_special, trial%internal)
   end subroutine assemble_internal
 
   !> Internal minus contact and external forces.

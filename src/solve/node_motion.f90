@@ -9,7 +9,7 @@ module node_motion_m
   implicit none
   private
   public :: leap_t, make_leap, share_tile_forces, keep_tile_forces, move_tile_nodes, &
-    sum_special_force, move_special_node
+    sum_special_forces, move_special_nodes
 
   !> Factors of one leap, the same for all nodes.
   type :: leap_t
@@ -79,34 +79,64 @@ contains
     end do
   end subroutine move_tile_nodes
 
-  !> Internal force of one special node: its slots in their fixed order.
-  pure function sum_special_force(layout, force_slots, node) result(force)
+  !> Internal forces of the special nodes first .. last: their slots in their fixed order.
+  subroutine sum_special_forces(layout, force_slots, first, last, force)
     type(layout_t), intent(in) :: layout
     real(wp), intent(in) :: force_slots(2, *)
-    integer, intent(in) :: node
-    real(wp) :: force(2)
-    integer :: i
+    integer, intent(in) :: first, last
+    real(wp), intent(inout) :: force(2, *)   !! of all nodes
 
-    force = 0.0_wp
-    do i = layout%node_slots(node), layout%node_slots(node + 1) - 1
-      force(1) = force(1) + force_slots(1, layout%slot_list(i))
-      force(2) = force(2) + force_slots(2, layout%slot_list(i))
+    call sum_slots(first, last, layout%node_slots, layout%slot_list, force_slots, force)
+  end subroutine sum_special_forces
+
+  !> On arrays of known shape: through the layout each access costs its stride.
+  subroutine sum_slots(first, last, node_slots, slot_list, force_slots, force)
+    integer, intent(in) :: first, last, node_slots(*), slot_list(*)
+    real(wp), intent(in) :: force_slots(2, *)
+    real(wp), intent(inout) :: force(2, *)
+    real(wp) :: fx, fy
+    integer :: node, i
+
+    do node = first, last
+      fx = 0.0_wp
+      fy = 0.0_wp
+      do i = node_slots(node), node_slots(node + 1) - 1
+        fx = fx + force_slots(1, slot_list(i))
+        fy = fy + force_slots(2, slot_list(i))
+      end do
+      force(1, node) = fx
+      force(2, node) = fy
     end do
-  end function sum_special_force
+  end subroutine sum_slots
 
-  !> Move one special node; its internal force stands in state%internal_force.
-  subroutine move_special_node(leap, node, state)
+  !> Move the special nodes first .. last; their internal forces stand in state%internal_force.
+  subroutine move_special_nodes(leap, first, last, state)
     type(leap_t), intent(in) :: leap
-    integer, intent(in) :: node
+    integer, intent(in) :: first, last
     type(state_t), intent(inout) :: state
-    integer :: k
 
-    do k = 1, 2
-      state%motion(2 + k, node) = leap%keep(k)*state%motion(2 + k, node) + leap%half(k) &
-        *(merge(leap%body(k), 0.0_wp, state%inverse_mass(k, node) > 0.0_wp) &
-        + (state%force_special(k, node) - state%internal_force(k, node))*state%inverse_mass(k, node))
-      state%motion(k, node) = state%motion(k, node) + leap%dt*state%motion(2 + k, node)
+    call move_each(leap, first, last, state%force_special, state%internal_force, state%inverse_mass, &
+      state%motion)
+  end subroutine move_special_nodes
+
+  !> The same for arrays of known shape.
+  subroutine move_each(leap, first, last, special, internal, inverse_mass, motion)
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
+    real(wp), intent(in) :: special(2, *), internal(2, *) !! forces
+    real(wp), intent(in) :: inverse_mass(2, *)
+    real(wp), intent(inout) :: motion(4, *)
+    integer :: i, k
+
+    do i = first, last
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        motion(2 + k, i) = leap%keep(k)*motion(2 + k, i) + leap%half(k) &
+          *(merge(leap%body(k), 0.0_wp, inverse_mass(k, i) > 0.0_wp) &
+          + (special(k, i) - internal(k, i))*inverse_mass(k, i))
+        motion(k, i) = motion(k, i) + leap%dt*motion(2 + k, i)
+      end do
     end do
-  end subroutine move_special_node
+  end subroutine move_each
 
 end module node_motion_m

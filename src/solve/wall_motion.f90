@@ -11,7 +11,7 @@ module wall_motion_m
   use walls_m, only : wall_t, wall_distance
   implicit none
   private
-  public :: start_walls, hold_node, hold_nodes, count_walls, fill_walls
+  public :: start_walls, hold_nodes, count_walls, fill_walls
 
   !> Rounds over the walls that one node meets (two in a corner settle at once where they are at right angles).
   integer, parameter :: most_rounds = 40
@@ -90,14 +90,15 @@ contains
     more = max((least - dot_product(wall%normal, velocity))/gain, -force)
   end function missing_force
 
-  !> All special nodes, in a cycle that writes.
-  subroutine hold_nodes(model, leap, state)
+  !> The special nodes first .. last.
+  subroutine hold_nodes(model, leap, first, last, state)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
     type(state_t), intent(inout) :: state
     integer :: node
 
-    do node = 1, model%layout%n_special
+    do node = first, last
       call hold_node(model, leap, node, state)
     end do
   end subroutine hold_nodes
