@@ -94,6 +94,11 @@ def run_round(options, work, samples):
                     variant, value, share = elements.time_steps(options, deck, count, steps,
                                                                 material, threads)
                     samples.add(variant, value, now, share)
+            if options.threads > 1 and count <= elements.LARGEST_AT_ONCE:
+                with contextlib.suppress(Disturbed):
+                    variant, value, share = elements.time_at_once(options, deck, count, steps,
+                                                                  material, options.threads)
+                    samples.add(variant, value, now, share)
     if "contact" in options.parts:
         for nodes in work["contact"]:
             now = units()

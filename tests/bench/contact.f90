@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Time of contact alone, whole (search, points, pressure, scatter, energy): two chains that face each other, the
-!> slave sliding over the master by 1e-4 of a segment a step. `flat`: all slave nodes touch; `crown`:
-!> the slave is part of a circle that dips into a flat master, a third of its nodes touch.
+!> Time of contact alone, whole (search, points, pressure, scatter, energy; the clock takes no laps): two chains
+!> that face each other, the slave sliding over the master by 1e-4 of a segment a step. `flat`: all slave nodes
+!> touch; `crown`: the slave is part of a circle that dips into a flat master, a third of its nodes touch.
 !> usage: bench_contact [SLAVE_NODES [TYPE]]. Prints a row per scene, size and type: the best and the median of interleaved
 !> rounds, ns per step, slave node and point.
 program bench_contact
@@ -88,6 +88,7 @@ contains
     call make_problem(problem, slave, master, 1.0_wp)
     problem%contact%contact_type = i_type
     problem%contact%n_gauss = 6
+    problem%clock%is_on = .false.
     call start_contact(problem%contact, problem%model, problem%log, problem%memory)
   end subroutine start_problem
 

@@ -4,6 +4,7 @@
 Square blocks of one-point quads, fixed on their left side, stretched by a linear velocity field, elastic or
 yielding everywhere; no plot output. A step's time is that of the phases `elements` and `nodes`.
 """
+import concurrent.futures
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ SIDE, RHO, YOUNG, POISSON = 1.0, 7850.0, 210.0e9, 0.3
 STRAIN_RATE = 20.0  # 1/s, less where the run is so long that it would stretch the block by more than
 LONGEST = 0.1
 SOFT = 1.0e3        # yield stress of the yielding blocks, Pa: passed in the first steps
+LARGEST_AT_ONCE = 110000  # elements of several runs at once
 WORK = 4.0e7        # elements times steps of a run; more where these are fewer than 20 steps
 
 
@@ -107,3 +109,19 @@ def time_steps(options, deck, elements, steps, material, threads):
     step = 1.0e9 * stepping / elements / (steps + 1)
     return (Variant("step", material, elements, threads, "ns/element"),
             without_others(step, share, threads, stepping), share)
+
+
+def time_at_once(options, deck, elements, steps, material, runs):
+    """The same of so many runs of one thread at once: the mean, of the least share of a processor.
+
+    It tells what the machine grants to several busy cores, whatever its host and its clock do.
+    """
+    def one(number):
+        folder = options.out / f"at_once_{number}"
+        return run_program(options.program, deck, folder)
+
+    with concurrent.futures.ThreadPoolExecutor(runs) as team:
+        found = list(team.map(one, range(runs)))
+    seconds = sum(phases["elements"] + phases["nodes"] for phases, _ in found) / runs
+    return (Variant("step", f"{material}, {runs} runs at once", elements, 1, "ns/element"),
+            1.0e9 * seconds / elements / (steps + 1), min(share for _, share in found))

@@ -107,6 +107,8 @@ def bench_rows():
         for threads, gain in ((1, 1.0), (2, 1.95)):
             variant = measuring.Variant("step", material, 4000, threads, "ns/element")
             rows.append(measuring.summarise(variant, [(ns / gain, 4.0, 8.0, 1.0)]))
+        variant = measuring.Variant("step", f"{material}, 2 runs at once", 4000, 1, "ns/element")
+        rows.append(measuring.summarise(variant, [(0.8 * ns, 4.0, 8.0, 1.0)]))
     for ctype in range(1, 8):
         for unit in ("ns/slave node", "ns/point"):
             variant = measuring.Variant("contact", f"flat type {ctype}", 1000, 1, unit)
@@ -136,7 +138,10 @@ def test_page_of_speed_judges_the_goals(tmp_path):
     kept = [line.endswith("kept") for line in text.splitlines() if "step over K" in line and "**" in line]
     assert kept == [True, False]
     assert "type 1, 1000 slave nodes, K per slave node: **1.00**, goal at most 3.5: kept" in text
-    assert "type 3, 1000 slave nodes and more, K per contact point, the largest: **3.00**" in text
+    assert "type 3, 1000 slave nodes, K per contact point: **3.00**, goal at most 2: missed" in text
+    assert "elastic, the same sizes, speed of two threads over one thread, the least: **1.95**" in text
+    assert "yielding, the same sizes, speed of two threads over two runs of one thread at once, the least: **1.56**, " \
+        "goal at least 1.9: missed" in text
     assert "processor: of a test" in text
     assert (tmp_path / "doc" / "pictures" / "speed_search.png").exists()
 
