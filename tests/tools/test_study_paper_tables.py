@@ -46,7 +46,8 @@ def row(scene, level, ctype, steps, slow=1.0, state="finished"):
     a, m, b = (slow * step for step in steps)
     return {"state": state, "scene": scene, "level": level, "type": ctype, "search": a, "pairing": m,
             "force": b, "contact": a + m + b, "elements": slow * 10.0, "element_calls": 10,
-            "computing": slow * 40.0, "processor": PROCESSOR, "load": 1.5, "quick": 0}
+            "computing": slow * (39.0 + ctype), "points": 10 * ctype, "processor": PROCESSOR, "load": 1.5,
+            "quick": 0}
 
 
 def all_rows():
@@ -65,7 +66,9 @@ def test_medians_are_free_of_the_pace_of_the_machine():
     assert found.levels == [1, 2, 3, 4] and found.rounds == 3
     assert [found.ratio(2, k) for k in range(1, 8)] == pytest.approx(range(1, 8), rel=1e-14)
     assert found.ratio(2, 6, "search") == pytest.approx(3.0, rel=1e-14)
-    assert found.share(3, 5) == pytest.approx(20.0 / 40.0, rel=1e-14)
+    assert found.share(3, 5) == pytest.approx(20.0 / 44.0, rel=1e-14)
+    assert found.computing_ratio(3, 5) == pytest.approx(44.0 / 40.0, rel=1e-14)
+    assert found.points[3] == {k: 10 * k for k in range(1, 8)}
     assert found.spread == pytest.approx(0.0, abs=1e-14) and found.pace_spread > 0.2
 
 
@@ -125,7 +128,7 @@ def test_charts_and_page(tmp_path):
     paper_tables.page(rows, tmp_path / "doc")
     page = (tmp_path / "doc/studies/paper_tables.md").read_text()
     assert re.search(r"\| 5 NTS-mAR \| \S+ s, 5.00 \(1.22\) \| \S+ s, 5.00 \(1.09\)", page)
-    assert "| 4 VTS-PPT | 2.00 | 1.00 | 1.00 | 4.00 | 40.0 % |" in page
+    assert "| 4 VTS-PPT | 2.00 | 1.00 | 1.00 | 4.00 | 37.2 % | 1.07 | 40 |" in page
     assert PROCESSOR in page and "Load of the machine: 1.5." in page and "quick run" not in page
     assert (tmp_path / "doc/pictures/paper_tables.png").stat().st_size < 100_000
 
@@ -166,6 +169,7 @@ def test_a_few_real_runs(slideline, tmp_path):
     for one in rows:
         assert one["search"] > 0.0 and one["force"] > 0.0
         assert one["computing"] < one["total"] < one["seconds"]
+        assert one["points"] == 52
     before = (tmp_path / "paper-tables.csv").read_bytes()
     assert command.main(arguments) == 0
     assert (tmp_path / "paper-tables.csv").read_bytes() == before

@@ -41,6 +41,7 @@ class Times:
     """Medians of one scene: `seconds[level][type]` = {column: median of the corrected seconds};
     "contact" is the sum of the medians of the steps.
 
+    `points[level][type]`: contact points under pressure at most, '' where the rows do not tell.
     `steps[level]`: time steps (explicit runs). `rounds`: fewest runs of a variant; `spread`: largest distance of the quartiles of the contact
     time over its median; `pace_spread`: the same of the uncorrected pace; `load`:
     median of the load of the machine.
@@ -53,11 +54,12 @@ class Times:
         rows = [row for row in finished(rows) if row["scene"] == scene]
         if not rows:
             raise UserError(f"no timing runs of the scene {scene}")
-        self.scene, self.seconds, self.steps = scene, {}, {}
+        self.scene, self.seconds, self.steps, self.points = scene, {}, {}, {}
         spreads, paces, counts = [], [], []
         for (level,), same_level in grouped(rows, "level").items():
             usual = np.median([pace(row) for row in same_level])
             self.seconds[level], self.steps[level] = {}, same_level[0]["element_calls"] - 1
+            self.points[level] = {row["type"]: row.get("points", "") for row in same_level}
             for (ctype,), runs in sorted(grouped(same_level, "type").items()):
                 factors = np.array([usual / pace(run) for run in runs])
                 values = {name: factors * [run[name] for run in runs] for name in self.COLUMNS}
@@ -82,6 +84,10 @@ class Times:
     def ratio(self, level, ctype, name="contact"):
         """Time of a type over the whole contact time of type 1."""
         return self.seconds[level][ctype][name] / self.seconds[level][1]["contact"]
+
+    def computing_ratio(self, level, ctype):
+        """Time of the whole computation of a type over that of type 1."""
+        return self.seconds[level][ctype]["computing"] / self.seconds[level][1]["computing"]
 
     def share(self, level, ctype):
         """Contact time over the time of computing."""
