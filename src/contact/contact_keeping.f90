@@ -40,10 +40,8 @@ contains
     real(wp), intent(in) :: chain(4, *), spots(4, *)
     real(wp), intent(inout) :: xi(*), gap(*), normal(2, *)
     logical, intent(inout), contiguous :: is_kept(:)
-    real(wp), dimension(2, block_size) :: t, d
-    real(wp), dimension(block_size) :: along, across
+    real(wp), dimension(block_size) :: t_x, t_y, d_x, d_y, along, across, beside
     real(wp), dimension(4) :: edge, way
-    logical :: kept(block_size)
     integer :: first, n, i, k, a, b
 
     do first = 1, size(touching), block_size
@@ -55,42 +53,46 @@ contains
         b = ends(2, segment(i))
         edge = chain(:, b) - chain(:, a)
         way = spots(:, i) - chain(:, a)
-        t(:, k) = edge(1:2) + edge(3:4)
-        d(:, k) = way(1:2) + way(3:4)
+        t_x(k) = edge(1) + edge(3)
+        t_y(k) = edge(2) + edge(4)
+        d_x(k) = way(1) + way(3)
+        d_y(k) = way(2) + way(4)
       end do
-      call project_block(n, t, d, along, across, kept)
+      call project_block(n, t_x, t_y, d_x, d_y, along, across, beside)
       do k = 1, n
-        if (.not. kept(k)) cycle
+        if (beside(k) > 0.0_wp) cycle
         i = touching(first + k - 1)
         is_kept(i) = .true.
         xi(i) = along(k)
         gap(i) = across(k)
-        normal(1, i) = t(2, k)
-        normal(2, i) = -t(1, k)
+        normal(1, i) = t_y(k)
+        normal(2, i) = -t_x(k)
       end do
     end do
   end subroutine keep_contacts
 
-  !> Projections of a block.
-  pure subroutine project_block(n, t, d, xi, gap, kept)
+  !> Projections of a block. A loop that stores logicals is not vectorised, so that the answer is a real.
+  pure subroutine project_block(n, t_x, t_y, d_x, d_y, xi, gap, beside)
     integer, intent(in) :: n
-    real(wp), intent(inout) :: t(2, block_size) !! in: segments, m; out: unit tangents
-    real(wp), intent(in) :: d(2, block_size)    !! from the segments' first nodes, m
+    real(wp), intent(inout) :: t_x(block_size), t_y(block_size) !! in: segments, m; out: unit tangents
+    real(wp), intent(in) :: d_x(block_size), d_y(block_size)    !! from the segments' first nodes, m
     real(wp), intent(out) :: xi(block_size), gap(block_size)
-    logical, intent(out) :: kept(block_size) !! behind the segment, and not nearer to a neighbour
+    real(wp), intent(out) :: beside(block_size) !! 0: behind the segment, and not nearer to a neighbour; else 1
     real(wp) :: square, along, across, inverse
     integer :: k
 
+    !$omp simd
     do k = 1, n
-      square = max(t(1, k)*t(1, k) + t(2, k)*t(2, k), tiny(1.0_wp))
-      along = d(1, k)*t(1, k) + d(2, k)*t(2, k)
-      across = d(1, k)*t(2, k) - d(2, k)*t(1, k)
-      kept(k) = across < 0.0_wp .and. across + along >= 0.0_wp .and. across + square >= along
+      square = max(t_x(k)*t_x(k) + t_y(k)*t_y(k), tiny(1.0_wp))
+      along = d_x(k)*t_x(k) + d_y(k)*t_y(k)
+      across = d_x(k)*t_y(k) - d_y(k)*t_x(k)
+      beside(k) = merge(0.0_wp, 1.0_wp, across < 0.0_wp .and. across + along >= 0.0_wp &
+        .and. across + square >= along)
       inverse = 1.0_wp/sqrt(square)
       xi(k) = along*(inverse*inverse)
       gap(k) = across*inverse
-      t(1, k) = t(1, k)*inverse
-      t(2, k) = t(2, k)*inverse
+      t_x(k) = t_x(k)*inverse
+      t_y(k) = t_y(k)*inverse
     end do
   end subroutine project_block
 
