@@ -22,8 +22,7 @@ module contact_halves_m
     real(wp) :: own(2, 2*n_room)      !! vector of the slave segment, m
     real(wp) :: other(2, 2*n_room)    !! vector of the master segment, m
     real(wp) :: way(2, 2*n_room)      !! from its first node to the first end of the slave segment, m
-    real(wp) :: start(2*n_room)       !! where that end is on the master segment
-    real(wp) :: slope(2*n_room)       !! how far on that the second end is: the slave runs against the master
+    real(wp) :: place(2*n_room, 3)    !! where its first end, its middle and its second end are on the master segment
     real(wp) :: length(2*n_room)      !! of the master segment, m
     real(wp) :: half(2*n_room)        !! length of half of the slave segment, m
   end type sights_t
@@ -32,8 +31,8 @@ module contact_halves_m
   type :: halves_t
     integer :: n
     integer :: spot(n_room)           !! virtual node
-    real(wp) :: xi(n_room)            !! where it is on its slave segment
-    real(wp) :: low(n_room)           !! where the later end is on the master segment below
+    integer :: side(n_room)           !! 1: first half of its slave segment, 2: second
+    real(wp) :: low(n_room)           !! where the later end is on the master segment below: the slave runs against it
     real(wp) :: high(n_room)          !! where the earlier end is
     real(wp) :: lies_on_one(n_room)   !! 1: both are on that segment, 0: not
     integer :: n_part(n_room)         !! portions
@@ -45,9 +44,8 @@ module contact_halves_m
 contains
 
   !> List the halves of some touching virtual nodes, each to be seen from the master segment below it.
-  pure subroutine list_halves(n, touching, spot_xi, master, segments, halves, sights)
+  pure subroutine list_halves(n, touching, master, segments, halves, sights)
     integer, intent(in) :: n, touching(n) !! virtual nodes
-    real(wp), intent(in) :: spot_xi(2)    !! where they are on their slave segments
     integer, intent(in) :: master(*)      !! master segments below these
     integer, intent(in) :: segments(2, *) !! of the slave
     type(halves_t), intent(inout) :: halves
@@ -59,7 +57,7 @@ contains
     below = 0
     do k = 1, n
       halves%spot(k) = touching(k)
-      halves%xi(k) = spot_xi(2 - iand(touching(k), 1))
+      halves%side(k) = 2 - iand(touching(k), 1)
       s = (touching(k) + 1)/2
       if (s /= last .or. master(touching(k)) /= below) then
         last = s
@@ -86,42 +84,47 @@ contains
     associate (n => sights%n - sights%n_seen, j => sights%n_seen + 1)
       call see_pieces(n, sights%ends(1, j), sights%master(j), contact%master%segments, memory%n_slave, &
         memory%places, sights%nodes(1, j), sights%own(1, j), sights%other(1, j), sights%way(1, j))
-      call project_ends(n, sights%own(1, j), sights%other(1, j), sights%way(1, j), sights%start(j), &
-        sights%slope(j), sights%length(j), sights%half(j))
+      call project_ends(n, [memory%spot_xi(1) - 0.25_wp, memory%spot_xi + 0.25_wp], sights%own(1, j), &
+        sights%other(1, j), sights%way(1, j), sights%place(j, 1), sights%length(j), sights%half(j))
     end associate
     sights%n_seen = sights%n
   end subroutine see_segments
 
   !> The same on arrays of known shape.
-  pure subroutine project_ends(n, own, other, way, start, slope, length, half)
+  pure subroutine project_ends(n, xi, own, other, way, place, length, half)
     integer, intent(in) :: n
+    real(wp), intent(in) :: xi(3) !! of the first end, the middle and the second end
     real(wp), dimension(2, n_room), intent(in) :: own, other, way
-    real(wp), dimension(n_room), intent(inout) :: start, slope, length, half
-    real(wp) :: square, inverse
+    real(wp), intent(inout) :: place(2*n_room, *)
+    real(wp), dimension(n_room), intent(inout) :: length, half
+    real(wp) :: square, inverse, start, slope
     integer :: k
 
     do k = 1, n
       square = max(other(1, k)*other(1, k) + other(2, k)*other(2, k), tiny(1.0_wp))
       inverse = 1.0_wp/sqrt(square)
       length(k) = square*inverse
-      slope(k) = (own(1, k)*other(1, k) + own(2, k)*other(2, k))*(inverse*inverse)
-      start(k) = (way(1, k)*other(1, k) + way(2, k)*other(2, k))*(inverse*inverse)
+      slope = (own(1, k)*other(1, k) + own(2, k)*other(2, k))*(inverse*inverse)
+      start = (way(1, k)*other(1, k) + way(2, k)*other(2, k))*(inverse*inverse)
+      place(k, 1) = start + xi(1)*slope
+      place(k, 2) = start + xi(2)*slope
+      place(k, 3) = start + xi(3)*slope
       half(k) = 0.5_wp*sqrt(own(1, k)*own(1, k) + own(2, k)*own(2, k))
     end do
   end subroutine project_ends
 
   !> Both ends of the halves on the segments that these are seen from, and the portion of each that lies on one.
-  pure subroutine place_halves(n, xi, start, slope, half, sight, low, high, lies_on_one, foot, area)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: xi(n_room), start(*), slope(*), half(*)
+  pure subroutine place_halves(n, side, place, half, sight, low, high, lies_on_one, foot, area)
+    integer, intent(in) :: n, side(n_room)
+    real(wp), intent(in) :: place(2*n_room, 3), half(*) !! of the sights
     integer, intent(inout) :: sight(n_room, 2)
     real(wp), dimension(n_room), intent(inout) :: low, high, lies_on_one
     real(wp), dimension(n_room, 2), intent(inout) :: foot, area
     integer :: k
 
     do k = 1, n
-      low(k) = start(sight(k, 1)) + (xi(k) + 0.25_wp)*slope(sight(k, 1))
-      high(k) = start(sight(k, 1)) + (xi(k) - 0.25_wp)*slope(sight(k, 1))
+      low(k) = place(sight(k, 1), side(k) + 1)
+      high(k) = place(sight(k, 1), side(k))
       lies_on_one(k) = merge(1.0_wp, 0.0_wp, low(k) >= 0.0_wp .and. high(k) <= 1.0_wp .and. high(k) > low(k))
       sight(k, 2) = sight(k, 1)
       foot(k, 1) = 0.5_wp*(low(k) + high(k))

@@ -32,11 +32,11 @@ contains
 
     do first = 1, memory%slave_tracking%n_touching, n_room
       call list_halves(min(n_room, memory%slave_tracking%n_touching - first + 1), &
-        memory%slave_tracking%touching(first:), memory%spot_xi, memory%slave_tracking%segment, &
+        memory%slave_tracking%touching(first:), memory%slave_tracking%segment, &
         contact%slave%segments, halves, sights)
       call see_segments(contact, memory, sights)
-      call place_halves(halves%n, halves%xi, sights%start, sights%slope, sights%half, halves%sight, &
-        halves%low, halves%high, halves%lies_on_one, halves%foot, halves%area)
+      call place_halves(halves%n, halves%side, sights%place, sights%half, halves%sight, halves%low, &
+        halves%high, halves%lies_on_one, halves%foot, halves%area)
       call list_pairs(contact, memory, halves, sights, n_pair, pairs)
       call see_segments(contact, memory, sights)
       call take_pairs(contact, memory, sights, n_pair, pairs, halves)
@@ -99,8 +99,8 @@ contains
     do i = 1, n_pair
       k = pairs(i)
       associate (before => halves%sight(k, 1), after => halves%sight(k, 2))
-        low = sights%start(before) + (halves%xi(k) + 0.25_wp)*sights%slope(before)
-        high = sights%start(after) + (halves%xi(k) - 0.25_wp)*sights%slope(after)
+        low = sights%place(before, halves%side(k) + 1)
+        high = sights%place(after, halves%side(k))
         one = (1.0_wp - low)*sights%length(before)
         two = high*sights%length(after)
         product = sights%other(1, before)*sights%other(1, after) &
@@ -132,7 +132,7 @@ contains
     ! One more, as `put_sides` and `put_springs` write two for each half.
     call make_room(memory%points, n + 1)
     associate (points => memory%points, tracking => memory%slave_tracking, p => memory%points%n + 1)
-      call put_sides(halves, sights, points%slave_nodes(1, p), &
+      call put_sides(halves, sights, memory%spot_xi, points%slave_nodes(1, p), &
         points%slave_weights(1, p), points%master_nodes(1, p), points%master_weights(1, p))
       call put_springs(halves, tracking%normal, tracking%gap, points%normal(1, p), points%gap(p), &
         points%area(p))
@@ -143,10 +143,11 @@ contains
 
   !> Both sides of these points. Two are written for each half, and the next half starts where those that count end: a
   !> decision at each half costs more.
-  pure subroutine put_sides(halves, sights, slave_nodes, slave_weights, master_nodes, &
+  pure subroutine put_sides(halves, sights, spot_xi, slave_nodes, slave_weights, master_nodes, &
     master_weights)
     type(halves_t), intent(in) :: halves
     type(sights_t), intent(in) :: sights
+    real(wp), intent(in) :: spot_xi(2)
     integer, dimension(n_side, *), intent(inout) :: slave_nodes, master_nodes
     real(wp), dimension(n_side, *), intent(inout) :: slave_weights, master_weights
     real(wp) :: xi
@@ -154,7 +155,7 @@ contains
 
     p = 1
     do k = 1, halves%n
-      xi = halves%xi(k)
+      xi = spot_xi(halves%side(k))
       do q = 1, 2
         j = halves%sight(k, q)
         slave_nodes(1, p + q - 1) = sights%ends(1, j)
