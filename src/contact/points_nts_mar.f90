@@ -119,51 +119,82 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(inout) :: cover
-    integer :: i, n, cuts(n_room)
+    integer :: i, first, n, cuts(n_room)
 
     call cut_segments(contact, memory, cover)
-    n = 0
+    first = 1
     do i = 1, cover%n_segment
-      if (cover%is_plain(i)) then
-        call share_plain_segment(contact, memory, cover, i, cuts, n)
-      else
-        call share_segment(contact, memory, cover%slave(i))
-      end if
+      if (cover%is_plain(i)) cycle
+      call share_ends(cover, first, i - 1, memory%mark, memory%points%area)
+      call share_segment(contact, memory, cover%slave(i))
+      first = i + 1
     end do
+    call share_ends(cover, first, cover%n_segment, memory%mark, memory%points%area)
+    call list_cuts(contact, memory, cover, n, cuts)
     if (n > 0) call add_cuts(memory, cover, n, cuts)
     call clear_list(cover)
   end subroutine share_list
 
-  !> The common case of `share_segment`; the pieces that end at a master node in contact are noted.
-  pure subroutine share_plain_segment(contact, memory, cover, i, cuts, n)
+  !> The common case of `share_segment` for a run of segments: half of the first and of the last piece to the ends. The
+  !> sum at the last end is kept at hand for the next segment, since a sum in memory has to be stored before it
+  !> can be read again.
+  pure subroutine share_ends(cover, first, last, mark, area)
+    type(plain_cover_t), intent(in) :: cover
+    integer, intent(in) :: first, last     !! of the list
+    integer, intent(in) :: mark(*)         !! point at each slave node, or 0
+    real(wp), intent(inout) :: area(*)     !! m
+    real(wp) :: sum, held
+    integer :: i, k, p, at
+
+    at = 0
+    held = 0.0_wp
+    do i = first, last
+      k = cover%last(i - 1) + 1
+      p = mark(cover%ends(1, k))
+      if (p > 0) then
+        sum = held
+        if (p /= at) sum = area(p)
+        area(p) = sum + 0.5_wp*cover%high(k)*cover%length(k)
+      end if
+      at = mark(cover%ends(2, k))
+      if (at == 0) cycle
+      held = area(at) + 0.5_wp*(1.0_wp - cover%low(cover%last(i)))*cover%length(k)
+      area(at) = held
+    end do
+  end subroutine share_ends
+
+  !> List the pieces that end at a master node in contact, and note which segments of the common case touch.
+  pure subroutine list_cuts(contact, memory, cover, n, cuts)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(in) :: cover
-    integer, intent(in) :: i                        !! of the list
-    integer, intent(inout) :: cuts(n_room), n
-    real(wp) :: deepest
+    integer, intent(out) :: n
+    integer, intent(inout) :: cuts(n_room)
+    real(wp) :: deepest, limit
     logical :: counts
-    integer :: k, n_before, first, last
+    integer :: i, k, n_before
 
-    n_before = n
-    first = cover%last(i - 1) + 1
-    last = cover%last(i)
-    call add_area(memory, cover%ends(1, first), 0.5_wp*cover%high(first)*cover%length(first))
-    call add_area(memory, cover%ends(2, first), 0.5_wp*(1.0_wp - cover%low(last))*cover%length(first))
-    deepest = huge(1.0_wp)
-    do k = first, last - 1
-      if (cover%gap(k) >= 0.0_wp .and. cover%gap(k) >= memory%closed_gap) cycle
-      deepest = min(deepest, cover%gap(k))
-      n = n + 1
-      cuts(n) = k
+    limit = max(0.0_wp, memory%closed_gap)
+    n = 0
+    do i = 1, cover%n_segment
+      if (.not. cover%is_plain(i)) cycle
+      n_before = n
+      deepest = huge(1.0_wp)
+      !GCC$ UNROLL 1
+      do k = cover%last(i - 1) + 1, cover%last(i) - 1
+        if (cover%gap(k) >= limit) cycle
+        deepest = min(deepest, cover%gap(k))
+        n = n + 1
+        cuts(n) = k
+      end do
+      if (cover%touches(i)) then
+        call note_plain_contact(memory, cover%slave(i), deepest < memory%closed_gap)
+        cycle
+      end if
+      call judge_segment(contact, memory, cover%slave(i), cover%ends(:, cover%last(i)), deepest, counts)
+      if (.not. counts) n = n_before
     end do
-    if (cover%touches(i)) then
-      call note_plain_contact(memory, cover%slave(i), deepest < memory%closed_gap)
-      return
-    end if
-    call judge_segment(contact, memory, cover%slave(i), cover%ends(:, first), deepest, counts)
-    if (.not. counts) n = n_before
-  end subroutine share_plain_segment
+  end subroutine list_cuts
 
   !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
   !> ends. The strict rule adds no node where an end of the segment has no foot; otherwise the part
