@@ -6,8 +6,8 @@
 !> moment is not exactly zero on a kinked master.
 module points_vts_ppt_m
   use contact_placing_m, only : add_plain_point, place_on_segment
-  use contact_halves_m, only : halves_t, sights_t, sides_t, list_halves, add_sight, see_sights, &
-    place_halves
+  use contact_halves_m, only : halves_t, sights_t, list_halves, see_segments, place_halves, &
+    find_sight
   use contact_plain_cover_m, only : n_room
   use contact_portions_m, only : mark_t, walk_to_mark
   use contact_projection_m, only : gentle_turn
@@ -28,29 +28,27 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(halves_t) :: halves
     type(sights_t) :: sights
-    type(sides_t) :: slaves, masters
     integer :: first, n_pair, pairs(n_room)
 
     do first = 1, memory%slave_tracking%n_touching, n_room
       call list_halves(min(n_room, memory%slave_tracking%n_touching - first + 1), &
-        memory%slave_tracking%touching(first:), memory%slave_tracking%segment, halves, sights, slaves, &
-        masters)
-      call see_sights(contact, memory, sights, slaves, masters)
-      call place_halves(sights, slaves, halves)
-      call list_pairs(contact, memory, halves, sights, masters, n_pair, pairs)
-      call see_sights(contact, memory, sights, slaves, masters)
-      call take_pairs(contact, memory, sights, slaves, masters, n_pair, pairs, halves)
-      call add_halves(memory, halves, sights, slaves, masters)
+        memory%slave_tracking%touching(first:), memory%slave_tracking%segment, &
+        contact%slave%segments, halves, sights)
+      call see_segments(contact, memory, sights)
+      call place_halves(sights, halves)
+      call list_pairs(contact, memory, halves, sights, n_pair, pairs)
+      call see_segments(contact, memory, sights)
+      call take_pairs(contact, memory, sights, n_pair, pairs, halves)
+      call add_halves(memory, halves, sights)
     end do
   end subroutine place_vts_ppt
 
   !> List the halves that cover two master segments.
-  pure subroutine list_pairs(contact, memory, halves, sights, masters, n_pair, pairs)
+  pure subroutine list_pairs(contact, memory, halves, sights, n_pair, pairs)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(halves_t), intent(inout) :: halves
     type(sights_t), intent(inout) :: sights
-    type(sides_t), intent(inout) :: masters
     integer, intent(out) :: n_pair, pairs(n_room)
     integer :: i, k, n, side, segment, odd(n_room + 1)
 
@@ -66,10 +64,10 @@ contains
       associate (j => halves%sight(k, 1), low => halves%low(k), high => halves%high(k))
         side = 0
         if (low < 0.0_wp .and. high > 0.0_wp .and. high < 1.0_wp) then
-          segment = contact%master%previous(masters%segment(sights%master(j)))
+          segment = contact%master%previous(sights%master(j))
           side = 1
         else if (high > 1.0_wp .and. low > 0.0_wp .and. low < 1.0_wp) then
-          segment = contact%master%next(masters%segment(sights%master(j)))
+          segment = contact%master%next(sights%master(j))
           side = 2
         end if
       end associate
@@ -77,7 +75,7 @@ contains
         n_pair = n_pair + 1
         pairs(n_pair) = k
         associate (j => halves%sight(k, 3 - side))
-          call add_sight(j, segment, 3 - 2*side, sights, masters, halves%sight(k, side))
+          call find_sight(j, segment, j + 3 - 2*side, sights, halves%sight(k, side))
         end associate
       else
         halves%n_part(k) = 0
@@ -87,11 +85,10 @@ contains
   end subroutine list_pairs
 
   !> Two portions for each half with a master node between its ends.
-  pure subroutine take_pairs(contact, memory, sights, slaves, masters, n_pair, pairs, halves)
+  pure subroutine take_pairs(contact, memory, sights, n_pair, pairs, halves)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(sights_t), intent(in) :: sights
-    type(sides_t), intent(in) :: slaves, masters
     integer, intent(in) :: n_pair, pairs(n_pair)
     type(halves_t), intent(inout) :: halves
     real(wp) :: low, high, one, two, scale, product
@@ -99,17 +96,16 @@ contains
 
     do i = 1, n_pair
       k = pairs(i)
-      low = sights%place(halves%sight(k, 1), halves%side(k) + 1)
-      high = sights%place(halves%sight(k, 2), halves%side(k))
-      associate (before => sights%master(halves%sight(k, 1)), after => sights%master(halves%sight(k, 2)), &
-        slave => sights%slave(halves%sight(k, 1)))
-        one = (1.0_wp - low)*masters%length(before)
-        two = high*masters%length(after)
-        product = masters%vector(1, before)*masters%vector(1, after) &
-          + masters%vector(2, before)*masters%vector(2, after)
+      associate (before => halves%sight(k, 1), after => halves%sight(k, 2))
+        low = sights%place(before, halves%side(k) + 1)
+        high = sights%place(after, halves%side(k))
+        one = (1.0_wp - low)*sights%length(before)
+        two = high*sights%length(after)
+        product = sights%other(1, before)*sights%other(1, after) &
+          + sights%other(2, before)*sights%other(2, after)
         if (min(low, 1.0_wp - low, high, 1.0_wp - high) > 0.0_wp &
-          .and. product >= gentle_turn*masters%length(before)*masters%length(after)) then
-          scale = 0.5_wp*slaves%length(slave)/(one + two)
+          .and. product >= gentle_turn*sights%length(before)*sights%length(after)) then
+          scale = halves%area(k, 1)/(one + two)
           halves%n_part(k) = 2
           halves%foot(k, 1) = 0.5_wp*(low + 1.0_wp)
           halves%foot(k, 2) = 0.5_wp*high
@@ -124,20 +120,18 @@ contains
   end subroutine take_pairs
 
   !> Append the points of the portions.
-  pure subroutine add_halves(memory, halves, sights, slaves, masters)
+  pure subroutine add_halves(memory, halves, sights)
     type(contact_state_t), intent(inout) :: memory
     type(halves_t), intent(in) :: halves
     type(sights_t), intent(in) :: sights
-    type(sides_t), intent(in) :: slaves, masters
     integer :: n
 
     n = sum(halves%n_part(:halves%n))
-    ! One more, as two are written for each half.
+    ! One more, as `put_sides` and `put_springs` write two for each half.
     call make_room(memory%points, n + 1)
     associate (points => memory%points, tracking => memory%slave_tracking, p => memory%points%n + 1)
-      call put_slaves(halves, sights, slaves, memory%spot_xi, points%slave_nodes(1, p), &
-        points%slave_weights(1, p))
-      call put_masters(halves, sights, masters, points%master_nodes(1, p), points%master_weights(1, p))
+      call put_sides(halves, sights, memory%spot_xi, points%slave_nodes(1, p), &
+        points%slave_weights(1, p), points%master_nodes(1, p), points%master_weights(1, p))
       call put_springs(halves, tracking%normal, tracking%gap, points%normal(1, p), points%gap(p), &
         points%area(p))
       points%stiffness(p:points%n + n) = memory%slave_penalty
@@ -145,51 +139,35 @@ contains
     end associate
   end subroutine add_halves
 
-  !> The slave side of these points. Two are written for each half, and the next half starts where those that count end:
-  !> a decision at each half costs more.
-  pure subroutine put_slaves(halves, sights, slaves, spot_xi, nodes, weights)
+  !> Both sides of these points. Two are written for each half, and the next half starts where those that count end: a
+  !> decision at each half costs more.
+  pure subroutine put_sides(halves, sights, spot_xi, slave_nodes, slave_weights, master_nodes, &
+    master_weights)
     type(halves_t), intent(in) :: halves
     type(sights_t), intent(in) :: sights
-    type(sides_t), intent(in) :: slaves
     real(wp), intent(in) :: spot_xi(2)
-    integer, intent(inout) :: nodes(n_side, *)
-    real(wp), intent(inout) :: weights(n_side, *)
+    integer, dimension(n_side, *), intent(inout) :: slave_nodes, master_nodes
+    real(wp), dimension(n_side, *), intent(inout) :: slave_weights, master_weights
+    real(wp) :: xi
     integer :: p, k, q, j
 
     p = 1
     do k = 1, halves%n
-      j = sights%slave(halves%sight(k, 1))
-      do q = p, p + 1
-        nodes(1, q) = slaves%nodes(1, j)
-        nodes(2, q) = slaves%nodes(2, j)
-        weights(1, q) = 1.0_wp - spot_xi(halves%side(k))
-        weights(2, q) = spot_xi(halves%side(k))
-      end do
-      p = p + halves%n_part(k)
-    end do
-  end subroutine put_slaves
-
-  !> The master side.
-  pure subroutine put_masters(halves, sights, masters, nodes, weights)
-    type(halves_t), intent(in) :: halves
-    type(sights_t), intent(in) :: sights
-    type(sides_t), intent(in) :: masters
-    integer, intent(inout) :: nodes(n_side, *)
-    real(wp), intent(inout) :: weights(n_side, *)
-    integer :: p, k, q, j
-
-    p = 1
-    do k = 1, halves%n
+      xi = spot_xi(halves%side(k))
       do q = 1, 2
-        j = sights%master(halves%sight(k, q))
-        nodes(1, p + q - 1) = masters%nodes(1, j)
-        nodes(2, p + q - 1) = masters%nodes(2, j)
-        weights(1, p + q - 1) = 1.0_wp - halves%foot(k, q)
-        weights(2, p + q - 1) = halves%foot(k, q)
+        j = halves%sight(k, q)
+        slave_nodes(1, p + q - 1) = sights%ends(1, j)
+        slave_nodes(2, p + q - 1) = sights%ends(2, j)
+        slave_weights(1, p + q - 1) = 1.0_wp - xi
+        slave_weights(2, p + q - 1) = xi
+        master_nodes(1, p + q - 1) = sights%nodes(1, j)
+        master_nodes(2, p + q - 1) = sights%nodes(2, j)
+        master_weights(1, p + q - 1) = 1.0_wp - halves%foot(k, q)
+        master_weights(2, p + q - 1) = halves%foot(k, q)
       end do
       p = p + halves%n_part(k)
     end do
-  end subroutine put_masters
+  end subroutine put_sides
 
   !> Normals and gaps (m), which are those of the virtual nodes, and areas (m).
   pure subroutine put_springs(halves, normals, gaps, normal, gap, area)
