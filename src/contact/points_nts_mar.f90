@@ -4,11 +4,11 @@
 !> (doc/theory/contact.md, section 5.5).
 module points_nts_mar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
-  use contact_cuts_m, only : add_cuts
+  use contact_cuts_m, only : share_ends, list_cuts, add_cuts
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     see_master_node, facing_share
   use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
-    cut_segments, note_plain_contact
+    cut_segments
   use contact_placing_m, only : add_touching_nodes, competence_length
   use contact_projection_m, only : see_segment
   use contact_state_m, only : contact_state_t, make_room, n_side
@@ -134,67 +134,6 @@ contains
     if (n > 0) call add_cuts(memory, cover, n, cuts)
     call clear_list(cover)
   end subroutine share_list
-
-  !> The common case of `share_segment` for a run of segments: half of the first and of the last piece to the ends. The
-  !> sum at the last end is kept at hand for the next segment, since a sum in memory has to be stored before it
-  !> can be read again.
-  pure subroutine share_ends(cover, first, last, mark, area)
-    type(plain_cover_t), intent(in) :: cover
-    integer, intent(in) :: first, last     !! of the list
-    integer, intent(in) :: mark(*)         !! point at each slave node, or 0
-    real(wp), intent(inout) :: area(*)     !! m
-    real(wp) :: sum, held
-    integer :: i, k, p, at
-
-    at = 0
-    held = 0.0_wp
-    do i = first, last
-      k = cover%last(i - 1) + 1
-      p = mark(cover%ends(1, k))
-      if (p > 0) then
-        sum = held
-        if (p /= at) sum = area(p)
-        area(p) = sum + 0.5_wp*cover%high(k)*cover%length(k)
-      end if
-      at = mark(cover%ends(2, k))
-      if (at == 0) cycle
-      held = area(at) + 0.5_wp*(1.0_wp - cover%low(cover%last(i)))*cover%length(k)
-      area(at) = held
-    end do
-  end subroutine share_ends
-
-  !> List the pieces that end at a master node in contact, and note which segments of the common case touch.
-  pure subroutine list_cuts(contact, memory, cover, n, cuts)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-    type(plain_cover_t), intent(in) :: cover
-    integer, intent(out) :: n
-    integer, intent(inout) :: cuts(n_room)
-    real(wp) :: deepest, limit
-    logical :: counts
-    integer :: i, k, n_before
-
-    limit = max(0.0_wp, memory%closed_gap)
-    n = 0
-    do i = 1, cover%n_segment
-      if (.not. cover%is_plain(i)) cycle
-      n_before = n
-      deepest = huge(1.0_wp)
-      !GCC$ UNROLL 1
-      do k = cover%last(i - 1) + 1, cover%last(i) - 1
-        if (cover%gap(k) >= limit) cycle
-        deepest = min(deepest, cover%gap(k))
-        n = n + 1
-        cuts(n) = k
-      end do
-      if (cover%touches(i)) then
-        call note_plain_contact(memory, cover%slave(i), deepest < memory%closed_gap)
-        cycle
-      end if
-      call judge_segment(contact, memory, cover%slave(i), cover%ends(:, cover%last(i)), deepest, counts)
-      if (.not. counts) n = n_before
-    end do
-  end subroutine list_cuts
 
   !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
   !> ends. The strict rule adds no node where an end of the segment has no foot; otherwise the part
