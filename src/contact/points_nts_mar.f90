@@ -47,7 +47,12 @@ contains
       end if
     end do
     call share_list(contact, memory, cover)
-    call note_next_wake(memory)
+    if (memory%slave_tracking%n_touching == 0) then
+      call note_next_wake(memory)
+    else
+      ! Not asked for as long as something touches.
+      memory%cover%next_wake = -huge(1.0_wp)
+    end if
     call finish_nodes(contact, memory, n)
   end subroutine place_nts_mar
 
@@ -86,7 +91,7 @@ contains
     integer :: p, node
 
     memory%mark = 0
-    if (all(memory%points%area(:n) > 0.0_wp)) return
+    if (count(memory%points%area(:n) > 0.0_wp) == n) return
     do p = 1, n
       if (memory%points%area(p) > 0.0_wp) cycle
       node = memory%points%slave_nodes(1, p)
