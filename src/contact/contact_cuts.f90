@@ -40,11 +40,13 @@ contains
     end do
   end subroutine share_ends
 
-  !> List the pieces that end at a master node in contact, and note which segments of the common case touch.
-  pure subroutine list_cuts(contact, memory, cover, n, cuts)
+  !> List the pieces of some segments that end at a master node in contact, and note which segments of the common case
+  !> touch.
+  pure subroutine list_cuts(contact, memory, cover, first, last, n, cuts)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(in) :: cover
+    integer, intent(in) :: first, last     !! of the list
     integer, intent(out) :: n
     integer, intent(inout) :: cuts(n_room)
     real(wp) :: deepest, limit
@@ -53,7 +55,7 @@ contains
 
     limit = max(0.0_wp, memory%closed_gap)
     n = 0
-    do i = 1, cover%n_segment
+    do i = first, last
       if (.not. cover%is_plain(i)) cycle
       n_before = n
       deepest = huge(1.0_wp)

@@ -135,7 +135,7 @@ contains
       first = i + 1
     end do
     call share_ends(cover, first, cover%n_segment, memory%mark, memory%points%area)
-    call list_cuts(contact, memory, cover, n, cuts)
+    call list_cuts(contact, memory, cover, 1, cover%n_segment, n, cuts)
     if (n > 0) call add_cuts(memory, cover, n, cuts)
     call clear_list(cover)
   end subroutine share_list
