@@ -4,11 +4,11 @@
 !> (doc/theory/contact.md, section 5.5).
 module points_nts_mar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
-  use contact_cuts_m, only : add_cuts
+  use contact_cuts_m, only : share_ends, list_cuts, add_cuts
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     see_master_node, facing_share
   use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
-    cut_segments, note_plain_contact
+    cut_segments
   use contact_placing_m, only : add_touching_nodes, competence_length
   use contact_projection_m, only : see_segment
   use contact_state_m, only : contact_state_t, make_room, n_side
@@ -47,7 +47,12 @@ contains
       end if
     end do
     call share_list(contact, memory, cover)
-    call note_next_wake(memory)
+    if (memory%slave_tracking%n_touching == 0) then
+      call note_next_wake(memory)
+    else
+      ! Not asked for as long as something touches.
+      memory%cover%next_wake = -huge(1.0_wp)
+    end if
     call finish_nodes(contact, memory, n)
   end subroutine place_nts_mar
 
@@ -86,7 +91,7 @@ contains
     integer :: p, node
 
     memory%mark = 0
-    if (all(memory%points%area(:n) > 0.0_wp)) return
+    if (count(memory%points%area(:n) > 0.0_wp) == n) return
     do p = 1, n
       if (memory%points%area(p) > 0.0_wp) cycle
       node = memory%points%slave_nodes(1, p)
@@ -119,51 +124,21 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(inout) :: cover
-    integer :: i, n, cuts(n_room)
+    integer :: i, first, n, cuts(n_room)
 
     call cut_segments(contact, memory, cover)
-    n = 0
+    first = 1
     do i = 1, cover%n_segment
-      if (cover%is_plain(i)) then
-        call share_plain_segment(contact, memory, cover, i, cuts, n)
-      else
-        call share_segment(contact, memory, cover%slave(i))
-      end if
+      if (cover%is_plain(i)) cycle
+      call share_ends(cover, first, i - 1, memory%mark, memory%points%area)
+      call share_segment(contact, memory, cover%slave(i))
+      first = i + 1
     end do
+    call share_ends(cover, first, cover%n_segment, memory%mark, memory%points%area)
+    call list_cuts(contact, memory, cover, 1, cover%n_segment, n, cuts)
     if (n > 0) call add_cuts(memory, cover, n, cuts)
     call clear_list(cover)
   end subroutine share_list
-
-  !> The common case of `share_segment`; the pieces that end at a master node in contact are noted.
-  pure subroutine share_plain_segment(contact, memory, cover, i, cuts, n)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-    type(plain_cover_t), intent(in) :: cover
-    integer, intent(in) :: i                        !! of the list
-    integer, intent(inout) :: cuts(n_room), n
-    real(wp) :: deepest
-    logical :: counts
-    integer :: k, n_before, first, last
-
-    n_before = n
-    first = cover%last(i - 1) + 1
-    last = cover%last(i)
-    call add_area(memory, cover%ends(1, first), 0.5_wp*cover%high(first)*cover%length(first))
-    call add_area(memory, cover%ends(2, first), 0.5_wp*(1.0_wp - cover%low(last))*cover%length(first))
-    deepest = huge(1.0_wp)
-    do k = first, last - 1
-      if (cover%gap(k) >= 0.0_wp .and. cover%gap(k) >= memory%closed_gap) cycle
-      deepest = min(deepest, cover%gap(k))
-      n = n + 1
-      cuts(n) = k
-    end do
-    if (cover%touches(i)) then
-      call note_plain_contact(memory, cover%slave(i), deepest < memory%closed_gap)
-      return
-    end if
-    call judge_segment(contact, memory, cover%slave(i), cover%ends(:, first), deepest, counts)
-    if (.not. counts) n = n_before
-  end subroutine share_plain_segment
 
   !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
   !> ends. The strict rule adds no node where an end of the segment has no foot; otherwise the part

@@ -6,7 +6,8 @@
 !> moment is not exactly zero on a kinked master.
 module points_vts_ppt_m
   use contact_placing_m, only : add_plain_point, place_on_segment
-  use contact_halves_m, only : halves_t, take_half, see_halves
+  use contact_halves_m, only : halves_t, sights_t, list_halves, see_segments, place_halves, &
+    find_sight
   use contact_plain_cover_m, only : n_room
   use contact_portions_m, only : mark_t, walk_to_mark
   use contact_projection_m, only : gentle_turn
@@ -18,195 +19,172 @@ module points_vts_ppt_m
   private
   public :: place_vts_ppt
 
-  !> Portions of half segments.
-  type :: parts_t
-    integer :: n
-    integer :: spot(2*n_room)       !! virtual node
-    integer :: ends(2, 2*n_room)    !! nodes of its slave segment
-    integer :: nodes(2, 2*n_room)   !! local numbers of the nodes of the master segment
-    real(wp) :: foot(2*n_room)      !! centre of the portion on that
-    real(wp) :: area(2*n_room)      !! m
-  end type parts_t
-
 contains
 
-  !> Place the points.
+  !> Place the points: one portion for a half with both ends over the same master segment, two where a master node lies
+  !> between them; whatever else needs a decision goes through `add_portions`.
   pure subroutine place_vts_ppt(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(halves_t) :: halves
-    integer :: first, k, spot
+    type(sights_t) :: sights
+    integer :: first, n_pair, pairs(n_room)
 
     do first = 1, memory%slave_tracking%n_touching, n_room
-      halves%n = min(n_room, memory%slave_tracking%n_touching - first + 1)
-      do k = 1, halves%n
-        spot = memory%slave_tracking%touching(first + k - 1)
-        call take_half(contact, memory, spot, memory%slave_tracking%segment(spot), halves, k)
-      end do
-      call see_halves(contact, memory, halves)
-      call add_halves(contact, memory, halves)
+      call list_halves(min(n_room, memory%slave_tracking%n_touching - first + 1), &
+        memory%slave_tracking%touching(first:), memory%slave_tracking%segment, &
+        contact%slave%segments, halves, sights)
+      call see_segments(contact, memory, sights)
+      call place_halves(sights, halves)
+      call list_pairs(contact, memory, halves, sights, n_pair, pairs)
+      call see_segments(contact, memory, sights)
+      call take_pairs(contact, memory, sights, n_pair, pairs, halves)
+      call add_halves(memory, halves, sights)
     end do
   end subroutine place_vts_ppt
 
-  !> The points of these half segments: one where both ends are over the same master segment, two where a master node lies
-  !> between them; whatever else needs a decision goes through `add_portions`.
-  pure subroutine add_halves(contact, memory, halves)
+  !> List the halves that cover two master segments.
+  pure subroutine list_pairs(contact, memory, halves, sights, n_pair, pairs)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    type(halves_t), intent(in) :: halves
-    type(halves_t) :: befores, afters
-    type(parts_t) :: parts
-    integer :: k, before, after
+    type(halves_t), intent(inout) :: halves
+    type(sights_t), intent(inout) :: sights
+    integer, intent(out) :: n_pair, pairs(n_room)
+    integer :: i, k, n, side, segment, odd(n_room + 1)
 
-    parts%n = 0
-    befores%n = 0
+    n = 0
     do k = 1, halves%n
-      if (halves%low(k) >= 0.0_wp .and. halves%high(k) <= 1.0_wp &
-        .and. halves%high(k) > halves%low(k)) then
-        parts%n = parts%n + 1
-        call put_part(halves, k, 0.5_wp*(halves%low(k) + halves%high(k)), halves%half(k), parts%n, parts)
-        cycle
-      end if
-      before = 0
-      after = 0
-      if (halves%low(k) < 0.0_wp .and. halves%high(k) > 0.0_wp .and. halves%high(k) < 1.0_wp) then
-        after = halves%master(k)
-        before = contact%master%previous(after)
-      else if (halves%high(k) > 1.0_wp .and. halves%low(k) > 0.0_wp .and. halves%low(k) < 1.0_wp) then
-        before = halves%master(k)
-        after = contact%master%next(before)
-      end if
-      if (before > 0 .and. after > 0) then
-        befores%n = befores%n + 1
-        call take_half(contact, memory, halves%spot(k), before, befores, befores%n)
-        call take_half(contact, memory, halves%spot(k), after, afters, befores%n)
-        befores%part(befores%n) = parts%n + 1
-        parts%n = parts%n + 2
+      odd(n + 1) = k
+      n = n + merge(0, 1, halves%lies_on_one(k) > 0.0_wp)
+    end do
+    n_pair = 0
+    do i = 1, n
+      k = odd(i)
+      segment = 0
+      associate (j => halves%sight(k, 1), low => halves%low(k), high => halves%high(k))
+        side = 0
+        if (low < 0.0_wp .and. high > 0.0_wp .and. high < 1.0_wp) then
+          segment = contact%master%previous(sights%master(j))
+          side = 1
+        else if (high > 1.0_wp .and. low > 0.0_wp .and. low < 1.0_wp) then
+          segment = contact%master%next(sights%master(j))
+          side = 2
+        end if
+      end associate
+      if (segment > 0) then
+        n_pair = n_pair + 1
+        pairs(n_pair) = k
+        associate (j => halves%sight(k, 3 - side))
+          call find_sight(j, segment, j + 3 - 2*side, sights, halves%sight(k, side))
+        end associate
       else
+        halves%n_part(k) = 0
         call add_portions(contact, memory, halves%spot(k))
       end if
     end do
-    afters%n = befores%n
-    call see_halves(contact, memory, befores)
-    call see_halves(contact, memory, afters)
-    call take_pairs(contact, memory, befores, afters, parts)
-    call add_parts(memory, parts)
-  end subroutine add_halves
+  end subroutine list_pairs
 
-  !> Two portions for each half segment with a master node between its ends.
-  pure subroutine take_pairs(contact, memory, befores, afters, parts)
+  !> Two portions for each half with a master node between its ends.
+  pure subroutine take_pairs(contact, memory, sights, n_pair, pairs, halves)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    type(halves_t), intent(in) :: befores, afters !! the halves, seen from the segments on either side of the node
-    type(parts_t), intent(inout) :: parts
-    real(wp) :: one, two, scale, product
-    integer :: k, n_lost
+    type(sights_t), intent(in) :: sights
+    integer, intent(in) :: n_pair, pairs(n_pair)
+    type(halves_t), intent(inout) :: halves
+    real(wp) :: low, high, one, two, scale, product
+    integer :: i, k
 
-    n_lost = 0
-    do k = 1, befores%n
-      one = (1.0_wp - befores%low(k))*befores%length(k)
-      two = afters%high(k)*afters%length(k)
-      product = befores%other(1, k)*afters%other(1, k) + befores%other(2, k)*afters%other(2, k)
-      if (min(befores%low(k), 1.0_wp - befores%low(k), afters%high(k), 1.0_wp - afters%high(k)) > 0.0_wp &
-        .and. product >= gentle_turn*befores%length(k)*afters%length(k)) then
-        scale = befores%half(k)/(one + two)
-        call put_part(befores, k, 0.5_wp*(befores%low(k) + 1.0_wp), one*scale, befores%part(k), parts)
-        call put_part(afters, k, 0.5_wp*afters%high(k), two*scale, befores%part(k) + 1, parts)
-      else
-        parts%spot(befores%part(k):befores%part(k) + 1) = 0
-        n_lost = n_lost + 1
-        call add_portions(contact, memory, befores%spot(k))
-      end if
+    do i = 1, n_pair
+      k = pairs(i)
+      associate (before => halves%sight(k, 1), after => halves%sight(k, 2))
+        low = sights%place(before, halves%side(k) + 1)
+        high = sights%place(after, halves%side(k))
+        one = (1.0_wp - low)*sights%length(before)
+        two = high*sights%length(after)
+        product = sights%other(1, before)*sights%other(1, after) &
+          + sights%other(2, before)*sights%other(2, after)
+        if (min(low, 1.0_wp - low, high, 1.0_wp - high) > 0.0_wp &
+          .and. product >= gentle_turn*sights%length(before)*sights%length(after)) then
+          scale = halves%area(k, 1)/(one + two)
+          halves%n_part(k) = 2
+          halves%foot(k, 1) = 0.5_wp*(low + 1.0_wp)
+          halves%foot(k, 2) = 0.5_wp*high
+          halves%area(k, 1) = one*scale
+          halves%area(k, 2) = two*scale
+        else
+          halves%n_part(k) = 0
+          call add_portions(contact, memory, halves%spot(k))
+        end if
+      end associate
     end do
-    if (n_lost > 0) call close_ranks(parts)
   end subroutine take_pairs
 
-  !> Drop the portions without a spot.
-  pure subroutine close_ranks(parts)
-    type(parts_t), intent(inout) :: parts
-    integer, allocatable :: kept(:)
-    integer :: p, n
-
-    kept = pack([(p, p=1, parts%n)], parts%spot(:parts%n) > 0)
-    n = size(kept)
-    parts%n = n
-    parts%spot(:n) = parts%spot(kept)
-    parts%ends(:, :n) = parts%ends(:, kept)
-    parts%nodes(:, :n) = parts%nodes(:, kept)
-    parts%foot(:n) = parts%foot(kept)
-    parts%area(:n) = parts%area(kept)
-  end subroutine close_ranks
-
-  !> Put a portion at a place of the list.
-  pure subroutine put_part(halves, k, foot, area, p, parts)
-    type(halves_t), intent(in) :: halves
-    integer, intent(in) :: k
-    real(wp), intent(in) :: foot, area
-    integer, intent(in) :: p
-    type(parts_t), intent(inout) :: parts
-
-    parts%spot(p) = halves%spot(k)
-    parts%ends(1, p) = halves%ends(1, k)
-    parts%ends(2, p) = halves%ends(2, k)
-    parts%nodes(1, p) = halves%nodes(1, k)
-    parts%nodes(2, p) = halves%nodes(2, k)
-    parts%foot(p) = foot
-    parts%area(p) = area
-  end subroutine put_part
-
-  !> Append the points of the portions on a list.
-  pure subroutine add_parts(memory, parts)
+  !> Append the points of the portions.
+  pure subroutine add_halves(memory, halves, sights)
     type(contact_state_t), intent(inout) :: memory
-    type(parts_t), intent(in) :: parts
+    type(halves_t), intent(in) :: halves
+    type(sights_t), intent(in) :: sights
+    integer :: n
 
-    if (parts%n == 0) return
-    call make_room(memory%points, parts%n)
+    n = sum(halves%n_part(:halves%n))
+    ! One more, as `put_sides` and `put_springs` write two for each half.
+    call make_room(memory%points, n + 1)
     associate (points => memory%points, tracking => memory%slave_tracking, p => memory%points%n + 1)
-      call put_sides(parts, memory%spot_xi, points%slave_nodes(1, p), points%slave_weights(1, p), &
-        points%master_nodes(1, p), points%master_weights(1, p))
-      call put_springs(parts, tracking%normal, tracking%gap, points%normal(1, p), points%gap(p), &
+      call put_sides(halves, sights, memory%spot_xi, points%slave_nodes(1, p), &
+        points%slave_weights(1, p), points%master_nodes(1, p), points%master_weights(1, p))
+      call put_springs(halves, tracking%normal, tracking%gap, points%normal(1, p), points%gap(p), &
         points%area(p))
-      points%stiffness(p:points%n + parts%n) = memory%slave_penalty
-      points%n = points%n + parts%n
+      points%stiffness(p:points%n + n) = memory%slave_penalty
+      points%n = points%n + n
     end associate
-  end subroutine add_parts
+  end subroutine add_halves
 
-  !> Both sides of these points.
-  pure subroutine put_sides(parts, spot_xi, slave_nodes, slave_weights, master_nodes, master_weights)
-    type(parts_t), intent(in) :: parts
+  !> Both sides of these points. Two are written for each half, and the next half starts where those that count end: a
+  !> decision at each half costs more.
+  pure subroutine put_sides(halves, sights, spot_xi, slave_nodes, slave_weights, master_nodes, &
+    master_weights)
+    type(halves_t), intent(in) :: halves
+    type(sights_t), intent(in) :: sights
     real(wp), intent(in) :: spot_xi(2)
-    integer, dimension(n_side, parts%n), intent(inout) :: slave_nodes, master_nodes
-    real(wp), dimension(n_side, parts%n), intent(inout) :: slave_weights, master_weights
+    integer, dimension(n_side, *), intent(inout) :: slave_nodes, master_nodes
+    real(wp), dimension(n_side, *), intent(inout) :: slave_weights, master_weights
     real(wp) :: xi
-    integer :: p
+    integer :: p, k, q, j
 
-    !GCC$ NOVECTOR
-    do p = 1, parts%n
-      xi = spot_xi(2 - mod(parts%spot(p), 2))
-      slave_nodes(1, p) = parts%ends(1, p)
-      slave_nodes(2, p) = parts%ends(2, p)
-      slave_weights(1, p) = 1.0_wp - xi
-      slave_weights(2, p) = xi
-      master_nodes(1, p) = parts%nodes(1, p)
-      master_nodes(2, p) = parts%nodes(2, p)
-      master_weights(1, p) = 1.0_wp - parts%foot(p)
-      master_weights(2, p) = parts%foot(p)
+    p = 1
+    do k = 1, halves%n
+      xi = spot_xi(halves%side(k))
+      do q = 1, 2
+        j = halves%sight(k, q)
+        slave_nodes(1, p + q - 1) = sights%ends(1, j)
+        slave_nodes(2, p + q - 1) = sights%ends(2, j)
+        slave_weights(1, p + q - 1) = 1.0_wp - xi
+        slave_weights(2, p + q - 1) = xi
+        master_nodes(1, p + q - 1) = sights%nodes(1, j)
+        master_nodes(2, p + q - 1) = sights%nodes(2, j)
+        master_weights(1, p + q - 1) = 1.0_wp - halves%foot(k, q)
+        master_weights(2, p + q - 1) = halves%foot(k, q)
+      end do
+      p = p + halves%n_part(k)
     end do
   end subroutine put_sides
 
   !> Normals and gaps (m), which are those of the virtual nodes, and areas (m).
-  pure subroutine put_springs(parts, normals, gaps, normal, gap, area)
-    type(parts_t), intent(in) :: parts
+  pure subroutine put_springs(halves, normals, gaps, normal, gap, area)
+    type(halves_t), intent(in) :: halves
     real(wp), intent(in) :: normals(2, *), gaps(*)
-    real(wp), intent(inout) :: normal(2, parts%n), gap(parts%n), area(parts%n)
-    integer :: p
+    real(wp), intent(inout) :: normal(2, *), gap(*), area(*)
+    integer :: p, k, q
 
-    !GCC$ NOVECTOR
-    do p = 1, parts%n
-      normal(1, p) = normals(1, parts%spot(p))
-      normal(2, p) = normals(2, parts%spot(p))
-      gap(p) = gaps(parts%spot(p))
-      area(p) = parts%area(p)
+    p = 1
+    do k = 1, halves%n
+      do q = 1, 2
+        normal(1, p + q - 1) = normals(1, halves%spot(k))
+        normal(2, p + q - 1) = normals(2, halves%spot(k))
+        gap(p + q - 1) = gaps(halves%spot(k))
+        area(p + q - 1) = halves%area(k, q)
+      end do
+      p = p + halves%n_part(k)
     end do
   end subroutine put_springs
 
