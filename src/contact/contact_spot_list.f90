@@ -152,9 +152,9 @@ contains
     !$omp simd private(square, length, along, across, own_square, normal, xi, gap)
     do k = 1, n
       associate (t => list%t(:, k), d => list%d(:, k), own => list%own(:, k))
-        square = max(t(1)**2 + t(2)**2, tiny(1.0_wp))
-        along = d(1)*t(1) + d(2)*t(2)
-        across = d(1)*t(2) - d(2)*t(1)
+        square = max(t(1)**2 + (t(2)**2), tiny(1.0_wp))
+        along = d(1)*t(1) + (d(2)*t(2))
+        across = d(1)*t(2) - (d(2)*t(1))
         length = sqrt(square)
         xi = along/square
         gap = across/length
@@ -171,7 +171,7 @@ contains
         normal(2) = merge(list%held(4, k), normal(2), list%touches(k))
         list%normal(1, k) = normal(1)
         list%normal(2, k) = normal(2)
-        own_square = max(own(1)**2 + own(2)**2, tiny(1.0_wp))
+        own_square = max(own(1)**2 + (own(2)**2), tiny(1.0_wp))
         list%length(k) = sqrt(own_square)
         list%facing(k) = merge(1.0_wp, 0.0_wp, &
           own(2)*normal(1) - own(1)*normal(2) <= surely_facing*list%length(k))
