@@ -9,11 +9,11 @@ module points_segmented_mortar_m
     cut_segments, note_plain_contact
   use contact_placing_m, only : add_segment_point, place_on_segment, put_sides, put_gaps, &
     put_springs
-  use contact_plain_foot_m, only : is_plainly_behind, is_plainly_over
+  use contact_plain_foot_m, only : is_plainly_behind, is_plainly_over, well_inside
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t, make_room
   use contacts_m, only : contact_t
-  use geometry_m, only : sight_t, sight_of_segment, sight_normal
+  use geometry_m, only : sight_t, sight_of_segment, sight_normal, separation
   use kinds_m, only : wp
   implicit none
   private
@@ -36,6 +36,13 @@ module points_segmented_mortar_m
     real(wp) :: depth(n_room)              !! more than 0 where both are behind the master segment and nearer to it than
                                            !! to its ends
   end type plain_points_t
+
+  !> A slave segment.
+  type :: slave_t
+    integer :: ends(2)       !! its nodes
+    real(wp) :: normal(2)
+    real(wp) :: length       !! m
+  end type slave_t
 
 contains
 
@@ -99,17 +106,44 @@ contains
     integer, intent(in) :: s
     logical, intent(in) :: may_touch
     type(cover_t) :: cover
-    logical :: counts
     integer :: n_before
 
     n_before = memory%points%n
     call find_cover(contact, memory, s, cover)
     call add_pieces(contact, memory, cover)
-    if (.not. may_touch) return
+    if (may_touch) call judge_last(contact, memory, s, n_before)
+  end subroutine place_segment
+
+  !> The same for a segment on the list whose points are not all where the list has them.
+  pure subroutine place_listed(contact, memory, cover, i, may_touch)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(plain_cover_t), intent(in) :: cover
+    integer, intent(in) :: i !! of the list
+    logical, intent(in) :: may_touch
+    integer :: n_before
+
+    if (.not. cover%is_plain(i)) then
+      call place_segment(contact, memory, cover%slave(i), may_touch)
+      return
+    end if
+    n_before = memory%points%n
+    call add_listed_pieces(contact, memory, contact%slave%segments(:, cover%slave(i)), &
+      cover%master(cover%last(i - 1) + 1:cover%last(i)))
+    if (may_touch) call judge_last(contact, memory, cover%slave(i), n_before)
+  end subroutine place_listed
+
+  !> Judge a segment by the points that have been appended last, and drop them if they do not count.
+  pure subroutine judge_last(contact, memory, s, n_before)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: s, n_before
+    logical :: counts
+
     call judge_points(contact, memory, s, .false., minval(memory%points%gap(n_before + 1:memory%points%n)), &
       counts)
     if (.not. counts) memory%points%n = n_before
-  end subroutine place_segment
+  end subroutine judge_last
 
   !> Whether the points of a segment count; marks its nodes if one of them is in contact.
   pure subroutine judge_points(contact, memory, s, touches, deepest, counts)
@@ -146,14 +180,16 @@ contains
     call cut_segments(contact, memory, cover)
     call find_points(cover%n_piece, cover%own, cover%other, cover%way, cover%low, cover%high, &
       cover%length, found)
-    call make_room(memory%points, n_gauss*cover%n_piece)
+    if (memory%points%n + n_gauss*cover%n_piece > size(memory%points%gap)) &
+      call make_room(memory%points, n_gauss*cover%n_piece)
     first = 1
     do i = 1, cover%n_segment
       last = cover%last(i)
       if (.not. is_plain(contact, memory, cover, found, i)) then
         call put_points(memory, cover, found, first, cover%last(i - 1))
-        call place_segment(contact, memory, cover%slave(i), may_touch)
-        call make_room(memory%points, n_gauss*(cover%n_piece - last))
+        call place_listed(contact, memory, cover, i, may_touch)
+        if (memory%points%n + n_gauss*(cover%n_piece - last) > size(memory%points%gap)) &
+          call make_room(memory%points, n_gauss*(cover%n_piece - last))
         first = last + 1
       else if (may_touch) then
         call judge_points(contact, memory, cover%slave(i), cover%touches(i), &
@@ -206,46 +242,83 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(cover_t), intent(in) :: cover
     type(piece_t) :: piece
-    type(sight_t) :: slave
-    integer :: q
+    type(slave_t) :: slave
 
     if (.not. cover%exists) return
-    slave = sight_of_segment(memory%places(:, cover%ends(2)), memory%places(:, cover%ends(1)), &
-      memory%places(:, cover%ends(2)))
+    slave = slave_of(memory, cover%ends)
     call first_piece(contact, memory, cover, piece)
     do while (.not. piece%is_last)
       call next_piece(contact, memory, cover, piece)
-      if (.not. (piece%high > piece%low .and. piece%share > 0.0_wp)) cycle
-      call make_room(memory%points, size(gauss_xi))
-      do q = 1, size(gauss_xi)
-        call add_gauss_point(contact, memory, cover%ends, slave, piece%segment, &
-          piece%low + gauss_xi(q)*(piece%high - piece%low), 0.5_wp*(piece%high - piece%low))
-      end do
+      if (piece%high > piece%low .and. piece%share > 0.0_wp) &
+        call add_piece(contact, memory, slave, piece%segment, piece%low, piece%high)
     end do
   end subroutine add_pieces
 
-  !> One Gauss point on a piece, over whatever master segment is closest there.
-  pure subroutine add_gauss_point(contact, memory, ends, slave, segment, xi, weight)
+  !> The points of one segment whose pieces are known to be over these master segments and to face them: what
+  !> `add_pieces` comes to.
+  pure subroutine add_listed_pieces(contact, memory, ends, master)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: ends(2)  !! nodes of the slave segment
-    type(sight_t), intent(in) :: slave !! some place seen from it
-    integer, intent(in) :: segment  !! master segment of the piece
-    real(wp), intent(in) :: xi      !! place on the slave segment
-    real(wp), intent(in) :: weight  !! part of its length
-    type(foot_t) :: foot
-    real(wp) :: share
+    integer, intent(in) :: ends(2)    !! nodes of the slave segment
+    integer, intent(in), contiguous :: master(:)  !! segment of each piece
+    type(slave_t) :: slave
+    type(sight_t) :: sight
+    real(wp) :: low, high
+    integer :: k
 
-    foot = local_foot(contact, memory, place_on_segment(memory%places, ends, xi), segment)
-    if (.not. foot%is_on) return
-    share = facing_share(dot_product(sight_normal(slave), foot%normal))
-    if (.not. share > 0.0_wp) return
-    call add_segment_point(contact%master, memory%n_slave, ends, xi, foot, memory%points)
-    associate (p => memory%points%n)
-      memory%points%area(p) = weight*share*sqrt(slave%square)
-      memory%points%stiffness(p) = memory%slave_penalty
-    end associate
-  end subroutine add_gauss_point
+    slave = slave_of(memory, ends)
+    low = 0.0_wp
+    do k = 1, size(master)
+      high = 1.0_wp
+      if (k < size(master)) then
+        sight = sight_of_segment(memory%places(:, memory%n_slave + contact%master%segments(1, master(k))), &
+          memory%places(:, ends(1)), memory%places(:, ends(2)))
+        high = sight%along/sight%square
+      end if
+      call add_piece(contact, memory, slave, master(k), low, high)
+      low = high
+    end do
+  end subroutine add_listed_pieces
+
+  !> What the points of a slave segment have in common.
+  pure function slave_of(memory, ends) result(slave)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)
+    type(slave_t) :: slave
+    type(sight_t) :: sight
+
+    sight = sight_of_segment(memory%places(:, ends(2)), memory%places(:, ends(1)), memory%places(:, ends(2)))
+    slave%ends = ends
+    slave%normal = sight_normal(sight)
+    slave%length = sqrt(sight%square)
+  end function slave_of
+
+  !> The Gauss points on a piece, each over whatever master segment is closest there.
+  pure subroutine add_piece(contact, memory, slave, segment, low, high)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(slave_t), intent(in) :: slave
+    integer, intent(in) :: segment    !! master segment of the piece
+    real(wp), intent(in) :: low, high !! where it starts and ends on the slave segment
+    type(foot_t) :: foot
+    real(wp) :: share, xi, weight
+    integer :: q
+
+    if (memory%points%n + n_gauss > size(memory%points%gap)) call make_room(memory%points, n_gauss)
+    weight = 0.5_wp*(high - low)
+    do q = 1, n_gauss
+      xi = low + gauss_xi(q)*(high - low)
+      foot = local_foot(contact, memory, place_on_segment(memory%places, slave%ends, xi), segment)
+      if (.not. foot%is_on) cycle
+      share = facing_share(dot_product(slave%normal, foot%normal))
+      if (.not. share > 0.0_wp) cycle
+      call add_segment_point(contact%master, memory%n_slave, slave%ends, xi, foot, memory%points)
+      associate (p => memory%points%n)
+        memory%points%area(p) = weight*share*slave%length
+        memory%points%stiffness(p) = memory%slave_penalty
+      end associate
+    end do
+  end subroutine add_piece
 
   !> Whether all points of a listed segment are where the list has them: on the master segment of their piece. A
   !> Gauss point that is nearer to a neighbour of that has its foot there (as contact_projection has it).
@@ -263,6 +336,7 @@ contains
     do k = cover%last(i - 1) + 1, cover%last(i)
       if (.not. is_plain) return
       if (found%depth(k) > 0.0_wp) cycle
+      if (is_surely_over(contact, memory, cover, found, k)) cycle
       associate (chain => memory%places(:, memory%n_slave + 1:), ends => contact%master%segments(:, cover%master(k)))
         do q = 1, n_gauss
           sight = sight_of_segment(place_on_segment(memory%places, cover%ends(:, k), found%xi(q, k)), &
@@ -273,6 +347,46 @@ contains
       end associate
     end do
   end function is_plain
+
+  !> Whether the Gauss points of a piece are over its master segment and no neighbour of it, and so far from being nearer to
+  !> another that round-off has no part in it.
+  pure function is_surely_over(contact, memory, cover, found, k)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(plain_cover_t), intent(in) :: cover
+    type(plain_points_t), intent(in) :: found
+    integer, intent(in) :: k !! of the list
+    logical :: is_surely_over
+    real(wp) :: low, high, margin, t(2)
+
+    low = minval(found%foot(:, k))
+    high = maxval(found%foot(:, k))
+    is_surely_over = low > 2.0_wp*well_inside .and. high < 1.0_wp - 2.0_wp*well_inside
+    if (.not. is_surely_over) return
+    associate (master => contact%master, segment => cover%master(k), way => cover%way(:, k), &
+      own => cover%own(:, k), other => cover%other(:, k), places => memory%places(:, memory%n_slave + 1:))
+      margin = well_inside*(sum(way**2) + sum(own**2) + sum(other**2))
+      if (master%previous(segment) > 0) then
+        t = separation(places(:, master%segments(1, segment)), &
+          places(:, master%segments(1, master%previous(segment))))
+        is_surely_over = least_product(way, own, found%xi(:, k), t) > margin + well_inside*sum(t**2)
+      end if
+      if (.not. is_surely_over .or. master%next(segment) == 0) return
+      t = separation(places(:, master%segments(2, segment)), &
+        places(:, master%segments(2, master%next(segment))))
+      is_surely_over = least_product(way - other, own, found%xi(:, k), t) > margin + well_inside*sum(t**2)
+    end associate
+  end function is_surely_over
+
+  !> Least product of the ways to the Gauss points with a vector.
+  pure function least_product(way, own, xi, t) result(product)
+    real(wp), intent(in) :: way(2), own(2) !! to the first end of the slave segment, and along it, m
+    real(wp), intent(in) :: xi(n_gauss)
+    real(wp), intent(in) :: t(2)
+    real(wp) :: product
+
+    product = dot_product(way, t) + minval(xi*dot_product(own, t))
+  end function least_product
 
   !> Append the points of the pieces from one to another.
   pure subroutine put_points(memory, cover, found, first, last)
