@@ -7,11 +7,10 @@ module points_segmented_mortar_m
     local_foot, facing_share
   use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
     cut_segments, note_plain_contact
-  use contact_placing_m, only : add_segment_point, place_on_segment, put_sides, put_gaps, &
-    put_springs
+  use contact_placing_m, only : add_segment_point, place_on_segment
   use contact_plain_foot_m, only : is_plainly_behind, is_plainly_over, well_inside
   use contact_projection_m, only : foot_t
-  use contact_state_m, only : contact_state_t, make_room
+  use contact_state_m, only : contact_state_t, make_room, n_side
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, sight_normal, separation
   use kinds_m, only : wp
@@ -399,16 +398,57 @@ contains
     n = last - first + 1
     if (n == 0) return
     associate (points => memory%points, p => memory%points%n + 1)
-      call put_sides(n, n_gauss, cover%ends(1, first), found%xi(1, first), points%slave_nodes(1, p), &
-        points%slave_weights(1, p))
-      call put_sides(n, n_gauss, cover%nodes(1, first), found%foot(1, first), &
+      call put_sides(n, cover%ends(1, first), cover%nodes(1, first), found%xi(1, first), &
+        found%foot(1, first), points%slave_nodes(1, p), points%slave_weights(1, p), &
         points%master_nodes(1, p), points%master_weights(1, p))
-      call put_gaps(n, n_gauss, found%gap(1, first), found%normal(1, first), points%gap(p), &
-        points%normal(1, p))
-      call put_springs(n, n_gauss, found%area(first), memory%slave_penalty, points%area(p), &
-        points%stiffness(p))
+      call put_springs(n, found%gap(1, first), found%normal(1, first), found%area(first), &
+        memory%slave_penalty, points%gap(p), points%normal(1, p), points%area(p), points%stiffness(p))
       points%n = points%n + n_gauss*n
     end associate
   end subroutine put_points
+
+  !> Nodes and weights of the points on `n` pieces, written out for both: a loop over them takes twice as long.
+  pure subroutine put_sides(n, ends, nodes, xi, foot, slave_nodes, slave_weights, master_nodes, &
+      master_weights)
+    integer, intent(in) :: n, ends(2, n), nodes(2, n)  !! of the slave and of the master segments
+    real(wp), dimension(n_gauss, n), intent(in) :: xi, foot !! places on them, 0 to 1
+    integer, dimension(n_side, n_gauss, n), intent(inout) :: slave_nodes, master_nodes
+    real(wp), dimension(n_side, n_gauss, n), intent(inout) :: slave_weights, master_weights
+    integer :: k
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      slave_nodes(:, 1, k) = ends(:, k)
+      slave_nodes(:, 2, k) = ends(:, k)
+      master_nodes(:, 1, k) = nodes(:, k)
+      master_nodes(:, 2, k) = nodes(:, k)
+      slave_weights(1, 1, k) = 1.0_wp - xi(1, k)
+      slave_weights(2, 1, k) = xi(1, k)
+      slave_weights(1, 2, k) = 1.0_wp - xi(2, k)
+      slave_weights(2, 2, k) = xi(2, k)
+      master_weights(1, 1, k) = 1.0_wp - foot(1, k)
+      master_weights(2, 1, k) = foot(1, k)
+      master_weights(1, 2, k) = 1.0_wp - foot(2, k)
+      master_weights(2, 2, k) = foot(2, k)
+    end do
+  end subroutine put_sides
+
+  !> Their gaps, normals, areas and stiffness.
+  pure subroutine put_springs(n, gap, normal, area, stiffness, gaps, normals, areas, stiffnesses)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: gap(n_gauss, n), normal(2, n), area(n), stiffness
+    real(wp), dimension(n_gauss, n), intent(inout) :: gaps, areas, stiffnesses
+    real(wp), intent(inout) :: normals(2, n_gauss, n)
+    integer :: k
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      gaps(:, k) = gap(:, k)
+      normals(:, 1, k) = normal(:, k)
+      normals(:, 2, k) = normal(:, k)
+      areas(:, k) = area(k)
+      stiffnesses(:, k) = stiffness
+    end do
+  end subroutine put_springs
 
 end module points_segmented_mortar_m
