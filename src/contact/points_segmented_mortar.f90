@@ -10,7 +10,7 @@ module points_segmented_mortar_m
   use contact_placing_m, only : add_segment_point, place_on_segment
   use contact_plain_foot_m, only : is_plainly_behind, is_plainly_over, well_inside
   use contact_projection_m, only : foot_t
-  use contact_state_m, only : contact_state_t, make_room, n_side
+  use contact_state_m, only : contact_state_t, make_room, n_side, is_touching
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, sight_normal, separation
   use kinds_m, only : wp
@@ -144,7 +144,9 @@ contains
     if (.not. counts) memory%points%n = n_before
   end subroutine judge_last
 
-  !> Whether the points of a segment count; marks its nodes if one of them is in contact.
+  !> Whether the points of a segment count; marks its nodes if one of them is in contact. Where neither they nor an end of it
+  !> is in contact they are left to the second round, like those of a segment that sleeps: so sums over the points
+  !> of a node do not depend on who sleeps.
   pure subroutine judge_points(contact, memory, s, touches, deepest, counts)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -161,9 +163,13 @@ contains
     else
       call judge_segment(contact, memory, s, ends, deepest, counts)
     end if
-    if (.not. (counts .and. deepest < memory%closed_gap)) return
-    memory%mark(ends(1)) = 1
-    memory%mark(ends(2)) = 1
+    if (counts .and. deepest < memory%closed_gap) then
+      memory%mark(ends(1)) = 1
+      memory%mark(ends(2)) = 1
+    else if (counts .and. .not. touches) then
+      counts = any(memory%slave_tracking%status(ends) == is_touching)
+      memory%cover%is_placed(s) = counts
+    end if
   end subroutine judge_points
 
   !> Place the points of the segments on a list, and clear it.
