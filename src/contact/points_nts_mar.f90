@@ -8,7 +8,7 @@ module points_nts_mar_m
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     see_master_node, facing_share
   use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
-    cut_segments, note_plain_contact
+    list_other, cut_segments, note_plain_contact
   use contact_placing_m, only : add_touching_nodes, competence_length
   use contact_projection_m, only : see_segment
   use contact_state_m, only : contact_state_t, make_room, n_side
@@ -51,7 +51,7 @@ contains
     call finish_nodes(contact, memory, n)
   end subroutine place_nts_mar
 
-  !> Put a segment that may touch on the list, or divide it at once where that is not the common case.
+  !> Put a segment that may touch on the list.
   pure subroutine take_segment(contact, memory, s, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -61,7 +61,7 @@ contains
 
     if (is_asleep(memory, s, contact%slave%segments(:, s))) return
     call list_segment(contact, memory, s, cover, is_listed)
-    if (.not. is_listed) call share_segment(contact, memory, s)
+    if (.not. is_listed) call list_other(s, cover)
     if (cover%is_full) call share_list(contact, memory, cover)
   end subroutine take_segment
 
@@ -127,6 +127,8 @@ contains
       if (cover%is_plain(i)) then
         call share_plain_segment(contact, memory, cover, i, cuts, n)
       else
+        if (n > 0) call add_cuts(memory, cover, n, cuts)
+        n = 0
         call share_segment(contact, memory, cover%slave(i))
       end if
     end do

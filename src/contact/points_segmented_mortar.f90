@@ -6,7 +6,7 @@ module points_segmented_mortar_m
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     local_foot, facing_share
   use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
-    cut_segments, note_plain_contact
+    list_other, cut_segments, note_plain_contact
   use contact_placing_m, only : add_segment_point, place_on_segment
   use contact_plain_foot_m, only : is_plainly_behind, is_plainly_over, well_inside
   use contact_projection_m, only : foot_t
@@ -84,7 +84,7 @@ contains
     memory%mark = 0
   end subroutine place_segmented_mortar
 
-  !> Put a segment on the list, or place its points at once where that is not the common case.
+  !> Put a segment on the list, and place its points with the list when that is full.
   pure subroutine take_segment(contact, memory, s, may_touch, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -94,7 +94,7 @@ contains
     logical :: is_listed
 
     call list_segment(contact, memory, s, cover, is_listed)
-    if (.not. is_listed) call place_segment(contact, memory, s, may_touch)
+    if (.not. is_listed) call list_other(s, cover)
     if (cover%is_full) call place_list(contact, memory, may_touch, cover)
   end subroutine take_segment
 
