@@ -115,26 +115,26 @@ contains
     associate (points => memory%points, p => memory%points%n + 1, tracking => memory%slave_tracking, &
       i => (s - 1)*m + 1)
       call put_areas(m, n, contact%slave%segments(1, s), memory%places, tracking%normal(1, i), &
-        memory%spot_share, points%area(p), all_face)
+        memory%spot_share, points%area(p), points%normal(1, p), all_face)
       if (.not. all_face) return
       call put_sides(m, n, contact%slave%segments(1, s), memory%spot_xi, points%slave_nodes(1, p), &
         points%slave_weights(1, p))
       call put_master_side(m*n, tracking%segment(i), tracking%xi(i), contact%master%segments, &
-        memory%n_slave, points%master_nodes(1, p), points%master_weights(1, p))
-      call copy(m*n, tracking%gap(i), points%gap(p))
-      call copy(2*m*n, tracking%normal(1, i), points%normal(1, p))
+        memory%n_slave, points%master_nodes(1, p), points%master_weights(1, p), tracking%gap(i), &
+        points%gap(p))
       points%stiffness(p:points%n + m*n) = memory%slave_penalty
       points%n = points%n + m*n
     end associate
   end subroutine add_touching
 
-  !> Areas of the Gauss points of some segments, if all of them face the master entirely.
-  pure subroutine put_areas(m, n, ends, places, normals, shares, areas, all_face)
+  !> Areas and normals of the Gauss points of some segments, if all of them face the master entirely.
+  pure subroutine put_areas(m, n, ends, places, normals, shares, areas, point_normals, all_face)
     integer, intent(in) :: m, n, ends(2, n)
     real(wp), intent(in) :: places(4, *)
     real(wp), intent(in) :: normals(2, m, n)   !! of the master
     real(wp), intent(in) :: shares(m)          !! of a segment's length
     real(wp), intent(inout) :: areas(m, n)     !! m
+    real(wp), intent(inout) :: point_normals(2, m, n)
     logical, intent(out) :: all_face
     real(wp) :: t(2), length, worst
     integer :: k, q
@@ -147,6 +147,8 @@ contains
       do q = 1, m
         worst = max(worst, t(2)*normals(1, q, k) - t(1)*normals(2, q, k))
         areas(q, k) = shares(q)*length
+        point_normals(1, q, k) = normals(1, q, k)
+        point_normals(2, q, k) = normals(2, q, k)
       end do
       all_face = all_face .and. worst <= face_on*length
     end do
@@ -170,22 +172,15 @@ contains
     end do
   end subroutine put_sides
 
-  !> Copy in one piece.
-  pure subroutine copy(n, from, to)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: from(n)
-    real(wp), intent(inout) :: to(n)
-
-    to = from
-  end subroutine copy
-
-  !> Master side of some points.
-  pure subroutine put_master_side(n, segment, xi, segments, n_slave, nodes, weights)
+  !> Master side and gaps of some points.
+  pure subroutine put_master_side(n, segment, xi, segments, n_slave, nodes, weights, gap, gaps)
     integer, intent(in) :: n, segment(n), segments(n_side, *)
     real(wp), intent(in) :: xi(n)
     integer, intent(in) :: n_slave !! local number before the first master node
     integer, intent(inout) :: nodes(n_side, n)
     real(wp), intent(inout) :: weights(n_side, n)
+    real(wp), intent(in) :: gap(n)   !! m
+    real(wp), intent(inout) :: gaps(n)
     integer :: k
 
     !GCC$ NOVECTOR
@@ -194,6 +189,7 @@ contains
       nodes(2, k) = n_slave + segments(2, segment(k))
       weights(1, k) = 1.0_wp - xi(k)
       weights(2, k) = xi(k)
+      gaps(k) = gap(k)
     end do
   end subroutine put_master_side
 
