@@ -142,7 +142,8 @@ contains
     end do
   end subroutine hold_spots
 
-  !> Project them.
+  !> Project them. The second product of a sum is in parentheses, rounded first, since that is how `sight_of_segment` comes out
+  !> where products and sums are fused: one by one or on a list, the bits are the same.
   pure subroutine project_spots(n, list)
     integer, intent(in) :: n
     type(spot_list_t), intent(inout) :: list
