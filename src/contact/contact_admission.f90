@@ -3,6 +3,7 @@
 !> each point: what may be caught, and how long a segment need not be looked at
 !> (doc/theory/contact.md, sections 3.3 and 4).
 module contact_admission_m
+  use contact_buckets_m, only : distance_to_others
   use contact_state_m, only : contact_state_t, is_free, is_touching, is_behind
   use contacts_m, only : contact_t
   use geometry_m, only : segment_length, closest_distance, sight_of_segment
@@ -14,6 +15,8 @@ module contact_admission_m
   !> The tracked segment of a spot is its closest one or next to it, and what the search knows of
   !> other segments leaves out the closest and its neighbours: so many on either side.
   integer, parameter :: n_around = 2
+  !> Master segments that a slave segment is measured against one by one.
+  integer, parameter :: n_window = 16
 
 contains
 
@@ -87,11 +90,10 @@ contains
     end associate
   end function deepest_first_contact
 
-  !> Travel during which nothing can touch a segment of length L. Chains come nearest to each other at a node of one of
-  !> them: at an end of the segment, at a master node near the tracked feet of its ends, or at one farther
-  !> along the chain; from that a place on the segment is at least (o_1 + o_2 - L)/2 away when its
-  !> ends are o_1 and o_2 away. The last shrinks by 3/2 of the travel at most, so that it takes a third of
-  !> o_1 + o_2 - L; the others shrink by the travel.
+  !> Travel during which nothing can touch a segment of length L. Two chains come nearest to each other at a node of one of
+  !> them: at an end of the segment, which the tracking bounds for all of the master, or at a master node. Of these
+  !> the nodes of the master segments near the feet of the ends are measured; how far the others are is known in two
+  !> ways, the greater of which holds: from the distances of the ends, or by a look round the middle.
   pure function safe_travel(contact, memory, ends) result(travel)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -100,21 +102,13 @@ contains
     integer :: k, seen
 
     travel = huge(1.0_wp)
-    others = -segment_length(memory%places(:, ends(1)), memory%places(:, ends(2)))
+    seen = 0
     associate (tracking => memory%slave_tracking)
       do k = 1, 2
-        if (tracking%segment(ends(k)) == 0) then
-          others = others + tracking%reach + max(0.0_wp, tracking%wake(ends(k)) - memory%travel)
-        else
-          others = others + tracking%recheck(ends(k)) - memory%travel
-          travel = min(travel, tracking%wake(ends(k)) - memory%travel)
-          if (.not. travel > 0.0_wp) exit
-        end if
+        if (tracking%segment(ends(k)) > 0) travel = min(travel, tracking%wake(ends(k)) - memory%travel)
       end do
-      travel = max(0.0_wp, min(travel, others/3.0_wp))
-      seen = 0
       do k = 1, 2
-        if (.not. travel > 0.0_wp) return
+        if (.not. travel > 0.0_wp) exit
         associate (segment => tracking%segment(ends(k)))
           if (segment == 0 .or. segment == seen) cycle
           travel = min(travel, distance_of_nodes(contact, memory, ends, segment))
@@ -122,7 +116,101 @@ contains
         end associate
       end do
     end associate
+    if (travel > 0.0_wp) then
+      others = travel_to_others(memory, ends)
+      if (others < travel) others = max(others, distance_by_window(contact, memory, ends, travel))
+      travel = min(travel, others)
+    end if
+    travel = max(0.0_wp, travel)
   end function safe_travel
+
+  !> The first way: a place on the segment is at least (o_1 + o_2 - L)/2 away from all other master segments when its ends
+  !> are o_1 and o_2 away from these. That shrinks by 3/2 of the travel at most, so that it takes a third of o_1 + o_2 - L.
+  pure function travel_to_others(memory, ends) result(travel)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)
+    real(wp) :: travel
+    integer :: k
+
+    travel = -segment_length(memory%places(:, ends(1)), memory%places(:, ends(2)))
+    associate (tracking => memory%slave_tracking)
+      do k = 1, 2
+        if (tracking%segment(ends(k)) == 0) then
+          travel = travel + tracking%reach + max(0.0_wp, tracking%wake(ends(k)) - memory%travel)
+        else
+          travel = travel + tracking%recheck(ends(k)) - memory%travel
+        end if
+      end do
+    end associate
+    travel = travel/3.0_wp
+  end function travel_to_others
+
+  !> The second way, for segments along which ends know little of others (a master with shorter segments, a search long ago):
+  !> the least of the distances of all master nodes from the foot of one end to that of the other and `n_around`
+  !> segments more on either side, and of that of all other master segments. No place of the slave segment is farther than
+  !> L/2 from its middle, so these are at least as far as they are from the middle, less L/2. Both are distances of present
+  !> places and shrink by the travel at most. 0: nothing is known, since an end has no foot or the feet are far apart.
+  pure function distance_by_window(contact, memory, ends, wanted) result(distance)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)
+    real(wp), intent(in) :: wanted !! more is of no use, m
+    real(wp) :: distance, half, square
+    integer :: window(n_window), n, k
+
+    distance = 0.0_wp
+    associate (tracking => memory%slave_tracking, one => places_of(1), two => places_of(2))
+      if (minval(tracking%segment(ends)) == 0) return
+      call list_window(contact, tracking%segment(ends(1)), tracking%segment(ends(2)), window, n)
+      if (n == 0) return
+      square = square_to_node(memory, ends, contact%master%segments(1, window(n)))
+      do k = 1, n
+        square = min(square, square_to_node(memory, ends, contact%master%segments(2, window(k))))
+      end do
+      half = 0.5_wp*segment_length(one, two)
+      distance = distance_to_others(tracking%grid, contact%master, memory%places(:, memory%n_slave + 1:), &
+        0.5_wp*(one + two), memory%travel, half + wanted, window(:n)) - half
+      distance = min(distance, sqrt(square))
+    end associate
+
+  contains
+
+    !> Place of an end.
+    pure function places_of(k) result(place)
+      integer, intent(in) :: k
+      real(wp) :: place(4)
+
+      place = memory%places(:, ends(k))
+    end function places_of
+
+  end function distance_by_window
+
+  !> Master segments from `n_around` before the foot of the first end of a slave segment, against the master's direction, to
+  !> as many behind that of the second.
+  pure subroutine list_window(contact, first, last, window, n)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: first, last       !! master segments of the feet
+    integer, intent(out) :: window(n_window)
+    integer, intent(out) :: n                !! 0: the feet are farther apart
+    integer :: segment, i_step, n_left
+
+    segment = first
+    do i_step = 1, n_around
+      if (contact%master%next(segment) == 0) exit
+      segment = contact%master%next(segment)
+    end do
+    window = 0
+    n_left = -1
+    do n = 1, n_window
+      window(n) = segment
+      if (n_left < 0 .and. segment == last .and. any(window(:n) == first)) n_left = n_around
+      segment = contact%master%previous(segment)
+      if (n_left == 0 .or. (n_left > 0 .and. segment == 0)) return
+      if (segment == 0) exit
+      n_left = max(-1, n_left - 1)
+    end do
+    n = 0
+  end subroutine list_window
 
   !> Distance from a slave segment to the nodes of the master segments round a given one.
   pure function distance_of_nodes(contact, memory, ends, segment) result(distance)
@@ -140,24 +228,23 @@ contains
     end do
     square = huge(1.0_wp)
     do i_step = 0, 2*n_around
-      square = min(square, square_to(contact%master%segments(1, k)))
+      square = min(square, square_to_node(memory, ends, contact%master%segments(1, k)))
       if (contact%master%next(k) == 0) exit
       k = contact%master%next(k)
     end do
-    distance = sqrt(min(square, square_to(contact%master%segments(2, k))))
-
-  contains
-
-    !> Square of the distance to a master node.
-    pure function square_to(node) result(square)
-      integer, intent(in) :: node
-      real(wp) :: square
-
-      square = closest_distance(sight_of_segment(memory%places(:, memory%n_slave + node), &
-        memory%places(:, ends(1)), memory%places(:, ends(2))))
-    end function square_to
-
+    distance = sqrt(min(square, square_to_node(memory, ends, contact%master%segments(2, k))))
   end function distance_of_nodes
+
+  !> Square of the distance from a slave segment to a master node.
+  pure function square_to_node(memory, ends, node) result(square)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)
+    integer, intent(in) :: node !! of the master
+    real(wp) :: square
+
+    square = closest_distance(sight_of_segment(memory%places(:, memory%n_slave + node), &
+      memory%places(:, ends(1)), memory%places(:, ends(2))))
+  end function square_to_node
 
   !> After all segments have been looked at.
   pure subroutine note_next_wake(memory)

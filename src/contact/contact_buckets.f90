@@ -10,12 +10,16 @@ module contact_buckets_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: nearest_t, fill_grid, slip_limit, box_distance, find_nearest
+  public :: nearest_t, fill_grid, slip_limit, box_distance, find_nearest, &
+    distance_to_others
 
   !> Segments kept by a search: the nearest, its two neighbours and the next one after these.
   integer, parameter :: n_kept = 4
   !> Cells are numbered within this range; beyond it they share the outermost number.
   real(wp), parameter :: widest = 1.0e9_wp
+
+  !> Rings of cells looked into for the distance to others.
+  integer, parameter :: most_rings = 6
 
   !> Answer of a search.
   type :: nearest_t
@@ -171,6 +175,56 @@ contains
     end do
     call conclude(surface, kept, bound, reach, nearest)
   end subroutine find_nearest
+
+  !> Lower bound on the distance from `spot` to all segments but some that are known, as far as `reach`; rings of cells as
+  !> in `find_nearest`, but no more than a few: in much smaller cells than the reach the bound is what these hold.
+  pure function distance_to_others(grid, surface, chain, spot, travel, reach, known) result(distance)
+    type(bucket_grid_t), intent(in) :: grid
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :)
+    real(wp), intent(in) :: spot(4)
+    real(wp), intent(in) :: travel
+    real(wp), intent(in) :: reach
+    integer, intent(in), contiguous :: known(:) !! segments left out
+    real(wp) :: distance, bound, square
+    integer :: centre(2), ring, ix, iy, step
+
+    distance = 0.0_wp
+    if (.not. grid%cell > 0.0_wp) return
+    square = huge(1.0_wp)
+    centre = cell_of(grid, separation(spot, chain(:, 1)))
+    do ring = 0, most_rings
+      do iy = centre(2) - ring, centre(2) + ring
+        step = max(1, merge(1, 2*ring, abs(iy - centre(2)) == ring))
+        do ix = centre(1) - ring, centre(1) + ring, step
+          square = min(square, square_in_bucket(grid, surface, chain, spot, bucket_of(grid, ix, iy), known))
+        end do
+      end do
+      bound = max(0.0_wp, ring*grid%cell - (travel - grid%filled_at))
+      if (bound >= min(sqrt(square), reach)) exit
+    end do
+    distance = min(bound, sqrt(square))
+  end function distance_to_others
+
+  !> Square of the distance to the nearest segment of a bucket that is not known.
+  pure function square_in_bucket(grid, surface, chain, spot, bucket, known) result(square)
+    type(bucket_grid_t), intent(in) :: grid
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :)
+    real(wp), intent(in) :: spot(4)
+    integer, intent(in) :: bucket
+    integer, intent(in), contiguous :: known(:)
+    real(wp) :: square
+    integer :: i, segment
+
+    square = huge(1.0_wp)
+    do i = grid%first(bucket) + 1, grid%first(bucket + 1)
+      segment = grid%items(i)
+      if (any(known == segment)) cycle
+      square = min(square, closest_distance(sight_of_segment(spot, &
+        chain(:, surface%segments(1, segment)), chain(:, surface%segments(2, segment)))))
+    end do
+  end function square_in_bucket
 
   !> Keep the nearest different segments of one bucket.
   pure subroutine look_into_bucket(grid, surface, chain, spot, bucket, kept)

@@ -56,7 +56,6 @@ contains
     limit = max(0.0_wp, memory%closed_gap)
     n = 0
     do i = first, last
-      if (.not. cover%is_plain(i)) cycle
       n_before = n
       deepest = huge(1.0_wp)
       !GCC$ UNROLL 1

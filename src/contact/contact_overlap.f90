@@ -5,8 +5,8 @@
 !> pieces, each facing one master segment; there is no search (doc/theory/contact.md, section 3.5).
 module contact_overlap_m
   use contact_placing_m, only : tracked_foot
-  use contact_plain_foot_m, only : plain_foot
-  use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest, &
+  use contact_plain_foot_m, only : plain_foot, is_plainly_behind, is_well_inside
+  use contact_projection_m, only : foot_t, closest_foot, face_foot, follow_contact, walk_to_closest, &
     see_segment, turns_gently, side_on
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
@@ -123,13 +123,31 @@ contains
     real(wp), intent(in) :: place(4)
     integer, intent(in) :: start !! master segment
     type(foot_t) :: foot
+    type(foot_t) :: closest
+    type(sight_t) :: sight
     logical :: is_found
 
-    call plain_foot(contact%master, memory%places(:, memory%n_slave + 1:), place, start, is_found, foot)
-    if (is_found .and. foot%gap >= 0.0_wp) return
-    foot = follow_contact(contact%master, memory%places(:, memory%n_slave + 1:), place, start)
-    if (foot%is_on .and. foot%gap < 0.0_wp) return
-    foot = free_foot(contact, memory, place, start)
+    associate (chain => memory%places(:, memory%n_slave + 1:))
+      sight = see_segment(contact%master, chain, place, start)
+      if (is_plainly_behind(sight) .and. is_well_inside(sight)) then
+        ! What follows would find no foot in front and stay on this face.
+        foot = face_foot(sight, start)
+        return
+      end if
+      call plain_foot(contact%master, chain, place, start, is_found, closest)
+      if (is_found .and. closest%gap >= 0.0_wp) then
+        foot = closest
+        return
+      end if
+      foot = follow_contact(contact%master, chain, place, start)
+      if (foot%is_on .and. foot%gap < 0.0_wp) return
+      if (is_found) then
+        foot = closest
+      else
+        foot = closest_foot(contact%master, chain, place, &
+          walk_to_closest(contact%master, chain, place, start))
+      end if
+    end associate
   end function local_foot
 
   !> Where the walk along a covered segment starts: at its first end, or at the end of the master chain.
@@ -292,6 +310,8 @@ contains
     real(wp), intent(in) :: cosine
     real(wp) :: share
 
+    share = 1.0_wp
+    if (cosine <= face_on) return
     share = max(0.0_wp, min(1.0_wp, (side_on - cosine)/(side_on - face_on)))
     share = share*share*(3.0_wp - 2.0_wp*share)
   end function facing_share

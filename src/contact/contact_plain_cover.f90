@@ -13,8 +13,8 @@ module contact_plain_cover_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: plain_cover_t, clear_list, list_touching, list_segment, cut_segments, see_pieces, &
-    note_plain_contact, n_room
+  public :: plain_cover_t, clear_list, list_touching, list_segment, list_other, cut_segments, &
+    see_pieces, note_plain_contact, n_room
 
   !> Most pieces of a segment, and of a list.
   integer, parameter :: n_most = 6, n_room = 64
@@ -124,7 +124,7 @@ contains
     cover%last(cover%n_segment) = k
     cover%touches(cover%n_segment) = touches
     cover%n_piece = k
-    cover%is_full = k > n_room - n_most
+    cover%is_full = k > n_room - n_most .or. cover%n_segment == n_room
   end subroutine list_pieces
 
   !> Put any other slave segment on the list. Feet on a node, corners, and whatever else needs a decision is left to
@@ -147,6 +147,19 @@ contains
       cover, is_listed)
   end subroutine list_segment
 
+  !> Put a slave segment that is not the common case on the list, without pieces, so that its points keep their place among
+  !> those of the others.
+  pure subroutine list_other(s, cover)
+    integer, intent(in) :: s
+    type(plain_cover_t), intent(inout) :: cover
+
+    cover%n_segment = cover%n_segment + 1
+    cover%slave(cover%n_segment) = s
+    cover%last(cover%n_segment) = cover%n_piece
+    cover%touches(cover%n_segment) = .false.
+    cover%is_full = cover%is_full .or. cover%n_segment == n_room
+  end subroutine list_other
+
   !> Cut the segments on the list.
   pure subroutine cut_segments(contact, memory, cover)
     type(contact_t), intent(in) :: contact
@@ -161,6 +174,8 @@ contains
     call cut_pieces(cover%n_piece, cover%own, cover%other, cover%way, cover%length, cover%inverse, &
       cover%high, cover%gap, cover%facing)
     do i = 1, cover%n_segment
+      cover%is_plain(i) = .false.
+      if (cover%last(i) == cover%last(i - 1)) cycle
       low = 0.0_wp
       is_plain = .true.
       do k = cover%last(i - 1) + 1, cover%last(i) - 1

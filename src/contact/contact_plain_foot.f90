@@ -8,7 +8,8 @@ module contact_plain_foot_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: plain_foot, see_plain_segment, is_plainly_behind, is_plainly_over, well_inside
+  public :: plain_foot, see_plain_segment, is_plainly_behind, is_plainly_over, &
+    is_well_inside, well_inside
 
   !> Part of a segment next to its ends where round-off may decide which node or segment is closer.
   real(wp), parameter :: well_inside = 1.0e-9_wp

@@ -48,11 +48,11 @@ contains
         next_wake = -huge(1.0_wp)
         cycle
       end if
-      i = i + 1
-      if (travel < tracking%wake(i)) then
-        next_wake = min(next_wake, tracking%wake(i))
+      if (travel < tracking%wake(i + 1)) then
+        call pass_sleeping(tracking%n, tracking%is_kept, tracking%wake, travel, i, next_wake)
         cycle
       end if
+      i = i + 1
       call update_spot(tracking, surface, chain, spots, i, travel, n_released)
       next_wake = min(next_wake, tracking%wake(i))
       if (tracking%status(i) /= is_touching) cycle
@@ -62,6 +62,21 @@ contains
     tracking%n_touching = n_touching
     tracking%next_wake = next_wake
   end subroutine update_tracking
+
+  !> Pass the spots that sleep from i + 1 to the first one that does not; i is then the last one.
+  pure subroutine pass_sleeping(n, is_kept, wake, travel, i, next_wake)
+    integer, intent(in) :: n              !! spots
+    logical, intent(in) :: is_kept(n)
+    real(wp), intent(in) :: wake(n), travel
+    integer, intent(inout) :: i
+    real(wp), intent(inout) :: next_wake  !! no later than any of theirs
+
+    do while (i < n)
+      if (is_kept(i + 1) .or. .not. travel < wake(i + 1)) exit
+      i = i + 1
+      next_wake = min(next_wake, wake(i))
+    end do
+  end subroutine pass_sleeping
 
   !> Any other case, by what the spot was doing.
   pure subroutine update_spot(tracking, surface, chain, spots, i, travel, n_released)

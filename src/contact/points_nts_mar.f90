@@ -8,7 +8,7 @@ module points_nts_mar_m
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     see_master_node, facing_share
   use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
-    cut_segments
+    list_other, cut_segments
   use contact_placing_m, only : add_touching_nodes, competence_length
   use contact_projection_m, only : see_segment
   use contact_state_m, only : contact_state_t, make_room, n_side
@@ -56,7 +56,7 @@ contains
     call finish_nodes(contact, memory, n)
   end subroutine place_nts_mar
 
-  !> Put a segment that may touch on the list, or divide it at once where that is not the common case.
+  !> Put a segment that may touch on the list.
   pure subroutine take_segment(contact, memory, s, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -66,7 +66,7 @@ contains
 
     if (is_asleep(memory, s, contact%slave%segments(:, s))) return
     call list_segment(contact, memory, s, cover, is_listed)
-    if (.not. is_listed) call share_segment(contact, memory, s)
+    if (.not. is_listed) call list_other(s, cover)
     if (cover%is_full) call share_list(contact, memory, cover)
   end subroutine take_segment
 
@@ -124,21 +124,32 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(inout) :: cover
-    integer :: i, first, n, cuts(n_room)
+    integer :: i, first
 
     call cut_segments(contact, memory, cover)
     first = 1
     do i = 1, cover%n_segment
       if (cover%is_plain(i)) cycle
-      call share_ends(cover, first, i - 1, memory%mark, memory%points%area)
+      call share_run(contact, memory, cover, first, i - 1)
       call share_segment(contact, memory, cover%slave(i))
       first = i + 1
     end do
-    call share_ends(cover, first, cover%n_segment, memory%mark, memory%points%area)
-    call list_cuts(contact, memory, cover, 1, cover%n_segment, n, cuts)
-    if (n > 0) call add_cuts(memory, cover, n, cuts)
+    call share_run(contact, memory, cover, first, cover%n_segment)
     call clear_list(cover)
   end subroutine share_list
+
+  !> The common case of `share_segment` for a run of the list.
+  pure subroutine share_run(contact, memory, cover, first, last)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(plain_cover_t), intent(in) :: cover
+    integer, intent(in) :: first, last
+    integer :: n, cuts(n_room)
+
+    call share_ends(cover, first, last, memory%mark, memory%points%area)
+    call list_cuts(contact, memory, cover, first, last, n, cuts)
+    if (n > 0) call add_cuts(memory, cover, n, cuts)
+  end subroutine share_run
 
   !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
   !> ends. The strict rule adds no node where an end of the segment has no foot; otherwise the part

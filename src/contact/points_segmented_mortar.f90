@@ -3,39 +3,17 @@
 !> segment, pressure from the slave nodes (doc/theory/contact.md, section 5.7).
 module points_segmented_mortar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
-  use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
-    local_foot, facing_share
-  use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
+  use contact_overlap_m, only : cover_t, find_cover
+  use contact_piece_list_m, only : plain_points_t, find_points, is_plain, put_points
+  use contact_pieces_m, only : n_gauss, gauss_xi, add_pieces, add_listed_pieces
+  use contact_plain_cover_m, only : plain_cover_t, clear_list, list_touching, list_segment, list_other, &
     cut_segments, note_plain_contact
-  use contact_placing_m, only : add_segment_point, place_on_segment, put_sides, put_gaps, &
-    put_springs
-  use contact_plain_foot_m, only : is_plainly_behind, is_plainly_over
-  use contact_projection_m, only : foot_t
-  use contact_state_m, only : contact_state_t, make_room
+  use contact_state_m, only : contact_state_t, make_room, is_touching
   use contacts_m, only : contact_t
-  use geometry_m, only : sight_t, sight_of_segment, sight_normal
   use kinds_m, only : wp
   implicit none
   private
   public :: place_segmented_mortar, gauss_xi
-
-  !> Gauss points of a piece.
-  integer, parameter :: n_gauss = 2
-  !> Where they are on 0 .. 1; both have weight one half. They integrate the product of shape
-  !> functions and a linear gap exactly up to the curvature of the chain.
-  real(wp), parameter :: gauss_xi(n_gauss) = [0.5_wp - sqrt(1.0_wp/12.0_wp), &
-    0.5_wp + sqrt(1.0_wp/12.0_wp)]
-
-  !> Gauss points of the pieces on a list. Without default values, which would be written before each use.
-  type :: plain_points_t
-    real(wp) :: xi(n_gauss, n_room)        !! place on the slave segment
-    real(wp) :: foot(n_gauss, n_room)      !! place on the master segment
-    real(wp) :: gap(n_gauss, n_room)       !! m
-    real(wp) :: normal(2, n_room)          !! of the master
-    real(wp) :: area(n_room)               !! of each, m
-    real(wp) :: depth(n_room)              !! more than 0 where both are behind the master segment and nearer to it than
-                                           !! to its ends
-  end type plain_points_t
 
 contains
 
@@ -78,7 +56,7 @@ contains
     memory%mark = 0
   end subroutine place_segmented_mortar
 
-  !> Put a segment on the list, or place its points at once where that is not the common case.
+  !> Put a segment on the list, and place its points with the list when that is full.
   pure subroutine take_segment(contact, memory, s, may_touch, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -88,7 +66,7 @@ contains
     logical :: is_listed
 
     call list_segment(contact, memory, s, cover, is_listed)
-    if (.not. is_listed) call place_segment(contact, memory, s, may_touch)
+    if (.not. is_listed) call list_other(s, cover)
     if (cover%is_full) call place_list(contact, memory, may_touch, cover)
   end subroutine take_segment
 
@@ -99,19 +77,48 @@ contains
     integer, intent(in) :: s
     logical, intent(in) :: may_touch
     type(cover_t) :: cover
-    logical :: counts
     integer :: n_before
 
     n_before = memory%points%n
     call find_cover(contact, memory, s, cover)
     call add_pieces(contact, memory, cover)
-    if (.not. may_touch) return
+    if (may_touch) call judge_last(contact, memory, s, n_before)
+  end subroutine place_segment
+
+  !> The same for a segment on the list whose points are not all where the list has them.
+  pure subroutine place_listed(contact, memory, cover, i, may_touch)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(plain_cover_t), intent(in) :: cover
+    integer, intent(in) :: i !! of the list
+    logical, intent(in) :: may_touch
+    integer :: n_before
+
+    if (.not. cover%is_plain(i)) then
+      call place_segment(contact, memory, cover%slave(i), may_touch)
+      return
+    end if
+    n_before = memory%points%n
+    call add_listed_pieces(contact, memory, contact%slave%segments(:, cover%slave(i)), &
+      cover%master(cover%last(i - 1) + 1:cover%last(i)))
+    if (may_touch) call judge_last(contact, memory, cover%slave(i), n_before)
+  end subroutine place_listed
+
+  !> Judge a segment by the points that have been appended last, and drop them if they do not count.
+  pure subroutine judge_last(contact, memory, s, n_before)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: s, n_before
+    logical :: counts
+
     call judge_points(contact, memory, s, .false., minval(memory%points%gap(n_before + 1:memory%points%n)), &
       counts)
     if (.not. counts) memory%points%n = n_before
-  end subroutine place_segment
+  end subroutine judge_last
 
-  !> Whether the points of a segment count; marks its nodes if one of them is in contact.
+  !> Whether the points of a segment count; marks its nodes if one of them is in contact. Where neither they nor an end of it
+  !> is in contact they are left to the second round, like those of a segment that sleeps: so sums over the points
+  !> of a node do not depend on who sleeps.
   pure subroutine judge_points(contact, memory, s, touches, deepest, counts)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -128,9 +135,13 @@ contains
     else
       call judge_segment(contact, memory, s, ends, deepest, counts)
     end if
-    if (.not. (counts .and. deepest < memory%closed_gap)) return
-    memory%mark(ends(1)) = 1
-    memory%mark(ends(2)) = 1
+    if (counts .and. deepest < memory%closed_gap) then
+      memory%mark(ends(1)) = 1
+      memory%mark(ends(2)) = 1
+    else if (counts .and. .not. touches) then
+      counts = any(memory%slave_tracking%status(ends) == is_touching)
+      memory%cover%is_placed(s) = counts
+    end if
   end subroutine judge_points
 
   !> Place the points of the segments on a list, and clear it.
@@ -146,14 +157,16 @@ contains
     call cut_segments(contact, memory, cover)
     call find_points(cover%n_piece, cover%own, cover%other, cover%way, cover%low, cover%high, &
       cover%length, found)
-    call make_room(memory%points, n_gauss*cover%n_piece)
+    if (memory%points%n + n_gauss*cover%n_piece > size(memory%points%gap)) &
+      call make_room(memory%points, n_gauss*cover%n_piece)
     first = 1
     do i = 1, cover%n_segment
       last = cover%last(i)
       if (.not. is_plain(contact, memory, cover, found, i)) then
         call put_points(memory, cover, found, first, cover%last(i - 1))
-        call place_segment(contact, memory, cover%slave(i), may_touch)
-        call make_room(memory%points, n_gauss*(cover%n_piece - last))
+        call place_listed(contact, memory, cover, i, may_touch)
+        if (memory%points%n + n_gauss*(cover%n_piece - last) > size(memory%points%gap)) &
+          call make_room(memory%points, n_gauss*(cover%n_piece - last))
         first = last + 1
       else if (may_touch) then
         call judge_points(contact, memory, cover%slave(i), cover%touches(i), &
@@ -166,135 +179,5 @@ contains
     call put_points(memory, cover, found, first, cover%n_piece)
     call clear_list(cover)
   end subroutine place_list
-
-  !> Gauss points of pieces. On a piece the foot and the gap are linear along the slave segment.
-  pure subroutine find_points(n, own, other, way, low, high, length, found)
-    integer, intent(in) :: n
-    real(wp), dimension(2, n_room), intent(in) :: own, other, way
-    real(wp), dimension(n_room), intent(in) :: low, high, length
-    type(plain_points_t), intent(inout) :: found
-    real(wp) :: square, inverse, along, across, slope, turn, xi, x, y
-    integer :: k, q
-
-    !$omp simd private(square, inverse, along, across, slope, turn, xi, x, y, q)
-    do k = 1, n
-      square = max(other(1, k)*other(1, k) + other(2, k)*other(2, k), tiny(1.0_wp))
-      slope = own(1, k)*other(1, k) + own(2, k)*other(2, k)
-      turn = own(1, k)*other(2, k) - own(2, k)*other(1, k)
-      along = way(1, k)*other(1, k) + way(2, k)*other(2, k)
-      across = way(1, k)*other(2, k) - way(2, k)*other(1, k)
-      inverse = 1.0_wp/sqrt(square)
-      found%depth(k) = huge(1.0_wp)
-      do q = 1, n_gauss
-        xi = low(k) + gauss_xi(q)*(high(k) - low(k))
-        x = along + xi*slope
-        y = across + xi*turn
-        found%depth(k) = min(found%depth(k), -y, y + x, y + (square - x))
-        found%xi(q, k) = xi
-        found%foot(q, k) = x*(inverse*inverse)
-        found%gap(q, k) = y*inverse
-      end do
-      found%normal(1, k) = other(2, k)*inverse
-      found%normal(2, k) = -other(1, k)*inverse
-      found%area(k) = 0.5_wp*(high(k) - low(k))*length(k)
-    end do
-  end subroutine find_points
-
-  !> The points of one segment.
-  pure subroutine add_pieces(contact, memory, cover)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-    type(cover_t), intent(in) :: cover
-    type(piece_t) :: piece
-    type(sight_t) :: slave
-    integer :: q
-
-    if (.not. cover%exists) return
-    slave = sight_of_segment(memory%places(:, cover%ends(2)), memory%places(:, cover%ends(1)), &
-      memory%places(:, cover%ends(2)))
-    call first_piece(contact, memory, cover, piece)
-    do while (.not. piece%is_last)
-      call next_piece(contact, memory, cover, piece)
-      if (.not. (piece%high > piece%low .and. piece%share > 0.0_wp)) cycle
-      call make_room(memory%points, size(gauss_xi))
-      do q = 1, size(gauss_xi)
-        call add_gauss_point(contact, memory, cover%ends, slave, piece%segment, &
-          piece%low + gauss_xi(q)*(piece%high - piece%low), 0.5_wp*(piece%high - piece%low))
-      end do
-    end do
-  end subroutine add_pieces
-
-  !> One Gauss point on a piece, over whatever master segment is closest there.
-  pure subroutine add_gauss_point(contact, memory, ends, slave, segment, xi, weight)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: ends(2)  !! nodes of the slave segment
-    type(sight_t), intent(in) :: slave !! some place seen from it
-    integer, intent(in) :: segment  !! master segment of the piece
-    real(wp), intent(in) :: xi      !! place on the slave segment
-    real(wp), intent(in) :: weight  !! part of its length
-    type(foot_t) :: foot
-    real(wp) :: share
-
-    foot = local_foot(contact, memory, place_on_segment(memory%places, ends, xi), segment)
-    if (.not. foot%is_on) return
-    share = facing_share(dot_product(sight_normal(slave), foot%normal))
-    if (.not. share > 0.0_wp) return
-    call add_segment_point(contact%master, memory%n_slave, ends, xi, foot, memory%points)
-    associate (p => memory%points%n)
-      memory%points%area(p) = weight*share*sqrt(slave%square)
-      memory%points%stiffness(p) = memory%slave_penalty
-    end associate
-  end subroutine add_gauss_point
-
-  !> Whether all points of a listed segment are where the list has them: on the master segment of their piece. A
-  !> Gauss point that is nearer to a neighbour of that has its foot there (as contact_projection has it).
-  pure function is_plain(contact, memory, cover, found, i)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    type(plain_cover_t), intent(in) :: cover
-    type(plain_points_t), intent(in) :: found
-    integer, intent(in) :: i !! of the list
-    logical :: is_plain
-    type(sight_t) :: sight
-    integer :: k, q
-
-    is_plain = cover%is_plain(i)
-    do k = cover%last(i - 1) + 1, cover%last(i)
-      if (.not. is_plain) return
-      if (found%depth(k) > 0.0_wp) cycle
-      associate (chain => memory%places(:, memory%n_slave + 1:), ends => contact%master%segments(:, cover%master(k)))
-        do q = 1, n_gauss
-          sight = sight_of_segment(place_on_segment(memory%places, cover%ends(:, k), found%xi(q, k)), &
-            chain(:, ends(1)), chain(:, ends(2)))
-          if (is_plainly_behind(sight)) cycle
-          is_plain = is_plain .and. is_plainly_over(contact%master, chain, sight, cover%master(k))
-        end do
-      end associate
-    end do
-  end function is_plain
-
-  !> Append the points of the pieces from one to another.
-  pure subroutine put_points(memory, cover, found, first, last)
-    type(contact_state_t), intent(inout) :: memory
-    type(plain_cover_t), intent(in) :: cover
-    type(plain_points_t), intent(in) :: found
-    integer, intent(in) :: first, last
-    integer :: n
-
-    n = last - first + 1
-    if (n == 0) return
-    associate (points => memory%points, p => memory%points%n + 1)
-      call put_sides(n, n_gauss, cover%ends(1, first), found%xi(1, first), points%slave_nodes(1, p), &
-        points%slave_weights(1, p))
-      call put_sides(n, n_gauss, cover%nodes(1, first), found%foot(1, first), &
-        points%master_nodes(1, p), points%master_weights(1, p))
-      call put_gaps(n, n_gauss, found%gap(1, first), found%normal(1, first), points%gap(p), &
-        points%normal(1, p))
-      call put_springs(n, n_gauss, found%area(first), memory%slave_penalty, points%area(p), &
-        points%stiffness(p))
-      points%n = points%n + n_gauss*n
-    end associate
-  end subroutine put_points
 
 end module points_segmented_mortar_m

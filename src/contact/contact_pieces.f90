@@ -1,0 +1,116 @@
+! SPDX-License-Identifier: MIT
+!> Gauss points of type 7 on the pieces of one slave segment, piece by piece and each over whatever master segment is
+!> closest (doc/theory/contact.md, section 5.7).
+module contact_pieces_m
+  use contact_overlap_m, only : cover_t, piece_t, first_piece, next_piece, local_foot, facing_share
+  use contact_placing_m, only : add_segment_point, place_on_segment
+  use contact_projection_m, only : foot_t
+  use contact_state_m, only : contact_state_t, make_room
+  use contacts_m, only : contact_t
+  use geometry_m, only : sight_t, sight_of_segment, sight_normal
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: n_gauss, gauss_xi, add_pieces, add_listed_pieces
+
+  !> Gauss points of a piece.
+  integer, parameter :: n_gauss = 2
+  !> Where they are on 0 .. 1; both have weight one half. They integrate the product of shape
+  !> functions and a linear gap exactly up to the curvature of the chain.
+  real(wp), parameter :: gauss_xi(n_gauss) = [0.5_wp - sqrt(1.0_wp/12.0_wp), &
+    0.5_wp + sqrt(1.0_wp/12.0_wp)]
+
+  !> A slave segment.
+  type :: slave_t
+    integer :: ends(2)       !! its nodes
+    real(wp) :: normal(2)
+    real(wp) :: length       !! m
+  end type slave_t
+
+contains
+
+  !> The points of one segment.
+  pure subroutine add_pieces(contact, memory, cover)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(cover_t), intent(in) :: cover
+    type(piece_t) :: piece
+    type(slave_t) :: slave
+
+    if (.not. cover%exists) return
+    slave = slave_of(memory, cover%ends)
+    call first_piece(contact, memory, cover, piece)
+    do while (.not. piece%is_last)
+      call next_piece(contact, memory, cover, piece)
+      if (piece%high > piece%low .and. piece%share > 0.0_wp) &
+        call add_piece(contact, memory, slave, piece%segment, piece%low, piece%high)
+    end do
+  end subroutine add_pieces
+
+  !> The points of one segment whose pieces are known to be over these master segments and to face them: what
+  !> `add_pieces` comes to.
+  pure subroutine add_listed_pieces(contact, memory, ends, master)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: ends(2)    !! nodes of the slave segment
+    integer, intent(in), contiguous :: master(:)  !! segment of each piece
+    type(slave_t) :: slave
+    type(sight_t) :: sight
+    real(wp) :: low, high
+    integer :: k
+
+    slave = slave_of(memory, ends)
+    low = 0.0_wp
+    do k = 1, size(master)
+      high = 1.0_wp
+      if (k < size(master)) then
+        sight = sight_of_segment(memory%places(:, memory%n_slave + contact%master%segments(1, master(k))), &
+          memory%places(:, ends(1)), memory%places(:, ends(2)))
+        high = sight%along/sight%square
+      end if
+      call add_piece(contact, memory, slave, master(k), low, high)
+      low = high
+    end do
+  end subroutine add_listed_pieces
+
+  !> What the points of a slave segment have in common.
+  pure function slave_of(memory, ends) result(slave)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)
+    type(slave_t) :: slave
+    type(sight_t) :: sight
+
+    sight = sight_of_segment(memory%places(:, ends(2)), memory%places(:, ends(1)), memory%places(:, ends(2)))
+    slave%ends = ends
+    slave%normal = sight_normal(sight)
+    slave%length = sqrt(sight%square)
+  end function slave_of
+
+  !> The Gauss points on a piece, each over whatever master segment is closest there.
+  pure subroutine add_piece(contact, memory, slave, segment, low, high)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(slave_t), intent(in) :: slave
+    integer, intent(in) :: segment    !! master segment of the piece
+    real(wp), intent(in) :: low, high !! where it starts and ends on the slave segment
+    type(foot_t) :: foot
+    real(wp) :: share, xi, weight
+    integer :: q
+
+    if (memory%points%n + n_gauss > size(memory%points%gap)) call make_room(memory%points, n_gauss)
+    weight = 0.5_wp*(high - low)
+    do q = 1, n_gauss
+      xi = low + gauss_xi(q)*(high - low)
+      foot = local_foot(contact, memory, place_on_segment(memory%places, slave%ends, xi), segment)
+      if (.not. foot%is_on) cycle
+      share = facing_share(dot_product(slave%normal, foot%normal))
+      if (.not. share > 0.0_wp) cycle
+      call add_segment_point(contact%master, memory%n_slave, slave%ends, xi, foot, memory%points)
+      associate (p => memory%points%n)
+        memory%points%area(p) = weight*share*slave%length
+        memory%points%stiffness(p) = memory%slave_penalty
+      end associate
+    end do
+  end subroutine add_piece
+
+end module contact_pieces_m
