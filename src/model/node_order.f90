@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> The order of the nodes in memory: by the tiles that sum and move them.
 module node_order_m
-  use kinds_m, only : wp
   use layout_m, only : layout_t, tile_t, first_slot, last_slot
   use mesh_m, only : mesh_t
   implicit none

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> A restart file: an HDF5 archive behind a head of 512 bytes of text, which HDF5 skips:
 !>
-!>     slideline restart 3
+!>     slideline restart 4
 !>     length 123456
 !>     checksum 89ABCDEF
 !>
@@ -24,8 +24,9 @@ module restart_file_m
   private
   public :: create_restart, finish_restart, open_restart, close_restart, file_checksum, unfinished
 
-  !> Layout of the file. To be raised when a component of the state comes, goes or changes its meaning.
-  integer, parameter :: format_version = 3
+  !> Layout of the file. To be raised when a component of the state comes, goes or changes its meaning, and when
+  !> nodes or elements get another order: arrays lie in that order.
+  integer, parameter :: format_version = 4
   character(*), parameter :: mark = 'slideline restart '
   !> Bytes of the head, and of a block that is read.
   integer, parameter :: head_size = 512, block_size = 65536

@@ -31,6 +31,7 @@ def test_table_has_every_part(folder):
             rows = bench.of("step", material, threads)
             assert [row["size"] for row in rows] == [100, 306]
             assert all(row["median"] > 0.0 and row["over_goal"] > 0.0 for row in rows)
+        assert [row["size"] for row in bench.of("step", material + speed.AT_ONCE)] == [100, 306]
     for ctype in range(1, 8):
         assert [row["size"] for row in speed.contact_rows(bench, "flat", ctype)] == [10, 20]
     assert len(speed.search_lines(bench, "search")) == 4 * 3

@@ -175,6 +175,15 @@ def test_a_few_real_runs(slideline, tmp_path):
     assert (tmp_path / "paper-tables.csv").read_bytes() == before
 
 
+def test_points_of_a_short_contact_are_found(slideline, tmp_path):
+    """The bodies of the collision touch for a tenth of the run: all nodes of the slave at once."""
+    job = next(job for job in paper_tables.jobs(Options()) if job.name == "collision_1_type_1")
+    (tmp_path / "deck.k").write_text(job.deck, encoding="ascii")
+    subprocess.run([slideline, "i=deck.k", f"jobid={job.jobid}", *job.options], cwd=tmp_path, check=True,
+                   capture_output=True)
+    assert paper_tables.measure(job, tmp_path)["points"] == 25
+
+
 def test_array_script_shares_the_runs_out(slideline, tmp_path):
     """The batch script, called as the scheduler calls each of two tasks, then to collect."""
     script = ROOT / "tools/batch/study_array.sh"
