@@ -27,7 +27,6 @@ module contact_spot_list_m
     integer :: ends(2, n_room)       !! nodes of that
     integer :: master(n_room)        !! segment, 0: no point
     logical :: touches(n_room)
-    real(wp) :: held(4, n_room)      !! xi, gap and normal as the tracking knows them
     real(wp) :: own(2, n_room)       !! vector of the slave segment, m
     real(wp) :: t(2, n_room)         !! vector of the master segment, m
     real(wp) :: before(2, n_room)    !! vectors of its neighbours, 0 where there is none, m
@@ -37,7 +36,8 @@ module contact_spot_list_m
     real(wp) :: gap(n_room)          !! m
     real(wp) :: normal(2, n_room)    !! of the master
     real(wp) :: length(n_room)       !! of the slave segment, m
-    real(wp) :: plain(n_room)        !! more than 0 where the spot is over this master segment and no neighbour of it
+    real(wp) :: inside(n_room)       !! more than 0 where the spot is well inside this master segment, m^2
+    real(wp) :: past(n_room)         !! not less than 0 where it is over no neighbour of that, m^2
     real(wp) :: facing(n_room)       !! more than 0 where the segments surely face each other entirely
   end type spot_list_t
 
@@ -79,8 +79,10 @@ contains
     associate (tracking => memory%slave_tracking, points => memory%points)
       call see_spots(list%n, memory%places, memory%n_slave, memory%spots, contact%master%segments, &
         contact%master%previous, contact%master%next, list)
-      call hold_spots(list%n, tracking%xi, tracking%gap, tracking%normal, list)
-      call project_spots(list%n, list)
+      call project_spots(list%n, list%t, list%d, list%before, list%after, list%xi, list%gap, &
+        list%normal, list%inside, list%past)
+      call hold_spots(tracking%xi, tracking%gap, tracking%normal, list)
+      call face_spots(list%n, list%own, list%normal, list%length, list%facing)
       call finish_spots(contact, memory, list)
       if (points%n + list%n > size(points%gap)) call make_room(points, list%n)
       n_before = points%n
@@ -126,59 +128,62 @@ contains
     end do
   end subroutine see_spots
 
-  !> Feet as the tracking knows them, for the spots in contact.
-  pure subroutine hold_spots(n, xi, gap, normal, list)
+  !> Project them. The second product of a sum is in parentheses, rounded first, since that is how `sight_of_segment` comes out
+  !> where products and sums are fused: one by one or on a list, the bits are the same.
+  pure subroutine project_spots(n, t, d, before, after, xi, gap, normal, inside, past)
     integer, intent(in) :: n
+    real(wp), dimension(2, n_room), intent(in) :: t, d, before, after
+    real(wp), intent(inout) :: xi(n_room), gap(n_room), normal(2, n_room), inside(n_room), past(n_room)
+    real(wp) :: square, length, along
+    integer :: k
+
+    !$omp simd private(square, length, along)
+    do k = 1, n
+      square = max(t(1, k)*t(1, k) + (t(2, k)*t(2, k)), tiny(1.0_wp))
+      along = d(1, k)*t(1, k) + (d(2, k)*t(2, k))
+      length = sqrt(square)
+      xi(k) = along/square
+      gap(k) = (d(1, k)*t(2, k) - (d(2, k)*t(1, k)))/length
+      normal(1, k) = t(2, k)/length
+      normal(2, k) = -t(1, k)/length
+      ! Numbers, since a loop that keeps logicals is not vectorized.
+      inside(k) = min(along - (well_inside*square), ((1.0_wp - well_inside)*square) - along)
+      past(k) = min(d(1, k)*before(1, k) + d(2, k)*before(2, k), &
+        -((d(1, k) - t(1, k))*after(1, k) + (d(2, k) - t(2, k))*after(2, k)))
+    end do
+  end subroutine project_spots
+
+  !> Feet of the spots in contact as the tracking knows them.
+  pure subroutine hold_spots(xi, gap, normal, list)
     real(wp), intent(in) :: xi(*), gap(*), normal(2, *)
     type(spot_list_t), intent(inout) :: list
     integer :: k
 
     !GCC$ NOVECTOR
-    do k = 1, n
-      list%held(1, k) = xi(list%spot(k))
-      list%held(2, k) = gap(list%spot(k))
-      list%held(3, k) = normal(1, list%spot(k))
-      list%held(4, k) = normal(2, list%spot(k))
+    do k = 1, list%n
+      if (.not. list%touches(k)) cycle
+      list%xi(k) = xi(list%spot(k))
+      list%gap(k) = gap(list%spot(k))
+      list%normal(1, k) = normal(1, list%spot(k))
+      list%normal(2, k) = normal(2, list%spot(k))
     end do
   end subroutine hold_spots
 
-  !> Project them. The second product of a sum is in parentheses, rounded first, since that is how `sight_of_segment` comes out
-  !> where products and sums are fused: one by one or on a list, the bits are the same.
-  pure subroutine project_spots(n, list)
+  !> How the slave segments face the master there.
+  pure subroutine face_spots(n, own, normal, length, facing)
     integer, intent(in) :: n
-    type(spot_list_t), intent(inout) :: list
-    real(wp) :: square, length, along, across, own_square, normal(2), xi, gap
+    real(wp), dimension(2, n_room), intent(in) :: own, normal
+    real(wp), dimension(n_room), intent(inout) :: length, facing
+    real(wp) :: square
     integer :: k
 
-    !$omp simd private(square, length, along, across, own_square, normal, xi, gap)
+    !$omp simd private(square)
     do k = 1, n
-      associate (t => list%t(:, k), d => list%d(:, k), own => list%own(:, k))
-        square = max(t(1)**2 + (t(2)**2), tiny(1.0_wp))
-        along = d(1)*t(1) + (d(2)*t(2))
-        across = d(1)*t(2) - (d(2)*t(1))
-        length = sqrt(square)
-        xi = along/square
-        gap = across/length
-        normal(1) = t(2)/length
-        normal(2) = -t(1)/length
-        ! A number, since a loop that keeps logicals is not vectorized.
-        list%plain(k) = merge(1.0_wp, 0.0_wp, along > well_inside*square &
-          .and. along < (1.0_wp - well_inside)*square &
-          .and. d(1)*list%before(1, k) + d(2)*list%before(2, k) >= 0.0_wp &
-          .and. (d(1) - t(1))*list%after(1, k) + (d(2) - t(2))*list%after(2, k) <= 0.0_wp)
-        list%xi(k) = merge(list%held(1, k), xi, list%touches(k))
-        list%gap(k) = merge(list%held(2, k), gap, list%touches(k))
-        normal(1) = merge(list%held(3, k), normal(1), list%touches(k))
-        normal(2) = merge(list%held(4, k), normal(2), list%touches(k))
-        list%normal(1, k) = normal(1)
-        list%normal(2, k) = normal(2)
-        own_square = max(own(1)**2 + (own(2)**2), tiny(1.0_wp))
-        list%length(k) = sqrt(own_square)
-        list%facing(k) = merge(1.0_wp, 0.0_wp, &
-          own(2)*normal(1) - own(1)*normal(2) <= surely_facing*list%length(k))
-      end associate
+      square = max(own(1, k)*own(1, k) + (own(2, k)*own(2, k)), tiny(1.0_wp))
+      length(k) = sqrt(square)
+      facing(k) = own(1, k)*normal(2, k) - own(2, k)*normal(1, k) + surely_facing*length(k)
     end do
-  end subroutine project_spots
+  end subroutine face_spots
 
   !> Feet that need a decision; spots that are beyond an end of the master or do not face it leave the list.
   pure subroutine finish_spots(contact, memory, list)
@@ -191,7 +196,7 @@ contains
 
     is_lost = .false.
     do k = 1, list%n
-      if (.not. list%plain(k) > 0.0_wp .and. .not. list%touches(k)) then
+      if (.not. (list%touches(k) .or. (list%inside(k) > 0.0_wp .and. list%past(k) >= 0.0_wp))) then
         foot = local_foot(contact, memory, memory%spots(:, list%spot(k)), list%master(k))
         list%xi(k) = foot%xi
         list%gap(k) = foot%gap
