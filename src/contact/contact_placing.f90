@@ -8,7 +8,7 @@ module contact_placing_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: add_touching_nodes, add_segment_point, add_plain_point, put_sides, put_gaps, put_springs, &
+  public :: add_touching_nodes, add_segment_point, add_plain_point, &
     tracked_foot, place_on_segment, competence_length, put_competence
 
   !> Most nodes of a list.
@@ -93,55 +93,6 @@ contains
     points%normal(2, p) = normal(2)
     points%gap(p) = gap
   end subroutine add_plain_point
-
-  !> Nodes and weights on one side of `m` points on each of `n` segments.
-  pure subroutine put_sides(n, m, ends, xi, nodes, weights)
-    integer, intent(in) :: n, m, ends(n_side, n)
-    real(wp), intent(in) :: xi(m, n) !! places on the segment, 0 to 1
-    integer, intent(inout) :: nodes(n_side, m, n)
-    real(wp), intent(inout) :: weights(n_side, m, n)
-    integer :: k, q
-
-    do k = 1, n
-      do q = 1, m
-        nodes(1, q, k) = ends(1, k)
-        nodes(2, q, k) = ends(2, k)
-        weights(1, q, k) = 1.0_wp - xi(q, k)
-        weights(2, q, k) = xi(q, k)
-      end do
-    end do
-  end subroutine put_sides
-
-  !> Gaps, and the normals of their segments.
-  pure subroutine put_gaps(n, m, gap, normal, gaps, normals)
-    integer, intent(in) :: n, m
-    real(wp), intent(in) :: gap(m, n), normal(2, n)
-    real(wp), intent(inout) :: gaps(m, n), normals(2, m, n)
-    integer :: k, q
-
-    do k = 1, n
-      do q = 1, m
-        gaps(q, k) = gap(q, k)
-        normals(1, q, k) = normal(1, k)
-        normals(2, q, k) = normal(2, k)
-      end do
-    end do
-  end subroutine put_gaps
-
-  !> Areas, and one stiffness for all.
-  pure subroutine put_springs(n, m, area, stiffness, areas, stiffnesses)
-    integer, intent(in) :: n, m
-    real(wp), intent(in) :: area(n), stiffness
-    real(wp), intent(inout) :: areas(m, n), stiffnesses(m, n)
-    integer :: k, q
-
-    do k = 1, n
-      do q = 1, m
-        areas(q, k) = area(k)
-        stiffnesses(q, k) = stiffness
-      end do
-    end do
-  end subroutine put_springs
 
   !> Foot of a spot in contact as the tracking knows it.
   pure function tracked_foot(tracking, i) result(foot)
