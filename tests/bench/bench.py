@@ -87,17 +87,17 @@ def run_round(options, work, samples):
         return now
 
     if "step" in options.parts:
-        for (_, material), (deck, count, steps) in work["step"].items():
+        for (_, material), (deck, count) in work["step"].items():
             now = units() if material == "elastic" else now
             for threads in sorted({1, options.threads}):
                 with contextlib.suppress(Disturbed):
-                    variant, value, share = elements.time_steps(options, deck, count, steps,
-                                                                material, threads)
+                    variant, value, share = elements.time_steps(options, deck, count, material,
+                                                                threads)
                     samples.add(variant, value, now, share)
             if options.threads > 1 and count <= elements.LARGEST_AT_ONCE:
                 with contextlib.suppress(Disturbed):
-                    variant, value, share = elements.time_at_once(options, deck, count, steps,
-                                                                  material, options.threads)
+                    variant, value, share = elements.time_at_once(options, deck, count, material,
+                                                                  options.threads)
                     samples.add(variant, value, now, share)
     if "contact" in options.parts:
         for nodes in work["contact"]:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from measuring import Variant, is_fresh, run_program, without_others
+from measuring import Variant, is_fresh, phase_calls, run_program, without_others
 from slideline_tools.decks import Deck
 from slideline_tools.scenes.common import part, perfectly_plastic, elastic, plane_strain
 
@@ -58,7 +58,7 @@ def write_velocities(path, columns, rows, rate):
 
 
 def write_deck(path, elements, yields, steps=None):
-    """A block as described above; returns the number of elements and of steps.
+    """A block as described above; returns the number of elements.
 
     Mesh and velocities are files beside it, shared by the materials.
     """
@@ -89,39 +89,44 @@ def write_deck(path, elements, yields, steps=None):
         deck.keyword("INCLUDE")
         deck.lines.append(name)
     path.write_text(deck.text(), encoding="ascii")
-    return columns * rows, steps
+    return columns * rows
 
 
 def write_decks(folder, sizes):
-    """{(size, material): (deck, elements, steps)}."""
+    """{(size, material): (deck, elements)}."""
     decks = {}
     for size in sizes:
         for material in ("elastic", "yielding"):
             deck = Path(folder) / f"block_{size}_{material}.k"
-            decks[size, material] = deck, *write_deck(deck, size, material == "yielding")
+            decks[size, material] = deck, write_deck(deck, size, material == "yielding")
     return decks
 
 
-def time_steps(options, deck, elements, steps, material, threads):
+def step_time(folder, seconds, elements):
+    """ns per element and step. Steps are counted as taken: where elements get shorter, there are more than planned."""
+    stepping = seconds["elements"] + seconds["nodes"]
+    return 1.0e9 * stepping / elements / phase_calls(folder / "bench.timing.csv", "elements")
+
+
+def time_steps(options, deck, elements, material, threads):
     """The variant, ns per element and step of one run, and its share of the processors."""
     seconds, share = run_program(options.program, deck, options.out, threads)
-    stepping = seconds["elements"] + seconds["nodes"]
-    step = 1.0e9 * stepping / elements / (steps + 1)
+    step = step_time(options.out, seconds, elements)
     return (Variant("step", material, elements, threads, "ns/element"),
-            without_others(step, share, threads, stepping), share)
+            without_others(step, share, threads, seconds["elements"] + seconds["nodes"]), share)
 
 
-def time_at_once(options, deck, elements, steps, material, runs):
+def time_at_once(options, deck, elements, material, runs):
     """The same of so many runs of one thread at once: the mean, of the least share of a processor.
 
     It tells what the machine grants to several busy cores, whatever its host and its clock do.
     """
     def one(number):
         folder = options.out / f"at_once_{number}"
-        return run_program(options.program, deck, folder)
+        seconds, share = run_program(options.program, deck, folder)
+        return step_time(folder, seconds, elements), share
 
     with concurrent.futures.ThreadPoolExecutor(runs) as team:
-        found = list(team.map(one, range(runs)))
-    seconds = sum(phases["elements"] + phases["nodes"] for phases, _ in found) / runs
+        steps, shares = zip(*team.map(one, range(runs)))
     return (Variant("step", f"{material}, {runs} runs at once", elements, 1, "ns/element"),
-            1.0e9 * seconds / elements / (steps + 1), min(share for _, share in found))
+            sum(steps) / runs, min(shares))

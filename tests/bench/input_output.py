@@ -90,7 +90,7 @@ def write_decks(folder, elements):
     decks = {}
     for name, count in (("reading", elements), ("nothing", 64)):
         decks[name] = folder / f"{name}.k", write_deck(folder / f"{name}.k", count, False,
-                                                       steps=READING_STEPS)[0]
+                                                       steps=READING_STEPS)
     states_deck(folder / "states.k", elements // 4, STATES)
     decks["states"] = folder / "states.k", elements // 4
     return decks
