@@ -134,7 +134,9 @@ contains
     if (segment > 0 .and. travel < tracking%recheck(i) .and. tracking%status(i) /= is_touching) then
       if (walk_to_closest(surface, chain, spot, segment) == segment) then
         foot = closest_foot(surface, chain, spot, segment)
-        return
+        ! Beyond the reach the spot is let go: then other segments have to be known too.
+        if (foot%distance <= tracking%reach) return
+        foot = foot_t()
       end if
     end if
     if (.not. tracking%grid%cell > 0.0_wp .or. &

@@ -127,8 +127,8 @@ contains
     integer :: n
 
     n = sum(halves%n_part(:halves%n))
-    ! One more, as `put_sides` and `put_springs` write two for each half.
-    call make_room(memory%points, n + 1)
+    ! Two more: `put_sides` and `put_springs` write two for each half, also for a last one that has none.
+    call make_room(memory%points, n + 2)
     associate (points => memory%points, tracking => memory%slave_tracking, p => memory%points%n + 1)
       call put_sides(halves, sights, memory%spot_xi, points%slave_nodes(1, p), &
         points%slave_weights(1, p), points%master_nodes(1, p), points%master_weights(1, p))
