@@ -12,7 +12,7 @@ import subprocess
 import h5py
 import numpy as np
 import pytest
-from meshes import Deck, grid
+from meshes import Deck, grid, rotate
 
 from slideline_tools.scenes import block, collision, hertz, oblique, patch, patch_grids
 from slideline_tools.scenes import symmetric_plate
@@ -63,6 +63,23 @@ def everything(kind):
                        nodes=[1, 30, int(lower[-1])]).text()
 
 
+def anvil(kind):
+    """A rigid body falls turned upon a soft one, which falls upon a rigid wall: nodes of walls and rigid bodies on many tiles."""
+    deck = Deck("rigid body, soft body and wall")
+    deck.control(0.06, scale=0.6)
+    deck.part(1).elastic(1000.0, 1.0e6, 0.3)
+    deck.part(2).add("*MAT_RIGID", (2, 3000.0, 1.0e6, 0.3), (0.0,))
+    turned = rotate(grid(61, 21, 0.6, 0.2)[0], 0.01) + np.array([0.2, 0.302])
+    upper = deck.mesh(turned, grid(61, 21, 0.6, 0.2)[1], part=2)
+    lower = deck.mesh(*grid(80, 24, 1.0, 0.3), part=1)
+    deck.node_set(2, upper[:62]).node_set(3, lower[-81:][::-1])
+    deck.contact(2, 3, kind, 2.0e4, gauss=3)
+    deck.add("*INITIAL_VELOCITY", (0,), (0.1, -2.0))
+    deck.add("*RIGIDWALL_PLANAR", (0,), (0.0, -0.001, 0.0, 0.02, 0.999, 0.0))
+    deck.add("*DATABASE_RWFORC", (1.0e-3,))
+    return deck.output(plot=0.02, glstat=1.0e-3, matsum=1.0e-3, rcforc=1.0e-3).text()
+
+
 SCENES = {
     "collision": (lambda kind: collision(2, kind),
                   ("endtim=1e-5", "p:dtplot=5e-6", "p:dthist=1e-6")),
@@ -72,6 +89,7 @@ SCENES = {
     "hertz": (lambda kind: hertz(1, kind), ("endtim=6e-6", "p:dthist=1e-6", "p:dtplot=2e-6")),
     "oblique": (oblique, ("endtim=0.06",)),
     "everything": (everything, ()),
+    "anvil": (anvil, ()),
     "static_patch": (lambda kind: patch(kind, static=True), ()),
 }
 
@@ -122,6 +140,8 @@ def test_scene_has_the_same_bits(exe, is_debug, tmp_path, scene, kind):
     write, words = SCENES[scene]
     found = check_same(exe, is_debug, tmp_path, write(kind), words)
     assert last_force(found) > 0.0, "no contact in this run"
+    if scene == "anvil":
+        assert int(found["job.rwforc.csv"].split(b",")[-1]) > 0, "no node on the wall"
 
 
 @pytest.mark.parametrize("elastoplastic", [False, True])
