@@ -7,14 +7,14 @@ module contact_spot_list_m
   use contact_plain_foot_m, only : well_inside
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t, make_room, n_side, is_touching, is_behind
-  use contacts_m, only : contact_t
+  use contacts_m, only : contact_t, most_gauss
   use kinds_m, only : wp
   implicit none
   private
-  public :: spot_list_t, list_spots, put_spots, most_spots
+  public :: spot_list_t, list_spots, put_spots
 
-  !> Spots of a list, and most of a segment.
-  integer, parameter :: n_room = 64, most_spots = 10
+  !> Spots of a list.
+  integer, parameter :: n_room = 64
   !> Cosine below which a point surely faces the master entirely, whatever round-off decides.
   real(wp), parameter :: surely_facing = face_on - 1.0e-9_wp
 
@@ -64,7 +64,7 @@ contains
       list%touches(k) = status(q) == is_touching
     end do
     list%n = k
-    list%is_full = k > n_room - most_spots
+    list%is_full = k > n_room - most_gauss
   end subroutine list_spots
 
   !> Append the points of the spots on the list, and clear it.

@@ -5,7 +5,7 @@ module deck_contact_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use text_m, only : read_integer, number_good
-  use contacts_m, only : contact_kind_t, penalty_per_node, penalty_share, penalty_factor
+  use contacts_m, only : contact_kind_t, most_gauss, penalty_per_node, penalty_share, penalty_factor
   use deck_lines_m, only : deck_t, place_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
@@ -134,8 +134,8 @@ contains
         cards(1), 3, 'is not a contact type'//kind_names(kinds))
       contact%n_gauss = cards(1)%i(4)
       if (cards(1)%blank(4) .or. cards(1)%i(4) == 0) contact%n_gauss = 2
-      if (contact%n_gauss < 1 .or. contact%n_gauss > 10) call report_field(deck, cursor, cards(1), &
-        4, 'is not a number of Gauss points from 1 to 10')
+      if (contact%n_gauss < 1 .or. contact%n_gauss > most_gauss) call report_field(deck, cursor, &
+        cards(1), 4, 'is not a number of Gauss points from 1 to '//to_text(most_gauss))
       contact%penalty = cards(1)%r(5)
       if (cards(1)%r(5) <= 0.0_wp) call report_field(deck, cursor, cards(1), 5, &
         'is not a penalty (more than 0)')

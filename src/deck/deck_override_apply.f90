@@ -4,7 +4,7 @@ module deck_override_apply_m
   use kinds_m, only : wp
   use text_m, only : exact_text
   use log_m, only : to_text
-  use contacts_m, only : contact_kind_t, penalty_per_node, penalty_share
+  use contacts_m, only : contact_kind_t, most_gauss, penalty_per_node, penalty_share
   use curves_m, only : curve_t
   use deck_lines_m, only : deck_t, place_t, line_text, line_error, layout_mark
   use deck_fields_m, only : card_t, cut_card, field_text
@@ -175,9 +175,9 @@ contains
         '"'//to_text(contact%contact_type)//'" on the command line is not a contact type' &
         //kind_names(kinds))
       call override_integer(overrides, 'NGAUSS', id, contact%n_gauss, changed)
-      if (contact%n_gauss < 1 .or. contact%n_gauss > 10) then
+      if (contact%n_gauss < 1 .or. contact%n_gauss > most_gauss) then
         if (changed) call line_error(deck, 0, '"'//to_text(contact%n_gauss)//'" on the command ' &
-          //'line is not a number of Gauss points from 1 to 10')
+          //'line is not a number of Gauss points from 1 to '//to_text(most_gauss))
       end if
       if (contact%master_penalty <= contact%penalty .and. &
         contact%master_penalty >= contact%penalty) then

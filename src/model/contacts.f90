@@ -5,13 +5,16 @@ module contacts_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: contact_t, contact_kind_t, penalty_per_node, penalty_distributed, penalty_factor, &
+  public :: contact_t, contact_kind_t, most_gauss, penalty_per_node, penalty_distributed, penalty_factor, &
     penalty_share
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate, share of the largest
   !> penalty for which the step is stable.
   integer, parameter :: penalty_per_node = 0, penalty_distributed = 1, penalty_factor = 2, &
     penalty_share = 3
+
+  !> Most Gauss points of a slave segment.
+  integer, parameter :: most_gauss = 10
 
   !> A formulation that the program knows: the deck layer is handed this list, so that only the
   !> contact dispatcher knows the types.
