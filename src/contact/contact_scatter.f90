@@ -61,7 +61,8 @@ contains
 
   !> The forces of a run of points are summed before they are given to its nodes: a sum in memory has to be
   !> stored before it can be read again. A run is closed by the first point beyond it: to look ahead from each point takes
-  !> twice as many instructions.
+  !> twice as many instructions. Both components of a node are read before one is written, so that pairs stay pairs in
+  !> the registers; else the compiler takes them apart, which costs half as much again.
   pure subroutine scatter_in_runs(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
     pressure, area, force)
     integer, intent(in) :: n
@@ -69,7 +70,7 @@ contains
     real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
     real(wp), intent(in) :: normal(2, *), pressure(*), area(*)
     real(wp), intent(inout) :: force(2, *)
-    real(wp), dimension(2) :: point, to_a, to_b, to_c, to_d
+    real(wp), dimension(2) :: point, to_a, to_b, to_c, to_d, total
     integer :: p, a, b, c, d
 
     if (n == 0) return
@@ -78,14 +79,18 @@ contains
     to_a = 0.0_wp; to_b = 0.0_wp; to_c = 0.0_wp; to_d = 0.0_wp
     do p = 1, n
       if (slave_nodes(1, p) /= a .or. slave_nodes(2, p) /= b) then
-        force(:, a) = force(:, a) + to_a
-        force(:, b) = force(:, b) + to_b
+        total = force(:, a) + to_a
+        force(:, a) = total
+        total = force(:, b) + to_b
+        force(:, b) = total
         a = slave_nodes(1, p); b = slave_nodes(2, p)
         to_a = 0.0_wp; to_b = 0.0_wp
       end if
       if (master_nodes(1, p) /= c .or. master_nodes(2, p) /= d) then
-        force(:, c) = force(:, c) - to_c
-        force(:, d) = force(:, d) - to_d
+        total = force(:, c) - to_c
+        force(:, c) = total
+        total = force(:, d) - to_d
+        force(:, d) = total
         c = master_nodes(1, p); d = master_nodes(2, p)
         to_c = 0.0_wp; to_d = 0.0_wp
       end if
@@ -95,10 +100,14 @@ contains
       to_c = to_c + master_weights(1, p)*point
       to_d = to_d + master_weights(2, p)*point
     end do
-    force(:, a) = force(:, a) + to_a
-    force(:, b) = force(:, b) + to_b
-    force(:, c) = force(:, c) - to_c
-    force(:, d) = force(:, d) - to_d
+    total = force(:, a) + to_a
+    force(:, a) = total
+    total = force(:, b) + to_b
+    force(:, b) = total
+    total = force(:, c) - to_c
+    force(:, c) = total
+    total = force(:, d) - to_d
+    force(:, d) = total
   end subroutine scatter_in_runs
 
   !> What the rounding of places, one part in 1/epsilon of them, makes of the nodal forces of all pressed points: a gap along
