@@ -56,8 +56,8 @@ contains
       spots)
   end subroutine move_spots
 
-  !> The same on arrays of known shape. Few spots a segment: to choose among unrolled and vectorized copies of their loop
-  !> took longer than they do.
+  !> The same on arrays of known shape. Few spots a segment: to choose among unrolled copies of their loop took longer
+  !> than they do.
   pure subroutine move_on_segments(n, segments, n_xi, xi, places, spots)
     integer, intent(in) :: n, segments(2, n), n_xi
     real(wp), intent(in) :: xi(n_xi), places(4, *)
@@ -67,7 +67,6 @@ contains
     do s = 1, n
       associate (a => segments(1, s), b => segments(2, s))
         !GCC$ UNROLL 1
-        !GCC$ NOVECTOR
         do q = 1, n_xi
           spots(3, q, s) = (1.0_wp - xi(q))*places(3, a) + xi(q)*places(3, b)
           spots(4, q, s) = (1.0_wp - xi(q))*places(4, a) + xi(q)*places(4, b)
