@@ -83,8 +83,8 @@ contains
     associate (n => sights%n - sights%n_seen, j => sights%n_seen + 1)
       call see_pieces(n, sights%ends(1, j), sights%master(j), contact%master%segments, memory%n_slave, &
         memory%places, sights%nodes(1, j), sights%own(1, j), sights%other(1, j), sights%way(1, j))
-      call project_ends(n, [memory%spot_xi(1) - 0.25_wp, memory%spot_xi + 0.25_wp], sights%own(1, j), &
-        sights%other(1, j), sights%way(1, j), sights%place(j, 1), sights%length(j))
+      call project_ends(n, memory%spot_xi, sights%own(1, j), sights%other(1, j), sights%way(1, j), &
+        sights%place(j, 1), sights%length(j))
     end associate
     sights%n_seen = sights%n
   end subroutine see_segments
@@ -92,7 +92,7 @@ contains
   !> The same on arrays of known shape.
   pure subroutine project_ends(n, xi, own, other, way, place, length)
     integer, intent(in) :: n
-    real(wp), intent(in) :: xi(3) !! of the first end, the middle and the second end
+    real(wp), intent(in) :: xi(2) !! of the virtual nodes
     real(wp), dimension(2, n_room), intent(in) :: own, other, way
     real(wp), intent(inout) :: place(2*n_room, *)
     real(wp), intent(inout) :: length(n_room)
@@ -105,9 +105,9 @@ contains
       length(k) = square*inverse
       slope = (own(1, k)*other(1, k) + own(2, k)*other(2, k))*(inverse*inverse)
       start = (way(1, k)*other(1, k) + way(2, k)*other(2, k))*(inverse*inverse)
-      place(k, 1) = start + xi(1)*slope
-      place(k, 2) = start + xi(2)*slope
-      place(k, 3) = start + xi(3)*slope
+      place(k, 1) = start + (xi(1) - 0.25_wp)*slope
+      place(k, 2) = start + (xi(1) + 0.25_wp)*slope
+      place(k, 3) = start + (xi(2) + 0.25_wp)*slope
     end do
   end subroutine project_ends
 

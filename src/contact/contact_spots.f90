@@ -51,19 +51,29 @@ contains
     real(wp), intent(in), contiguous :: places(:, :)   !! (4, n_node) of the interface
     real(wp), intent(in), contiguous :: spot_xi(:)
     real(wp), intent(inout), contiguous :: spots(:, :) !! (4, n_spot)
-    integer :: s, q, i, a, b
 
-    i = 0
-    do s = 1, slave%n_segment
-      a = slave%segments(1, s)
-      b = slave%segments(2, s)
-      do q = 1, size(spot_xi)
-        i = i + 1
-        spots(3, i) = (1.0_wp - spot_xi(q))*places(3, a) + spot_xi(q)*places(3, b)
-        spots(4, i) = (1.0_wp - spot_xi(q))*places(4, a) + spot_xi(q)*places(4, b)
-      end do
-    end do
+    call move_on_segments(slave%n_segment, slave%segments, size(spot_xi), spot_xi, places, &
+      spots)
   end subroutine move_spots
+
+  !> The same on arrays of known shape. Few spots a segment: to choose among unrolled copies of their loop took longer
+  !> than they do.
+  pure subroutine move_on_segments(n, segments, n_xi, xi, places, spots)
+    integer, intent(in) :: n, segments(2, n), n_xi
+    real(wp), intent(in) :: xi(n_xi), places(4, *)
+    real(wp), intent(inout) :: spots(4, n_xi, n)
+    integer :: s, q
+
+    do s = 1, n
+      associate (a => segments(1, s), b => segments(2, s))
+        !GCC$ UNROLL 1
+        do q = 1, n_xi
+          spots(3, q, s) = (1.0_wp - xi(q))*places(3, a) + xi(q)*places(3, b)
+          spots(4, q, s) = (1.0_wp - xi(q))*places(4, a) + xi(q)*places(4, b)
+        end do
+      end associate
+    end do
+  end subroutine move_on_segments
 
   !> Segments of the own surface that each spot belongs to: one, or the two at a node (0: none there).
   pure function list_owners(surface, n_per_segment) result(owners)

@@ -148,22 +148,24 @@ contains
     real(wp), intent(in) :: spot_xi(2)
     integer, dimension(n_side, *), intent(inout) :: slave_nodes, master_nodes
     real(wp), dimension(n_side, *), intent(inout) :: slave_weights, master_weights
-    real(wp) :: xi
-    integer :: p, k, q, j
+    real(wp) :: weights(2, 2)
+    integer :: p, k, q
 
+    weights(1, :) = 1.0_wp - spot_xi
+    weights(2, :) = spot_xi
     p = 1
     do k = 1, halves%n
-      xi = spot_xi(halves%side(k))
-      do q = 1, 2
-        j = halves%sight(k, q)
-        slave_nodes(1, p + q - 1) = sights%ends(1, j)
-        slave_nodes(2, p + q - 1) = sights%ends(2, j)
-        slave_weights(1, p + q - 1) = 1.0_wp - xi
-        slave_weights(2, p + q - 1) = xi
-        master_nodes(1, p + q - 1) = sights%nodes(1, j)
-        master_nodes(2, p + q - 1) = sights%nodes(2, j)
-        master_weights(1, p + q - 1) = 1.0_wp - halves%foot(k, q)
-        master_weights(2, p + q - 1) = halves%foot(k, q)
+      do q = 0, 1
+        associate (own => halves%sight(k, 1), j => halves%sight(k, 1 + q), side => halves%side(k))
+          slave_nodes(1, p + q) = sights%ends(1, own)
+          slave_nodes(2, p + q) = sights%ends(2, own)
+          slave_weights(1, p + q) = weights(1, side)
+          slave_weights(2, p + q) = weights(2, side)
+          master_nodes(1, p + q) = sights%nodes(1, j)
+          master_nodes(2, p + q) = sights%nodes(2, j)
+          master_weights(1, p + q) = 1.0_wp - halves%foot(k, 1 + q)
+          master_weights(2, p + q) = halves%foot(k, 1 + q)
+        end associate
       end do
       p = p + halves%n_part(k)
     end do
