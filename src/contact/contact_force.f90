@@ -90,7 +90,7 @@ contains
     had_force = memory%n_active > 0
     memory%n_active = 0
     if (memory%points%n > 0 .or. had_force) then
-      call keep_former(had_force, memory)
+      if (had_force) call keep_former(memory)
       call press_points(memory)
       ! Springs loaded at time zero hold energy that no force has put in.
       if (cycle == 0) memory%energy = stored_energy(memory%points)

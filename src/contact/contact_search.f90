@@ -26,15 +26,15 @@ contains
     real(wp), intent(in) :: travel                    !! relative motion since the start, m
     integer, intent(inout) :: n_released              !! deep first contacts let go
     real(wp) :: next_wake
-    integer :: i, n_touching
+    integer :: i, n_kept, n_touching
 
     if (travel < tracking%next_wake) then
       tracking%n_touching = 0
       return
     end if
-    call keep_contacts(tracking%touching(:tracking%n_touching), tracking%segment, &
-      surface%segments, chain, spots, tracking%xi, tracking%gap, tracking%normal, tracking%is_kept)
-    if (all(tracking%is_kept)) then
+    call keep_contacts(tracking%n_touching, tracking%touching, tracking%segment, surface%segments, chain, &
+      spots, tracking%xi, tracking%gap, tracking%normal, tracking%is_kept, n_kept)
+    if (n_kept == tracking%n) then
       ! The list of spots in contact stays as it is.
       tracking%is_kept = .false.
       return

@@ -105,7 +105,7 @@ module contact_state_m
     real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where a tangent
                                             !! of touching bodies is wanted
     real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last call
-    real(wp), allocatable :: former_force(:, :) !! scratch: those of the call before, during a call
+    real(wp), allocatable :: former_force(:, :) !! scratch: those of the call before, 0 between calls
     real(wp) :: slave_penalty = 0.0_wp      !! distributed penalty eps_hat of the slave pass, N/m^2
     real(wp) :: master_penalty = 0.0_wp     !! of the master pass
     real(wp) :: node_penalty = 0.0_wp       !! eps of type 1, N/m

@@ -15,7 +15,7 @@ KEPT = {
     "wall_state_t": ("state/wall_state.f90", "output/restart_state.f90", "wall%", {}),
     "block_state_t": ("state/block_state.f90", "output/restart_state.f90", "elements%", {}),
     "contact_state_t": ("state/contact_state.f90", "output/restart_contact.f90", "contact%", {
-        "former_force": "set in each call"}),
+        "former_force": "zero between calls"}),
     "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {}),
     "bucket_grid_t": ("state/contact_state.f90", "output/restart_contact.f90", "grid%", {}),
     "cover_memory_t": ("state/contact_state.f90", "output/restart_contact.f90", "cover%", {}),
