@@ -9,7 +9,7 @@ module points_nts_mar_m
     see_master_node, facing_share
   use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
     list_other, cut_segments
-  use contact_placing_m, only : add_touching_nodes, competence_length
+  use contact_placing_m, only : add_touching_nodes, put_stiffness, competence_length
   use contact_projection_m, only : see_segment
   use contact_state_m, only : contact_state_t, make_room, n_side
   use contacts_m, only : contact_t
@@ -28,13 +28,14 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t) :: cover
     integer :: s, n
+    logical :: is_known
 
     if (all_asleep(memory)) return
     call add_touching_nodes(memory%slave_tracking, contact%master, 0, memory%n_slave, &
-      memory%points)
+      memory%points, is_known)
     n = memory%points%n
     call mark_points(n, memory%points%slave_nodes, memory%mark, memory%points%area)
-    memory%points%stiffness(:n) = memory%slave_penalty
+    call put_stiffness(memory%slave_penalty, is_known, memory%points)
     call clear_list(cover)
     s = 1
     do while (s <= contact%slave%n_segment)

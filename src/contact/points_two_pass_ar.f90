@@ -17,10 +17,12 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     integer :: first
+    logical :: is_known
 
     call place_nts_ar(contact, memory)
     first = memory%points%n + 1
-    call add_touching_nodes(memory%master_tracking, contact%slave, memory%n_slave, 0, memory%points)
+    call add_touching_nodes(memory%master_tracking, contact%slave, memory%n_slave, 0, memory%points, &
+      is_known)
     if (memory%points%n < first) return
     call put_competence(contact%master, memory%places(:, memory%n_slave + 1:), &
       memory%points%n - first + 1, memory%points%slave_nodes(1, first), memory%n_slave, &

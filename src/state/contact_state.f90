@@ -32,6 +32,7 @@ module contact_state_m
   !> The list, one column per point.
   type :: contact_points_t
     integer :: n = 0                           !! points in use
+    integer :: i_list = -1                     !! slave_tracking%i_list when those at slave nodes, the first, were placed
     integer, allocatable :: slave_nodes(:, :)  !! (n_side, capacity) local numbers
     real(wp), allocatable :: slave_weights(:, :)
     integer, allocatable :: master_nodes(:, :) !! (n_side, capacity) local numbers
@@ -58,9 +59,10 @@ module contact_state_m
   type :: tracking_t
     integer :: n = 0                         !! spots
     integer :: n_touching = 0
+    integer :: i_list = 0                    !! changes of the list of spots in contact
     real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot can change
     real(wp) :: reach = 0.0_wp               !! spots farther away than this are unpaired, m
-    integer, allocatable :: touching(:)      !! (n) the first n_touching: spots in contact
+    integer, allocatable :: touching(:)      !! (n) the first n_touching: spots in contact, in order
     logical, allocatable :: is_kept(:)       !! (n) scratch, false between steps
     integer, allocatable :: segment(:)       !! (n) segment of the chain, 0 = unpaired
     integer, allocatable :: status(:)        !! (n) one of the constants above
