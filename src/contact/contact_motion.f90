@@ -107,6 +107,7 @@ contains
 
     lanes = 0.0_wp
     do i = n_lane, size(nodes), n_lane
+      !GCC$ UNROLL 4
       do k = 1, n_lane
         associate (j => i - n_lane + k)
           call add_to_node(former(1, j), present(1, j), motion(1, nodes(j)), force(1, nodes(j)), lanes(k))
@@ -123,12 +124,12 @@ contains
   pure subroutine add_to_node(former, present, motion, force, power)
     real(wp), intent(in) :: present(2), motion(4)
     real(wp), intent(inout) :: former(2), force(2), power
+    real(wp) :: total(2)
 
-    force(1) = force(1) + present(1)
-    force(2) = force(2) + present(2)
+    total = force + present
+    force = total
     power = power + (motion(3)*(former(1) + present(1)) + motion(4)*(former(2) + present(2)))
-    former(1) = 0.0_wp
-    former(2) = 0.0_wp
+    former = 0.0_wp
   end subroutine add_to_node
 
 end module contact_motion_m
