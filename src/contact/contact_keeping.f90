@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Spots that stay in contact where they are: the common case of the search, many spots at a time.
 module contact_keeping_m
+  use contact_state_m, only : tracking_t
   use kinds_m, only : wp
   implicit none
   private
@@ -37,38 +38,35 @@ contains
   !> The common case of spots in contact: still over their segment, behind it, and no nearer to a
   !> neighbour than to it. Of others nothing is changed. In blocks, so that the roots and quotients
   !> of a block are formed together.
-  pure subroutine keep_contacts(n_touching, touching, segment, ends, chain, spots, xi, gap, normal, &
-    is_kept, n_kept)
-    integer, intent(in) :: n_touching
-    integer, intent(in) :: touching(*) !! spots that touched after the last step, in order
-    integer, intent(in) :: segment(*), ends(2, *)
+  pure subroutine keep_contacts(ends, chain, spots, tracking, n_kept)
+    integer, intent(in) :: ends(2, *) !! of the segments of the chain
     real(wp), intent(in) :: chain(4, *), spots(4, *)
-    real(wp), intent(inout) :: xi(*), gap(*), normal(2, *)
-    logical, intent(inout) :: is_kept(*)
+    type(tracking_t), intent(inout) :: tracking
     integer, intent(out) :: n_kept
     real(wp) :: edge(2, block_size), way(2, block_size)
     real(wp), dimension(block_size) :: t_x, t_y, along, across, beside
     integer :: first, n, i, k, n_beside
 
-    n_kept = n_touching
-    do first = 1, n_touching, block_size
-      n = min(block_size, n_touching - first + 1)
-      call see_block(n, touching(first), segment, ends, chain, spots, edge, way)
+    n_kept = tracking%n_touching
+    do first = 1, tracking%n_touching, block_size
+      n = min(block_size, tracking%n_touching - first + 1)
+      call see_block(n, tracking%touching(first), tracking%segment, ends, chain, spots, edge, way)
       call project_block(n, edge, way, t_x, t_y, along, across, beside, n_beside)
       n_kept = n_kept - n_beside
-      i = touching(first)
-      if (n_beside == 0 .and. touching(first + n - 1) == i + n - 1) then
-        call keep_run(n, t_x, t_y, along, across, xi(i), gap(i), normal(1, i), is_kept(i))
+      i = tracking%touching(first)
+      if (n_beside == 0 .and. tracking%touching(first + n - 1) == i + n - 1) then
+        call keep_run(n, t_x, t_y, along, across, tracking%xi(i), tracking%gap(i), tracking%normal(1, i), &
+          tracking%is_kept(i))
         cycle
       end if
       do k = 1, n
         if (beside(k) > 0.0_wp) cycle
-        i = touching(first + k - 1)
-        is_kept(i) = .true.
-        xi(i) = along(k)
-        gap(i) = across(k)
-        normal(1, i) = t_y(k)
-        normal(2, i) = -t_x(k)
+        i = tracking%touching(first + k - 1)
+        tracking%is_kept(i) = .true.
+        tracking%xi(i) = along(k)
+        tracking%gap(i) = across(k)
+        tracking%normal(1, i) = t_y(k)
+        tracking%normal(2, i) = -t_x(k)
       end do
     end do
   end subroutine keep_contacts

@@ -33,8 +33,7 @@ contains
       call note_list(0, .false., tracking)
       return
     end if
-    call keep_contacts(tracking%n_touching, tracking%touching, tracking%segment, surface%segments, chain, &
-      spots, tracking%xi, tracking%gap, tracking%normal, tracking%is_kept, n_kept)
+    call keep_contacts(surface%segments, chain, spots, tracking, n_kept)
     if (n_kept == tracking%n) then
       ! The list of spots in contact stays as it is.
       tracking%is_kept = .false.

@@ -2,7 +2,8 @@
 !> Type 2, NTS-AR: a point at each slave node, with its competence length as area
 !> (doc/theory/contact.md, section 5.2).
 module points_nts_ar_m
-  use contact_placing_m, only : add_touching_nodes, put_stiffness, put_competence
+  use contact_competence_m, only : put_competence
+  use contact_placing_m, only : add_touching_nodes, put_stiffness
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   implicit none
