@@ -4,7 +4,7 @@
 !> as contact, without any pressure (doc/theory/contact.md, section 9.6).
 module contact_closing_m
   use contact_projection_m, only : foot_t, closest_foot, face_foot, see_segment
-  use contact_search_m, only : most_facing, begin_contact
+  use contact_search_m, only : most_facing, begin_contact, note_list
   use contact_state_m, only : contact_state_t, tracking_t, is_touching, is_behind
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, segment_length, sight_gap
@@ -67,7 +67,7 @@ contains
     integer :: i, n_released
 
     n_released = 0
-    tracking%n_touching = 0
+    call note_list(0, .true., tracking)
     do i = 1, tracking%n
       if (tracking%segment(i) > 0 .and. tracking%status(i) /= is_behind) then
         foot = closed_foot(tracking, surface, chain, spots, i, gap)

@@ -11,7 +11,7 @@ module contact_force_m
   use contact_motion_m, only : gather_places, take_force, keep_former, add_force
   use contact_penalty_m, only : set_penalties, press_points, stored_energy, damp_points
   use contact_scatter_m, only : scatter_points, scatter_runs
-  use contact_search_m, only : update_tracking, wake_all
+  use contact_search_m, only : update_tracking, note_list, wake_all
   use contact_spots_m, only : spots_at_quarters, start_spots, move_spots
   use contact_state_m, only : contact_state_t, tracking_t, allocate_points, is_free
   use contacts_m, only : contact_t
@@ -90,7 +90,7 @@ contains
     had_force = memory%n_active > 0
     memory%n_active = 0
     if (memory%points%n > 0 .or. had_force) then
-      call keep_former(had_force, memory)
+      if (had_force) call keep_former(memory)
       call press_points(memory)
       ! Springs loaded at time zero hold energy that no force has put in.
       if (cycle == 0) memory%energy = stored_energy(memory%points)
@@ -187,7 +187,7 @@ contains
     type(tracking_t), intent(inout) :: tracking
 
     tracking%segment = 0
-    tracking%n_touching = 0
+    call note_list(0, .true., tracking)
     tracking%status = is_free
     tracking%grid%cell = 0.0_wp
     call wake_all(tracking)

@@ -1,15 +1,14 @@
 ! SPDX-License-Identifier: MIT
-!> What the placements share: points at tracked nodes, points on slave segments, competence lengths.
+!> What the placements share: points at tracked nodes, points on slave segments.
 module contact_placing_m
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_points_t, tracking_t, n_side
-  use geometry_m, only : segment_length
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: add_touching_nodes, add_segment_point, add_plain_point, &
-    tracked_foot, place_on_segment, competence_length, put_competence
+  public :: add_touching_nodes, put_stiffness, add_segment_point, add_plain_point, tracked_foot, &
+    place_on_segment
 
   !> Most nodes of a list.
   integer, parameter :: n_room = 64
@@ -17,33 +16,107 @@ module contact_placing_m
 contains
 
   !> Append a point for each tracked node in contact; area and stiffness are left to the formulation.
-  !> The tracked node stands on the slave side of the record, whichever surface it belongs to.
-  pure subroutine add_touching_nodes(tracking, chain_surface, spot_offset, chain_offset, points)
+  !> The tracked node stands on the slave side of the record, whichever surface it belongs to. Points at slave nodes
+  !> are the first of the list; where they are at those of the last placement (`is_known`) that side is not written again.
+  pure subroutine add_touching_nodes(tracking, chain_surface, spot_offset, chain_offset, points, is_known)
     type(tracking_t), intent(in) :: tracking
     type(surface_t), intent(in) :: chain_surface
     integer, intent(in) :: spot_offset, chain_offset !! local number before the first node of each
     type(contact_points_t), intent(inout) :: points
-    integer :: k, i, p, segment
+    logical, intent(out) :: is_known
+    integer :: first, i, n, p
 
-    p = points%n
-    do k = 1, tracking%n_touching
-      i = tracking%touching(k)
-      p = p + 1
-      segment = tracking%segment(i)
-      points%slave_nodes(1, p) = spot_offset + i
-      points%slave_nodes(2, p) = spot_offset + i
+    is_known = spot_offset == 0 .and. points%i_list == tracking%i_list
+    if (spot_offset == 0) points%i_list = tracking%i_list
+    if (.not. is_known) call put_spots(tracking%n_touching, tracking%touching, spot_offset, points)
+    do first = 1, tracking%n_touching, n_room
+      n = min(n_room, tracking%n_touching - first + 1)
+      p = points%n + first
+      i = tracking%touching(first)
+      call put_segments(n, tracking%touching(first), tracking%segment, chain_surface%segments, chain_offset, &
+        points%master_nodes(1, p))
+      if (tracking%touching(first + n - 1) == i + n - 1) then
+        call put_run(n, tracking%xi(i), tracking%gap(i), tracking%normal(1, i), &
+          points%master_weights(1, p), points%gap(p), points%normal(1, p))
+      else
+        call put_feet(n, tracking%touching(first), tracking%xi, tracking%gap, tracking%normal, &
+          points%master_weights(1, p), points%gap(p), points%normal(1, p))
+      end if
+    end do
+    points%n = points%n + tracking%n_touching
+  end subroutine add_touching_nodes
+
+  !> Slave side of points at tracked nodes.
+  pure subroutine put_spots(n, touching, offset, points)
+    integer, intent(in) :: n, touching(n), offset
+    type(contact_points_t), intent(inout) :: points
+    integer :: k, p
+
+    do k = 1, n
+      p = points%n + k
+      points%slave_nodes(1, p) = offset + touching(k)
+      points%slave_nodes(2, p) = offset + touching(k)
       points%slave_weights(1, p) = 1.0_wp
       points%slave_weights(2, p) = 0.0_wp
-      points%master_nodes(1, p) = chain_offset + chain_surface%segments(1, segment)
-      points%master_nodes(2, p) = chain_offset + chain_surface%segments(2, segment)
-      points%master_weights(1, p) = 1.0_wp - tracking%xi(i)
-      points%master_weights(2, p) = tracking%xi(i)
-      points%normal(1, p) = tracking%normal(1, i)
-      points%normal(2, p) = tracking%normal(2, i)
-      points%gap(p) = tracking%gap(i)
     end do
-    points%n = p
-  end subroutine add_touching_nodes
+  end subroutine put_spots
+
+  !> Nodes of their master segments.
+  pure subroutine put_segments(n, touching, segment, segments, offset, nodes)
+    integer, intent(in) :: n, touching(n), segment(*), segments(2, *), offset
+    integer, intent(inout) :: nodes(n_side, n)
+    integer :: k
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      nodes(:, k) = offset + segments(:, segment(touching(k)))
+    end do
+  end subroutine put_segments
+
+  !> Feet of tracked nodes that follow each other.
+  pure subroutine put_run(n, xi, gap, normal, weights, gaps, normals)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: xi(n), gap(n), normal(2, n)
+    real(wp), intent(inout) :: weights(n_side, n), gaps(n), normals(2, n)
+    integer :: k
+
+    do k = 1, n
+      weights(1, k) = 1.0_wp - xi(k)
+      weights(2, k) = xi(k)
+      gaps(k) = gap(k)
+      normals(1, k) = normal(1, k)
+      normals(2, k) = normal(2, k)
+    end do
+  end subroutine put_run
+
+  !> The same for any tracked nodes.
+  pure subroutine put_feet(n, touching, xi, gap, normal, weights, gaps, normals)
+    integer, intent(in) :: n, touching(n)
+    real(wp), intent(in) :: xi(*), gap(*), normal(2, *)
+    real(wp), intent(inout) :: weights(n_side, n), gaps(n), normals(2, n)
+    integer :: k, i
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      i = touching(k)
+      weights(1, k) = 1.0_wp - xi(i)
+      weights(2, k) = xi(i)
+      gaps(k) = gap(i)
+      normals(1, k) = normal(1, i)
+      normals(2, k) = normal(2, i)
+    end do
+  end subroutine put_feet
+
+  !> Stiffness of the points at slave nodes, one and the same: not written again where it is theirs.
+  pure subroutine put_stiffness(stiffness, is_known, points)
+    real(wp), intent(in) :: stiffness
+    logical, intent(in) :: is_known !! they stand where they stood at the last placement
+    type(contact_points_t), intent(inout) :: points
+
+    if (points%n == 0) return
+    if (is_known .and. .not. abs(points%stiffness(1) - stiffness) > 0.0_wp) return
+    points%stiffness(:points%n) = stiffness
+  end subroutine put_stiffness
 
   !> Append a point between the nodes of a slave segment; area and stiffness are left to the formulation.
   pure subroutine add_segment_point(master, n_slave, ends, xi, foot, points)
@@ -116,95 +189,5 @@ contains
 
     place = (1.0_wp - xi)*places(:, ends(1)) + xi*places(:, ends(2))
   end function place_on_segment
-
-  !> Half of the neighbouring segments of a node at their present length, m.
-  pure function competence_length(surface, places, i_node) result(length)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
-    integer, intent(in) :: i_node
-    real(wp) :: length
-
-    length = 0.0_wp
-    if (surface%incoming(i_node) > 0) length = length + 0.5_wp*segment_length( &
-      places(:, surface%segments(1, surface%incoming(i_node))), places(:, i_node))
-    if (surface%outgoing(i_node) > 0) length = length + 0.5_wp*segment_length( &
-      places(:, i_node), places(:, surface%segments(2, surface%outgoing(i_node))))
-  end function competence_length
-
-  !> The same for the tracked nodes of some points, one after the other. A segment between two of them is measured once,
-  !> and the roots of a list of segments are formed together: node by node it took three times as long.
-  pure subroutine put_competence(surface, places, n, nodes, offset, areas)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
-    integer, intent(in) :: n
-    integer, intent(in) :: nodes(n_side, n)  !! local numbers
-    integer, intent(in) :: offset            !! local number before the first node of the surface
-    real(wp), intent(inout) :: areas(n)
-    integer :: first, m
-
-    do first = 1, n, n_room
-      m = min(n_room, n - first + 1)
-      call add_halves_of_neighbours(m, nodes(1, first), offset, surface%incoming, surface%outgoing, &
-        surface%segments, places, areas(first))
-    end do
-  end subroutine put_competence
-
-  !> The same for a list of them, on arrays of known shape.
-  pure subroutine add_halves_of_neighbours(n, nodes, offset, incoming, outgoing, segments, places, areas)
-    integer, intent(in) :: n, nodes(n_side, n), offset
-    integer, intent(in) :: incoming(*), outgoing(*), segments(2, *) !! of the surface
-    real(wp), intent(in) :: places(4, *)
-    real(wp), intent(inout) :: areas(n)
-    integer, dimension(n_room) :: before, after !! places on the list of segments
-    real(wp) :: vectors(2, 2*n_room), halves(2*n_room)
-    integer :: p, k, s, last, n_odd
-
-    k = 0
-    last = -1
-    do p = 1, n
-      s = incoming(nodes(1, p) - offset)
-      if (s /= last) then
-        k = k + 1
-        call take_vector(s, segments, places, vectors(1, k))
-      end if
-      before(p) = k
-      last = outgoing(nodes(1, p) - offset)
-      k = k + 1
-      call take_vector(last, segments, places, vectors(1, k))
-      after(p) = k
-    end do
-    do s = 1, k
-      halves(s) = 0.5_wp*sqrt(vectors(1, s)**2 + vectors(2, s)**2)
-    end do
-    n_odd = 0
-    do p = 1, n
-      n_odd = n_odd + abs(before(p) - p) + abs(after(p) - p - 1)
-    end do
-    if (n_odd == 0) then
-      ! One run of nodes: nothing to look up.
-      do p = 1, n
-        areas(p) = halves(p) + halves(p + 1)
-      end do
-    else
-      do p = 1, n
-        areas(p) = halves(before(p)) + halves(after(p))
-      end do
-    end if
-  end subroutine add_halves_of_neighbours
-
-  !> Vector of a segment at its present length, m: zero where there is none.
-  pure subroutine take_vector(s, segments, places, vector)
-    integer, intent(in) :: s, segments(2, *)
-    real(wp), intent(in) :: places(4, *)
-    real(wp), intent(inout) :: vector(2)
-    real(wp) :: along(4)
-
-    if (s > 0) then
-      along = places(:, segments(2, s)) - places(:, segments(1, s))
-      vector = along(1:2) + along(3:4)
-    else
-      vector = 0.0_wp
-    end if
-  end subroutine take_vector
 
 end module contact_placing_m

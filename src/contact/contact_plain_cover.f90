@@ -5,8 +5,8 @@
 !> time, so that the roots and quotients of a list are formed together: one by one, waiting for these and for
 !> small arrays on their way to memory and back took two thirds of the pairing.
 module contact_plain_cover_m
-  use contact_overlap_m, only : face_on
-  use contact_plain_foot_m, only : see_plain_segment, well_inside
+  use contact_piece_cutting_m, only : see_pieces, cut_pieces, order_pieces, n_room
+  use contact_plain_foot_m, only : see_plain_segment
   use contact_state_m, only : contact_state_t, is_free, is_touching
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t
@@ -16,8 +16,8 @@ module contact_plain_cover_m
   public :: plain_cover_t, clear_list, list_touching, list_segment, list_other, cut_segments, &
     see_pieces, note_plain_contact, n_room
 
-  !> Most pieces of a segment, and of a list.
-  integer, parameter :: n_most = 6, n_room = 64
+  !> Most pieces of a segment.
+  integer, parameter :: n_most = 6
   !> In a closed chain of so many segments the way forwards may be the shorter one.
   integer, parameter :: short_chain = 2*n_most
 
@@ -34,6 +34,7 @@ module contact_plain_cover_m
     integer :: ends(2, n_room)          !! (n_piece) nodes of the slave segment
     integer :: master(n_room)           !! (n_piece) segment of the master
     integer :: nodes(2, n_room)         !! (n_piece) local numbers of its nodes
+    real(wp) :: is_end(n_room)          !! (n_piece) 1 for the last piece of a segment, else 0
     real(wp) :: own(2, n_room)          !! (n_piece) vector of the slave segment, m
     real(wp) :: other(2, n_room)        !! (n_piece) vector of the master segment, m
     real(wp) :: way(2, n_room)          !! (n_piece) from the master segment's first node to the first end, m
@@ -113,12 +114,14 @@ contains
       cover%ends(1, k) = ends(1)
       cover%ends(2, k) = ends(2)
       cover%master(k) = segment
+      cover%is_end(k) = 0.0_wp
       if (segment == last) exit
       segment = previous(segment)
       if (segment == 0) return
     end do
     if (n > n_most) return
     is_listed = .true.
+    cover%is_end(k) = 1.0_wp
     cover%n_segment = cover%n_segment + 1
     cover%slave(cover%n_segment) = s
     cover%last(cover%n_segment) = k
@@ -165,76 +168,20 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(plain_cover_t), intent(inout) :: cover
-    real(wp) :: low
-    integer :: i, k
-    logical :: is_plain
+    integer :: i, n_odd
+    real(wp) :: odd(n_room)
 
     call see_pieces(cover%n_piece, cover%ends, cover%master, contact%master%segments, memory%n_slave, &
       memory%places, cover%nodes, cover%own, cover%other, cover%way)
     call cut_pieces(cover%n_piece, cover%own, cover%other, cover%way, cover%length, cover%inverse, &
       cover%high, cover%gap, cover%facing)
+    call order_pieces(cover%n_piece, cover%facing, cover%is_end, cover%low, cover%high, odd, n_odd)
     do i = 1, cover%n_segment
-      cover%is_plain(i) = .false.
-      if (cover%last(i) == cover%last(i - 1)) cycle
-      low = 0.0_wp
-      is_plain = .true.
-      do k = cover%last(i - 1) + 1, cover%last(i) - 1
-        is_plain = is_plain .and. cover%facing(k) > 0.0_wp .and. cover%high(k) > low + well_inside &
-          .and. cover%high(k) < 1.0_wp - well_inside
-        cover%low(k) = low
-        low = cover%high(k)
-      end do
-      cover%low(k) = low
-      cover%high(k) = 1.0_wp
-      cover%is_plain(i) = is_plain .and. cover%facing(k) > 0.0_wp
+      cover%is_plain(i) = cover%last(i) > cover%last(i - 1)
+      if (n_odd > 0 .and. cover%is_plain(i)) &
+        cover%is_plain(i) = maxval(odd(cover%last(i - 1) + 1:cover%last(i))) < 1.0_wp
     end do
   end subroutine cut_segments
-
-  !> Vectors of the pieces.
-  pure subroutine see_pieces(n, ends, master, segments, n_slave, places, nodes, own, other, way)
-    integer, intent(in) :: n, ends(2, *), master(*), segments(2, *)
-    integer, intent(in) :: n_slave !! local number before the first master node
-    real(wp), intent(in) :: places(4, *)
-    integer, intent(inout) :: nodes(2, *)
-    real(wp), dimension(2, n_room), intent(inout) :: own, other, way
-    real(wp), dimension(4) :: along_slave, along_master, across
-    integer :: k, a, b
-
-    !GCC$ NOVECTOR
-    do k = 1, n
-      a = n_slave + segments(1, master(k))
-      b = n_slave + segments(2, master(k))
-      nodes(1, k) = a
-      nodes(2, k) = b
-      along_slave = places(:, ends(2, k)) - places(:, ends(1, k))
-      along_master = places(:, b) - places(:, a)
-      across = places(:, ends(1, k)) - places(:, a)
-      own(:, k) = along_slave(1:2) + along_slave(3:4)
-      other(:, k) = along_master(1:2) + along_master(3:4)
-      way(:, k) = across(1:2) + across(3:4)
-    end do
-  end subroutine see_pieces
-
-  !> Projections of the pieces' master nodes on the slave segments.
-  pure subroutine cut_pieces(n, own, other, way, length, inverse, high, gap, facing)
-    integer, intent(in) :: n
-    real(wp), dimension(2, n_room), intent(in) :: own, other, way
-    real(wp), dimension(n_room), intent(inout) :: length, inverse, high, gap, facing
-    real(wp) :: square, product
-    integer :: k
-
-    do k = 1, n
-      square = max(own(1, k)*own(1, k) + own(2, k)*own(2, k), tiny(1.0_wp))
-      product = own(1, k)*other(1, k) + own(2, k)*other(2, k)
-      ! A number, since a loop that keeps logicals is not vectorized.
-      facing(k) = min(-product, product*product - face_on**2*(square &
-        *(other(1, k)*other(1, k) + other(2, k)*other(2, k))))
-      inverse(k) = 1.0_wp/sqrt(square)
-      length(k) = square*inverse(k)
-      high(k) = -(way(1, k)*own(1, k) + way(2, k)*own(2, k))*(inverse(k)*inverse(k))
-      gap(k) = (way(2, k)*own(1, k) - way(1, k)*own(2, k))*inverse(k)
-    end do
-  end subroutine cut_pieces
 
   !> Master segments below both ends of a slave segment; free ends are looked for from where contact_overlap does.
   pure subroutine find_ends(contact, memory, one, two, first, second, touch)

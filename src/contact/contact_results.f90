@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> What the writers want to know of an interface.
 module contact_results_m
-  use contact_placing_m, only : competence_length, tracked_foot
+  use contact_competence_m, only : competence_length
+  use contact_placing_m, only : tracked_foot
   use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
   use contact_state_m, only : contact_state_t, is_touching, n_side
   use contacts_m, only : contact_t

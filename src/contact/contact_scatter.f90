@@ -40,21 +40,18 @@ contains
     real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
     real(wp), intent(in) :: normal(2, *), pressure(*), area(*)
     real(wp), intent(inout) :: force(2, *)
-    real(wp) :: total, fx, fy
-    integer :: p, k, node
+    real(wp) :: total(2), sum(2)
+    integer :: p, k
 
+    !GCC$ NOVECTOR
     do p = 1, n
-      total = pressure(p)*area(p)
-      fx = total*normal(1, p)
-      fy = total*normal(2, p)
+      total = pressure(p)*area(p)*normal(:, p)
       do k = 1, n_side
-        node = master_nodes(k, p)
-        force(1, node) = force(1, node) - master_weights(k, p)*fx
-        force(2, node) = force(2, node) - master_weights(k, p)*fy
+        sum = force(:, master_nodes(k, p)) - master_weights(k, p)*total
+        force(:, master_nodes(k, p)) = sum
         if (.not. abs(slave_weights(k, p)) > 0.0_wp) cycle
-        node = slave_nodes(k, p)
-        force(1, node) = force(1, node) + slave_weights(k, p)*fx
-        force(2, node) = force(2, node) + slave_weights(k, p)*fy
+        sum = force(:, slave_nodes(k, p)) + slave_weights(k, p)*total
+        force(:, slave_nodes(k, p)) = sum
       end do
     end do
   end subroutine scatter_each

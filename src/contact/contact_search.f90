@@ -13,7 +13,7 @@ module contact_search_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: update_tracking, wake_all, most_facing, begin_contact
+  public :: update_tracking, note_list, wake_all, most_facing, begin_contact
 
 contains
 
@@ -26,25 +26,26 @@ contains
     real(wp), intent(in) :: travel                    !! relative motion since the start, m
     integer, intent(inout) :: n_released              !! deep first contacts let go
     real(wp) :: next_wake
-    integer :: i, n_touching
+    integer :: i, n_kept, n_touching
+    logical :: has_changed
 
     if (travel < tracking%next_wake) then
-      tracking%n_touching = 0
+      call note_list(0, .false., tracking)
       return
     end if
-    call keep_contacts(tracking%touching(:tracking%n_touching), tracking%segment, &
-      surface%segments, chain, spots, tracking%xi, tracking%gap, tracking%normal, tracking%is_kept)
-    if (all(tracking%is_kept)) then
+    call keep_contacts(surface%segments, chain, spots, tracking, n_kept)
+    if (n_kept == tracking%n) then
       ! The list of spots in contact stays as it is.
       tracking%is_kept = .false.
       return
     end if
     next_wake = huge(1.0_wp)
     n_touching = 0
+    has_changed = .false.
     i = 0
     do while (i < tracking%n)
       if (tracking%is_kept(i + 1)) then
-        call list_kept(tracking%n, tracking%is_kept, i, tracking%touching, n_touching)
+        call list_kept(tracking%n, tracking%is_kept, i, tracking%touching, n_touching, has_changed)
         next_wake = -huge(1.0_wp)
         cycle
       end if
@@ -57,11 +58,22 @@ contains
       next_wake = min(next_wake, tracking%wake(i))
       if (tracking%status(i) /= is_touching) cycle
       n_touching = n_touching + 1
+      has_changed = has_changed .or. tracking%touching(n_touching) /= i
       tracking%touching(n_touching) = i
     end do
-    tracking%n_touching = n_touching
+    call note_list(n_touching, has_changed, tracking)
     tracking%next_wake = next_wake
   end subroutine update_tracking
+
+  !> Keep the length of the list of spots in contact, and note whether it has changed.
+  pure subroutine note_list(n_touching, has_changed, tracking)
+    integer, intent(in) :: n_touching
+    logical, intent(in) :: has_changed !! one of the list
+    type(tracking_t), intent(inout) :: tracking
+
+    if (has_changed .or. n_touching /= tracking%n_touching) tracking%i_list = tracking%i_list + 1
+    tracking%n_touching = n_touching
+  end subroutine note_list
 
   !> Pass the spots that sleep from i + 1 to the first one that does not; i is then the last one.
   pure subroutine pass_sleeping(n, is_kept, wake, travel, i, next_wake)

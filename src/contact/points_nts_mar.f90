@@ -4,12 +4,13 @@
 !> (doc/theory/contact.md, section 5.5).
 module points_nts_mar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
+  use contact_competence_m, only : competence_length
   use contact_cuts_m, only : share_ends, list_cuts, add_cuts
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     see_master_node, facing_share
   use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
     list_other, cut_segments
-  use contact_placing_m, only : add_touching_nodes, competence_length
+  use contact_placing_m, only : add_touching_nodes, put_stiffness
   use contact_projection_m, only : see_segment
   use contact_state_m, only : contact_state_t, make_room, n_side
   use contacts_m, only : contact_t
@@ -28,13 +29,14 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t) :: cover
     integer :: s, n
+    logical :: is_known
 
     if (all_asleep(memory)) return
     call add_touching_nodes(memory%slave_tracking, contact%master, 0, memory%n_slave, &
-      memory%points)
+      memory%points, is_known)
     n = memory%points%n
     call mark_points(n, memory%points%slave_nodes, memory%mark, memory%points%area)
-    memory%points%stiffness(:n) = memory%slave_penalty
+    call put_stiffness(memory%slave_penalty, is_known, memory%points)
     call clear_list(cover)
     s = 1
     do while (s <= contact%slave%n_segment)

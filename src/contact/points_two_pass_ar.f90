@@ -2,7 +2,8 @@
 !> Type 3, two-pass NTS-AR: type 2, and type 2 again with the roles of slave and master exchanged;
 !> nothing is halved (doc/theory/contact.md, section 5.3).
 module points_two_pass_ar_m
-  use contact_placing_m, only : add_touching_nodes, put_competence
+  use contact_competence_m, only : put_competence
+  use contact_placing_m, only : add_touching_nodes
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use points_nts_ar_m, only : place_nts_ar
@@ -17,10 +18,12 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     integer :: first
+    logical :: is_known
 
     call place_nts_ar(contact, memory)
     first = memory%points%n + 1
-    call add_touching_nodes(memory%master_tracking, contact%slave, memory%n_slave, 0, memory%points)
+    call add_touching_nodes(memory%master_tracking, contact%slave, memory%n_slave, 0, memory%points, &
+      is_known)
     if (memory%points%n < first) return
     call put_competence(contact%master, memory%places(:, memory%n_slave + 1:), &
       memory%points%n - first + 1, memory%points%slave_nodes(1, first), memory%n_slave, &

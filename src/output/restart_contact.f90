@@ -4,6 +4,7 @@ module restart_contact_m
   use archive_m, only : archive_t, keep, keep_fixed, enter, leave
   use contact_state_m, only : contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
     cover_memory_t
+  use kinds_m, only : wp
   implicit none
   private
   public :: keep_contact
@@ -38,7 +39,7 @@ contains
     call keep(archive, 'closed_gap', contact%closed_gap)
     call keep(archive, 'force', contact%force)
     if (allocated(contact%force) .and. .not. allocated(contact%former_force)) &
-      allocate (contact%former_force, source=contact%force)
+      allocate (contact%former_force(2, size(contact%force, 2)), source=0.0_wp)
     call keep(archive, 'slave_penalty', contact%slave_penalty)
     call keep(archive, 'master_penalty', contact%master_penalty)
     call keep(archive, 'node_penalty', contact%node_penalty)

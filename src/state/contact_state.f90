@@ -32,6 +32,7 @@ module contact_state_m
   !> The list, one column per point.
   type :: contact_points_t
     integer :: n = 0                           !! points in use
+    integer :: i_list = -1                     !! slave_tracking%i_list when those at slave nodes, the first, were placed
     integer, allocatable :: slave_nodes(:, :)  !! (n_side, capacity) local numbers
     real(wp), allocatable :: slave_weights(:, :)
     integer, allocatable :: master_nodes(:, :) !! (n_side, capacity) local numbers
@@ -58,9 +59,10 @@ module contact_state_m
   type :: tracking_t
     integer :: n = 0                         !! spots
     integer :: n_touching = 0
+    integer :: i_list = 0                    !! changes of the list of spots in contact
     real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot can change
     real(wp) :: reach = 0.0_wp               !! spots farther away than this are unpaired, m
-    integer, allocatable :: touching(:)      !! (n) the first n_touching: spots in contact
+    integer, allocatable :: touching(:)      !! (n) the first n_touching: spots in contact, in order
     logical, allocatable :: is_kept(:)       !! (n) scratch, false between steps
     integer, allocatable :: segment(:)       !! (n) segment of the chain, 0 = unpaired
     integer, allocatable :: status(:)        !! (n) one of the constants above
@@ -105,7 +107,7 @@ module contact_state_m
     real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where a tangent
                                             !! of touching bodies is wanted
     real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last call
-    real(wp), allocatable :: former_force(:, :) !! scratch: those of the call before, during a call
+    real(wp), allocatable :: former_force(:, :) !! scratch: those of the call before, 0 between calls
     real(wp) :: slave_penalty = 0.0_wp      !! distributed penalty eps_hat of the slave pass, N/m^2
     real(wp) :: master_penalty = 0.0_wp     !! of the master pass
     real(wp) :: node_penalty = 0.0_wp       !! eps of type 1, N/m
