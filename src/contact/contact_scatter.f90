@@ -40,18 +40,18 @@ contains
     real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
     real(wp), intent(in) :: normal(2, *), pressure(*), area(*)
     real(wp), intent(inout) :: force(2, *)
-    real(wp) :: total(2), sum(2)
+    real(wp) :: total(2), node_force(2)
     integer :: p, k
 
     !GCC$ NOVECTOR
     do p = 1, n
       total = pressure(p)*area(p)*normal(:, p)
       do k = 1, n_side
-        sum = force(:, master_nodes(k, p)) - master_weights(k, p)*total
-        force(:, master_nodes(k, p)) = sum
+        node_force = force(:, master_nodes(k, p)) - master_weights(k, p)*total
+        force(:, master_nodes(k, p)) = node_force
         if (.not. abs(slave_weights(k, p)) > 0.0_wp) cycle
-        sum = force(:, slave_nodes(k, p)) + slave_weights(k, p)*total
-        force(:, slave_nodes(k, p)) = sum
+        node_force = force(:, slave_nodes(k, p)) + slave_weights(k, p)*total
+        force(:, slave_nodes(k, p)) = node_force
       end do
     end do
   end subroutine scatter_each
