@@ -15,6 +15,8 @@ module contact_admission_m
   !> The tracked segment of a spot is its closest one or next to it, and what the search knows of
   !> other segments leaves out the closest and its neighbours: so many on either side.
   integer, parameter :: n_around = 2
+  !> Segments round a foot.
+  integer, parameter :: n_round = 2*n_around + 1
   !> Master segments that a slave segment is measured against one by one.
   integer, parameter :: n_window = 16
 
@@ -179,7 +181,8 @@ contains
       half = 0.5_wp*segment_length(one, two)
       distance = distance_to_others(tracking%grid, contact%master, memory%places(:, memory%n_slave + 1:), &
         0.5_wp*(one + two), memory%travel, half + wanted, window(:n)) - half
-      distance = min(distance, distance_to_run(contact, memory, ends, window(:n)))
+      ! Those round the feet have been measured.
+      if (n > 2*n_round) distance = min(distance, distance_to_run(contact, memory, ends, window(:n)))
     end associate
   end function distance_by_window
 
@@ -217,7 +220,7 @@ contains
     integer, intent(in) :: ends(2)
     integer, intent(in) :: segment !! of the master
     real(wp) :: distance
-    integer :: run(2*n_around + 1), n
+    integer :: run(n_round), n
 
     run(1) = segment
     do n = 1, n_around
@@ -233,47 +236,30 @@ contains
 
   !> Distance from a slave segment to master segments one before the other: that of the nearest node of these, and 0 where
   !> one of them crosses the slave segment. A segment that is crossed although none of its points is behind the master is never left
-  !> alone, since no distance of nodes says when one of them will be. A node behind the slave segment, round its end, may
-  !> come over it from the side: it could be caught as soon as it is no farther than the deepest first contact.
+  !> alone, since no distance of nodes says when one of them will be.
   pure function distance_to_run(contact, memory, ends, run) result(distance)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)
     integer, intent(in), contiguous :: run(:) !! each the previous one of that before
-    real(wp) :: distance, front, behind, before
+    real(wp) :: distance, square, before
     type(sight_t) :: sight
     integer :: k
 
     associate (nodes => contact%master%segments, chain => memory%places(:, memory%n_slave + 1:), &
       one => memory%places(:, ends(1)), two => memory%places(:, ends(2)))
-      front = huge(1.0_wp)
-      behind = huge(1.0_wp)
       sight = sight_of_segment(chain(:, nodes(2, run(1))), one, two)
-      call measure_node(sight, front, behind)
+      square = closest_distance(sight)
       do k = 1, size(run)
         before = sight%across
         sight = sight_of_segment(chain(:, nodes(1, run(k))), one, two)
-        call measure_node(sight, front, behind)
+        square = min(square, closest_distance(sight))
         if ((before < 0.0_wp) .eqv. (sight%across < 0.0_wp)) cycle
-        if (divides(chain(:, nodes(1, run(k))), chain(:, nodes(2, run(k))), one, two)) front = 0.0_wp
+        if (divides(chain(:, nodes(1, run(k))), chain(:, nodes(2, run(k))), one, two)) square = 0.0_wp
       end do
     end associate
-    distance = sqrt(front)
-    if (behind < huge(1.0_wp)) distance = min(distance, sqrt(behind) &
-      - max(0.0_wp, deepest_first_contact(memory, ends)))
+    distance = sqrt(square)
   end function distance_to_run
-
-  !> Least squares of the distances of nodes before and behind a segment.
-  pure subroutine measure_node(sight, front, behind)
-    type(sight_t), intent(in) :: sight
-    real(wp), intent(inout) :: front, behind
-
-    if (sight%across < 0.0_wp) then
-      behind = min(behind, closest_distance(sight))
-    else
-      front = min(front, closest_distance(sight))
-    end if
-  end subroutine measure_node
 
   !> Whether two places are on different sides of the line through a and b, or on it.
   pure function divides(a, b, one, two)
