@@ -15,8 +15,6 @@ module contact_admission_m
   !> The tracked segment of a spot is its closest one or next to it, and what the search knows of
   !> other segments leaves out the closest and its neighbours: so many on either side.
   integer, parameter :: n_around = 2
-  !> Segments round a foot.
-  integer, parameter :: n_round = 2*n_around + 1
   !> Master segments that a slave segment is measured against one by one.
   integer, parameter :: n_window = 16
 
@@ -181,8 +179,8 @@ contains
       half = 0.5_wp*segment_length(one, two)
       distance = distance_to_others(tracking%grid, contact%master, memory%places(:, memory%n_slave + 1:), &
         0.5_wp*(one + two), memory%travel, half + wanted, window(:n)) - half
-      ! Those round the feet have been measured.
-      if (n > 2*n_round) distance = min(distance, distance_to_run(contact, memory, ends, window(:n)))
+      ! So few are all among those round the feet, which have been measured.
+      if (n > 2*(n_around + 1)) distance = min(distance, distance_to_run(contact, memory, ends, window(:n)))
     end associate
   end function distance_by_window
 
@@ -220,7 +218,7 @@ contains
     integer, intent(in) :: ends(2)
     integer, intent(in) :: segment !! of the master
     real(wp) :: distance
-    integer :: run(n_round), n
+    integer :: run(2*n_around + 1), n
 
     run(1) = segment
     do n = 1, n_around
