@@ -4,9 +4,9 @@
 !> (doc/theory/contact.md, sections 3.3 and 4).
 module contact_admission_m
   use contact_buckets_m, only : distance_to_others
-  use contact_state_m, only : contact_state_t, is_free, is_touching, is_behind
+  use contact_state_m, only : contact_state_t, is_free, is_in_front, is_touching, is_behind
   use contacts_m, only : contact_t
-  use geometry_m, only : segment_length, closest_distance, sight_of_segment
+  use geometry_m, only : sight_t, segment_length, closest_distance, sight_of_segment
   use kinds_m, only : wp
   implicit none
   private
@@ -25,7 +25,11 @@ contains
     type(contact_state_t), intent(in) :: memory
     logical :: all_asleep
 
-    all_asleep = memory%slave_tracking%n_touching == 0 .and. memory%travel < memory%cover%next_wake
+    associate (tracking => memory%slave_tracking)
+      all_asleep = tracking%n_touching == 0 .and. memory%travel < memory%cover%next_wake
+      ! An end that has been let go has no alarm.
+      if (all_asleep .and. memory%travel >= tracking%next_wake) all_asleep = all(is_outside(tracking%status))
+    end associate
   end function all_asleep
 
   !> Whether a segment can not touch yet. `ends` are its nodes.
@@ -36,9 +40,17 @@ contains
     logical :: asleep
 
     asleep = memory%travel < memory%cover%wake(segment)
-    if (asleep) asleep = memory%slave_tracking%status(ends(1)) /= is_touching &
-      .and. memory%slave_tracking%status(ends(2)) /= is_touching
+    if (asleep) asleep = is_outside(memory%slave_tracking%status(ends(1))) &
+      .and. is_outside(memory%slave_tracking%status(ends(2)))
   end function is_asleep
+
+  !> Whether a spot is neither in contact nor let go.
+  elemental function is_outside(status)
+    integer, intent(in) :: status
+    logical :: is_outside
+
+    is_outside = status == is_free .or. status == is_in_front
+  end function is_outside
 
   !> Whether the points on a segment count. One that is in contact, or has an end that is, stays; a new one must not be deeper
   !> than a first contact may be, and otherwise is let go until it has been outside.
@@ -90,9 +102,9 @@ contains
     end associate
   end function deepest_first_contact
 
-  !> Travel during which nothing can touch a segment of length L. Two chains come nearest to each other at a node of one of
-  !> them: at an end of the segment, which the tracking bounds for all of the master, or at a master node. Of these
-  !> the nodes of the master segments near the feet of the ends are measured; how far the others are is known in two
+  !> Travel during which nothing can touch a segment of length L. Two chains that do not cross come nearest to each other at
+  !> a node of one of them: at an end of the segment, which the tracking bounds for all of the master, or at a master node. Of
+  !> these the master segments near the feet of the ends are measured; how far the others are is known in two
   !> ways, the greater of which holds: from the distances of the ends, or by a look round the middle.
   pure function safe_travel(contact, memory, ends) result(travel)
     type(contact_t), intent(in) :: contact
@@ -111,7 +123,7 @@ contains
         if (.not. travel > 0.0_wp) exit
         associate (segment => tracking%segment(ends(k)))
           if (segment == 0 .or. segment == seen) cycle
-          travel = min(travel, distance_of_nodes(contact, memory, ends, segment))
+          travel = min(travel, distance_round(contact, memory, ends, segment))
           seen = segment
         end associate
       end do
@@ -146,8 +158,8 @@ contains
   end function travel_to_others
 
   !> The second way, for segments along which ends know little of others (a master with shorter segments, a search long ago):
-  !> the least of the distances of all master nodes from the foot of one end to that of the other and `n_around`
-  !> segments more on either side, and of that of all other master segments. No place of the slave segment is farther than
+  !> the least of the distances of the master segments from the foot of one end to that of the other and `n_around`
+  !> more on either side, and of that of all other master segments. No place of the slave segment is farther than
   !> L/2 from its middle, so these are at least as far as they are from the middle, less L/2. Both are distances of present
   !> places and shrink by the travel at most. 0: nothing is known, since an end has no foot or the feet are far apart.
   pure function distance_by_window(contact, memory, ends, wanted) result(distance)
@@ -155,34 +167,21 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)
     real(wp), intent(in) :: wanted !! more is of no use, m
-    real(wp) :: distance, half, square
-    integer :: window(n_window), n, k
+    real(wp) :: distance, half
+    integer :: window(n_window), n
 
     distance = 0.0_wp
-    associate (tracking => memory%slave_tracking, one => places_of(1), two => places_of(2))
+    associate (tracking => memory%slave_tracking, one => memory%places(:, ends(1)), &
+      two => memory%places(:, ends(2)))
       if (minval(tracking%segment(ends)) == 0) return
       call list_window(contact, tracking%segment(ends(1)), tracking%segment(ends(2)), window, n)
       if (n == 0) return
-      square = square_to_node(memory, ends, contact%master%segments(1, window(n)))
-      do k = 1, n
-        square = min(square, square_to_node(memory, ends, contact%master%segments(2, window(k))))
-      end do
       half = 0.5_wp*segment_length(one, two)
       distance = distance_to_others(tracking%grid, contact%master, memory%places(:, memory%n_slave + 1:), &
         0.5_wp*(one + two), memory%travel, half + wanted, window(:n)) - half
-      distance = min(distance, sqrt(square))
+      ! So few are all among those round the feet, which have been measured.
+      if (n > 2*(n_around + 1)) distance = min(distance, distance_to_run(contact, memory, ends, window(:n)))
     end associate
-
-  contains
-
-    !> Place of an end.
-    pure function places_of(k) result(place)
-      integer, intent(in) :: k
-      real(wp) :: place(4)
-
-      place = memory%places(:, ends(k))
-    end function places_of
-
   end function distance_by_window
 
   !> Master segments from `n_around` before the foot of the first end of a slave segment, against the master's direction, to
@@ -212,39 +211,64 @@ contains
     n = 0
   end subroutine list_window
 
-  !> Distance from a slave segment to the nodes of the master segments round a given one.
-  pure function distance_of_nodes(contact, memory, ends, segment) result(distance)
+  !> Distance from a slave segment to the master segments round a given one.
+  pure function distance_round(contact, memory, ends, segment) result(distance)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)
     integer, intent(in) :: segment !! of the master
-    real(wp) :: distance, square
-    integer :: k, i_step
+    real(wp) :: distance
+    integer :: run(2*n_around + 1), n
 
-    k = segment
-    do i_step = 1, n_around
-      if (contact%master%previous(k) == 0) exit
-      k = contact%master%previous(k)
+    run(1) = segment
+    do n = 1, n_around
+      if (contact%master%next(run(1)) == 0) exit
+      run(1) = contact%master%next(run(1))
     end do
-    square = huge(1.0_wp)
-    do i_step = 0, 2*n_around
-      square = min(square, square_to_node(memory, ends, contact%master%segments(1, k)))
-      if (contact%master%next(k) == 0) exit
-      k = contact%master%next(k)
+    do n = 1, size(run) - 1
+      run(n + 1) = contact%master%previous(run(n))
+      if (run(n + 1) == 0) exit
     end do
-    distance = sqrt(min(square, square_to_node(memory, ends, contact%master%segments(2, k))))
-  end function distance_of_nodes
+    distance = distance_to_run(contact, memory, ends, run(:n))
+  end function distance_round
 
-  !> Square of the distance from a slave segment to a master node.
-  pure function square_to_node(memory, ends, node) result(square)
+  !> Distance from a slave segment to master segments one before the other: that of the nearest node of these, and 0 where
+  !> one of them crosses the slave segment. A segment that is crossed although none of its points is behind the master is never left
+  !> alone, since no distance of nodes says when one of them will be.
+  pure function distance_to_run(contact, memory, ends, run) result(distance)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)
-    integer, intent(in) :: node !! of the master
-    real(wp) :: square
+    integer, intent(in), contiguous :: run(:) !! each the previous one of that before
+    real(wp) :: distance, square, before
+    type(sight_t) :: sight
+    integer :: k
 
-    square = closest_distance(sight_of_segment(memory%places(:, memory%n_slave + node), &
-      memory%places(:, ends(1)), memory%places(:, ends(2))))
-  end function square_to_node
+    associate (nodes => contact%master%segments, chain => memory%places(:, memory%n_slave + 1:), &
+      one => memory%places(:, ends(1)), two => memory%places(:, ends(2)))
+      sight = sight_of_segment(chain(:, nodes(2, run(1))), one, two)
+      square = closest_distance(sight)
+      do k = 1, size(run)
+        before = sight%across
+        sight = sight_of_segment(chain(:, nodes(1, run(k))), one, two)
+        square = min(square, closest_distance(sight))
+        if ((before < 0.0_wp) .eqv. (sight%across < 0.0_wp)) cycle
+        if (divides(chain(:, nodes(1, run(k))), chain(:, nodes(2, run(k))), one, two)) square = 0.0_wp
+      end do
+    end associate
+    distance = sqrt(square)
+  end function distance_to_run
+
+  !> Whether two places are on different sides of the line through a and b, or on it.
+  pure function divides(a, b, one, two)
+    real(wp), dimension(4), intent(in) :: a, b, one, two
+    logical :: divides
+    type(sight_t) :: of_one, of_two
+
+    of_one = sight_of_segment(one, a, b)
+    of_two = sight_of_segment(two, a, b)
+    divides = min(of_one%across, of_two%across) <= 0.0_wp .and. max(of_one%across, of_two%across) >= 0.0_wp
+  end function divides
 
   !> After all segments have been looked at.
   pure subroutine note_next_wake(memory)

@@ -11,7 +11,10 @@ module contact_piece_list_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: plain_points_t, find_points, is_plain, put_points
+  public :: plain_points_t, find_points, look_over, is_plain, put_points
+
+  !> One by one is faster where no more than one piece in so many has to be looked at.
+  integer, parameter :: n_seldom = 4
 
   !> Gauss points of the pieces on a list. Without default values, which would be written before each use.
   type :: plain_points_t
@@ -21,7 +24,7 @@ module contact_piece_list_m
     real(wp) :: normal(2, n_room)          !! of the master
     real(wp) :: area(n_room)               !! of each, m
     real(wp) :: depth(n_room)              !! more than 0 where both are behind the master segment and nearer to it than
-                                           !! to its ends
+                                           !! to its ends, or over it and no neighbour of it
   end type plain_points_t
 
 contains
@@ -58,6 +61,71 @@ contains
       found%area(k) = 0.5_wp*(high(k) - low(k))*length(k)
     end do
   end subroutine find_points
+
+  !> What `is_surely_over` tells, for all pieces of a list at a time, where many of them need it.
+  pure subroutine look_over(contact, memory, cover, found)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(plain_cover_t), intent(in) :: cover
+    type(plain_points_t), intent(inout) :: found
+    real(wp), dimension(2, n_room) :: before, after
+
+    if (n_seldom*count(.not. found%depth(:cover%n_piece) > 0.0_wp) <= cover%n_piece) return
+    call see_neighbours(cover%n_piece, cover%master, cover%nodes, contact%master%segments, &
+      contact%master%previous, contact%master%next, memory%n_slave, memory%places, before, after)
+    call raise_depths(cover%n_piece, cover%own, cover%other, cover%way, before, after, found%xi, &
+      found%foot, found%depth)
+  end subroutine look_over
+
+  !> Vectors of the neighbours of the pieces' master segments, both towards these; zero where there is none.
+  pure subroutine see_neighbours(n, master, nodes, segments, previous, next, n_slave, places, before, after)
+    integer, intent(in) :: n, master(*), nodes(2, *), segments(2, *), previous(*), next(*)
+    integer, intent(in) :: n_slave !! local number before the first master node
+    real(wp), intent(in) :: places(4, *)
+    real(wp), dimension(2, n_room), intent(inout) :: before, after
+    real(wp) :: t(4)
+    integer :: k, a, b
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      a = previous(master(k))
+      b = next(master(k))
+      if (a == 0 .or. b == 0) then
+        before(:, k) = 0.0_wp
+        after(:, k) = 0.0_wp
+        cycle
+      end if
+      t = places(:, nodes(1, k)) - places(:, n_slave + segments(1, a))
+      before(:, k) = t(1:2) + t(3:4)
+      t = places(:, nodes(2, k)) - places(:, n_slave + segments(2, b))
+      after(:, k) = t(1:2) + t(3:4)
+    end do
+  end subroutine see_neighbours
+
+  !> Make the depth of pieces positive whose Gauss points are surely over their master segments.
+  pure subroutine raise_depths(n, own, other, way, before, after, xi, foot, depth)
+    integer, intent(in) :: n
+    real(wp), dimension(2, n_room), intent(in) :: own, other, way, before, after
+    real(wp), dimension(n_gauss, n_room), intent(in) :: xi, foot
+    real(wp), intent(inout) :: depth(n_room)
+    real(wp) :: squares, slope, past(2), inside
+    integer :: k
+
+    !$omp simd private(squares, slope, past, inside)
+    do k = 1, n
+      squares = way(1, k)*way(1, k) + way(2, k)*way(2, k) + own(1, k)*own(1, k) + own(2, k)*own(2, k) &
+        + other(1, k)*other(1, k) + other(2, k)*other(2, k)
+      slope = own(1, k)*before(1, k) + own(2, k)*before(2, k)
+      past(1) = way(1, k)*before(1, k) + way(2, k)*before(2, k) + min(xi(1, k)*slope, xi(2, k)*slope) &
+        - well_inside*(squares + before(1, k)*before(1, k) + before(2, k)*before(2, k))
+      slope = own(1, k)*after(1, k) + own(2, k)*after(2, k)
+      past(2) = (way(1, k) - other(1, k))*after(1, k) + (way(2, k) - other(2, k))*after(2, k) &
+        + min(xi(1, k)*slope, xi(2, k)*slope) &
+        - well_inside*(squares + after(1, k)*after(1, k) + after(2, k)*after(2, k))
+      inside = min(foot(1, k), foot(2, k), 1.0_wp - foot(1, k), 1.0_wp - foot(2, k)) - 2.0_wp*well_inside
+      depth(k) = max(depth(k), min(past(1), past(2), inside))
+    end do
+  end subroutine raise_depths
 
   !> Whether all points of a listed segment are where the list has them: on the master segment of their piece. A
   !> Gauss point that is nearer to a neighbour of that has its foot there (as contact_projection has it).

@@ -4,7 +4,7 @@
 module points_segmented_mortar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
   use contact_overlap_m, only : cover_t, find_cover
-  use contact_piece_list_m, only : plain_points_t, find_points, is_plain, put_points
+  use contact_piece_list_m, only : plain_points_t, find_points, look_over, is_plain, put_points
   use contact_pieces_m, only : n_gauss, gauss_xi, add_pieces, add_listed_pieces
   use contact_plain_cover_m, only : plain_cover_t, clear_list, list_touching, list_segment, list_other, &
     cut_segments, note_plain_contact
@@ -41,7 +41,12 @@ contains
       end if
     end do
     call place_list(contact, memory, .true., cover)
-    call note_next_wake(memory)
+    if (memory%slave_tracking%n_touching == 0) then
+      call note_next_wake(memory)
+    else
+      ! Not asked for as long as something touches.
+      memory%cover%next_wake = -huge(1.0_wp)
+    end if
     if (.not. any(memory%mark > 0)) then
       memory%points%n = 0
       return
@@ -157,6 +162,7 @@ contains
     call cut_segments(contact, memory, cover)
     call find_points(cover%n_piece, cover%own, cover%other, cover%way, cover%low, cover%high, &
       cover%length, found)
+    call look_over(contact, memory, cover, found)
     if (memory%points%n + n_gauss*cover%n_piece > size(memory%points%gap)) &
       call make_room(memory%points, n_gauss*cover%n_piece)
     first = 1
