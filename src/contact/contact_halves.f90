@@ -2,7 +2,7 @@
 !> Half slave segments seen from master segments, many at a time, so that their roots and quotients are formed together
 !> (one by one, they took half of the time of type 4). Both halves of a slave segment share what is seen of it.
 module contact_halves_m
-  use contact_plain_cover_m, only : see_pieces, n_room
+  use contact_piece_cutting_m, only : see_pieces, n_room
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use kinds_m, only : wp

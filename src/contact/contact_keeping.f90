@@ -13,24 +13,20 @@ module contact_keeping_m
 contains
 
   !> Put the spots kept from i + 1 to the first one that is not on the list of those in contact; i is then the last one.
-  pure subroutine list_kept(n, is_kept, i, touching, n_touching, has_changed)
-    integer, intent(in) :: n                !! spots
+  pure subroutine list_kept(n, is_kept, i, touching, n_touching)
+    integer, intent(in) :: n              !! spots
     logical, intent(inout) :: is_kept(n)
     integer, intent(inout) :: i, touching(n), n_touching
-    logical, intent(inout) :: has_changed   !! set where the list was another one
-    integer :: k, first, n_same
+    integer :: k, first
 
     first = i
     do while (i < n)
       if (.not. is_kept(i + 1)) exit
       i = i + 1
     end do
-    n_same = 0
     do k = first + 1, i
-      if (touching(n_touching + (k - first)) == k) n_same = n_same + 1
       touching(n_touching + (k - first)) = k
     end do
-    has_changed = has_changed .or. n_same < i - first
     is_kept(first + 1:i) = .false.
     n_touching = n_touching + (i - first)
   end subroutine list_kept

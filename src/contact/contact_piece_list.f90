@@ -77,7 +77,7 @@ contains
       found%foot, found%depth)
   end subroutine look_over
 
-  !> Vectors of the neighbours of the pieces' master segments, both towards these; zero where there is none.
+  !> Vectors of the neighbours of the pieces' master segments, both towards these; zero where one is missing.
   pure subroutine see_neighbours(n, master, nodes, segments, previous, next, n_slave, places, before, after)
     integer, intent(in) :: n, master(*), nodes(2, *), segments(2, *), previous(*), next(*)
     integer, intent(in) :: n_slave !! local number before the first master node

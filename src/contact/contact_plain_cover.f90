@@ -14,7 +14,7 @@ module contact_plain_cover_m
   implicit none
   private
   public :: plain_cover_t, clear_list, list_touching, list_segment, list_other, cut_segments, &
-    see_pieces, note_plain_contact, n_room
+    note_plain_contact, n_room
 
   !> Most pieces of a segment.
   integer, parameter :: n_most = 6

@@ -45,7 +45,7 @@ contains
     i = 0
     do while (i < tracking%n)
       if (tracking%is_kept(i + 1)) then
-        call list_kept(tracking%n, tracking%is_kept, i, tracking%touching, n_touching, has_changed)
+        call list_kept(tracking%n, tracking%is_kept, i, tracking%touching, n_touching)
         next_wake = -huge(1.0_wp)
         cycle
       end if
@@ -58,6 +58,7 @@ contains
       next_wake = min(next_wake, tracking%wake(i))
       if (tracking%status(i) /= is_touching) cycle
       n_touching = n_touching + 1
+      ! Another list of the same length holds a spot that was not kept.
       has_changed = has_changed .or. tracking%touching(n_touching) /= i
       tracking%touching(n_touching) = i
     end do
