@@ -71,7 +71,10 @@ contains
     do i = 1, tracking%n
       if (tracking%segment(i) > 0 .and. tracking%status(i) /= is_behind) then
         foot = closed_foot(tracking, surface, chain, spots, i, gap)
-        if (foot%segment > 0) call begin_contact(tracking, i, foot, n_released)
+        if (foot%segment > 0) then
+          call begin_contact(tracking, i, foot, n_released)
+          tracking%next_wake = -huge(1.0_wp)
+        end if
       end if
       if (tracking%status(i) /= is_touching) cycle
       tracking%n_touching = tracking%n_touching + 1
