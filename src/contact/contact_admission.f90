@@ -270,11 +270,12 @@ contains
     divides = min(of_one%across, of_two%across) <= 0.0_wp .and. max(of_one%across, of_two%across) >= 0.0_wp
   end function divides
 
-  !> After all segments have been looked at.
+  !> After all segments have been looked at. Not asked for as long as something touches.
   pure subroutine note_next_wake(memory)
     type(contact_state_t), intent(inout) :: memory
 
-    memory%cover%next_wake = minval(memory%cover%wake)
+    memory%cover%next_wake = -huge(1.0_wp)
+    if (memory%slave_tracking%n_touching == 0) memory%cover%next_wake = minval(memory%cover%wake)
   end subroutine note_next_wake
 
 end module contact_admission_m

@@ -49,12 +49,7 @@ contains
       end if
     end do
     call share_list(contact, memory, cover)
-    if (memory%slave_tracking%n_touching == 0) then
-      call note_next_wake(memory)
-    else
-      ! Not asked for as long as something touches.
-      memory%cover%next_wake = -huge(1.0_wp)
-    end if
+    call note_next_wake(memory)
     call finish_nodes(contact, memory, n)
   end subroutine place_nts_mar
 

@@ -41,12 +41,7 @@ contains
       end if
     end do
     call place_list(contact, memory, .true., cover)
-    if (memory%slave_tracking%n_touching == 0) then
-      call note_next_wake(memory)
-    else
-      ! Not asked for as long as something touches.
-      memory%cover%next_wake = -huge(1.0_wp)
-    end if
+    call note_next_wake(memory)
     if (.not. any(memory%mark > 0)) then
       memory%points%n = 0
       return
