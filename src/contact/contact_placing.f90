@@ -73,7 +73,7 @@ contains
     end do
   end subroutine put_segments
 
-  !> Feet of tracked nodes that follow each other.
+  !> Feet of tracked nodes that follow each other, in vectors: 3 % of the whole contact of type 1.
   pure subroutine put_run(n, xi, gap, normal, weights, gaps, normals)
     integer, intent(in) :: n
     real(wp), intent(in) :: xi(n), gap(n), normal(2, n)
