@@ -91,7 +91,8 @@ contains
     cycle%plots = .false.
     cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
     call apply_loads(model, state, cycle)
-    call lap(monitor%clock, phase_nodes)
+    ! What ended the cycle before is in this lap, or without contact in the one below.
+    if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
     do i = 1, size(model%contacts)
       call apply_contact(model%contacts(i), state%motion, state%contact_mass, &
         state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &

@@ -86,7 +86,6 @@ contains
       end if
       !$omp master
       call end_cycle(model, state, monitor, cycle)
-      call lap(monitor%clock, phase_nodes)
       if (.not. cycle%finished) call begin_cycle(model, state, monitor, cycle)
       !$omp end master
       !$omp barrier
