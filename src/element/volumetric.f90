@@ -40,7 +40,7 @@ contains
 
     w = z*z
     y = z + z*w*(1.0_wp/3.0_wp + w*(1.0_wp/5.0_wp + w*(1.0_wp/7.0_wp + w*(1.0_wp/9.0_wp &
-      + w*(1.0_wp/11.0_wp + w*(1.0_wp/13.0_wp + w/15.0_wp))))))
+      + w*(1.0_wp/11.0_wp + w*(1.0_wp/13.0_wp + w*(1.0_wp/15.0_wp)))))))
   end function atanh_series
 
   !> ln(1 + stretch) to full relative precision; minus the largest number where the volume is gone (the

@@ -3,7 +3,7 @@
 module material_elastic_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use stress_chunk_m, only : stress_chunk_t, rotate_deviator
+  use stress_chunk_m, only : stress_chunk_t
   use stress_point_m, only : stress_point_t, turn, turn_rate
   implicit none
   private
@@ -18,10 +18,9 @@ contains
     real(wp) :: third, exx, eyy, oxx, oyy, oxy
     integer :: i
 
-    call rotate_deviator(chunk%cos2, chunk%sin2, chunk%sxx, chunk%syy, chunk%sxy)
     !$omp simd private(third, exx, eyy, oxx, oyy, oxy)
     do i = 1, chunk_size
-      third = (chunk%dxx(i) + chunk%dyy(i))/3.0_wp
+      third = (1.0_wp/3.0_wp)*(chunk%dxx(i) + chunk%dyy(i))
       exx = chunk%dxx(i) - third
       eyy = chunk%dyy(i) - third
       oxx = chunk%sxx(i)

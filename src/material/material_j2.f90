@@ -23,7 +23,6 @@ contains
     real(wp) :: third, exx, eyy, exy, sxx, syy, sxy, mises, growth, factor, double_shear, inverse, work
     integer :: i
 
-    call rotate_deviator(chunk%cos2, chunk%sin2, chunk%sxx, chunk%syy, chunk%sxy)
     double_shear = 2.0_wp*material%shear
     inverse = 1.0_wp/(3.0_wp*material%shear + material%hardening)
     !$omp simd private(third, exx, eyy, exy, sxx, syy, sxy, mises, growth, factor, work)
@@ -31,7 +30,7 @@ contains
       exx = chunk%dxx(i)
       eyy = chunk%dyy(i)
       exy = chunk%dxy(i)
-      third = (exx + eyy)/3.0_wp
+      third = (1.0_wp/3.0_wp)*(exx + eyy)
       sxx = chunk%sxx(i)
       syy = chunk%syy(i)
       sxy = chunk%sxy(i)
@@ -59,7 +58,6 @@ contains
     real(wp) :: third, exx, eyy, exy, sxx, syy, sxy, mises, growth, flow, inverse, work
     integer :: i
 
-    call rotate_deviator(chunk%cos2, chunk%sin2, chunk%sxx, chunk%syy, chunk%sxy)
     call rotate_deviator(chunk%cos2, chunk%sin2, axx, ayy, axy)
     inverse = 1.0_wp/(3.0_wp*material%shear + material%hardening)
     !$omp simd private(third, exx, eyy, exy, sxx, syy, sxy, mises, growth, flow, work)
@@ -67,7 +65,7 @@ contains
       exx = chunk%dxx(i)
       eyy = chunk%dyy(i)
       exy = chunk%dxy(i)
-      third = (exx + eyy)/3.0_wp
+      third = (1.0_wp/3.0_wp)*(exx + eyy)
       work = chunk%sxx(i)*exx + chunk%syy(i)*eyy + 2.0_wp*chunk%sxy(i)*exy
       sxx = chunk%sxx(i) + 2.0_wp*material%shear*(exx - third) - axx(i)
       syy = chunk%syy(i) + 2.0_wp*material%shear*(eyy - third) - ayy(i)

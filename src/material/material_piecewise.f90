@@ -10,7 +10,7 @@ module material_piecewise_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use material_j2_m, only : tangent_of_return, trial_mises
-  use stress_chunk_m, only : stress_chunk_t, rotate_deviator
+  use stress_chunk_m, only : stress_chunk_t
   use stress_point_m, only : stress_point_t
   implicit none
   private
@@ -26,7 +26,6 @@ contains
     real(wp), intent(inout) :: plastic_strain(chunk_size) !! effective plastic strain
     real(wp), dimension(chunk_size) :: mises, growth
 
-    call rotate_deviator(chunk%cos2, chunk%sin2, chunk%sxx, chunk%syy, chunk%sxy)
     call form_trial(shear, chunk, mises)
     if (depends_on_rate(hardening)) then
       call grow_with_rate(hardening, size(hardening%strain), size(hardening%rate), &
@@ -52,7 +51,7 @@ contains
       exx = chunk%dxx(i)
       eyy = chunk%dyy(i)
       exy = chunk%dxy(i)
-      third = (exx + eyy)/3.0_wp
+      third = (1.0_wp/3.0_wp)*(exx + eyy)
       sxx = chunk%sxx(i)
       syy = chunk%syy(i)
       sxy = chunk%sxy(i)
