@@ -57,13 +57,14 @@ contains
 
   !> Add the nodal forces of a chunk to the tile's own nodes, x and y of a node at a time (told to the
   !> compiler in so many words: left alone it takes them one by one, half as fast again).
-  pure subroutine scatter_chunk(local, chunk, force)
+  pure subroutine scatter_chunk(n_element, local, chunk, force)
+    integer, intent(in) :: n_element             !! padding left out: on one node all of it waits for each other
     integer, intent(in) :: local(4, chunk_size)  !! local numbers in the tile
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes
     integer :: i, k, n(4)
 
-    do i = 1, chunk_size
+    do i = 1, n_element
       n = local(:, i)
       !$omp simd simdlen(2)
       do k = 1, 2

@@ -32,14 +32,15 @@ module layout_m
     integer :: n_slot = 0          !! element slots, chunk_size * n_chunk
     integer :: n_chunk = 0
     integer :: n_special = 0       !! nodes 1 .. n_special are special
-    integer :: n_local = 0         !! largest number of local nodes of a tile, its sink included
+    integer :: n_local = 0         !! largest number of local nodes of a tile
     type(tile_t), allocatable :: tiles(:)
     integer, allocatable :: chunk_part(:)    !! (n_chunk) part index
+    integer, allocatable :: chunk_elements(:) !! (n_chunk) elements in it, in its first slots
     integer, allocatable :: slot_element(:)  !! (n_slot) element index, 0 for padding
     integer, allocatable :: element_slot(:)  !! (n_element) slot of each element
     integer, allocatable :: slot_nodes(:, :) !! (4, n_slot) node indices; all equal in padding
     integer, allocatable :: slot_local(:, :) !! (4, n_slot) local numbers in the tile: interior nodes
-                                             !! from 1, then its special nodes, then a sink for padding
+                                             !! from 1, then its special nodes; 0 in padding
     integer, allocatable :: special_node(:)  !! (force slots) node of each force slot, tile by tile
     integer, allocatable :: node_slots(:)    !! (n_special + 1) where each special node's list starts ...
     integer, allocatable :: slot_list(:)     !! ... in this list of force slots

@@ -85,7 +85,8 @@ contains
       n_chunk = n_chunk + sum((counts + chunk_size - 1)/chunk_size)
     end do
     deallocate (layout%chunk_part, layout%slot_element)
-    allocate (layout%chunk_part(n_chunk), layout%slot_element(n_chunk*chunk_size), source=0)
+    allocate (layout%chunk_part(n_chunk), layout%chunk_elements(n_chunk), &
+      layout%slot_element(n_chunk*chunk_size), source=0)
   end subroutine reserve_chunks
 
   !> Put the elements of one tile, sorted by part, into chunks.
@@ -105,6 +106,7 @@ contains
         layout%chunk_part(layout%n_chunk) = part
       end if
       filled = filled + 1
+      layout%chunk_elements(layout%n_chunk) = filled
       slot = (layout%n_chunk - 1)*chunk_size + filled
       layout%slot_element(slot) = elements(i)
       layout%element_slot(elements(i)) = slot
@@ -155,7 +157,7 @@ contains
     integer, intent(inout) :: local(:)        !! (n_node) last force slot of each special node
     integer, intent(inout) :: special(:)      !! node of each force slot
     integer, intent(inout) :: n_special_slots
-    integer :: n_interior, first_special, slot, k, node, sink
+    integer :: n_interior, first_special, slot, k, node
 
     associate (tile => layout%tiles(i_tile))
       n_interior = tile%last_node - tile%first_node + 1
@@ -175,13 +177,12 @@ contains
       end do
       tile%first_special = first_special
       tile%last_special = n_special_slots
-      sink = n_interior + n_special_slots - first_special + 2
       do slot = first_slot(tile), last_slot(tile)
         if (layout%slot_element(slot) /= 0) cycle
         layout%slot_nodes(:, slot) = layout%slot_nodes(1, slot - 1)
-        layout%slot_local(:, slot) = sink
+        layout%slot_local(:, slot) = 0
       end do
-      layout%n_local = max(layout%n_local, sink)
+      layout%n_local = max(layout%n_local, n_interior + n_special_slots - first_special + 1)
     end associate
   end subroutine number_tile
 
