@@ -75,7 +75,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     real(wp) :: power
-    logical :: had_force
+    logical :: had_force, presses
 
     if (time < contact%birth .or. time > contact%death) then
       call suspend_contact(motion, dt, memory)
@@ -98,12 +98,13 @@ contains
     memory%n_active = 0
     if (memory%points%n > 0 .or. had_force) then
       if (had_force) call keep_former(memory)
-      call press_points(memory)
+      presses = .not. (memory%averages_pressure .or. allocated(memory%spots) .or. contact%damping > 0.0_wp .or. cycle == 0)
+      if (.not. presses) call press_points(memory)
       ! Springs loaded at time zero hold energy that no force has put in.
       if (cycle == 0) memory%energy = stored_energy(memory%points)
       if (contact%damping > 0.0_wp) &
         call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
-      call scatter(memory)
+      call scatter(presses, memory)
       call add_force(memory%nodes, memory%former_force, memory%force, motion, force, power)
       memory%energy = memory%energy - 0.5_wp*dt*power
     end if
@@ -140,7 +141,7 @@ contains
     call place_points(contact, memory)
     if (memory%points%n == 0) return
     call press_points(memory)
-    call scatter(memory)
+    call scatter(.false., memory)
     do i = 1, size(memory%nodes)
       associate (node => memory%nodes(i))
         force(:, node) = force(:, node) + memory%force(:, i)
@@ -149,13 +150,14 @@ contains
   end subroutine evaluate_contact
 
   !> Forces of all points. Those between slave nodes follow each other segment by segment.
-  pure subroutine scatter(memory)
+  pure subroutine scatter(presses, memory)
+    logical, intent(in) :: presses !! each point has a pressure of its own, not formed yet
     type(contact_state_t), intent(inout) :: memory
 
     if (memory%averages_pressure .or. allocated(memory%spots)) then
       call scatter_runs(memory%points, memory%force, memory%n_active)
     else
-      call scatter_points(memory%points, memory%force, memory%n_active)
+      call scatter_points(memory%points, presses, memory%force, memory%n_active)
     end if
   end subroutine scatter
 
