@@ -74,6 +74,7 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
+    memory%points%n_former = memory%points%n
     memory%points%n = 0
     select case (contact%contact_type)
     case (type_nts); call place_nts(contact, memory)

@@ -118,6 +118,7 @@ contains
 
     call enter(archive, name)
     call keep(archive, 'n', points%n)
+    call keep(archive, 'n_former', points%n_former)
     call keep(archive, 'slave_nodes', points%slave_nodes)
     call keep(archive, 'slave_weights', points%slave_weights)
     call keep(archive, 'master_nodes', points%master_nodes)

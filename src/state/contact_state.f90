@@ -32,6 +32,7 @@ module contact_state_m
   !> The list, one column per point.
   type :: contact_points_t
     integer :: n = 0                           !! points in use
+    integer :: n_former = 0                    !! and at the placement before
     integer, allocatable :: slave_nodes(:, :)  !! (n_side, capacity) local numbers
     real(wp), allocatable :: slave_weights(:, :)
     integer, allocatable :: master_nodes(:, :) !! (n_side, capacity) local numbers
@@ -143,6 +144,7 @@ contains
     n = points%n
     call allocate_points(larger, 2*(n + n_more))
     larger%n = n
+    larger%n_former = points%n_former
     larger%slave_nodes(:, :n) = points%slave_nodes(:, :n)
     larger%slave_weights(:, :n) = points%slave_weights(:, :n)
     larger%master_nodes(:, :n) = points%master_nodes(:, :n)
