@@ -3,8 +3,9 @@
 !> with two bodies that touch as free ones: for its first tangent, gaps that are zero but for round-off count
 !> as contact, without any pressure (doc/theory/contact.md, section 9.6).
 module contact_closing_m
+  use contact_lists_m, only : list_touching
   use contact_projection_m, only : foot_t, closest_foot, face_foot, see_segment
-  use contact_search_m, only : most_facing, begin_contact, note_list
+  use contact_search_m, only : most_facing, begin_contact
   use contact_state_m, only : contact_state_t, tracking_t, is_touching, is_behind
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, segment_length, sight_gap
@@ -67,7 +68,6 @@ contains
     integer :: i, n_released
 
     n_released = 0
-    call note_list(0, .true., tracking)
     do i = 1, tracking%n
       if (tracking%segment(i) > 0 .and. tracking%status(i) /= is_behind) then
         foot = closed_foot(tracking, surface, chain, spots, i, gap)
@@ -76,10 +76,8 @@ contains
           tracking%next_wake = -huge(1.0_wp)
         end if
       end if
-      if (tracking%status(i) /= is_touching) cycle
-      tracking%n_touching = tracking%n_touching + 1
-      tracking%touching(tracking%n_touching) = i
     end do
+    call list_touching(tracking)
   end subroutine close_spots
 
   !> Foot of a spot that touches a face without gap, unless it has one already. Beside a sharp corner it is on the face

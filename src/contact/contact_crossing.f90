@@ -5,7 +5,7 @@
 !> (doc/theory/contact.md, section 3.6).
 module contact_crossing_m
   use contact_projection_m, only : foot_t, follow_contact, is_over_segment, side_on
-  use contact_search_m, only : note_list
+  use contact_lists_m, only : list_touching
   use contact_spots_m, only : move_spots
   use contact_state_m, only : contact_state_t, tracking_t, is_free, is_in_front, is_touching, is_behind
   use contacts_m, only : contact_t
@@ -105,7 +105,6 @@ contains
     type(foot_t) :: foot
     integer :: i
 
-    call note_list(0, .true., tracking)
     do i = 1, tracking%n
       if (crossed(i) > 0) then
         foot = follow_contact(surface, chain, spots(:, i), crossed(i))
@@ -120,10 +119,8 @@ contains
           tracking%next_wake = -huge(1.0_wp)
         end if
       end if
-      if (tracking%status(i) /= is_touching) cycle
-      tracking%n_touching = tracking%n_touching + 1
-      tracking%touching(tracking%n_touching) = i
     end do
+    call list_touching(tracking)
 
   contains
 

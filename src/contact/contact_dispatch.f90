@@ -29,6 +29,7 @@ module contact_dispatch_m
     logical :: has_two_passes = .false.   !! master nodes are tracked over the slave chain too
     logical :: has_unit_area = .false.    !! the penalty is N/m per node
     logical :: covers_segments = .false.  !! goes along both chains, slave segment by slave segment
+    logical :: has_point_per_spot = .false. !! a point at each spot in contact, and no other
     logical :: averages_pressure = .false. !! pressure of slave nodes, from averaged gaps
     integer :: points_per_slave = 1       !! usual most of points for each spot, for the allocation
     integer :: points_per_master = 0      !! and for each master node
@@ -39,10 +40,10 @@ module contact_dispatch_m
 
   !> All formulations.
   type(formulation_t), parameter :: formulations(*) = [ &
-    formulation_t(contact_kind_t(type_nts, 'classical NTS'), has_unit_area=.true.), &
-    formulation_t(contact_kind_t(type_nts_ar, 'NTS-AR')), &
+    formulation_t(contact_kind_t(type_nts, 'classical NTS'), has_unit_area=.true., has_point_per_spot=.true.), &
+    formulation_t(contact_kind_t(type_nts_ar, 'NTS-AR'), has_point_per_spot=.true.), &
     formulation_t(contact_kind_t(type_two_pass_ar, 'NTS-AR two-pass'), has_two_passes=.true., &
-      points_per_master=1), &
+      has_point_per_spot=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_vts_ppt, 'VTS-PPT'), spots=spots_at_quarters, &
       points_per_master=1), &
     formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR'), covers_segments=.true., &
@@ -73,6 +74,7 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
+    memory%points%n_former = memory%points%n
     memory%points%n = 0
     select case (contact%contact_type)
     case (type_nts); call place_nts(contact, memory)

@@ -7,11 +7,12 @@ module contact_force_m
   use contact_crossing_m, only : crossings_t, find_crossings, catch_crossings
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
   use contact_initial_m, only : start_slave_tracking, start_master_tracking, start_cover
+  use contact_lists_m, only : forget_list
   use contact_log_m, only : log_contact
   use contact_motion_m, only : gather_places, take_force, keep_former, add_force
   use contact_penalty_m, only : set_penalties, press_points, stored_energy, damp_points
   use contact_scatter_m, only : scatter_points, scatter_runs
-  use contact_search_m, only : update_tracking, note_list, wake_all
+  use contact_search_m, only : update_tracking, wake_all
   use contact_spots_m, only : spots_at_quarters, start_spots, move_spots
   use contact_state_m, only : contact_state_t, tracking_t, allocate_points, is_free
   use contacts_m, only : contact_t
@@ -53,6 +54,7 @@ contains
     call allocate_points(memory%points, formulation%points_per_slave*memory%slave_tracking%n &
       + formulation%points_per_master*n_master)
     memory%averages_pressure = formulation%averages_pressure
+    memory%has_point_per_spot = formulation%has_point_per_spot
     memory%laps_pairing = formulation%covers_segments .or. formulation%spots == spots_at_quarters
     allocate (memory%mark(n_slave), source=0)
     if (memory%averages_pressure .or. contact%damping > 0.0_wp) &
@@ -73,7 +75,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     real(wp) :: power
-    logical :: had_force
+    logical :: had_force, presses
 
     if (time < contact%birth .or. time > contact%death) then
       call suspend_contact(motion, dt, memory)
@@ -83,7 +85,12 @@ contains
     call gather_places(motion, memory)
     if (allocated(memory%spots)) &
       call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
-    call search_pairs(contact, cycle, memory)
+    call wake_at_interval(contact, cycle, memory)
+    if (memory%has_point_per_spot) then
+      call search_points(contact, memory)
+    else
+      call search_pairs(contact, memory)
+    end if
     call lap(clock, phase_contact_search)
     call place_points(contact, memory)
     if (memory%laps_pairing) call lap(clock, phase_contact_pairing)
@@ -91,12 +98,13 @@ contains
     memory%n_active = 0
     if (memory%points%n > 0 .or. had_force) then
       if (had_force) call keep_former(memory)
-      call press_points(memory)
+      presses = .not. (memory%averages_pressure .or. allocated(memory%spots) .or. contact%damping > 0.0_wp .or. cycle == 0)
+      if (.not. presses) call press_points(memory)
       ! Springs loaded at time zero hold energy that no force has put in.
       if (cycle == 0) memory%energy = stored_energy(memory%points)
       if (contact%damping > 0.0_wp) &
         call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
-      call scatter(memory)
+      call scatter(presses, memory)
       call add_force(memory%nodes, memory%former_force, memory%force, motion, force, power)
       memory%energy = memory%energy - 0.5_wp*dt*power
     end if
@@ -126,13 +134,14 @@ contains
     if (allocated(memory%spots)) &
       call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
     call find_crossings(contact, motion, memory, crossings)
-    call search_pairs(contact, 0, memory)
+    call wake_at_interval(contact, 0, memory)
+    call search_pairs(contact, memory)
     call catch_crossings(contact, crossings, memory)
     if (is_first) call close_contacts(contact, closed_gap_of(contact, memory), memory)
     call place_points(contact, memory)
     if (memory%points%n == 0) return
     call press_points(memory)
-    call scatter(memory)
+    call scatter(.false., memory)
     do i = 1, size(memory%nodes)
       associate (node => memory%nodes(i))
         force(:, node) = force(:, node) + memory%force(:, i)
@@ -141,13 +150,14 @@ contains
   end subroutine evaluate_contact
 
   !> Forces of all points. Those between slave nodes follow each other segment by segment.
-  pure subroutine scatter(memory)
+  pure subroutine scatter(presses, memory)
+    logical, intent(in) :: presses !! each point has a pressure of its own, not formed yet
     type(contact_state_t), intent(inout) :: memory
 
     if (memory%averages_pressure .or. allocated(memory%spots)) then
       call scatter_runs(memory%points, memory%force, memory%n_active)
     else
-      call scatter_points(memory%points, memory%force, memory%n_active)
+      call scatter_points(memory%points, presses, memory%force, memory%n_active)
     end if
   end subroutine scatter
 
@@ -187,35 +197,55 @@ contains
     type(tracking_t), intent(inout) :: tracking
 
     tracking%segment = 0
-    call note_list(0, .true., tracking)
+    call forget_list(tracking)
     tracking%status = is_free
     tracking%grid%cell = 0.0_wp
     call wake_all(tracking)
   end subroutine forget_pairs
 
-  !> Pairs of the slave nodes, and of the master nodes where there are two passes.
-  pure subroutine search_pairs(contact, cycle, memory)
+  !> Have all searched for globally when FREQ asks for it.
+  pure subroutine wake_at_interval(contact, cycle, memory)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: cycle
     type(contact_state_t), intent(inout) :: memory
 
-    if (contact%search_interval > 0 .and. cycle >= memory%next_search) then
-      memory%next_search = cycle + contact%search_interval
-      call wake_all(memory%slave_tracking)
-      if (memory%master_tracking%n > 0) call wake_all(memory%master_tracking)
-    end if
-    associate (chain => memory%places(:, memory%n_slave + 1:))
+    if (contact%search_interval <= 0 .or. cycle < memory%next_search) return
+    memory%next_search = cycle + contact%search_interval
+    call wake_all(memory%slave_tracking)
+    if (memory%master_tracking%n > 0) call wake_all(memory%master_tracking)
+  end subroutine wake_at_interval
+
+  !> Pairs of the slave spots, and of the master nodes where there are two passes.
+  pure subroutine search_pairs(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+
+    associate (slave => memory%places(:, :memory%n_slave), master => memory%places(:, memory%n_slave + 1:))
       if (allocated(memory%spots)) then
-        call update_tracking(memory%slave_tracking, contact%master, chain, memory%spots, &
-          memory%travel, memory%n_released)
+        call update_tracking(memory%slave_tracking, contact%master, master, memory%spots, memory%travel, &
+          memory%n_released)
       else
-        call update_tracking(memory%slave_tracking, contact%master, chain, &
-          memory%places(:, :memory%n_slave), memory%travel, memory%n_released)
+        call update_tracking(memory%slave_tracking, contact%master, master, slave, memory%travel, memory%n_released)
       end if
+      if (memory%master_tracking%n > 0) call update_tracking(memory%master_tracking, contact%slave, slave, master, &
+        memory%travel, memory%n_released)
     end associate
-    if (memory%master_tracking%n > 0) call update_tracking(memory%master_tracking, contact%slave, &
-      memory%places(:, :memory%n_slave), memory%places(:, memory%n_slave + 1:), memory%travel, &
-      memory%n_released)
   end subroutine search_pairs
+
+  !> The same where a point stands at each node in contact: points that stay are brought up to date on the list. Those of the
+  !> master pass stand behind those of the slave pass.
+  pure subroutine search_points(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+
+    associate (slave => memory%places(:, :memory%n_slave), master => memory%places(:, memory%n_slave + 1:))
+      call update_tracking(memory%slave_tracking, contact%master, master, slave, memory%travel, memory%n_released, &
+        memory%n_slave, memory%points)
+      if (memory%master_tracking%n == 0) return
+      if (memory%slave_tracking%first_point == 0) memory%master_tracking%first_point = 0
+      call update_tracking(memory%master_tracking, contact%slave, slave, master, memory%travel, memory%n_released, &
+        0, memory%points)
+    end associate
+  end subroutine search_points
 
 end module contact_force_m

@@ -9,7 +9,7 @@ module contact_penalty_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: set_penalties, mean_length, press_points, stored_energy, damp_points
+  public :: set_penalties, mean_length, press_points, press_each, stored_energy, damp_points
 
 contains
 
@@ -105,18 +105,25 @@ contains
   !> slave nodes.
   pure subroutine press_points(memory)
     type(contact_state_t), intent(inout) :: memory
+
+    if (memory%averages_pressure) then
+      call press_nodes(memory%points, memory%n_slave, memory%nodal)
+    else
+      call press_each(memory%points%n, memory%points%stiffness, memory%points%gap, memory%points%pressure)
+    end if
+  end subroutine press_points
+
+  !> Pressure of points that each have their own.
+  pure subroutine press_each(n, stiffness, gap, pressure)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: stiffness(*), gap(*)
+    real(wp), intent(inout) :: pressure(*)
     integer :: p
 
-    associate (points => memory%points)
-      if (memory%averages_pressure) then
-        call press_nodes(points, memory%n_slave, memory%nodal)
-      else
-        do p = 1, points%n
-          points%pressure(p) = points%stiffness(p)*max(0.0_wp, -points%gap(p))
-        end do
-      end if
-    end associate
-  end subroutine press_points
+    do p = 1, n
+      pressure(p) = stiffness(p)*max(0.0_wp, -gap(p))
+    end do
+  end subroutine press_each
 
   !> Pressure at slave nodes from averaged gaps, p_A = stiffness * max(0, -sum(N_A a g)/sum(N_A a)), and at the points
   !> by the slave shape functions (Fischer & Wriggers 2005). The forces that follow are the derivative of

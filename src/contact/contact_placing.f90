@@ -16,19 +16,30 @@ module contact_placing_m
 contains
 
   !> Append a point for each tracked node in contact; area and stiffness are left to the formulation.
-  !> The tracked node stands on the slave side of the record, whichever surface it belongs to. Points at slave nodes
-  !> are the first of the list; where they are at those of the last placement (`is_known`) that side is not written again.
+  !> The tracked node stands on the slave side of the record, whichever surface it belongs to. Where the points stand already
+  !> (`is_known`) that side is not written again; nor is the other one if the search has brought it up to date.
   pure subroutine add_touching_nodes(tracking, chain_surface, spot_offset, chain_offset, points, is_known)
-    type(tracking_t), intent(in) :: tracking
+    type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: chain_surface
     integer, intent(in) :: spot_offset, chain_offset !! local number before the first node of each
     type(contact_points_t), intent(inout) :: points
     logical, intent(out) :: is_known
+
+    is_known = tracking%first_point == points%n + 1
+    tracking%first_point = points%n + 1
+    if (.not. is_known) call put_spots(tracking%n_touching, tracking%touching, spot_offset, points)
+    if (tracking%has_feet) call put_blocks(tracking, chain_surface, chain_offset, points)
+    points%n = points%n + tracking%n_touching
+  end subroutine add_touching_nodes
+
+  !> Master side of these points.
+  pure subroutine put_blocks(tracking, chain_surface, chain_offset, points)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: chain_surface
+    integer, intent(in) :: chain_offset
+    type(contact_points_t), intent(inout) :: points
     integer :: first, i, n, p
 
-    is_known = spot_offset == 0 .and. points%i_list == tracking%i_list
-    if (spot_offset == 0) points%i_list = tracking%i_list
-    if (.not. is_known) call put_spots(tracking%n_touching, tracking%touching, spot_offset, points)
     do first = 1, tracking%n_touching, n_room
       n = min(n_room, tracking%n_touching - first + 1)
       p = points%n + first
@@ -43,8 +54,7 @@ contains
           points%master_weights(1, p), points%gap(p), points%normal(1, p))
       end if
     end do
-    points%n = points%n + tracking%n_touching
-  end subroutine add_touching_nodes
+  end subroutine put_blocks
 
   !> Slave side of points at tracked nodes.
   pure subroutine put_spots(n, touching, offset, points)

@@ -2,7 +2,6 @@
 !> What the writers want to know of an interface.
 module contact_results_m
   use contact_competence_m, only : competence_length
-  use contact_placing_m, only : tracked_foot
   use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
   use contact_state_m, only : contact_state_t, is_touching, n_side
   use contacts_m, only : contact_t
@@ -12,7 +11,7 @@ module contact_results_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: interface_resultants, slave_rows
+  public :: interface_resultants, slave_rows, touching_gaps
 
 contains
 
@@ -32,7 +31,7 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
-    real(wp), allocatable :: places(:, :), share(:)
+    real(wp), allocatable :: places(:, :), share(:), gaps(:)
     integer :: i, n
 
     n = memory%n_slave
@@ -50,10 +49,11 @@ contains
       rows%master_pressure(i) = share(n + i)/max(tiny(1.0_wp), &
         competence_length(contact%master, places(:, n + 1:), i))
     end do
+    gaps = touching_gaps(memory)
     do i = 1, n
       rows%length(i) = competence_length(contact%slave, places(:, :n), i)
       rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
-      rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
+      rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i, gaps)
     end do
   end subroutine slave_rows
 
@@ -95,14 +95,27 @@ contains
     end associate
   end function normal_forces
 
+  !> Gaps of all spots, m, up to date for those in contact: where the search has put them.
+  pure function touching_gaps(memory) result(gaps)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), allocatable :: gaps(:)
+
+    gaps = memory%slave_tracking%gap
+    if (memory%slave_tracking%has_feet) return
+    associate (n => memory%slave_tracking%n_touching, first => memory%slave_tracking%first_point)
+      gaps(memory%slave_tracking%touching(:n)) = memory%points%gap(first:first + n - 1)
+    end associate
+  end function touching_gaps
+
   !> Gap of a slave node at the present places; 0 when it is unpaired. A spot that sleeps keeps its segment although
   !> it may have gone out of reach since.
-  pure function present_gap(contact, chain, place, memory, i) result(gap)
+  pure function present_gap(contact, chain, place, memory, i, touching_gap) result(gap)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_master) present places
     real(wp), intent(in) :: place(4)                !! of the node
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: i                        !! node of the slave surface
+    real(wp), intent(in) :: touching_gap(:)         !! of the spots in contact
     real(wp) :: gap
     type(foot_t) :: foot, spot_foot
     integer :: spot
@@ -120,7 +133,8 @@ contains
       else if (allocated(memory%spots)) then
         foot = follow_contact(contact%master, chain, place, segment)
       else
-        foot = tracked_foot(tracking, spot)
+        gap = touching_gap(spot)
+        return
       end if
       if (foot%is_on) gap = foot%gap
     end associate

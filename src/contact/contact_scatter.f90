@@ -1,24 +1,36 @@
 ! SPDX-License-Identifier: MIT
 !> From points to nodal forces.
 module contact_scatter_m
+  use contact_penalty_m, only : press_each
   use contact_state_m, only : contact_points_t, contact_state_t, n_side
   use kinds_m, only : wp
   implicit none
   private
   public :: scatter_points, scatter_runs, add_gap_round_off
 
+  !> Points pressed and scattered together.
+  integer, parameter :: block_size = 128
+
 contains
 
   !> Add the force of each point to its nodes: pressure*area*normal by the weights, slave side with
-  !> plus and master side with minus. Counts the points that carry pressure.
-  pure subroutine scatter_points(points, force, n_active)
-    type(contact_points_t), intent(in) :: points
+  !> plus and master side with minus. Counts the points that carry pressure. Block by block, and where each point has a
+  !> pressure of its own (`presses`) that is formed on the way: a block stays in the cache, a long list does not.
+  pure subroutine scatter_points(points, presses, force, n_active)
+    type(contact_points_t), intent(inout) :: points
+    logical, intent(in) :: presses
     real(wp), intent(inout) :: force(2, *) !! by local node, N/m
     integer, intent(out) :: n_active
+    integer :: p, n
 
-    n_active = count(points%pressure(:points%n) > 0.0_wp)
-    call scatter_each(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
-      points%master_weights, points%normal, points%pressure, points%area, force)
+    n_active = 0
+    do p = 1, points%n, block_size
+      n = min(block_size, points%n - p + 1)
+      if (presses) call press_each(n, points%stiffness(p), points%gap(p), points%pressure(p))
+      call scatter_each(n, points%slave_nodes(1, p), points%slave_weights(1, p), points%master_nodes(1, p), &
+        points%master_weights(1, p), points%normal(1, p), points%pressure(p), points%area(p), force)
+      n_active = n_active + count_active(n, points%pressure(p))
+    end do
   end subroutine scatter_points
 
   !> The same where several points in a row have the same nodes on a side, as on a slave segment.
@@ -27,12 +39,22 @@ contains
     real(wp), intent(inout) :: force(2, *) !! by local node, N/m
     integer, intent(out) :: n_active
 
-    n_active = count(points%pressure(:points%n) > 0.0_wp)
+    n_active = count_active(points%n, points%pressure)
     call scatter_in_runs(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
       points%master_weights, points%normal, points%pressure, points%area, force)
   end subroutine scatter_runs
 
-  !> On arrays of known shape: through the list each access costs a multiplication by its stride.
+  !> Points that carry pressure.
+  pure function count_active(n, pressure) result(n_active)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: pressure(n)
+    integer :: n_active
+
+    n_active = count(pressure > 0.0_wp)
+  end function count_active
+
+  !> On arrays of known shape: through the list each access costs a multiplication by its stride. A point at a slave node has
+  !> it at both ends, and all of the force goes there.
   pure subroutine scatter_each(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
     pressure, area, force)
     integer, intent(in) :: n
@@ -40,19 +62,27 @@ contains
     real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
     real(wp), intent(in) :: normal(2, *), pressure(*), area(*)
     real(wp), intent(inout) :: force(2, *)
-    real(wp) :: total(2), node_force(2)
-    integer :: p, k
+    real(wp) :: point(2), total(2)
+    integer :: p, a, b, c, d
 
     !GCC$ NOVECTOR
     do p = 1, n
-      total = pressure(p)*area(p)*normal(:, p)
-      do k = 1, n_side
-        node_force = force(:, master_nodes(k, p)) - master_weights(k, p)*total
-        force(:, master_nodes(k, p)) = node_force
-        if (.not. abs(slave_weights(k, p)) > 0.0_wp) cycle
-        node_force = force(:, slave_nodes(k, p)) + slave_weights(k, p)*total
-        force(:, slave_nodes(k, p)) = node_force
-      end do
+      a = slave_nodes(1, p); b = slave_nodes(2, p)
+      c = master_nodes(1, p); d = master_nodes(2, p)
+      point = pressure(p)*area(p)*normal(:, p)
+      total = force(:, c) - master_weights(1, p)*point
+      force(:, c) = total
+      total = force(:, d) - master_weights(2, p)*point
+      force(:, d) = total
+      if (a == b) then
+        total = force(:, a) + point
+        force(:, a) = total
+      else
+        total = force(:, a) + slave_weights(1, p)*point
+        force(:, a) = total
+        total = force(:, b) + slave_weights(2, p)*point
+        force(:, b) = total
+      end if
     end do
   end subroutine scatter_each
 

@@ -3,93 +3,78 @@
 !> miss something, asleep where nothing can touch (doc/theory/contact.md, section 4).
 module contact_search_m
   use contact_buckets_m, only : nearest_t, fill_grid, slip_limit, box_distance, find_nearest
-  use contact_keeping_m, only : keep_contacts, list_kept
+  use contact_keeping_m, only : keep_contacts, keep_points, move_points, take_feet
+  use contact_lists_m, only : list_touching, list_waking
   use contact_projection_m, only : foot_t, see_segment, closest_foot, follow_contact, &
     walk_to_closest, is_over_segment, turns_gently, end_tolerance, &
     side_on
-  use contact_state_m, only : tracking_t, is_free, is_in_front, is_touching, is_behind
+  use contact_state_m, only : contact_points_t, tracking_t, is_free, is_in_front, is_touching, is_behind
   use geometry_m, only : sight_t, separation
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: update_tracking, note_list, wake_all, most_facing, begin_contact
+  public :: update_tracking, wake_all, most_facing, begin_contact
 
 contains
 
-  !> Bring the pairs of all spots up to date and list the spots in contact.
-  pure subroutine update_tracking(tracking, surface, chain, spots, travel, n_released)
+  !> Bring the pairs of all spots up to date and list the spots in contact. Where the list of points is given, the feet of
+  !> spots whose points stand on it are brought up to date there, and not in the tracking.
+  pure subroutine update_tracking(tracking, surface, chain, spots, travel, n_released, offset, points)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface            !! the chain tracked upon
     real(wp), intent(in), contiguous :: chain(:, :)   !! (4, n_node) places of its nodes
     real(wp), intent(in), contiguous :: spots(:, :)   !! (4, n) places of the spots
     real(wp), intent(in) :: travel                    !! relative motion since the start, m
     integer, intent(inout) :: n_released              !! deep first contacts let go
-    real(wp) :: next_wake
-    integer :: i, n_kept, n_touching
+    integer, intent(in), optional :: offset           !! local number before the chain's first node
+    type(contact_points_t), intent(inout), optional :: points
+    integer :: n_left
     logical :: has_changed
 
-    if (travel < tracking%next_wake) then
-      call note_list(0, .false., tracking)
-      return
+    tracking%has_feet = .true.
+    if (tracking%n_touching == 0 .and. travel < tracking%next_wake) return
+    if (present(points)) tracking%has_feet = tracking%first_point == 0
+    if (tracking%has_feet) then
+      call keep_contacts(surface%segments, chain, spots, tracking, n_left)
+    else
+      call keep_points(offset, chain, spots, tracking, points, n_left)
     end if
-    call keep_contacts(surface%segments, chain, spots, tracking, n_kept)
-    if (n_kept == tracking%n) then
-      ! The list of spots in contact stays as it is.
-      tracking%is_kept = .false.
-      return
+    if (n_left == 0 .and. travel < tracking%next_wake) return
+    call update_others(tracking, surface, chain, spots, travel, n_left, n_released, has_changed)
+    if (.not. tracking%has_feet) then
+      if (has_changed) then
+        call take_feet(points, n_left, tracking)
+      else
+        call move_points(offset, surface%segments, n_left, tracking, points)
+      end if
     end if
-    next_wake = huge(1.0_wp)
-    n_touching = 0
-    has_changed = .false.
-    i = 0
-    do while (i < tracking%n)
-      if (tracking%is_kept(i + 1)) then
-        call list_kept(tracking%n, tracking%is_kept, i, tracking%touching, n_touching)
-        next_wake = -huge(1.0_wp)
-        cycle
-      end if
-      if (travel < tracking%wake(i + 1)) then
-        call pass_sleeping(tracking%n, tracking%is_kept, tracking%wake, travel, i, next_wake)
-        cycle
-      end if
-      i = i + 1
-      call update_spot(tracking, surface, chain, spots, i, travel, n_released)
-      next_wake = min(next_wake, tracking%wake(i))
-      if (tracking%status(i) /= is_touching) cycle
-      n_touching = n_touching + 1
-      ! Another list of the same length holds a spot that was not kept.
-      has_changed = has_changed .or. tracking%touching(n_touching) /= i
-      tracking%touching(n_touching) = i
-    end do
-    call note_list(n_touching, has_changed, tracking)
-    tracking%next_wake = next_wake
+    if (has_changed) call list_touching(tracking)
   end subroutine update_tracking
 
-  !> Keep the length of the list of spots in contact, and note whether it has changed.
-  pure subroutine note_list(n_touching, has_changed, tracking)
-    integer, intent(in) :: n_touching
-    logical, intent(in) :: has_changed !! one of the list
+  !> Spots that were not kept; and those that are not in contact, if any of them is due.
+  pure subroutine update_others(tracking, surface, chain, spots, travel, n_left, n_released, has_changed)
     type(tracking_t), intent(inout) :: tracking
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
+    real(wp), intent(in) :: travel
+    integer, intent(in) :: n_left
+    integer, intent(inout) :: n_released
+    logical, intent(out) :: has_changed !! the list of spots in contact
+    integer :: i, k, n_due
 
-    if (has_changed .or. n_touching /= tracking%n_touching) tracking%i_list = tracking%i_list + 1
-    tracking%n_touching = n_touching
-  end subroutine note_list
-
-  !> Pass the spots that sleep from i + 1 to the first one that does not; i is then the last one.
-  pure subroutine pass_sleeping(n, is_kept, wake, travel, i, next_wake)
-    integer, intent(in) :: n              !! spots
-    logical, intent(in) :: is_kept(n)
-    real(wp), intent(in) :: wake(n), travel
-    integer, intent(inout) :: i
-    real(wp), intent(inout) :: next_wake  !! no later than any of theirs
-
-    do while (i < n)
-      if (is_kept(i + 1) .or. .not. travel < wake(i + 1)) exit
-      i = i + 1
-      next_wake = min(next_wake, wake(i))
+    n_due = n_left
+    if (.not. travel < tracking%next_wake) call list_waking(tracking%n_touching, tracking%touching, tracking%n, &
+      tracking%wake, travel, tracking%next_wake, tracking%due, n_due)
+    has_changed = .false.
+    do k = 1, n_due
+      i = tracking%due(k)
+      if (k <= n_left) i = tracking%touching(i)
+      call update_spot(tracking, surface, chain, spots, i, travel, n_released)
+      has_changed = has_changed .or. (tracking%status(i) == is_touching .neqv. k <= n_left)
+      if (tracking%status(i) /= is_touching) tracking%next_wake = min(tracking%next_wake, tracking%wake(i))
     end do
-  end subroutine pass_sleeping
+  end subroutine update_others
 
   !> Any other case, by what the spot was doing.
   pure subroutine update_spot(tracking, surface, chain, spots, i, travel, n_released)

@@ -4,7 +4,7 @@
 module points_mortar_m
   use contact_overlap_m, only : face_on
   use contact_spot_list_m, only : spot_list_t, list_spots, put_spots
-  use contact_state_m, only : contact_state_t, make_room, n_side, is_touching
+  use contact_state_m, only : contact_state_t, contact_points_t, make_room, n_side, is_touching
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
@@ -117,15 +117,36 @@ contains
       call put_areas(m, n, contact%slave%segments(1, s), memory%places, tracking%normal(1, i), &
         memory%spot_share, points%area(p), points%normal(1, p), all_face)
       if (.not. all_face) return
-      call put_sides(m, n, contact%slave%segments(1, s), memory%spot_xi, points%slave_nodes(1, p), &
-        points%slave_weights(1, p))
+      if (.not. is_known(m*n, contact%slave%segments(1, s), contact%slave%segments(1, s + n - 1), &
+        memory%slave_penalty, points)) then
+        call put_sides(m, n, contact%slave%segments(1, s), memory%spot_xi, points%slave_nodes(1, p), &
+          points%slave_weights(1, p))
+        points%stiffness(p:points%n + m*n) = memory%slave_penalty
+      end if
       call put_master_side(m*n, tracking%segment(i), tracking%xi(i), contact%master%segments, &
         memory%n_slave, points%master_nodes(1, p), points%master_weights(1, p), tracking%gap(i), &
         points%gap(p))
-      points%stiffness(p:points%n + m*n) = memory%slave_penalty
       points%n = points%n + m*n
     end associate
   end subroutine add_touching
+
+  !> Whether the next n points were those of the same segments at the last placement, so that their slave side and
+  !> stiffness stand there. A segment has a point at each of its Gauss points at most, and segments are placed in
+  !> order: where the first and the last point are those of the first and the last segment, so are all between.
+  pure function is_known(n, first, last, stiffness, points)
+    integer, intent(in) :: n
+    integer, intent(in) :: first(n_side), last(n_side) !! nodes of the first and the last segment
+    real(wp), intent(in) :: stiffness
+    type(contact_points_t), intent(in) :: points
+    logical :: is_known
+
+    is_known = points%n + n <= points%n_former
+    if (.not. is_known) return
+    associate (p => points%n + 1, q => points%n + n)
+      is_known = all(points%slave_nodes(:, p) == first) .and. all(points%slave_nodes(:, q) == last) &
+        .and. .not. abs(points%stiffness(p) - stiffness) > 0.0_wp
+    end associate
+  end function is_known
 
   !> Areas and normals of the Gauss points of some segments, if all of them face the master entirely.
   pure subroutine put_areas(m, n, ends, places, normals, shares, areas, point_normals, all_face)

@@ -32,7 +32,7 @@ module contact_state_m
   !> The list, one column per point.
   type :: contact_points_t
     integer :: n = 0                           !! points in use
-    integer :: i_list = -1                     !! slave_tracking%i_list when those at slave nodes, the first, were placed
+    integer :: n_former = 0                    !! and at the placement before
     integer, allocatable :: slave_nodes(:, :)  !! (n_side, capacity) local numbers
     real(wp), allocatable :: slave_weights(:, :)
     integer, allocatable :: master_nodes(:, :) !! (n_side, capacity) local numbers
@@ -59,11 +59,12 @@ module contact_state_m
   type :: tracking_t
     integer :: n = 0                         !! spots
     integer :: n_touching = 0
-    integer :: i_list = 0                    !! changes of the list of spots in contact
-    real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot can change
+    integer :: first_point = 0               !! of those that stand at the spots in contact, one at each; 0: nowhere
+    logical :: has_feet = .true.             !! xi, gap and normal of spots in contact are here; else on the points
+    real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot that is not in contact can change
     real(wp) :: reach = 0.0_wp               !! spots farther away than this are unpaired, m
     integer, allocatable :: touching(:)      !! (n) the first n_touching: spots in contact, in order
-    logical, allocatable :: is_kept(:)       !! (n) scratch, false between steps
+    integer, allocatable :: due(:)           !! (n) scratch: spots to be looked at; those of that list by their place on it
     integer, allocatable :: segment(:)       !! (n) segment of the chain, 0 = unpaired
     integer, allocatable :: status(:)        !! (n) one of the constants above
     real(wp), allocatable :: xi(:)           !! (n) 0 to 1 along the segment (a little more at ends)
@@ -100,6 +101,7 @@ module contact_state_m
     type(tracking_t) :: master_tracking     !! master nodes over the slave chain; empty for one pass
     type(cover_memory_t) :: cover
     type(contact_points_t) :: points
+    logical :: has_point_per_spot = .false. !! a point at each spot in contact, and no other
     logical :: laps_pairing = .false.       !! placing the points is work of its own for the clock
     logical :: averages_pressure = .false.  !! pressure comes from slave nodes, not from each point
     real(wp), allocatable :: nodal(:, :)    !! (2, n_slave + n_master) scratch of such a pressure and of damping
@@ -142,6 +144,7 @@ contains
     n = points%n
     call allocate_points(larger, 2*(n + n_more))
     larger%n = n
+    larger%n_former = points%n_former
     larger%slave_nodes(:, :n) = points%slave_nodes(:, :n)
     larger%slave_weights(:, :n) = points%slave_weights(:, :n)
     larger%master_nodes(:, :n) = points%master_nodes(:, :n)
@@ -161,10 +164,9 @@ contains
     integer :: n_bucket
 
     tracking%n = n
-    allocate (tracking%touching(n), tracking%segment(n), tracking%status(n), source=0)
+    allocate (tracking%touching(n), tracking%due(n), tracking%segment(n), tracking%status(n), source=0)
     allocate (tracking%xi(n), tracking%gap(n), tracking%normal(2, n), tracking%spot_depth(n), &
       tracking%segment_depth(n_segment), source=0.0_wp)
-    allocate (tracking%is_kept(n), source=.false.)
     allocate (tracking%wake(n), tracking%recheck(n), source=-huge(1.0_wp))
     n_bucket = 16
     do while (n_bucket < 2*n_segment)

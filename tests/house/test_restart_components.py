@@ -16,12 +16,10 @@ KEPT = {
     "block_state_t": ("state/block_state.f90", "output/restart_state.f90", "elements%", {}),
     "contact_state_t": ("state/contact_state.f90", "output/restart_contact.f90", "contact%", {
         "former_force": "zero between calls"}),
-    "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {
-        "i_list": "counted anew"}),
+    "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {}),
     "bucket_grid_t": ("state/contact_state.f90", "output/restart_contact.f90", "grid%", {}),
     "cover_memory_t": ("state/contact_state.f90", "output/restart_contact.f90", "cover%", {}),
-    "contact_points_t": ("state/contact_state.f90", "output/restart_contact.f90", "points%", {
-        "i_list": "that of no list"}),
+    "contact_points_t": ("state/contact_state.f90", "output/restart_contact.f90", "points%", {}),
     "step_plan_t": ("solve/time_step.f90", "solve/restart_steps.f90", "steps%", {}),
     "spring_bound_t": ("contact/contact_step_limit.f90", "solve/restart_steps.f90", "springs(i)%", {}),
     "schedule_t": ("output/output_schedule.f90", "output/restart_history.f90", "kept%", {
