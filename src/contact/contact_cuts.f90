@@ -11,6 +11,12 @@ module contact_cuts_m
   private
   public :: share_cuts
 
+  !> Pieces that end at a master node in contact. Without default values, which would be written before each use.
+  type :: cuts_t
+    integer :: n
+    integer :: piece(n_room) !! on the list
+  end type cuts_t
+
 contains
 
   !> Half of each piece of a run of segments to either of its ends.
@@ -19,24 +25,25 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(in) :: cover
     integer, intent(in) :: first, last !! of the list
-    integer :: i, n, cuts(n_room)
+    type(cuts_t) :: cuts
+    integer :: i
 
-    n = 0
+    cuts%n = 0
     i = first
     do
       call share_touching(cover, last, memory%closed_gap, memory%travel, memory%mark, memory%points%area, &
-        memory%cover%status, memory%cover%wake, i, n, cuts)
+        memory%cover%status, memory%cover%wake, i, cuts)
       if (i > last) exit
-      call share_other(contact, memory, cover, i, n, cuts)
+      call share_other(contact, memory, cover, i, cuts)
       i = i + 1
     end do
-    if (n > 0) call add_cuts(memory, cover, n, cuts)
+    if (cuts%n > 0) call add_cuts(memory, cover, cuts%n, cuts%piece)
   end subroutine share_cuts
 
   !> Segments from i on with both ends in contact: i is then the first of another kind. They stay what they are, as
   !> `note_plain_contact` has it. The sum at the last end is kept at hand for the next segment, since a sum in memory has to
   !> be stored before it can be read again. On arrays of known shape: through the memory it took 2 % of the whole contact more.
-  pure subroutine share_touching(cover, last, closed_gap, travel, mark, area, status, wake, i, n, cuts)
+  pure subroutine share_touching(cover, last, closed_gap, travel, mark, area, status, wake, i, cuts)
     type(plain_cover_t), intent(in) :: cover
     integer, intent(in) :: last                !! of the list
     real(wp), intent(in) :: closed_gap, travel !! m
@@ -44,7 +51,8 @@ contains
     real(wp), intent(inout) :: area(*)         !! m
     integer, intent(inout) :: status(*)        !! of the slave segments
     real(wp), intent(inout) :: wake(*)         !! m
-    integer, intent(inout) :: i, n, cuts(n_room)
+    integer, intent(inout) :: i
+    type(cuts_t), intent(inout) :: cuts
     real(wp) :: held
     logical :: is_deep
     integer :: k, p, at, n_before
@@ -60,9 +68,9 @@ contains
       at = mark(cover%ends(2, k))
       held = area(at) + 0.5_wp*(1.0_wp - cover%low(cover%last(i)))*cover%length(k)
       area(at) = held
-      n_before = n
-      call list_cuts(k, cover%last(i) - 1, cover%gap, closed_gap, n, cuts)
-      is_deep = n > n_before
+      n_before = cuts%n
+      call list_cuts(k, cover%last(i) - 1, cover%gap, closed_gap, cuts)
+      is_deep = cuts%n > n_before
       status(cover%slave(i)) = merge(is_touching, is_free, is_deep)
       wake(cover%slave(i)) = merge(-huge(1.0_wp), travel, is_deep)
       i = i + 1
@@ -70,12 +78,12 @@ contains
   end subroutine share_touching
 
   !> Any other segment.
-  pure subroutine share_other(contact, memory, cover, i, n, cuts)
+  pure subroutine share_other(contact, memory, cover, i, cuts)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(in) :: cover
-    integer, intent(in) :: i               !! on the list
-    integer, intent(inout) :: n, cuts(n_room)
+    integer, intent(in) :: i !! on the list
+    type(cuts_t), intent(inout) :: cuts
     integer :: k, p, n_before
     logical :: counts
 
@@ -85,24 +93,25 @@ contains
       if (p > 0) area(p) = area(p) + 0.5_wp*cover%high(k)*cover%length(k)
       p = memory%mark(ends(2))
       if (p > 0) area(p) = area(p) + 0.5_wp*(1.0_wp - cover%low(cover%last(i)))*cover%length(k)
-      n_before = n
-      call list_cuts(k, cover%last(i) - 1, cover%gap, memory%closed_gap, n, cuts)
-      call judge_segment(contact, memory, cover%slave(i), ends, minval(cover%gap(cuts(n_before + 1:n))), counts)
+      n_before = cuts%n
+      call list_cuts(k, cover%last(i) - 1, cover%gap, memory%closed_gap, cuts)
+      call judge_segment(contact, memory, cover%slave(i), ends, &
+        minval(cover%gap(cuts%piece(n_before + 1:cuts%n))), counts)
     end associate
-    if (.not. counts) n = n_before
+    if (.not. counts) cuts%n = n_before
   end subroutine share_other
 
   !> List those of some pieces that end at a master node in contact, without a decision at each.
-  pure subroutine list_cuts(first, last, gap, closed_gap, n, cuts)
+  pure subroutine list_cuts(first, last, gap, closed_gap, cuts)
     integer, intent(in) :: first, last
     real(wp), intent(in) :: gap(n_room), closed_gap !! m
-    integer, intent(inout) :: n, cuts(n_room)
+    type(cuts_t), intent(inout) :: cuts
     integer :: k
 
     !GCC$ UNROLL 1
     do k = first, last
-      cuts(n + 1) = k
-      n = n + merge(1, 0, gap(k) < closed_gap)
+      cuts%piece(cuts%n + 1) = k
+      cuts%n = cuts%n + merge(1, 0, gap(k) < closed_gap)
     end do
   end subroutine list_cuts
 
