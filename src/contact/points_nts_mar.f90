@@ -5,10 +5,10 @@
 module points_nts_mar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
   use contact_competence_m, only : competence_length
-  use contact_cuts_m, only : share_ends, list_cuts, add_cuts
+  use contact_cuts_m, only : share_cuts
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     see_master_node, facing_share
-  use contact_plain_cover_m, only : plain_cover_t, n_room, clear_list, list_touching, list_segment, &
+  use contact_plain_cover_m, only : plain_cover_t, clear_list, list_touching, list_segment, &
     list_other, cut_segments
   use contact_placing_m, only : add_touching_nodes, put_stiffness
   use contact_projection_m, only : see_segment
@@ -35,59 +35,57 @@ contains
     call add_touching_nodes(memory%slave_tracking, contact%master, 0, memory%n_slave, &
       memory%points, is_known)
     n = memory%points%n
-    call mark_points(n, memory%points%slave_nodes, memory%mark, memory%points%area)
+    if (.not. is_known) call mark_points(n, memory%points%slave_nodes, memory%mark)
+    memory%points%area(:n) = 0.0_wp
     call put_stiffness(memory%slave_penalty, is_known, memory%points)
     call clear_list(cover)
     s = 1
     do while (s <= contact%slave%n_segment)
       call list_touching(contact, memory, s, cover)
-      if (cover%is_full) then
-        call share_list(contact, memory, cover)
-      else if (s <= contact%slave%n_segment) then
-        call take_segment(contact, memory, s, cover)
-        s = s + 1
-      end if
+      if (.not. cover%is_full) call take_segment(contact, memory, s, cover)
+      if (cover%is_full) call share_list(contact, memory, cover)
     end do
     call share_list(contact, memory, cover)
     call note_next_wake(memory)
     call finish_nodes(contact, memory, n)
   end subroutine place_nts_mar
 
-  !> Put a segment that may touch on the list.
+  !> Put the next segment from s on that may touch on the list: s is then the one behind it.
   pure subroutine take_segment(contact, memory, s, cover)
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: s
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(inout) :: s
     type(plain_cover_t), intent(inout) :: cover
     logical :: is_listed
 
-    if (is_asleep(memory, s, contact%slave%segments(:, s))) return
-    call list_segment(contact, memory, s, cover, is_listed)
-    if (.not. is_listed) call list_other(s, cover)
-    if (cover%is_full) call share_list(contact, memory, cover)
+    do while (s <= contact%slave%n_segment)
+      s = s + 1
+      if (is_asleep(memory, s - 1, contact%slave%segments(:, s - 1))) cycle
+      call list_segment(contact, memory, s - 1, cover, is_listed)
+      if (.not. is_listed) call list_other(s - 1, cover)
+      return
+    end do
   end subroutine take_segment
 
-  !> Remember which point stands at which slave node; areas start at zero.
-  pure subroutine mark_points(n, nodes, mark, area)
+  !> Remember which point stands at which slave node, until other nodes touch.
+  pure subroutine mark_points(n, nodes, mark)
     integer, intent(in) :: n, nodes(n_side, *)
-    integer, intent(inout) :: mark(*)
-    real(wp), intent(inout) :: area(*)
+    integer, intent(inout), contiguous :: mark(:)
     integer :: k
 
+    mark = 0
     do k = 1, n
       mark(nodes(1, k)) = k
-      area(k) = 0.0_wp
     end do
   end subroutine mark_points
 
-  !> Forget that. Nodes at a tip keep their whole competence length.
+  !> Nodes at a tip keep their whole competence length.
   pure subroutine finish_nodes(contact, memory, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: n !! points at slave nodes
     integer :: p, node
 
-    memory%mark = 0
     if (count(memory%points%area(:n) > 0.0_wp) == n) return
     do p = 1, n
       if (memory%points%area(p) > 0.0_wp) cycle
@@ -127,26 +125,13 @@ contains
     first = 1
     do i = 1, cover%n_segment
       if (cover%is_plain(i)) cycle
-      call share_run(contact, memory, cover, first, i - 1)
+      call share_cuts(contact, memory, cover, first, i - 1)
       call share_segment(contact, memory, cover%slave(i))
       first = i + 1
     end do
-    call share_run(contact, memory, cover, first, cover%n_segment)
+    call share_cuts(contact, memory, cover, first, cover%n_segment)
     call clear_list(cover)
   end subroutine share_list
-
-  !> The common case of `share_segment` for a run of the list.
-  pure subroutine share_run(contact, memory, cover, first, last)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-    type(plain_cover_t), intent(in) :: cover
-    integer, intent(in) :: first, last
-    integer :: n, cuts(n_room)
-
-    call share_ends(cover, first, last, memory%mark, memory%points%area)
-    call list_cuts(contact, memory, cover, first, last, n, cuts)
-    if (n > 0) call add_cuts(memory, cover, n, cuts)
-  end subroutine share_run
 
   !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
   !> ends. The strict rule adds no node where an end of the segment has no foot; otherwise the part
