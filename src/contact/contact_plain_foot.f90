@@ -8,8 +8,8 @@ module contact_plain_foot_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: plain_foot, see_plain_segment, is_plainly_behind, is_plainly_over, &
-    is_well_inside, well_inside
+  public :: plain_foot, see_plain_segment, is_plainly_behind, is_well_inside, &
+    well_inside
 
   !> Part of a segment next to its ends where round-off may decide which node or segment is closer.
   real(wp), parameter :: well_inside = 1.0e-9_wp
@@ -26,19 +26,6 @@ contains
     is_behind = sight%across < 0.0_wp .and. sight%across + sight%along >= 0.0_wp &
       .and. sight%across + sight%square >= sight%along
   end function is_plainly_behind
-
-  !> Whether a place, on either side of a face, is over that and over no neighbour of it.
-  pure function is_plainly_over(surface, chain, sight, segment) result(is_over)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node) places
-    type(sight_t), intent(in) :: sight  !! of the place from the segment
-    integer, intent(in) :: segment
-    logical :: is_over
-
-    is_over = is_well_inside(sight)
-    if (is_over) is_over = is_past_previous(surface%segments, surface%previous(segment), chain, sight)
-    if (is_over) is_over = is_past_next(surface%segments, surface%next(segment), chain, sight)
-  end function is_plainly_over
 
   !> What `walk_to_closest` and `closest_foot` find where a segment at or next to the start has the spot over it, while
   !> the closest points of all neighbours seen on the way are the nodes in common, which are farther away.
