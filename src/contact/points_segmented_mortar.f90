@@ -114,9 +114,10 @@ contains
     call find_points(cover%n_piece, cover%own, cover%other, cover%way, cover%low, cover%high, &
       cover%length, found)
     call look_over(contact, memory, cover, found)
-    call look_at_segments(cover, found)
+    call look_at_segments(cover, memory, found)
     first = 1
     do i = 1, cover%n_segment
+      if (found%stays(i)) cycle
       if (.not. found%is_plain(i)) then
         call put_points(memory, cover, found, first, cover%last(i - 1))
         first = cover%last(i) + 1
