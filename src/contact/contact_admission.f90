@@ -10,7 +10,7 @@ module contact_admission_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: all_asleep, is_asleep, judge_segment, note_next_wake
+  public :: all_asleep, is_asleep, pass_asleep, judge_segment, note_next_wake
 
   !> The tracked segment of a spot is its closest one or next to it, and what the search knows of
   !> other segments leaves out the closest and its neighbours: so many on either side.
@@ -43,6 +43,21 @@ contains
     if (asleep) asleep = is_outside(memory%slave_tracking%status(ends(1))) &
       .and. is_outside(memory%slave_tracking%status(ends(2)))
   end function is_asleep
+
+  !> Pass the segments that can not touch yet, from s on to the first that may; s is then that one.
+  pure subroutine pass_asleep(memory, ends, s)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in), contiguous :: ends(:, :) !! (2, n_segment) nodes of the segments
+    integer, intent(inout) :: s
+
+    associate (status => memory%slave_tracking%status, wake => memory%cover%wake)
+      do while (s <= size(ends, 2))
+        if (.not. memory%travel < wake(s)) exit
+        if (.not. (is_outside(status(ends(1, s))) .and. is_outside(status(ends(2, s))))) exit
+        s = s + 1
+      end do
+    end associate
+  end subroutine pass_asleep
 
   !> Whether a spot is neither in contact nor let go.
   elemental function is_outside(status)

@@ -1,20 +1,15 @@
 ! SPDX-License-Identifier: MIT
 !> Gauss points of type 7 on pieces of slave segments, many at a time (doc/theory/contact.md, section 3.5).
 module contact_piece_list_m
-  use contact_pieces_m, only : n_gauss, gauss_xi
-  use contact_placing_m, only : place_on_segment
+  use contact_pieces_m, only : slave_t, n_gauss, gauss_xi, add_piece
   use contact_plain_cover_m, only : plain_cover_t, n_room
-  use contact_plain_foot_m, only : is_plainly_behind, is_plainly_over, well_inside
-  use contact_state_m, only : contact_state_t, n_side
+  use contact_plain_foot_m, only : well_inside
+  use contact_state_m, only : contact_state_t, make_room, n_side, is_free, is_touching
   use contacts_m, only : contact_t
-  use geometry_m, only : sight_t, sight_of_segment, separation
   use kinds_m, only : wp
   implicit none
   private
-  public :: plain_points_t, find_points, look_over, is_plain, put_points
-
-  !> One by one is faster where no more than one piece in so many has to be looked at.
-  integer, parameter :: n_seldom = 4
+  public :: plain_points_t, find_points, look_over, look_at_segments, put_points, put_pieces
 
   !> Gauss points of the pieces on a list. Without default values, which would be written before each use.
   type :: plain_points_t
@@ -25,6 +20,9 @@ module contact_piece_list_m
     real(wp) :: area(n_room)               !! of each, m
     real(wp) :: depth(n_room)              !! more than 0 where both are behind the master segment and nearer to it than
                                            !! to its ends, or over it and no neighbour of it
+    real(wp) :: deepest(n_room)            !! smallest gap of each segment, m
+    logical :: is_plain(n_room)            !! all points of the segment are on the master segments of their pieces
+    logical :: stays(n_room)               !! besides, both ends of it are in contact
   end type plain_points_t
 
 contains
@@ -62,7 +60,8 @@ contains
     end do
   end subroutine find_points
 
-  !> What `is_surely_over` tells, for all pieces of a list at a time, where many of them need it.
+  !> Tell the pieces apart whose Gauss points may not be on their master segment. A point that is nearer to a neighbour of
+  !> that has its foot there (as contact_projection has it).
   pure subroutine look_over(contact, memory, cover, found)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -70,14 +69,15 @@ contains
     type(plain_points_t), intent(inout) :: found
     real(wp), dimension(2, n_room) :: before, after
 
-    if (n_seldom*count(.not. found%depth(:cover%n_piece) > 0.0_wp) <= cover%n_piece) return
+    if (minval(found%depth(:cover%n_piece)) > 0.0_wp) return
     call see_neighbours(cover%n_piece, cover%master, cover%nodes, contact%master%segments, &
       contact%master%previous, contact%master%next, memory%n_slave, memory%places, before, after)
     call raise_depths(cover%n_piece, cover%own, cover%other, cover%way, before, after, found%xi, &
       found%foot, found%depth)
   end subroutine look_over
 
-  !> Vectors of the neighbours of the pieces' master segments, both towards these; zero where one is missing.
+  !> Vectors of the neighbours of the pieces' master segments, both towards these. Where one is missing the chain may as
+  !> well go straight on.
   pure subroutine see_neighbours(n, master, nodes, segments, previous, next, n_slave, places, before, after)
     integer, intent(in) :: n, master(*), nodes(2, *), segments(2, *), previous(*), next(*)
     integer, intent(in) :: n_slave !! local number before the first master node
@@ -90,14 +90,17 @@ contains
     do k = 1, n
       a = previous(master(k))
       b = next(master(k))
-      if (a == 0 .or. b == 0) then
-        before(:, k) = 0.0_wp
-        after(:, k) = 0.0_wp
-        cycle
+      if (a > 0) then
+        t = places(:, nodes(1, k)) - places(:, n_slave + segments(1, a))
+      else
+        t = places(:, nodes(2, k)) - places(:, nodes(1, k))
       end if
-      t = places(:, nodes(1, k)) - places(:, n_slave + segments(1, a))
       before(:, k) = t(1:2) + t(3:4)
-      t = places(:, nodes(2, k)) - places(:, n_slave + segments(2, b))
+      if (b > 0) then
+        t = places(:, nodes(2, k)) - places(:, n_slave + segments(2, b))
+      else
+        t = places(:, nodes(1, k)) - places(:, nodes(2, k))
+      end if
       after(:, k) = t(1:2) + t(3:4)
     end do
   end subroutine see_neighbours
@@ -127,73 +130,65 @@ contains
     end do
   end subroutine raise_depths
 
-  !> Whether all points of a listed segment are where the list has them: on the master segment of their piece. A
-  !> Gauss point that is nearer to a neighbour of that has its foot there (as contact_projection has it).
-  pure function is_plain(contact, memory, cover, found, i)
+  !> Smallest gaps of the segments on a list, and whether all of their pieces are plain. Most segments have besides both ends
+  !> in contact: these stay, whatever their gaps, and are noted here (as `note_plain_contact` has it). Judging each of them in
+  !> a call of its own took 3 % of the whole contact.
+  pure subroutine look_at_segments(cover, memory, found)
+    type(plain_cover_t), intent(in) :: cover
+    type(contact_state_t), intent(inout) :: memory
+    type(plain_points_t), intent(inout) :: found
+    real(wp) :: deepest, least
+    integer :: i, k
+
+    do i = 1, cover%n_segment
+      deepest = huge(1.0_wp)
+      least = huge(1.0_wp)
+      do k = cover%last(i - 1) + 1, cover%last(i)
+        deepest = min(deepest, found%gap(1, k), found%gap(2, k))
+        least = min(least, found%depth(k))
+      end do
+      found%deepest(i) = deepest
+      found%is_plain(i) = cover%is_plain(i) .and. least > 0.0_wp
+      found%stays(i) = found%is_plain(i) .and. cover%touches(i)
+      if (.not. found%stays(i)) cycle
+      associate (s => cover%slave(i), is_deep => deepest < memory%closed_gap)
+        memory%cover%status(s) = merge(is_touching, is_free, is_deep)
+        memory%cover%wake(s) = merge(-huge(1.0_wp), memory%travel, is_deep)
+      end associate
+    end do
+  end subroutine look_at_segments
+
+  !> Append the points of a segment some of which are not on the master segment of their piece.
+  pure subroutine put_pieces(contact, memory, cover, found, i)
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
+    type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(in) :: cover
     type(plain_points_t), intent(in) :: found
     integer, intent(in) :: i !! of the list
-    logical :: is_plain
-    type(sight_t) :: sight
-    integer :: k, q
+    integer :: k, first
 
-    is_plain = cover%is_plain(i)
-    do k = cover%last(i - 1) + 1, cover%last(i)
-      if (.not. is_plain) return
+    first = cover%last(i - 1) + 1
+    do k = first, cover%last(i)
       if (found%depth(k) > 0.0_wp) cycle
-      if (is_surely_over(contact, memory, cover, found, k)) cycle
-      associate (chain => memory%places(:, memory%n_slave + 1:), ends => contact%master%segments(:, cover%master(k)))
-        do q = 1, n_gauss
-          sight = sight_of_segment(place_on_segment(memory%places, cover%ends(:, k), found%xi(q, k)), &
-            chain(:, ends(1)), chain(:, ends(2)))
-          if (is_plainly_behind(sight)) cycle
-          is_plain = is_plain .and. is_plainly_over(contact%master, chain, sight, cover%master(k))
-        end do
-      end associate
+      call put_points(memory, cover, found, first, k - 1)
+      call add_piece(contact, memory, slave_of_piece(cover, k), cover%master(k), cover%low(k), &
+        cover%high(k))
+      first = k + 1
     end do
-  end function is_plain
+    call put_points(memory, cover, found, first, cover%last(i))
+  end subroutine put_pieces
 
-  !> Whether the Gauss points of a piece are over its master segment and no neighbour of it, and so far from being nearer to
-  !> another that round-off has no part in it.
-  pure function is_surely_over(contact, memory, cover, found, k)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
+  !> The slave segment of a piece.
+  pure function slave_of_piece(cover, k) result(slave)
     type(plain_cover_t), intent(in) :: cover
-    type(plain_points_t), intent(in) :: found
-    integer, intent(in) :: k !! of the list
-    logical :: is_surely_over
-    real(wp) :: low, high, margin, t(2)
+    integer, intent(in) :: k
+    type(slave_t) :: slave
 
-    low = minval(found%foot(:, k))
-    high = maxval(found%foot(:, k))
-    is_surely_over = low > 2.0_wp*well_inside .and. high < 1.0_wp - 2.0_wp*well_inside
-    if (.not. is_surely_over) return
-    associate (master => contact%master, segment => cover%master(k), way => cover%way(:, k), &
-      own => cover%own(:, k), other => cover%other(:, k), places => memory%places(:, memory%n_slave + 1:))
-      margin = well_inside*(sum(way**2) + sum(own**2) + sum(other**2))
-      if (master%previous(segment) > 0) then
-        t = separation(places(:, master%segments(1, segment)), &
-          places(:, master%segments(1, master%previous(segment))))
-        is_surely_over = least_product(way, own, found%xi(:, k), t) > margin + well_inside*sum(t**2)
-      end if
-      if (.not. is_surely_over .or. master%next(segment) == 0) return
-      t = separation(places(:, master%segments(2, segment)), &
-        places(:, master%segments(2, master%next(segment))))
-      is_surely_over = least_product(way - other, own, found%xi(:, k), t) > margin + well_inside*sum(t**2)
-    end associate
-  end function is_surely_over
-
-  !> Least product of the ways to the Gauss points with a vector.
-  pure function least_product(way, own, xi, t) result(product)
-    real(wp), intent(in) :: way(2), own(2) !! to the first end of the slave segment, and along it, m
-    real(wp), intent(in) :: xi(n_gauss)
-    real(wp), intent(in) :: t(2)
-    real(wp) :: product
-
-    product = dot_product(way, t) + minval(xi*dot_product(own, t))
-  end function least_product
+    slave%ends = cover%ends(:, k)
+    slave%normal(1) = cover%own(2, k)*cover%inverse(k)
+    slave%normal(2) = -cover%own(1, k)*cover%inverse(k)
+    slave%length = cover%length(k)
+  end function slave_of_piece
 
   !> Append the points of the pieces from one to another.
   pure subroutine put_points(memory, cover, found, first, last)
@@ -205,6 +200,7 @@ contains
 
     n = last - first + 1
     if (n == 0) return
+    call make_room(memory%points, n_gauss*n)
     associate (points => memory%points, p => memory%points%n + 1)
       call put_sides(n, cover%ends(1, first), cover%nodes(1, first), found%xi(1, first), &
         found%foot(1, first), points%slave_nodes(1, p), points%slave_weights(1, p), &

@@ -11,7 +11,7 @@ module contact_pieces_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: n_gauss, gauss_xi, add_pieces, add_listed_pieces
+  public :: slave_t, n_gauss, gauss_xi, add_pieces, add_piece
 
   !> Gauss points of a piece.
   integer, parameter :: n_gauss = 2
@@ -46,32 +46,6 @@ contains
         call add_piece(contact, memory, slave, piece%segment, piece%low, piece%high)
     end do
   end subroutine add_pieces
-
-  !> The points of one segment whose pieces are known to be over these master segments and to face them: what
-  !> `add_pieces` comes to.
-  pure subroutine add_listed_pieces(contact, memory, ends, master)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: ends(2)    !! nodes of the slave segment
-    integer, intent(in), contiguous :: master(:)  !! segment of each piece
-    type(slave_t) :: slave
-    type(sight_t) :: sight
-    real(wp) :: low, high
-    integer :: k
-
-    slave = slave_of(memory, ends)
-    low = 0.0_wp
-    do k = 1, size(master)
-      high = 1.0_wp
-      if (k < size(master)) then
-        sight = sight_of_segment(memory%places(:, memory%n_slave + contact%master%segments(1, master(k))), &
-          memory%places(:, ends(1)), memory%places(:, ends(2)))
-        high = sight%along/sight%square
-      end if
-      call add_piece(contact, memory, slave, master(k), low, high)
-      low = high
-    end do
-  end subroutine add_listed_pieces
 
   !> What the points of a slave segment have in common.
   pure function slave_of(memory, ends) result(slave)

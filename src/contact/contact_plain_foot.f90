@@ -2,14 +2,14 @@
 !> The common cases of contact_projection, told by signs of products alone: a spot that is over a segment and not nearer to
 !> any neighbour of it than to it. No distance is formed; the foot costs one root, the segment alone none.
 module contact_plain_foot_m
-  use contact_projection_m, only : foot_t, see_segment, face_foot
-  use geometry_m, only : sight_t, separation
+  use contact_projection_m, only : foot_t, face_foot
+  use geometry_m, only : sight_t, sight_of_segment, separation
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: plain_foot, see_plain_segment, is_plainly_behind, is_plainly_over, &
-    is_well_inside, well_inside
+  public :: plain_foot, see_plain_segment, is_plainly_behind, is_well_inside, &
+    well_inside
 
   !> Part of a segment next to its ends where round-off may decide which node or segment is closer.
   real(wp), parameter :: well_inside = 1.0e-9_wp
@@ -26,19 +26,6 @@ contains
     is_behind = sight%across < 0.0_wp .and. sight%across + sight%along >= 0.0_wp &
       .and. sight%across + sight%square >= sight%along
   end function is_plainly_behind
-
-  !> Whether a place, on either side of a face, is over that and over no neighbour of it.
-  pure function is_plainly_over(surface, chain, sight, segment) result(is_over)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node) places
-    type(sight_t), intent(in) :: sight  !! of the place from the segment
-    integer, intent(in) :: segment
-    logical :: is_over
-
-    is_over = is_well_inside(sight)
-    if (is_over) is_over = is_past(surface, chain, sight, segment, .true.)
-    if (is_over) is_over = is_past(surface, chain, sight, segment, .false.)
-  end function is_plainly_over
 
   !> What `walk_to_closest` and `closest_foot` find where a segment at or next to the start has the spot over it, while
   !> the closest points of all neighbours seen on the way are the nodes in common, which are farther away.
@@ -65,23 +52,38 @@ contains
     integer, intent(in) :: start
     integer, intent(out) :: segment !! 0: another case
     type(sight_t), intent(out) :: sight
+
+    call walk_to_plain(surface%segments, surface%previous, surface%next, chain, spot, start, segment, sight)
+  end subroutine see_plain_segment
+
+  !> The same on arrays of known shape.
+  pure subroutine walk_to_plain(ends, previous, next, chain, spot, start, segment, sight)
+    integer, intent(in) :: ends(2, *), previous(*), next(*) !! of the segments
+    real(wp), intent(in) :: chain(4, *), spot(4)
+    integer, intent(in) :: start
+    integer, intent(out) :: segment
+    type(sight_t), intent(out) :: sight
     integer :: here, i_step
     logical :: backwards
 
     segment = 0
     here = start
-    sight = see_segment(surface, chain, spot, here)
+    sight = sight_of_segment(spot, chain(:, ends(1, here)), chain(:, ends(2, here)))
     backwards = sight%along < 0.0_wp
     do i_step = 1, n_walk
       if (is_well_inside(sight)) exit
       if (i_step == n_walk .or. (backwards .neqv. sight%along < 0.0_wp)) return
-      if (i_step == 1 .and. .not. is_past(surface, chain, sight, here, .not. backwards)) return
-      here = merge(surface%previous(here), surface%next(here), backwards)
+      if (i_step == 1) then
+        if (backwards .and. .not. is_past_next(ends, next(here), chain, sight)) return
+        if (.not. backwards .and. .not. is_past_previous(ends, previous(here), chain, sight)) return
+      end if
+      here = merge(previous(here), next(here), backwards)
       if (here == 0) return
-      sight = see_segment(surface, chain, spot, here)
+      sight = sight_of_segment(spot, chain(:, ends(1, here)), chain(:, ends(2, here)))
     end do
-    if (is_plainly_over(surface, chain, sight, here)) segment = here
-  end subroutine see_plain_segment
+    if (.not. is_past_previous(ends, previous(here), chain, sight)) return
+    if (is_past_next(ends, next(here), chain, sight)) segment = here
+  end subroutine walk_to_plain
 
   !> Whether a place is over a segment and not at its ends.
   pure function is_well_inside(sight) result(is_inside)
@@ -92,28 +94,34 @@ contains
       .and. sight%along < (1.0_wp - well_inside)*sight%square
   end function is_well_inside
 
-  !> Whether the closest point of a neighbour is the node in common with the segment that the spot is seen from.
-  pure function is_past(surface, chain, sight, segment, backwards)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :)
+  !> Whether the closest point of the segment before the one that the spot is seen from is the node in common.
+  pure function is_past_previous(ends, neighbour, chain, sight) result(is_past)
+    integer, intent(in) :: ends(2, *)
+    integer, intent(in) :: neighbour !! 0: none
+    real(wp), intent(in) :: chain(4, *)
     type(sight_t), intent(in) :: sight
-    integer, intent(in) :: segment
-    logical, intent(in) :: backwards !! of the neighbour before, else after
     logical :: is_past
     real(wp) :: t(2)
-    integer :: neighbour
 
-    neighbour = merge(surface%previous(segment), surface%next(segment), backwards)
     is_past = neighbour == 0
     if (is_past) return
-    associate (ends => surface%segments(:, neighbour))
-      t = separation(chain(:, ends(2)), chain(:, ends(1)))
-    end associate
-    if (backwards) then
-      is_past = sight%d(1)*t(1) + sight%d(2)*t(2) >= 0.0_wp
-    else
-      is_past = (sight%d(1) - sight%t(1))*t(1) + (sight%d(2) - sight%t(2))*t(2) <= 0.0_wp
-    end if
-  end function is_past
+    t = separation(chain(:, ends(2, neighbour)), chain(:, ends(1, neighbour)))
+    is_past = sight%d(1)*t(1) + sight%d(2)*t(2) >= 0.0_wp
+  end function is_past_previous
+
+  !> The same for the segment after it.
+  pure function is_past_next(ends, neighbour, chain, sight) result(is_past)
+    integer, intent(in) :: ends(2, *)
+    integer, intent(in) :: neighbour !! 0: none
+    real(wp), intent(in) :: chain(4, *)
+    type(sight_t), intent(in) :: sight
+    logical :: is_past
+    real(wp) :: t(2)
+
+    is_past = neighbour == 0
+    if (is_past) return
+    t = separation(chain(:, ends(2, neighbour)), chain(:, ends(1, neighbour)))
+    is_past = (sight%d(1) - sight%t(1))*t(1) + (sight%d(2) - sight%t(2))*t(2) <= 0.0_wp
+  end function is_past_next
 
 end module contact_plain_foot_m
