@@ -105,7 +105,7 @@ module contact_state_m
     logical :: laps_pairing = .false.       !! placing the points is work of its own for the clock
     logical :: averages_pressure = .false.  !! pressure comes from slave nodes, not from each point
     real(wp), allocatable :: nodal(:, :)    !! (2, n_slave + n_master) scratch of such a pressure and of damping
-    integer, allocatable :: mark(:)         !! (n_slave) scratch of placements, 0 between steps
+    integer, allocatable :: mark(:)         !! (n_slave) scratch of placements, 0 between steps; type 5: point at each node
     real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where a tangent
                                             !! of touching bodies is wanted
     real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last call
