@@ -75,7 +75,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     real(wp) :: power
-    logical :: had_force, presses
+    logical :: had_force, is_unpressed
 
     if (time < contact%birth .or. time > contact%death) then
       call suspend_contact(motion, dt, memory)
@@ -98,13 +98,13 @@ contains
     memory%n_active = 0
     if (memory%points%n > 0 .or. had_force) then
       if (had_force) call keep_former(memory)
-      presses = .not. (memory%averages_pressure .or. allocated(memory%spots) .or. contact%damping > 0.0_wp .or. cycle == 0)
-      if (.not. presses) call press_points(memory)
+      is_unpressed = .not. (sums_in_runs(memory) .or. contact%damping > 0.0_wp .or. cycle == 0)
+      if (.not. is_unpressed) call press_points(memory)
       ! Springs loaded at time zero hold energy that no force has put in.
       if (cycle == 0) memory%energy = stored_energy(memory%points)
       if (contact%damping > 0.0_wp) &
         call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
-      call scatter(presses, memory)
+      call scatter(is_unpressed, memory)
       call add_force(memory%nodes, memory%former_force, memory%force, motion, force, power)
       memory%energy = memory%energy - 0.5_wp*dt*power
     end if
@@ -150,16 +150,24 @@ contains
   end subroutine evaluate_contact
 
   !> Forces of all points. Those between slave nodes follow each other segment by segment.
-  pure subroutine scatter(presses, memory)
-    logical, intent(in) :: presses !! each point has a pressure of its own, not formed yet
+  pure subroutine scatter(is_unpressed, memory)
+    logical, intent(in) :: is_unpressed !! pressures are formed on the way; never of points that are summed in runs
     type(contact_state_t), intent(inout) :: memory
 
-    if (memory%averages_pressure .or. allocated(memory%spots)) then
+    if (sums_in_runs(memory)) then
       call scatter_runs(memory%points, memory%force, memory%n_active)
     else
-      call scatter_points(memory%points, presses, memory%force, memory%n_active)
+      call scatter_points(memory%points, is_unpressed, memory%force, memory%n_active)
     end if
   end subroutine scatter
+
+  !> Whether several points in a row have the same slave nodes.
+  pure function sums_in_runs(memory)
+    type(contact_state_t), intent(in) :: memory
+    logical :: sums_in_runs
+
+    sums_in_runs = memory%averages_pressure .or. allocated(memory%spots)
+  end function sums_in_runs
 
   !> Outside birth .. death: no forces; those of the last call have done their last half step of work.
   pure subroutine suspend_contact(motion, dt, memory)

@@ -5,6 +5,7 @@
 !> (doc/theory/contact.md, section 3.4).
 module contact_initial_m
   use contact_buckets_m, only : nearest_t, fill_grid, find_nearest
+  use contact_lists_m, only : list_touching
   use contact_projection_m, only : foot_t, see_segment, closest_foot, follow_contact
   use contact_search_m, only : update_tracking, most_facing, begin_contact
   use contact_spots_m, only : list_owners, list_chords
@@ -105,6 +106,7 @@ contains
     call update_tracking(tracking, surface, chain, spots, 0.0_wp, n_ignored)
     call catch_edges(tracking, surface, chain, spots)
     call catch_deep_spots(tracking, model, own, surface, spots, chain, owners)
+    call list_touching(tracking)
     tracking%next_wake = -huge(1.0_wp)
   end subroutine start_tracking
 

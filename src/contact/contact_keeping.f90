@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Spots that stay in contact where they are: the common case of the search, many spots at a time. Their feet go to the
 !> tracking; or straight onto the list of points, where the points of these spots stand already: then the points know the nodes
-!> of either side, and nothing is written twice (a third of the memory traffic of the search and the placement of type 1).
+!> of either side, and nothing is written twice: 15 to 20 % of the contact of types 1 to 3.
 module contact_keeping_m
   use contact_state_m, only : contact_points_t, tracking_t, n_side
   use kinds_m, only : wp

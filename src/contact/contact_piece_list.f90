@@ -18,8 +18,8 @@ module contact_piece_list_m
     real(wp) :: gap(n_gauss, n_room)       !! m
     real(wp) :: normal(2, n_room)          !! of the master
     real(wp) :: area(n_room)               !! of each, m
-    real(wp) :: depth(n_room)              !! more than 0 where both are behind the master segment and nearer to it than
-                                           !! to its ends, or over it and no neighbour of it
+    real(wp) :: depth(n_room)              !! more than 0 (only its sign counts) where both are behind the master segment
+                                           !! and nearer to it than to its ends, or over it and no neighbour of it
     real(wp) :: deepest(n_room)            !! smallest gap of each segment, m
     logical :: is_plain(n_room)            !! all points of the segment are on the master segments of their pieces
     logical :: stays(n_room)               !! besides, both ends of it are in contact

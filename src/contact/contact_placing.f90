@@ -10,7 +10,7 @@ module contact_placing_m
   public :: add_touching_nodes, put_stiffness, add_segment_point, add_plain_point, tracked_foot, &
     place_on_segment
 
-  !> Most nodes of a list.
+  !> Nodes placed together.
   integer, parameter :: n_room = 64
 
 contains

@@ -74,15 +74,16 @@ contains
       if (is_well_inside(sight)) exit
       if (i_step == n_walk .or. (backwards .neqv. sight%along < 0.0_wp)) return
       if (i_step == 1) then
-        if (backwards .and. .not. is_past_next(ends, next(here), chain, sight)) return
-        if (.not. backwards .and. .not. is_past_previous(ends, previous(here), chain, sight)) return
+        if (backwards .and. along_neighbour(ends, next(here), chain, sight%d - sight%t) > 0.0_wp) return
+        if (.not. backwards .and. along_neighbour(ends, previous(here), chain, sight%d) < 0.0_wp) return
       end if
       here = merge(previous(here), next(here), backwards)
       if (here == 0) return
       sight = sight_of_segment(spot, chain(:, ends(1, here)), chain(:, ends(2, here)))
     end do
-    if (.not. is_past_previous(ends, previous(here), chain, sight)) return
-    if (is_past_next(ends, next(here), chain, sight)) segment = here
+    ! The closest point of either neighbour is the node in common.
+    if (along_neighbour(ends, previous(here), chain, sight%d) < 0.0_wp) return
+    if (along_neighbour(ends, next(here), chain, sight%d - sight%t) <= 0.0_wp) segment = here
   end subroutine walk_to_plain
 
   !> Whether a place is over a segment and not at its ends.
@@ -94,34 +95,19 @@ contains
       .and. sight%along < (1.0_wp - well_inside)*sight%square
   end function is_well_inside
 
-  !> Whether the closest point of the segment before the one that the spot is seen from is the node in common.
-  pure function is_past_previous(ends, neighbour, chain, sight) result(is_past)
+  !> How far a way leads along a neighbour, times the length of that, m^2; 0 where there is none.
+  pure function along_neighbour(ends, neighbour, chain, way) result(along)
     integer, intent(in) :: ends(2, *)
     integer, intent(in) :: neighbour !! 0: none
     real(wp), intent(in) :: chain(4, *)
-    type(sight_t), intent(in) :: sight
-    logical :: is_past
+    real(wp), intent(in) :: way(2)
+    real(wp) :: along
     real(wp) :: t(2)
 
-    is_past = neighbour == 0
-    if (is_past) return
+    along = 0.0_wp
+    if (neighbour == 0) return
     t = separation(chain(:, ends(2, neighbour)), chain(:, ends(1, neighbour)))
-    is_past = sight%d(1)*t(1) + sight%d(2)*t(2) >= 0.0_wp
-  end function is_past_previous
-
-  !> The same for the segment after it.
-  pure function is_past_next(ends, neighbour, chain, sight) result(is_past)
-    integer, intent(in) :: ends(2, *)
-    integer, intent(in) :: neighbour !! 0: none
-    real(wp), intent(in) :: chain(4, *)
-    type(sight_t), intent(in) :: sight
-    logical :: is_past
-    real(wp) :: t(2)
-
-    is_past = neighbour == 0
-    if (is_past) return
-    t = separation(chain(:, ends(2, neighbour)), chain(:, ends(1, neighbour)))
-    is_past = (sight%d(1) - sight%t(1))*t(1) + (sight%d(2) - sight%t(2))*t(2) <= 0.0_wp
-  end function is_past_next
+    along = way(1)*t(1) + way(2)*t(2)
+  end function along_neighbour
 
 end module contact_plain_foot_m

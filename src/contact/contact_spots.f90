@@ -56,8 +56,8 @@ contains
       spots)
   end subroutine move_spots
 
-  !> The same on arrays of known shape. Both components of a spot are formed together: loops over the few spots of a
-  !> segment in vectors took twice as long.
+  !> The same on arrays of known shape. Both components of a spot are formed together: vectors over the few
+  !> spots of a segment take 2 to 4 % more of the contact of type 4.
   pure subroutine move_on_segments(n, segments, n_xi, xi, places, spots)
     integer, intent(in) :: n, segments(2, n), n_xi
     real(wp), intent(in) :: xi(n_xi), places(4, *)

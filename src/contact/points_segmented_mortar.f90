@@ -24,7 +24,7 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t) :: cover
-    integer :: n_edge !! segments noted in memory%mark: in contact, though not with both ends
+    integer :: n_edge !! segments noted in memory%mark: in contact, beside others that may sleep
 
     if (all_asleep(memory)) return
     call clear_list(cover)

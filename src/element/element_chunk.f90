@@ -55,10 +55,11 @@ contains
     end do
   end subroutine gather_chunk
 
-  !> Add the nodal forces of a chunk to the tile's own nodes, x and y of a node at a time (told to the
+  !> Add the nodal forces of a chunk without its padding (each sum of which would wait for the one before on their one
+  !> node) to the tile's own nodes, x and y of a node at a time (told to the
   !> compiler in so many words: left alone it takes them one by one, half as fast again).
   pure subroutine scatter_chunk(n_element, local, chunk, force)
-    integer, intent(in) :: n_element             !! padding left out: on one node all of it waits for each other
+    integer, intent(in) :: n_element             !! in its first slots
     integer, intent(in) :: local(4, chunk_size)  !! local numbers in the tile
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes

@@ -32,7 +32,7 @@ module contact_state_m
   !> The list, one column per point.
   type :: contact_points_t
     integer :: n = 0                           !! points in use
-    integer :: n_former = 0                    !! and at the placement before
+    integer :: n_former = 0                    !! of the placement before, whose columns still stand
     integer, allocatable :: slave_nodes(:, :)  !! (n_side, capacity) local numbers
     real(wp), allocatable :: slave_weights(:, :)
     integer, allocatable :: master_nodes(:, :) !! (n_side, capacity) local numbers
@@ -59,12 +59,13 @@ module contact_state_m
   type :: tracking_t
     integer :: n = 0                         !! spots
     integer :: n_touching = 0
-    integer :: first_point = 0               !! of those that stand at the spots in contact, one at each; 0: nowhere
+    integer :: first_point = 0               !! of the spots in contact, which have one each; 0: none stand
     logical :: has_feet = .true.             !! xi, gap and normal of spots in contact are here; else on the points
     real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot that is not in contact can change
     real(wp) :: reach = 0.0_wp               !! spots farther away than this are unpaired, m
     integer, allocatable :: touching(:)      !! (n) the first n_touching: spots in contact, in order
-    integer, allocatable :: due(:)           !! (n) scratch: spots to be looked at; those of that list by their place on it
+    integer, allocatable :: due(:)           !! (n) scratch: what is to be looked at, first the spots of that
+                                             !! list by their place on it, then others by number
     integer, allocatable :: segment(:)       !! (n) segment of the chain, 0 = unpaired
     integer, allocatable :: status(:)        !! (n) one of the constants above
     real(wp), allocatable :: xi(:)           !! (n) 0 to 1 along the segment (a little more at ends)
@@ -105,7 +106,8 @@ module contact_state_m
     logical :: laps_pairing = .false.       !! placing the points is work of its own for the clock
     logical :: averages_pressure = .false.  !! pressure comes from slave nodes, not from each point
     real(wp), allocatable :: nodal(:, :)    !! (2, n_slave + n_master) scratch of such a pressure and of damping
-    integer, allocatable :: mark(:)         !! (n_slave) scratch of placements, 0 between steps; type 5: point at each node
+    integer, allocatable :: mark(:)         !! (n_slave) scratch of placements, 0 between steps: marks of nodes; type 7:
+                                            !! segments, of which there are no more; type 5: point at each node, kept
     real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where a tangent
                                             !! of touching bodies is wanted
     real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last call
@@ -144,7 +146,7 @@ contains
     n = points%n
     call allocate_points(larger, 2*(n + n_more))
     larger%n = n
-    larger%n_former = points%n_former
+    larger%n_former = min(n, points%n_former)
     larger%slave_nodes(:, :n) = points%slave_nodes(:, :n)
     larger%slave_weights(:, :n) = points%slave_weights(:, :n)
     larger%master_nodes(:, :n) = points%master_nodes(:, :n)
