@@ -55,11 +55,11 @@ contains
     end do
   end subroutine gather_chunk
 
-  !> Add the nodal forces of a chunk without its padding (each sum of which would wait for the one before on their one
-  !> node) to the tile's own nodes, x and y of a node at a time (told to the
-  !> compiler in so many words: left alone it takes them one by one, half as fast again).
+  !> Add the nodal forces of a chunk to the tile's own nodes, x and y of a node at a time (told to the
+  !> compiler in so many words: left alone it takes them one by one, half as fast again). Padding is
+  !> left out: all of it has one node, where each sum would wait for the one before.
   pure subroutine scatter_chunk(n_element, local, chunk, force)
-    integer, intent(in) :: n_element             !! in its first slots
+    integer, intent(in) :: n_element             !! elements, in the first slots
     integer, intent(in) :: local(4, chunk_size)  !! local numbers in the tile
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes

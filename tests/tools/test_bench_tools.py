@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the benchmarks make of samples, their decks, and the pages of speed and peers, from made-up tables."""
 import csv
+import itertools
 import json
 import os
 import pathlib
@@ -116,8 +117,8 @@ def bench_rows():
         variant = measuring.Variant("step", f"{material}, 2 runs at once", 4000, 1, "ns/element")
         rows.append(measuring.summarise(variant, [(0.8 * ns, 4.0, 8.0, 1.0)]))
     for ctype in range(1, 8):
-        for unit in ("ns/slave node", "ns/point"):
-            variant = measuring.Variant("contact", f"flat type {ctype}", 1000, 1, unit)
+        for size, unit in itertools.product((20, 1000), ("ns/slave node", "ns/point")):
+            variant = measuring.Variant("contact", f"flat type {ctype}", size, 1, unit)
             rows.append(measuring.summarise(variant, [(4.0 * ctype, 4.0, 8.0, 1.0)]))
     for case in search.CASES:
         for kind in ("search", "whole"):
@@ -145,6 +146,8 @@ def test_page_of_speed_judges_the_goals(tmp_path):
     assert kept == [True, False]
     assert "type 1, 1000 slave nodes, K per slave node: **1.00**, goal at most 3.5: kept" in text
     assert "type 3, 1000 slave nodes, K per contact point: **3.00**, goal at most 2: missed" in text
+    assert ("type 3, 20 slave nodes (20 points), microseconds a step: **0.24**, goal at most 0.4: kept; "
+            "60 K, of at most 151") in text
     assert "elastic, the same sizes, speed-up of two threads, the least: **1.95**, goal at least 1.9: kept" in text
     assert "yielding, the same sizes, two threads over one of two runs at once: 1.56 to 1.56\n" in text
     assert "| elements | elastic, 1 thread | elastic, 2 threads | elastic, 2 runs at once |" in text
