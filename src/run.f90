@@ -11,8 +11,8 @@ module run_m
   use errors_m, only : error_t, raise, status_stopped
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
-  use files_m, only : make_directory, join_path, text_file_t, create_text_file, append_text, &
-    close_text_file
+  use files_m, only : make_directory, join_path
+  use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use go_on_m, only : take_up_deck
   use heap_m, only : give_back_memory
   use log_m, only : open_log, close_log, write_log, to_text

@@ -6,7 +6,8 @@
 module log_m
   use, intrinsic :: iso_fortran_env, only : error_unit
   use errors_m, only : error_t
-  use files_m, only : text_file_t, create_text_file, continue_text_file, append_text, close_text_file
+  use text_files_m, only : text_file_t, create_text_file, continue_text_file, append_text, &
+    close_text_file
   implicit none
   private
   public :: log_t, open_log, write_log, warn, close_log, to_text

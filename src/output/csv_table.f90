@@ -8,7 +8,7 @@ module csv_table_m
   use kinds_m, only : wp, long
   use dyna_text_m, only : dyna_text_t, add_dyna_row, flush_dyna_text, close_dyna_text
   use errors_m, only : error_t
-  use files_m, only : text_file_t, create_text_file, append_text, close_text_file
+  use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   implicit none
   private
   public :: csv_table_t, open_table, add_row, flush_table, close_table, column_name, n_columns, &

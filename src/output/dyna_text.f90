@@ -7,7 +7,7 @@ module dyna_text_m
   use dyna_layouts_m, only : layout_rcforc, layout_nodout, layout_matsum, layout_spcforc, line_size, &
     n_line_of, form_block
   use errors_m, only : error_t
-  use files_m, only : text_file_t, create_text_file, append_text, close_text_file
+  use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use kinds_m, only : wp, long
   use model_m, only : model_t
   implicit none

@@ -4,7 +4,7 @@ module timing_file_m
   use kinds_m, only : wp, long
   use clock_m, only : clock_t, phase_names, n_phase, n_contact_phase, phase_contact_search
   use errors_m, only : error_t
-  use files_m, only : text_file_t, create_text_file, append_text, close_text_file
+  use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use log_m, only : to_text
   implicit none
   private

@@ -4,8 +4,8 @@
 module status_file_m
   use clock_m, only : clock_t, elapsed_seconds
   use errors_m, only : error_t
-  use files_m, only : text_file_t, create_text_file, append_text, close_text_file, join_path, &
-    rename_file
+  use files_m, only : join_path, rename_file
+  use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use kinds_m, only : wp, long
   use log_m, only : to_text
   implicit none
