@@ -5,8 +5,9 @@ module deck_resolve_contacts_m
   use surfaces_m, only : surface_t
   use conditions_m, only : pressure_load_t
   use model_m, only : model_t
-  use surface_building_m, only : boundary_t, find_boundary, find_edge, boundary_surface, &
-    chain_surface, chain_turned, chain_ordered, chain_broken, chain_repeated, chain_short
+  use boundary_m, only : boundary_t, find_boundary, find_edge
+  use surface_building_m, only : boundary_surface, chain_surface, chain_turned, chain_ordered, &
+    chain_broken, chain_repeated, chain_short
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
   use deck_maps_m, only : maps_t, resolve_id

@@ -1,161 +1,20 @@
 ! SPDX-License-Identifier: MIT
-!> Surfaces from the mesh: exterior edges, the boundary of a set of elements as chains, and the
-!> chain that a list of nodes describes.
+!> Surfaces from exterior edges: the whole boundary as chains, and the chain that a list of nodes
+!> describes.
 module surface_building_m
+  use boundary_m, only : boundary_t, find_edge
   use surfaces_m, only : surface_t, link_segments
   implicit none
   private
-  public :: boundary_t, find_boundary, find_edge, boundary_surface, chain_surface, &
-    chain_good, chain_turned, chain_ordered, chain_broken, chain_repeated, chain_short
+  public :: boundary_surface, chain_surface, chain_good, chain_turned, chain_ordered, &
+    chain_broken, chain_repeated, chain_short
 
   !> How a list of nodes became a chain: as given, walked the other way, put into order; or why not:
   !> two neighbours in the list share no exterior edge, a node comes twice, fewer than two nodes.
   integer, parameter :: chain_good = 0, chain_turned = 1, chain_ordered = 2, chain_broken = 3, &
     chain_repeated = 4, chain_short = 5
 
-  !> Exterior edges (of exactly one element), each walked counter-clockwise round its element,
-  !> sorted by the node they leave.
-  type :: boundary_t
-    integer :: n_edge = 0
-    integer, allocatable :: nodes(:, :)  !! (2, n_edge)
-    integer, allocatable :: elements(:)  !! (n_edge) the element behind
-    integer, allocatable :: start(:)     !! (n_node + 1) first edge leaving each node
-  end type boundary_t
-
-  !> All edges of the chosen elements, filed under the lower of their nodes.
-  type :: edge_table_t
-    integer, allocatable :: start(:)   !! (n_node + 1) first edge of each node
-    integer, allocatable :: far(:)     !! the other node, negative when the edge runs from it
-    integer, allocatable :: owner(:)   !! the element, 0 once the edge is known to be shared
-  end type edge_table_t
-
 contains
-
-  !> Edges that exactly one of the chosen elements has. Only edges with both nodes in `among` are
-  !> looked at. Linear in elements and nodes.
-  pure subroutine find_boundary(element_nodes, chosen, among, boundary)
-    integer, intent(in) :: element_nodes(:, :) !! (4, n) counter-clockwise; triangles repeat node 3
-    logical, intent(in) :: chosen(:)           !! (n)
-    logical, intent(in) :: among(:)            !! (n_node)
-    type(boundary_t), intent(out) :: boundary
-    type(edge_table_t) :: table
-    integer :: node, i, n_node, leaving
-
-    n_node = size(among)
-    call file_edges(element_nodes, chosen, among, table)
-    call strike_shared(table, n_node)
-    ! Sort by the node that each edge leaves: count, sum up, put in place.
-    allocate (boundary%start(n_node + 1), source=0)
-    do node = 1, n_node
-      do i = table%start(node), table%start(node + 1) - 1
-        if (table%owner(i) == 0) cycle
-        leaving = merge(node, -table%far(i), table%far(i) > 0)
-        boundary%start(leaving) = boundary%start(leaving) + 1
-      end do
-    end do
-    boundary%n_edge = sum(boundary%start)
-    boundary%start(n_node + 1) = boundary%n_edge + 1
-    do node = n_node, 1, -1
-      boundary%start(node) = boundary%start(node + 1) - boundary%start(node)
-    end do
-    allocate (boundary%nodes(2, boundary%n_edge), boundary%elements(boundary%n_edge))
-    call put_edges(table, n_node, boundary)
-  end subroutine find_boundary
-
-  !> File the edges of the chosen elements.
-  pure subroutine file_edges(element_nodes, chosen, among, table)
-    integer, intent(in) :: element_nodes(:, :)
-    logical, intent(in) :: chosen(:)
-    logical, intent(in) :: among(:)
-    type(edge_table_t), intent(out) :: table
-    integer, allocatable :: next(:)
-    integer :: i, k, a, b, node
-
-    allocate (next(size(among) + 1), source=0)
-    do i = 1, size(element_nodes, 2)
-      if (.not. chosen(i)) cycle
-      do k = 1, 4
-        a = element_nodes(k, i)
-        b = element_nodes(mod(k, 4) + 1, i)
-        if (a /= b .and. among(a) .and. among(b)) next(min(a, b)) = next(min(a, b)) + 1
-      end do
-    end do
-    allocate (table%start(size(next)))
-    table%start(1) = 1
-    do node = 1, size(among)
-      table%start(node + 1) = table%start(node) + next(node)
-    end do
-    allocate (table%far(table%start(size(next)) - 1), table%owner(table%start(size(next)) - 1))
-    next = table%start
-    do i = 1, size(element_nodes, 2)
-      if (.not. chosen(i)) cycle
-      do k = 1, 4
-        a = element_nodes(k, i)
-        b = element_nodes(mod(k, 4) + 1, i)
-        if (a == b .or. .not. (among(a) .and. among(b))) cycle
-        node = min(a, b)
-        table%far(next(node)) = merge(b, -a, a < b)
-        table%owner(next(node)) = i
-        next(node) = next(node) + 1
-      end do
-    end do
-  end subroutine file_edges
-
-  !> Strike out (owner 0) every edge that more than one element has.
-  pure subroutine strike_shared(table, n_node)
-    type(edge_table_t), intent(inout) :: table
-    integer, intent(in) :: n_node
-    integer, allocatable :: n_use(:)
-    integer :: node, i, first, last
-
-    allocate (n_use(n_node), source=0)
-    do node = 1, n_node
-      first = table%start(node)
-      last = table%start(node + 1) - 1
-      do i = first, last
-        n_use(abs(table%far(i))) = n_use(abs(table%far(i))) + 1
-      end do
-      do i = first, last
-        if (n_use(abs(table%far(i))) > 1) table%owner(i) = 0
-      end do
-      do i = first, last
-        n_use(abs(table%far(i))) = 0
-      end do
-    end do
-  end subroutine strike_shared
-
-  !> Put the edges that are left into the boundary.
-  pure subroutine put_edges(table, n_node, boundary)
-    type(edge_table_t), intent(in) :: table
-    integer, intent(in) :: n_node
-    type(boundary_t), intent(inout) :: boundary
-    integer, allocatable :: next(:)
-    integer :: node, i, ends(2)
-
-    allocate (next(size(boundary%start)), source=boundary%start)
-    do node = 1, n_node
-      do i = table%start(node), table%start(node + 1) - 1
-        if (table%owner(i) == 0) cycle
-        ends = [node, table%far(i)]
-        if (table%far(i) < 0) ends = [-table%far(i), node]
-        boundary%nodes(:, next(ends(1))) = ends
-        boundary%elements(next(ends(1))) = table%owner(i)
-        next(ends(1)) = next(ends(1)) + 1
-      end do
-    end do
-  end subroutine put_edges
-
-  !> The exterior edge from node `a` to node `b`, or 0.
-  pure function find_edge(boundary, a, b) result(edge)
-    type(boundary_t), intent(in) :: boundary
-    integer, intent(in) :: a, b
-    integer :: edge
-
-    do edge = boundary%start(a), boundary%start(a + 1) - 1
-      if (boundary%nodes(2, edge) == b) return
-    end do
-    edge = 0
-  end function find_edge
 
   !> The whole boundary as chains, open ones first. `crossing` is a node where the boundary touches
   !> itself (no chains can be made then), or 0.
