@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> The memory of an interface in a restart file (see restart_state_m).
 module restart_contact_m
-  use archive_m, only : archive_t, keep, keep_fixed, enter, leave
+  use archive_m, only : keep, keep_fixed
+  use archive_file_m, only : archive_t, enter, leave
   use contact_state_m, only : contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
     cover_memory_t
   use kinds_m, only : wp

@@ -13,7 +13,7 @@ module restart_file_m
   use hdf5, only : hid_t, hsize_t, H5P_FILE_CREATE_F, H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, &
     H5F_SCOPE_LOCAL_F, h5fcreate_f, h5fopen_f, h5fclose_f, h5fflush_f, h5pcreate_f, h5pclose_f, &
     h5pset_userblock_f
-  use archive_m, only : archive_t, fail_archive
+  use archive_file_m, only : archive_t, fail_archive
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
   use errors_m, only : error_t, raise, status_files, status_input
   use files_m, only : rename_file, remove_file, force_to_disk, is_endless, parent_path

@@ -2,7 +2,8 @@
 !> Schedules and histories in a restart file. Histories are kept whole: the run that goes on writes its tables
 !> again from the first row, so that they do not depend on what has become of the files.
 module restart_history_m
-  use archive_m, only : archive_t, keep, enter, leave, fail_archive
+  use archive_m, only : keep
+  use archive_file_m, only : archive_t, enter, leave, fail_archive
   use csv_table_m, only : csv_table_t, add_row
   use errors_m, only : status_input
   use history_file_m, only : histories_t, n_table

@@ -2,7 +2,8 @@
 !> The state in a restart file, type by type, component by component, in the order of their
 !> declarations. A component that is missing here is noticed by tests/house/test_restart_components.py.
 module restart_state_m
-  use archive_m, only : archive_t, keep, keep_fixed, enter, leave
+  use archive_m, only : keep, keep_fixed
+  use archive_file_m, only : archive_t, enter, leave
   use block_state_m, only : block_state_t
   use log_m, only : to_text
   use restart_contact_m, only : keep_contact

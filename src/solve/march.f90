@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> What the implicit driver hands from step to step besides the state, and its part of a restart file.
 module march_m
-  use archive_m, only : archive_t, keep, enter, leave
+  use archive_m, only : keep
+  use archive_file_m, only : archive_t, enter, leave
   use clock_m, only : lap, phase_nodes, phase_output
   use errors_m, only : error_t
   use forces_m, only : trial_t, net_force

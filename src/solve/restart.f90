@@ -5,7 +5,7 @@
 !> All of that is written, so that the run that goes on makes the same bits as one that was not interrupted. The
 !> driver's part is written by the driver, between `begin_file` and `end_file`.
 module restart_m
-  use archive_m, only : archive_t, fail_archive
+  use archive_file_m, only : archive_t, fail_archive
   use errors_m, only : error_t, status_files
   use files_m, only : file_exists, remove_file
   use kinds_m, only : wp, long

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Going on from a restart file: what it says of the run, its state and its outputs, and the files of the run before.
 module restart_reading_m
-  use archive_m, only : archive_t, enter, leave
+  use archive_file_m, only : archive_t, enter, leave
   use errors_m, only : error_t, raise, status_input
   use kinds_m, only : wp
   use log_m, only : warn, to_text

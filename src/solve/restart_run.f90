@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> What every restart file holds besides the state: what is known of the run, and how far its outputs are.
 module restart_run_m
-  use archive_m, only : archive_t, keep, keep_text, enter, leave
+  use archive_m, only : keep, keep_text
+  use archive_file_m, only : archive_t, enter, leave
   use kinds_m, only : wp
   use monitor_m, only : monitor_t
   use restart_history_m, only : keep_schedule, keep_histories, keep_times

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> What the explicit driver hands from cycle to cycle besides the state, in a restart file.
 module restart_steps_m
-  use archive_m, only : archive_t, keep, keep_fixed, enter, leave
+  use archive_m, only : keep, keep_fixed
+  use archive_file_m, only : archive_t, enter, leave
   use clock_m, only : lap, phase_nodes, phase_output
   use contact_step_limit_m, only : spring_bound_t
   use errors_m, only : error_t
