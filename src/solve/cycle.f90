@@ -6,9 +6,9 @@ module cycle_m
   use constraints_m, only : fix_nodes, update_activity
   use contact_check_m, only : report_contact_start, report_contact_end, follow_springs
   use contact_force_m, only : apply_contact
+  use cycle_loads_m, only : apply_loads
   use energies_m, only : energy_ratio, total_energy
   use errors_m, only : error_t
-  use external_force_m, only : form_external_force, body_acceleration, damping_rate
   use health_m, only : tile_check_t, are_sound, check_elements, check_step, check_cycle, check_energy, &
     judge_energies
   use kinds_m, only : wp
@@ -90,7 +90,7 @@ contains
     cycle%due%plot = cycle%due%plot .or. (cycle%plots .and. monitor%has_plot)
     cycle%plots = .false.
     cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
-    call apply_loads(model, state, cycle)
+    call apply_loads(model, state, cycle%damping, cycle%sums)
     ! What ended the cycle before is in this lap, or without contact in the one below.
     if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
     do i = 1, size(model%contacts)
@@ -102,75 +102,6 @@ contains
     if (state%cycle > 0) call prepare_leap(model, state, cycle)
     call lap(monitor%clock, phase_nodes)
   end subroutine begin_cycle
-
-  !> Loads from outside and their work (trapezoidal rule), body acceleration and damping; the work of these two
-  !> is counted once the sums over all nodes are there.
-  subroutine apply_loads(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(cycle_t), intent(inout) :: cycle
-    real(wp) :: half, body(2)
-
-    half = 0.5_wp*state%dt_before
-    if (allocated(state%external)) then
-      state%external_work = state%external_work + half*power(state%external, state%motion)
-      call form_external_force(model, state%motion, state%time, state%external)
-      state%external_work = state%external_work + half*power(state%external, state%motion)
-      state%force_special = state%external
-    else
-      call clear_forces(model, state)
-    end if
-    if (size(model%conditions%body_loads) > 0) then
-      body = body_acceleration(model%conditions, model%curves, state%time)
-      cycle%sums%share(1:2) = half*(body + state%body_acceleration)
-      state%body_acceleration = body
-    end if
-    if (allocated(model%conditions%damping)) then
-      cycle%sums%share(3:4) = state%dt_before*cycle%damping
-      cycle%damping = damping_rate(model%conditions, model%curves, state%time)
-    end if
-  end subroutine apply_loads
-
-  !> No force yet on the nodes of interfaces and walls. On the others there never is one: to write zeros there
-  !> would only take them out of the caches of other threads.
-  subroutine clear_forces(model, state)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    integer :: i
-
-    do i = 1, size(state%contacts)
-      call clear(state%contacts(i)%nodes)
-    end do
-    if (.not. allocated(state%walls)) return
-    do i = 1, size(model%walls)
-      call clear(model%walls(i)%nodes)
-    end do
-
-  contains
-
-    subroutine clear(nodes)
-      integer, intent(in), contiguous :: nodes(:)
-      integer :: k
-
-      do k = 1, size(nodes)
-        state%force_special(:, nodes(k)) = 0.0_wp
-      end do
-    end subroutine clear
-
-  end subroutine clear_forces
-
-  !> Power of forces on the first nodes.
-  pure function power(force, motion)
-    real(wp), intent(in), contiguous :: force(:, :)  !! (2, n)
-    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n or more)
-    real(wp) :: power
-    integer :: i
-
-    power = 0.0_wp
-    do i = 1, size(force, 2)
-      power = power + (force(1, i)*motion(3, i) + force(2, i)*motion(4, i))
-    end do
-  end function power
 
   !> Motion factors and prescribed velocities once the step is known.
   subroutine prepare_leap(model, state, cycle)
