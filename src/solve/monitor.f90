@@ -4,9 +4,9 @@ module monitor_m
   use clock_m, only : clock_t
   use controls_m, only : is_asked
   use errors_m, only : error_t
-  use history_file_m, only : histories_t, open_histories, append_glstat, append_rcforc, &
-    append_nodout, append_matsum, append_contact, append_rwforc, append_sleout, append_spcforc, &
-    flush_histories, close_histories
+  use history_file_m, only : histories_t, open_histories, flush_histories, close_histories
+  use history_rows_m, only : append_glstat, append_rcforc, append_nodout, append_matsum, &
+    append_contact, append_rwforc, append_sleout, append_spcforc
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
