@@ -7,8 +7,8 @@ module deck_mesh_m
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, report_field
-  use deck_raw_m, only : raw_t, raw_set_t, reserve_nodes, reserve_elements, append_set, &
-    append_member
+  use deck_raw_m, only : raw_t, reserve_nodes, reserve_elements
+  use deck_raw_sets_m, only : raw_set_t, append_set, append_member
   implicit none
   private
   public :: read_nodes, read_elements, read_set, read_history_ids

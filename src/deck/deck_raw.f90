@@ -9,15 +9,16 @@ module deck_raw_m
   use controls_m, only : controls_t
   use walls_m, only : wall_t
   use deck_lines_m, only : place_t
+  use deck_raw_sets_m, only : raw_set_t, lengthen
   implicit none
   private
-  public :: raw_t, lost_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_set_t, raw_contact_t, row_t, history_t, &
-    reserve_rows, append_row, reserve_velocities, append_velocity, append_set, append_member, reserve_nodes, reserve_elements, &
-    row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, row_velocity_node, &
-    row_velocity_generation, row_load_node, row_load_set, row_pressure, row_pressure_set, &
-    row_body, row_damping, row_motion_rigid, row_velocity_rigid, output_plot, output_glstat, &
-    output_matsum, output_rcforc, output_nodout, output_rwforc, output_sleout, output_spcforc, &
-    n_output, raw_wall_t
+  public :: raw_t, lost_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_contact_t, &
+    raw_wall_t, row_t, history_t, reserve_rows, append_row, reserve_velocities, append_velocity, &
+    reserve_nodes, reserve_elements, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
+    row_velocity, row_velocity_node, row_velocity_generation, row_load_node, row_load_set, &
+    row_pressure, row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid, &
+    output_plot, output_glstat, output_matsum, output_rcforc, output_nodout, output_rwforc, &
+    output_sleout, output_spcforc
 
   !> Kinds of `row_t`.
   integer, parameter :: row_spc_node = 1, row_spc_set = 2, row_motion_node = 3, &
@@ -70,17 +71,6 @@ module deck_raw_m
     integer :: line = 0
     character(:), allocatable :: title
   end type raw_part_t
-
-  !> One set: user ids, and of each the line and field it stands in. In a generated set
-  !> they come as pairs first, last. In a segment set they come as pairs of nodes.
-  type :: raw_set_t
-    integer :: id = 0
-    integer :: line = 0
-    logical :: generate = .false.
-    logical :: damaged = .false.        !! some of its cards were refused
-    integer :: n = 0
-    integer, allocatable :: members(:), lines(:), fields(:)
-  end type raw_set_t
 
   !> One interface.
   type :: raw_contact_t
@@ -167,7 +157,8 @@ contains
     allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%materials(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
       raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%tables(0), raw%contacts(0), &
-      raw%walls(0), raw%rows(64), raw%node_velocities(0), raw%node_sets(16), raw%part_sets(16), raw%segment_sets(16))
+      raw%walls(0), raw%rows(64), raw%node_velocities(0), raw%node_sets(16), raw%part_sets(16), &
+      raw%segment_sets(16))
     call reserve_nodes(raw, 0)
     call reserve_elements(raw, 0)
   end subroutine start_raw
@@ -218,69 +209,6 @@ contains
     raw%n_node_velocity = raw%n_node_velocity + 1
     raw%node_velocities(raw%n_node_velocity) = node_velocity_t(line, node, raw%n_row, velocity)
   end subroutine append_velocity
-
-  !> One more set in a list.
-  subroutine append_set(sets, n, set)
-    type(raw_set_t), allocatable, intent(inout) :: sets(:)
-    integer, intent(inout) :: n
-    type(raw_set_t), intent(inout) :: set   !! its members move into the list
-    type(raw_set_t), allocatable :: longer(:)
-    integer :: i
-
-    if (n == size(sets)) then
-      allocate (longer(2*n))
-      do i = 1, n
-        call move_set(sets(i), longer(i))
-      end do
-      call move_alloc(longer, sets)
-    end if
-    n = n + 1
-    call move_set(set, sets(n))
-  end subroutine append_set
-
-  !> Move a set without copying its members.
-  subroutine move_set(from, to)
-    type(raw_set_t), intent(inout) :: from
-    type(raw_set_t), intent(inout) :: to
-
-    to%id = from%id
-    to%line = from%line
-    to%generate = from%generate
-    to%damaged = from%damaged
-    to%n = from%n
-    if (.not. allocated(from%members)) return
-    call move_alloc(from%members, to%members)
-    call move_alloc(from%lines, to%lines)
-    call move_alloc(from%fields, to%fields)
-  end subroutine move_set
-
-  !> One more member of a set.
-  subroutine append_member(set, member, line, field)
-    type(raw_set_t), intent(inout) :: set
-    integer, intent(in) :: member, line, field
-
-    if (.not. allocated(set%members)) allocate (set%members(64), set%lines(64), set%fields(64))
-    if (set%n == size(set%members)) then
-      call lengthen(set%members, 2*set%n)
-      call lengthen(set%lines, 2*set%n)
-      call lengthen(set%fields, 2*set%n)
-    end if
-    set%n = set%n + 1
-    set%members(set%n) = member
-    set%lines(set%n) = line
-    set%fields(set%n) = field
-  end subroutine append_member
-
-  !> Give a list more room.
-  subroutine lengthen(list, n)
-    integer, allocatable, intent(inout) :: list(:)
-    integer, intent(in) :: n
-    integer, allocatable :: longer(:)
-
-    allocate (longer(n))
-    longer(:size(list)) = list
-    call move_alloc(longer, list)
-  end subroutine lengthen
 
   !> Room for `n_more` nodes.
   subroutine reserve_nodes(raw, n_more)

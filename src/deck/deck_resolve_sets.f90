@@ -8,7 +8,8 @@ module deck_resolve_sets_m
   use deck_ids_m, only : id_map_t, ids_between
   use deck_maps_m, only : maps_t, resolve_id
   use deck_cards_m, only : reject_field
-  use deck_raw_m, only : raw_t, raw_set_t
+  use deck_raw_m, only : raw_t
+  use deck_raw_sets_m, only : raw_set_t
   implicit none
   private
   public :: resolve_sets, resolve_history
