@@ -7,8 +7,8 @@ module deck_cards_m
   use deck_report_m, only : is_full
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
     flag_parameter, block_of_line
-  use deck_fields_m, only : card_t, card_spec_t, make_spec, cut_card, read_numbers, field_text, &
-    field_error, place_error, max_field
+  use deck_card_specs_m, only : card_spec_t, make_spec, max_field
+  use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error
   use deck_schema_m, only : keyword_cards, refusal_reason, max_card
   use deck_parameter_table_m, only : parameters_t
   use deck_parameters_m, only : substitute

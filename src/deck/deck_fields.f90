@@ -1,37 +1,23 @@
 ! SPDX-License-Identifier: MIT
-!> Lines to cards: fields cut by column or at commas, numbers read, defaults filled in.
-!> What a card may hold is said by a `card_spec_t`, made from one line of the table in
-!> `deck_schema_m`; the same table drives every message.
+!> Lines to cards: fields cut by column or at commas, numbers read, defaults filled in; and messages
+!> about fields.
 module deck_fields_m
   use kinds_m, only : wp
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
+  use deck_card_specs_m, only : card_spec_t, max_field
   use deck_report_m, only : spot_t, add_error, is_full
   use deck_lines_m, only : deck_t, place_t, line_text, where_text, line_warning, line_spot, &
-    written_text, shown_text, marked_line, format_standard, format_long, format_i10, flag_comma
+    written_text, shown_text, marked_line, flag_comma
   implicit none
   private
-  public :: card_t, card_spec_t, make_spec, cut_card, read_numbers, field_text, field_error, &
-    place_error, max_field, largest_value, smallest_value
+  public :: card_t, cut_card, read_numbers, field_text, field_error, place_error, largest_value, &
+    smallest_value
 
-  !> Fields of one card at most.
-  integer, parameter :: max_field = 16
-
-  !> Numbers beyond the largest are refused, those below the smallest are zero, so that products of deck values and of
-  !> what follows from them stay finite. Both lie beyond what single precision holds.
+  !> Numbers beyond the largest are refused, those below the smallest are zero, so that products of
+  !> deck values and of what follows from them stay finite. Both lie beyond what single precision
+  !> holds.
   real(wp), parameter :: largest_value = 1.0e40_wp, smallest_value = 1.0e-40_wp
-
-  !> What a card may hold.
-  type :: card_spec_t
-    integer :: n = 0                            !! fields
-    integer :: number = 1                       !! card number in messages
-    character(12) :: names(max_field) = ''
-    character :: kinds(max_field) = 'x'         !! i integer, f real, a text, x not used
-    character :: treatments(max_field) = 'h'    !! h honoured, s silently ignored, w ignored with a
-                                                !! warning, r refused unless it is the default
-    integer :: widths(max_field) = 10
-    real(wp) :: defaults(max_field) = 0.0_wp
-  end type card_spec_t
 
   !> One card as read. Blank fields hold their defaults.
   type :: card_t
@@ -47,48 +33,6 @@ module deck_fields_m
   end type card_t
 
 contains
-
-  !> A card from its line of the table: words `NAME:kind[treatment][width][=default]`.
-  subroutine make_spec(text, number, layout, spec)
-    character(*), intent(in) :: text
-    integer, intent(in) :: number
-    integer, intent(in) :: layout   !! one of the `format_` constants
-    type(card_spec_t), intent(out) :: spec
-    integer :: start, finish, colon, at, status, last
-
-    spec%number = number
-    start = 1
-    last = len_trim(text)
-    do
-      do while (start <= last)
-        if (text(start:start) /= ' ') exit
-        start = start + 1
-      end do
-      if (start > last .or. spec%n == max_field) exit
-      finish = index(text(start:)//' ', ' ') + start - 2
-      colon = index(text(start:finish), ':') + start - 1
-      spec%n = spec%n + 1
-      spec%names(spec%n) = text(start:colon - 1)
-      spec%kinds(spec%n) = text(colon + 1:colon + 1)
-      at = colon + 2
-      if (at <= finish) then
-        if (scan(text(at:at), 'swr') == 1) then
-          spec%treatments(spec%n) = text(at:at)
-          at = at + 1
-        end if
-      end if
-      colon = index(text(start:finish), '=') + start - 1
-      if (colon >= start) then
-        call read_real(text(colon + 1:finish), spec%defaults(spec%n), status)
-      else
-        colon = finish + 1
-      end if
-      if (at < colon) call read_integer(text(at:colon - 1), spec%widths(spec%n), status)
-      start = finish + 1
-    end do
-    if (layout == format_long) spec%widths = max(spec%widths, 20)
-    if (layout == format_i10) spec%widths = max(spec%widths, 10)
-  end subroutine make_spec
 
   !> Cut a line into the fields of a card; text beyond them gives a warning.
   subroutine cut_card(deck, spec, source, line, card)

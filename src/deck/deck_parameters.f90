@@ -10,7 +10,8 @@ module deck_parameters_m
   use deck_expression_m, only : evaluate
   use deck_parameter_table_m, only : parameters_t, settle_parameter, named_values, look_up, &
     again_error, again_warn_keep
-  use deck_fields_m, only : card_t, card_spec_t, make_spec, cut_card, field_text, field_error
+  use deck_card_specs_m, only : card_spec_t, make_spec
+  use deck_fields_m, only : card_t, cut_card, field_text, field_error
   use deck_schema_m, only : keyword_cards, max_card
   implicit none
   private
