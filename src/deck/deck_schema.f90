@@ -7,8 +7,9 @@
 !> Treatments: none honoured, s silently without effect, w warning when given, r refused when given.
 !> Widths are 10 unless said. A field asks for something when it is neither 0 nor its default.
 module deck_schema_m
+  use deck_schema_others_m, only : table_others
   use deck_schema_tables_m, only : table_control, table_mesh, table_conditions, table_contact, &
-    table_database, table_others
+    table_database
   implicit none
   private
   public :: keyword_cards, find_keyword, refusal_reason, max_card, &

@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> The tables of keywords and cards (`deck_schema_m` says how to read them).
+!> The tables of honoured keywords and their cards (`deck_schema_m` says how to read them).
 module deck_schema_tables_m
   implicit none
   private
-  public :: table_control, table_mesh, table_conditions, table_contact, table_database, table_others
+  public :: table_control, table_mesh, table_conditions, table_contact, table_database
 
   !> Control of the deck and of the run.
   character(86), parameter :: table_control(*) = [character(86) :: &
@@ -216,134 +216,5 @@ module deck_schema_tables_m
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_HISTORY_NODE_SET', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i']
-
-  !> Keywords that are known but not honoured, first match counts: without effect here, or the
-  !> beginning of `... not part of this version`. An asterisk stands for any ending. `unknown` keeps names of a
-  !> family that holds honoured keywords from the lines below it: a misspelt one must not pass for another.
-  character(80), parameter :: table_others(*) = [character(80) :: &
-    'MAT_* this material is', &
-    'EOS_* equations of state are', &
-    'ELEMENT_MASS* lumped masses are', &
-    'ELEMENT_SHELL_* shells with thickness or offset are', &
-    'ELEMENT_* this element is', &
-    'SECTION_* this kind of section is', &
-    'SET_NODE_GENERAL* general node sets are', &
-    'SET_2D_SEGMENT* boundary sets of parts are', &
-    'SET_* this kind of set is', &
-    'BOUNDARY_PRESCRIBED_MOTION_RIGID* axes of bodies are', &
-    'BOUNDARY_* this condition is', &
-    'INITIAL_* this initial condition is', &
-    'LOAD_* this load is', &
-    'DAMPING_* this damping is', &
-    'RIGIDWALL_PLANAR_* this option of a planar rigid wall is', &
-    'RIGIDWALL_* this kind of rigid wall is', &
-    'CONSTRAINED_* this constraint is', &
-    'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE* self contact is', &
-    'CONTACT_2D_AUTOMATIC_TIED* tied contact is', &
-    'CONTACT_2D_TIED_SLIDING* tied contact is', &
-    'CONTACT_2D_PENALTY_FRICTION* friction is', &
-    'CONTACT_2D_AUTOMATIC_SURFACE_IN_CONTINUUM* this kind of contact is', &
-    'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_THERMAL* heat through contact is', &
-    'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE_THERMAL* heat through contact is', &
-    'CONTACT_2D_FORCE_TRANSDUCER* this kind of contact is', &
-    'CONTACT_2D_NODE_TO_SOLID* this kind of contact is', &
-    'CONTACT_2D_SLIDING_ONLY* this kind of contact is', &
-    'CONTACT_2D_SLIDING_VOIDS* this kind of contact is', &
-    'CONTACT_2D_* unknown', &
-    'CONTACT_* three-dimensional contact is', &
-    'DEFINE_* this definition is', &
-    'PART_* this option of *PART is', &
-    'INCLUDE_* this kind of include is', &
-    'NODE_* this kind of node is', &
-    'CONTROL_IMPLICIT_AUTO_DYN switching phases of an implicit run is', &
-    'CONTROL_IMPLICIT_AUTO_SPR springback phases are', &
-    'CONTROL_IMPLICIT_BUCKLE a buckling analysis is', &
-    'CONTROL_IMPLICIT_CONSISTENT_MASS a consistent mass matrix is', &
-    'CONTROL_IMPLICIT_DYNAMICS_DYN switching phases of an implicit run is', &
-    'CONTROL_IMPLICIT_DYNAMICS_SPR springback phases are', &
-    'CONTROL_IMPLICIT_EIGENVALUE an eigenvalue analysis is', &
-    'CONTROL_IMPLICIT_EXPLICIT_HYBRID an implicit analysis of some parts alone is', &
-    'CONTROL_IMPLICIT_FORMING this implicit option is', &
-    'CONTROL_IMPLICIT_GENERAL_DYN switching phases of an implicit run is', &
-    'CONTROL_IMPLICIT_GENERAL_SPR springback phases are', &
-    'CONTROL_IMPLICIT_INERTIA_RELIEF this implicit option is', &
-    'CONTROL_IMPLICIT_MODAL_DYNAMIC a modal analysis is', &
-    'CONTROL_IMPLICIT_MODAL_DYNAMIC_DAMPING a modal analysis is', &
-    'CONTROL_IMPLICIT_MODAL_DYNAMIC_MODE a modal analysis is', &
-    'CONTROL_IMPLICIT_MODES a modal analysis is', &
-    'CONTROL_IMPLICIT_RESIDUAL_VECTOR a modal analysis is', &
-    'CONTROL_IMPLICIT_ROTATIONAL_DYNAMICS rotating parts are', &
-    'CONTROL_IMPLICIT_SOLUTION_DYN switching phases of an implicit run is', &
-    'CONTROL_IMPLICIT_SOLUTION_SPR springback phases are', &
-    'CONTROL_IMPLICIT_SSD a steady state analysis is', &
-    'CONTROL_IMPLICIT_SSD_DIRECT a steady state analysis is', &
-    'CONTROL_IMPLICIT_STABILIZATION artificial stabilisation is', &
-    'CONTROL_IMPLICIT_STABILIZATION_DYN artificial stabilisation is', &
-    'CONTROL_IMPLICIT_STABILIZATION_SPR artificial stabilisation is', &
-    'CONTROL_IMPLICIT_STATIC_CONDENSATION static condensation is', &
-    'CONTROL_IMPLICIT_TERMINATION an end by displacement or energy is', &
-    'CONTROL_SHELL ignored', &
-    'CONTROL_SOLID ignored', &
-    'CONTROL_CPU ignored', &
-    'CONTROL_PARALLEL ignored', &
-    'CONTROL_SOLUTION ignored', &
-    'CONTROL_MPP_* ignored', &
-    'CONTROL_ACCURACY ignored', &
-    'CONTROL_IMPLICIT_JOINTS ignored', &
-    'CONTROL_IMPLICIT_ORDERING ignored', &
-    'CONTROL_IMPLICIT_SOLVER ignored', &
-    'CONTROL_STRUCTURED* ignored', &
-    'CONTROL_DEBUG ignored', &
-    'CONTROL_FORMING_* ignored', &
-    'CONTROL_UNITS ignored', &
-    'CONTROL_REQUIRE_REVISION ignored', &
-    'CONTROL_SPH ignored', &
-    'CONTROL_ALE ignored', &
-    'CONTROL_RIGID ignored', &
-    'DATABASE_FORMAT ignored', &
-    'DATABASE_BINARY_D3THDT ignored', &
-    'DATABASE_BINARY_INTFOR ignored', &
-    'DATABASE_BINARY_D3DRLF ignored', &
-    'DATABASE_BINARY_D3PART ignored', &
-    'DATABASE_BINARY_D3PROP ignored', &
-    'DATABASE_BINARY_BLSTFOR ignored', &
-    'DATABASE_SECFORC ignored', &
-    'DATABASE_ABSTAT* ignored', &
-    'DATABASE_JNTFORC ignored', &
-    'DATABASE_DEFORC ignored', &
-    'DATABASE_ELOUT ignored', &
-    'DATABASE_NCFORC ignored', &
-    'DATABASE_NODFOR ignored', &
-    'DATABASE_BNDOUT ignored', &
-    'DATABASE_RBDOUT ignored', &
-    'DATABASE_EXTENT_BINARY ignored', &
-    'DATABASE_HISTORY_SHELL* ignored', &
-    'DATABASE_NODAL_FORCE_GROUP ignored', &
-    'DATABASE_GCEOUT ignored', &
-    'DATABASE_SPHOUT ignored', &
-    'DATABASE_TPRINT ignored', &
-    'DATABASE_SBTOUT ignored', &
-    'DATABASE_SWFORC ignored', &
-    'DATABASE_DISBOUT ignored', &
-    'DATABASE_ATDOUT ignored', &
-    'DATABASE_AVSFLT ignored', &
-    'DATABASE_MOVIE ignored', &
-    'DATABASE_MPGS ignored', &
-    'DATABASE_TRHIST ignored', &
-    'DATABASE_CURVOUT ignored', &
-    'DATABASE_PLLYOUT ignored', &
-    'DATABASE_FREQUENCY_* ignored', &
-    'DATABASE_CROSS_SECTION_* ignored', &
-    'INTERFACE_* ignored', &
-    'COMPONENT_* ignored', &
-    'CASE_* several cases in one deck are', &
-    'PERTURBATION_* perturbations are', &
-    'AIRBAG_* airbags are', &
-    'ALE_* ALE is', &
-    'DEFORMABLE_TO_RIGID* parts that become rigid are', &
-    'EF_* this keyword family is', &
-    'SENSOR_* sensors are', &
-    'USER_* user interfaces are', &
-    'PARAMETER_TYPE* this kind of parameter is']
 
 end module deck_schema_tables_m

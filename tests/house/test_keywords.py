@@ -6,7 +6,8 @@ import pytest
 
 from fortran_source import ROOT
 
-SOURCE = (ROOT / "src/deck/deck_schema_tables.f90").read_text(encoding="utf-8")
+SOURCE = "".join((ROOT / "src/deck" / name).read_text(encoding="utf-8")
+                 for name in ("deck_schema_tables.f90", "deck_schema_others.f90"))
 KINDS = {"i": "integer", "f": "real", "a": "text"}
 TREATMENTS = {"": "honoured", "s": "no effect", "w": "warning", "r": "refused"}
 
