@@ -14,8 +14,8 @@ module deck_cards_m
   use deck_parameters_m, only : substitute
   implicit none
   private
-  public :: cursor_t, open_cursor, next_card, next_row, next_text, check_rest, report_field, &
-    row_comes, reject_field
+  public :: cursor_t, open_cursor, skip_title, next_card, next_row, next_text, check_rest, &
+    report_field, row_comes, reject_field
 
   !> A place in a block.
   type :: cursor_t
@@ -120,6 +120,15 @@ contains
     text = trim(line_text(deck, cursor%line))
     cursor%line = cursor%line + 1
   end subroutine next_text
+
+  !> Move past the title line of a keyword that has the option.
+  subroutine skip_title(deck, cursor)
+    type(deck_t), intent(in) :: deck
+    type(cursor_t), intent(inout) :: cursor
+
+    if (deck%blocks(cursor%block)%titled .and. cursor%line <= cursor%last) &
+      cursor%line = cursor%line + 1
+  end subroutine skip_title
 
   !> Read one line as card `number`.
   subroutine read_line(deck, parameters, cursor, number, card)

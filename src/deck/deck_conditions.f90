@@ -6,7 +6,7 @@ module deck_conditions_m
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, check_rest, &
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, check_rest, &
     report_field
   use deck_raw_m, only : raw_t, row_t, reserve_rows, append_row, reserve_velocities, &
     append_velocity, row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, &
@@ -27,12 +27,11 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     type(row_t) :: row
-    character(:), allocatable :: title
     logical :: found
     integer :: n_row
 
     call open_cursor(deck, i_block, cursor)
-    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call skip_title(deck, cursor)
     row%kind = row_kind(trim(deck%blocks(i_block)%name))
     row%direction = merge(2, 1, deck%blocks(i_block)%name == 'LOAD_BODY_Y')
     n_row = deck%blocks(i_block)%last - deck%blocks(i_block)%first + 1

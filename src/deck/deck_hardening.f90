@@ -6,16 +6,14 @@ module deck_hardening_m
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, check_rest, &
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, check_rest, &
     report_field
-  use deck_material_m, only : elastic_constants, append_material
+  use deck_material_m, only : elastic_constants, append_material, check_tangent_modulus, &
+    check_failure
   use deck_raw_m, only : raw_t, raw_hardening_t, raw_table_t
   implicit none
   private
   public :: read_piecewise, read_table
-
-  !> FAIL from here on means never.
-  real(wp), parameter :: never = 1.0e19_wp
 
 contains
 
@@ -29,15 +27,13 @@ contains
     type(card_t) :: card, rate, strains, stresses
     type(material_t) :: material
     type(raw_hardening_t) :: hardening
-    character(:), allocatable :: title
 
     call open_cursor(deck, i_block, cursor)
-    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call skip_title(deck, cursor)
     call next_card(deck, parameters, cursor, 1, card)
     call elastic_constants(deck, cursor, card, material)
     material%law = law_piecewise
-    if (abs(card%r(7)) > 0.0_wp .and. card%r(7) < never) call report_field(deck, cursor, card, 7, &
-      'asks for failure at a plastic strain, which this version does not have; leave it 0')
+    call check_failure(deck, cursor, card, 7)
     call next_card(deck, parameters, cursor, 2, rate)
     call read_rates(deck, cursor, rate, hardening)
     call next_card(deck, parameters, cursor, 3, strains)
@@ -124,12 +120,8 @@ contains
 
     if (card%r(5) <= 0.0_wp) call report_field(deck, cursor, card, 5, &
       'is not a yield stress (more than 0), and there is neither LCSS nor EPS and ES')
-    if (card%r(6) < 0.0_wp) then
-      call report_field(deck, cursor, card, 6, 'is negative: a falling yield stress needs a curve')
-    else if (card%r(6) >= card%r(3) .and. .not. card%bad(3)) then
-      call report_field(deck, cursor, card, 6, 'is not below E: the tangent modulus of the ' &
-        //'uniaxial stress-strain curve must be')
-    end if
+    call check_tangent_modulus(deck, cursor, card, &
+      'is negative: a falling yield stress needs a curve')
     if (any(card%bad)) return
     hardening%points%abscissa = [0.0_wp]
     hardening%points%ordinate = [card%r(5)]
@@ -145,13 +137,12 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: head, card
     type(raw_table_t) :: table
-    character(:), allocatable :: title
     real(wp), allocatable :: values(:)
     logical :: found
     integer :: n
 
     call open_cursor(deck, i_block, cursor)
-    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call skip_title(deck, cursor)
     call next_card(deck, parameters, cursor, 1, head)
     if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a number of 1 or more')
     if (head%r(2) < 0.0_wp) call report_field(deck, cursor, head, 2, &

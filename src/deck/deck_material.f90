@@ -8,12 +8,16 @@ module deck_material_m
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, check_rest, &
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, check_rest, &
     report_field
   use deck_raw_m, only : raw_t
   implicit none
   private
-  public :: read_elastic, read_plastic_kinematic, read_curve, elastic_constants, append_material
+  public :: read_elastic, read_plastic_kinematic, read_curve, elastic_constants, append_material, &
+    check_tangent_modulus, check_failure
+
+  !> A strain at failure from here on means never.
+  real(wp), parameter :: never = 1.0e19_wp
 
 contains
 
@@ -26,10 +30,9 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     type(material_t) :: material
-    character(:), allocatable :: title
 
     call open_cursor(deck, i_block, cursor)
-    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call skip_title(deck, cursor)
     call next_card(deck, parameters, cursor, 1, card)
     call elastic_constants(deck, cursor, card, material)
     material%law = law_elastic
@@ -46,32 +49,51 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card, rate
     type(material_t) :: material
-    character(:), allocatable :: title
 
     call open_cursor(deck, i_block, cursor)
-    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call skip_title(deck, cursor)
     call next_card(deck, parameters, cursor, 1, card)
     call elastic_constants(deck, cursor, card, material)
     material%law = law_plastic
     if (card%r(5) <= 0.0_wp) call report_field(deck, cursor, card, 5, &
       'is not a yield stress (more than 0)')
-    if (card%r(6) < 0.0_wp) then
-      call report_field(deck, cursor, card, 6, 'is negative: softening is not part of this law')
-    else if (card%r(6) >= card%r(3) .and. .not. card%bad(3)) then
-      call report_field(deck, cursor, card, 6, 'is not below E: the tangent modulus of the ' &
-        //'uniaxial stress-strain curve must be')
-    end if
+    call check_tangent_modulus(deck, cursor, card, 'is negative: softening is not part of this law')
     if (card%r(7) < 0.0_wp .or. card%r(7) > 1.0_wp) call report_field(deck, cursor, card, 7, &
       'is not between 0 (kinematic) and 1 (isotropic hardening)')
     material%yield = card%r(5)
     if (.not. any(card%bad)) material%hardening = card%r(3)*card%r(6)/(card%r(3) - card%r(6))
     material%beta = card%r(7)
     call next_card(deck, parameters, cursor, 2, rate)
-    if (abs(rate%r(3)) > 0.0_wp .and. rate%r(3) < 1.0e19_wp) call report_field(deck, cursor, rate, &
-      3, 'asks for failure at a plastic strain, which this version does not have; leave it 0')
+    call check_failure(deck, cursor, rate, 3)
     call append_material(raw, material, card)
     call check_rest(deck, cursor)
   end subroutine read_plastic_kinematic
+
+  !> ETAN in field 6, with E in field 3.
+  subroutine check_tangent_modulus(deck, cursor, card, negative)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    character(*), intent(in) :: negative    !! what to say of one below 0
+
+    if (card%r(6) < 0.0_wp) then
+      call report_field(deck, cursor, card, 6, negative)
+    else if (card%r(6) >= card%r(3) .and. .not. card%bad(3)) then
+      call report_field(deck, cursor, card, 6, 'is not below E: the tangent modulus of the ' &
+        //'uniaxial stress-strain curve must be')
+    end if
+  end subroutine check_tangent_modulus
+
+  !> A plastic strain at failure in field `k`.
+  subroutine check_failure(deck, cursor, card, k)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+
+    if (abs(card%r(k)) > 0.0_wp .and. card%r(k) < never) call report_field(deck, cursor, card, k, &
+      'asks for failure at a plastic strain, which this version does not have; leave it 0')
+  end subroutine check_failure
 
   !> MID, RO, E, PR in the first four fields, and what follows from them.
   subroutine elastic_constants(deck, cursor, card, material)
@@ -124,13 +146,12 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: head, card
     type(curve_t) :: curve
-    character(:), allocatable :: title
     real(wp), allocatable :: points(:, :)
     logical :: found
     integer :: n
 
     call open_cursor(deck, i_block, cursor)
-    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call skip_title(deck, cursor)
     call next_card(deck, parameters, cursor, 1, head)
     if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a number of 1 or more')
     if (head%r(3) < 0.0_wp) call report_field(deck, cursor, head, 3, &

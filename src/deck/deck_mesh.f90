@@ -6,7 +6,7 @@ module deck_mesh_m
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field
   use deck_raw_m, only : raw_t, reserve_nodes, reserve_elements
   use deck_raw_sets_m, only : raw_set_t, append_set, append_member
   implicit none
@@ -96,11 +96,10 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: head, card
     type(raw_set_t) :: set
-    character(:), allocatable :: title
     logical :: found
 
     call open_cursor(deck, i_block, cursor)
-    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call skip_title(deck, cursor)
     call next_card(deck, parameters, cursor, 1, head)
     if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a set number (1 or more)')
     set%id = head%i(1)

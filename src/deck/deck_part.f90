@@ -9,8 +9,8 @@ module deck_part_m
   use deck_lines_m, only : deck_t, line_text, line_error, line_warning, flag_blank
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, row_comes, &
-    report_field
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
+    row_comes, report_field
   use deck_raw_m, only : raw_t, raw_part_t
   implicit none
   private
@@ -86,12 +86,11 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card, thickness
     type(section_t) :: section
-    character(:), allocatable :: title
     logical :: found
 
     call open_cursor(deck, i_block, cursor)
     do
-      if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+      call skip_title(deck, cursor)
       call next_card(deck, parameters, cursor, 1, card)
       call check_section(deck, cursor, card)
       section%id = card%i(1)
@@ -147,13 +146,12 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     type(hourglass_t) :: hourglass
-    character(:), allocatable :: title
     logical :: found, given(2)
     integer :: k
 
     call open_cursor(deck, i_block, cursor)
     do
-      if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+      call skip_title(deck, cursor)
       call next_row(deck, parameters, cursor, 1, card, found)
       if (.not. found) exit
       if (card%i(1) < 1) call report_field(deck, cursor, card, 1, 'is not a number of 1 or more')

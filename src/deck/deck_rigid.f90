@@ -5,7 +5,7 @@ module deck_rigid_m
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, check_rest, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_material_m, only : elastic_constants, append_material
   use deck_raw_m, only : raw_t
   implicit none
@@ -31,10 +31,9 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card, constraints, axes
     type(material_t) :: material
-    character(:), allocatable :: title
 
     call open_cursor(deck, i_block, cursor)
-    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, title)
+    call skip_title(deck, cursor)
     call next_card(deck, parameters, cursor, 1, card)
     call elastic_constants(deck, cursor, card, material)
     material%is_rigid = .true.
