@@ -2,6 +2,7 @@
 !> User ids to indices: a direct table where ids lie close together, a sorted list elsewhere.
 module deck_ids_m
   use kinds_m, only : long
+  use sorting_m, only : sorted_order
   implicit none
   private
   public :: id_map_t, map_ids, index_of, ids_between
@@ -40,7 +41,7 @@ contains
         if (.not. again(i)) map%table(ids(i) - map%low + 1) = i
       end do
     else
-      call sort_ids(ids, map%order)
+      map%order = sorted_order(int(ids, long))
       map%sorted = ids(map%order)
       do i = 2, n
         again(map%order(i)) = map%sorted(i) == map%sorted(i - 1)
@@ -111,43 +112,5 @@ contains
     end do
     place = high
   end function first_place
-
-  !> Order that sorts ids (equal ones stay in their order): merge sort from runs of one upwards.
-  subroutine sort_ids(ids, order)
-    integer, intent(in) :: ids(:)
-    integer, allocatable, intent(out) :: order(:)
-    integer, allocatable :: other(:)
-    integer :: n, width, low, middle, high, i, j, k
-
-    n = size(ids)
-    order = [(i, i=1, n)]
-    allocate (other(n))
-    width = 1
-    do while (width < n)
-      do low = 1, n, 2*width
-        middle = min(low + width, n + 1)
-        high = min(low + 2*width, n + 1)
-        i = low
-        j = middle
-        do k = low, high - 1
-          if (j >= high) then
-            other(k) = order(i)
-            i = i + 1
-          else if (i >= middle) then
-            other(k) = order(j)
-            j = j + 1
-          else if (ids(order(j)) < ids(order(i))) then
-            other(k) = order(j)
-            j = j + 1
-          else
-            other(k) = order(i)
-            i = i + 1
-          end if
-        end do
-      end do
-      order = other
-      width = 2*width
-    end do
-  end subroutine sort_ids
 
 end module deck_ids_m
