@@ -6,7 +6,7 @@ module text_m
   use kinds_m, only : wp, long
   implicit none
   private
-  public :: upper_case, read_real, read_integer, exact_text, &
+  public :: upper_case, read_real, read_integer, exact_text, text_of, &
     number_good, number_wrong, number_range, number_fraction
 
   !> Outcome of reading a number: good, not a number, too large, not a whole number.
@@ -275,5 +275,14 @@ contains
     end do
     text = trim(adjustl(buffer))
   end function exact_text
+
+  !> A text that may be missing.
+  pure function text_of(text) result(known)
+    character(:), allocatable, intent(in) :: text
+    character(:), allocatable :: known
+
+    known = ''
+    if (allocated(text)) known = text
+  end function text_of
 
 end module text_m

@@ -10,6 +10,7 @@ module dyna_text_m
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use kinds_m, only : wp, long
   use model_m, only : model_t
+  use text_m, only : text_of
   implicit none
   private
   public :: dyna_text_t, open_dyna_text, add_dyna_row, flush_dyna_text, close_dyna_text
@@ -92,15 +93,6 @@ contains
     call put_line(text, '{END LEGEND}')
     call put_line(text, '')
   end subroutine write_head
-
-  !> A text that may be missing.
-  pure function text_of(text) result(known)
-    character(:), allocatable, intent(in) :: text
-    character(:), allocatable :: known
-
-    known = ''
-    if (allocated(text)) known = text
-  end function text_of
 
   !> One entity of a legend; the first opens it.
   subroutine put_entity(text, has_legend, id, title)

@@ -9,6 +9,7 @@ module results_tables_m
   use csv_table_m, only : csv_table_t, column_name, n_columns, kind_real
   use hdf5_writing_m, only : as_real, as_integer, make_group, write_rows, &
     write_string_attribute, write_text
+  use text_m, only : text_of
   implicit none
   private
   public :: run_info_t, write_run, write_histories, utf8_text
@@ -61,15 +62,6 @@ contains
 
     call write_string_attribute(group, name, utf8_text(text_of(text)), .false., error)
   end subroutine write_known
-
-  !> A text that may be missing.
-  pure function text_of(text) result(known)
-    character(:), allocatable, intent(in) :: text
-    character(:), allocatable :: known
-
-    known = ''
-    if (allocated(text)) known = text
-  end function text_of
 
   !> The text in UTF-8: as it is, or taken for Latin-1 where it is not UTF-8 (decks are either).
   pure function utf8_text(text) result(utf8)
