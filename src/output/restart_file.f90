@@ -138,17 +138,13 @@ contains
     integer :: unit, status, n
 
     length = 0
-    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
-      action='read', iostat=status)
-    if (status /= 0) then
-      reason = 'it can not be opened'
-      return
-    end if
-    inquire (unit=unit, size=n_byte)
+    call open_bytes(path, unit, n_byte, reason)
+    if (allocated(reason)) return
     length = max(n_byte - n_skipped, 0_long)
     allocate (block)
     call start_checksum(sum_of_bytes)
     start = n_skipped
+    status = 0
     do while (start < n_byte .and. status == 0)
       n = int(min(int(block_size, long), n_byte - start))
       read (unit, pos=start + 1, iostat=status) block(:n)
@@ -159,6 +155,24 @@ contains
     close (unit, iostat=status)
     checksum = checksum_text(sum_of_bytes)
   end subroutine file_checksum
+
+  !> Open a file to read its bytes; `reason` is set when it can not be opened.
+  subroutine open_bytes(path, unit, n_byte, reason)
+    character(*), intent(in) :: path
+    integer, intent(out) :: unit
+    integer(long), intent(out) :: n_byte    !! length of the file
+    character(:), allocatable, intent(out) :: reason
+    integer :: status
+
+    n_byte = 0
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+      action='read', iostat=status)
+    if (status /= 0) then
+      reason = 'it can not be opened'
+    else
+      inquire (unit=unit, size=n_byte)
+    end if
+  end subroutine open_bytes
 
   !> Open a restart file for reading; one that is not whole or not ours is refused with the reason.
   subroutine open_restart(path, archive, error)
@@ -195,13 +209,9 @@ contains
       reason = 'it is empty, or a pipe or a device and no file'
       return
     end if
-    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
-      action='read', iostat=status)
-    if (status /= 0) then
-      reason = 'it can not be opened'
-      return
-    end if
-    inquire (unit=unit, size=n_byte)
+    call open_bytes(path, unit, n_byte, reason)
+    if (allocated(reason)) return
+    status = 0
     if (n_byte > 0) read (unit, iostat=status) head(:min(n_byte, int(head_size, long)))
     close (unit)
     if (status /= 0 .or. n_byte == 0) then
