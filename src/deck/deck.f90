@@ -5,9 +5,8 @@
 !> procedure of its keyword into `raw_t` (user ids), then ids become indices and surfaces are built.
 !> All mistakes on the way are collected and come back as one error, in deck order.
 module deck_m
-  use kinds_m, only : wp
   use errors_m, only : error_t
-  use log_m, only : log_t, to_text
+  use log_m, only : log_t
   use contacts_m, only : contact_kind_t
   use model_m, only : model_t
   use deck_findings_m, only : list_findings

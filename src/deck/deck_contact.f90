@@ -14,7 +14,7 @@ module deck_contact_m
   use deck_overrides_m, only : overrides_t, override_text
   implicit none
   private
-  public :: read_contact, kind_names, stock_type
+  public :: read_contact, kind_names
 
 contains
 

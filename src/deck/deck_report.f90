@@ -5,7 +5,7 @@ module deck_report_m
   use log_m, only : log_t, warn, to_text
   implicit none
   private
-  public :: report_t, note_t, spot_t, add_error, add_warning, has_warning, is_full, emit_warnings, &
+  public :: report_t, note_t, spot_t, add_error, add_warning, is_full, emit_warnings, &
     emit_errors, deck_order
 
   !> Messages kept of each kind; what comes later is counted.

@@ -13,7 +13,7 @@ module deck_resolve_conditions_m
     row_load_node, row_load_set, row_body, row_damping
   implicit none
   private
-  public :: resolve_conditions, row_nodes
+  public :: resolve_conditions
 
 contains
 

@@ -8,7 +8,6 @@ module deck_resolve_mesh_m
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_cards_m, only : reject_field
-  use deck_ids_m, only : index_of
   use deck_maps_m, only : maps_t, resolve_id
   use deck_raw_m, only : raw_t
   implicit none

@@ -2,7 +2,6 @@
 !> Rigid bodies from the parts of *MAT_RIGID: their nodes, their prescribed motion, and what may not be
 !> asked of them.
 module deck_resolve_rigids_m
-  use kinds_m, only : wp
   use conditions_m, only : prescribed_motion_t
   use log_m, only : to_text
   use mesh_m, only : mesh_t

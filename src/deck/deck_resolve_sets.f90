@@ -2,7 +2,6 @@
 !> Sets with indices in place of ids.
 module deck_resolve_sets_m
   use log_m, only : to_text
-  use sets_m, only : node_set_t, part_set_t, segment_set_t
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t, line_error
   use deck_ids_m, only : id_map_t, ids_between

@@ -2,7 +2,7 @@
 !> Puts a finished model into the order of the step: nodes renumbered everywhere, layout built.
 module renumber_m
   use controls_m, only : is_asked
-  use kinds_m, only : wp, long
+  use kinds_m, only : long
   use layout_building_m, only : build_slots, build_local_numbers
   use model_m, only : model_t
   use node_order_m, only : order_nodes

@@ -15,7 +15,7 @@ module hdf5_writing_m
     h5pcreate_f, h5pset_chunk_f, h5pset_fill_time_f, h5sclose_f, h5screate_f, &
     h5screate_simple_f, h5sselect_hyperslab_f, h5tclose_f, h5tcopy_f, h5tset_cset_f, &
     h5tset_size_f, h5tset_strpad_f
-  use kinds_m, only : wp, long
+  use kinds_m, only : long
   use errors_m, only : error_t, raise, status_files
   implicit none
   private

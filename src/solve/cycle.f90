@@ -2,7 +2,7 @@
 !> What one thread does in each explicit cycle: contact and loads before the elements; writing; time,
 !> step and health after them.
 module cycle_m
-  use clock_m, only : lap, share_contact, phase_nodes, phase_output
+  use clock_m, only : lap, share_contact, phase_nodes
   use constraints_m, only : fix_nodes, update_activity
   use contact_check_m, only : report_contact_start, report_contact_end, follow_springs
   use contact_force_m, only : apply_contact

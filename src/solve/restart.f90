@@ -8,7 +8,7 @@ module restart_m
   use archive_file_m, only : archive_t, fail_archive
   use errors_m, only : error_t, status_files
   use files_m, only : file_exists, remove_file
-  use kinds_m, only : wp, long
+  use kinds_m, only : long
   use log_m, only : write_log
   use monitor_m, only : monitor_t
   use progress_m, only : show_note

@@ -7,7 +7,6 @@ module snapshot_filling_m
   use contact_results_m, only : interface_resultants, slave_rows
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains
   use controls_m, only : is_asked
-  use energies_m, only : energies_t
   use layout_m, only : slot_part
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t

@@ -9,7 +9,6 @@ module state_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use contact_state_m, only : contact_state_t
-  use energies_m, only : energies_t
   use rigid_state_m, only : rigid_state_t
   use wall_state_m, only : wall_state_t
   implicit none
