@@ -1,5 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> The command line: `i=DECK r=FILE d=DIR jobid=NAME ncpu=N perthread=N timing=... memory=... OVERRIDES`; a bare path works as i=.
+!> The command line:
+!> `i=DECK r=FILE d=DIR jobid=NAME ncpu=N perthread=N timing=... memory=... OVERRIDES`;
+!> a bare path works as i=.
 module arguments_m
   use errors_m, only : error_t, raise, status_input
   implicit none

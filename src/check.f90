@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> `slideline check`: all that is wrong or strange in a deck, and what a run would say at its start, without a run
-!> and without a file.
+!> `slideline check`: all that is wrong or strange in a deck, and what a run would say at its start,
+!> without a run and without a file.
 module check_m
   use, intrinsic :: iso_fortran_env, only : output_unit
   use arguments_m, only : arguments_t
@@ -54,8 +54,8 @@ contains
     end if
   end subroutine check_deck
 
-  !> The state at time zero: forces, step, and what the run says of them. An implicit run says no more than
-  !> that its model can be built.
+  !> The state at time zero: forces, step, and what the run says of them. An implicit run says no
+  !> more than that its model can be built.
   subroutine start_run(model, monitor, error)
     type(model_t), intent(inout) :: model
     type(monitor_t), intent(inout) :: monitor

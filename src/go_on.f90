@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The deck of a run that goes on from a restart file: that of the file, with what the command line and a small
-!> deck change.
+!> The deck of a run that goes on from a restart file: that of the file, with what the command
+!> line and a small deck change.
 module go_on_m
   use arguments_m, only : arguments_t, only_end_time
   use contact_dispatch_m, only : contact_kinds

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Files and directories as the C library has them. Text goes through its `creat` and `write` and not
-!> through a Fortran unit, for two reasons that were measured: gfortran's `flush` and `close` report
-!> success on a full disk, and one `write` of whole lines leaves no half line behind when the process
-!> is killed.
+!> Files and directories as the C library has them. Text goes through its `creat` and `write`
+!> and not through a Fortran unit, for two reasons that were measured: gfortran's `flush` and
+!> `close` report success on a full disk, and one `write` of whole lines leaves no half line
+!> behind when the process is killed.
 module c_files_m
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_ptr, c_size_t, c_sizeof
   implicit none

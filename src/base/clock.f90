@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Wall time per phase of the run. One clock read per change of phase: `lap` gives the time since
-!> the last read to the phase that just ended, so that the phases add up to the total exactly. What an
-!> interface took is told from what its laps added to the contact phases: no read of its own.
+!> the last read to the phase that just ended, so that the phases add up to the total exactly. What
+!> an interface took is told from what its laps added to the contact phases: no read of its own.
 module clock_m
   use kinds_m, only : wp, long
   implicit none
@@ -27,8 +27,8 @@ module clock_m
     integer(long) :: last = 0           !! tick of the last lap or look
     integer(long) :: ticks(n_phase) = 0 !! ticks spent in each phase
     integer(long) :: calls(n_phase) = 0 !! laps given to each phase
-    !> (n_contact_phase, 0:n_interface) ticks and laps of the contact phases by interface, in column 0 those
-    !> of all together; allocated on request.
+    !> (n_contact_phase, 0:n_interface) ticks and laps of the contact phases by interface, in column
+    !> 0 those of all together; allocated on request.
     integer(long), allocatable :: interface_ticks(:, :), interface_calls(:, :)
   end type clock_t
 
@@ -55,7 +55,8 @@ contains
     clock%last = now
   end subroutine lap
 
-  !> What time it is, where no laps tell: at the end of what is timed, and now and then for those who watch.
+  !> What time it is, where no laps tell: at the end of what is timed, and now and
+  !> then for those who watch.
   subroutine look_at_clock(clock)
     type(clock_t), intent(inout) :: clock
 

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Dual numbers: a value and its partial derivatives with respect to a few variables, carried through sums,
-!> products, quotients and square roots (forward differentiation).
+!> Dual numbers: a value and its partial derivatives with respect to a few variables, carried
+!> through sums, products, quotients and square roots (forward differentiation).
 module dual_m
   use kinds_m, only : wp
   implicit none

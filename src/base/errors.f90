@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Errors as values: a procedure that can fail ends with
-!> `type(error_t), allocatable, intent(out) :: error` and its caller asks `if (allocated(error)) return`.
+!> `type(error_t), allocatable, intent(out) :: error` and its caller asks
+!> `if (allocated(error)) return`.
 module errors_m
   implicit none
   private

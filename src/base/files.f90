@@ -119,7 +119,8 @@ contains
       status_files)
   end subroutine rename_file
 
-  !> Bring what has been written to a file onto the disk itself, so that a power failure does not lose it.
+  !> Bring what has been written to a file onto the disk itself, so that a power
+  !> failure does not lose it.
   subroutine force_to_disk(path, error)
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
@@ -136,8 +137,8 @@ contains
     if (status /= 0) call raise(error, 'cannot bring '//path//' onto the disk: '//reason, status_files)
   end subroutine force_to_disk
 
-  !> Whether `path` is there and is not a file of known size with something in it: a pipe, a device, or an empty
-  !> file. To open a pipe could wait for ever, and a device may have no end.
+  !> Whether `path` is there and is not a file of known size with something in it: a pipe, a device,
+  !> or an empty file. To open a pipe could wait for ever, and a device may have no end.
   function is_endless(path) result(endless)
     character(*), intent(in) :: path
     logical :: endless
@@ -148,8 +149,8 @@ contains
     if (endless) endless = .not. is_directory(path)
   end function is_endless
 
-  !> Open the null device in place of standard streams that the caller has closed: a result file would take
-  !> their number otherwise, and what is meant for the screen would go into it.
+  !> Open the null device in place of standard streams that the caller has closed: a result file
+  !> would take their number otherwise, and what is meant for the screen would go into it.
   subroutine fill_standard_streams()
     type(c_ptr) :: stream
     integer(c_int) :: ignored

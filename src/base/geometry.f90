@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> How a point lies to a segment: closest point, gap and normal.
 !> Places are given as (X, Y, u_x, u_y): coordinates at time zero and displacement. Everything is
-!> formed from differences of X plus differences of u, never from positions, so that no digit is lost
-!> far from the origin (doc/theory/contact.md, section 2).
+!> formed from differences of X plus differences of u, never from positions, so that no digit is
+!> lost far from the origin (doc/theory/contact.md, section 2).
 module geometry_m
   use kinds_m, only : wp
   implicit none
@@ -10,8 +10,8 @@ module geometry_m
   public :: sight_t, sight_of_segment, separation, closest_distance, sight_gap, sight_normal, &
     segment_length
 
-  !> A point seen from a segment a-b with the vector t = b - a and the outward normal (t_y, -t_x)/|t|.
-  !> Without default values, which would be written before each use.
+  !> A point seen from a segment a-b with the vector t = b - a and the outward normal (t_y,
+  !> -t_x)/|t|. Without default values, which would be written before each use.
   type :: sight_t
     real(wp) :: t(2)    !! vector of the segment, m
     real(wp) :: d(2)    !! vector from a to the point, m

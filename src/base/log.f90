@@ -29,8 +29,8 @@ module log_m
 
 contains
 
-  !> Open the file, behind what it holds where a run goes on, and write what has been waiting. Fails when
-  !> the file cannot be made.
+  !> Open the file, behind what it holds where a run goes on, and write what has been waiting. Fails
+  !> when the file cannot be made.
   subroutine open_log(log, path, goes_on, error)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: path

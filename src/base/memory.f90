@@ -21,8 +21,8 @@ contains
     bytes = huge(bytes)
     limit = number_in(top//'/proc/meminfo', 'MemAvailable:')
     if (limit >= 0) bytes = 1024*limit
-    ! The limit of a container, where there is one ("max" otherwise, which is no number). What it uses holds copies of
-    ! files that are given up on demand.
+    ! The limit of a container, where there is one ("max" otherwise, which is no number). What it
+    ! uses holds copies of files that are given up on demand.
     limit = number_in(top//'/sys/fs/cgroup/memory.max', '')
     used = number_in(top//'/sys/fs/cgroup/memory.current', '')
     if (limit < 0 .or. used < 0) return

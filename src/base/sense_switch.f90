@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Sense switches: a word in a file `d3kil` of the results folder asks a run for something, in the DYNA manner.
+!> Sense switches: a word in a file `d3kil` of the results folder asks a run for
+!> something, in the DYNA manner.
 module sense_switch_m
   use errors_m, only : error_t
   use files_m, only : file_exists, is_endless, remove_file, join_path
@@ -18,8 +19,8 @@ module sense_switch_m
 
 contains
 
-  !> What the file in this folder asks for; the file is removed. One without a word is left: it may be
-  !> about to be written.
+  !> What the file in this folder asks for; the file is removed. One without a word is left: it
+  !> may be about to be written.
   subroutine take_switch(directory, switch)
     character(*), intent(in) :: directory
     integer, intent(out) :: switch  !! one of the `switch_` constants

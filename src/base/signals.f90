@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Requests from outside (SIGTERM and SIGINT: stop, SIGUSR1: restart file, SIGUSR2: plot state) and the question whether a
-!> person watches. A signal handler has no argument to carry a state, so this module holds the only saved
-!> variable of the program.
+!> Requests from outside (SIGTERM and SIGINT: stop, SIGUSR1: restart file, SIGUSR2: plot state) and
+!> the question whether a person watches. A signal handler has no argument to carry a state, so this
+!> module holds the only saved variable of the program.
 module signals_m
   use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
   implicit none
@@ -35,8 +35,9 @@ module signals_m
 
 contains
 
-  !> From now on these signals only ask for something: SIGTERM, SIGINT and a used up processor time (SIGXCPU) for
-  !> a stop; a file that reaches the largest size allowed (SIGXFSZ) is a failed write and no end of the process.
+  !> From now on these signals only ask for something: SIGTERM, SIGINT and a used up processor time
+  !> (SIGXCPU) for a stop; a file that reaches the largest size allowed (SIGXFSZ) is a failed write
+  !> and no end of the process.
   subroutine catch_signals()
     type(c_funptr) :: previous
 

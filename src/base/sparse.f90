@@ -28,7 +28,8 @@ contains
 
     matrix%n = n
     matrix%n_entry = 0
-    ! Four quads at a node, eight columns for each of them: 32 entries an equation, and some contact.
+    ! Four quads at a node, eight columns for each of them: 32 entries an
+    ! equation, and some contact.
     if (.not. allocated(matrix%rows)) &
       allocate (matrix%rows(40*n + 64), matrix%columns(40*n + 64), matrix%values(40*n + 64))
   end subroutine start_matrix
@@ -76,8 +77,8 @@ contains
     call move_alloc(values, matrix%values)
   end subroutine make_room
 
-  !> Rows from the collected entries: two counting sorts (by column, then stably by row) and one pass
-  !> that sums duplicates in the order in which they were added.
+  !> Rows from the collected entries: two counting sorts (by column, then stably by row) and one
+  !> pass that sums duplicates in the order in which they were added.
   pure subroutine compress_matrix(matrix)
     type(sparse_t), intent(inout) :: matrix
     integer, allocatable :: as_entered(:), by_column(:), by_row(:)

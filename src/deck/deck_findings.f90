@@ -9,8 +9,8 @@ module deck_findings_m
 
 contains
 
-  !> All messages kept by the report as JSON objects with commas between them, errors first, each kind
-  !> in deck order; empty when there are none.
+  !> All messages kept by the report as JSON objects with commas between them, errors first, each
+  !> kind in deck order; empty when there are none.
   pure subroutine list_findings(report, findings)
     type(report_t), intent(in) :: report
     character(:), allocatable, intent(out) :: findings

@@ -33,8 +33,8 @@ contains
     raw%controls%implicit%dt = card%r(2)
   end subroutine take_implicit
 
-  !> *CONTROL_IMPLICIT_DYNAMICS: GAMMA and BETA ask for Newmark's method, ALPHA below 0 for HHT; blank
-  !> fields leave the generalised-alpha method with its spectral radius.
+  !> *CONTROL_IMPLICIT_DYNAMICS: GAMMA and BETA ask for Newmark's method, ALPHA below 0 for HHT;
+  !> blank fields leave the generalised-alpha method with its spectral radius.
   subroutine take_dynamics(deck, cursor, card, raw)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
@@ -66,7 +66,8 @@ contains
     raw%spectral_radius = card%r(1)
   end subroutine take_spectral_radius
 
-  !> *CONTROL_IMPLICIT_SOLUTION. Every iteration forms the tangent anew (full Newton), whatever ILIMIT.
+  !> *CONTROL_IMPLICIT_SOLUTION. Every iteration forms the tangent anew (full
+  !> Newton), whatever ILIMIT.
   subroutine take_solution(deck, cursor, card, raw)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
@@ -115,8 +116,8 @@ contains
     end associate
   end subroutine take_automatic
 
-  !> Parameters of the time integration from what the cards gave (Chung & Hulbert 1993, eqs. 17, 20, 25; HHT with
-  !> alpha_f = -ALPHA; Newmark). A spectral radius of our own keyword comes first.
+  !> Parameters of the time integration from what the cards gave (Chung & Hulbert 1993, eqs. 17, 20,
+  !> 25; HHT with alpha_f = -ALPHA; Newmark). A spectral radius of our own keyword comes first.
   subroutine settle_scheme(newmark, hht, radius, implicit)
     real(wp), intent(in) :: newmark(2) !! GAMMA, BETA, 0 where blank
     real(wp), intent(in) :: hht        !! -ALPHA

@@ -62,8 +62,8 @@ contains
     end do
   end subroutine check_table_numbers
 
-  !> First and last curve of a table: those of the blocks that come next, one for each value. The last lies before
-  !> the first where there are not enough.
+  !> First and last curve of a table: those of the blocks that come next, one for each value. The
+  !> last lies before the first where there are not enough.
   subroutine find_table_curves(deck, raw, table, curves)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Rigid bodies from the parts of *MAT_RIGID: their nodes, their prescribed motion, and what may not be
-!> asked of them.
+!> Rigid bodies from the parts of *MAT_RIGID: their nodes, their prescribed motion, and what
+!> may not be asked of them.
 module deck_resolve_rigids_m
   use conditions_m, only : prescribed_motion_t
   use log_m, only : to_text
@@ -101,8 +101,8 @@ contains
     end do
   end subroutine own_nodes
 
-  !> Nodes of a rigid body follow the body: nothing else may hold or move them. (LS-DYNA passes over such
-  !> constraints or turns them into some of the body, according to its version.)
+  !> Nodes of a rigid body follow the body: nothing else may hold or move them. (LS-DYNA passes over
+  !> such constraints or turns them into some of the body, according to its version.)
   subroutine refuse_conditions(deck, raw, maps, model, owner)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw

@@ -45,7 +45,8 @@ contains
     yes = kind == row_velocity .or. kind == row_velocity_generation
   end function is_velocity
 
-  !> *INITIAL_VELOCITY_NODE: the cards with at most `n_row` rows before them; `next` moves past them.
+  !> *INITIAL_VELOCITY_NODE: the cards with at most `n_row` rows before
+  !> them; `next` moves past them.
   subroutine set_node_velocities(deck, raw, maps, n_row, next, velocity)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw

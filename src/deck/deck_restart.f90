@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What a deck may change when a run goes on: its end and its outputs. Decks here are plain text, cut at the lines
-!> that start with an asterisk.
+!> What a deck may change when a run goes on: its end and its outputs. Decks here are plain text,
+!> cut at the lines that start with an asterisk.
 module deck_restart_m
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
   use errors_m, only : error_t, raise, status_input
@@ -74,8 +74,8 @@ contains
     kept = kept(:n)
   end subroutine leave_out
 
-  !> The block that starts at `start`: its keyword, empty for what comes before the first one, and where
-  !> the next starts.
+  !> The block that starts at `start`: its keyword, empty for what comes before the first one,
+  !> and where the next starts.
   pure subroutine next_block(text, start, name, next)
     character(*), intent(in) :: text
     integer, intent(in) :: start

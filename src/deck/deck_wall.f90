@@ -195,8 +195,9 @@ contains
       //': they are kept from going further, not brought back')
   end subroutine look_at_nodes
 
-  !> Nodes that can not give way: wherever the wall pushes, a motion is prescribed or the node is fixed. Nodes that
-  !> are fixed in all such directions never come nearer, so they are no reason for a warning.
+  !> Nodes that can not give way: wherever the wall pushes, a motion is prescribed or the
+  !> node is fixed. Nodes that are fixed in all such directions never come nearer, so they
+  !> are no reason for a warning.
   subroutine look_at_motions(deck, line, model, wall)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line

@@ -10,7 +10,8 @@ module bulk_viscosity_m
 
 contains
 
-  !> Add q = rho l (Q1 l t^2 - Q2 c t) as a pressure where the volumetric strain rate t < 0; l = sqrt(A).
+  !> Add q = rho l (Q1 l t^2 - Q2 c t) as a pressure where the volumetric
+  !> strain rate t < 0; l = sqrt(A).
   pure subroutine add_bulk_viscosity(quadratic, linear, density, sound_speed, dt, chunk, work)
     real(wp), intent(in) :: quadratic, linear     !! Q1, Q2
     real(wp), intent(in) :: density               !! initial density

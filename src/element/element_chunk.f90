@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Work arrays of one chunk of quads. All quantities of a one-point quad follow from the two diagonals
-!> d31 = x3 - x1, d42 = x4 - x2 and from h.x = x1 - x2 + x3 - x4.
+!> Work arrays of one chunk of quads. All quantities of a one-point quad follow from the two
+!> diagonals d31 = x3 - x1, d42 = x4 - x2 and from h.x = x1 - x2 + x3 - x4.
 module element_chunk_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
@@ -28,9 +28,9 @@ module element_chunk_m
 
 contains
 
-  !> Differences of the nodal motion, displacement and velocity apart: pairs are what the vectorised loops
-  !> read without a remainder. The loop over elements stays scalar: each node is one 32-byte load,
-  !> where a vectorised gather would be several times slower.
+  !> Differences of the nodal motion, displacement and velocity apart: pairs are what the vectorised
+  !> loops read without a remainder. The loop over elements stays scalar: each node is one 32-byte
+  !> load, where a vectorised gather would be several times slower.
   pure subroutine gather_chunk(nodes, motion, chunk)
     integer, intent(in) :: nodes(4, chunk_size)      !! node indices
     real(wp), intent(in) :: motion(4, *)           !! all nodes: u_x, u_y, v_x, v_y
@@ -55,9 +55,9 @@ contains
     end do
   end subroutine gather_chunk
 
-  !> Add the nodal forces of a chunk to the tile's own nodes, x and y of a node at a time (told to the
-  !> compiler in so many words: left alone it takes them one by one, half as fast again). Padding is
-  !> left out: all of it has one node, where each sum would wait for the one before.
+  !> Add the nodal forces of a chunk to the tile's own nodes, x and y of a node at a time (told to
+  !> the compiler in so many words: left alone it takes them one by one, half as fast again).
+  !> Padding is left out: all of it has one node, where each sum would wait for the one before.
   pure subroutine scatter_chunk(n_element, local, chunk, force)
     integer, intent(in) :: n_element             !! elements, in the first slots
     integer, intent(in) :: local(4, chunk_size)  !! local numbers in the tile

@@ -28,8 +28,8 @@ contains
     end select
   end function point_count
 
-  !> Advance all elements of one tile by the step `dt` that led here and sum their internal forces on the tile's
-  !> local nodes.
+  !> Advance all elements of one tile by the step `dt` that led here and sum their internal forces
+  !> on the tile's local nodes.
   subroutine add_tile_forces(model, tile, motion, dt, elements, force)
     type(model_t), intent(in) :: model
     type(tile_t), intent(in) :: tile

@@ -44,7 +44,8 @@ contains
     end do
   end subroutine log_elements
 
-  !> Warn where hourglass control makes the stable step of squares smaller than L/c (`hourglass_step`).
+  !> Warn where hourglass control makes the stable step of squares smaller
+  !> than L/c (`hourglass_step`).
   subroutine warn_of_hourglass(part, log)
     type(part_t), intent(in) :: part
     type(log_t), intent(inout) :: log

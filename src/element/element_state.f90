@@ -39,8 +39,8 @@ contains
     call reserve_memories(model, elements)
   end subroutine start_elements
 
-  !> Diagonals and h.X of one slot; padding is the first element of its chunk, much larger: it divides by
-  !> no zero and its stable step never counts.
+  !> Diagonals and h.X of one slot; padding is the first element of its chunk, much larger: it
+  !> divides by no zero and its stable step never counts.
   subroutine fill_reference(model, i_slot, reference)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_slot
@@ -110,9 +110,9 @@ contains
     end do
   end subroutine lump_mass
 
-  !> Cauchy stress of all elements in deck order: xx yy zz xy (yz and xz stay zero in plane strain); the mean
-  !> over the present volume where an element has several points. The slots are walked, whose streams and
-  !> nodes lie side by side.
+  !> Cauchy stress of all elements in deck order: xx yy zz xy (yz and xz stay zero in plane strain);
+  !> the mean over the present volume where an element has several points. The slots are walked,
+  !> whose streams and nodes lie side by side.
   subroutine element_stresses(model, motion, elements, stress)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
@@ -135,8 +135,8 @@ contains
     end do
   end subroutine element_stresses
 
-  !> Effective plastic strain of all elements in deck order, 0 in elastic parts; the mean over the initial
-  !> volume where an element has several points.
+  !> Effective plastic strain of all elements in deck order, 0 in elastic parts; the mean over the
+  !> initial volume where an element has several points.
   subroutine element_plastic_strains(model, elements, plastic_strain)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -164,8 +164,8 @@ contains
     end do
   end subroutine element_plastic_strains
 
-  !> J - 1 where the volumetric stress of the element in a slot is formed: once for the element, or at
-  !> each of its points, and the initial area that each stands for.
+  !> J - 1 where the volumetric stress of the element in a slot is formed: once for the element, or
+  !> at each of its points, and the initial area that each stands for.
   pure subroutine volume_ratios(model, motion, elements, slot, n, stretch, start)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)

@@ -16,9 +16,9 @@ module element_stiffness_m
 
 contains
 
-  !> Add the exact derivative of the internal force with respect to the displacement. The step `dt` goes
-  !> from the committed state to `motion`, with velocity (u - u_committed)/dt. All parts must have fully
-  !> integrated elements (`point_count`).
+  !> Add the exact derivative of the internal force with respect to the displacement. The step `dt`
+  !> goes from the committed state to `motion`, with velocity (u - u_committed)/dt. All parts must
+  !> have fully integrated elements (`point_count`).
   pure subroutine add_stiffness(model, motion, dt, committed, equation, matrix)
     type(model_t), intent(in) :: model
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
@@ -70,8 +70,8 @@ contains
     end do
   end subroutine load_points
 
-  !> (mean, half difference, shear) of a tensor whose xx stands at `first` and whose yy and xy follow a chunk
-  !> further each.
+  !> (mean, half difference, shear) of a tensor whose xx stands at `first` and whose yy and xy
+  !> follow a chunk further each.
   pure function plane_parts(stream, first) result(parts)
     real(wp), intent(in) :: stream(:)
     integer, intent(in) :: first

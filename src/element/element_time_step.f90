@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Stable step of a chunk: L/c with L = area over the longest side or diagonal (ISDO of *CONTROL_TIMESTEP),
-!> and L/(Q + sqrt(Q^2 + c^2)), Q = Q2 c + Q1 L |t|, in compression under bulk viscosity; never above the
-!> step that hourglass control allows (doc/theory/elements.md, "Stable step").
+!> Stable step of a chunk: L/c with L = area over the longest side or diagonal (ISDO of
+!> *CONTROL_TIMESTEP), and L/(Q + sqrt(Q^2 + c^2)), Q = Q2 c + Q1 L |t|, in compression under
+!> bulk viscosity; never above the step that hourglass control allows
+!> (doc/theory/elements.md, "Stable step").
 module element_time_step_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size

@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Stable step of fully integrated quads: a lower bound of 2/omega_max of the single element with
 !> lumped mass, and so of every mesh of them. With the largest modulus C of the plane,
-!> v.K v <= C sum_p A_p |grad v|^2, so omega^2 <= 4 C lambda/(rho A0) with lambda the largest eigenvalue
-!> of the scalar matrix sum_p A_p (grad N)(grad N)^T, and lambda <= (trace of its 16th power)^(1/16).
-!> A triangle has three nodes and one gradient; there lambda <= trace.
+!> v.K v <= C sum_p A_p |grad v|^2, so omega^2 <= 4 C lambda/(rho A0) with lambda the largest
+!> eigenvalue of the scalar matrix sum_p A_p (grad N)(grad N)^T, and lambda <= (trace of its 16th
+!> power)^(1/16). A triangle has three nodes and one gradient; there lambda <= trace.
 module full_time_step_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size

@@ -11,8 +11,8 @@ module hourglass_m
   private
   public :: resist_viscously, resist_elastically, hourglass_step, harmless_coefficient
 
-  !> Coefficient up to which hourglass control never asks for less than L/c in a convex quad of its initial area
-  !> (doc/theory/elements.md).
+  !> Coefficient up to which hourglass control never asks for less than L/c in a convex quad of its
+  !> initial area (doc/theory/elements.md).
   real(wp), parameter :: harmless_coefficient = 0.25_wp
 
 contains
@@ -67,8 +67,8 @@ contains
 
   !> Smallest step that hourglass control of the chunk allows. With masses rho A0/4 and
   !> gamma.gamma = 4 + (|d31 x h.x|^2 + |d42 x h.x|^2)/(2 A^2): 2/omega of the stiffness form,
-  !> omega^2 = Q_h c^2 (B.B) gamma.gamma/(A A0); 2/rate of the viscous one, whose force is that of v(n-1/2),
-  !> rate = Q_h c sqrt(A) gamma.gamma/A0. A triangle has no hourglass.
+  !> omega^2 = Q_h c^2 (B.B) gamma.gamma/(A A0); 2/rate of the viscous one, whose force is that of
+  !> v(n-1/2), rate = Q_h c sqrt(A) gamma.gamma/A0. A triangle has no hourglass.
   pure function hourglass_step(hourglass, sound_speed, nodes, chunk) result(limit)
     type(hourglass_t), intent(in) :: hourglass
     real(wp), intent(in) :: sound_speed

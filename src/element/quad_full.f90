@@ -21,7 +21,8 @@ module quad_full_m
 
 contains
 
-  !> Mean dilatation, against volumetric locking, where the material is or becomes nearly incompressible.
+  !> Mean dilatation, against volumetric locking, where the material is or
+  !> becomes nearly incompressible.
   pure function has_mean_dilatation(material) result(yes)
     type(material_t), intent(in) :: material
     logical :: yes
@@ -70,8 +71,8 @@ contains
       elements%volume_limit(i_chunk))
   end subroutine advance_full
 
-  !> The pressure that all points of an element share: bulk viscosity of the mean rate, and the volumetric
-  !> stress with mean dilatation.
+  !> The pressure that all points of an element share: bulk viscosity of the mean rate, and the
+  !> volumetric stress with mean dilatation.
   pure subroutine form_mean_pressure(i_chunk, material, hourglass, dt, elements, chunk)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Kinematics of the one-point quad.
-!> With B_x3 = y42/2, B_y3 = -x42/2, B_x4 = -y31/2, B_y4 = x31/2 (and opposite signs at nodes 1 and 2):
-!> A = (x31 y42 - x42 y31)/2, L_ix = (v31 y42 - v42 y31)/(2A), L_iy = (x31 v42 - x42 v31)/(2A).
+!> With B_x3 = y42/2, B_y3 = -x42/2, B_x4 = -y31/2, B_y4 = x31/2 (and opposite signs at nodes 1 and
+!> 2): A = (x31 y42 - x42 y31)/2, L_ix = (v31 y42 - v42 y31)/(2A), L_iy = (x31 v42 - x42 v31)/(2A).
 module quad_kinematics_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The four Gauss points of a quad, point k beside node k. With xi, eta = +-1/sqrt(3) the gradients of
-!> the bilinear map at a point are those of a parallelogram: its diagonals are d31 and d42 of the
+!> The four Gauss points of a quad, point k beside node k. With xi, eta = +-1/sqrt(3) the gradients
+!> of the bilinear map at a point are those of a parallelogram: its diagonals are d31 and d42 of the
 !> element, one of them longer or shorter by h.x/sqrt(3); it stands for a quarter of its area.
 module quad_points_m
   use kinds_m, only : wp

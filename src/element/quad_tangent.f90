@@ -129,7 +129,8 @@ contains
       point%stress(1) - point%stress(2), small)
   end subroutine add_deviatoric
 
-  !> Strain (mean, half difference, shear) of a displacement gradient, turned by half of the rotation.
+  !> Strain (mean, half difference, shear) of a displacement gradient,
+  !> turned by half of the rotation.
   pure function half_turned(cosine, sine, gradient) result(strain)
     real(wp), intent(in) :: cosine, sine !! of the whole rotation
     real(wp), intent(in) :: gradient(2, 2)
@@ -150,7 +151,8 @@ contains
     b = 0.5_wp*[d42(2), -d42(1), -d31(2), d31(1)]
   end function area_gradient
 
-  !> Stress times the change of B: dB3 = (y, -x)/2 of the change of d42, dB4 = (-y, x)/2 of that of d31.
+  !> Stress times the change of B: dB3 = (y, -x)/2 of the change of d42,
+  !> dB4 = (-y, x)/2 of that of d31.
   pure subroutine add_geometric(xx, xy, yy, small)
     real(wp), intent(in) :: xx, xy, yy
     real(wp), intent(inout) :: small(4, 4)

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The elements that rule the time step: stable steps of single elements, by the kernels of the step itself.
+!> The elements that rule the time step: stable steps of single elements, by the
+!> kernels of the step itself.
 module smallest_steps_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
@@ -19,8 +20,8 @@ module smallest_steps_m
 
 contains
 
-  !> The `n` elements of the smallest stable steps, or all where there are fewer, rising. They lie in the chunks of the
-  !> `n` smallest limits, which the last forces have left.
+  !> The `n` elements of the smallest stable steps, or all where there are fewer, rising. They lie
+  !> in the chunks of the `n` smallest limits, which the last forces have left.
   subroutine find_smallest_steps(model, elements, motion, n, found, steps)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements

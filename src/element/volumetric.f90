@@ -9,8 +9,9 @@ module volumetric_m
 
 contains
 
-  !> K ln(1 + stretch) for a chunk. ln(J) = 2 atanh(z), z = s/(2 + s), as a series where |z| <= 0.1 (its
-  !> truncation is below round-off there), the library's logarithm for a chunk with any element outside.
+  !> K ln(1 + stretch) for a chunk. ln(J) = 2 atanh(z), z = s/(2 + s), as a series where
+  !> |z| <= 0.1 (its truncation is below round-off there), the library's logarithm for a chunk
+  !> with any element outside.
   pure subroutine volumetric_stress(bulk, stretch, stress)
     real(wp), intent(in) :: bulk
     real(wp), intent(in) :: stretch(chunk_size)  !! J - 1
@@ -43,8 +44,8 @@ contains
       + w*(1.0_wp/11.0_wp + w*(1.0_wp/13.0_wp + w*(1.0_wp/15.0_wp)))))))
   end function atanh_series
 
-  !> ln(1 + stretch) to full relative precision; minus the largest number where the volume is gone (the
-  !> driver stops on the volume, not on this value).
+  !> ln(1 + stretch) to full relative precision; minus the largest number where the volume is gone
+  !> (the driver stops on the volume, not on this value).
   pure elemental function log_ratio(stretch) result(y)
     real(wp), intent(in) :: stretch
     real(wp) :: y

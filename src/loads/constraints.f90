@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Fixed and prescribed degrees of freedom. Both have no inverse mass, so that forces do not move them;
-!> prescribed ones are then set from their curves.
+!> Fixed and prescribed degrees of freedom. Both have no inverse mass, so that forces do not move
+!> them; prescribed ones are then set from their curves.
 module constraints_m
   use kinds_m, only : wp
   use conditions_m, only : prescribed_motion_t, motion_velocity, motion_acceleration, &
@@ -33,8 +33,8 @@ contains
     active = time >= prescribed%birth .and. time < prescribed%death
   end function is_active
 
-  !> Give prescribed degrees of freedom their inverse mass while their motion does not hold. Deaths first, so
-  !> that a motion that takes over in the same step keeps its node.
+  !> Give prescribed degrees of freedom their inverse mass while their motion does not hold. Deaths
+  !> first, so that a motion that takes over in the same step keeps its node.
   subroutine update_activity(model, time, mass, inverse_mass)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: time
@@ -53,8 +53,8 @@ contains
     end associate
   end subroutine update_activity
 
-  !> v(n+1/2) of a prescribed degree of freedom: the curve at t(n+1/2); the integral of the curve; or what
-  !> leads to the curve's position at t(n+1).
+  !> v(n+1/2) of a prescribed degree of freedom: the curve at t(n+1/2); the integral of the curve;
+  !> or what leads to the curve's position at t(n+1).
   pure function next_velocity(model, prescribed, time, dt, dt_before, displacement, velocity) &
     result(next)
     type(model_t), intent(in) :: model

@@ -12,8 +12,9 @@ module initial_values_m
 
 contains
 
-  !> Displacement zero, velocity as the deck gives it; fixed degrees of freedom rest, and those with a prescribed velocity start
-  !> with the curve's first value (a body that is driven from the start moves from the start).
+  !> Displacement zero, velocity as the deck gives it; fixed degrees of freedom rest, and those
+  !> with a prescribed velocity start with the curve's first value (a body that is driven from the
+  !> start moves from the start).
   subroutine start_motion(model, motion)
     type(model_t), intent(in) :: model
     real(wp), allocatable, intent(out) :: motion(:, :) !! (4, n_node)

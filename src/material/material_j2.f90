@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> J2 plasticity with linear isotropic, kinematic or mixed hardening: elastic trial stress, then radial
-!> return (seed (A4) to (A6)). With flow direction xi = s - alpha and its von Mises value xi_v,
-!> d_eps = (xi_v - sigma_Y - beta E_p eps_p)/(3G + E_p), s -= 3G d_eps xi/xi_v,
-!> alpha += (1 - beta) E_p d_eps xi/xi_v: xi ends on the updated yield surface.
+!> J2 plasticity with linear isotropic, kinematic or mixed hardening: elastic trial stress, then
+!> radial return (seed (A4) to (A6)). With flow direction xi = s - alpha and its von Mises value
+!> xi_v, d_eps = (xi_v - sigma_Y - beta E_p eps_p)/(3G + E_p), s -= 3G d_eps xi/xi_v, alpha +=
+!> (1 - beta) E_p d_eps xi/xi_v: xi ends on the updated yield surface.
 module material_j2_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
@@ -108,8 +108,9 @@ contains
     mises = sqrt(3.0_wp*(3.0_wp*xi(1)**2 + xi(2)**2 + xi(3)**2))
   end function trial_mises
 
-  !> Return to a surface that grows by `hardening` from `radius` R, at one point, with its derivative: xi* is
-  !> scaled by f = 1 - 3G/(3G + E_p) (1 - R/xi_v), d(xi_v) = 3 (3 m, h, q).d(xi*)/xi_v.
+  !> Return to a surface that grows by `hardening` from `radius` R, at one point, with
+  !> its derivative: xi* is scaled by f = 1 - 3G/(3G + E_p) (1 - R/xi_v),
+  !> d(xi_v) = 3 (3 m, h, q).d(xi*)/xi_v.
   pure subroutine tangent_of_return(shear, radius, hardening, point)
     real(wp), intent(in) :: shear
     real(wp), intent(in) :: radius    !! yield stress at the plastic strain at the start of the step

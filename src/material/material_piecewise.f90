@@ -1,9 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> J2 plasticity with isotropic hardening by points: elastic trial stress, then radial return. With the trial
-!> stress q and the yield stress sigma(p), the plastic strain at the end of the step solves
-!> sigma(p) + 3G p = q + 3G p_old. The left side rises from point to point and is linear between them (slopes
-!> are above -3G), so that one walk along the points finds the segment, and its line the strain: no iteration.
-!> A rate effect scales the yield stress with the total strain rate sqrt(D:D) of the step.
+!> J2 plasticity with isotropic hardening by points: elastic trial stress, then radial return. With
+!> the trial stress q and the yield stress sigma(p), the plastic strain at the end of the step
+!> solves sigma(p) + 3G p = q + 3G p_old. The left side rises from point to point and is linear
+!> between them (slopes are above -3G), so that one walk along the points finds the segment, and
+!> its line the strain: no iteration. A rate effect scales the yield stress with the total strain
+!> rate sqrt(D:D) of the step.
 module material_piecewise_m
   use curves_m, only : curve_value
   use hardenings_m, only : hardening_t, depends_on_rate
@@ -66,7 +67,8 @@ contains
     end do
   end subroutine form_trial
 
-  !> Growth of the plastic strain, by the same points in all slots. The walk ends where no slot goes further.
+  !> Growth of the plastic strain, by the same points in all slots. The walk ends
+  !> where no slot goes further.
   pure subroutine grow(n, strain, stress, slope, shear, mises, plastic_strain, growth)
     integer, intent(in) :: n
     real(wp), intent(in), dimension(n) :: strain, stress, slope !! points of the curve
@@ -98,7 +100,8 @@ contains
     end do
   end subroutine grow
 
-  !> The same where each slot has its own factor on the yield stress and its own place between the rates.
+  !> The same where each slot has its own factor on the yield stress and its
+  !> own place between the rates.
   pure subroutine grow_with_rate(hardening, n, n_rate, stress, slope, shear, chunk, mises, plastic_strain, &
     growth)
     type(hardening_t), intent(in) :: hardening
@@ -176,8 +179,9 @@ contains
     end do
   end subroutine find_rows
 
-  !> Factors on the yield stress: that of a curve, or Cowper and Symonds' 1 + (rate/C)**(1/P). The latter is
-  !> never below 1 and its power is dear, so that it is formed only where the yield stress without it is passed.
+  !> Factors on the yield stress: that of a curve, or Cowper and Symonds' 1 + (rate/C)**(1/P). The
+  !> latter is never below 1 and its power is dear, so that it is formed only where the yield
+  !> stress without it is passed.
   pure subroutine find_factors(hardening, shear, rate, mises, plastic_strain, factor)
     type(hardening_t), intent(in) :: hardening
     real(wp), intent(in) :: shear
@@ -222,8 +226,8 @@ contains
     end do
   end subroutine return_to_surface
 
-  !> The same at one point, with its derivative: that of the segment on which the step ends. Of a law without
-  !> rate effect, which the deck layer sees to.
+  !> The same at one point, with its derivative: that of the segment on which the step ends. Of a
+  !> law without rate effect, which the deck layer sees to.
   pure subroutine tangent_piecewise(shear, hardening, point)
     real(wp), intent(in) :: shear
     type(hardening_t), intent(in) :: hardening

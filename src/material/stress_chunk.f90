@@ -19,9 +19,9 @@ module stress_chunk_m
 
 contains
 
-  !> Rotate a symmetric deviator by the rotation of the step. In the plane the update of Hughes & Winget (1980) is a
-  !> rotation by 2 atan(dt w/2), so rigid spin leaves no error whatever the step; (A4) of the seed is
-  !> its first-order form.
+  !> Rotate a symmetric deviator by the rotation of the step. In the plane the update of Hughes &
+  !> Winget (1980) is a rotation by 2 atan(dt w/2), so rigid spin leaves no error whatever the step;
+  !> (A4) of the seed is its first-order form.
   pure subroutine rotate_deviator(cos2, sin2, xx, yy, xy)
     real(wp), intent(in) :: cos2(chunk_size), sin2(chunk_size)
     real(wp), intent(inout) :: xx(chunk_size), yy(chunk_size), xy(chunk_size)
@@ -40,8 +40,8 @@ contains
     end do
   end subroutine rotate_deviator
 
-  !> Deviator of a chunk out of its streams, turned by the rotation of the step as `rotate_deviator` does: on the way,
-  !> since to turn it afterwards takes 4 % of the element kernel.
+  !> Deviator of a chunk out of its streams, turned by the rotation of the step as `rotate_deviator`
+  !> does: on the way, since to turn it afterwards takes 4 % of the element kernel.
   pure subroutine load_deviator(stream, stride, stress)
     integer, intent(in) :: stride
     real(wp), intent(in) :: stream(stride, *)

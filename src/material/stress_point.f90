@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What the tangent of a material law gets and gives at one point. Symmetric tensors of the plane are
-!> (mean, half difference, shear) = ((xx + yy)/2, (xx - yy)/2, xy), which a rotation leaves apart.
+!> What the tangent of a material law gets and gives at one point. Symmetric tensors
+!> of the plane are (mean, half difference, shear) = ((xx + yy)/2, (xx - yy)/2, xy),
+!> which a rotation leaves apart.
 module stress_point_m
   use kinds_m, only : wp
   implicit none

@@ -8,8 +8,8 @@ module contacts_m
   public :: contact_t, contact_kind_t, most_gauss, penalty_per_node, penalty_distributed, penalty_factor, &
     penalty_share
 
-  !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate, share of the largest
-  !> penalty for which the step is stable.
+  !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
+  !> share of the largest penalty for which the step is stable.
   integer, parameter :: penalty_per_node = 0, penalty_distributed = 1, penalty_factor = 2, &
     penalty_share = 3
 

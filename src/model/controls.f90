@@ -10,8 +10,8 @@ module controls_m
   !> Element length of the stable step (ISDO): area over longest side, or over longest diagonal.
   integer, parameter :: length_by_side = 0, length_by_diagonal = 1
 
-  !> What the contact springs do to the step (ECDT): the start warns where it is too large for them, nothing, or
-  !> the stable step is that of elements and springs together.
+  !> What the contact springs do to the step (ECDT): the start warns where it is too large for them,
+  !> nothing, or the stable step is that of elements and springs together.
   integer, parameter :: contact_step_warns = 0, contact_step_free = 1, contact_step_rules = 2
 
   !> Time between two outputs of one file; off while both are zero.
@@ -39,8 +39,8 @@ module controls_m
     integer :: status_interval = 0 !! cycles between progress lines (IKEDIT); 0 = the program's choice
   end type output_plan_t
 
-  !> The implicit method (*CONTROL_IMPLICIT_...). Time integration is the generalised-alpha family (Chung &
-  !> Hulbert 1993); alpha_m = alpha_f = 0 is Newmark's.
+  !> The implicit method (*CONTROL_IMPLICIT_...). Time integration is the generalised-alpha family
+  !> (Chung & Hulbert 1993); alpha_m = alpha_f = 0 is Newmark's.
   type :: implicit_t
     logical :: is_on = .false.         !! IMFLAG = 1
     logical :: is_dynamic = .false.    !! IMASS = 1

@@ -7,8 +7,9 @@ module hardenings_m
   private
   public :: hardening_t, make_hardening, depends_on_rate
 
-  !> Hardening of one material: rows of points, one for each strain rate, all at the same plastic strains.
-  !> Between points and between rates the yield stress is linear; outside the rates the outermost row holds.
+  !> Hardening of one material: rows of points, one for each strain rate, all at the same
+  !> plastic strains. Between points and between rates the yield stress is linear; outside the
+  !> rates the outermost row holds.
   type :: hardening_t
     real(wp), allocatable :: strain(:)     !! (n) plastic strain of the points, increasing, the first 0
     real(wp), allocatable :: stress(:, :)  !! (n, n_rate) yield stress at the points
@@ -21,8 +22,8 @@ module hardenings_m
 
 contains
 
-  !> Rows from curves of yield stress against plastic strain, which start at 0. Each is continued by its last
-  !> slope where that rises, by its last value where it falls; all get the points of all.
+  !> Rows from curves of yield stress against plastic strain, which start at 0. Each is continued by
+  !> its last slope where that rises, by its last value where it falls; all get the points of all.
   pure function make_hardening(curves, rates) result(hardening)
     type(curve_t), intent(in) :: curves(:) !! one for each rate
     real(wp), intent(in) :: rates(:)       !! increasing

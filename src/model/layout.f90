@@ -1,21 +1,21 @@
 ! SPDX-License-Identifier: MIT
 !> How elements and nodes lie in memory while the run steps.
 !>
-!> Elements stand in slots. A chunk is `chunk_size` consecutive slots of one part; its last slots may
-!> be padding. A tile is a run of chunks whose elements are neighbours in space. Nodes are
+!> Elements stand in slots. A chunk is `chunk_size` consecutive slots of one part; its last slots
+!> may be padding. A tile is a run of chunks whose elements are neighbours in space. Nodes are
 !> numbered so that the special ones come first (touched by several tiles, or by contact, loads or
 !> prescribed motion) and then, tile after tile, the interior nodes that belong to that tile alone.
-!> Elements of rigid bodies have slots behind all tiles, and their nodes that nothing touches come last:
-!> the step passes over both.
-!> A tile sums the forces of its interior nodes and moves them; forces on special nodes go into one
-!> force slot per tile and node and are added in a fixed order, so that the result has the same bits at any number
-!> of threads.
+!> Elements of rigid bodies have slots behind all tiles, and their nodes that nothing touches come
+!> last: the step passes over both. A tile sums the forces of its interior nodes and moves them;
+!> forces on special nodes go into one force slot per tile and node and are added in a fixed order,
+!> so that the result has the same bits at any number of threads.
 module layout_m
   implicit none
   private
   public :: layout_t, tile_t, chunk_size, slot_part, first_slot, last_slot
 
-  !> Elements per chunk; from 32 to 128 the speed hardly differs, beyond that chunks leave the L1 cache.
+  !> Elements per chunk; from 32 to 128 the speed hardly differs, beyond that
+  !> chunks leave the L1 cache.
   integer, parameter :: chunk_size = 64
 
   !> One tile.

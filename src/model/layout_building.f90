@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Makes the layout of a mesh: elements along a Hilbert curve, cut into tiles and chunks; numbers of their nodes
-!> in the tiles.
+!> Makes the layout of a mesh: elements along a Hilbert curve, cut into tiles and chunks; numbers of
+!> their nodes in the tiles.
 module layout_building_m
   use kinds_m, only : wp, long
   use layout_m, only : layout_t, tile_t, chunk_size, first_slot, last_slot
@@ -186,7 +186,8 @@ contains
     end associate
   end subroutine number_tile
 
-  !> Append the special nodes of a tile, by number: those that one thread shares with another then lie together.
+  !> Append the special nodes of a tile, by number: those that one thread shares with
+  !> another then lie together.
   subroutine list_special(mesh, layout, tile, local, special, n_special_slots)
     type(mesh_t), intent(in) :: mesh
     type(layout_t), intent(in) :: layout

@@ -1,11 +1,11 @@
 ! SPDX-License-Identifier: MIT
 !> The model: what the deck described, constant once the run starts.
 !>
-!> Filled in three moves. The deck layer reads every card (user ids), then resolves ids to indices and
-!> sets to nodes (all mistakes found are reported together). `renumber_model` last puts the
-!> nodes into the order of the step and the elements into chunks (`layout`). From then on nobody writes
-!> to it. All index arrays refer to the arrays of this type; user ids appear in components named
-!> `id` and `..._id` only, and are used for messages and output.
+!> Filled in three moves. The deck layer reads every card (user ids), then resolves ids to indices
+!> and sets to nodes (all mistakes found are reported together). `renumber_model` last puts the
+!> nodes into the order of the step and the elements into chunks (`layout`). From then on nobody
+!> writes to it. All index arrays refer to the arrays of this type; user ids appear in components
+!> named `id` and `..._id` only, and are used for messages and output.
 module model_m
   use curves_m, only : curve_t
   use parts_m, only : part_t, section_t, material_t

@@ -12,9 +12,9 @@ module node_order_m
 
 contains
 
-  !> New order of the nodes: special ones first, by the tile that owns them, then the interior nodes of each tile, last
-  !> those of rigid bodies that nothing touches; in the first classes in the order in which the elements touch
-  !> them. Fills the tiles' node ranges.
+  !> New order of the nodes: special ones first, by the tile that owns them, then the interior nodes
+  !> of each tile, last those of rigid bodies that nothing touches; in the first classes in the
+  !> order in which the elements touch them. Fills the tiles' node ranges.
   subroutine order_nodes(mesh, is_rigid, is_special, layout, order)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_rigid(:)      !! (n_node) of a rigid body
@@ -45,9 +45,9 @@ contains
     call place_rest(.not. is_special, placed, order, n_placed)
   end subroutine order_nodes
 
-  !> Special nodes, and the tile that owns each. Nodes that several tiles touch are special; so is a node without any
-  !> element, and a node of a rigid body with an element that is not rigid. Tiles share their common nodes
-  !> evenly: the threads that have them wait for each other.
+  !> Special nodes, and the tile that owns each. Nodes that several tiles touch are special; so is a
+  !> node without any element, and a node of a rigid body with an element that is not rigid. Tiles
+  !> share their common nodes evenly: the threads that have them wait for each other.
   subroutine find_owners(mesh, is_rigid, layout, is_special, owner)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_rigid(:)
@@ -69,8 +69,8 @@ contains
     call share_nodes(mesh, layout, is_special, last_tile, owner)
   end subroutine find_owners
 
-  !> Every tile gets every second of the special nodes that it has in common with a later one, and those that only it is
-  !> left to take.
+  !> Every tile gets every second of the special nodes that it has in common with a later one, and
+  !> those that only it is left to take.
   subroutine share_nodes(mesh, layout, is_special, last_tile, owner)
     type(mesh_t), intent(in) :: mesh
     type(layout_t), intent(in) :: layout

@@ -42,8 +42,8 @@ contains
     call build_local_numbers(model%mesh, model%layout)
   end subroutine renumber_model
 
-  !> Give up what only the start of an explicit run reads: elements stand in the layout, initial velocities
-  !> and sets in the state and the conditions.
+  !> Give up what only the start of an explicit run reads: elements stand in the layout, initial
+  !> velocities and sets in the state and the conditions.
   subroutine forget_start(model)
     type(model_t), intent(inout) :: model
 

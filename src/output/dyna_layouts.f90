@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> The layouts of DYNA's text files, byte for byte as scripts read them: one block of lines for all rows of one
-!> instant. Rows are those of the history tables (`history_file_m`), forces and energies per unit depth.
+!> The layouts of DYNA's text files, byte for byte as scripts read them: one block of lines
+!> for all rows of one instant. Rows are those of the history tables (`history_file_m`),
+!> forces and energies per unit depth.
 module dyna_layouts_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
   use kinds_m, only : wp
@@ -80,7 +81,8 @@ contains
     end select
   end subroutine form_block
 
-  !> Energies. DYNA counts the work of the bulk viscosity as internal energy; so the lines add up to the total.
+  !> Energies. DYNA counts the work of the bulk viscosity as internal energy; so the
+  !> lines add up to the total.
   pure subroutine form_glstat(row, control, lines, n_line)
     real(wp), intent(in) :: row(:)
     character(*), intent(in) :: control
@@ -203,8 +205,8 @@ contains
     text = digits(min(13 - width, verify(digits, ' ')):)
   end function number
 
-  !> Energies of interfaces. Penalty springs act between the sides: each interface has one number, as
-  !> DYNA's single-sided contacts do.
+  !> Energies of interfaces. Penalty springs act between the sides: each interface has one number,
+  !> as DYNA's single-sided contacts do.
   pure subroutine form_sleout(rows, lines, n_line)
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> One text file in DYNA's layout (`<job>.glstat`, `.rcforc` and so on), fed with the rows of a history table.
-!> The rows of an instant are kept until they are complete; their lines wait in a buffer of whole lines and
-!> reach the file like those of the table.
+!> One text file in DYNA's layout (`<job>.glstat`, `.rcforc` and so on), fed with the rows of a
+!> history table. The rows of an instant are kept until they are complete; their lines wait in a
+!> buffer of whole lines and reach the file like those of the table.
 module dyna_text_m
   use build_info_m, only : version
   use dyna_layouts_m, only : layout_rcforc, layout_nodout, layout_matsum, layout_spcforc, line_size, &

@@ -41,8 +41,8 @@ module history_file_m
 contains
 
   !> Make the files that were asked for. glstat always; the others with an interval and something to
-  !> write: interfaces for rcforc, sleout and contact, history nodes for nodout, rigid walls for rwforc, fixed
-  !> nodes for spcforc.
+  !> write: interfaces for rcforc, sleout and contact, history nodes for nodout, rigid walls for
+  !> rwforc, fixed nodes for spcforc.
   subroutine open_histories(histories, prefix, model, error)
     type(histories_t), intent(out) :: histories
     character(*), intent(in) :: prefix   !! directory and job name

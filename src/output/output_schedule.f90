@@ -53,8 +53,8 @@ contains
     active = schedule%active
   end function is_active
 
-  !> The step by which the state nearest to an output time is found. A planned implicit step may be cut: then the state at
-  !> or after an output time counts, not the nearest.
+  !> The step by which the state nearest to an output time is found. A planned implicit step may be
+  !> cut: then the state at or after an output time counts, not the nearest.
   pure function output_reach(controls, dt) result(reach)
     type(controls_t), intent(in) :: controls
     real(wp), intent(in) :: dt     !! step that leads away from the state, s

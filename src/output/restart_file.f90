@@ -6,9 +6,9 @@
 !>     checksum 89ABCDEF
 !>
 !> Length and CRC-32 are those of the bytes behind the head. They are compared before HDF5 sees the
-!> file, so that damage never reaches it. The file is written aside as `<path>.part`, its head last, is
-!> forced onto the disk, and then takes its name in one step: under the name there is always a whole file,
-!> after a power failure too.
+!> file, so that damage never reaches it. The file is written aside as `<path>.part`, its head last,
+!> is forced onto the disk, and then takes its name in one step: under the name there is always a
+!> whole file, after a power failure too.
 module restart_file_m
   use hdf5, only : hid_t, hsize_t, H5P_FILE_CREATE_F, H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, &
     H5F_SCOPE_LOCAL_F, h5fcreate_f, h5fopen_f, h5fclose_f, h5fflush_f, h5pcreate_f, h5pclose_f, &
@@ -24,8 +24,8 @@ module restart_file_m
   private
   public :: create_restart, finish_restart, open_restart, close_restart, file_checksum, unfinished
 
-  !> Layout of the file. To be raised when a component of the state comes, goes or changes its meaning, and when
-  !> nodes or elements get another order: arrays lie in that order.
+  !> Layout of the file. To be raised when a component of the state comes, goes or changes its
+  !> meaning, and when nodes or elements get another order: arrays lie in that order.
   integer, parameter :: format_version = 5
   character(*), parameter :: mark = 'slideline restart '
   !> Bytes of the head, and of a block that is read.

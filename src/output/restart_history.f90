@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Schedules and histories in a restart file. Histories are kept whole: the run that goes on writes its tables
-!> again from the first row, so that they do not depend on what has become of the files.
+!> Schedules and histories in a restart file. Histories are kept whole: the run that goes on writes
+!> its tables again from the first row, so that they do not depend on what has become of the files.
 module restart_history_m
   use archive_m, only : keep
   use archive_file_m, only : archive_t, enter, leave, fail_archive

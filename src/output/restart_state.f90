@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> The state in a restart file, type by type, component by component, in the order of their
-!> declarations. A component that is missing here is noticed by tests/house/test_restart_components.py.
+!> declarations. A component that is missing here is noticed by
+!> tests/house/test_restart_components.py.
 module restart_state_m
   use archive_m, only : keep, keep_fixed
   use archive_file_m, only : archive_t, enter, leave

@@ -143,7 +143,8 @@ contains
     end do
   end subroutine append_point_fields
 
-  !> Rows (x, y, 0) of some nodes; the third component stays as it is, and all of them where there are no vectors.
+  !> Rows (x, y, 0) of some nodes; the third component stays as it is, and all of them
+  !> where there are no vectors.
   pure subroutine gather_vectors(nodes, vectors, rows, origins)
     integer, intent(in), contiguous :: nodes(:)
     real(wp), intent(in), allocatable :: vectors(:, :)       !! (2, n_node)

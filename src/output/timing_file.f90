@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The timing file: wall clock of the run by phase, and of the contact phases by interface on request.
+!> The timing file: wall clock of the run by phase, and of the contact
+!> phases by interface on request.
 module timing_file_m
   use kinds_m, only : wp, long
   use clock_m, only : clock_t, phase_names, n_phase, n_contact_phase, phase_contact_search
@@ -13,8 +14,8 @@ module timing_file_m
 contains
 
   !> Write `phase,seconds,calls,share`, one row per phase and the row `total`, which is the time
-  !> from the start to the last lap. Where interfaces are timed, rows such as `contact_force.2` follow their
-  !> phase and add up to it. Where no laps are taken there is the total alone.
+  !> from the start to the last lap. Where interfaces are timed, rows such as `contact_force.2`
+  !> follow their phase and add up to it. Where no laps are taken there is the total alone.
   subroutine write_timing(path, clock, error)
     character(*), intent(in) :: path
     type(clock_t), intent(in) :: clock

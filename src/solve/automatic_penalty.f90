@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Penalties that the deck gives as a share of the largest one for which the step is stable (PUNIT 3).
-!> The step is the one that the elements alone would have (TSSFAC times the smallest L/c, or the curve LCTM). Each such
-!> interface may take what that step leaves beside the elements; where interfaces share nodes, all automatic
-!> ones are lowered by the same factor until their sum fits.
+!> Penalties that the deck gives as a share of the largest one for which the step is stable (PUNIT
+!> 3). The step is the one that the elements alone would have (TSSFAC times the smallest L/c, or the
+!> curve LCTM). Each such interface may take what that step leaves beside the elements; where
+!> interfaces share nodes, all automatic ones are lowered by the same factor until their sum fits.
 module automatic_penalty_m
   use contact_log_m, only : penalty_text
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, fitting_scale
@@ -75,7 +75,8 @@ contains
     end do
   end subroutine find_element_limits
 
-  !> Factors on the penalties in the memories, which hold shares: 0 where there is no room, 1 for given penalties.
+  !> Factors on the penalties in the memories, which hold shares: 0 where there is no
+  !> room, 1 for given penalties.
   pure subroutine find_factors(model, state, dt, limit, factor)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -106,7 +107,8 @@ contains
     where (model%contacts%penalty_unit == penalty_share) factor = low*factor
   end subroutine find_factors
 
-  !> Whether the step is stable for all automatic interfaces with the whole of these penalties (share 1), others as given.
+  !> Whether the step is stable for all automatic interfaces with the whole of these penalties
+  !> (share 1), others as given.
   pure function fits(model, state, dt, limit, factor)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> LU factorisation of a sparse matrix as a band (LAPACK dgbtrf, row exchanges), with its equations in
-!> the order of reverse Cuthill-McKee.
+!> LU factorisation of a sparse matrix as a band (LAPACK dgbtrf, row exchanges), with its equations
+!> in the order of reverse Cuthill-McKee.
 module banded_lu_m
   use bandwidth_m, only : bandwidth, reverse_cuthill_mckee
   use kinds_m, only : long, wp

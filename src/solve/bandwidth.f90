@@ -9,7 +9,8 @@ module bandwidth_m
 
 contains
 
-  !> order(k) is the equation that comes k-th. Two equations are neighbours where either has an entry for the other.
+  !> order(k) is the equation that comes k-th. Two equations are neighbours where either
+  !> has an entry for the other.
   pure function reverse_cuthill_mckee(matrix) result(order)
     type(sparse_t), intent(in) :: matrix
     integer :: order(matrix%n)
@@ -29,8 +30,8 @@ contains
     order = order(matrix%n:1:-1)
   end function reverse_cuthill_mckee
 
-  !> The pattern of the matrix and its transpose together, without values. Contact fills some entries on one side of the
-  !> diagonal alone; a walk along rows would pass by such neighbours.
+  !> The pattern of the matrix and its transpose together, without values. Contact fills some
+  !> entries on one side of the diagonal alone; a walk along rows would pass by such neighbours.
   pure function symmetric_pattern(matrix) result(pattern)
     type(sparse_t), intent(in) :: matrix
     type(sparse_t) :: pattern
@@ -85,8 +86,8 @@ contains
     end do
   end subroutine transpose_pattern
 
-  !> An equation at one end of the connected part that holds `root`: from there the walk has the most,
-  !> and so the narrowest, levels.
+  !> An equation at one end of the connected part that holds `root`: from there the walk has the
+  !> most, and so the narrowest, levels.
   pure subroutine find_end(matrix, root, level, found, start)
     type(sparse_t), intent(in) :: matrix
     integer, intent(in) :: root

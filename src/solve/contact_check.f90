@@ -18,8 +18,8 @@ module contact_check_m
 
 contains
 
-  !> Initial penetrations, places just beyond ends of the master, and a warning where the penalty demands a smaller step
-  !> than `state%dt`.
+  !> Initial penetrations, places just beyond ends of the master, and a warning where the penalty
+  !> demands a smaller step than `state%dt`.
   subroutine report_contact_start(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -63,7 +63,8 @@ contains
     end if
   end subroutine warn_of_step
 
-  !> Where ECDT = 2 asks for it: find now and then what the springs at the present places demand of the steps to come.
+  !> Where ECDT = 2 asks for it: find now and then what the springs at the present places
+  !> demand of the steps to come.
   pure subroutine follow_springs(model, state, bounds)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

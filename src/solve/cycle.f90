@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What one thread does in each explicit cycle: contact and loads before the elements; writing; time,
-!> step and health after them.
+!> What one thread does in each explicit cycle: contact and loads before the elements; writing;
+!> time, step and health after them.
 module cycle_m
   use clock_m, only : lap, share_contact, phase_nodes
   use constraints_m, only : fix_nodes, update_activity
@@ -174,7 +174,8 @@ contains
     if (.not. allocated(cycle%error)) call judge_energies(monitor%snapshot%energies, monitor%log)
   end subroutine report_cycle
 
-  !> Rigid bodies in a cycle that writes: what their forces ask for, and the work of prescribed motion so far.
+  !> Rigid bodies in a cycle that writes: what their forces ask for, and the work of
+  !> prescribed motion so far.
   subroutine report_rigids(model, state, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -247,8 +248,9 @@ contains
       cycle%ratio)
   end subroutine end_cycle
 
-  !> Stop, restart files, states and lines that are due or that someone asks for; for restart files a stop by a signal
-  !> counts as an end. The state is that before the next cycle; a run that goes on from it repeats that cycle.
+  !> Stop, restart files, states and lines that are due or that someone asks for; for restart files
+  !> a stop by a signal counts as an end. The state is that before the next cycle; a run that goes
+  !> on from it repeats that cycle.
   subroutine heed_requests(state, monitor, cycle)
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor

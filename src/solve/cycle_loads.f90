@@ -12,8 +12,8 @@ module cycle_loads_m
 
 contains
 
-  !> Loads from outside and their work (trapezoidal rule), body acceleration and damping; the work of
-  !> these two is counted once the sums over all nodes are there.
+  !> Loads from outside and their work (trapezoidal rule), body acceleration and damping; the work
+  !> of these two is counted once the sums over all nodes are there.
   subroutine apply_loads(model, state, damping, sums)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Equations of the implicit driver: free degrees of freedom first, then those with a prescribed motion;
-!> fixed ones, and nodes that no element has, get none.
+!> Equations of the implicit driver: free degrees of freedom first, then those with a prescribed
+!> motion; fixed ones, and nodes that no element has, get none.
 module equations_m
   use kinds_m, only : wp
   use constraints_m, only : is_active
@@ -75,8 +75,8 @@ contains
     node = place(2)
   end subroutine find_equation
 
-  !> Move prescribed columns of the collected matrix to the right-hand side: b(free) -= K(free, prescribed) *
-  !> increments. What is left in the matrix are the free rows and columns.
+  !> Move prescribed columns of the collected matrix to the right-hand side: b(free) -= K(free,
+  !> prescribed) * increments. What is left in the matrix are the free rows and columns.
   pure subroutine move_prescribed(n_free, increments, matrix, b)
     integer, intent(in) :: n_free
     real(wp), intent(in) :: increments(:)

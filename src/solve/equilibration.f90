@@ -13,8 +13,9 @@ module equilibration_m
 
 contains
 
-  !> scaled(i, j) = row_scale(i)*matrix(i, j)*column_scale(j), with the largest entries from 1/4 to about 1.
-  !> The scales are powers of two, so that nothing is rounded. No row and no column may be empty or zero.
+  !> scaled(i, j) = row_scale(i)*matrix(i, j)*column_scale(j), with the largest entries from
+  !> 1/4 to about 1. The scales are powers of two, so that nothing is rounded. No row and no
+  !> column may be empty or zero.
   pure subroutine equilibrate(matrix, row_scale, column_scale, scaled)
     type(sparse_t), intent(in) :: matrix
     real(wp), intent(out) :: row_scale(:)    !! (n)

@@ -1,9 +1,10 @@
 ! SPDX-License-Identifier: MIT
 !> Central difference in leap-frog form: v lives at half steps.
-!> One parallel region spans the whole run. Each cycle has three parts with a barrier behind each: elements,
-!> tile by tile, whose interior nodes move at once; special nodes; and the end of the cycle with contact and
-!> loads on the special nodes for the next (one thread). A cycle that writes keeps the forces and
-!> moves the nodes after writing, so that what is written belongs to one instant.
+!> One parallel region spans the whole run. Each cycle has three parts with a barrier behind
+!> each: elements, tile by tile, whose interior nodes move at once; special nodes; and the
+!> end of the cycle with contact and loads on the special nodes for the next (one thread). A
+!> cycle that writes keeps the forces and moves the nodes after writing, so that what is
+!> written belongs to one instant.
 module explicit_m
   use clock_m, only : lap, phase_elements, phase_nodes, phase_output
   use cycle_m, only : cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
@@ -52,9 +53,9 @@ contains
     if (allocated(cycle%error)) call move_alloc(cycle%error, error)
   end subroutine advance_explicit
 
-  !> The cycles, run by every thread of the team. The end of a cycle and the beginning of the next are one
-  !> piece of serial work; `cycle` may then already speak of the next one, so that what others still ask it
-  !> is kept.
+  !> The cycles, run by every thread of the team. The end of a cycle and the beginning of the next
+  !> are one piece of serial work; `cycle` may then already speak of the next one, so that what
+  !> others still ask it is kept.
   subroutine run_cycles(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -123,8 +124,8 @@ contains
     !$omp end do
   end subroutine advance_tiles
 
-  !> Sum the forces of special nodes; they move at once unless this cycle writes. Each thread has the nodes
-  !> of its own tiles: what it reads here it has mostly written itself.
+  !> Sum the forces of special nodes; they move at once unless this cycle writes. Each thread has
+  !> the nodes of its own tiles: what it reads here it has mostly written itself.
   subroutine advance_special_nodes(model, state, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state

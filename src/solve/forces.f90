@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> All nodal forces of one instant for the implicit driver: the explicit kernels from a committed state to a
-!> trial displacement (doc/theory/implicit.md, section 1).
+!> All nodal forces of one instant for the implicit driver: the explicit kernels from a committed
+!> state to a trial displacement (doc/theory/implicit.md, section 1).
 module forces_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
@@ -102,7 +102,8 @@ contains
     force = trial%internal - trial%contact - trial%external
   end function net_force
 
-  !> What is wrong with a trial in words; empty where all volumes are positive and all forces finite.
+  !> What is wrong with a trial in words; empty where all volumes are
+  !> positive and all forces finite.
   pure function trouble_of(trial) result(trouble)
     type(trial_t), intent(in) :: trial
     character(:), allocatable :: trouble

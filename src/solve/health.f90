@@ -17,10 +17,12 @@ module health_m
   public :: tile_check_t, check_tile, are_sound, check_elements, check_step, check_cycle, &
     check_energy, judge_energies
 
-  !> Work beyond this means nothing any more; it is found before numbers overflow, which a checked build would stop at.
+  !> Work beyond this means nothing any more; it is found before numbers overflow, which a
+  !> checked build would stop at.
   real(wp), parameter :: most_work = 1.0e150_wp
 
-  !> What the elements of one tile have come to in a cycle. As long as a cache line: threads fill them side by side.
+  !> What the elements of one tile have come to in a cycle. As long as a cache line:
+  !> threads fill them side by side.
   type :: tile_check_t
     real(wp) :: time_limit = huge(1.0_wp)   !! smallest L/c, s
     real(wp) :: checksum = 0.0_wp           !! of the works: finite as long as all of them are
@@ -71,7 +73,8 @@ contains
     if (.not. allocated(error)) call name_bad_chunk(model, state, error)
   end subroutine check_elements
 
-  !> The interface whose forces are not finite though its nodes are at finite places: that is where it began.
+  !> The interface whose forces are not finite though its nodes are at finite
+  !> places: that is where it began.
   subroutine name_bad_contact(model, state, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -98,8 +101,9 @@ contains
     end do
   end subroutine name_bad_contact
 
-  !> Find the element at fault. The nodes have moved on since its forces were formed: a stress that is
-  !> not finite has spoilt the corners that neighbours share, so stresses are looked at before areas.
+  !> Find the element at fault. The nodes have moved on since its forces were formed: a
+  !> stress that is not finite has spoilt the corners that neighbours share, so stresses
+  !> are looked at before areas.
   subroutine name_bad_chunk(model, state, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -127,7 +131,8 @@ contains
       //to_text(state%cycle)//', time '//to_text(state%time), status_run)
   end subroutine name_bad_chunk
 
-  !> The element that is under the largest stress of those whose chunk has done work beyond all measure.
+  !> The element that is under the largest stress of those whose chunk has
+  !> done work beyond all measure.
   subroutine name_wild_chunk(model, state, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -161,8 +166,8 @@ contains
       //to_text(state%cycle)//', time '//to_text(state%time), status_run)
   end subroutine blame
 
-  !> The step must stay above its floor: DTMIN of *CONTROL_TERMINATION, and in any case a millionth of the
-  !> first step (such a run would never end) and what the time can still resolve.
+  !> The step must stay above its floor: DTMIN of *CONTROL_TERMINATION, and in any case a millionth
+  !> of the first step (such a run would never end) and what the time can still resolve.
   subroutine check_step(controls, first_dt, time, dt, error)
     type(controls_t), intent(in) :: controls
     real(wp), intent(in) :: first_dt, time, dt
@@ -187,8 +192,8 @@ contains
       //'counted: a run has to end before', status_run)
   end subroutine check_cycle
 
-  !> Energies must be finite; where the deck sets ENDENG the energy ratio must stay within so many per cent of
-  !> one, and contact forces must not have created more than that of the largest energy.
+  !> Energies must be finite; where the deck sets ENDENG the energy ratio must stay within so many
+  !> per cent of one, and contact forces must not have created more than that of the largest energy.
   subroutine check_energy(controls, energies, error)
     type(controls_t), intent(in) :: controls
     type(energies_t), intent(in) :: energies

@@ -32,8 +32,8 @@ module implicit_m
 
 contains
 
-  !> From where the run begins to its end. When a step finds no equilibrium the last converged state is
-  !> written and stays.
+  !> From where the run begins to its end. When a step finds no equilibrium the last converged
+  !> state is written and stays.
   subroutine advance_implicit(model, state, monitor, reason, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -80,8 +80,8 @@ contains
     if (any_due(march%written)) march%ratio = energy_ratio(monitor%snapshot%energies)
   end subroutine report_march
 
-  !> After a step: what someone asks for, the plan of the next step, and the restart files that are due. A run that
-  !> goes on from one reports the state as this one is about to.
+  !> After a step: what someone asks for, the plan of the next step, and the restart files that are
+  !> due. A run that goes on from one reports the state as this one is about to.
   subroutine heed_requests(model, state, monitor, march, asked, last, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -165,7 +165,8 @@ contains
     end do
   end subroutine try_step
 
-  !> The trial becomes the state; works of contact, loads and prescribed motion by the trapezoidal rule.
+  !> The trial becomes the state; works of contact, loads and prescribed
+  !> motion by the trapezoidal rule.
   subroutine commit(model, state, step, attempt, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What the implicit driver writes: motion, velocity and acceleration of one instant, energies with the consistent
-!> mass.
+!> What the implicit driver writes: motion, velocity and acceleration of one instant, energies
+!> with the consistent mass.
 module implicit_report_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_output
@@ -98,8 +98,9 @@ contains
     end do
   end subroutine fill_consistent_parts
 
-  !> Work of the forces that hold prescribed degrees of freedom to their curves: of inertia, change of momentum times mean
-  !> velocity, which is the kinetic energy that they gain, also in a blow; of the others by the trapezoidal rule.
+  !> Work of the forces that hold prescribed degrees of freedom to their curves: of inertia, change
+  !> of momentum times mean velocity, which is the kinetic energy that they gain, also in a blow; of
+  !> the others by the trapezoidal rule.
   function reactions_work(model, equations, before, after, velocities) result(work)
     type(model_t), intent(in) :: model
     type(equations_t), intent(in) :: equations

@@ -140,7 +140,8 @@ contains
     call lap(monitor%clock, phase_solver)
   end subroutine start_implicit
 
-  !> M a(0) = -f(0) on the free degrees of freedom; those of prescribed ones, which the state has, act on them.
+  !> M a(0) = -f(0) on the free degrees of freedom; those of prescribed ones, which
+  !> the state has, act on them.
   subroutine find_first_acceleration(model, monitor, step, state, error)
     type(model_t), intent(in) :: model
     type(monitor_t), intent(inout) :: monitor

@@ -28,8 +28,9 @@ module line_search_m
 
 contains
 
-  !> Move the trial by `way%x`, shortened where elements would turn inside out or where the residual along x would not
-  !> fall. The first iteration of a step, which moves prescribed degrees of freedom, is gone to its end.
+  !> Move the trial by `way%x`, shortened where elements would turn inside out or where the residual
+  !> along x would not fall. The first iteration of a step, which moves prescribed degrees of
+  !> freedom, is gone to its end.
   subroutine move_nodes(model, state, step, clock, trial, way)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -53,8 +54,8 @@ contains
       call search_line(model, state, step, clock, start, trial, way)
   end subroutine move_nodes
 
-  !> Shorten the way by secants until the slope dU.R at its end is no longer uphill. A way that does not lead
-  !> downhill at its start says nothing and is gone to the end.
+  !> Shorten the way by secants until the slope dU.R at its end is no longer uphill. A way that does
+  !> not lead downhill at its start says nothing and is gone to the end.
   subroutine search_line(model, state, step, clock, start, trial, way)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Solves A x = b for a sparse matrix whose pattern is symmetric but for a few entries, symmetric in value or not, and
-!> says how good the answer is. Theory: doc/theory/implicit.md, "Linear systems".
+!> Solves A x = b for a sparse matrix whose pattern is symmetric but for a few entries, symmetric in
+!> value or not, and says how good the answer is. Theory: doc/theory/implicit.md, "Linear systems".
 module linear_solver_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use equilibration_m, only : equilibrate
@@ -15,8 +15,9 @@ module linear_solver_m
   public :: report_t, solve_linear, method_best, method_banded, method_sparse
 
   !> Where the norm of A z is below this part of that of |A||z| (A equilibrated), A takes z to zero.
-  !> Seen: 0.4e-16 to 7e-16 for rigid motions of up to 100,000 equations; 4e-15 for two blocks pressed
-  !> together by a penalty 1e12 times their stiffness, 6e-14 for a cantilever of 2000 x 2 quads.
+  !> Seen: 0.4e-16 to 7e-16 for rigid motions of up to 100,000 equations; 4e-15 for two
+  !> blocks pressed together by a penalty 1e12 times their stiffness, 6e-14 for a
+  !> cantilever of 2000 x 2 quads.
   real(wp), parameter :: singular_tolerance = 1.5e-15_wp
   !> Up to here the errors of the factors may be all that is seen of A z, and z is corrected.
   real(wp), parameter :: doubtful = 1.0e3_wp*singular_tolerance
@@ -44,8 +45,8 @@ module linear_solver_m
 
 contains
 
-  !> Solve. For a singular matrix x is what the factors give, its free motion large; zero where there
-  !> are no factors.
+  !> Solve. For a singular matrix x is what the factors give, its free motion large; zero
+  !> where there are no factors.
   subroutine solve_linear(matrix, b, x, report, method)
     type(sparse_t), intent(in) :: matrix    !! compressed
     real(wp), intent(in) :: b(:)            !! (n)
@@ -159,8 +160,8 @@ contains
   end function in_words
 
   !> The motion z that meets least stiffness: one step of inverse iteration for the least singular
-  !> value, z = A^-1 A^-T s. For a singular matrix both solves grow without bound along the motion that
-  !> is free, and what remains of A z is rounding.
+  !> value, z = A^-1 A^-T s. For a singular matrix both solves grow without bound along the motion
+  !> that is free, and what remains of A z is rounding.
   subroutine find_free_motion(scaled, factor, column_scale, report)
     type(sparse_t), intent(in) :: scaled
     type(factor_t), intent(in) :: factor
@@ -201,8 +202,8 @@ contains
     stiffness = norm2(multiply(scaled, z))/norm2(multiply_magnitudes(scaled, z))
   end function stiffness_met
 
-  !> z - A^-1 A z instead of z where that meets less stiffness. With exact factors nothing would be left; with those of
-  !> A + E, z is free of A + E, and this takes away what of A z is due to E.
+  !> z - A^-1 A z instead of z where that meets less stiffness. With exact factors nothing would be
+  !> left; with those of A + E, z is free of A + E, and this takes away what of A z is due to E.
   subroutine correct_motion(scaled, factor, z, stiffness)
     type(sparse_t), intent(in) :: scaled
     type(factor_t), intent(in) :: factor
@@ -222,7 +223,8 @@ contains
     z = better
   end subroutine correct_motion
 
-  !> Solve and refine: the residual is solved for again until no equation gains (as LAPACK's dgerfs).
+  !> Solve and refine: the residual is solved for again until no equation
+  !> gains (as LAPACK's dgerfs).
   subroutine solve_refined(scaled, factor, b, x, report)
     type(sparse_t), intent(in) :: scaled
     type(factor_t), intent(in) :: factor

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What the implicit driver hands from step to step besides the state, and its part of a restart file.
+!> What the implicit driver hands from step to step besides the state, and
+!> its part of a restart file.
 module march_m
   use archive_m, only : keep
   use archive_file_m, only : archive_t, enter, leave
@@ -28,7 +29,8 @@ module march_m
 
 contains
 
-  !> Write restart files after a step. The march is that of the state, its next step not planned yet.
+  !> Write restart files after a step. The march is that of the state, its
+  !> next step not planned yet.
   subroutine write_restarts(wanted, state, monitor, march, error)
     logical, intent(in) :: wanted(:)   !! numbered_file, running_file
     type(state_t), intent(inout) :: state

@@ -59,8 +59,8 @@ contains
         monitor%restarts%goes_on, error)
   end subroutine open_files
 
-  !> Schedules, progress lines and the snapshot. Energies go with the plot states where the deck gives
-  !> them no interval of their own, since every run has an energy history.
+  !> Schedules, progress lines and the snapshot. Energies go with the plot states where the deck
+  !> gives them no interval of their own, since every run has an energy history.
   subroutine start_monitor(model, has_history, monitor)
     type(model_t), intent(in) :: model
     logical, intent(in) :: has_history !! some part keeps a plastic strain

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Work of what acts on every node: body loads and global damping. It needs sums of m v and m v^2 over all nodes;
-!> the team forms them tile by tile while a tile's nodes are in cache, before they move. Partial sums are added
-!> in their order, so that the bits do not depend on the number of threads.
+!> Work of what acts on every node: body loads and global damping. It needs sums of m v and
+!> m v^2 over all nodes; the team forms them tile by tile while a tile's nodes are in cache,
+!> before they move. Partial sums are added in their order, so that the bits do not depend
+!> on the number of threads.
 module motion_sums_m
   use kinds_m, only : wp
   use layout_m, only : layout_t
@@ -24,8 +25,8 @@ module motion_sums_m
 
 contains
 
-  !> Set up the sums that a model needs, if any: over its tiles and over blocks of the nodes that no tile moves,
-  !> special ones and those inside rigid bodies.
+  !> Set up the sums that a model needs, if any: over its tiles and over blocks of the nodes that no
+  !> tile moves, special ones and those inside rigid bodies.
   pure subroutine plan_sums(model, sums)
     type(model_t), intent(in) :: model
     type(motion_sums_t), intent(out) :: sums
@@ -57,7 +58,8 @@ contains
     n_block = (n_node + block_size - 1)/block_size
   end function blocks_of
 
-  !> Sums over the nodes first .. last. Two by two, so that an addition need not wait for the one before.
+  !> Sums over the nodes first .. last. Two by two, so that an addition need
+  !> not wait for the one before.
   pure function sum_motion(first, last, mass, motion) result(sums)
     integer, intent(in) :: first, last
     real(wp), intent(in) :: mass(*)      !! of all nodes
@@ -78,7 +80,8 @@ contains
     sums = odd + even
   end function sum_motion
 
-  !> The blocks, shared by the team, which does not wait: nothing moves these nodes while tiles advance.
+  !> The blocks, shared by the team, which does not wait: nothing moves these
+  !> nodes while tiles advance.
   subroutine sum_blocks(layout, state, sums)
     type(layout_t), intent(in) :: layout
     type(state_t), intent(in) :: state

@@ -48,7 +48,8 @@ module newton_m
 
 contains
 
-  !> Iterate from the committed state to equilibrium at `step%time`; `trial` is that state when converged.
+  !> Iterate from the committed state to equilibrium at `step%time`; `trial` is
+  !> that state when converged.
   subroutine find_equilibrium(model, state, step, log, clock, trial, outcome)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -109,8 +110,8 @@ contains
     end do
   end function contacts_of
 
-  !> Where an iteration leads: the solution of the linear system; the first of a step moves the prescribed degrees of
-  !> freedom to their places.
+  !> Where an iteration leads: the solution of the linear system; the first of a step moves the
+  !> prescribed degrees of freedom to their places.
   subroutine find_way(model, state, step, is_first, clock, trial, matrix, way, report)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -149,8 +150,8 @@ contains
     end if
   end subroutine judge_solution
 
-  !> Norm of the residual and of the round-off that it must hold: that of forces, of displacements times stiffness, and of
-  !> places in gaps times the springs of contact.
+  !> Norm of the residual and of the round-off that it must hold: that of forces, of displacements
+  !> times stiffness, and of places in gaps times the springs of contact.
   subroutine measure_residual(model, state, step, trial, matrix, now)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -181,7 +182,8 @@ contains
     now%gap_floor = now%floor + epsilon(1.0_wp)*norm2(take_free(step%equations, forces))
   end subroutine measure_residual
 
-  !> The seed's energy criterion or the round-off floor of the residual; the other criteria where the deck sets them.
+  !> The seed's energy criterion or the round-off floor of the residual; the other criteria
+  !> where the deck sets them.
   pure function is_converged(implicit, first, now, step) result(converged)
     type(implicit_t), intent(in) :: implicit
     type(measure_t), intent(in) :: first, now

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Sums of nodal forces and the leap-frog motion of the nodes:
-!> v(n+1/2) = [(1 - D h/2) v(n-1/2) + h a]/(1 + D h/2), u(n+1) = u(n) + dt v(n+1/2), with h the mean of the two steps.
-!> The damping acts on the mean of the two velocities, so it never limits the step.
+!> v(n+1/2) = [(1 - D h/2) v(n-1/2) + h a]/(1 + D h/2), u(n+1) = u(n) + dt v(n+1/2),
+!> with h the mean of the two steps. The damping acts on the mean of the two velocities,
+!> so it never limits the step.
 module node_motion_m
   use kinds_m, only : wp
   use layout_m, only : layout_t, tile_t

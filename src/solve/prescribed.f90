@@ -12,8 +12,8 @@ module prescribed_m
 
 contains
 
-  !> v(n+1/2) of all prescribed degrees of freedom, from u(n) and v(n-1/2). Nodes of one set follow one curve, looked up
-  !> once: for each node it took 11 % of the sliding scene.
+  !> v(n+1/2) of all prescribed degrees of freedom, from u(n) and v(n-1/2). Nodes of one set follow
+  !> one curve, looked up once: for each node it took 11 % of the sliding scene.
   subroutine find_prescribed_velocities(model, state, velocity)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -42,8 +42,8 @@ contains
       one%curve == other%curve .and. abs(one%scale - other%scale) <= 0.0_wp
   end function has_same_velocity
 
-  !> A node on a displacement curve starts with the velocity of its first step: from rest the start would be a blow
-  !> of half its kinetic energy that no curve asks for.
+  !> A node on a displacement curve starts with the velocity of its first step: from rest the start
+  !> would be a blow of half its kinetic energy that no curve asks for.
   subroutine start_prescribed(model, velocity, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: velocity(:) !! (n_motion) v(1/2)
@@ -59,7 +59,8 @@ contains
     end do
   end subroutine start_prescribed
 
-  !> Work R.v dt/2 of the reactions over half a step, with R = m a + f_int - f_special - m g + D m v(n).
+  !> Work R.v dt/2 of the reactions over half a step, with
+  !> R = m a + f_int - f_special - m g + D m v(n).
   pure function prescribed_work(model, state, velocity, damping, factor_old, factor_new) result(work)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

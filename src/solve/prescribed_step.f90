@@ -61,8 +61,8 @@ contains
     end do
   end subroutine prescribe_step
 
-  !> Velocity and acceleration at time zero: motions that hold from the start are under way. (Velocity curves have set
-  !> theirs already.)
+  !> Velocity and acceleration at time zero: motions that hold from the start are under way.
+  !> (Velocity curves have set theirs already.)
   pure subroutine prescribe_start(model, dt, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: dt !! first step
@@ -88,8 +88,9 @@ contains
     end do
   end subroutine prescribe_start
 
-  !> Displacement of the step, velocity and acceleration at its end. Velocities and accelerations given by a curve are
-  !> integrated exactly; what must be differentiated is differenced over a step to both sides.
+  !> Displacement of the step, velocity and acceleration at its end. Velocities and
+  !> accelerations given by a curve are integrated exactly; what must be differentiated is
+  !> differenced over a step to both sides.
   pure function follow_curve(model, motion, times, displacement, velocity) result(path)
     type(model_t), intent(in) :: model
     type(prescribed_motion_t), intent(in) :: motion
@@ -119,8 +120,8 @@ contains
     if (motion%kind == motion_displacement) path(1) = path(1) - displacement
   end function follow_curve
 
-  !> Slope at `time`: the mean over `dt` to both sides, or that of the present piece where one side lies outside
-  !> the life of the motion. 0 for a life next to nothing.
+  !> Slope at `time`: the mean over `dt` to both sides, or that of the present piece where one side
+  !> lies outside the life of the motion. 0 for a life next to nothing.
   pure function mean_slope(curve, time, dt, life) result(slope)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: time
@@ -142,7 +143,8 @@ contains
     if (x(2) > x(1)) slope = (curve_value(curve, x(2)) - curve_value(curve, x(1)))/(x(2) - x(1))
   end function mean_slope
 
-  !> Change of slope at `time` over `dt` to both sides; none where one side lies outside the life of the motion.
+  !> Change of slope at `time` over `dt` to both sides; none where one side lies
+  !> outside the life of the motion.
   pure function curvature(curve, time, dt, life) result(change)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: time
@@ -156,8 +158,8 @@ contains
       - (curve_value(curve, time) - curve_value(curve, time - dt)))/dt**2
   end function curvature
 
-  !> Integral of (b - s) f(s) from a to b, the displacement from an acceleration: exact (Simpson's rule from point to
-  !> point, the integrand is of second degree).
+  !> Integral of (b - s) f(s) from a to b, the displacement from an acceleration: exact (Simpson's
+  !> rule from point to point, the integrand is of second degree).
   pure function curve_moment(curve, a, b) result(total)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: a, b !! a <= b
@@ -178,8 +180,9 @@ contains
     end do
   end function curve_moment
 
-  !> Times at which a step must end: births and deaths of prescribed motions, where the equations change; and with steps
-  !> that grow, lest they leap over it, where a curve in use turns, where forces come and go and where states are written.
+  !> Times at which a step must end: births and deaths of prescribed motions, where the equations
+  !> change; and with steps that grow, lest they leap over it, where a curve in use turns, where
+  !> forces come and go and where states are written.
   pure subroutine list_changes(model, changes)
     type(model_t), intent(in) :: model
     real(wp), allocatable, intent(out) :: changes(:)
@@ -199,7 +202,8 @@ contains
     end associate
   end subroutine list_changes
 
-  !> Turns of curve `i` in pressures, whose curves start at their arrival: once for each time of arrival in a row.
+  !> Turns of curve `i` in pressures, whose curves start at their arrival: once for each
+  !> time of arrival in a row.
   pure subroutine add_pressure_turns(model, i, changes)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
@@ -217,8 +221,8 @@ contains
     end do
   end subroutine add_pressure_turns
 
-  !> Corners of a curve: where its slope changes sign, or by more than half of the steeper side. (The points of a finely
-  !> sampled smooth curve are none.)
+  !> Corners of a curve: where its slope changes sign, or by more than half of the steeper side.
+  !> (The points of a finely sampled smooth curve are none.)
   pure function turning_points(curve) result(times)
     type(curve_t), intent(in) :: curve
     real(wp), allocatable :: times(:)

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What a person or a script sees while the run goes on: one updating line on a terminal, plain lines in the
-!> DYNA manner in a pipe, and the summary at the end. A screen that takes no more (a closed window, a full disk
-!> behind `>`) does not end a run: the log has the same lines.
+!> What a person or a script sees while the run goes on: one updating line on a terminal, plain
+!> lines in the DYNA manner in a pipe, and the summary at the end. A screen that takes no more (a
+!> closed window, a full disk behind `>`) does not end a run: the log has the same lines.
 module progress_m
   use, intrinsic :: iso_fortran_env, only : output_unit
   use clock_m, only : clock_t, look_at_clock, elapsed_seconds, total_seconds, phase_seconds, lap_seconds, &
@@ -48,8 +48,8 @@ contains
     progress%next_tick = now + progress%wait
   end subroutine start_progress
 
-  !> A line or the status file where one is due though no result was written. Asked in every cycle: that the clock
-  !> is read for it is rare where steps are short.
+  !> A line or the status file where one is due though no result was written. Asked in every cycle:
+  !> that the clock is read for it is rare where steps are short.
   subroutine follow_progress(progress, clock, cycle, steps_are_long, time, dt, ratio)
     type(progress_t), intent(inout) :: progress
     type(clock_t), intent(inout) :: clock
@@ -77,7 +77,8 @@ contains
       wanted = wanted .or. mod(cycle, progress%status_interval) == 0
   end function wants_line
 
-  !> One line. `event` says what was written, blank for none; `ratio` is the last energy ratio known.
+  !> One line. `event` says what was written, blank for none; `ratio` is
+  !> the last energy ratio known.
   subroutine show_progress(progress, clock, cycle, time, dt, ratio, event)
     type(progress_t), intent(inout) :: progress
     type(clock_t), intent(in) :: clock

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What someone outside asks of a run while it goes on, by a word in d3kil or by a signal. What needs no more than the
-!> files (a line of status, histories brought up to date) is done here; the driver does the rest.
+!> What someone outside asks of a run while it goes on, by a word in d3kil or by a signal. What
+!> needs no more than the files (a line of status, histories brought up to date) is done here;
+!> the driver does the rest.
 module requests_m
   use errors_m, only : error_t
   use history_file_m, only : flush_histories
@@ -27,7 +28,8 @@ module requests_m
 
 contains
 
-  !> Look whether anything is asked for: for signals always, for d3kil twice a second, or always where steps are long.
+  !> Look whether anything is asked for: for signals always, for d3kil twice a second, or
+  !> always where steps are long.
   subroutine take_requests(state, ratio, steps_are_long, monitor, asked, error)
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: ratio          !! last energy ratio known

@@ -1,9 +1,10 @@
 ! SPDX-License-Identifier: MIT
 !> Writing restart files between two cycles or steps.
 !>
-!> There a run is its state, what its driver hands from cycle to cycle besides, how far its outputs are, and the deck.
-!> All of that is written, so that the run that goes on makes the same bits as one that was not interrupted. The
-!> driver's part is written by the driver, between `begin_file` and `end_file`.
+!> There a run is its state, what its driver hands from cycle to cycle besides, how far its
+!> outputs are, and the deck. All of that is written, so that the run that goes on makes the same
+!> bits as one that was not interrupted. The driver's part is written by the driver, between
+!> `begin_file` and `end_file`.
 module restart_m
   use archive_file_m, only : archive_t, fail_archive
   use errors_m, only : error_t, status_files
@@ -100,8 +101,8 @@ contains
       //'would hold the deck as run, '//path//': '//reason, status_files)
   end subroutine read_effective_deck
 
-  !> Remove what an earlier run of this name has left: files that it has not finished, and whole ones too
-  !> unless the run goes on.
+  !> Remove what an earlier run of this name has left: files that it has not finished, and whole
+  !> ones too unless the run goes on.
   subroutine forget_files(restarts, error)
     type(restarts_t), intent(in) :: restarts
     type(error_t), allocatable, intent(out) :: error

@@ -76,8 +76,8 @@ contains
     text = ' at time '//to_text(state%time)//', cycle '//to_text(state%cycle)
   end function place_text
 
-  !> Which kinds of files are due before cycle `cycle`: at their intervals; before the last cycle the numbered one; before a
-  !> stop by a signal both that the deck asks for.
+  !> Which kinds of files are due before cycle `cycle`: at their intervals; before the last cycle
+  !> the numbered one; before a stop by a signal both that the deck asks for.
   pure function wanted_files(restarts, cycle, asked, is_last, stops) result(wanted)
     type(restarts_t), intent(in) :: restarts
     integer, intent(in) :: cycle
@@ -101,8 +101,8 @@ contains
     if (interval > 0 .and. cycle > 0) ends = mod(cycle, interval) == 0
   end function ends_interval
 
-  !> Whether it is time to look for a sense switch. `tick` is the last clock tick known; where none is
-  !> read in a cycle, one is read now and then.
+  !> Whether it is time to look for a sense switch. `tick` is the last clock tick known; where none
+  !> is read in a cycle, one is read now and then.
   subroutine wants_look(restarts, ticks_run, tick, cycle, wanted)
     type(restarts_t), intent(inout) :: restarts
     logical, intent(in) :: ticks_run

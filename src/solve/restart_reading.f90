@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Going on from a restart file: what it says of the run, its state and its outputs, and the files of the run before.
+!> Going on from a restart file: what it says of the run, its state and its outputs, and
+!> the files of the run before.
 module restart_reading_m
   use archive_file_m, only : archive_t, enter, leave
   use errors_m, only : error_t, raise, status_input
@@ -21,7 +22,8 @@ module restart_reading_m
   private
   public :: take_up_file, take_up_results, take_up_state, take_up_outputs
 
-  !> Part of the last step by which an implicit run may pass its end; an explicit one may by all of it.
+  !> Part of the last step by which an implicit run may pass its end; an
+  !> explicit one may by all of it.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
 contains

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What every restart file holds besides the state: what is known of the run, and how far its outputs are.
+!> What every restart file holds besides the state: what is known of the run,
+!> and how far its outputs are.
 module restart_run_m
   use archive_m, only : keep, keep_text
   use archive_file_m, only : archive_t, enter, leave

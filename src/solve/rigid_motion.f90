@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Rigid bodies in the explicit cycle: resultants, leap-frog of centre and angle, and the nodes after them
-!> (doc/theory/rigid_bodies.md). Done by one thread, in the order of the nodes.
+!> Rigid bodies in the explicit cycle: resultants, leap-frog of centre and angle, and the nodes
+!> after them (doc/theory/rigid_bodies.md). Done by one thread, in the order of the nodes.
 module rigid_motion_m
   use kinds_m, only : wp
   use conditions_m, only : motion_displacement
@@ -74,7 +74,8 @@ contains
     rigid%force = total
   end subroutine sum_forces
 
-  !> D of each degree of freedom: the turn is damped by the forces -D m v on the nodes as they now lie.
+  !> D of each degree of freedom: the turn is damped by the forces -D m v on
+  !> the nodes as they now lie.
   pure function damping_of(rigid, damping) result(rate)
     type(rigid_state_t), intent(in) :: rigid
     real(wp), intent(in) :: damping(2)
@@ -133,8 +134,9 @@ contains
     end do
   end function rigid_work
 
-  !> All bodies to u(n+1), and those of their nodes that anything asks for in the next cycle. The velocity of a
-  !> node is its displacement over the step, as for all nodes: work is force times displacement.
+  !> All bodies to u(n+1), and those of their nodes that anything asks for in the next cycle.
+  !> The velocity of a node is its displacement over the step, as for all nodes: work is
+  !> force times displacement.
   subroutine move_rigids(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Rigid bodies at time zero: mass, centre and inertia from the lumped masses of their nodes, velocity from
-!> the momentum of these, and the mass that contact feels.
+!> Rigid bodies at time zero: mass, centre and inertia from the lumped masses of their nodes,
+!> velocity from the momentum of these, and the mass that contact feels.
 module rigid_start_m
   use kinds_m, only : wp
   use conditions_m, only : motion_velocity
@@ -94,9 +94,10 @@ contains
     end do
   end subroutine constrain_velocity
 
-  !> The mass of a body is shared among its nodes that contact can touch, in proportion to their lumped masses and
-  !> so that no motion of the body gives these nodes more kinetic energy than the body has: limits of
-  !> the step found with these masses hold for the body (doc/theory/rigid_bodies.md, section 4).
+  !> The mass of a body is shared among its nodes that contact can touch, in proportion to their
+  !> lumped masses and so that no motion of the body gives these nodes more kinetic energy than the
+  !> body has: limits of the step found with these masses hold for the body
+  !> (doc/theory/rigid_bodies.md, section 4).
   subroutine share_contact_mass(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -137,8 +138,9 @@ contains
     end do
   end function is_held
 
-  !> Largest part of the body's kinetic energy that some of its nodes can have: the largest eigenvalue of their
-  !> inertia over the body's. A body held in one direction counts as free in both.
+  !> Largest part of the body's kinetic energy that some of its nodes can have: the
+  !> largest eigenvalue of their inertia over the body's. A body held in one
+  !> direction counts as free in both.
   pure function largest_share(rigid, mass, arms, held) result(share)
     type(rigid_state_t), intent(in) :: rigid
     real(wp), intent(in) :: mass(:)    !! (n) of those nodes

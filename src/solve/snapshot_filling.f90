@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Fills a snapshot from the state, only what is due. Forces, energies and motion of one cycle belong to
-!> one instant: v(n) = v(n-1/2) + a(n) dt/2.
+!> Fills a snapshot from the state, only what is due. Forces, energies and motion of one cycle
+!> belong to one instant: v(n) = v(n-1/2) + a(n) dt/2.
 module snapshot_filling_m
   use kinds_m, only : wp
   use constraints_m, only : is_active
@@ -21,7 +21,8 @@ module snapshot_filling_m
 
 contains
 
-  !> Allocate what this run can ask for: motion of all nodes only where a file or an override needs it.
+  !> Allocate what this run can ask for: motion of all nodes only where a
+  !> file or an override needs it.
   subroutine start_snapshot(model, has_history, snapshot)
     type(model_t), intent(in) :: model
     logical, intent(in) :: has_history !! some part keeps a plastic strain
@@ -56,8 +57,8 @@ contains
       .or. model%controls%implicit%is_on
   end function keeps_motion
 
-  !> Displacement, velocity and acceleration of the present instant, where they are kept. `velocity_next` is
-  !> v(n+1/2) of the prescribed degrees of freedom.
+  !> Displacement, velocity and acceleration of the present instant, where they are kept.
+  !> `velocity_next` is v(n+1/2) of the prescribed degrees of freedom.
   subroutine fill_motion(model, state, damping, velocity_next, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -180,8 +181,8 @@ contains
     end do
   end subroutine find_velocities
 
-  !> Add kinetic energy and momentum of some nodes. Products first, then sums: fused multiply-adds in one
-  !> copy of a loop and not in another would make the bits depend on where a block ends.
+  !> Add kinetic energy and momentum of some nodes. Products first, then sums: fused multiply-adds
+  !> in one copy of a loop and not in another would make the bits depend on where a block ends.
   pure subroutine add_motion(n, mass, velocity, kinetic, momentum)
     integer, intent(in) :: n
     real(wp), intent(in) :: mass(n), velocity(2, n)
@@ -199,7 +200,8 @@ contains
     end do
   end subroutine add_motion
 
-  !> Kinetic energy, momentum and mass of each part (energies are there already), where velocities are kept.
+  !> Kinetic energy, momentum and mass of each part (energies are there already),
+  !> where velocities are kept.
   subroutine fill_parts(model, snapshot)
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(inout) :: snapshot

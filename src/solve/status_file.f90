@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The file status.out: how far a run is and how long it may take, for scripts and for people who come by. It is replaced
-!> as a whole; that it can not be written is no reason to end a run.
+!> The file status.out: how far a run is and how long it may take, for scripts and for people who
+!> come by. It is replaced as a whole; that it can not be written is no reason to end a run.
 module status_file_m
   use clock_m, only : clock_t, elapsed_seconds
   use errors_m, only : error_t
@@ -33,7 +33,8 @@ module status_file_m
 
 contains
 
-  !> Begin: status.out, or <job>.status.out where the job has a name of its own (jobid=), as in LS-DYNA.
+  !> Begin: status.out, or <job>.status.out where the job has a name of its
+  !> own (jobid=), as in LS-DYNA.
   subroutine start_status(status, directory, job, has_name, clock)
     type(status_t), intent(inout) :: status  !! times and cycles are set
     character(*), intent(in) :: directory

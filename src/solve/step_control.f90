@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Lengths of implicit steps: constant, or growing and shrinking with the iterations that they take. Where the equations
-!> change (birth or death of a prescribed motion) a step is divided.
+!> Lengths of implicit steps: constant, or growing and shrinking with the iterations that they take.
+!> Where the equations change (birth or death of a prescribed motion) a step is divided.
 module step_control_m
   use kinds_m, only : wp
   use controls_m, only : controls_t
@@ -56,9 +56,9 @@ contains
     end associate
   end function start_step_control
 
-  !> End of the next step. The last step is stretched or shortened to end the run in time. Of constant steps what a change
-  !> leaves over follows as a step of its own, of automatic ones a whole step; a step that would leave a small rest before a
-  !> change goes half of the way.
+  !> End of the next step. The last step is stretched or shortened to end the run in time. Of
+  !> constant steps what a change leaves over follows as a step of its own, of automatic ones a
+  !> whole step; a step that would leave a small rest before a change goes half of the way.
   pure subroutine plan_step(control, time)
     type(step_control_t), intent(inout) :: control
     real(wp), intent(in) :: time !! start of the step
@@ -91,7 +91,8 @@ contains
     over = time >= control%end_time - round_off*control%dt
   end function is_over
 
-  !> After a step of length `dt` that converged. Few iterations of a shortened step say nothing of a whole one.
+  !> After a step of length `dt` that converged. Few iterations of a shortened step
+  !> say nothing of a whole one.
   pure subroutine grow_step(control, dt, iterations)
     type(step_control_t), intent(inout) :: control
     real(wp), intent(in) :: dt
@@ -103,7 +104,8 @@ contains
     if (iterations > control%many) control%dt = max(control%least, cut*control%dt)
   end subroutine grow_step
 
-  !> After a step from `time` that did not converge: whether a shorter one than was tried may follow.
+  !> After a step from `time` that did not converge: whether a shorter one
+  !> than was tried may follow.
   pure subroutine cut_step(control, time, may_retry)
     type(step_control_t), intent(inout) :: control
     real(wp), intent(in) :: time

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Forces by which constraints hold fixed nodes (spcforc). Where a degree of freedom is fixed, R = m a + f with a = 0
-!> and f the internal less all other forces.
+!> Forces by which constraints hold fixed nodes (spcforc). Where a degree of freedom is fixed,
+!> R = m a + f with a = 0 and f the internal less all other forces.
 module support_forces_m
   use kinds_m, only : wp, long
   use model_m, only : model_t
@@ -14,7 +14,8 @@ module support_forces_m
 
 contains
 
-  !> Nodes with mass and a fixed degree of freedom by rising id; none where the deck does not ask for their forces.
+  !> Nodes with mass and a fixed degree of freedom by rising id; none where the deck does
+  !> not ask for their forces.
   subroutine find_supports(model, snapshot)
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(inout) :: snapshot

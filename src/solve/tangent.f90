@@ -32,9 +32,10 @@ module tangent_m
 
 contains
 
-  !> R = M A + (1 - alpha_f) f(n+1) + alpha_f f(n) with f = f_int - f_contact - f_ext and A = (1 - alpha_m) a(n+1) +
-  !> alpha_m a(n) (Chung & Hulbert 1993, eq. 12, forces of both instants weighted); on prescribed degrees of freedom A is the
-  !> change of velocity over the step, whatever the weights.
+  !> R = M A + (1 - alpha_f) f(n+1) + alpha_f f(n) with f = f_int - f_contact - f_ext and
+  !> A = (1 - alpha_m) a(n+1) + alpha_m a(n) (Chung & Hulbert 1993, eq. 12, forces of both
+  !> instants weighted); on prescribed degrees of freedom A is the change of velocity over the
+  !> step, whatever the weights.
   function assemble_residual(model, state, step, trial) result(residual)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -76,8 +77,8 @@ contains
     call put_prescribed(step%equations, step%prescribed%velocity, velocity)
   end function new_velocity
 
-  !> dR/du(n+1), collected. The inertia of prescribed degrees of freedom does not depend on u, so their columns hold
-  !> stiffness alone.
+  !> dR/du(n+1), collected. The inertia of prescribed degrees of freedom does not depend on u, so
+  !> their columns hold stiffness alone.
   subroutine assemble_tangent(model, state, step, trial, clock, matrix)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

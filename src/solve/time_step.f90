@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> The time step: TSSFAC times the smallest L/c of the elements (or what contact springs leave of it), capped by a
-!> curve; constant where the curve is constant and lies below the stable step. The limit of one cycle rules the
-!> step of the next, so that a cycle need not wait for its own elements.
+!> The time step: TSSFAC times the smallest L/c of the elements (or what contact springs
+!> leave of it), capped by a curve; constant where the curve is constant and lies below the
+!> stable step. The limit of one cycle rules the step of the next, so that a cycle need not
+!> wait for its own elements.
 module time_step_m
   use block_state_m, only : block_state_t
   use contact_step_limit_m, only : spring_bound_t, stable_step
@@ -128,7 +129,8 @@ contains
     end associate
   end function plain_step
 
-  !> Time of cycle `cycle` and the step that leads away from it. A constant step counts time as n dt.
+  !> Time of cycle `cycle` and the step that leads away from it. A constant
+  !> step counts time as n dt.
   subroutine next_step(model, element_limit, log, cycle, steps, time, dt)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: element_limit     !! smallest L/c
@@ -147,8 +149,8 @@ contains
     if (steps%warned) steps%constant = 0.0_wp
   end subroutine next_step
 
-  !> Whether the cycle at `time` is the last: nint(ENDTIM/dt) cycles of a constant step, otherwise the first
-  !> cycle at or after the end time.
+  !> Whether the cycle at `time` is the last: nint(ENDTIM/dt) cycles of a constant step, otherwise
+  !> the first cycle at or after the end time.
   pure function is_last(steps, cycle, time) result(last)
     type(step_plan_t), intent(in) :: steps
     integer, intent(in) :: cycle

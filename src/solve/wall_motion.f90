@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Rigid walls in the explicit driver: perfectly plastic impact of nodes. A node that would pass a wall in the
-!> step ahead gets the normal velocity that takes it to the wall (one behind it: none), and the wall the force that
-!> this takes at t(n). Tangentially it is free.
+!> Rigid walls in the explicit driver: perfectly plastic impact of nodes. A node that would pass a
+!> wall in the step ahead gets the normal velocity that takes it to the wall (one behind it: none),
+!> and the wall the force that this takes at t(n). Tangentially it is free.
 module wall_motion_m
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -13,7 +13,8 @@ module wall_motion_m
   private
   public :: start_walls, hold_nodes, count_walls, fill_walls
 
-  !> Rounds over the walls that one node meets (two in a corner settle at once where they are at right angles).
+  !> Rounds over the walls that one node meets (two in a corner settle at once where
+  !> they are at right angles).
   integer, parameter :: most_rounds = 40
 
 contains
@@ -71,7 +72,8 @@ contains
     end do
   end subroutine hold_node
 
-  !> What the force of one wall lacks so that the node does not pass; never so negative that the wall pulls.
+  !> What the force of one wall lacks so that the node does not pass; never so
+  !> negative that the wall pulls.
   pure function missing_force(wall, time, dt, coordinates, displacement, velocity, mobility, force) &
     result(more)
     type(wall_t), intent(in) :: wall
@@ -103,9 +105,9 @@ contains
     end do
   end subroutine hold_nodes
 
-  !> Impulse and work of the walls over the half steps before and after the instant. Together they do the work
-  !> F h (v(n-1/2) + v(n+1/2))/2, which is the change of kinetic energy that F makes, whatever the two steps are;
-  !> it counts as external.
+  !> Impulse and work of the walls over the half steps before and after the instant. Together they
+  !> do the work F h (v(n-1/2) + v(n+1/2))/2, which is the change of kinetic energy that F makes,
+  !> whatever the two steps are; it counts as external.
   subroutine count_walls(model, is_before, is_after, state)
     type(model_t), intent(in) :: model
     logical, intent(in) :: is_before, is_after !! which half steps are due

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What a rigid body is and where it is. In arrays of three: x, y and the turn about z, counter-clockwise.
+!> What a rigid body is and where it is. In arrays of three: x, y and the turn
+!> about z, counter-clockwise.
 module rigid_state_m
   use kinds_m, only : wp
   implicit none
@@ -21,7 +22,8 @@ module rigid_state_m
 
 contains
 
-  !> Sine of an angle and one less its cosine, formed without a difference: small turns keep their digits.
+  !> Sine of an angle and one less its cosine, formed without a difference:
+  !> small turns keep their digits.
   pure function turn_of(angle) result(turn)
     real(wp), intent(in) :: angle
     real(wp) :: turn(2)

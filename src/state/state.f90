@@ -2,9 +2,10 @@
 !> Everything that changes during a run, and exactly what a restart would have to write.
 !>
 !> Displacement is stored, never position: strains, volume ratios and gaps are formed from
-!> differences of u and of X, since differences of large coordinates lose the digits that a patch test needs.
-!> In the explicit driver v lives at half steps: `motion(3:4)` is v(n-1/2) when the forces of cycle n are
-!> formed. Node arrays are in the order of the model (special nodes first, see layout_t).
+!> differences of u and of X, since differences of large coordinates lose the digits that a
+!> patch test needs. In the explicit driver v lives at half steps: `motion(3:4)` is v(n-1/2)
+!> when the forces of cycle n are formed. Node arrays are in the order of the model (special
+!> nodes first, see layout_t).
 module state_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t

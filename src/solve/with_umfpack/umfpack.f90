@@ -15,19 +15,20 @@ module umfpack_m
   !> Whether this program holds UMFPACK.
   logical, parameter :: has_umfpack = .true.
 
-  !> Lengths of UMFPACK's arrays of settings and of results, and the places used in them: the numbers
-  !> in umfpack.h plus one.
+  !> Lengths of UMFPACK's arrays of settings and of results, and the places used in them: the
+  !> numbers in umfpack.h plus one.
   integer, parameter :: n_control = 20, n_info = 90
   integer, parameter :: control_strategy = 6, control_refinement = 8, control_ordering = 11, &
     control_scale = 17
   integer, parameter :: info_lower_entries = 24, info_upper_entries = 25, info_factor_entries = 37, &
     info_smallest_pivot = 72
-  !> Values of settings: pivots on the diagonal where they are good; minimum degree or nested dissection;
-  !> rows as given.
+  !> Values of settings: pivots on the diagonal where they are good; minimum degree or nested
+  !> dissection; rows as given.
   real(c_double), parameter :: strategy_symmetric = 3, ordering_amd = 1, ordering_metis = 3, &
     scale_none = 0
   !> From here on nested dissection pays. Seconds for square meshes of quads, minimum degree against
-  !> nested dissection: 20,000 equations 0.13/0.18, 45,000 0.49/0.52, 99,000 1.6/1.4 (factors 153/129 MB).
+  !> nested dissection: 20,000 equations 0.13/0.18, 45,000 0.49/0.52, 99,000
+  !> 1.6/1.4 (factors 153/129 MB).
   integer, parameter :: n_dissected = 60000
   !> What umfpack_di_solve solves with.
   integer(c_int), parameter :: as_given = 0, transposed_system = 1
@@ -138,8 +139,8 @@ contains
     call umfpack_di_free_symbolic(symbolic)
   end subroutine factor_umfpack
 
-  !> Entries of the factors: as counted where pivots are taken from the diagonal; where the pattern allows none of
-  !> that, an upper bound.
+  !> Entries of the factors: as counted where pivots are taken from the diagonal; where the pattern
+  !> allows none of that, an upper bound.
   pure function expected_entries(info) result(entries)
     real(c_double), intent(in) :: info(n_info)
     real(wp) :: entries

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The program without UMFPACK: compiled where CMake does not find the library (or is told not to look).
-!> Nothing is ever factorised here, and `has_umfpack` says so.
+!> The program without UMFPACK: compiled where CMake does not find the library (or is told not to
+!> look). Nothing is ever factorised here, and `has_umfpack` says so.
 module umfpack_m
   use kinds_m, only : long, wp
   use sparse_m, only : sparse_t
