@@ -23,8 +23,9 @@ module deck_m
   use deck_mesh_m, only : read_nodes, read_elements, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
   use deck_rigid_m, only : read_rigid
-  use deck_hardening_m, only : read_piecewise, read_table
-  use deck_material_m, only : read_elastic, read_plastic_kinematic, read_curve
+  use deck_curves_m, only : read_curve, read_table
+  use deck_hardening_m, only : read_piecewise
+  use deck_material_m, only : read_elastic, read_plastic_kinematic
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control
   use deck_output_m, only : read_database

@@ -1,19 +1,18 @@
 ! SPDX-License-Identifier: MIT
-!> *MAT_PIECEWISE_LINEAR_PLASTICITY and *DEFINE_TABLE.
+!> *MAT_PIECEWISE_LINEAR_PLASTICITY.
 module deck_hardening_m
   use kinds_m, only : wp
   use parts_m, only : material_t, law_piecewise
-  use deck_lines_m, only : deck_t, place_t, line_error, line_warning
+  use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, check_rest, &
-    report_field
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_material_m, only : elastic_constants, append_material, check_tangent_modulus, &
     check_failure
-  use deck_raw_m, only : raw_t, raw_hardening_t, raw_table_t
+  use deck_raw_m, only : raw_t, raw_hardening_t
   implicit none
   private
-  public :: read_piecewise, read_table
+  public :: read_piecewise
 
 contains
 
@@ -127,43 +126,5 @@ contains
     hardening%points%ordinate = [card%r(5)]
     hardening%modulus = card%r(3)*card%r(6)/(card%r(3) - card%r(6))
   end subroutine read_line
-
-  !> *DEFINE_TABLE: a number, and a value for each of the curves that come next.
-  subroutine read_table(deck, parameters, i_block, raw)
-    type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
-    type(cursor_t) :: cursor
-    type(card_t) :: head, card
-    type(raw_table_t) :: table
-    real(wp), allocatable :: values(:)
-    logical :: found
-    integer :: n
-
-    call open_cursor(deck, i_block, cursor)
-    call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, head)
-    if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a number of 1 or more')
-    if (head%r(2) < 0.0_wp) call report_field(deck, cursor, head, 2, &
-      'is negative: it would turn the table round')
-    if (.not. abs(head%r(2)) > 0.0_wp) head%r(2) = 1.0_wp
-    allocate (values(max(cursor%last - cursor%line + 1, 1)))
-    n = 0
-    do
-      call next_row(deck, parameters, cursor, 2, card, found)
-      if (.not. found) exit
-      n = n + 1
-      values(n) = head%r(2)*(card%r(1) + head%r(3))
-      if (n == 1 .or. card%bad(1)) cycle
-      if (values(n) <= values(n - 1)) call report_field(deck, cursor, card, 1, &
-        'is not beyond the value before it: the values of a table must increase')
-    end do
-    if (n == 0) call line_error(deck, head%line, 'the table has no values')
-    if (head%bad(1)) raw%lost%tables = .true.
-    if (head%bad(1)) return
-    table = raw_table_t(head%i(1), head%line, i_block, values(:n))
-    raw%tables = [raw%tables, table]
-  end subroutine read_table
 
 end module deck_hardening_m

@@ -1,19 +1,17 @@
 ! SPDX-License-Identifier: MIT
-!> *MAT_ cards and *DEFINE_CURVE.
+!> *MAT_ELASTIC and *MAT_PLASTIC_KINEMATIC, and what all materials have.
 module deck_material_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use parts_m, only : material_t, law_elastic, law_plastic
-  use curves_m, only : curve_t
-  use deck_lines_m, only : deck_t, line_error
+  use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, check_rest, &
-    report_field
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_raw_m, only : raw_t
   implicit none
   private
-  public :: read_elastic, read_plastic_kinematic, read_curve, elastic_constants, append_material, &
+  public :: read_elastic, read_plastic_kinematic, elastic_constants, append_material, &
     check_tangent_modulus, check_failure
 
   !> A strain at failure from here on means never.
@@ -136,61 +134,5 @@ contains
     raw%materials = [raw%materials, material]
     raw%material_line = [raw%material_line, card%line]
   end subroutine append_material
-
-  !> *DEFINE_CURVE: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
-  subroutine read_curve(deck, parameters, i_block, raw)
-    type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
-    type(cursor_t) :: cursor
-    type(card_t) :: head, card
-    type(curve_t) :: curve
-    real(wp), allocatable :: points(:, :)
-    logical :: found
-    integer :: n
-
-    call open_cursor(deck, i_block, cursor)
-    call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, head)
-    if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a number of 1 or more')
-    if (head%r(3) < 0.0_wp) call report_field(deck, cursor, head, 3, &
-      'is negative: it would turn the curve round')
-    if (.not. head%r(3) > 0.0_wp) head%r(3) = 1.0_wp
-    if (.not. abs(head%r(4)) > 0.0_wp) head%r(4) = 1.0_wp
-    allocate (points(2, max(cursor%last - cursor%line + 1, 1)))
-    n = 0
-    do
-      call next_row(deck, parameters, cursor, 2, card, found)
-      if (.not. found) exit
-      n = n + 1
-      points(1, n) = head%r(3)*(card%r(1) + head%r(5))
-      points(2, n) = head%r(4)*(card%r(2) + head%r(6))
-      if (n == 1 .or. card%bad(1)) cycle
-      if (points(1, n) <= points(1, n - 1)) call report_field(deck, cursor, card, 1, &
-        'is not beyond the point before it: abscissas must increase')
-    end do
-    if (n == 0) call line_error(deck, head%line, 'the curve has no points')
-    if (head%bad(1)) raw%lost%curves = .true.
-    if (head%bad(1)) return
-    if (n == 0) then
-      n = 1
-      points = 0.0_wp
-    end if
-    curve%id = head%i(1)
-    curve%abscissa = points(1, :n)
-    curve%ordinate = points(2, :n)
-    call append_curve(raw, curve, head%line)
-  end subroutine read_curve
-
-  !> One more curve.
-  subroutine append_curve(raw, curve, line)
-    type(raw_t), intent(inout) :: raw
-    type(curve_t), intent(in) :: curve
-    integer, intent(in) :: line
-
-    raw%curves = [raw%curves, curve]
-    raw%curve_line = [raw%curve_line, line]
-  end subroutine append_curve
 
 end module deck_material_m

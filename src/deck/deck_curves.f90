@@ -1,0 +1,110 @@
+! SPDX-License-Identifier: MIT
+!> *DEFINE_CURVE and *DEFINE_TABLE.
+module deck_curves_m
+  use kinds_m, only : wp
+  use curves_m, only : curve_t
+  use deck_lines_m, only : deck_t, line_error
+  use deck_fields_m, only : card_t
+  use deck_parameter_table_m, only : parameters_t
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field
+  use deck_raw_m, only : raw_t, raw_table_t
+  implicit none
+  private
+  public :: read_curve, read_table
+
+contains
+
+  !> *DEFINE_CURVE: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
+  subroutine read_curve(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: head
+    type(curve_t) :: curve
+    real(wp), allocatable :: points(:, :)
+
+    call read_head(deck, parameters, i_block, 3, 'is negative: it would turn the curve round', &
+      cursor, head)
+    if (.not. head%r(3) > 0.0_wp) head%r(3) = 1.0_wp
+    if (.not. abs(head%r(4)) > 0.0_wp) head%r(4) = 1.0_wp
+    call read_rows(deck, parameters, head%r(3:4), head%r(5:6), &
+      'is not beyond the point before it: abscissas must increase', cursor, points)
+    if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
+    if (head%bad(1)) raw%lost%curves = .true.
+    if (head%bad(1)) return
+    if (size(points, 2) == 0) points = reshape([0.0_wp, 0.0_wp], [2, 1])
+    curve%id = head%i(1)
+    curve%abscissa = points(1, :)
+    curve%ordinate = points(2, :)
+    raw%curves = [raw%curves, curve]
+    raw%curve_line = [raw%curve_line, head%line]
+  end subroutine read_curve
+
+  !> *DEFINE_TABLE: a number, and a value for each of the curves that come next.
+  subroutine read_table(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: head
+    type(raw_table_t) :: table
+    real(wp), allocatable :: values(:, :)
+
+    call read_head(deck, parameters, i_block, 2, 'is negative: it would turn the table round', &
+      cursor, head)
+    if (.not. abs(head%r(2)) > 0.0_wp) head%r(2) = 1.0_wp
+    call read_rows(deck, parameters, head%r(2:2), head%r(3:3), &
+      'is not beyond the value before it: the values of a table must increase', cursor, values)
+    if (size(values, 2) == 0) call line_error(deck, head%line, 'the table has no values')
+    if (head%bad(1)) raw%lost%tables = .true.
+    if (head%bad(1)) return
+    table = raw_table_t(head%i(1), head%line, i_block, values(1, :))
+    raw%tables = [raw%tables, table]
+  end subroutine read_table
+
+  !> The first card: the number, and the scale factor of what must increase in field `k`.
+  subroutine read_head(deck, parameters, i_block, k, negative, cursor, head)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    integer, intent(in) :: k
+    character(*), intent(in) :: negative    !! what to say of a factor below 0
+    type(cursor_t), intent(out) :: cursor
+    type(card_t), intent(out) :: head
+
+    call open_cursor(deck, i_block, cursor)
+    call skip_title(deck, cursor)
+    call next_card(deck, parameters, cursor, 1, head)
+    if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a number of 1 or more')
+    if (head%r(k) < 0.0_wp) call report_field(deck, cursor, head, k, negative)
+  end subroutine read_head
+
+  !> The rows behind it, scale*(value + offset) in each column; the first column must increase.
+  subroutine read_rows(deck, parameters, scale, offset, not_beyond, cursor, rows)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    real(wp), intent(in) :: scale(:), offset(:)        !! (n_column)
+    character(*), intent(in) :: not_beyond             !! what to say where it does not
+    type(cursor_t), intent(inout) :: cursor
+    real(wp), allocatable, intent(out) :: rows(:, :)   !! (n_column, n_row)
+    type(card_t) :: card
+    logical :: found
+    integer :: n
+
+    allocate (rows(size(scale), max(cursor%last - cursor%line + 1, 0)))
+    n = 0
+    do
+      call next_row(deck, parameters, cursor, 2, card, found)
+      if (.not. found) exit
+      n = n + 1
+      rows(:, n) = scale*(card%r(:size(scale)) + offset)
+      if (n == 1 .or. card%bad(1)) cycle
+      if (rows(1, n) <= rows(1, n - 1)) call report_field(deck, cursor, card, 1, not_beyond)
+    end do
+    rows = rows(:, :n)
+  end subroutine read_rows
+
+end module deck_curves_m
