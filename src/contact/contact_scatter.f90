@@ -54,8 +54,8 @@ contains
     n_active = count(pressure > 0.0_wp)
   end function count_active
 
-  !> On arrays of known shape: through the list each access costs a multiplication by its stride. A point at a slave node has
-  !> it at both ends, and all of the force goes there.
+  !> On arrays of known shape: through the list each access costs a multiplication by its stride. A point at a node has
+  !> it at both ends of that side, and all of the force goes there.
   pure subroutine scatter_each(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
     pressure, area, force)
     integer, intent(in) :: n
@@ -71,10 +71,15 @@ contains
       a = slave_nodes(1, p); b = slave_nodes(2, p)
       c = master_nodes(1, p); d = master_nodes(2, p)
       point = pressure(p)*area(p)*normal(:, p)
-      total = force(:, c) - master_weights(1, p)*point
-      force(:, c) = total
-      total = force(:, d) - master_weights(2, p)*point
-      force(:, d) = total
+      if (c == d) then
+        total = force(:, c) - point
+        force(:, c) = total
+      else
+        total = force(:, c) - master_weights(1, p)*point
+        force(:, c) = total
+        total = force(:, d) - master_weights(2, p)*point
+        force(:, d) = total
+      end if
       if (a == b) then
         total = force(:, a) + point
         force(:, a) = total

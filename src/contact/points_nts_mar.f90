@@ -13,7 +13,7 @@ module points_nts_mar_m
     list_other, cut_segments
   use contact_placing_m, only : add_touching_nodes, put_stiffness
   use contact_projection_m, only : see_segment
-  use contact_state_m, only : contact_state_t, make_room, n_side
+  use contact_state_m, only : contact_points_t, contact_state_t, make_room, n_side
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal
   use kinds_m, only : wp
@@ -38,6 +38,7 @@ contains
     n = memory%points%n
     if (.not. is_known) call mark_points(n, memory%points%slave_nodes, memory%mark)
     memory%points%area(:n) = 0.0_wp
+    call forget_constants(memory%slave_penalty, is_known, memory%points)
     call put_stiffness(memory%slave_penalty, is_known, memory%points)
     call clear_list(cover)
     s = 1
@@ -50,6 +51,16 @@ contains
     call note_next_wake(memory)
     call finish_nodes(contact, memory, n)
   end subroutine place_nts_mar
+
+  !> What the points at master nodes have in common stands from the placement before, unless these stand elsewhere or the
+  !> stiffness is another.
+  pure subroutine forget_constants(stiffness, is_known, points)
+    real(wp), intent(in) :: stiffness
+    logical, intent(in) :: is_known !! points at slave nodes, before them, stand where they stood
+    type(contact_points_t), intent(inout) :: points
+
+    if (.not. is_known .or. abs(points%stiffness(1) - stiffness) > 0.0_wp) points%n_former = 0
+  end subroutine forget_constants
 
   !> Put the next segment from s on that may touch on the list: s is then the one behind it.
   pure subroutine take_segment(contact, memory, s, cover)
