@@ -54,7 +54,6 @@ contains
     integer, intent(inout) :: i
     type(cuts_t), intent(inout) :: cuts
     real(wp) :: held
-    logical :: is_deep
     integer :: k, p, at, n_before
 
     at = 0
@@ -70,12 +69,22 @@ contains
       area(at) = held
       n_before = cuts%n
       call list_cuts(k, cover%last(i) - 1, cover%gap, closed_gap, cuts)
-      is_deep = cuts%n > n_before
-      status(cover%slave(i)) = merge(is_touching, is_free, is_deep)
-      wake(cover%slave(i)) = merge(-huge(1.0_wp), travel, is_deep)
+      call note_state(cuts%n > n_before, travel, status(cover%slave(i)), wake(cover%slave(i)))
       i = i + 1
     end do
   end subroutine share_touching
+
+  !> The state of one of them. A segment in contact is awake: nothing is written again.
+  pure subroutine note_state(is_deep, travel, status, wake)
+    logical, intent(in) :: is_deep
+    real(wp), intent(in) :: travel
+    integer, intent(inout) :: status
+    real(wp), intent(inout) :: wake
+
+    if (is_deep .and. status == is_touching) return
+    status = merge(is_touching, is_free, is_deep)
+    wake = merge(-huge(1.0_wp), travel, is_deep)
+  end subroutine note_state
 
   !> Any other segment.
   pure subroutine share_other(contact, memory, cover, i, cuts)

@@ -115,15 +115,24 @@ contains
     integer, intent(in) :: previous(*)                     !! of the master
     integer, intent(inout) :: s
     type(plain_cover_t), intent(inout) :: cover
-    integer :: p, q
+    integer :: k, p, node, before, first, last
     logical :: is_listed
 
+    before = 0
+    last = 0
     do while (s <= n_segment .and. .not. cover%is_full)
-      p = mark(ends(1, s))
-      q = mark(ends(2, s))
-      if (p == 0 .or. q == 0) return
-      if (.not. (minval(weights(:, p)) > 0.0_wp .and. minval(weights(:, q)) > 0.0_wp)) return
-      call list_pieces(s, ends(1, s), segment(ends(1, s)), segment(ends(2, s)), previous, .true., cover, is_listed)
+      first = last
+      do k = 1, 2
+        node = ends(k, s)
+        if (node == before) cycle
+        p = mark(node)
+        if (p == 0) return
+        if (.not. min(weights(1, p), weights(2, p)) > 0.0_wp) return
+        if (k == 1) first = segment(node)
+      end do
+      before = node
+      last = segment(node)
+      call list_pieces(s, ends(1, s), first, last, previous, .true., cover, is_listed)
       if (.not. is_listed) return
       s = s + 1
     end do
