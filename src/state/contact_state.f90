@@ -41,7 +41,7 @@ module contact_state_m
     real(wp), allocatable :: gap(:)            !! m, negative = penetration
     real(wp), allocatable :: area(:)           !! m (1 for type 1)
     real(wp), allocatable :: stiffness(:)      !! N/m^2 (N/m for type 1)
-    real(wp), allocatable :: pressure(:)       !! N/m (N for type 1), >= 0
+    real(wp), allocatable :: pressure(:)       !! N/m (N for type 1), >= 0; not always kept: `pressures_of` tells it
   end type contact_points_t
 
   !> Segments sorted into square cells by hashing; tells which segments are near a place.
