@@ -105,7 +105,7 @@ contains
     end do
   end subroutine mark_points
 
-  !> Nodes at a tip keep their whole competence length.
+  !> Nodes at a tip keep their whole competence length. Their feet are in the tracking since their segments were shared.
   pure subroutine finish_nodes(contact, memory, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -116,7 +116,6 @@ contains
     do p = 1, n
       if (memory%points%area(p) > 0.0_wp) cycle
       node = memory%points%slave_nodes(1, p)
-      call take_feet_of([node, node], memory)
       if (is_tip(contact%slave, memory, node)) memory%points%area(p) = competence_length( &
         contact%slave, memory%places(:, :memory%n_slave), node)
     end do
