@@ -4,7 +4,7 @@
 module contact_cuts_m
   use contact_admission_m, only : judge_segment
   use contact_plain_cover_m, only : plain_cover_t, n_room
-  use contact_state_m, only : contact_state_t, make_room, n_side, is_free, is_touching
+  use contact_state_m, only : contact_points_t, contact_state_t, make_room, n_side, is_free, is_touching
   use contacts_m, only : contact_t
   use kinds_m, only : wp
   implicit none
@@ -54,7 +54,6 @@ contains
     integer, intent(inout) :: i
     type(cuts_t), intent(inout) :: cuts
     real(wp) :: held
-    logical :: is_deep
     integer :: k, p, at, n_before
 
     at = 0
@@ -70,12 +69,22 @@ contains
       area(at) = held
       n_before = cuts%n
       call list_cuts(k, cover%last(i) - 1, cover%gap, closed_gap, cuts)
-      is_deep = cuts%n > n_before
-      status(cover%slave(i)) = merge(is_touching, is_free, is_deep)
-      wake(cover%slave(i)) = merge(-huge(1.0_wp), travel, is_deep)
+      call note_state(cuts%n > n_before, travel, status(cover%slave(i)), wake(cover%slave(i)))
       i = i + 1
     end do
   end subroutine share_touching
+
+  !> The state of one of them. A segment in contact is awake: nothing is written again.
+  pure subroutine note_state(is_deep, travel, status, wake)
+    logical, intent(in) :: is_deep
+    real(wp), intent(in) :: travel
+    integer, intent(inout) :: status
+    real(wp), intent(inout) :: wake
+
+    if (is_deep .and. status == is_touching) return
+    status = merge(is_touching, is_free, is_deep)
+    wake = merge(-huge(1.0_wp), travel, is_deep)
+  end subroutine note_state
 
   !> Any other segment.
   pure subroutine share_other(contact, memory, cover, i, cuts)
@@ -125,21 +134,32 @@ contains
     call make_room(memory%points, n)
     associate (points => memory%points, p => memory%points%n + 1)
       call put_cuts(n, cuts, cover, points%slave_nodes(1, p), points%slave_weights(1, p), &
-        points%master_nodes(1, p), points%master_weights(1, p), points%normal(1, p), points%gap(p), &
-        points%area(p))
-      points%stiffness(p:points%n + n) = memory%slave_penalty
+        points%master_nodes(1, p), points%normal(1, p), points%gap(p), points%area(p))
+      call put_constants(p, points%n + n, memory%slave_penalty, points)
       points%n = points%n + n
     end associate
   end subroutine add_cuts
 
-  !> These points on arrays of known shape. Constants in a loop of their own are written in vectors.
-  pure subroutine put_cuts(n, cuts, cover, slave_nodes, slave_weights, master_nodes, master_weights, &
-    normal, gap, area)
+  !> What is the same for all cuts: not written again where a cut stood at the placement before.
+  pure subroutine put_constants(first, last, stiffness, points)
+    integer, intent(in) :: first, last
+    real(wp), intent(in) :: stiffness
+    type(contact_points_t), intent(inout) :: points
+    integer :: p
+
+    do p = max(first, points%n_former + 1), last
+      points%master_weights(1, p) = 1.0_wp
+      points%master_weights(2, p) = 0.0_wp
+      points%stiffness(p) = stiffness
+    end do
+  end subroutine put_constants
+
+  !> The rest on arrays of known shape.
+  pure subroutine put_cuts(n, cuts, cover, slave_nodes, slave_weights, master_nodes, normal, gap, area)
     integer, intent(in) :: n, cuts(n)
     type(plain_cover_t), intent(in) :: cover
     integer, intent(inout) :: slave_nodes(n_side, n), master_nodes(n_side, n)
-    real(wp), intent(inout) :: slave_weights(n_side, n), master_weights(n_side, n)
-    real(wp), intent(inout) :: normal(2, n), gap(n), area(n) !! gap and area in m
+    real(wp), intent(inout) :: slave_weights(n_side, n), normal(2, n), gap(n), area(n) !! gap and area in m
     integer :: p, k
 
     !GCC$ NOVECTOR
@@ -155,10 +175,6 @@ contains
       normal(2, p) = cover%own(1, k)*cover%inverse(k)
       gap(p) = cover%gap(k)
       area(p) = 0.5_wp*(cover%high(k + 1) - cover%low(k))*cover%length(k)
-    end do
-    do p = 1, n
-      master_weights(1, p) = 1.0_wp
-      master_weights(2, p) = 0.0_wp
     end do
   end subroutine put_cuts
 

@@ -29,7 +29,7 @@ module contact_dispatch_m
     logical :: has_two_passes = .false.   !! master nodes are tracked over the slave chain too
     logical :: has_unit_area = .false.    !! the penalty is N/m per node
     logical :: covers_segments = .false.  !! goes along both chains, slave segment by slave segment
-    logical :: has_point_per_spot = .false. !! a point at each spot in contact, and no other
+    logical :: has_point_per_spot = .false. !! a point at each spot in contact, these first on the list
     logical :: averages_pressure = .false. !! pressure of slave nodes, from averaged gaps
     integer :: points_per_slave = 1       !! usual most of points for each spot, for the allocation
     integer :: points_per_master = 0      !! and for each master node
@@ -46,7 +46,7 @@ module contact_dispatch_m
       has_point_per_spot=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_vts_ppt, 'VTS-PPT'), spots=spots_at_quarters, &
       points_per_master=1), &
-    formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR'), covers_segments=.true., &
+    formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR'), covers_segments=.true., has_point_per_spot=.true., &
       points_per_master=1), &
     formulation_t(contact_kind_t(type_mortar, 'mortar', uses_gauss_points=.true.), &
       spots=spots_at_gauss_points, averages_pressure=.true.), &

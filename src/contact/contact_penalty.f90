@@ -9,7 +9,7 @@ module contact_penalty_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: set_penalties, mean_length, press_points, press_each, stored_energy, damp_points
+  public :: set_penalties, mean_length, press_points, press_each, pressures_of, stored_energy, damp_points
 
 contains
 
@@ -124,6 +124,20 @@ contains
       pressure(p) = stiffness(p)*max(0.0_wp, -gap(p))
     end do
   end subroutine press_each
+
+  !> Pressures that the present forces come from. Where each point has its own, which nothing but its gap decides, the list
+  !> need not have it.
+  pure function pressures_of(contact, memory) result(pressures)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    real(wp), allocatable :: pressures(:)
+
+    associate (points => memory%points)
+      pressures = points%pressure(:points%n)
+      if (memory%averages_pressure .or. contact%damping > 0.0_wp) return
+      call press_each(points%n, points%stiffness, points%gap, pressures)
+    end associate
+  end function pressures_of
 
   !> Pressure at slave nodes from averaged gaps, p_A = stiffness * max(0, -sum(N_A a g)/sum(N_A a)), and at the points
   !> by the slave shape functions (Fischer & Wriggers 2005). The forces that follow are the derivative of

@@ -13,7 +13,7 @@ module contact_plain_cover_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: plain_cover_t, clear_list, list_touching, list_segment, list_other, cut_segments, &
+  public :: plain_cover_t, clear_list, list_touching, list_pointed, list_segment, list_other, cut_segments, &
     note_plain_contact, n_room
 
   !> Most pieces of a segment.
@@ -94,6 +94,49 @@ contains
       s = s + 1
     end do
   end subroutine list_run
+
+  !> The same where points stand at the slave nodes in contact: `mark` says which, and their weights where the feet are.
+  pure subroutine list_pointed(contact, memory, s, cover)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(inout) :: s
+    type(plain_cover_t), intent(inout) :: cover
+
+    if (contact%master%n_segment <= short_chain) return
+    call list_run_of_points(contact%slave%n_segment, contact%slave%segments, memory%mark, memory%points%master_weights, &
+      memory%slave_tracking%segment, contact%master%previous, s, cover)
+  end subroutine list_pointed
+
+  !> The same on arrays of known shape.
+  pure subroutine list_run_of_points(n_segment, ends, mark, weights, segment, previous, s, cover)
+    integer, intent(in) :: n_segment, ends(2, n_segment)   !! of the slave
+    integer, intent(in) :: mark(*), segment(*)             !! of the slave nodes
+    real(wp), intent(in) :: weights(2, *)                  !! of the points, on their master segments
+    integer, intent(in) :: previous(*)                     !! of the master
+    integer, intent(inout) :: s
+    type(plain_cover_t), intent(inout) :: cover
+    integer :: k, p, node, before, first, last
+    logical :: is_listed
+
+    before = 0
+    last = 0
+    do while (s <= n_segment .and. .not. cover%is_full)
+      first = last
+      do k = 1, 2
+        node = ends(k, s)
+        if (node == before) cycle
+        p = mark(node)
+        if (p == 0) return
+        if (.not. min(weights(1, p), weights(2, p)) > 0.0_wp) return
+        if (k == 1) first = segment(node)
+      end do
+      before = node
+      last = segment(node)
+      call list_pieces(s, ends(1, s), first, last, previous, .true., cover, is_listed)
+      if (.not. is_listed) return
+      s = s + 1
+    end do
+  end subroutine list_run_of_points
 
   !> Put the pieces of a slave segment on the list, from the master segment below its first end back to that below
   !> the second one, if these are not too many.

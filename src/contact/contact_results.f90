@@ -2,6 +2,7 @@
 !> What the writers want to know of an interface.
 module contact_results_m
   use contact_competence_m, only : competence_length
+  use contact_penalty_m, only : pressures_of
   use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
   use contact_state_m, only : contact_state_t, is_touching, n_side
   use contacts_m, only : contact_t
@@ -44,7 +45,7 @@ contains
     places(3:4, :) = motion(1:2, memory%nodes)
     rows%force = memory%force(:, :n)
     call fill_arc_lengths(contact%slave, places(:, :n), rows%arc_length)
-    share = normal_forces(memory)
+    share = normal_forces(contact, memory)
     do i = 1, memory%n_master
       rows%master_pressure(i) = share(n + i)/max(tiny(1.0_wp), &
         competence_length(contact%master, places(:, n + 1:), i))
@@ -75,16 +76,19 @@ contains
   end subroutine fill_arc_lengths
 
   !> Normal force on each node of the interface from all points, N/m.
-  pure function normal_forces(memory) result(share)
+  pure function normal_forces(contact, memory) result(share)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     real(wp), allocatable :: share(:) !! (n_slave + n_master)
+    real(wp), allocatable :: pressures(:)
     real(wp) :: total
     integer :: p, k
 
     allocate (share(memory%n_slave + memory%n_master), source=0.0_wp)
+    pressures = pressures_of(contact, memory)
     associate (points => memory%points)
       do p = 1, points%n
-        total = points%pressure(p)*points%area(p)
+        total = pressures(p)*points%area(p)
         do k = 1, n_side
           share(points%slave_nodes(k, p)) = share(points%slave_nodes(k, p)) &
             + points%slave_weights(k, p)*total

@@ -6,13 +6,14 @@ module points_nts_mar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
   use contact_competence_m, only : competence_length
   use contact_cuts_m, only : share_cuts
+  use contact_keeping_m, only : take_foot
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, &
     see_master_node, facing_share
-  use contact_plain_cover_m, only : plain_cover_t, clear_list, list_touching, list_segment, &
+  use contact_plain_cover_m, only : plain_cover_t, clear_list, list_pointed, list_segment, &
     list_other, cut_segments
   use contact_placing_m, only : add_touching_nodes, put_stiffness
   use contact_projection_m, only : see_segment
-  use contact_state_m, only : contact_state_t, make_room, n_side
+  use contact_state_m, only : contact_points_t, contact_state_t, make_room, n_side
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal
   use kinds_m, only : wp
@@ -37,11 +38,12 @@ contains
     n = memory%points%n
     if (.not. is_known) call mark_points(n, memory%points%slave_nodes, memory%mark)
     memory%points%area(:n) = 0.0_wp
+    call forget_constants(memory%slave_penalty, is_known, memory%points)
     call put_stiffness(memory%slave_penalty, is_known, memory%points)
     call clear_list(cover)
     s = 1
     do while (s <= contact%slave%n_segment)
-      call list_touching(contact, memory, s, cover)
+      call list_pointed(contact, memory, s, cover)
       if (.not. cover%is_full) call take_segment(contact, memory, s, cover)
       if (cover%is_full) call share_list(contact, memory, cover)
     end do
@@ -50,10 +52,20 @@ contains
     call finish_nodes(contact, memory, n)
   end subroutine place_nts_mar
 
+  !> What the points at master nodes have in common stands from the placement before, unless these stand elsewhere or the
+  !> stiffness is another.
+  pure subroutine forget_constants(stiffness, is_known, points)
+    real(wp), intent(in) :: stiffness
+    logical, intent(in) :: is_known !! points at slave nodes, before them, stand where they stood
+    type(contact_points_t), intent(inout) :: points
+
+    if (.not. is_known .or. abs(points%stiffness(1) - stiffness) > 0.0_wp) points%n_former = 0
+  end subroutine forget_constants
+
   !> Put the next segment from s on that may touch on the list: s is then the one behind it.
   pure subroutine take_segment(contact, memory, s, cover)
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
+    type(contact_state_t), intent(inout) :: memory
     integer, intent(inout) :: s
     type(plain_cover_t), intent(inout) :: cover
     logical :: is_listed
@@ -61,11 +73,25 @@ contains
     do while (s <= contact%slave%n_segment)
       s = s + 1
       if (is_asleep(memory, s - 1, contact%slave%segments(:, s - 1))) cycle
+      call take_feet_of(contact%slave%segments(:, s - 1), memory)
       call list_segment(contact, memory, s - 1, cover, is_listed)
       if (.not. is_listed) call list_other(s - 1, cover)
       return
     end do
   end subroutine take_segment
+
+  !> Take the feet of some slave nodes to the tracking, where those of the nodes in contact are on the points only.
+  pure subroutine take_feet_of(nodes, memory)
+    integer, intent(in) :: nodes(2)
+    type(contact_state_t), intent(inout) :: memory
+    integer :: k
+
+    if (memory%slave_tracking%has_feet) return
+    do k = 1, 2
+      if (memory%mark(nodes(k)) > 0) &
+        call take_foot(memory%points, memory%mark(nodes(k)), nodes(k), memory%slave_tracking)
+    end do
+  end subroutine take_feet_of
 
   !> Remember which point stands at which slave node, until other nodes touch.
   pure subroutine mark_points(n, nodes, mark)
@@ -79,7 +105,7 @@ contains
     end do
   end subroutine mark_points
 
-  !> Nodes at a tip keep their whole competence length.
+  !> Nodes at a tip keep their whole competence length. Their feet are in the tracking since their segments were shared.
   pure subroutine finish_nodes(contact, memory, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -148,6 +174,7 @@ contains
     integer :: n_before, node_before
 
     n_before = memory%points%n
+    call take_feet_of(contact%slave%segments(:, s), memory)
     call find_cover(contact, memory, s, cover)
     sight = sight_of_segment(memory%places(:, cover%ends(2)), memory%places(:, cover%ends(1)), &
       memory%places(:, cover%ends(2)))

@@ -41,7 +41,7 @@ module contact_state_m
     real(wp), allocatable :: gap(:)            !! m, negative = penetration
     real(wp), allocatable :: area(:)           !! m (1 for type 1)
     real(wp), allocatable :: stiffness(:)      !! N/m^2 (N/m for type 1)
-    real(wp), allocatable :: pressure(:)       !! N/m (N for type 1), >= 0
+    real(wp), allocatable :: pressure(:)       !! N/m (N for type 1), >= 0; not always kept: `pressures_of` tells it
   end type contact_points_t
 
   !> Segments sorted into square cells by hashing; tells which segments are near a place.
@@ -102,7 +102,7 @@ module contact_state_m
     type(tracking_t) :: master_tracking     !! master nodes over the slave chain; empty for one pass
     type(cover_memory_t) :: cover
     type(contact_points_t) :: points
-    logical :: has_point_per_spot = .false. !! a point at each spot in contact, and no other
+    logical :: has_point_per_spot = .false. !! a point at each spot in contact, these first on the list
     logical :: laps_pairing = .false.       !! placing the points is work of its own for the clock
     logical :: averages_pressure = .false.  !! pressure comes from slave nodes, not from each point
     real(wp), allocatable :: nodal(:, :)    !! (2, n_slave + n_master) scratch of such a pressure and of damping
