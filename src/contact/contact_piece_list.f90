@@ -4,7 +4,7 @@ module contact_piece_list_m
   use contact_pieces_m, only : slave_t, n_gauss, gauss_xi, add_piece
   use contact_plain_cover_m, only : plain_cover_t, n_room
   use contact_plain_foot_m, only : well_inside
-  use contact_state_m, only : contact_state_t, make_room, n_side, is_free, is_touching
+  use contact_state_m, only : contact_state_t, contact_points_t, make_room, n_side, is_free, is_touching
   use contacts_m, only : contact_t
   use kinds_m, only : wp
   implicit none
@@ -206,10 +206,23 @@ contains
         found%foot(1, first), points%slave_nodes(1, p), points%slave_weights(1, p), &
         points%master_nodes(1, p), points%master_weights(1, p))
       call put_springs(n, found%gap(1, first), found%normal(1, first), found%area(first), &
-        memory%slave_penalty, points%gap(p), points%normal(1, p), points%area(p), points%stiffness(p))
+        points%gap(p), points%normal(1, p), points%area(p))
+      if (.not. has_stiffness(points, n_gauss*n, memory%slave_penalty)) &
+        points%stiffness(p:points%n + n_gauss*n) = memory%slave_penalty
       points%n = points%n + n_gauss*n
     end associate
   end subroutine put_points
+
+  !> Whether the stiffness of the next `n` points stands from the last placement. All points have the same.
+  pure function has_stiffness(points, n, stiffness)
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in) :: n
+    real(wp), intent(in) :: stiffness
+    logical :: has_stiffness
+
+    has_stiffness = points%n + n <= points%n_former
+    if (has_stiffness) has_stiffness = .not. abs(points%stiffness(points%n + 1) - stiffness) > 0.0_wp
+  end function has_stiffness
 
   !> Nodes and weights of the points on `n` pieces, written out for both: a loop over them takes twice as long.
   pure subroutine put_sides(n, ends, nodes, xi, foot, slave_nodes, slave_weights, master_nodes, &
@@ -237,11 +250,11 @@ contains
     end do
   end subroutine put_sides
 
-  !> Their gaps, normals, areas and stiffness.
-  pure subroutine put_springs(n, gap, normal, area, stiffness, gaps, normals, areas, stiffnesses)
+  !> Their gaps, normals and areas.
+  pure subroutine put_springs(n, gap, normal, area, gaps, normals, areas)
     integer, intent(in) :: n
-    real(wp), intent(in) :: gap(n_gauss, n), normal(2, n), area(n), stiffness
-    real(wp), dimension(n_gauss, n), intent(inout) :: gaps, areas, stiffnesses
+    real(wp), intent(in) :: gap(n_gauss, n), normal(2, n), area(n)
+    real(wp), dimension(n_gauss, n), intent(inout) :: gaps, areas
     real(wp), intent(inout) :: normals(2, n_gauss, n)
     integer :: k
 
@@ -251,7 +264,6 @@ contains
       normals(:, 1, k) = normal(:, k)
       normals(:, 2, k) = normal(:, k)
       areas(:, k) = area(k)
-      stiffnesses(:, k) = stiffness
     end do
   end subroutine put_springs
 

@@ -47,14 +47,15 @@ contains
 
   !> The same where the pressure is shared out from the slave nodes and is not there yet: it is formed, kept and counted on the
   !> way. As passes of their own these two took a sixth of the traffic of a list that is longer than the caches.
-  pure subroutine scatter_averaged(points, nodal, force, n_active)
+  pure subroutine scatter_averaged(points, stiffness, nodal, force, n_active)
     type(contact_points_t), intent(inout) :: points
+    real(wp), intent(in) :: stiffness      !! of each, N/m^2
     real(wp), intent(in) :: nodal(2, *)    !! (1, :) minus the averaged gap of slave nodes, m
     real(wp), intent(inout) :: force(2, *) !! by local node, N/m
     integer, intent(out) :: n_active
 
     call share_in_runs(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, points%master_weights, &
-      points%normal, points%stiffness, points%area, nodal, points%pressure, force, n_active)
+      points%normal, stiffness, points%area, nodal, points%pressure, force, n_active)
   end subroutine scatter_averaged
 
   !> Points that carry pressure.
@@ -157,7 +158,7 @@ contains
     integer, intent(in) :: n
     integer, intent(in) :: slave_nodes(n_side, *), master_nodes(n_side, *)
     real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
-    real(wp), intent(in) :: normal(2, *), stiffness(*), area(*), nodal(2, *)
+    real(wp), intent(in) :: normal(2, *), stiffness, area(*), nodal(2, *)
     real(wp), intent(inout) :: pressure(*)
     real(wp), intent(inout) :: force(2, *)
     integer, intent(out) :: n_active
@@ -189,7 +190,7 @@ contains
         c = master_nodes(1, p); d = master_nodes(2, p)
         to_c = 0.0_wp; to_d = 0.0_wp
       end if
-      own = stiffness(p)*(slave_weights(1, p)*of_a + slave_weights(2, p)*of_b)
+      own = stiffness*(slave_weights(1, p)*of_a + slave_weights(2, p)*of_b)
       pressure(p) = own
       if (own > 0.0_wp) n_active = n_active + 1
       point = own*area(p)*normal(:, p)
