@@ -5,14 +5,13 @@
 !> pieces, each facing one master segment; there is no search (doc/theory/contact.md, section 3.5).
 module contact_overlap_m
   use contact_placing_m, only : tracked_foot
-  use contact_plain_foot_m, only : plain_foot, is_plainly_behind, is_well_inside
-  use contact_projection_m, only : foot_t, closest_foot, face_foot, corner_foot, follow_contact, &
-    walk_to_closest, is_before, see_segment, turns_gently, side_on
+  use contact_plain_foot_m, only : plain_foot, corner_behind, is_plainly_behind, is_well_inside
+  use contact_projection_m, only : foot_t, closest_foot, face_foot, follow_contact, walk_to_closest, &
+    see_segment, turns_gently, side_on
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, separation
   use kinds_m, only : wp
-  use surfaces_m, only : surface_t
   implicit none
   private
   public :: cover_t, piece_t, find_cover, first_piece, next_piece, see_master_node, facing_share, &
@@ -152,31 +151,6 @@ contains
       end if
     end associate
   end function local_foot
-
-  !> Foot of a place behind the node between a segment and its neighbour, over neither of them: there `plain_foot` finds nothing
-  !> and `follow_contact` goes no further. In a valley many places are of this kind.
-  pure subroutine corner_behind(surface, chain, place, segment, sight, is_found, foot)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :)
-    real(wp), intent(in) :: place(4)
-    integer, intent(in) :: segment
-    type(sight_t), intent(in) :: sight !! the place seen from it
-    logical, intent(out) :: is_found
-    type(foot_t), intent(inout) :: foot
-    type(sight_t) :: other
-    integer :: neighbour
-    logical :: backwards
-
-    is_found = .false.
-    backwards = sight%along < 0.0_wp
-    if (.not. (backwards .or. sight%along > sight%square)) return
-    neighbour = merge(surface%previous(segment), surface%next(segment), backwards)
-    if (neighbour == 0) return
-    other = see_segment(surface, chain, place, neighbour)
-    if (.not. is_before(other, backwards)) return
-    foot = corner_foot(sight, other, segment)
-    is_found = foot%gap < 0.0_wp
-  end subroutine corner_behind
 
   !> Where the walk along a covered segment starts: at its first end, or at the end of the master chain.
   pure subroutine first_piece(contact, memory, cover, piece)
