@@ -4,8 +4,8 @@
 module points_segmented_mortar_m
   use contact_admission_m, only : all_asleep, pass_asleep, judge_segment, note_next_wake
   use contact_overlap_m, only : cover_t, find_cover
-  use contact_piece_list_m, only : plain_points_t, find_points, look_over, look_at_segments, put_points, &
-    put_pieces
+  use contact_piece_list_m, only : look_at_segments, put_points, put_pieces
+  use contact_piece_points_m, only : plain_points_t, find_points, look_over
   use contact_pieces_m, only : gauss_xi, add_pieces
   use contact_plain_cover_m, only : plain_cover_t, clear_list, list_touching, list_with_nodes, list_other, &
     cut_segments, note_plain_contact
