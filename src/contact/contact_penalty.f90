@@ -107,7 +107,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     if (memory%averages_pressure) then
-      call average_gaps(memory%points, memory%n_slave, memory%nodal)
+      call average_gaps(memory%points, memory%n_slave, memory%slave_penalty, memory%nodal)
       call share_pressure(memory%points%n, memory%points%slave_nodes, memory%points%slave_weights, &
         memory%points%stiffness, memory%nodal, memory%points%pressure)
     else
@@ -130,10 +130,11 @@ contains
   !> What makes the pressure at slave nodes, p_A = stiffness * max(0, -g_A) with the averaged gap
   !> g_A = sum(N_A a g)/sum(N_A a); points get it by the slave shape functions (Fischer & Wriggers 2005). The forces that
   !> follow are the derivative of the energy sum of p_A^2 sum(N_A a)/(2 stiffness) at frozen weights.
-  pure subroutine average_gaps(points, n_slave, nodal)
+  pure subroutine average_gaps(points, n_slave, stiffness, nodal)
     type(contact_points_t), intent(in) :: points
     integer, intent(in) :: n_slave
-    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave or more) out: max(0, -g_A), m
+    real(wp), intent(in) :: stiffness !! of all points, N/m^2
+    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave or more) out: max(0, -g_A), m, and stiffness
     integer :: node
 
     do node = 1, n_slave
@@ -143,6 +144,7 @@ contains
     call sum_gaps(points%n, points%slave_nodes, points%slave_weights, points%area, points%gap, nodal)
     do node = 1, n_slave
       nodal(1, node) = max(0.0_wp, -nodal(1, node))/max(nodal(2, node), tiny(1.0_wp))
+      nodal(2, node) = stiffness
     end do
   end subroutine average_gaps
 

@@ -47,15 +47,14 @@ contains
 
   !> The same where the pressure is shared out from the slave nodes and is not there yet: it is formed, kept and counted on the
   !> way. As passes of their own these two took a sixth of the traffic of a list that is longer than the caches.
-  pure subroutine scatter_averaged(points, stiffness, nodal, force, n_active)
+  pure subroutine scatter_averaged(points, nodal, force, n_active)
     type(contact_points_t), intent(inout) :: points
-    real(wp), intent(in) :: stiffness      !! of each, N/m^2
-    real(wp), intent(in) :: nodal(2, *)    !! (1, :) minus the averaged gap of slave nodes, m
+    real(wp), intent(in) :: nodal(2, *)    !! of slave nodes: minus the averaged gap, m, and stiffness, N/m^2
     real(wp), intent(inout) :: force(2, *) !! by local node, N/m
     integer, intent(out) :: n_active
 
-    call share_in_runs(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, points%master_weights, &
-      points%normal, stiffness, points%area, nodal, points%pressure, force, n_active)
+    call share_in_runs(points%slave_nodes, points%slave_weights, points%master_nodes, points%master_weights, &
+      points%normal, points%area(:points%n), nodal, points%pressure, force, n_active)
   end subroutine scatter_averaged
 
   !> Points that carry pressure.
@@ -153,26 +152,27 @@ contains
 
   !> As scatter_in_runs, with the pressures that a slave segment shares out from its nodes (as `share_pressure` of
   !> contact_penalty has it).
-  pure subroutine share_in_runs(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
-    stiffness, area, nodal, pressure, force, n_active)
-    integer, intent(in) :: n
+  pure subroutine share_in_runs(slave_nodes, slave_weights, master_nodes, master_weights, normal, &
+    area, nodal, pressure, force, n_active)
     integer, intent(in) :: slave_nodes(n_side, *), master_nodes(n_side, *)
     real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
-    real(wp), intent(in) :: normal(2, *), stiffness, area(*), nodal(2, *)
+    real(wp), intent(in) :: normal(2, *), nodal(2, *)
+    real(wp), intent(in), contiguous :: area(:) !! as many as there are points
     real(wp), intent(inout) :: pressure(*)
     real(wp), intent(inout) :: force(2, *)
     integer, intent(out) :: n_active
     real(wp), dimension(2) :: point, to_a, to_b, to_c, to_d, total
-    real(wp) :: of_a, of_b, own
+    real(wp) :: of_a, of_b, stiffness, own
     integer :: p, a, b, c, d
 
     n_active = 0
-    if (n == 0) return
+    if (size(area) == 0) return
     a = slave_nodes(1, 1); b = slave_nodes(2, 1)
     c = master_nodes(1, 1); d = master_nodes(2, 1)
     of_a = nodal(1, a); of_b = nodal(1, b)
+    stiffness = nodal(2, a)
     to_a = 0.0_wp; to_b = 0.0_wp; to_c = 0.0_wp; to_d = 0.0_wp
-    do p = 1, n
+    do p = 1, size(area)
       if (slave_nodes(1, p) /= a .or. slave_nodes(2, p) /= b) then
         total = force(:, a) + to_a
         force(:, a) = total
