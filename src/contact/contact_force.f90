@@ -10,8 +10,9 @@ module contact_force_m
   use contact_lists_m, only : forget_list
   use contact_log_m, only : log_contact
   use contact_motion_m, only : gather_places, take_force, keep_former, add_force
-  use contact_penalty_m, only : set_penalties, press_points, stored_energy, damp_points
-  use contact_scatter_m, only : scatter_points, scatter_runs
+  use contact_penalty_m, only : set_penalties, press_points, stored_energy, damp_points, &
+    average_gaps
+  use contact_scatter_m, only : scatter_points, scatter_runs, scatter_averaged
   use contact_search_m, only : update_tracking, wake_all
   use contact_spots_m, only : spots_at_quarters, start_spots, move_spots
   use contact_state_m, only : contact_state_t, tracking_t, allocate_points, is_free
@@ -98,7 +99,8 @@ contains
     memory%n_active = 0
     if (memory%points%n > 0 .or. had_force) then
       if (had_force) call keep_former(memory)
-      is_unpressed = .not. (sums_in_runs(memory) .or. contact%damping > 0.0_wp .or. cycle == 0)
+      is_unpressed = (memory%averages_pressure .or. .not. sums_in_runs(memory)) &
+        .and. .not. (contact%damping > 0.0_wp .or. cycle == 0)
       if (.not. is_unpressed) call press_points(memory)
       ! Springs loaded at time zero hold energy that no force has put in.
       if (cycle == 0) memory%energy = stored_energy(memory%points)
@@ -151,10 +153,13 @@ contains
 
   !> Forces of all points. Those between slave nodes follow each other segment by segment.
   pure subroutine scatter(is_unpressed, memory)
-    logical, intent(in) :: is_unpressed !! pressures are formed on the way; never of points that are summed in runs
+    logical, intent(in) :: is_unpressed !! pressures are formed on the way
     type(contact_state_t), intent(inout) :: memory
 
-    if (sums_in_runs(memory)) then
+    if (memory%averages_pressure .and. is_unpressed) then
+      call average_gaps(memory%points, memory%n_slave, memory%slave_penalty, memory%nodal)
+      call scatter_averaged(memory%points, memory%nodal, memory%force, memory%n_active)
+    else if (sums_in_runs(memory)) then
       call scatter_runs(memory%points, memory%force, memory%n_active)
     else
       call scatter_points(memory%points, is_unpressed, memory%force, memory%n_active)

@@ -5,7 +5,7 @@
 !> pieces, each facing one master segment; there is no search (doc/theory/contact.md, section 3.5).
 module contact_overlap_m
   use contact_placing_m, only : tracked_foot
-  use contact_plain_foot_m, only : plain_foot, is_plainly_behind, is_well_inside
+  use contact_plain_foot_m, only : plain_foot, corner_behind, is_plainly_behind, is_well_inside
   use contact_projection_m, only : foot_t, closest_foot, face_foot, follow_contact, walk_to_closest, &
     see_segment, turns_gently, side_on
   use contact_state_m, only : contact_state_t, is_touching
@@ -134,6 +134,8 @@ contains
         foot = face_foot(sight, start)
         return
       end if
+      call corner_behind(contact%master, chain, place, start, sight, is_found, foot)
+      if (is_found) return
       call plain_foot(contact%master, chain, place, start, is_found, closest)
       if (is_found .and. closest%gap >= 0.0_wp) then
         foot = closest

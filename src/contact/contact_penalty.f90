@@ -9,7 +9,8 @@ module contact_penalty_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: set_penalties, mean_length, press_points, press_each, pressures_of, stored_energy, damp_points
+  public :: set_penalties, mean_length, press_points, press_each, pressures_of, average_gaps, stored_energy, &
+    damp_points
 
 contains
 
@@ -107,7 +108,9 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     if (memory%averages_pressure) then
-      call press_nodes(memory%points, memory%n_slave, memory%nodal)
+      call average_gaps(memory%points, memory%n_slave, memory%slave_penalty, memory%nodal)
+      call share_pressure(memory%points%n, memory%points%slave_nodes, memory%points%slave_weights, &
+        memory%points%stiffness, memory%nodal, memory%points%pressure)
     else
       call press_each(memory%points%n, memory%points%stiffness, memory%points%gap, memory%points%pressure)
     end if
@@ -139,13 +142,14 @@ contains
     end associate
   end function pressures_of
 
-  !> Pressure at slave nodes from averaged gaps, p_A = stiffness * max(0, -sum(N_A a g)/sum(N_A a)), and at the points
-  !> by the slave shape functions (Fischer & Wriggers 2005). The forces that follow are the derivative of
-  !> the energy sum of p_A^2 sum(N_A a)/(2 stiffness) at frozen weights.
-  pure subroutine press_nodes(points, n_slave, nodal)
-    type(contact_points_t), intent(inout) :: points
+  !> What makes the pressure at slave nodes, p_A = stiffness * max(0, -g_A) with the averaged gap
+  !> g_A = sum(N_A a g)/sum(N_A a); points get it by the slave shape functions (Fischer & Wriggers 2005). The forces that
+  !> follow are the derivative of the energy sum of p_A^2 sum(N_A a)/(2 stiffness) at frozen weights.
+  pure subroutine average_gaps(points, n_slave, stiffness, nodal)
+    type(contact_points_t), intent(in) :: points
     integer, intent(in) :: n_slave
-    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave or more) scratch
+    real(wp), intent(in) :: stiffness !! of all points, N/m^2
+    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave or more) out: max(0, -g_A), m, and stiffness
     integer :: node
 
     do node = 1, n_slave
@@ -155,10 +159,9 @@ contains
     call sum_gaps(points%n, points%slave_nodes, points%slave_weights, points%area, points%gap, nodal)
     do node = 1, n_slave
       nodal(1, node) = max(0.0_wp, -nodal(1, node))/max(nodal(2, node), tiny(1.0_wp))
+      nodal(2, node) = stiffness
     end do
-    call share_pressure(points%n, points%slave_nodes, points%slave_weights, points%stiffness, nodal, &
-      points%pressure)
-  end subroutine press_nodes
+  end subroutine average_gaps
 
   !> Pressure of the points from -g_A of the slave nodes.
   pure subroutine share_pressure(n, slave_nodes, slave_weights, stiffness, nodal, pressure)

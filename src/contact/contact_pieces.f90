@@ -11,7 +11,7 @@ module contact_pieces_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: slave_t, n_gauss, gauss_xi, add_pieces, add_piece
+  public :: slave_t, n_gauss, gauss_xi, add_pieces, add_local
 
   !> Gauss points of a piece.
   integer, parameter :: n_gauss = 2
@@ -67,24 +67,34 @@ contains
     type(slave_t), intent(in) :: slave
     integer, intent(in) :: segment    !! master segment of the piece
     real(wp), intent(in) :: low, high !! where it starts and ends on the slave segment
-    type(foot_t) :: foot
-    real(wp) :: share, xi, weight
+    real(wp) :: xi
     integer :: q
 
-    if (memory%points%n + n_gauss > size(memory%points%gap)) call make_room(memory%points, n_gauss)
-    weight = 0.5_wp*(high - low)
     do q = 1, n_gauss
       xi = low + gauss_xi(q)*(high - low)
-      foot = local_foot(contact, memory, place_on_segment(memory%places, slave%ends, xi), segment)
-      if (.not. foot%is_on) cycle
-      share = facing_share(dot_product(slave%normal, foot%normal))
-      if (.not. share > 0.0_wp) cycle
-      call add_segment_point(contact%master, memory%n_slave, slave%ends, xi, foot, memory%points)
-      associate (p => memory%points%n)
-        memory%points%area(p) = weight*share*slave%length
-        memory%points%stiffness(p) = memory%slave_penalty
-      end associate
+      call add_local(contact, memory, slave, segment, xi, 0.5_wp*(high - low)*slave%length)
     end do
   end subroutine add_piece
+
+  !> One Gauss point.
+  pure subroutine add_local(contact, memory, slave, segment, xi, area)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(slave_t), intent(in) :: slave
+    integer, intent(in) :: segment  !! of the master, close by
+    real(wp), intent(in) :: xi      !! place on the slave segment
+    real(wp), intent(in) :: area    !! where that faces the master entirely, m
+    type(foot_t) :: foot
+    real(wp) :: share
+
+    foot = local_foot(contact, memory, place_on_segment(memory%places, slave%ends, xi), segment)
+    if (.not. foot%is_on) return
+    share = facing_share(dot_product(slave%normal, foot%normal))
+    if (.not. share > 0.0_wp) return
+    call make_room(memory%points, 1)
+    call add_segment_point(contact%master, memory%n_slave, slave%ends, xi, foot, memory%points)
+    memory%points%area(memory%points%n) = area*share
+    memory%points%stiffness(memory%points%n) = memory%slave_penalty
+  end subroutine add_local
 
 end module contact_pieces_m

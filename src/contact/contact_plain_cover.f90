@@ -6,15 +6,15 @@
 !> small arrays on their way to memory and back took two thirds of the pairing.
 module contact_plain_cover_m
   use contact_piece_cutting_m, only : see_pieces, cut_pieces, order_pieces, n_room
-  use contact_plain_foot_m, only : see_plain_segment
+  use contact_plain_foot_m, only : see_plain_segment, well_inside
   use contact_state_m, only : contact_state_t, is_free, is_touching
   use contacts_m, only : contact_t
-  use geometry_m, only : sight_t
+  use geometry_m, only : sight_t, sight_of_segment
   use kinds_m, only : wp
   implicit none
   private
-  public :: plain_cover_t, clear_list, list_touching, list_pointed, list_segment, list_other, cut_segments, &
-    note_plain_contact, n_room
+  public :: plain_cover_t, clear_list, list_touching, list_pointed, list_segment, list_with_nodes, list_other, &
+    cut_segments, note_plain_contact, n_room
 
   !> Most pieces of a segment.
   integer, parameter :: n_most = 6
@@ -181,17 +181,40 @@ contains
     integer, intent(in) :: s !! slave segment
     type(plain_cover_t), intent(inout) :: cover
     logical, intent(out) :: is_listed
+
+    call list_between(contact, memory, s, .false., cover, is_listed)
+  end subroutine list_segment
+
+  !> The same, also where the foot of an end in contact is a node: in a valley that of many ends is.
+  pure subroutine list_with_nodes(contact, memory, s, cover, is_listed)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s !! slave segment
+    type(plain_cover_t), intent(inout) :: cover
+    logical, intent(out) :: is_listed
+
+    call list_between(contact, memory, s, .true., cover, is_listed)
+  end subroutine list_with_nodes
+
+  !> Put a slave segment on the list if the master segments below its ends can be told.
+  pure subroutine list_between(contact, memory, s, with_nodes, cover, is_listed)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    logical, intent(in) :: with_nodes
+    type(plain_cover_t), intent(inout) :: cover
+    logical, intent(out) :: is_listed
     integer :: first, last
     logical :: touches
 
     is_listed = .false.
-    call find_ends(contact, memory, contact%slave%segments(1, s), contact%slave%segments(2, s), &
-      first, last, touches)
-    if (first == 0 .or. last == 0) return
-    if (first /= last .and. contact%master%n_segment <= short_chain) return
-    call list_pieces(s, contact%slave%segments(1, s), first, last, contact%master%previous, touches, &
-      cover, is_listed)
-  end subroutine list_segment
+    associate (ends => contact%slave%segments(:, s))
+      call find_ends(contact, memory, ends(1), ends(2), with_nodes, first, last, touches)
+      if (first == 0 .or. last == 0) return
+      if (first /= last .and. contact%master%n_segment <= short_chain) return
+      call list_pieces(s, ends, first, last, contact%master%previous, touches, cover, is_listed)
+    end associate
+  end subroutine list_between
 
   !> Put a slave segment that is not the common case on the list, without pieces, so that its points keep their place among
   !> those of the others.
@@ -227,10 +250,11 @@ contains
   end subroutine cut_segments
 
   !> Master segments below both ends of a slave segment; free ends are looked for from where contact_overlap does.
-  pure subroutine find_ends(contact, memory, one, two, first, second, touch)
+  pure subroutine find_ends(contact, memory, one, two, with_nodes, first, second, touch)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: one, two       !! the ends
+    logical, intent(in) :: with_nodes     !! also where the foot of an end in contact is a node
     integer, intent(out) :: first, second !! 0: a decision is needed
     logical, intent(out) :: touch         !! both ends are in contact
     type(sight_t) :: sight
@@ -243,8 +267,14 @@ contains
       touch = one_touches .and. two_touches
       first = tracking%segment(one)
       second = tracking%segment(two)
-      if (one_touches .and. .not. is_inside(tracking%xi(one))) first = 0
-      if (two_touches .and. .not. is_inside(tracking%xi(two))) second = 0
+      if (one_touches .and. .not. is_inside(tracking%xi(one))) then
+        first = 0
+        if (with_nodes) first = segment_at_node(contact, memory, one, two, one)
+      end if
+      if (two_touches .and. .not. is_inside(tracking%xi(two))) then
+        second = 0
+        if (with_nodes) second = segment_at_node(contact, memory, one, two, two)
+      end if
       if (touch .or. (one_touches .and. first == 0) .or. (two_touches .and. second == 0)) return
       if (.not. one_touches) then
         start = merge(second, first, two_touches .or. first == 0)
@@ -256,6 +286,35 @@ contains
       call see_plain_segment(contact%master, chain, memory%places(:, two), start, second, sight)
     end associate
   end subroutine find_ends
+
+  !> Master segment of the first or the last piece of a slave segment where the foot of that end is a node. Of the two at that
+  !> node the outer one has a piece only where the node projects on the slave segment.
+  pure function segment_at_node(contact, memory, one, two, end) result(segment)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: one, two !! the ends
+    integer, intent(in) :: end      !! which of them
+    integer :: segment              !! 0: a decision is needed
+    integer :: before, behind       !! the two, on the way along the slave segment
+    real(wp) :: part
+    type(sight_t) :: sight
+
+    segment = 0
+    if (contact%master%n_segment <= short_chain + 2) return
+    before = memory%slave_tracking%segment(end)
+    behind = before
+    associate (xi => memory%slave_tracking%xi(end))
+      if (.not. abs(xi) > 0.0_wp) behind = contact%master%previous(behind)
+      if (.not. abs(xi - 1.0_wp) > 0.0_wp) before = contact%master%next(before)
+    end associate
+    if (before == behind .or. min(before, behind) == 0) return
+    sight = sight_of_segment(memory%places(:, memory%n_slave + contact%master%segments(1, before)), &
+      memory%places(:, one), memory%places(:, two))
+    part = sight%along/sight%square
+    if (end == two) part = 1.0_wp - part
+    if (abs(part) > well_inside .and. abs(part) < 1.0_wp) &
+      segment = merge(before, behind, (part > 0.0_wp) .eqv. end == one)
+  end function segment_at_node
 
   !> Whether a foot is between the ends of its segment.
   pure function is_inside(xi)

@@ -2,13 +2,13 @@
 !> The common cases of contact_projection, told by signs of products alone: a spot that is over a segment and not nearer to
 !> any neighbour of it than to it. No distance is formed; the foot costs one root, the segment alone none.
 module contact_plain_foot_m
-  use contact_projection_m, only : foot_t, face_foot
+  use contact_projection_m, only : foot_t, face_foot, corner_foot, see_segment, is_before
   use geometry_m, only : sight_t, sight_of_segment, separation
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: plain_foot, see_plain_segment, is_plainly_behind, is_well_inside, &
+  public :: plain_foot, corner_behind, see_plain_segment, is_plainly_behind, is_well_inside, &
     well_inside
 
   !> Part of a segment next to its ends where round-off may decide which node or segment is closer.
@@ -43,6 +43,31 @@ contains
     is_found = segment > 0
     if (is_found) foot = face_foot(sight, segment)
   end subroutine plain_foot
+
+  !> Foot of a spot behind the node between a segment and its neighbour, over neither of them: there `plain_foot` finds nothing
+  !> and `follow_contact` goes no further. In a valley many spots are of this kind.
+  pure subroutine corner_behind(surface, chain, spot, segment, sight, is_found, foot)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :)
+    real(wp), intent(in) :: spot(4)
+    integer, intent(in) :: segment
+    type(sight_t), intent(in) :: sight !! the spot seen from it
+    logical, intent(out) :: is_found
+    type(foot_t), intent(inout) :: foot
+    type(sight_t) :: other
+    integer :: neighbour
+    logical :: backwards
+
+    is_found = .false.
+    backwards = sight%along < 0.0_wp
+    if (.not. (backwards .or. sight%along > sight%square)) return
+    neighbour = merge(surface%previous(segment), surface%next(segment), backwards)
+    if (neighbour == 0) return
+    other = see_segment(surface, chain, spot, neighbour)
+    if (.not. is_before(other, backwards)) return
+    foot = corner_foot(sight, other, segment)
+    is_found = foot%gap < 0.0_wp
+  end subroutine corner_behind
 
   !> That segment, and the spot seen from it.
   pure subroutine see_plain_segment(surface, chain, spot, start, segment, sight)

@@ -8,8 +8,8 @@ module contact_projection_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: foot_t, see_segment, closest_foot, face_foot, follow_contact, walk_to_closest, &
-    is_over_segment, turns_gently, end_tolerance, gentle_turn, side_on
+  public :: foot_t, see_segment, closest_foot, face_foot, corner_foot, follow_contact, &
+    walk_to_closest, is_before, is_over_segment, turns_gently, end_tolerance, gentle_turn, side_on
 
   !> Overshoot accepted beyond the end of a chain, as a part of the segment; not clamped.
   real(wp), parameter :: end_tolerance = 0.01_wp
