@@ -11,6 +11,7 @@ module contact_force_m
   use contact_log_m, only : log_contact
   use contact_motion_m, only : gather_places, take_force, keep_former, add_force
   use contact_penalty_m, only : set_penalties, press_points, stored_energy, damp_points
+  use contact_ranges_m, only : goes_in_ranges, press_ranges
   use contact_scatter_m, only : scatter_points, scatter_runs
   use contact_search_m, only : update_tracking, wake_all
   use contact_spots_m, only : spots_at_quarters, start_spots, move_spots
@@ -75,7 +76,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     real(wp) :: power
-    logical :: had_force, is_unpressed
+    logical :: had_force
 
     if (time < contact%birth .or. time > contact%death) then
       call suspend_contact(motion, dt, memory)
@@ -92,24 +93,39 @@ contains
       call search_pairs(contact, memory)
     end if
     call lap(clock, phase_contact_search)
-    call place_points(contact, memory)
-    if (memory%laps_pairing) call lap(clock, phase_contact_pairing)
     had_force = memory%n_active > 0
     memory%n_active = 0
-    if (memory%points%n > 0 .or. had_force) then
-      if (had_force) call keep_former(memory)
-      is_unpressed = .not. (sums_in_runs(memory) .or. contact%damping > 0.0_wp .or. cycle == 0)
-      if (.not. is_unpressed) call press_points(memory)
-      ! Springs loaded at time zero hold energy that no force has put in.
-      if (cycle == 0) memory%energy = stored_energy(memory%points)
-      if (contact%damping > 0.0_wp) &
-        call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
-      call scatter(is_unpressed, memory)
+    if (had_force) call keep_former(memory)
+    if (goes_in_ranges(contact, cycle, memory)) then
+      call press_ranges(contact, clock, memory)
+    else
+      call place_points(contact, memory)
+      if (memory%laps_pairing) call lap(clock, phase_contact_pairing)
+      if (memory%points%n > 0) call press_all(contact, motion, mass, cycle, memory)
+    end if
+    if (memory%n_active > 0 .or. memory%points%n > 0 .or. had_force) then
       call add_force(memory%nodes, memory%former_force, memory%force, motion, force, power)
       memory%energy = memory%energy - 0.5_wp*dt*power
     end if
     call lap(clock, phase_contact_force)
   end subroutine apply_contact
+
+  !> Pressures and forces of the points on the list.
+  pure subroutine press_all(contact, motion, mass, cycle, memory)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: motion(:, :), mass(:)
+    integer, intent(in) :: cycle
+    type(contact_state_t), intent(inout) :: memory
+    logical :: is_unpressed
+
+    is_unpressed = .not. (sums_in_runs(memory) .or. contact%damping > 0.0_wp .or. cycle == 0)
+    if (.not. is_unpressed) call press_points(memory)
+    ! Springs loaded at time zero hold energy that no force has put in.
+    if (cycle == 0) memory%energy = stored_energy(memory%points)
+    if (contact%damping > 0.0_wp) &
+      call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
+    call scatter(is_unpressed, memory)
+  end subroutine press_all
 
   !> Contact forces of one interface at the given u, added to `force`; no damping, no energy, no clock. The memory
   !> is taken from the last converged step: give a copy of it to each trial, so that forces are a function of u.

@@ -3,7 +3,8 @@
 module contact_results_m
   use contact_competence_m, only : competence_length
   use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
-  use contact_state_m, only : contact_state_t, is_touching, n_side
+  use contact_ranges_m, only : is_listed, list_again
+  use contact_state_m, only : contact_state_t, contact_points_t, is_touching, n_side
   use contacts_m, only : contact_t
   use geometry_m, only : segment_length
   use kinds_m, only : wp
@@ -44,7 +45,7 @@ contains
     places(3:4, :) = motion(1:2, memory%nodes)
     rows%force = memory%force(:, :n)
     call fill_arc_lengths(contact%slave, places(:, :n), rows%arc_length)
-    share = normal_forces(memory)
+    share = normal_forces(contact, memory)
     do i = 1, memory%n_master
       rows%master_pressure(i) = share(n + i)/max(tiny(1.0_wp), &
         competence_length(contact%master, places(:, n + 1:), i))
@@ -75,25 +76,39 @@ contains
   end subroutine fill_arc_lengths
 
   !> Normal force on each node of the interface from all points, N/m.
-  pure function normal_forces(memory) result(share)
+  pure function normal_forces(contact, memory) result(share)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     real(wp), allocatable :: share(:) !! (n_slave + n_master)
+    type(contact_state_t), allocatable :: listed
+
+    allocate (share(memory%n_slave + memory%n_master), source=0.0_wp)
+    if (is_listed(memory)) then
+      call sum_normal_forces(memory%points, share)
+    else
+      allocate (listed, source=memory)
+      call list_again(contact, listed)
+      call sum_normal_forces(listed%points, share)
+    end if
+  end function normal_forces
+
+  !> Add those of the points on a list.
+  pure subroutine sum_normal_forces(points, share)
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(inout) :: share(:)
     real(wp) :: total
     integer :: p, k
 
-    allocate (share(memory%n_slave + memory%n_master), source=0.0_wp)
-    associate (points => memory%points)
-      do p = 1, points%n
-        total = points%pressure(p)*points%area(p)
-        do k = 1, n_side
-          share(points%slave_nodes(k, p)) = share(points%slave_nodes(k, p)) &
-            + points%slave_weights(k, p)*total
-          share(points%master_nodes(k, p)) = share(points%master_nodes(k, p)) &
-            + points%master_weights(k, p)*total
-        end do
+    do p = 1, points%n
+      total = points%pressure(p)*points%area(p)
+      do k = 1, n_side
+        share(points%slave_nodes(k, p)) = share(points%slave_nodes(k, p)) &
+          + points%slave_weights(k, p)*total
+        share(points%master_nodes(k, p)) = share(points%master_nodes(k, p)) &
+          + points%master_weights(k, p)*total
       end do
-    end associate
-  end function normal_forces
+    end do
+  end subroutine sum_normal_forces
 
   !> Gaps of all spots, m, up to date for those in contact: where the search has put them.
   pure function touching_gaps(memory) result(gaps)
