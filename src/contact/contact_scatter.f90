@@ -14,8 +14,8 @@ module contact_scatter_m
   !> What the last points in a row with the same nodes on a side give to one of these, and it has not got yet. Node and
   !> force in turn: of forces in a row the compiler makes one vector, and sums them twice to that end.
   type :: end_t
-    integer :: node = 0               !! 0: no points yet
-    real(wp) :: force(2) = 0.0_wp     !! N/m
+    integer :: node = 0  !! 0: no points yet
+    real(wp) :: force(2) !! N/m
   end type end_t
 
 contains
@@ -71,16 +71,20 @@ contains
   pure subroutine close_run(run, force)
     type(end_t), intent(inout) :: run(4) !! two of the slave side, two of the master side
     real(wp), intent(inout) :: force(2, *)
-    integer :: k
+    real(wp) :: total(2)
 
     if (run(1)%node == 0) return
-    do k = 1, 2
-      force(:, run(k)%node) = force(:, run(k)%node) + run(k)%force
-    end do
-    do k = 3, 4
-      force(:, run(k)%node) = force(:, run(k)%node) - run(k)%force
-    end do
-    run = end_t()
+    associate (a => run(1), b => run(2), c => run(3), d => run(4))
+      total = force(:, a%node) + a%force
+      force(:, a%node) = total
+      total = force(:, b%node) + b%force
+      force(:, b%node) = total
+      total = force(:, c%node) - c%force
+      force(:, c%node) = total
+      total = force(:, d%node) - d%force
+      force(:, d%node) = total
+    end associate
+    run%node = 0
   end subroutine close_run
 
   !> Points that carry pressure.
@@ -141,9 +145,13 @@ contains
     integer :: p, a, b, c, d
 
     if (n == 0) return
-    if (run(1)%node == 0) run%node = [slave_nodes(:, 1), master_nodes(:, 1)]
-    a = run(1)%node; b = run(2)%node; c = run(3)%node; d = run(4)%node
-    to_a = run(1)%force; to_b = run(2)%force; to_c = run(3)%force; to_d = run(4)%force
+    a = slave_nodes(1, 1); b = slave_nodes(2, 1)
+    c = master_nodes(1, 1); d = master_nodes(2, 1)
+    to_a = 0.0_wp; to_b = 0.0_wp; to_c = 0.0_wp; to_d = 0.0_wp
+    if (run(1)%node > 0) then
+      a = run(1)%node; b = run(2)%node; c = run(3)%node; d = run(4)%node
+      to_a = run(1)%force; to_b = run(2)%force; to_c = run(3)%force; to_d = run(4)%force
+    end if
     do p = 1, n
       if (slave_nodes(1, p) /= a .or. slave_nodes(2, p) /= b) then
         total = force(:, a) + to_a
