@@ -20,7 +20,7 @@ module contact_dispatch_m
   implicit none
   private
   public :: contact_kinds, formulation_t, formulation_of, place_points, &
-    add_tangent
+    places_ranges, place_range, add_tangent
 
   !> What the frame must know of a formulation before it places points.
   type :: formulation_t
@@ -31,6 +31,7 @@ module contact_dispatch_m
     logical :: covers_segments = .false.  !! goes along both chains, slave segment by slave segment
     logical :: has_point_per_spot = .false. !! a point at each spot in contact, these first on the list
     logical :: averages_pressure = .false. !! pressure of slave nodes, from averaged gaps
+    logical :: places_ranges = .false.    !! points of some spots can be placed without those of the others
     integer :: points_per_slave = 1       !! usual most of points for each spot, for the allocation
     integer :: points_per_master = 0      !! and for each master node
   end type formulation_t
@@ -45,7 +46,7 @@ module contact_dispatch_m
     formulation_t(contact_kind_t(type_two_pass_ar, 'NTS-AR two-pass'), has_two_passes=.true., &
       has_point_per_spot=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_vts_ppt, 'VTS-PPT'), spots=spots_at_quarters, &
-      points_per_master=1), &
+      places_ranges=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR'), covers_segments=.true., has_point_per_spot=.true., &
       points_per_master=1), &
     formulation_t(contact_kind_t(type_mortar, 'mortar', uses_gauss_points=.true.), &
@@ -80,12 +81,33 @@ contains
     case (type_nts); call place_nts(contact, memory)
     case (type_nts_ar); call place_nts_ar(contact, memory)
     case (type_two_pass_ar); call place_two_pass_ar(contact, memory)
-    case (type_vts_ppt); call place_vts_ppt(contact, memory)
+    case (type_vts_ppt); call place_vts_ppt(contact, 1, memory%slave_tracking%n_touching, memory)
     case (type_nts_mar); call place_nts_mar(contact, memory)
     case (type_mortar); call place_mortar(contact, memory)
     case (type_segmented_mortar); call place_segmented_mortar(contact, memory)
     end select
   end subroutine place_points
+
+  !> Whether `place_range` serves this contact.
+  pure function places_ranges(contact)
+    type(contact_t), intent(in) :: contact
+    logical :: places_ranges
+
+    associate (formulation => formulation_of(contact))
+      places_ranges = formulation%places_ranges
+    end associate
+  end function places_ranges
+
+  !> Place the points of the spots `first` to `last` of those in contact, and no others.
+  pure subroutine place_range(contact, first, last, memory)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: first, last
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%points%n_former = 0
+    memory%points%n = 0
+    if (contact%contact_type == type_vts_ppt) call place_vts_ppt(contact, first, last, memory)
+  end subroutine place_range
 
   !> Add the derivative of minus the forces of the points in the memory.
   pure subroutine add_tangent(contact, memory, equations, matrix)

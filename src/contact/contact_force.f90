@@ -12,8 +12,10 @@ module contact_force_m
   use contact_motion_m, only : gather_places, take_force, keep_former, add_force
   use contact_penalty_m, only : set_penalties, press_points, stored_energy, damp_points, &
     average_gaps
+  use contact_ranges_m, only : goes_in_ranges, press_ranges
   use contact_scatter_m, only : scatter_points, scatter_runs, scatter_averaged
   use contact_search_m, only : update_tracking, wake_all
+  use contact_spot_keeping_m, only : track_spots
   use contact_spots_m, only : spots_at_quarters, start_spots, move_spots
   use contact_state_m, only : contact_state_t, tracking_t, allocate_points, is_free
   use contacts_m, only : contact_t
@@ -76,7 +78,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     real(wp) :: power
-    logical :: had_force, is_unpressed
+    logical :: had_force
 
     if (time < contact%birth .or. time > contact%death) then
       call suspend_contact(motion, dt, memory)
@@ -84,34 +86,51 @@ contains
     end if
     if (memory%is_stale) call refresh_memory(motion, memory)
     call gather_places(motion, memory)
-    if (allocated(memory%spots)) &
-      call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
     call wake_at_interval(contact, cycle, memory)
     if (memory%has_point_per_spot) then
       call search_points(contact, memory)
+    else if (allocated(memory%spots) .and. .not. memory%averages_pressure) then
+      call track_spots(contact, memory)
     else
+      if (allocated(memory%spots)) &
+        call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
       call search_pairs(contact, memory)
     end if
     call lap(clock, phase_contact_search)
-    call place_points(contact, memory)
-    if (memory%laps_pairing) call lap(clock, phase_contact_pairing)
     had_force = memory%n_active > 0
     memory%n_active = 0
-    if (memory%points%n > 0 .or. had_force) then
-      if (had_force) call keep_former(memory)
-      is_unpressed = (memory%averages_pressure .or. .not. sums_in_runs(memory)) &
-        .and. .not. (contact%damping > 0.0_wp .or. cycle == 0)
-      if (.not. is_unpressed) call press_points(memory)
-      ! Springs loaded at time zero hold energy that no force has put in.
-      if (cycle == 0) memory%energy = stored_energy(memory%points)
-      if (contact%damping > 0.0_wp) &
-        call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
-      call scatter(is_unpressed, memory)
+    if (had_force) call keep_former(memory)
+    if (goes_in_ranges(contact, cycle, memory)) then
+      call press_ranges(contact, clock, memory)
+    else
+      call place_points(contact, memory)
+      if (memory%laps_pairing) call lap(clock, phase_contact_pairing)
+      if (memory%points%n > 0) call press_all(contact, motion, mass, cycle, memory)
+    end if
+    if (memory%n_active > 0 .or. memory%points%n > 0 .or. had_force) then
       call add_force(memory%nodes, memory%former_force, memory%force, motion, force, power)
       memory%energy = memory%energy - 0.5_wp*dt*power
     end if
     call lap(clock, phase_contact_force)
   end subroutine apply_contact
+
+  !> Pressures and forces of the points on the list.
+  pure subroutine press_all(contact, motion, mass, cycle, memory)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: motion(:, :), mass(:)
+    integer, intent(in) :: cycle
+    type(contact_state_t), intent(inout) :: memory
+    logical :: is_unpressed
+
+    is_unpressed = (memory%averages_pressure .or. .not. sums_in_runs(memory)) &
+      .and. .not. (contact%damping > 0.0_wp .or. cycle == 0)
+    if (.not. is_unpressed) call press_points(memory)
+    ! Springs loaded at time zero hold energy that no force has put in.
+    if (cycle == 0) memory%energy = stored_energy(memory%points)
+    if (contact%damping > 0.0_wp) &
+      call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
+    call scatter(is_unpressed, memory)
+  end subroutine press_all
 
   !> Contact forces of one interface at the given u, added to `force`; no damping, no energy, no clock. The memory
   !> is taken from the last converged step: give a copy of it to each trial, so that forces are a function of u.

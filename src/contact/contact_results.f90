@@ -4,7 +4,9 @@ module contact_results_m
   use contact_competence_m, only : competence_length
   use contact_penalty_m, only : pressures_of
   use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
-  use contact_state_m, only : contact_state_t, is_touching, n_side
+  use contact_ranges_m, only : is_listed, list_again
+  use contact_spots_m, only : move_spots
+  use contact_state_m, only : contact_state_t, contact_points_t, is_touching, n_side
   use contacts_m, only : contact_t
   use geometry_m, only : segment_length
   use kinds_m, only : wp
@@ -32,7 +34,7 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
-    real(wp), allocatable :: places(:, :), share(:), gaps(:)
+    real(wp), allocatable :: places(:, :), share(:), gaps(:), spots(:, :)
     integer :: i, n
 
     n = memory%n_slave
@@ -51,10 +53,14 @@ contains
         competence_length(contact%master, places(:, n + 1:), i))
     end do
     gaps = touching_gaps(memory)
+    if (allocated(memory%spots)) then
+      spots = memory%spots
+      call move_spots(contact%slave, places, memory%spot_xi, spots)
+    end if
     do i = 1, n
       rows%length(i) = competence_length(contact%slave, places(:, :n), i)
       rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
-      rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i, gaps)
+      rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), spots, memory, i, gaps)
     end do
   end subroutine slave_rows
 
@@ -80,24 +86,36 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     real(wp), allocatable :: share(:) !! (n_slave + n_master)
-    real(wp), allocatable :: pressures(:)
+    type(contact_state_t), allocatable :: listed
+
+    allocate (share(memory%n_slave + memory%n_master), source=0.0_wp)
+    if (is_listed(memory)) then
+      call sum_normal_forces(memory%points, pressures_of(contact, memory), share)
+    else
+      allocate (listed, source=memory)
+      call list_again(contact, listed)
+      call sum_normal_forces(listed%points, listed%points%pressure, share)
+    end if
+  end function normal_forces
+
+  !> Add those of the points on a list.
+  pure subroutine sum_normal_forces(points, pressures, share)
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(in), contiguous :: pressures(:)
+    real(wp), intent(inout) :: share(:)
     real(wp) :: total
     integer :: p, k
 
-    allocate (share(memory%n_slave + memory%n_master), source=0.0_wp)
-    pressures = pressures_of(contact, memory)
-    associate (points => memory%points)
-      do p = 1, points%n
-        total = pressures(p)*points%area(p)
-        do k = 1, n_side
-          share(points%slave_nodes(k, p)) = share(points%slave_nodes(k, p)) &
-            + points%slave_weights(k, p)*total
-          share(points%master_nodes(k, p)) = share(points%master_nodes(k, p)) &
-            + points%master_weights(k, p)*total
-        end do
+    do p = 1, points%n
+      total = pressures(p)*points%area(p)
+      do k = 1, n_side
+        share(points%slave_nodes(k, p)) = share(points%slave_nodes(k, p)) &
+          + points%slave_weights(k, p)*total
+        share(points%master_nodes(k, p)) = share(points%master_nodes(k, p)) &
+          + points%master_weights(k, p)*total
       end do
-    end associate
-  end function normal_forces
+    end do
+  end subroutine sum_normal_forces
 
   !> Gaps of all spots, m, up to date for those in contact: where the search has put them.
   pure function touching_gaps(memory) result(gaps)
@@ -113,10 +131,11 @@ contains
 
   !> Gap of a slave node at the present places; 0 when it is unpaired. A spot that sleeps keeps its segment although
   !> it may have gone out of reach since.
-  pure function present_gap(contact, chain, place, memory, i, touching_gap) result(gap)
+  pure function present_gap(contact, chain, place, spots, memory, i, touching_gap) result(gap)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_master) present places
     real(wp), intent(in) :: place(4)                !! of the node
+    real(wp), intent(in), allocatable :: spots(:, :) !! present places of the spots, if these are not the nodes
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: i                        !! node of the slave surface
     real(wp), intent(in) :: touching_gap(:)         !! of the spots in contact
@@ -131,8 +150,7 @@ contains
       if (tracking%status(spot) /= is_touching) then
         foot = nearest_foot(contact%master, chain, place, segment)
         spot_foot = foot
-        if (allocated(memory%spots)) &
-          spot_foot = nearest_foot(contact%master, chain, memory%spots(:, spot), segment)
+        if (allocated(spots)) spot_foot = nearest_foot(contact%master, chain, spots(:, spot), segment)
         if (spot_foot%distance > tracking%reach) return
       else if (allocated(memory%spots)) then
         foot = follow_contact(contact%master, chain, place, segment)

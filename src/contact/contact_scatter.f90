@@ -6,10 +6,17 @@ module contact_scatter_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: scatter_points, scatter_runs, scatter_averaged, add_gap_round_off
+  public :: end_t, scatter_points, scatter_runs, scatter_averaged, scatter_range, close_run, add_gap_round_off
 
   !> Points pressed and scattered together.
   integer, parameter :: block_size = 128
+
+  !> What the last points in a row with the same nodes on a side give to one of these, and it has not got yet. Node and
+  !> force in turn: of forces in a row the compiler makes one vector, and sums them twice to that end.
+  type :: end_t
+    integer :: node = 0  !! 0: no points yet
+    real(wp) :: force(2) !! N/m
+  end type end_t
 
 contains
 
@@ -47,10 +54,12 @@ contains
     type(contact_points_t), intent(in) :: points
     real(wp), intent(inout) :: force(2, *) !! by local node, N/m
     integer, intent(out) :: n_active
+    type(end_t) :: run(4)
 
     n_active = count_active(points%n, points%pressure)
     call scatter_in_runs(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
-      points%master_weights, points%normal, points%pressure, points%area, force)
+      points%master_weights, points%normal, points%pressure, points%area, run, force)
+    call close_run(run, force)
   end subroutine scatter_runs
 
   !> The same where the pressure is shared out from the slave nodes and is not there yet: it is formed, kept and counted on the
@@ -64,6 +73,39 @@ contains
     call share_in_runs(points%slave_nodes, points%slave_weights, points%master_nodes, points%master_weights, &
       points%normal, points%area(:points%n), nodal, points%pressure, force, n_active)
   end subroutine scatter_averaged
+
+  !> The same for the next points of many that are not on the list together; the last run stays open, so that sums do not
+  !> depend on where the list ends.
+  pure subroutine scatter_range(points, run, force, n_active)
+    type(contact_points_t), intent(in) :: points
+    type(end_t), intent(inout) :: run(4) !! two of the slave side, two of the master side
+    real(wp), intent(inout) :: force(2, *) !! by local node, N/m
+    integer, intent(inout) :: n_active
+
+    n_active = n_active + count_active(points%n, points%pressure)
+    call scatter_in_runs(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
+      points%master_weights, points%normal, points%pressure, points%area, run, force)
+  end subroutine scatter_range
+
+  !> Give the last run to its nodes.
+  pure subroutine close_run(run, force)
+    type(end_t), intent(inout) :: run(4) !! two of the slave side, two of the master side
+    real(wp), intent(inout) :: force(2, *)
+    real(wp) :: total(2)
+
+    if (run(1)%node == 0) return
+    associate (a => run(1), b => run(2), c => run(3), d => run(4))
+      total = force(:, a%node) + a%force
+      force(:, a%node) = total
+      total = force(:, b%node) + b%force
+      force(:, b%node) = total
+      total = force(:, c%node) - c%force
+      force(:, c%node) = total
+      total = force(:, d%node) - d%force
+      force(:, d%node) = total
+    end associate
+    run%node = 0
+  end subroutine close_run
 
   !> Points that carry pressure.
   pure function count_active(n, pressure) result(n_active)
@@ -117,11 +159,12 @@ contains
   !> twice as many instructions. Both components of a node are read before one is written, so that pairs stay pairs in
   !> the registers; else the compiler takes them apart, which costs half as much again.
   pure subroutine scatter_in_runs(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
-    pressure, area, force)
+    pressure, area, run, force)
     integer, intent(in) :: n
     integer, intent(in) :: slave_nodes(n_side, *), master_nodes(n_side, *)
     real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
     real(wp), intent(in) :: normal(2, *), pressure(*), area(*)
+    type(end_t), intent(inout) :: run(4) !! two of the slave side, two of the master side
     real(wp), intent(inout) :: force(2, *)
     real(wp), dimension(2) :: point, to_a, to_b, to_c, to_d, total
     integer :: p, a, b, c, d
@@ -130,6 +173,10 @@ contains
     a = slave_nodes(1, 1); b = slave_nodes(2, 1)
     c = master_nodes(1, 1); d = master_nodes(2, 1)
     to_a = 0.0_wp; to_b = 0.0_wp; to_c = 0.0_wp; to_d = 0.0_wp
+    if (run(1)%node > 0) then
+      a = run(1)%node; b = run(2)%node; c = run(3)%node; d = run(4)%node
+      to_a = run(1)%force; to_b = run(2)%force; to_c = run(3)%force; to_d = run(4)%force
+    end if
     do p = 1, n
       if (slave_nodes(1, p) /= a .or. slave_nodes(2, p) /= b) then
         total = force(:, a) + to_a
@@ -153,14 +200,8 @@ contains
       to_c = to_c + master_weights(1, p)*point
       to_d = to_d + master_weights(2, p)*point
     end do
-    total = force(:, a) + to_a
-    force(:, a) = total
-    total = force(:, b) + to_b
-    force(:, b) = total
-    total = force(:, c) - to_c
-    force(:, c) = total
-    total = force(:, d) - to_d
-    force(:, d) = total
+    run%node = [a, b, c, d]
+    run(1)%force = to_a; run(2)%force = to_b; run(3)%force = to_c; run(4)%force = to_d
   end subroutine scatter_in_runs
 
   !> As scatter_in_runs, with the pressures that a slave segment shares out from its nodes (as `share_pressure` of

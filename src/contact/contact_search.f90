@@ -20,7 +20,7 @@ contains
 
   !> Bring the pairs of all spots up to date and list the spots in contact. Where the list of points is given, the feet of
   !> spots whose points stand on it are brought up to date there, and not in the tracking.
-  pure subroutine update_tracking(tracking, surface, chain, spots, travel, n_released, offset, points)
+  pure subroutine update_tracking(tracking, surface, chain, spots, travel, n_released, offset, points, n_not_kept)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface            !! the chain tracked upon
     real(wp), intent(in), contiguous :: chain(:, :)   !! (4, n_node) places of its nodes
@@ -29,13 +29,16 @@ contains
     integer, intent(inout) :: n_released              !! deep first contacts let go
     integer, intent(in), optional :: offset           !! local number before the chain's first node
     type(contact_points_t), intent(inout), optional :: points
+    integer, intent(in), optional :: n_not_kept       !! those that stay have been kept already, but for so many
     integer :: n_left
     logical :: has_changed
 
     tracking%has_feet = .true.
     if (tracking%n_touching == 0 .and. travel < tracking%next_wake) return
     if (present(points)) tracking%has_feet = tracking%first_point == 0
-    if (tracking%has_feet) then
+    if (present(n_not_kept)) then
+      n_left = n_not_kept
+    else if (tracking%has_feet) then
       call keep_contacts(surface%segments, chain, spots, tracking, n_left)
     else
       call keep_points(offset, chain, spots, tracking, points, n_left)

@@ -21,17 +21,19 @@ module points_vts_ppt_m
 
 contains
 
-  !> Place the points: one portion for a half with both ends over the same master segment, two where a master node lies
-  !> between them; whatever else needs a decision goes through `add_portions`.
-  pure subroutine place_vts_ppt(contact, memory)
+  !> Place the points of the virtual nodes `start` to `last` of those in contact: one portion for a half with both ends over
+  !> the same master segment, two where a master node lies between them; whatever else needs a decision goes
+  !> through `add_portions`.
+  pure subroutine place_vts_ppt(contact, start, last, memory)
     type(contact_t), intent(in) :: contact
+    integer, intent(in) :: start, last !! on the list of those in contact
     type(contact_state_t), intent(inout) :: memory
     type(halves_t) :: halves
     type(sights_t) :: sights
     integer :: first, n_pair, pairs(n_room)
 
-    do first = 1, memory%slave_tracking%n_touching, n_room
-      call list_halves(min(n_room, memory%slave_tracking%n_touching - first + 1), &
+    do first = start, last, n_room
+      call list_halves(min(n_room, last - first + 1), &
         memory%slave_tracking%touching(first:), memory%slave_tracking%segment, &
         contact%slave%segments, halves, sights)
       call see_segments(contact, memory, sights)
