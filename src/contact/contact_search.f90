@@ -14,13 +14,13 @@ module contact_search_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: update_tracking, wake_all, most_facing, begin_contact
+  public :: update_tracking, list_due, update_due, wake_all, most_facing, begin_contact
 
 contains
 
   !> Bring the pairs of all spots up to date and list the spots in contact. Where the list of points is given, the feet of
   !> spots whose points stand on it are brought up to date there, and not in the tracking.
-  pure subroutine update_tracking(tracking, surface, chain, spots, travel, n_released, offset, points, n_not_kept)
+  pure subroutine update_tracking(tracking, surface, chain, spots, travel, n_released, offset, points)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface            !! the chain tracked upon
     real(wp), intent(in), contiguous :: chain(:, :)   !! (4, n_node) places of its nodes
@@ -29,22 +29,20 @@ contains
     integer, intent(inout) :: n_released              !! deep first contacts let go
     integer, intent(in), optional :: offset           !! local number before the chain's first node
     type(contact_points_t), intent(inout), optional :: points
-    integer, intent(in), optional :: n_not_kept       !! those that stay have been kept already, but for so many
-    integer :: n_left
+    integer :: n_left, n_due
     logical :: has_changed
 
     tracking%has_feet = .true.
     if (tracking%n_touching == 0 .and. travel < tracking%next_wake) return
     if (present(points)) tracking%has_feet = tracking%first_point == 0
-    if (present(n_not_kept)) then
-      n_left = n_not_kept
-    else if (tracking%has_feet) then
+    if (tracking%has_feet) then
       call keep_contacts(surface%segments, chain, spots, tracking, n_left)
     else
       call keep_points(offset, chain, spots, tracking, points, n_left)
     end if
     if (n_left == 0 .and. travel < tracking%next_wake) return
-    call update_others(tracking, surface, chain, spots, travel, n_left, n_released, has_changed)
+    call list_due(tracking, travel, n_left, n_due)
+    call update_due(tracking, surface, chain, spots, travel, n_left, n_due, n_released, has_changed)
     if (.not. tracking%has_feet) then
       if (has_changed) then
         call take_feet(points, n_left, tracking)
@@ -55,20 +53,29 @@ contains
     if (has_changed) call list_touching(tracking)
   end subroutine update_tracking
 
-  !> Spots that were not kept; and those that are not in contact, if any of them is due.
-  pure subroutine update_others(tracking, surface, chain, spots, travel, n_left, n_released, has_changed)
+  !> List the spots that are not in contact behind those that were not kept, if any of them is due.
+  pure subroutine list_due(tracking, travel, n_left, n_due)
     type(tracking_t), intent(inout) :: tracking
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
     real(wp), intent(in) :: travel
     integer, intent(in) :: n_left
-    integer, intent(inout) :: n_released
-    logical, intent(out) :: has_changed !! the list of spots in contact
-    integer :: i, k, n_due
+    integer, intent(out) :: n_due
 
     n_due = n_left
     if (.not. travel < tracking%next_wake) call list_waking(tracking%n_touching, tracking%touching, tracking%n, &
       tracking%wake, travel, tracking%next_wake, tracking%due, n_due)
+  end subroutine list_due
+
+  !> Spots that were not kept, and others that are due.
+  pure subroutine update_due(tracking, surface, chain, spots, travel, n_left, n_due, n_released, has_changed)
+    type(tracking_t), intent(inout) :: tracking
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
+    real(wp), intent(in) :: travel
+    integer, intent(in) :: n_left, n_due
+    integer, intent(inout) :: n_released
+    logical, intent(out) :: has_changed !! the list of spots in contact
+    integer :: i, k
+
     has_changed = .false.
     do k = 1, n_due
       i = tracking%due(k)
@@ -77,7 +84,7 @@ contains
       has_changed = has_changed .or. (tracking%status(i) == is_touching .neqv. k <= n_left)
       if (tracking%status(i) /= is_touching) tracking%next_wake = min(tracking%next_wake, tracking%wake(i))
     end do
-  end subroutine update_others
+  end subroutine update_due
 
   !> Any other case, by what the spot was doing.
   pure subroutine update_spot(tracking, surface, chain, spots, i, travel, n_released)

@@ -1,11 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> The search for two spots on each slave segment, where nobody else asks for their places: these are formed from the nodes' on
-!> the way. Only when spots are looked at one by one do they, or all if any may have woken, get a place that is kept; to move
-!> all in each step took a pass of its own through the memory.
+!> the way. Only spots that are looked at one by one get a place that is kept; to move all took a pass of its own through the
+!> memory.
 module contact_spot_keeping_m
   use contact_keeping_m, only : project_block, list_left, block_size
-  use contact_search_m, only : update_tracking
-  use contact_spots_m, only : move_segment, move_spots
+  use contact_lists_m, only : list_touching
+  use contact_search_m, only : list_due, update_due
+  use contact_spots_m, only : move_segment
   use contact_state_m, only : contact_state_t, tracking_t
   use contacts_m, only : contact_t
   use kinds_m, only : wp
@@ -19,20 +20,20 @@ contains
   pure subroutine track_spots(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    integer :: n_left
+    integer :: n_left, n_due
+    logical :: has_changed
 
     associate (tracking => memory%slave_tracking, slave => contact%slave, first => memory%n_slave + 1)
+      tracking%has_feet = .true.
       if (tracking%n_touching == 0 .and. memory%travel < tracking%next_wake) return
       call keep_spots(contact%master%segments, memory%places(1, first), slave%segments, memory%places, &
         memory%spot_xi, tracking, n_left)
       if (n_left == 0 .and. memory%travel < tracking%next_wake) return
-      if (memory%travel < tracking%next_wake) then
-        call move_left(n_left, tracking, slave%segments, memory%places, memory%spot_xi, memory%spots)
-      else
-        call move_spots(slave, memory%places, memory%spot_xi, memory%spots)
-      end if
-      call update_tracking(tracking, contact%master, memory%places(:, first:), memory%spots, memory%travel, &
-        memory%n_released, n_not_kept=n_left)
+      call list_due(tracking, memory%travel, n_left, n_due)
+      call move_due(n_left, n_due, tracking, slave%segments, memory%places, memory%spot_xi, memory%spots)
+      call update_due(tracking, contact%master, memory%places(:, first:), memory%spots, memory%travel, n_left, &
+        n_due, memory%n_released, has_changed)
+      if (has_changed) call list_touching(tracking)
     end associate
   end subroutine track_spots
 
@@ -94,20 +95,21 @@ contains
     end do
   end subroutine see_spots
 
-  !> Places of the spots that were not kept, and of the others on their segments, which tell their direction.
-  pure subroutine move_left(n_left, tracking, segments, places, spot_xi, spots)
-    integer, intent(in) :: n_left
+  !> Places of the spots on the list, and of the others on their segments, which tell their direction.
+  pure subroutine move_due(n_left, n_due, tracking, segments, places, spot_xi, spots)
+    integer, intent(in) :: n_left, n_due
     type(tracking_t), intent(in) :: tracking
     integer, intent(in), contiguous :: segments(:, :)
     real(wp), intent(in), contiguous :: places(:, :), spot_xi(:)
     real(wp), intent(inout), contiguous :: spots(:, :)
     integer :: k, i, s
 
-    do k = 1, n_left
-      i = tracking%touching(tracking%due(k))
+    do k = 1, n_due
+      i = tracking%due(k)
+      if (k <= n_left) i = tracking%touching(i)
       s = (i + 1)/2
       call move_segment(segments(:, s), places, spot_xi, spots(:, 2*s - 1:2*s))
     end do
-  end subroutine move_left
+  end subroutine move_due
 
 end module contact_spot_keeping_m
