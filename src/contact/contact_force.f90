@@ -15,7 +15,6 @@ module contact_force_m
   use contact_ranges_m, only : goes_in_ranges, press_ranges
   use contact_scatter_m, only : scatter_points, scatter_runs, scatter_averaged
   use contact_search_m, only : update_tracking, wake_all
-  use contact_spot_keeping_m, only : track_spots
   use contact_spots_m, only : spots_at_quarters, start_spots, move_spots
   use contact_state_m, only : contact_state_t, tracking_t, allocate_points, is_free
   use contacts_m, only : contact_t
@@ -86,14 +85,12 @@ contains
     end if
     if (memory%is_stale) call refresh_memory(motion, memory)
     call gather_places(motion, memory)
+    if (allocated(memory%spots)) &
+      call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
     call wake_at_interval(contact, cycle, memory)
     if (memory%has_point_per_spot) then
       call search_points(contact, memory)
-    else if (allocated(memory%spots) .and. .not. memory%averages_pressure) then
-      call track_spots(contact, memory)
     else
-      if (allocated(memory%spots)) &
-        call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
       call search_pairs(contact, memory)
     end if
     call lap(clock, phase_contact_search)

@@ -8,7 +8,7 @@ module contact_keeping_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: keep_contacts, keep_points, move_points, take_feet, take_foot, project_block, list_left, block_size
+  public :: keep_contacts, keep_points, move_points, take_feet, take_foot
 
   !> Spots projected together.
   integer, parameter :: block_size = 64

@@ -5,7 +5,6 @@ module contact_results_m
   use contact_penalty_m, only : pressures_of
   use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
   use contact_ranges_m, only : is_listed, list_again
-  use contact_spots_m, only : move_spots
   use contact_state_m, only : contact_state_t, contact_points_t, is_touching, n_side
   use contacts_m, only : contact_t
   use geometry_m, only : segment_length
@@ -34,7 +33,7 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
-    real(wp), allocatable :: places(:, :), share(:), gaps(:), spots(:, :)
+    real(wp), allocatable :: places(:, :), share(:), gaps(:)
     integer :: i, n
 
     n = memory%n_slave
@@ -53,14 +52,10 @@ contains
         competence_length(contact%master, places(:, n + 1:), i))
     end do
     gaps = touching_gaps(memory)
-    if (allocated(memory%spots)) then
-      spots = memory%spots
-      call move_spots(contact%slave, places, memory%spot_xi, spots)
-    end if
     do i = 1, n
       rows%length(i) = competence_length(contact%slave, places(:, :n), i)
       rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
-      rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), spots, memory, i, gaps)
+      rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i, gaps)
     end do
   end subroutine slave_rows
 
@@ -131,11 +126,10 @@ contains
 
   !> Gap of a slave node at the present places; 0 when it is unpaired. A spot that sleeps keeps its segment although
   !> it may have gone out of reach since.
-  pure function present_gap(contact, chain, place, spots, memory, i, touching_gap) result(gap)
+  pure function present_gap(contact, chain, place, memory, i, touching_gap) result(gap)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_master) present places
     real(wp), intent(in) :: place(4)                !! of the node
-    real(wp), intent(in), allocatable :: spots(:, :) !! present places of the spots, if these are not the nodes
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: i                        !! node of the slave surface
     real(wp), intent(in) :: touching_gap(:)         !! of the spots in contact
@@ -150,7 +144,8 @@ contains
       if (tracking%status(spot) /= is_touching) then
         foot = nearest_foot(contact%master, chain, place, segment)
         spot_foot = foot
-        if (allocated(spots)) spot_foot = nearest_foot(contact%master, chain, spots(:, spot), segment)
+        if (allocated(memory%spots)) &
+          spot_foot = nearest_foot(contact%master, chain, memory%spots(:, spot), segment)
         if (spot_foot%distance > tracking%reach) return
       else if (allocated(memory%spots)) then
         foot = follow_contact(contact%master, chain, place, segment)

@@ -14,7 +14,7 @@ module contact_search_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: update_tracking, list_due, update_due, wake_all, most_facing, begin_contact
+  public :: update_tracking, wake_all, most_facing, begin_contact
 
 contains
 
@@ -29,7 +29,7 @@ contains
     integer, intent(inout) :: n_released              !! deep first contacts let go
     integer, intent(in), optional :: offset           !! local number before the chain's first node
     type(contact_points_t), intent(inout), optional :: points
-    integer :: n_left, n_due
+    integer :: n_left
     logical :: has_changed
 
     tracking%has_feet = .true.
@@ -41,8 +41,7 @@ contains
       call keep_points(offset, chain, spots, tracking, points, n_left)
     end if
     if (n_left == 0 .and. travel < tracking%next_wake) return
-    call list_due(tracking, travel, n_left, n_due)
-    call update_due(tracking, surface, chain, spots, travel, n_left, n_due, n_released, has_changed)
+    call update_others(tracking, surface, chain, spots, travel, n_left, n_released, has_changed)
     if (.not. tracking%has_feet) then
       if (has_changed) then
         call take_feet(points, n_left, tracking)
@@ -53,29 +52,20 @@ contains
     if (has_changed) call list_touching(tracking)
   end subroutine update_tracking
 
-  !> List the spots that are not in contact behind those that were not kept, if any of them is due.
-  pure subroutine list_due(tracking, travel, n_left, n_due)
-    type(tracking_t), intent(inout) :: tracking
-    real(wp), intent(in) :: travel
-    integer, intent(in) :: n_left
-    integer, intent(out) :: n_due
-
-    n_due = n_left
-    if (.not. travel < tracking%next_wake) call list_waking(tracking%n_touching, tracking%touching, tracking%n, &
-      tracking%wake, travel, tracking%next_wake, tracking%due, n_due)
-  end subroutine list_due
-
-  !> Spots that were not kept, and others that are due.
-  pure subroutine update_due(tracking, surface, chain, spots, travel, n_left, n_due, n_released, has_changed)
+  !> Spots that were not kept; and those that are not in contact, if any of them is due.
+  pure subroutine update_others(tracking, surface, chain, spots, travel, n_left, n_released, has_changed)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
     real(wp), intent(in) :: travel
-    integer, intent(in) :: n_left, n_due
+    integer, intent(in) :: n_left
     integer, intent(inout) :: n_released
     logical, intent(out) :: has_changed !! the list of spots in contact
-    integer :: i, k
+    integer :: i, k, n_due
 
+    n_due = n_left
+    if (.not. travel < tracking%next_wake) call list_waking(tracking%n_touching, tracking%touching, tracking%n, &
+      tracking%wake, travel, tracking%next_wake, tracking%due, n_due)
     has_changed = .false.
     do k = 1, n_due
       i = tracking%due(k)
@@ -84,7 +74,7 @@ contains
       has_changed = has_changed .or. (tracking%status(i) == is_touching .neqv. k <= n_left)
       if (tracking%status(i) /= is_touching) tracking%next_wake = min(tracking%next_wake, tracking%wake(i))
     end do
-  end subroutine update_due
+  end subroutine update_others
 
   !> Any other case, by what the spot was doing.
   pure subroutine update_spot(tracking, surface, chain, spots, i, travel, n_released)

@@ -8,7 +8,7 @@ module contact_spots_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: spots_at_nodes, spots_at_quarters, spots_at_gauss_points, start_spots, move_spots, move_segment, &
+  public :: spots_at_nodes, spots_at_quarters, spots_at_gauss_points, start_spots, move_spots, &
     list_owners, list_chords
 
   !> Rules for the places of spots.
@@ -39,7 +39,7 @@ contains
       associate (a => memory%places(:, slave%segments(1, s)), &
         b => memory%places(:, slave%segments(2, s)))
         do q = 1, n
-          memory%spots(:, (s - 1)*n + q) = a + memory%spot_xi(q)*(b - a)
+          memory%spots(:, (s - 1)*n + q) = (1.0_wp - memory%spot_xi(q))*a + memory%spot_xi(q)*b
         end do
       end associate
     end do
@@ -56,15 +56,6 @@ contains
       spots)
   end subroutine move_spots
 
-  !> The same for the spots of one segment.
-  pure subroutine move_segment(ends, places, spot_xi, spots)
-    integer, intent(in) :: ends(2) !! its nodes
-    real(wp), intent(in), contiguous :: places(:, :), spot_xi(:)
-    real(wp), intent(inout), contiguous :: spots(:, :) !! (4, those of the segment)
-
-    call move_on_segments(1, ends, size(spot_xi), spot_xi, places, spots)
-  end subroutine move_segment
-
   !> The same on arrays of known shape. Both components of a spot are formed together: vectors over the few
   !> spots of a segment take 2 to 4 % more of the contact of type 4.
   pure subroutine move_on_segments(n, segments, n_xi, xi, places, spots)
@@ -72,8 +63,10 @@ contains
     real(wp), intent(in) :: xi(n_xi), places(4, *)
     real(wp), intent(inout) :: spots(4, n_xi, n)
     real(wp), dimension(2) :: one, two
+    real(wp) :: weights(n_xi)
     integer :: s, q
 
+    weights = 1.0_wp - xi
     !GCC$ NOVECTOR
     do s = 1, n
       one = places(3:4, segments(1, s))
@@ -81,7 +74,7 @@ contains
       !GCC$ NOVECTOR
       !GCC$ UNROLL 1
       do q = 1, n_xi
-        spots(3:4, q, s) = one + xi(q)*(two - one)
+        spots(3:4, q, s) = xi(q)*two + weights(q)*one
       end do
     end do
   end subroutine move_on_segments
