@@ -6,6 +6,8 @@
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 out=$root/results/batch/claims
 
 "$root/tools/build.sh" release
