@@ -51,6 +51,18 @@ def test_wrong_words_are_refused(slideline, word, said):
     assert said in done.stderr.lower()
 
 
+@pytest.mark.parametrize("word", ["ctype=3", "ngauss=4", "pen=1.0", "punit=1", "pent=1.0", "vdc=5", "ctype.1=3"])
+def test_overrides_that_find_no_interface_are_refused(slideline, tmp_path, word):
+    """A deck without contact: a sweep over types would otherwise give seven equal runs without a word."""
+    deck = re.sub(r"\*CONTACT_2D[^*]*", "", drop(end_time=0.002).text())
+    done = slideline("d=w", word, deck=deck)
+    assert done.returncode == 1
+    said = "changes interface 1, which" if ".1" in word else f"changes {word.split('=')[0].upper()} of all interfaces"
+    assert said in done.stderr and "1 error" in done.stderr
+    assert slideline("d=n", "endtim=0.001", "tssfac=0.5", "dt=1.0e-4", deck=deck).returncode == 0
+    assert slideline("check", "job.k", word).returncode == 1
+
+
 @pytest.mark.parametrize("name", ["d=", "memory=", "p:x=", "", "i="])
 def test_a_word_that_is_too_long_is_refused(slideline, tmp_path, name):
     """None is cut: 4096 characters are taken, one more is not."""
