@@ -95,7 +95,7 @@ contains
 
     if (memory%n_released == 0) return
     call warn(log, 'interface '//to_text(contact%id)//': '//to_text(memory%n_released) &
-      //' first contacts were deeper than the limit and were released')
+      //' first contacts were deeper than the limit and were released; SRCH sets the limit')
   end subroutine report_released
 
 end module contact_log_m
