@@ -62,7 +62,7 @@ def tutorial_deck(folder):
     """The deck as the tutorial gives it."""
     page = (ROOT / "doc/tutorial.md").read_text(encoding="utf-8")
     path = folder / "first.k"
-    path.write_text(re.search(r'```text title="first.k"\n(.*?)```', page, re.S).group(1))
+    path.write_text(re.search(r'```text title="results/first.k"\n(.*?)```', page, re.S).group(1))
     return path
 
 
