@@ -6,6 +6,7 @@
 # build/package/slideline-VERSION and that as .tar.gz, for machines with the same distribution.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+help_or_go_on "$@"
 
 # package_level LEVEL FOLDER: build for a level of the x86-64 psABI and install below FOLDER.
 package_level() {

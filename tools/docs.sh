@@ -7,6 +7,8 @@
 # of the Fortran interface, which take the longest.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 build="$root/build"
 venv="$build/docs-venv"
 serve=no

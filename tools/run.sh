@@ -6,6 +6,7 @@
 # The exit status is the program's.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+help_or_go_on "${1:-}"
 
 if [ $# -lt 1 ]; then
   complain "usage: tools/run.sh DECK [program arguments...]"

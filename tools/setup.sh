@@ -4,6 +4,7 @@
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 venv="$root/build/venv"
+. "$root/tools/help.sh"
 
 say() {
   printf '== %s\n' "$*"

@@ -6,6 +6,7 @@
 # -R contact) only the Release tests so chosen.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+help_or_go_on "$@"
 
 lock
 install_packages

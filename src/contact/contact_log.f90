@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> What the log says about an interface.
 module contact_log_m
+  use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_penalty_m, only : mean_length
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, contact_kind_t, penalty_share
@@ -53,15 +54,19 @@ contains
       memory%slave_tracking%spot_depth))//' m or less')
   end subroutine log_contact
 
-  !> All equivalents of the penalty.
+  !> All equivalents of the penalty, of the passes that the formulation has.
   function penalty_text(contact, model, memory) result(text)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(in) :: memory
     character(:), allocatable :: text
+    type(formulation_t) :: formulation
 
     text = to_text(memory%node_penalty)//' N/m per slave node = '//to_text(memory%slave_penalty) &
-      //' N/m^2; master pass '//to_text(memory%master_penalty*mean_length(contact%master, model)) &
+      //' N/m^2'
+    formulation = formulation_of(contact)
+    if (formulation%has_two_passes) text = text//'; master pass ' &
+      //to_text(memory%master_penalty*mean_length(contact%master, model)) &
       //' N/m per master node = '//to_text(memory%master_penalty)//' N/m^2'
   end function penalty_text
 
@@ -95,7 +100,7 @@ contains
 
     if (memory%n_released == 0) return
     call warn(log, 'interface '//to_text(contact%id)//': '//to_text(memory%n_released) &
-      //' first contacts were deeper than the limit and were released')
+      //' first contacts were deeper than the limit and were released; SRCH sets the limit')
   end subroutine report_released
 
 end module contact_log_m

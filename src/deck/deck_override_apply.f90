@@ -6,11 +6,12 @@ module deck_override_apply_m
   use log_m, only : to_text
   use contacts_m, only : contact_kind_t, most_gauss, penalty_per_node, penalty_share
   use curves_m, only : curve_t
-  use deck_lines_m, only : deck_t, place_t, line_text, line_error, layout_mark
+  use deck_lines_m, only : deck_t, place_t, line_text, line_error, line_warning, layout_mark
   use deck_fields_m, only : card_t, cut_card, field_text
   use deck_cards_m, only : cursor_t, open_cursor
   use deck_contact_m, only : kind_names
-  use deck_overrides_m, only : overrides_t, override_text, override_real, override_integer
+  use deck_overrides_m, only : overrides_t, contact_names, override_text, override_real, &
+    override_integer
   use deck_raw_m, only : raw_t, raw_contact_t
   implicit none
   private
@@ -41,13 +42,30 @@ contains
     do i = 1, size(raw%contacts)
       call override_contact(deck, kinds, overrides, raw%contacts(i))
     end do
-    do i = 1, size(overrides%items)
-      if (overrides%items(i)%interface == 0) cycle
-      if (.not. any(raw%contacts%contact%id == overrides%items(i)%interface)) call line_error( &
-        deck, 0, 'the command line changes interface '//to_text(overrides%items(i)%interface) &
-        //', which the deck does not have')
-    end do
+    call check_interfaces(deck, overrides, raw)
   end subroutine apply_overrides
+
+  !> What is meant for one interface must find it; what is meant for all says so where there is none.
+  subroutine check_interfaces(deck, overrides, raw)
+    type(deck_t), intent(inout) :: deck
+    type(overrides_t), intent(in) :: overrides
+    type(raw_t), intent(in) :: raw
+    integer :: i
+
+    do i = 1, size(overrides%items)
+      associate (item => overrides%items(i))
+        if (.not. any(contact_names == item%name)) cycle
+        if (item%interface /= 0) then
+          if (.not. any(raw%contacts%contact%id == item%interface)) call line_error(deck, 0, &
+            'the command line changes interface '//to_text(item%interface) &
+            //', which the deck does not have')
+        else if (size(raw%contacts) == 0) then
+          call line_warning(deck, 0, 'override '//item%name, 'the command line changes ' &
+            //item%name//' of all interfaces, but the deck has none')
+        end if
+      end associate
+    end do
+  end subroutine check_interfaces
 
   !> dt=: a constant curve, named as LCTM; DT0 where the deck is implicit.
   subroutine override_step(deck, overrides, raw, tail)

@@ -61,7 +61,8 @@ contains
       do k = 1, 8, 2
         if (card%blank(k) .and. card%blank(k + 1)) cycle
         if (card%blank(k) .or. card%blank(k + 1)) then
-          call field_error(deck, spec, card, k, 'a parameter needs a name and a value')
+          call field_error(deck, spec, card, k, 'a parameter needs a name and a value (without a ' &
+            //'comma a field ends at its column)')
           cycle
         end if
         text = field_text(deck, card, k + 1)

@@ -8,6 +8,8 @@
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 out=$root/results/bench
 doc=$out/doc
 case ${1:-} in

@@ -7,6 +7,7 @@ import sys
 
 import pytest
 
+from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.studies import speed
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -32,7 +33,7 @@ def test_table_has_every_part(folder):
             assert [row["size"] for row in rows] == [100, 306]
             assert all(row["median"] > 0.0 and row["over_goal"] > 0.0 for row in rows)
         assert [row["size"] for row in bench.of("step", material + speed.AT_ONCE)] == [100, 306]
-    for ctype in range(1, 8):
+    for ctype in ALL_TYPES:
         assert [row["size"] for row in speed.contact_rows(bench, "flat", ctype)] == [10, 20]
     assert len(speed.search_lines(bench, "search")) == 4 * 3
     assert bench.value("output", "states over plain file") > 0.0

@@ -27,6 +27,8 @@ SHORTER = {
     "tools/study.sh": "{command} --list",      # tests/tools runs studies
     "tools/docs.sh": "bash -n tools/docs.sh",  # installs from the network
 }
+#: what may lie at the top of the tree after the commands
+TOP = {"CMakeLists.txt", "build", "doc", "input", "results", "tools"}
 NINJA = "rule nothing\n  command = true\nbuild slideline: nothing\ndefault slideline\n"
 CACHE = """CMAKE_PROJECT_NAME:STATIC=slideline
 CMAKE_GENERATOR:INTERNAL=Ninja
@@ -93,6 +95,7 @@ def test_commands(name, clone):
     for info, text in blocks(name):
         title = re.search(r'title="([^"]+)"', info)
         if title:
+            (clone / title.group(1)).parent.mkdir(exist_ok=True)
             (clone / title.group(1)).write_text(text)
         elif info.strip() == "text":
             assert text in printed, f"the commands above it do not print\n{text}"
@@ -102,6 +105,7 @@ def test_commands(name, clone):
                 printed += run_command(command, clone)
                 n_run += 1
     assert n_run >= FEWEST.get(name, 1)
+    assert {path.name for path in clone.iterdir()} <= TOP, "files are left beside the sources"
 
 
 def run_command(command, clone):

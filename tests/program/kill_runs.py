@@ -16,6 +16,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests" / "verification")]
 from slideline_tools import scenes  # noqa: E402
+from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
 from conftest import drop  # noqa: E402
 
 HEAD = 512
@@ -33,7 +34,7 @@ SCENES = {
     "plate_32x16_elastoplastic": (lambda: scenes.symmetric_plate(32, 16, True), 200),
     **{f"collision_{level}": (lambda level=level: scenes.collision(level, ctype=1 + level), 600 // level)
        for level in (1, 2, 3, 4)},
-    **{f"block_{kind}": (lambda kind=kind: scenes.block(ctype=kind), 90) for kind in range(1, 8)},
+    **{f"block_{kind}": (lambda kind=kind: scenes.block(ctype=kind), 90) for kind in ALL_TYPES},
     "sliding": (lambda: scenes.sliding(1, ctype=5), 1500),
     "rigid_die": (lambda: scenes.sliding(1, ctype=7, rigid_die=True), 1500),
     "hertz": (lambda: scenes.hertz(1, ctype=6), 600),

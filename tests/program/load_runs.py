@@ -19,8 +19,9 @@ sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests" / "verification")]
 from conftest import drop  # noqa: E402
 from kill_runs import with_end  # noqa: E402
 from slideline_tools import scenes  # noqa: E402
+from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
 
-TYPES = range(1, 8)
+TYPES = ALL_TYPES
 #: scene -> (deck of a type, cycles, parameters that vary)
 SCENES = {
     "drop": (lambda kind: drop(kind=kind, parametric=True), 200, ("v0",)),

@@ -51,6 +51,21 @@ def test_wrong_words_are_refused(slideline, word, said):
     assert said in done.stderr.lower()
 
 
+@pytest.mark.parametrize("name", ["ctype", "ngauss", "pen", "punit", "pent", "vdc"])
+def test_overrides_that_find_no_interface_are_told(slideline, name):
+    """A deck without contact: a sweep over types would otherwise give seven equal runs without a word. One for an
+    interface by number is refused."""
+    deck = re.sub(r"\*CONTACT_2D[^*]*", "", drop(end_time=0.002).text())
+    done = slideline("d=w", f"{name}=1", deck=deck)
+    assert done.returncode == 0
+    told = f"changes {name.upper()} of all interfaces, but the deck has none"
+    assert told in done.stdout + done.stderr
+    done = slideline("d=n", "endtim=0.001", "tssfac=0.5", "dt=1.0e-4", deck=deck)
+    assert done.returncode == 0 and "of all interfaces" not in done.stdout + done.stderr
+    done = slideline("d=o", f"{name}.1=1", deck=deck)
+    assert done.returncode == 1 and "changes interface 1, which" in done.stderr
+
+
 @pytest.mark.parametrize("name", ["d=", "memory=", "p:x=", "", "i="])
 def test_a_word_that_is_too_long_is_refused(slideline, tmp_path, name):
     """None is cut: 4096 characters are taken, one more is not."""

@@ -11,6 +11,8 @@ from meshes import Deck, grid
 from test_implicit import implicit, pulled
 from test_restart import arrays, assert_same, histories, part_of, start, wait_for, with_files
 
+from slideline_tools.contact_types import ALL_TYPES
+
 GROUPS = ("state", "outputs", "steps")
 TABLES = ("glstat", "rcforc", "nodout", "matsum", "sleout", "spcforc")
 
@@ -89,7 +91,7 @@ def iterations(folder):
     return [line for line in (folder / "job.log").read_text().splitlines() if line.startswith("step to ")]
 
 
-@pytest.mark.parametrize("scene, kind", [(scene, kind) for scene in SCENES for kind in range(1, 8)])
+@pytest.mark.parametrize("scene, kind", [(scene, kind) for scene in SCENES for kind in ALL_TYPES])
 def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
     make, interval, shown = SCENES[scene]
     run_whole(slideline, make(kind), dump=interval)

@@ -18,6 +18,7 @@ from test_repeatability import large_drop
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
 from slideline_tools import scenes  # noqa: E402
+from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
 
 HEAD = 512
 #: scene -> (deck of a contact type, cycles, cycle of the restart)
@@ -31,7 +32,7 @@ SCENES = {
     "patch": (lambda kind: scenes.patch(ctype=kind), 300, 170),
     "plate": (lambda kind: scenes.symmetric_plate(16, 8, True), 300, 170),
 }
-CASES = [(scene, kind) for scene in SCENES for kind in range(1, 8)
+CASES = [(scene, kind) for scene in SCENES for kind in ALL_TYPES
          if scene not in ("plate", "rigid die") or kind in {"plate": (1,), "rigid die": (2, 7)}[scene]]
 
 

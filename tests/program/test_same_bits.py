@@ -14,11 +14,12 @@ import numpy as np
 import pytest
 from meshes import Deck, grid, rotate
 
+from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.scenes import block, collision, hertz, oblique, patch, patch_grids
 from slideline_tools.scenes import symmetric_plate
 from slideline_tools.scenes.patch import even_lines
 
-TYPES = range(1, 8)
+TYPES = ALL_TYPES
 THREADS = (1, 2, 3, 4, 3)  # the last one is a repeat
 DEBUG_TYPE, DEBUG_THREADS = 7, (1, 2)
 # Threads beyond the cores wait asleep, or the test would take minutes.

@@ -13,6 +13,7 @@ from slideline_tools.advise import (advise, bodies, finished, geometry, outputs,
                                     stepping, study, study_decks, surfaces, touching)
 from slideline_tools.advise.run_deck import read_blocks, sets
 from slideline_tools.advise.run_log import read_log
+from slideline_tools.contact_types import ALL_TYPES
 
 LOG = """slideline 0.1.0
 part 1 "plate": 576 elements, section 1, material 1
@@ -407,7 +408,7 @@ def test_output_written_too_often(runs):
     assert "glstat" not in {item.what.split()[0] for item in outputs.too_often(run)}
 
 
-@pytest.mark.parametrize("ctype", range(1, 8))
+@pytest.mark.parametrize("ctype", ALL_TYPES)
 @pytest.mark.parametrize("scene", [scenes.patch, scenes.oblique])
 def test_limit_of_springs_is_that_of_the_program(slideline, tmp_path, scene, ctype):
     """The program warns of a penalty far too stiff and names the limits; they are ours."""

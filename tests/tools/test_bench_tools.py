@@ -18,6 +18,7 @@ import elements  # noqa: E402
 import measuring  # noqa: E402
 import search  # noqa: E402
 import wave  # noqa: E402
+from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
 from slideline_tools.studies import peers, speed  # noqa: E402
 
 STEP = measuring.Variant("step", "elastic", 4000, 1, "ns/element")
@@ -116,7 +117,7 @@ def bench_rows():
             rows.append(measuring.summarise(variant, [(ns / gain, 4.0, 8.0, 1.0)]))
         variant = measuring.Variant("step", f"{material}, 2 runs at once", 4000, 1, "ns/element")
         rows.append(measuring.summarise(variant, [(0.8 * ns, 4.0, 8.0, 1.0)]))
-    for ctype in range(1, 8):
+    for ctype in ALL_TYPES:
         for size, unit in itertools.product((20, 1000), ("ns/slave node", "ns/point")):
             variant = measuring.Variant("contact", f"flat type {ctype}", size, 1, unit)
             rows.append(measuring.summarise(variant, [(4.0 * ctype, 4.0, 8.0, 1.0)]))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from slideline_tools import UserError
+from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.studies import claims, collision, common, sliding
 
 
@@ -112,7 +113,7 @@ def test_pairing_is_cheap_only_below_both_steps(fourth, fifth, expected, count):
 def peak_figures(count):
     figures = claims.PeakFigures.__new__(claims.PeakFigures)
     figures.count = figures.largest = figures.rms = figures.waviness = {
-        level: dict(zip(range(1, 8), count)) for level in (1, 2, 3)}
+        level: dict(zip(ALL_TYPES, count)) for level in (1, 2, 3)}
     return figures
 
 
@@ -129,7 +130,7 @@ def test_peak_claims_follow_the_figures(count, fewest, larger, smooth):
     ((0.1, 0.1), (-0.1, -0.1), "yes"), ((0.1, 0.1), (0.1, -0.1), "partly"),
     ((-0.1, 0.1), (0.1, 0.1), "no")])
 def test_end_claim_follows_the_figures(nts, two_pass, expected):
-    ends = dict.fromkeys(range(1, 8), (0.0, 0.0))
+    ends = dict.fromkeys(ALL_TYPES, (0.0, 0.0))
     ends.update({1: nts, 3: two_pass})
     assert claims.end_texts(ends)["end"] == expected
 

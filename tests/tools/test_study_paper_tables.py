@@ -9,6 +9,7 @@ import sys
 import pytest
 
 from slideline_tools import UserError
+from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.study import __main__ as command
 from slideline_tools.study import paper_tables, times
 from slideline_tools.study.job import Options, interleave, part_of
@@ -57,18 +58,18 @@ def all_rows():
         for level in scene.levels:
             for number in range(3):
                 rows += [row(name, level, k, (2.0 * k, 1.0 * k, 1.0 * k), 1.0 + (number + k) % 2)
-                         for k in range(1, 8)]
+                         for k in ALL_TYPES]
     return rows
 
 
 def test_medians_are_free_of_the_pace_of_the_machine():
     found = times.Times(all_rows(), "collision")
     assert found.levels == [1, 2, 3, 4] and found.rounds == 3
-    assert [found.ratio(2, k) for k in range(1, 8)] == pytest.approx(range(1, 8), rel=1e-14)
+    assert [found.ratio(2, k) for k in ALL_TYPES] == pytest.approx(ALL_TYPES, rel=1e-14)
     assert found.ratio(2, 6, "search") == pytest.approx(3.0, rel=1e-14)
     assert found.share(3, 5) == pytest.approx(20.0 / 44.0, rel=1e-14)
     assert found.computing_ratio(3, 5) == pytest.approx(44.0 / 40.0, rel=1e-14)
-    assert found.points[3] == {k: 10 * k for k in range(1, 8)}
+    assert found.points[3] == {k: 10 * k for k in ALL_TYPES}
     assert found.spread == pytest.approx(0.0, abs=1e-14) and found.pace_spread > 0.2
 
 

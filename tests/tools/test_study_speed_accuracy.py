@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from slideline_tools import UserError
+from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.studies import block
 from slideline_tools.study import __main__ as command
 from slideline_tools.study import speed_accuracy as study
@@ -180,7 +181,7 @@ def test_references_run_once_and_are_not_timed(monkeypatch):
 
 # ---- page --------------------------------------------------------------------------------------
 
-def made_rows(types_of=range(1, 8)):
+def made_rows(types_of=ALL_TYPES):
     """Type k costs k; types 4, 5 and 7 are exact; roughness falls with the type, and with N_r."""
     rows = []
     for name, scene in scenes.SCENES.items():

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.decks import Grid
 from slideline_tools.study import stability, stability_measures as measures, stability_page
 from slideline_tools.study.job import Options
@@ -20,7 +21,7 @@ REFERENCE = Path(__file__).resolve().parents[1] / "verification" / "contact_forc
 SLAVE, MASTER = np.array([0.1, 0.31, 0.55, 0.9]), np.array([0.0, 0.2, 0.45, 0.62, 0.7, 1.0])
 
 
-@pytest.mark.parametrize("ctype", range(1, 8))
+@pytest.mark.parametrize("ctype", ALL_TYPES)
 def test_springs_are_the_derivative_of_brute_force_contact_forces(ctype):
     sys.path.insert(0, str(REFERENCE))
     try:

@@ -8,6 +8,8 @@
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 folder=${1:-$root/build/coverage}
 [ $# -eq 0 ] || shift
 python=${PYTHON:-$root/build/venv/bin/python}

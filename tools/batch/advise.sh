@@ -7,6 +7,8 @@
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 out=$root/results/batch/advise
 doc=$root/doc
 [ $# -eq 0 ] || doc=$out/doc

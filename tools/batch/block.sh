@@ -7,6 +7,8 @@
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 types=${1:-1 2 3 4 5 6 7}
 out=$root/results/batch/block
 doc=$root/doc

@@ -2,11 +2,25 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/claims.sh
 # Answers the claims of Kang, Lee & Shin (2023) from runs: writes doc/studies/claims.md. Wants the
-# results of block.sh, sliding.sh, collision.sh and of tools/study.sh paper-tables. A few seconds.
+# results of block.sh, sliding.sh and of tools/study.sh paper-tables. A few seconds.
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 out=$root/results/batch/claims
+
+missing=
+for scene in block sliding; do
+  [ -d "$root/results/batch/$scene" ] || missing="$missing
+  tools/batch/$scene.sh"
+done
+[ -f "$root/results/study-paper-tables/paper-tables.csv" ] || missing="$missing
+  tools/study.sh paper-tables"
+if [ -n "$missing" ]; then
+  echo "claims.sh: results are missing; run these first (from the top of the tree):$missing" >&2
+  exit 2
+fi
 
 "$root/tools/build.sh" release
 # Sliding with slave and master exchanged: how many points does type 5 add when the master is finer?

@@ -8,6 +8,8 @@
 set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)
+. "$here/../help.sh"
+help_or_go_on "$@"
 tools=${TOOLS:-$here/../../build/venv/bin/slideline-tools}
 count=$#
 if [ "$count" -lt 2 ]; then

@@ -12,7 +12,10 @@
 # The program is built for the processor it is built on: build on a machine of the kind that runs it.
 set -eu
 
-root=${SLURM_SUBMIT_DIR:-.}
+# Slurm runs a copy of this file from elsewhere.
+root=${SLURM_SUBMIT_DIR:-$(dirname "$0")/../..}
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 script=${SCRIPT:-run_folder.sh}
 if [ -n "${SLURM_ARRAY_TASK_ID:-}" ]; then
   set -- --part "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT" "$@"

@@ -6,6 +6,8 @@
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 "$root/tools/build.sh" release
 SLIDELINE=$root/build/release/slideline SLIDELINE_JOBS=${1:-1000} SLIDELINE_SEED=${2:-1} \
   PYTHONPATH=$root/tools "$root/build/venv/bin/python" -m pytest -q -s -p no:cacheprovider \

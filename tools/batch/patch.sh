@@ -9,6 +9,8 @@
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 study=patch
 if [ "${1:-}" = static ]; then
   study=patch_static

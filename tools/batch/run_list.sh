@@ -18,6 +18,8 @@ set -eu
 trap '' USR1 USR2
 
 here=$(cd "$(dirname "$0")" && pwd)
+. "$here/../help.sh"
+help_or_go_on "$@"
 program=${SLIDELINE:-$here/../../build/release/slideline}
 
 # files_of DECK: the deck and what it includes, as far as it lies where it is named or beside the deck.

@@ -8,6 +8,8 @@
 set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)
+. "$here/../help.sh"
+help_or_go_on "$@"
 out=
 deck=
 count=$#

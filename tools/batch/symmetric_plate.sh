@@ -7,6 +7,8 @@
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 meshes=${1:-8x4 16x8 32x16 64x32}
 out=$root/results/batch/symmetric_plate
 runs=

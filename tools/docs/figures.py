@@ -20,13 +20,12 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 from slideline_tools import cli  # noqa: E402
+from slideline_tools.contact_types import TYPES  # noqa: E402
 from slideline_tools.results import read  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "doc/pictures"
 SLAVE, MASTER, INK = "#c8553d", "#33658a", "#333333"
-NAMES = ("1  NTS", "2  NTS-AR", "3  two-pass NTS-AR", "4  VTS-PPT", "5  NTS-mAR",
-         "6  mortar", "7  segmented mortar")
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
 N_SLAVE, N_MASTER = 4, 5
 
@@ -63,7 +62,7 @@ def tutorial_deck(folder):
     """The deck as the tutorial gives it."""
     page = (ROOT / "doc/tutorial.md").read_text(encoding="utf-8")
     path = folder / "first.k"
-    path.write_text(re.search(r'```text title="first.k"\n(.*?)```', page, re.S).group(1))
+    path.write_text(re.search(r'```text title="results/first.k"\n(.*?)```', page, re.S).group(1))
     return path
 
 
@@ -191,7 +190,7 @@ def contact_points(program, folder):
         for place, side in spots(kind):
             axes.plot(place, lift / 2 + (0.022 if side == 1 else -0.022), "x", markersize=6,
                       color=SLAVE if side == 1 else MASTER, markeredgewidth=1.6)
-        axes.set_title(NAMES[kind - 1], fontsize=10, loc="left", color=INK)
+        axes.set_title(f"{kind}  {TYPES[kind]}", fontsize=10, loc="left", color=INK)
         axes.set_ylim(-0.36, 0.48)
         axes.axis("off")
     key = panels.flat[7]

@@ -67,12 +67,12 @@ class History:
     def frame(self) -> pandas.DataFrame:
         """The table as a pandas DataFrame; `attrs["table"]` is its name.
 
-        pandas is an extra: pip install 'slideline-tools[frames]'. HistoryError without it.
+        pandas is an extra: build/venv/bin/pip install './tools[frames]'. HistoryError without it.
         """
         try:
             import pandas
         except ImportError:
-            raise HistoryError("frames need pandas: pip install 'slideline-tools[frames]'") from None
+            raise HistoryError("frames need pandas: build/venv/bin/pip install './tools[frames]'") from None
         frame = pandas.DataFrame(self.columns)
         frame.attrs["table"] = self.name
         return frame

@@ -194,7 +194,7 @@ class Results:
         entities (interface, side, wall, node, part) first.
 
         `attrs` has the table (`table`) and the title of the run (`title`). pandas is an extra:
-        pip install 'slideline-tools[frames]'.
+        build/venv/bin/pip install './tools[frames]'.
         """
         frame = self.history(name).frame()
         frame.attrs["title"] = self.run.get("title", "")

@@ -7,6 +7,8 @@
 set -eu
 
 root=$(cd "$(dirname "$0")/../../.." && pwd)
+. "$root/tools/help.sh"
+help_or_go_on "$@"
 out=$root/results/peers
 doc=$out/doc
 venv=$root/build/venv-peers

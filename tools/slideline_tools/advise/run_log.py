@@ -6,8 +6,8 @@ import dataclasses
 import re
 
 NUMBER = r"([-+0-9.E]+)"
-PENALTIES = (rf"{NUMBER} N/m per slave node = {NUMBER} N/m\^2; master pass {NUMBER} N/m per master "
-             rf"node = {NUMBER} N/m\^2")
+PENALTIES = (rf"{NUMBER} N/m per slave node = {NUMBER} N/m\^2(?:; master pass {NUMBER} N/m per master "
+             rf"node = {NUMBER} N/m\^2)?")
 
 
 @dataclasses.dataclass
@@ -24,7 +24,7 @@ class Part:
 
 @dataclasses.dataclass
 class Interface:
-    """An interface; lengths in m, penalties in N/m^2 (`node_penalty` in N/m)."""
+    """An interface; lengths in m, penalties in N/m^2 (`node_penalty` in N/m), of one pass no `master_penalty`."""
 
     id: int
     name: str
@@ -134,6 +134,6 @@ def read_interface(log: RunLog, line: str) -> None:
 
 
 def set_penalties(interface: Interface, numbers: tuple[str, ...]) -> None:
-    """The penalties of a line: per slave node, per length, per master node, per its length."""
-    node, slave, _, master = (float(number) for number in numbers)
+    """The penalties of a line: per slave node, per length; of two passes per master node, per its length."""
+    node, slave, _, master = (float(number or 0.0) for number in numbers)
     interface.node_penalty, interface.slave_penalty, interface.master_penalty = node, slave, master

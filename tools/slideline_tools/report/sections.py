@@ -329,7 +329,7 @@ def interface_table(run: Gathered) -> str:
     if run.log.interfaces:
         rows = [[number, one.name, one.ctype, one.n_slave, figures(one.slave_length, 4), one.n_master,
                  figures(one.master_length, 4), figures(one.slave_penalty, 4),
-                 figures(one.master_penalty, 4)]
+                 figures(one.master_penalty, 4) if one.master_penalty else ""]
                 for number, one in sorted(run.log.interfaces.items())]
         head = ["interface", "formulation", "type", "slave nodes", "mean length", "master nodes",
                 "mean length", "penalty per length", "of the master pass"]

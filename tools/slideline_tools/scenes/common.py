@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Blocks of a deck that several scenes need, and their materials (SI units)."""
+from slideline_tools.contact_types import PROGRAM_NAMES
 
 STEEL = dict(rho=7850.0, young=210.0e9, poisson=0.3)
 ALUMINIUM = dict(rho=2700.0, young=69.0e9, poisson=0.33, yield_stress=276.0e6)
 
-CONTACT_TYPES = ("1 classical NTS, 2 NTS-AR, 3 NTS-AR two-pass, 4 VTS-PPT, 5 NTS-mAR, 6 mortar, "
-                 "7 segmented mortar")
+CONTACT_TYPES = ", ".join(f"{number} {name}" for number, name in PROGRAM_NAMES.items())
 
 
 def part(deck, number, heading, section, material):

@@ -8,12 +8,11 @@ import sys
 from PIL import Image
 
 from slideline_tools import UserError
+from slideline_tools.contact_types import TYPES
 from slideline_tools.fields import scalar_field
 from slideline_tools.plots import (COLOURS, PAGE_WIDTH, STYLE, colour_bar, draw_field,
                                    panel_height, plt)
 
-TYPES = {1: "NTS", 2: "NTS-AR", 3: "two-pass NTS-AR", 4: "VTS-PPT", 5: "NTS-mAR", 6: "mortar",
-         7: "segmented mortar"}
 LARGEST_PICTURE = 100_000
 
 

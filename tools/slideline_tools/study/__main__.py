@@ -11,6 +11,7 @@ import signal
 import sys
 
 from slideline_tools import UserError
+from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.study import registry
 from slideline_tools.study.job import Options, file_digest, interleave, part_of
 from slideline_tools.study.progress import Progress
@@ -29,7 +30,7 @@ def build_parser():
     parser.add_argument("name", choices=registry.STUDIES, metavar="NAME",
                         help=", ".join(registry.STUDIES))
     parser.add_argument("--levels", type=int, nargs="+", help="refinement levels")
-    parser.add_argument("--types", type=int, nargs="+", choices=range(1, 8), help="contact types")
+    parser.add_argument("--types", type=int, nargs="+", choices=ALL_TYPES, help="contact types")
     parser.add_argument("--quick", action="store_true",
                         help="a minute's worth of it, into results/study-NAME-quick")
     parser.add_argument("--repeats", type=int, help="rounds of timing runs")

@@ -9,7 +9,7 @@ import os
 import pathlib
 from typing import Callable, Mapping, Optional, Sequence, Union
 
-ALL_TYPES = (1, 2, 3, 4, 5, 6, 7)
+from slideline_tools.contact_types import ALL_TYPES
 
 
 @dataclasses.dataclass(frozen=True)
