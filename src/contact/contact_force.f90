@@ -173,8 +173,8 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     if (memory%averages_pressure .and. is_unpressed) then
-      call average_gaps(memory%points, memory%n_slave, memory%slave_penalty, memory%nodal)
-      call scatter_averaged(memory%points, memory%nodal, memory%force, memory%n_active)
+      call average_gaps(memory%points, memory%n_slave, memory%nodal)
+      call scatter_averaged(memory%points, memory%slave_penalty, memory%nodal, memory%force, memory%n_active)
     else if (sums_in_runs(memory)) then
       call scatter_runs(memory%points, memory%force, memory%n_active)
     else

@@ -9,8 +9,8 @@ module contact_penalty_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: set_penalties, mean_length, press_points, press_each, pressures_of, average_gaps, stored_energy, &
-    damp_points
+  public :: set_penalties, mean_length, press_points, press_each, pressures_of, average_gaps, share_pressure, &
+    stored_energy, damp_points
 
 contains
 
@@ -108,9 +108,9 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     if (memory%averages_pressure) then
-      call average_gaps(memory%points, memory%n_slave, memory%slave_penalty, memory%nodal)
+      call average_gaps(memory%points, memory%n_slave, memory%nodal)
       call share_pressure(memory%points%n, memory%points%slave_nodes, memory%points%slave_weights, &
-        memory%points%stiffness, memory%nodal, memory%points%pressure)
+        memory%slave_penalty, memory%nodal, memory%points%pressure)
     else
       call press_each(memory%points%n, memory%points%stiffness, memory%points%gap, memory%points%pressure)
     end if
@@ -145,11 +145,10 @@ contains
   !> What makes the pressure at slave nodes, p_A = stiffness * max(0, -g_A) with the averaged gap
   !> g_A = sum(N_A a g)/sum(N_A a); points get it by the slave shape functions (Fischer & Wriggers 2005). The forces that
   !> follow are the derivative of the energy sum of p_A^2 sum(N_A a)/(2 stiffness) at frozen weights.
-  pure subroutine average_gaps(points, n_slave, stiffness, nodal)
+  pure subroutine average_gaps(points, n_slave, nodal)
     type(contact_points_t), intent(in) :: points
     integer, intent(in) :: n_slave
-    real(wp), intent(in) :: stiffness !! of all points, N/m^2
-    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave or more) out: max(0, -g_A), m, and stiffness
+    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave or more) out: (1, :) max(0, -g_A), m
     integer :: node
 
     do node = 1, n_slave
@@ -159,19 +158,18 @@ contains
     call sum_gaps(points%n, points%slave_nodes, points%slave_weights, points%area, points%gap, nodal)
     do node = 1, n_slave
       nodal(1, node) = max(0.0_wp, -nodal(1, node))/max(nodal(2, node), tiny(1.0_wp))
-      nodal(2, node) = stiffness
     end do
   end subroutine average_gaps
 
   !> Pressure of the points from -g_A of the slave nodes.
   pure subroutine share_pressure(n, slave_nodes, slave_weights, stiffness, nodal, pressure)
     integer, intent(in) :: n, slave_nodes(n_side, *)
-    real(wp), intent(in) :: slave_weights(n_side, *), stiffness(*), nodal(2, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), stiffness, nodal(2, *)
     real(wp), intent(inout) :: pressure(*)
     integer :: p
 
     do p = 1, n
-      pressure(p) = stiffness(p)*(slave_weights(1, p)*nodal(1, slave_nodes(1, p)) &
+      pressure(p) = stiffness*(slave_weights(1, p)*nodal(1, slave_nodes(1, p)) &
         + slave_weights(2, p)*nodal(1, slave_nodes(2, p)))
     end do
   end subroutine share_pressure

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> From points to nodal forces; points with a pressure of their own are pressed on the way.
 module contact_scatter_m
-  use contact_penalty_m, only : press_each
+  use contact_penalty_m, only : press_each, share_pressure
   use contact_state_m, only : contact_points_t, contact_state_t, n_side
   use kinds_m, only : wp
   implicit none
@@ -62,16 +62,27 @@ contains
     call close_run(run, force)
   end subroutine scatter_runs
 
-  !> The same where the pressure is shared out from the slave nodes and is not there yet: it is formed, kept and counted on the
-  !> way. As passes of their own these two took a sixth of the traffic of a list that is longer than the caches.
-  pure subroutine scatter_averaged(points, nodal, force, n_active)
+  !> The same where the pressure is shared out from the slave nodes and is not there yet: it is formed, kept and counted
+  !> block by block.
+  pure subroutine scatter_averaged(points, stiffness, nodal, force, n_active)
     type(contact_points_t), intent(inout) :: points
-    real(wp), intent(in) :: nodal(2, *)    !! of slave nodes: minus the averaged gap, m, and stiffness, N/m^2
+    real(wp), intent(in) :: stiffness      !! of all points, N/m^2
+    real(wp), intent(in) :: nodal(2, *)    !! (1, :) minus the averaged gaps of slave nodes, m
     real(wp), intent(inout) :: force(2, *) !! by local node, N/m
     integer, intent(out) :: n_active
+    type(end_t) :: run(4)
+    integer :: p, n
 
-    call share_in_runs(points%slave_nodes, points%slave_weights, points%master_nodes, points%master_weights, &
-      points%normal, points%area(:points%n), nodal, points%pressure, force, n_active)
+    n_active = 0
+    do p = 1, points%n, block_size
+      n = min(block_size, points%n - p + 1)
+      call share_pressure(n, points%slave_nodes(1, p), points%slave_weights(1, p), stiffness, nodal, &
+        points%pressure(p))
+      call scatter_in_runs(n, points%slave_nodes(1, p), points%slave_weights(1, p), points%master_nodes(1, p), &
+        points%master_weights(1, p), points%normal(1, p), points%pressure(p), points%area(p), run, force)
+      n_active = n_active + count_active(n, points%pressure(p))
+    end do
+    call close_run(run, force)
   end subroutine scatter_averaged
 
   !> The same for the next points of many that are not on the list together; the last run stays open, so that sums do not
@@ -203,65 +214,6 @@ contains
     run%node = [a, b, c, d]
     run(1)%force = to_a; run(2)%force = to_b; run(3)%force = to_c; run(4)%force = to_d
   end subroutine scatter_in_runs
-
-  !> As scatter_in_runs, with the pressures that a slave segment shares out from its nodes (as `share_pressure` of
-  !> contact_penalty has it).
-  pure subroutine share_in_runs(slave_nodes, slave_weights, master_nodes, master_weights, normal, &
-    area, nodal, pressure, force, n_active)
-    integer, intent(in) :: slave_nodes(n_side, *), master_nodes(n_side, *)
-    real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
-    real(wp), intent(in) :: normal(2, *), nodal(2, *)
-    real(wp), intent(in), contiguous :: area(:) !! as many as there are points
-    real(wp), intent(inout) :: pressure(*)
-    real(wp), intent(inout) :: force(2, *)
-    integer, intent(out) :: n_active
-    real(wp), dimension(2) :: point, to_a, to_b, to_c, to_d, total
-    real(wp) :: of_a, of_b, stiffness, own
-    integer :: p, a, b, c, d
-
-    n_active = 0
-    if (size(area) == 0) return
-    a = slave_nodes(1, 1); b = slave_nodes(2, 1)
-    c = master_nodes(1, 1); d = master_nodes(2, 1)
-    of_a = nodal(1, a); of_b = nodal(1, b)
-    stiffness = nodal(2, a)
-    to_a = 0.0_wp; to_b = 0.0_wp; to_c = 0.0_wp; to_d = 0.0_wp
-    do p = 1, size(area)
-      if (slave_nodes(1, p) /= a .or. slave_nodes(2, p) /= b) then
-        total = force(:, a) + to_a
-        force(:, a) = total
-        total = force(:, b) + to_b
-        force(:, b) = total
-        a = slave_nodes(1, p); b = slave_nodes(2, p)
-        of_a = nodal(1, a); of_b = nodal(1, b)
-        to_a = 0.0_wp; to_b = 0.0_wp
-      end if
-      if (master_nodes(1, p) /= c .or. master_nodes(2, p) /= d) then
-        total = force(:, c) - to_c
-        force(:, c) = total
-        total = force(:, d) - to_d
-        force(:, d) = total
-        c = master_nodes(1, p); d = master_nodes(2, p)
-        to_c = 0.0_wp; to_d = 0.0_wp
-      end if
-      own = stiffness*(slave_weights(1, p)*of_a + slave_weights(2, p)*of_b)
-      pressure(p) = own
-      if (own > 0.0_wp) n_active = n_active + 1
-      point = own*area(p)*normal(:, p)
-      to_a = to_a + slave_weights(1, p)*point
-      to_b = to_b + slave_weights(2, p)*point
-      to_c = to_c + master_weights(1, p)*point
-      to_d = to_d + master_weights(2, p)*point
-    end do
-    total = force(:, a) + to_a
-    force(:, a) = total
-    total = force(:, b) + to_b
-    force(:, b) = total
-    total = force(:, c) - to_c
-    force(:, c) = total
-    total = force(:, d) - to_d
-    force(:, d) = total
-  end subroutine share_in_runs
 
   !> What the rounding of places, one part in 1/epsilon of them, makes of the nodal forces of all pressed points: a gap along
   !> n is known to n_x X and n_y Y. Times epsilon it is a force.
