@@ -168,6 +168,7 @@ contains
     real(wp), intent(inout) :: pressure(*)
     integer :: p
 
+    !GCC$ NOVECTOR
     do p = 1, n
       pressure(p) = stiffness*(slave_weights(1, p)*nodal(1, slave_nodes(1, p)) &
         + slave_weights(2, p)*nodal(1, slave_nodes(2, p)))
