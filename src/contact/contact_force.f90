@@ -97,6 +97,22 @@ contains
     had_force = memory%n_active > 0
     memory%n_active = 0
     if (had_force) call keep_former(memory)
+    call place_and_press(contact, motion, mass, cycle, clock, memory)
+    if (memory%n_active > 0 .or. memory%points%n > 0 .or. had_force) then
+      call add_force(memory%nodes, memory%former_force, memory%force, motion, force, power)
+      memory%energy = memory%energy - 0.5_wp*dt*power
+    end if
+    call lap(clock, phase_contact_force)
+  end subroutine apply_contact
+
+  !> Place the points and form their forces.
+  subroutine place_and_press(contact, motion, mass, cycle, clock, memory)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: motion(:, :), mass(:)
+    integer, intent(in) :: cycle
+    type(clock_t), intent(inout) :: clock
+    type(contact_state_t), intent(inout) :: memory
+
     if (goes_in_ranges(contact, cycle, memory)) then
       call press_ranges(contact, clock, memory)
     else
@@ -104,12 +120,7 @@ contains
       if (memory%laps_pairing) call lap(clock, phase_contact_pairing)
       if (memory%points%n > 0) call press_all(contact, motion, mass, cycle, memory)
     end if
-    if (memory%n_active > 0 .or. memory%points%n > 0 .or. had_force) then
-      call add_force(memory%nodes, memory%former_force, memory%force, motion, force, power)
-      memory%energy = memory%energy - 0.5_wp*dt*power
-    end if
-    call lap(clock, phase_contact_force)
-  end subroutine apply_contact
+  end subroutine place_and_press
 
   !> Pressures and forces of the points on the list.
   pure subroutine press_all(contact, motion, mass, cycle, memory)

@@ -119,22 +119,11 @@ contains
         points%master_nodes(1, p), points%master_weights(1, p))
       call put_springs(n, found%gap(1, first), found%normal(1, first), found%area(first), &
         points%gap(p), points%normal(1, p), points%area(p))
-      if (.not. has_stiffness(points, n_gauss*n, memory%slave_penalty)) &
+      if (points%n + n_gauss*n > points%n_former) &
         points%stiffness(p:points%n + n_gauss*n) = memory%slave_penalty
       points%n = points%n + n_gauss*n
     end associate
   end subroutine put_points
-
-  !> Whether the stiffness of the next `n` points stands from the last placement. All points have the same.
-  pure function has_stiffness(points, n, stiffness)
-    type(contact_points_t), intent(in) :: points
-    integer, intent(in) :: n
-    real(wp), intent(in) :: stiffness
-    logical :: has_stiffness
-
-    has_stiffness = points%n + n <= points%n_former
-    if (has_stiffness) has_stiffness = .not. abs(points%stiffness(points%n + 1) - stiffness) > 0.0_wp
-  end function has_stiffness
 
   !> Nodes and weights of the points on `n` pieces, written out for both: a loop over them takes twice as long.
   pure subroutine put_sides(n, ends, nodes, xi, foot, slave_nodes, slave_weights, master_nodes, &

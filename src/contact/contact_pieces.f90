@@ -2,7 +2,8 @@
 !> Gauss points of type 7 on the pieces of one slave segment, piece by piece and each over whatever master segment is
 !> closest (doc/theory/contact.md, section 5.7).
 module contact_pieces_m
-  use contact_overlap_m, only : cover_t, piece_t, first_piece, next_piece, local_foot, facing_share
+  use contact_local_foot_m, only : local_foot
+  use contact_overlap_m, only : cover_t, piece_t, first_piece, next_piece, facing_share
   use contact_placing_m, only : add_segment_point, place_on_segment
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t, make_room

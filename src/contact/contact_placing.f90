@@ -7,7 +7,7 @@ module contact_placing_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: add_touching_nodes, put_stiffness, add_segment_point, add_plain_point, tracked_foot, &
+  public :: add_touching_nodes, put_stiffness, forget_other_stiffness, add_segment_point, add_plain_point, tracked_foot, &
     place_on_segment
 
   !> Nodes placed together.
@@ -127,6 +127,14 @@ contains
     if (is_known .and. .not. abs(points%stiffness(1) - stiffness) > 0.0_wp) return
     points%stiffness(:points%n) = stiffness
   end subroutine put_stiffness
+
+  !> Points stand as the placement before left them only as long as the stiffness, which all have in common, is the same.
+  pure subroutine forget_other_stiffness(stiffness, points)
+    real(wp), intent(in) :: stiffness
+    type(contact_points_t), intent(inout) :: points
+
+    if (abs(points%stiffness(1) - stiffness) > 0.0_wp) points%n_former = 0
+  end subroutine forget_other_stiffness
 
   !> Append a point between the nodes of a slave segment; area and stiffness are left to the formulation.
   pure subroutine add_segment_point(master, n_slave, ends, xi, foot, points)

@@ -12,7 +12,7 @@ module contact_scatter_m
   integer, parameter :: block_size = 128
 
   !> What the last points in a row with the same nodes on a side give to one of these, and it has not got yet. Node and
-  !> force in turn: of forces in a row the compiler makes one vector, and sums them twice to that end.
+  !> force in turn: with all forces in a row the compiler makes vectors of them and forms each sum twice.
   type :: end_t
     integer :: node = 0  !! 0: no points yet
     real(wp) :: force(2) !! N/m

@@ -3,7 +3,8 @@
 !> quotients of a list are formed together (one by one, they took a third of the time of type 6). What is found is
 !> what `local_foot` finds; spots that are not plainly over one master segment are left to that.
 module contact_spot_list_m
-  use contact_overlap_m, only : local_foot, facing_share, face_on
+  use contact_local_foot_m, only : local_foot
+  use contact_overlap_m, only : facing_share, face_on
   use contact_plain_foot_m, only : well_inside
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t, make_room, n_side, is_touching, is_behind

@@ -11,7 +11,7 @@ module points_nts_mar_m
     see_master_node, facing_share
   use contact_plain_cover_m, only : plain_cover_t, clear_list, list_pointed, list_segment, &
     list_other, cut_segments
-  use contact_placing_m, only : add_touching_nodes, put_stiffness
+  use contact_placing_m, only : add_touching_nodes, put_stiffness, forget_other_stiffness
   use contact_projection_m, only : see_segment
   use contact_state_m, only : contact_points_t, contact_state_t, make_room, n_side
   use contacts_m, only : contact_t
@@ -38,7 +38,8 @@ contains
     n = memory%points%n
     if (.not. is_known) call mark_points(n, memory%points%slave_nodes, memory%mark)
     memory%points%area(:n) = 0.0_wp
-    call forget_constants(memory%slave_penalty, is_known, memory%points)
+    if (.not. is_known) memory%points%n_former = 0
+    call forget_other_stiffness(memory%slave_penalty, memory%points)
     call put_stiffness(memory%slave_penalty, is_known, memory%points)
     call clear_list(cover)
     s = 1
@@ -51,16 +52,6 @@ contains
     call note_next_wake(memory)
     call finish_nodes(contact, memory, n)
   end subroutine place_nts_mar
-
-  !> What the points at master nodes have in common stands from the placement before, unless these stand elsewhere or the
-  !> stiffness is another.
-  pure subroutine forget_constants(stiffness, is_known, points)
-    real(wp), intent(in) :: stiffness
-    logical, intent(in) :: is_known !! points at slave nodes, before them, stand where they stood
-    type(contact_points_t), intent(inout) :: points
-
-    if (.not. is_known .or. abs(points%stiffness(1) - stiffness) > 0.0_wp) points%n_former = 0
-  end subroutine forget_constants
 
   !> Put the next segment from s on that may touch on the list: s is then the one behind it.
   pure subroutine take_segment(contact, memory, s, cover)

@@ -9,6 +9,7 @@ module points_segmented_mortar_m
   use contact_pieces_m, only : gauss_xi, add_pieces
   use contact_plain_cover_m, only : plain_cover_t, clear_list, list_touching, list_with_nodes, list_other, &
     cut_segments, note_plain_contact
+  use contact_placing_m, only : forget_other_stiffness
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use kinds_m, only : wp
@@ -27,6 +28,7 @@ contains
     integer :: n_edge !! segments noted in memory%mark: in contact, beside others that may sleep
 
     if (all_asleep(memory)) return
+    call forget_other_stiffness(memory%slave_penalty, memory%points)
     call clear_list(cover)
     n_edge = 0
     call place_awake(contact, memory, n_edge, cover)

@@ -3,7 +3,8 @@
 !> (doc/theory/contact.md, section 9.5).
 module tangent_mortar_m
   use contact_nodal_tangent_m, only : varied_list_t, start_list, append_point, add_nodal_tangent
-  use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece, local_foot
+  use contact_local_foot_m, only : local_foot
+  use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece
   use contact_placing_m, only : place_on_segment
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t
