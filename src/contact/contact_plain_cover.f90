@@ -12,8 +12,8 @@ module contact_plain_cover_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: plain_cover_t, clear_list, list_touching, list_pointed, list_segment, list_with_nodes, list_other, &
-    cut_segments, note_plain_contact, n_room
+  public :: plain_cover_t, clear_list, list_touching, list_pointed, list_segment, list_other, cut_segments, &
+    note_plain_contact, n_room
 
   !> Slave segments cut into pieces, one piece behind the other. Without default values, which would be written
   !> before each use.
@@ -167,35 +167,13 @@ contains
     cover%is_full = k > n_room - n_most .or. cover%n_segment == n_room
   end subroutine list_pieces
 
-  !> Put any other slave segment on the list. Feet on a node, corners, and whatever else needs a decision is left to
-  !> contact_overlap.
-  pure subroutine list_segment(contact, memory, s, cover, is_listed)
+  !> Put any other slave segment on the list if the master segments below its ends can be told: corners, and whatever else
+  !> needs a decision, are left to contact_overlap.
+  pure subroutine list_segment(contact, memory, s, with_nodes, cover, is_listed)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s !! slave segment
-    type(plain_cover_t), intent(inout) :: cover
-    logical, intent(out) :: is_listed
-
-    call list_between(contact, memory, s, .false., cover, is_listed)
-  end subroutine list_segment
-
-  !> The same, also where the foot of an end in contact is a node: which is common in valleys.
-  pure subroutine list_with_nodes(contact, memory, s, cover, is_listed)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s !! slave segment
-    type(plain_cover_t), intent(inout) :: cover
-    logical, intent(out) :: is_listed
-
-    call list_between(contact, memory, s, .true., cover, is_listed)
-  end subroutine list_with_nodes
-
-  !> Put a slave segment on the list if the master segments below its ends can be told.
-  pure subroutine list_between(contact, memory, s, with_nodes, cover, is_listed)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s
-    logical, intent(in) :: with_nodes
+    integer, intent(in) :: s           !! slave segment
+    logical, intent(in) :: with_nodes  !! also where the foot of an end in contact is a node, which is common in valleys
     type(plain_cover_t), intent(inout) :: cover
     logical, intent(out) :: is_listed
     integer :: first, last
@@ -208,7 +186,7 @@ contains
       if (first /= last .and. contact%master%n_segment <= short_chain) return
       call list_pieces(s, ends, first, last, contact%master%previous, touches, cover, is_listed)
     end associate
-  end subroutine list_between
+  end subroutine list_segment
 
   !> Put a slave segment that is not the common case on the list, without pieces, so that its points keep their place among
   !> those of the others.

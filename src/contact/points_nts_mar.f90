@@ -65,7 +65,7 @@ contains
       s = s + 1
       if (is_asleep(memory, s - 1, contact%slave%segments(:, s - 1))) cycle
       call take_feet_of(contact%slave%segments(:, s - 1), memory)
-      call list_segment(contact, memory, s - 1, cover, is_listed)
+      call list_segment(contact, memory, s - 1, .false., cover, is_listed)
       if (.not. is_listed) call list_other(s - 1, cover)
       return
     end do

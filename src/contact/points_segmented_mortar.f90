@@ -7,7 +7,7 @@ module points_segmented_mortar_m
   use contact_piece_list_m, only : look_at_segments, put_points, put_pieces
   use contact_piece_points_m, only : plain_points_t, find_points, look_over
   use contact_pieces_m, only : gauss_xi, add_pieces
-  use contact_plain_cover_m, only : plain_cover_t, clear_list, list_touching, list_with_nodes, list_other, &
+  use contact_plain_cover_m, only : plain_cover_t, clear_list, list_touching, list_segment, list_other, &
     cut_segments, note_plain_contact
   use contact_placing_m, only : forget_other_stiffness
   use contact_state_m, only : contact_state_t, is_touching
@@ -96,7 +96,7 @@ contains
     type(plain_cover_t), intent(inout) :: cover
     logical :: is_listed
 
-    call list_with_nodes(contact, memory, s, cover, is_listed)
+    call list_segment(contact, memory, s, .true., cover, is_listed)
     if (.not. is_listed) call list_other(s, cover)
     if (cover%is_full) call place_list(contact, memory, may_touch, n_edge, cover)
   end subroutine take_segment
