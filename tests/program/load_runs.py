@@ -55,7 +55,7 @@ def write_decks(folder, count, seed):
     folder.mkdir(parents=True)
     names = []
     for k in range(count):
-        kind, scene = TYPES[k % 7], list(SCENES)[k % len(SCENES)]
+        kind, scene = TYPES[k % len(TYPES)], list(SCENES)[k % len(SCENES)]
         make, cycles, varied = SCENES[scene]
         made = make(kind)
         text = with_end(made if isinstance(made, str) else made.text(), cycles and cycles + k % 50)

@@ -3,6 +3,7 @@
 # usage: tools/batch/kill_test.sh [KILLS] [SEED]
 # Kills runs of all scenes at random instants (default 200, seed 1) and checks what is left of each:
 # results in h5py and VTK, CSV files, restart files, the run that goes on, the rerun. A quarter of an hour.
+# Needs what the tests need: tools/test.sh, run once before, installs it.
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)

@@ -3,6 +3,7 @@
 # usage: tools/batch/load_test.sh [JOBS] [SEED]
 # Runs small jobs (default 1000, seed 1) of all types and scenes in batches, 4 and 8 at a time and as an array, that are killed run by run
 # and as a whole and taken up again, and compares every result with that of its deck run alone. A quarter of an hour.
+# Needs what the tests need: tools/test.sh, run once before, installs it.
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
