@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Competence lengths: what each node of a surface stands for (doc/theory/contact.md, section 5.2).
+!> Competence lengths: what each node of a surface stands for (doc/theory/contact.md, section 5).
 module contact_competence_m
   use contact_state_m, only : n_side
   use geometry_m, only : segment_length
