@@ -14,10 +14,10 @@ module contact_penalty_m
 
 contains
 
-  !> All equivalents of the penalty. The seed's rule eps_hat = eps/l with the mean segment length of
-  !> the initial mesh converts; l is that of the slave surface for eps_hat of the slave pass and for
-  !> eps of type 1, that of the master surface for eps_hat of the master pass. A share of the
-  !> largest stable penalty stands as it is until the step is known.
+  !> All equivalents of the penalty. The rule eps_hat = eps/l (Kang, Lee & Shin 2023) with the mean
+  !> segment length of the initial mesh converts; l is that of the slave surface for eps_hat of the
+  !> slave pass and for eps of type 1, that of the master surface for eps_hat of the master pass. A
+  !> share of the largest stable penalty stands as it is until the step is known.
   pure subroutine set_penalties(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model

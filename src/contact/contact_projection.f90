@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Where a spot stands on a chain: the foot of the spot, with corners and ends treated as METHODS
-!> asks. Two ways to find it: `closest_foot` knows nothing of the past; `follow_contact` keeps a
+!> Where a spot stands on a chain: the foot of the spot, with its corners and ends.
+!> Two ways to find it: `closest_foot` knows nothing of the past; `follow_contact` keeps a
 !> spot that is in contact on the face through which it came (doc/theory/contact.md, section 3).
 module contact_projection_m
   use geometry_m, only : sight_t, sight_of_segment, closest_distance, sight_normal

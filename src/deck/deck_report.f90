@@ -37,7 +37,8 @@ module deck_report_m
   !> Messages so far.
   type :: report_t
     integer :: n_error = 0
-    integer :: n_warning = 0
+    integer :: n_warning = 0           !! kept
+    integer :: n_dropped = 0           !! warnings beyond these, the same ones more than once
     type(note_t), allocatable :: errors(:)
     type(note_t), allocatable :: warnings(:)
   end type report_t
@@ -76,8 +77,11 @@ contains
     type(spot_t), intent(in) :: spot
 
     if (.not. allocated(report%warnings)) allocate (report%warnings(max_kept))
-    if (report%n_warning >= max_kept) return
     if (has_warning(report, key)) return
+    if (report%n_warning == max_kept) then
+      report%n_dropped = report%n_dropped + 1
+      return
+    end if
     report%n_warning = report%n_warning + 1
     report%warnings(report%n_warning)%line = line
     report%warnings(report%n_warning)%key = key
@@ -111,6 +115,8 @@ contains
     do i = 1, size(order)
       call warn(log, report%warnings(order(i))%text)
     end do
+    if (report%n_dropped > 0) call warn(log, 'and '//to_text(report%n_dropped) &
+      //' more warnings')
   end subroutine emit_warnings
 
   !> One error that holds all messages in deck order; nothing when there are none.

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Flanagan-Belytschko hourglass control of the one-point quad (METHODS section 1; Flanagan &
+!> Flanagan-Belytschko hourglass control of the one-point quad (Flanagan &
 !> Belytschko 1981), from the hourglass velocity gamma.v.
 module hourglass_m
   use kinds_m, only : wp

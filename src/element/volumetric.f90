@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Volumetric response sigma_vol = K ln(J) (METHODS section 1; the seed's (A1) prints the pressure).
+!> Volumetric response sigma_vol = K ln(J) (Kang, Lee & Shin 2023 print the pressure, A1).
 module volumetric_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size

@@ -22,7 +22,7 @@ contains
 
   !> Rotate a symmetric deviator by the rotation of the step. In the plane the update of Hughes &
   !> Winget (1980) is a rotation by 2 atan(dt w/2), so rigid spin leaves no error whatever the step;
-  !> (A4) of the seed is its first-order form.
+  !> (A4) of Kang, Lee & Shin (2023) is its first-order form.
   pure subroutine rotate_deviator(cos2, sin2, xx, yy, xy)
     real(wp), intent(in) :: cos2(chunk_size), sin2(chunk_size)
     real(wp), intent(inout) :: xx(chunk_size), yy(chunk_size), xy(chunk_size)

@@ -186,8 +186,8 @@ contains
     now%gap_floor = now%floor + epsilon(1.0_wp)*norm2(take_free(step%equations, forces))
   end subroutine measure_residual
 
-  !> The seed's energy criterion or the round-off floor of the residual; the other criteria
-  !> where the deck sets them.
+  !> The energy criterion of Kang, Lee & Shin (2023) or the round-off floor of the residual; the
+  !> other criteria where the deck sets them.
   pure function is_converged(implicit, first, now, step) result(converged)
     type(implicit_t), intent(in) :: implicit
     type(measure_t), intent(in) :: first, now

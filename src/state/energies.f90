@@ -29,7 +29,7 @@ contains
       + energies%damping + energies%contact
   end function total_energy
 
-  !> total / (initial + external work); 1 when both vanish (METHODS section 3).
+  !> total / (initial + external work); 1 when both vanish.
   pure function energy_ratio(energies) result(ratio)
     type(energies_t), intent(in) :: energies
     real(wp) :: ratio

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The rules of the house (doc/architecture.md, doc/style.md), as tests."""
+"""The rules of the house (doc/architecture.md), as tests."""
 import re
 import statistics
 import subprocess

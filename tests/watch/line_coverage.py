@@ -5,6 +5,8 @@
 unreached.txt holds the reasons: a file of src/ (or a pattern of files), a part of the line's text, and why no test
 reaches it. Ends with status 1 if less than the least share was run, or if a line that was not run has no reason.
 """
+from __future__ import annotations
+
 import argparse
 import fnmatch
 import gzip

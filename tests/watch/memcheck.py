@@ -6,6 +6,8 @@ The program is built without AVX-512, which valgrind does not know. After the tr
 purpose in a copy of the tree: each must be found. libraries.supp says what of the libraries is left out. Some
 minutes in all.
 """
+from __future__ import annotations
+
 import argparse
 import re
 import shutil

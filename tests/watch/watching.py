@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the scripts of this folder share: builds of the program with other options, decks, runs side by side."""
+from __future__ import annotations
+
 import os
 import subprocess
 import sys

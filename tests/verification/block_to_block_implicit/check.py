@@ -73,7 +73,7 @@ class Scene:
 
 
 def check_iterations(run, name, scene):
-    """The seed's Fig. 20: the first five steps need at most three iterations."""
+    """Fig. 20 of the paper: the first five steps need at most three iterations."""
     run.check(f"{name}: steps in the log", len(scene.steps), Blocks.steps, 0.0, "abs")
     counts = [len(scene.steps[k]) for k in range(1, Blocks.steps + 1)]
     run.check(f"{name}: iterations of the first five steps", counts[:5], 3.0, 0.0, "max",

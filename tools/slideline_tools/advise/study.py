@@ -56,7 +56,7 @@ def measure(program: pathlib.Path, folder: pathlib.Path, rounds: int):
 
 
 def measure_collision(program: pathlib.Path, folder: pathlib.Path, rounds: int) -> dict:
-    """The collision of the seed, N_r = 2, and again with the step that the advice names."""
+    """The collision of the paper, N_r = 2, and again with the step that the advice names."""
     before, after, predicted, place = [], [], [], folder / "collision"
     for _ in range(rounds):
         before.append(run_deck(program, place, collision(2)))
@@ -169,7 +169,7 @@ median, so that differences of a few per cent mean nothing.
 
 {table}
 
-The collision of the seed (`input/collision/collision_2.k`) has a step somewhat shorter than it must. With the one that
+The collision of the paper (`input/collision/collision_2.k`) has a step somewhat shorter than it must. With the one that
 the advice names, {scene}.
 
 ## When it speaks
