@@ -21,14 +21,15 @@ module arguments_m
     logical :: version = .false.
     logical :: check = .false.              !! look at the deck, no run
     logical :: json = .false.               !! what the check finds, for programs
-    character(:), allocatable :: deck       !! path of the deck; with a restart, of what changes, or unset
+    character(:), allocatable :: deck       !! path of the deck; with a restart, of what changes, or
+                                            !! unset
     character(:), allocatable :: restart    !! path of the restart file to go on from, or unset
     character(:), allocatable :: directory  !! where results go
     character(:), allocatable :: job        !! stem of the result files
     character(:), allocatable :: line       !! all arguments in one line, for the record
     integer :: n_thread = 1                 !! at most
-    integer :: thread_share = 300           !! elements for each of several threads, at least: below, waiting costs
-                                            !! more than sharing saves
+    integer :: thread_share = 300           !! elements for each of several threads, at least:
+                                            !! below, waiting costs more than sharing saves
     integer :: timing = timing_by_phase     !! one of the `timing_` constants
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
   end type arguments_t
@@ -193,8 +194,8 @@ contains
     if (allocated(target_text)) then
       mistakes = mistakes//name//' is given twice: "'//target_text//'" and "'//value//'"' &
         //new_line('a')
-      if (name == 'deck') mistakes = mistakes//'(the one command that may come before a deck is check)' &
-        //new_line('a')
+      if (name == 'deck') mistakes = mistakes &
+        //'(the one command that may come before a deck is check)'//new_line('a')
     else if (len_trim(value) == 0) then
       mistakes = mistakes//name//' is empty'//new_line('a')
     else

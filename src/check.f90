@@ -50,7 +50,8 @@ contains
     else if (.not. allocated(error)) then
       write (output_unit, '(a)') arguments%deck//': accepted, ' &
         //to_text(model%mesh%n_element)//' elements, '//to_text(model%mesh%n_node)//' nodes, ' &
-        //to_text(size(model%contacts))//' interfaces, '//to_text(monitor%log%n_warning)//' warnings'
+        //to_text(size(model%contacts))//' interfaces, '//to_text(monitor%log%n_warning) &
+        //' warnings'
     end if
   end subroutine check_deck
 

@@ -49,8 +49,9 @@ contains
     else
       call move_alloc(deck, request%text)
     end if
-    if (.not. only_end_time(arguments)) call raise(error, 'when a run goes on the command line may ' &
-      //'change its end time alone (endtim=)', status_input)
+    if (.not. only_end_time(arguments)) call raise(error, &
+      'when a run goes on the command line may '//'change its end time alone (endtim=)', &
+      status_input)
   end subroutine take_up_deck
 
   !> A whole deck beside the restart file must be that of the file but for what may change.
@@ -69,15 +70,16 @@ contains
     call read_deck(whole, contact_kinds, unused, model, request%text, error)
     if (allocated(error)) return
     if (model%controls%implicit%is_on .neqv. is_implicit) then
-      call raise(error, 'the restart file '//arguments%restart//' is refused: it is of '//trim(merge( &
-        'an implicit run', 'an explicit run', is_implicit))//', and '//arguments%deck//' asks for the ' &
-        //trim(merge('explicit', 'implicit', is_implicit))//' method', status_input)
+      call raise(error, 'the restart file '//arguments%restart//' is refused: it is of ' &
+        //trim(merge('an implicit run', 'an explicit run', is_implicit))//', and '//arguments%deck &
+        //' asks for the '//trim(merge('explicit', 'implicit', is_implicit))//' method', &
+        status_input)
     else if (deck_identity(request%text) == deck_identity(deck)) then
       deallocate (request%overrides) ! they are in the text
     else
-      call raise(error, 'the restart file '//arguments%restart//' is refused: it belongs to another ' &
-        //'deck (checksum '//deck_identity(deck)//') than '//arguments%deck//' (' &
-        //deck_identity(request%text)//')', status_input)
+      call raise(error, 'the restart file '//arguments%restart &
+        //' is refused: it belongs to another '//'deck (checksum '//deck_identity(deck)//') than ' &
+        //arguments%deck//' ('//deck_identity(request%text)//')', status_input)
     end if
   end subroutine take_whole_deck
 

@@ -31,8 +31,8 @@ program slideline
     if (arguments%help) then
       write (output_unit, '(a)') help_text()
     else if (arguments%version) then
-      write (output_unit, '(a)') 'slideline '//version//' (source '//source_version//')', 'build '//build_type//', '//compiler, &
-        'flags '//flags, 'linear solvers '//solvers
+      write (output_unit, '(a)') 'slideline '//version//' (source '//source_version//')', 'build ' &
+        //build_type//', '//compiler, 'flags '//flags, 'linear solvers '//solvers
     else if (arguments%check) then
       call check_deck(arguments, error)
     else

@@ -52,8 +52,8 @@ contains
     call start_clock(monitor%clock)
     monitor%clock%is_on = arguments%timing /= timing_off
     call catch_signals()
-    call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler//', source ' &
-      //source_version//')')
+    call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler &
+      //', source '//source_version//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
     call make_request(arguments, monitor, request, error)
     if (allocated(error)) return
@@ -212,8 +212,8 @@ contains
     else if (model%controls%implicit%is_on) then
       call advance_implicit(model, state, monitor, reason, error)
     else
-      call advance_explicit(model, useful_threads(arguments, model%mesh%n_element), state, monitor, &
-        reason, error)
+      call advance_explicit(model, useful_threads(arguments, model%mesh%n_element), state, &
+        monitor, reason, error)
     end if
     stopped = reason == 'stopped on request'
     if (stopped) reason = reason//' (exit status '//to_text(status_stopped)//') before the ' &

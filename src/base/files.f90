@@ -115,8 +115,8 @@ contains
     integer(c_int) :: status
 
     status = c_rename(old//c_null_char, new//c_null_char)
-    if (status /= 0) call raise(error, 'cannot rename '//old//' to '//new//': '//open_failure(new), &
-      status_files)
+    if (status /= 0) call raise(error, 'cannot rename '//old//' to '//new//': ' &
+      //open_failure(new), status_files)
   end subroutine rename_file
 
   !> Bring what has been written to a file onto the disk itself, so that a power
@@ -134,7 +134,8 @@ contains
     if (c_associated(stream)) status = c_fsync(c_fileno(stream))
     reason = system_reason()
     if (c_associated(stream)) ignored = c_fclose(stream)
-    if (status /= 0) call raise(error, 'cannot bring '//path//' onto the disk: '//reason, status_files)
+    if (status /= 0) call raise(error, 'cannot bring '//path//' onto the disk: '//reason, &
+      status_files)
   end subroutine force_to_disk
 
   !> Whether `path` is there and is not a file of known size with something in it: a pipe, a device,

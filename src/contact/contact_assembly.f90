@@ -10,7 +10,8 @@ module contact_assembly_m
   public :: add_varied_point, add_spring_point, pattern_t, start_pattern, &
     add_to_row, add_to_column, add_product
 
-  !> Scratch for a product of two vectors over the nodes of an interface of which few entries are not zero.
+  !> Scratch for a product of two vectors over the nodes of an interface of which few entries are
+  !> not zero.
   type :: pattern_t
     integer :: n = 0                       !! nodes in use
     integer, allocatable :: nodes(:)       !! (n_node) the first n: local numbers

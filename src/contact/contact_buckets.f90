@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> The global search: segments of a chain in hashed square cells.
-!> A grid stays of use while the chain moves: nothing can have moved relative to the chain's first node
-!> by more than the travel since it was filled (the slip), and the search takes that off its
-!> bounds. Filling and asking are linear in the number of segments and spots.
+!> The global search: segments of a chain in hashed square cells. A grid stays of use while the
+!> chain moves: nothing can have moved relative to the chain's first node by more than the travel
+!> since it was filled (the slip), and the search takes that off its bounds. Filling and asking are
+!> linear in the number of segments and spots.
 module contact_buckets_m
   use contact_state_m, only : bucket_grid_t
   use geometry_m, only : closest_distance, separation, segment_length, sight_of_segment
@@ -83,7 +83,8 @@ contains
   end subroutine fill_grid
 
   !> Count a segment in its cells, or enter it: it is cut into pieces no longer than a cell, and
-  !> each piece takes the cells of its box, at most four. Entering moves each bucket's end down to its start.
+  !> each piece takes the cells of its box, at most four. Entering moves each bucket's end down to
+  !> its start.
   pure subroutine visit_cells(grid, surface, chain, segment, counts)
     type(bucket_grid_t), intent(inout) :: grid
     type(surface_t), intent(in) :: surface
@@ -146,8 +147,8 @@ contains
   end function box_distance
 
   !> Nearest segment to `spot`, if there is one within `reach`: rings of cells round the spot, until
-  !> no cell farther out can hold a nearer segment. (The last ring is there for runs that have blown up: these
-  !> end by their own checks, not in here.)
+  !> no cell farther out can hold a nearer segment. (The last ring is there for runs that have blown
+  !> up: these end by their own checks, not in here.)
   pure subroutine find_nearest(grid, surface, chain, spot, travel, reach, nearest)
     type(bucket_grid_t), intent(in) :: grid
     type(surface_t), intent(in) :: surface
@@ -176,9 +177,11 @@ contains
     call conclude(surface, kept, bound, reach, nearest)
   end subroutine find_nearest
 
-  !> Lower bound on the distance from `spot` to all segments but some that are known, as far as `reach`; rings of cells as
-  !> in `find_nearest`, but no more than a few: in much smaller cells than the reach the bound is what these hold.
-  pure function distance_to_others(grid, surface, chain, spot, travel, reach, known) result(distance)
+  !> Lower bound on the distance from `spot` to all segments but some that are known, as far as
+  !> `reach`; rings of cells as in `find_nearest`, but no more than a few: in much smaller cells
+  !> than the reach the bound is what these hold.
+  pure function distance_to_others(grid, surface, chain, spot, travel, reach, &
+      known) result(distance)
     type(bucket_grid_t), intent(in) :: grid
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :)
@@ -197,7 +200,8 @@ contains
       do iy = centre(2) - ring, centre(2) + ring
         step = max(1, merge(1, 2*ring, abs(iy - centre(2)) == ring))
         do ix = centre(1) - ring, centre(1) + ring, step
-          square = min(square, square_in_bucket(grid, surface, chain, spot, bucket_of(grid, ix, iy), known))
+          square = min(square, square_in_bucket(grid, surface, chain, spot, &
+            bucket_of(grid, ix, iy), known))
         end do
       end do
       bound = max(0.0_wp, ring*grid%cell - (travel - grid%filled_at))

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Touching without penetration. Explicit steps know contact only where a gap is negative. A static step must not start
-!> with two bodies that touch as free ones: for its first tangent, gaps that are zero but for round-off count
-!> as contact, without any pressure (doc/theory/contact.md, section 9.6).
+!> Touching without penetration. Explicit steps know contact only where a gap is negative. A static
+!> step must not start with two bodies that touch as free ones: for its first tangent, gaps that are
+!> zero but for round-off count as contact, without any pressure (doc/theory/contact.md, section
+!> 9.6).
 module contact_closing_m
   use contact_lists_m, only : list_touching
   use contact_projection_m, only : foot_t, closest_foot, face_foot, see_segment
@@ -58,7 +59,8 @@ contains
     memory%cover%next_wake = -huge(1.0_wp)
   end subroutine close_contacts
 
-  !> The spots of one tracking; those just in contact too, since beside a corner round-off has chosen their face.
+  !> The spots of one tracking; those just in contact too, since beside a corner round-off has
+  !> chosen their face.
   pure subroutine close_spots(tracking, surface, chain, spots, gap)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface
@@ -80,8 +82,8 @@ contains
     call list_touching(tracking)
   end subroutine close_spots
 
-  !> Foot of a spot that touches a face without gap, unless it has one already. Beside a sharp corner it is on the face
-  !> that the spot's own surface faces most. Segment 0: none.
+  !> Foot of a spot that touches a face without gap, unless it has one already. Beside a sharp
+  !> corner it is on the face that the spot's own surface faces most. Segment 0: none.
   pure function closed_foot(tracking, surface, chain, spots, i, gap) result(foot)
     type(tracking_t), intent(in) :: tracking
     type(surface_t), intent(in) :: surface

@@ -28,8 +28,9 @@ contains
       places(:, i_node), places(:, surface%segments(2, surface%outgoing(i_node))))
   end function competence_length
 
-  !> The same for the tracked nodes of some points, one after the other. A segment between two of them is measured once,
-  !> and the roots of a list of segments are formed together: node by node it took three times as long.
+  !> The same for the tracked nodes of some points, one after the other. A segment between two of
+  !> them is measured once, and the roots of a list of segments are formed together: node by node it
+  !> took three times as long.
   pure subroutine put_competence(surface, places, n, nodes, offset, areas)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
@@ -41,14 +42,15 @@ contains
 
     do first = 1, n, n_room
       m = min(n_room, n - first + 1)
-      call add_halves_of_neighbours(m, nodes(1, first), offset, surface%incoming, surface%outgoing, &
-        surface%segments, places, areas(first))
+      call add_halves_of_neighbours(m, nodes(1, first), offset, surface%incoming, &
+        surface%outgoing, surface%segments, places, areas(first))
     end do
   end subroutine put_competence
 
-  !> The same for a list of them, on arrays of known shape. Nodes that follow each other have the segment between them in
-  !> common, and nothing has to be looked up.
-  pure subroutine add_halves_of_neighbours(n, nodes, offset, incoming, outgoing, segments, places, areas)
+  !> The same for a list of them, on arrays of known shape. Nodes that follow each other have the
+  !> segment between them in common, and nothing has to be looked up.
+  pure subroutine add_halves_of_neighbours(n, nodes, offset, incoming, outgoing, segments, places, &
+      areas)
     integer, intent(in) :: n, nodes(n_side, n), offset
     integer, intent(in) :: incoming(*), outgoing(*), segments(2, *) !! of the surface
     real(wp), intent(in) :: places(4, *)

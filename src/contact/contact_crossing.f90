@@ -1,13 +1,14 @@
 ! SPDX-License-Identifier: MIT
-!> What one long step carries through a surface. In explicit steps nothing comes deeper than the limit for first contacts
-!> without having been caught before; an implicit step may lead from outside to any depth, or out at the far side. There
-!> the way decides: a spot that goes through a face within the step belongs to that face
-!> (doc/theory/contact.md, section 3.6).
+!> What one long step carries through a surface. In explicit steps nothing comes deeper than the
+!> limit for first contacts without having been caught before; an implicit step may lead from
+!> outside to any depth, or out at the far side. There the way decides: a spot that goes through a
+!> face within the step belongs to that face (doc/theory/contact.md, section 3.6).
 module contact_crossing_m
   use contact_projection_m, only : foot_t, follow_contact, is_over_segment, side_on
   use contact_lists_m, only : list_touching
   use contact_spots_m, only : move_spots
-  use contact_state_m, only : contact_state_t, tracking_t, is_free, is_in_front, is_touching, is_behind
+  use contact_state_m, only : contact_state_t, tracking_t, is_free, is_in_front, is_touching, &
+    is_behind
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, separation
   use kinds_m, only : wp
@@ -32,15 +33,18 @@ contains
   !> Ways of all spots over the step; call before the search, which forgets where they were.
   pure subroutine find_crossings(contact, motion, memory, crossings)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, and u minus that of the start of the step
-    type(contact_state_t), intent(in) :: memory      !! places and spots of now, all else of the start
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, and u minus that of the start
+                                                     !! of the step
+    type(contact_state_t), intent(in) :: memory      !! places and spots of now, all else of the
+                                                     !! start
     type(crossings_t), intent(out) :: crossings
     real(wp), allocatable :: places(:, :), spots(:, :)
 
     if (.not. relative_motion(motion(3:4, memory%nodes)) > least_depth(memory)) return
     places = memory%places
     places(3:4, :) = places(3:4, :) - motion(3:4, memory%nodes)
-    associate (n => memory%n_slave, slave => memory%slave_tracking, master => memory%master_tracking)
+    associate (n => memory%n_slave, slave => memory%slave_tracking, &
+      master => memory%master_tracking)
       if (allocated(memory%spots)) then
         spots = memory%spots
         call move_spots(contact%slave, places, memory%spot_xi, spots)
@@ -60,7 +64,8 @@ contains
     end associate
   end subroutine find_crossings
 
-  !> Whom the search has let go, or given to another face, although the way led through a face: in contact with that.
+  !> Whom the search has let go, or given to another face, although the way led through a face: in
+  !> contact with that.
   pure subroutine catch_crossings(contact, crossings, memory)
     type(contact_t), intent(in) :: contact
     type(crossings_t), intent(in) :: crossings
@@ -152,19 +157,22 @@ contains
     motion = norm2(maxval(increments, 2) - minval(increments, 2))
   end function relative_motion
 
-  !> Least of all limits for first contacts, m: what moves less is never let go nor taken for the far side.
+  !> Least of all limits for first contacts, m: what moves less is never let go nor taken for the
+  !> far side.
   pure function least_depth(memory) result(depth)
     type(contact_state_t), intent(in) :: memory
     real(wp) :: depth
 
-    depth = min(minval(memory%slave_tracking%spot_depth), minval(memory%slave_tracking%segment_depth))
-    if (memory%master_tracking%n > 0) depth = min(depth, minval(memory%master_tracking%spot_depth), &
-      minval(memory%master_tracking%segment_depth))
+    depth = min(minval(memory%slave_tracking%spot_depth), &
+      minval(memory%slave_tracking%segment_depth))
+    if (memory%master_tracking%n > 0) depth = min(depth, &
+      minval(memory%master_tracking%spot_depth), minval(memory%master_tracking%segment_depth))
   end function least_depth
 
-  !> The segment of a chain that each spot goes through first, from outside to inside, while chain and spots move evenly
-  !> from old to new places.
-  pure function cross_chain(surface, old_chain, chain, old_spots, spots, may_cross, chord) result(crossed)
+  !> The segment of a chain that each spot goes through first, from outside to inside, while chain
+  !> and spots move evenly from old to new places.
+  pure function cross_chain(surface, old_chain, chain, old_spots, spots, may_cross, &
+      chord) result(crossed)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: old_chain(:, :), chain(:, :) !! (4, n_node)
     real(wp), intent(in), contiguous :: old_spots(:, :), spots(:, :) !! (4, n_spot)
@@ -187,8 +195,9 @@ contains
       do k = 1, surface%n_segment
         if (any(box([1, 2]) > boxes([3, 4], k)) .or. any(box([3, 4]) < boxes([1, 2], k))) cycle
         associate (a => surface%segments(1, k), b => surface%segments(2, k))
-          time = crossing_time(sight_of_segment(old_spots(:, i), old_chain(:, a), old_chain(:, b)), &
-            sight_of_segment(spots(:, i), chain(:, a), chain(:, b)), own_direction(i))
+          time = crossing_time(sight_of_segment(old_spots(:, i), old_chain(:, a), &
+            old_chain(:, b)), sight_of_segment(spots(:, i), chain(:, a), chain(:, b)), &
+            own_direction(i))
         end associate
         if (time >= first) cycle
         first = time
@@ -221,8 +230,9 @@ contains
     box = box + [-margin, -margin, margin, margin]
   end function box_of
 
-  !> Part of the step after which a spot goes through a segment from outside, huge when it does not. Spot and segment move
-  !> evenly, so that `across` is a polynomial of second degree, a0 + a1 s + a2 s^2; of its roots one leads inwards.
+  !> Part of the step after which a spot goes through a segment from outside, huge when it does not.
+  !> Spot and segment move evenly, so that `across` is a polynomial of second degree, a0 + a1 s + a2
+  !> s^2; of its roots one leads inwards.
   pure function crossing_time(before, now, direction) result(time)
     type(sight_t), intent(in) :: before, now
     real(wp), intent(in) :: direction(2) !! of the spot's own surface; zero: any
@@ -251,8 +261,9 @@ contains
     sight%along = dot_product(sight%d, sight%t)
     if (time < 0.0_wp .or. time > 1.0_wp .or. .not. is_over_segment(sight)) time = huge(1.0_wp)
     ! Beside its end only a surface that faces the segment goes through it.
-    if ((sight%along < 0.0_wp .or. sight%along > sight%square) .and. dot_product(direction, sight%t) &
-      > side_on*norm2(direction)*sqrt(sight%square)) time = huge(1.0_wp)
+    if ((sight%along < 0.0_wp .or. sight%along > sight%square) &
+      .and. dot_product(direction, sight%t) > side_on*norm2(direction) &
+      *sqrt(sight%square)) time = huge(1.0_wp)
 
   contains
 

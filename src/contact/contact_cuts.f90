@@ -1,17 +1,19 @@
 ! SPDX-License-Identifier: MIT
-!> Slave segments cut into pieces as type 5 shares them: lengths for the slave nodes, and points at the master nodes
-!> between the pieces. What a segment needs is done in one pass over a list, the points are then written array by array.
+!> Slave segments cut into pieces as type 5 shares them: lengths for the slave nodes, and points at
+!> the master nodes between the pieces. What a segment needs is done in one pass over a list, the
+!> points are then written array by array.
 module contact_cuts_m
   use contact_admission_m, only : judge_segment
-  use contact_plain_cover_m, only : plain_cover_t, n_room
-  use contact_state_m, only : contact_points_t, contact_state_t, make_room, n_side, is_free, is_touching
+  use contact_plain_cover_m, only : plain_cover_t, note_plain_contact, n_room
+  use contact_state_m, only : contact_points_t, contact_state_t, make_room, n_side
   use contacts_m, only : contact_t
   use kinds_m, only : wp
   implicit none
   private
   public :: share_cuts
 
-  !> Pieces that end at a master node in contact. Without default values, which would be written before each use.
+  !> Pieces that end at a master node in contact. Without default values, which would be written
+  !> before each use.
   type :: cuts_t
     integer :: n
     integer :: piece(n_room) !! on the list
@@ -31,8 +33,8 @@ contains
     cuts%n = 0
     i = first
     do
-      call share_touching(cover, last, memory%closed_gap, memory%travel, memory%mark, memory%points%area, &
-        memory%cover%status, memory%cover%wake, i, cuts)
+      call share_touching(cover, last, memory%closed_gap, memory%travel, memory%mark, &
+        memory%points%area, memory%cover%status, memory%cover%wake, i, cuts)
       if (i > last) exit
       call share_other(contact, memory, cover, i, cuts)
       i = i + 1
@@ -40,9 +42,10 @@ contains
     if (cuts%n > 0) call add_cuts(memory, cover, cuts%n, cuts%piece)
   end subroutine share_cuts
 
-  !> Segments from i on with both ends in contact: i is then the first of another kind. They stay what they are, as
-  !> `note_plain_contact` has it. The sum at the last end is kept at hand for the next segment, since a sum in memory has to
-  !> be stored before it can be read again. On arrays of known shape: through the memory it took 2 % of the whole contact more.
+  !> Segments from i on with both ends in contact: i is then the first of another kind. The sum at
+  !> the last end is kept at hand for the next segment, since a sum in memory has to be stored
+  !> before it can be read again. On arrays of known shape: through the memory it took 2 % of the
+  !> whole contact more.
   pure subroutine share_touching(cover, last, closed_gap, travel, mark, area, status, wake, i, cuts)
     type(plain_cover_t), intent(in) :: cover
     integer, intent(in) :: last                !! of the list
@@ -69,22 +72,11 @@ contains
       area(at) = held
       n_before = cuts%n
       call list_cuts(k, cover%last(i) - 1, cover%gap, closed_gap, cuts)
-      call note_state(cuts%n > n_before, travel, status(cover%slave(i)), wake(cover%slave(i)))
+      call note_plain_contact(cuts%n > n_before, travel, status(cover%slave(i)), &
+        wake(cover%slave(i)))
       i = i + 1
     end do
   end subroutine share_touching
-
-  !> The state of one of them. A segment in contact is awake: nothing is written again.
-  pure subroutine note_state(is_deep, travel, status, wake)
-    logical, intent(in) :: is_deep
-    real(wp), intent(in) :: travel
-    integer, intent(inout) :: status
-    real(wp), intent(inout) :: wake
-
-    if (is_deep .and. status == is_touching) return
-    status = merge(is_touching, is_free, is_deep)
-    wake = merge(-huge(1.0_wp), travel, is_deep)
-  end subroutine note_state
 
   !> Any other segment.
   pure subroutine share_other(contact, memory, cover, i, cuts)
@@ -124,8 +116,8 @@ contains
     end do
   end subroutine list_cuts
 
-  !> Points at the master nodes where some pieces end, with the normal of the slave segment and half of the pieces on
-  !> either side.
+  !> Points at the master nodes where some pieces end, with the normal of the slave segment and half
+  !> of the pieces on either side.
   pure subroutine add_cuts(memory, cover, n, cuts)
     type(contact_state_t), intent(inout) :: memory
     type(plain_cover_t), intent(in) :: cover
@@ -155,11 +147,13 @@ contains
   end subroutine put_constants
 
   !> The rest on arrays of known shape.
-  pure subroutine put_cuts(n, cuts, cover, slave_nodes, slave_weights, master_nodes, normal, gap, area)
+  pure subroutine put_cuts(n, cuts, cover, slave_nodes, slave_weights, master_nodes, normal, gap, &
+      area)
     integer, intent(in) :: n, cuts(n)
     type(plain_cover_t), intent(in) :: cover
     integer, intent(inout) :: slave_nodes(n_side, n), master_nodes(n_side, n)
-    real(wp), intent(inout) :: slave_weights(n_side, n), normal(2, n), gap(n), area(n) !! gap and area in m
+    real(wp), intent(inout) :: slave_weights(n_side, n), normal(2, n)
+    real(wp), intent(inout) :: gap(n), area(n) !! m
     integer :: p, k
 
     !GCC$ NOVECTOR

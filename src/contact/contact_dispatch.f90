@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> The one place that knows the contact types: their numbers, names, needs, placements and tangents.
-!> Adding one is a row of `formulations`, and a `use` and a `case` for either (doc/add_a_formulation.md).
+!> Adding one is a row of `formulations`, and a `use` and a `case` for either
+!> (doc/add_a_formulation.md).
 module contact_dispatch_m
   use contact_spots_m, only : spots_at_nodes, spots_at_quarters, spots_at_gauss_points
   use contact_state_m, only : contact_state_t
@@ -29,9 +30,9 @@ module contact_dispatch_m
     logical :: has_two_passes = .false.   !! master nodes are tracked over the slave chain too
     logical :: has_unit_area = .false.    !! the penalty is N/m per node
     logical :: covers_segments = .false.  !! goes along both chains, slave segment by slave segment
-    logical :: has_point_per_spot = .false. !! a point at each spot in contact, these first on the list
+    logical :: has_point_per_spot = .false. !! a point at each spot in contact, these come first
     logical :: averages_pressure = .false. !! pressure of slave nodes, from averaged gaps
-    logical :: places_ranges = .false.    !! points of some spots can be placed without those of the others
+    logical :: places_ranges = .false.    !! points of some spots can be placed without the others
     integer :: points_per_slave = 1       !! usual most of points for each spot, for the allocation
     integer :: points_per_master = 0      !! and for each master node
   end type formulation_t
@@ -41,14 +42,15 @@ module contact_dispatch_m
 
   !> All formulations.
   type(formulation_t), parameter :: formulations(*) = [ &
-    formulation_t(contact_kind_t(type_nts, 'classical NTS'), has_unit_area=.true., has_point_per_spot=.true.), &
+    formulation_t(contact_kind_t(type_nts, 'classical NTS'), has_unit_area=.true., &
+      has_point_per_spot=.true.), &
     formulation_t(contact_kind_t(type_nts_ar, 'NTS-AR'), has_point_per_spot=.true.), &
     formulation_t(contact_kind_t(type_two_pass_ar, 'NTS-AR two-pass'), has_two_passes=.true., &
       has_point_per_spot=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_vts_ppt, 'VTS-PPT'), spots=spots_at_quarters, &
       places_ranges=.true., points_per_master=1), &
-    formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR'), covers_segments=.true., has_point_per_spot=.true., &
-      points_per_master=1), &
+    formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR'), covers_segments=.true., &
+      has_point_per_spot=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_mortar, 'mortar', uses_gauss_points=.true.), &
       spots=spots_at_gauss_points, averages_pressure=.true.), &
     formulation_t(contact_kind_t(type_segmented_mortar, 'segmented mortar'), &

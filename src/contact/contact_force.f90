@@ -140,11 +140,13 @@ contains
     call scatter(is_unpressed, memory)
   end subroutine press_all
 
-  !> Contact forces of one interface at the given u, added to `force`; no damping, no energy, no clock. The memory
-  !> is taken from the last converged step: give a copy of it to each trial, so that forces are a function of u.
+  !> Contact forces of one interface at the given u, added to `force`; no damping, no energy, no
+  !> clock. The memory is taken from the last converged step: give a copy of it to each trial, so
+  !> that forces are a function of u.
   pure subroutine evaluate_contact(contact, motion, time, is_first, memory, force)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u, and u minus that of the start of the step
+    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u, and u minus that of the
+                                                       !! start of the step
     real(wp), intent(in) :: time                       !! of u, s
     logical, intent(in) :: is_first                    !! of a step: gaps of zero count as contact
     type(contact_state_t), intent(inout) :: memory
@@ -185,7 +187,8 @@ contains
 
     if (memory%averages_pressure .and. is_unpressed) then
       call average_gaps(memory%points, memory%n_slave, memory%nodal)
-      call scatter_averaged(memory%points, memory%slave_penalty, memory%nodal, memory%force, memory%n_active)
+      call scatter_averaged(memory%points, memory%slave_penalty, memory%nodal, memory%force, &
+        memory%n_active)
     else if (sums_in_runs(memory)) then
       call scatter_runs(memory%points, memory%force, memory%n_active)
     else
@@ -201,7 +204,8 @@ contains
     sums_in_runs = memory%averages_pressure .or. allocated(memory%spots)
   end function sums_in_runs
 
-  !> Outside birth .. death: no forces; those of the last call have done their last half step of work.
+  !> Outside birth .. death: no forces; those of the last call have done their last half step of
+  !> work.
   pure subroutine suspend_contact(motion, dt, memory)
     real(wp), intent(in), contiguous :: motion(:, :)
     real(wp), intent(in) :: dt
@@ -260,31 +264,34 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
-    associate (slave => memory%places(:, :memory%n_slave), master => memory%places(:, memory%n_slave + 1:))
+    associate (slave => memory%places(:, :memory%n_slave), &
+      master => memory%places(:, memory%n_slave + 1:))
       if (allocated(memory%spots)) then
-        call update_tracking(memory%slave_tracking, contact%master, master, memory%spots, memory%travel, &
-          memory%n_released)
+        call update_tracking(memory%slave_tracking, contact%master, master, memory%spots, &
+          memory%travel, memory%n_released)
       else
-        call update_tracking(memory%slave_tracking, contact%master, master, slave, memory%travel, memory%n_released)
+        call update_tracking(memory%slave_tracking, contact%master, master, slave, memory%travel, &
+          memory%n_released)
       end if
-      if (memory%master_tracking%n > 0) call update_tracking(memory%master_tracking, contact%slave, slave, master, &
-        memory%travel, memory%n_released)
+      if (memory%master_tracking%n > 0) call update_tracking(memory%master_tracking, &
+        contact%slave, slave, master, memory%travel, memory%n_released)
     end associate
   end subroutine search_pairs
 
-  !> The same where a point stands at each node in contact: points that stay are brought up to date on the list. Those of the
-  !> master pass stand behind those of the slave pass.
+  !> The same where a point stands at each node in contact: points that stay are brought up to date
+  !> on the list. Those of the master pass stand behind those of the slave pass.
   pure subroutine search_points(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
-    associate (slave => memory%places(:, :memory%n_slave), master => memory%places(:, memory%n_slave + 1:))
-      call update_tracking(memory%slave_tracking, contact%master, master, slave, memory%travel, memory%n_released, &
-        memory%n_slave, memory%points)
+    associate (slave => memory%places(:, :memory%n_slave), &
+      master => memory%places(:, memory%n_slave + 1:))
+      call update_tracking(memory%slave_tracking, contact%master, master, slave, memory%travel, &
+        memory%n_released, memory%n_slave, memory%points)
       if (memory%master_tracking%n == 0) return
       if (memory%slave_tracking%first_point == 0) memory%master_tracking%first_point = 0
-      call update_tracking(memory%master_tracking, contact%slave, slave, master, memory%travel, memory%n_released, &
-        0, memory%points)
+      call update_tracking(memory%master_tracking, contact%slave, slave, master, memory%travel, &
+        memory%n_released, 0, memory%points)
     end associate
   end subroutine search_points
 

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Half slave segments seen from master segments, many at a time, so that their roots and quotients are formed together
-!> (one by one, they took half of the time of type 4). Both halves of a slave segment share what is seen of it.
+!> Half slave segments seen from master segments, many at a time, so that their roots and quotients
+!> are formed together (one by one, they took half of the time of type 4). Both halves of a slave
+!> segment share what is seen of it.
 module contact_halves_m
   use contact_piece_cutting_m, only : see_pieces, n_room
   use contact_state_m, only : contact_state_t
@@ -10,8 +11,9 @@ module contact_halves_m
   private
   public :: sights_t, halves_t, list_halves, see_segments, place_halves, find_sight
 
-  !> Slave segments seen from master segments, the sights of one slave segment behind each other; each half may ask for
-  !> a second one. Without default values, which would be written before each use.
+  !> Slave segments seen from master segments, the sights of one slave segment behind each other;
+  !> each half may ask for a second one. Without default values, which would be written before each
+  !> use.
   type :: sights_t
     integer :: n
     integer :: n_seen                 !! the first so many are known
@@ -21,8 +23,10 @@ module contact_halves_m
     integer :: nodes(2, 2*n_room)     !! local numbers of its nodes
     real(wp) :: own(2, 2*n_room)      !! vector of the slave segment, m
     real(wp) :: other(2, 2*n_room)    !! vector of the master segment, m
-    real(wp) :: way(2, 2*n_room)      !! from its first node to the first end of the slave segment, m
-    real(wp) :: place(2*n_room, 3)    !! where its first end, its middle and its second end are on the master segment
+    real(wp) :: way(2, 2*n_room)      !! from its first node to the first end of the slave segment,
+                                      !! m
+    real(wp) :: place(2*n_room, 3)    !! where its first end, its middle and its second end are on
+                                      !! the master segment
     real(wp) :: length(2*n_room)      !! of the master segment, m
   end type sights_t
 
@@ -31,7 +35,8 @@ module contact_halves_m
     integer :: n
     integer :: spot(n_room)           !! virtual node
     integer :: side(n_room)           !! 1: first half of its slave segment, 2: second
-    real(wp) :: low(n_room)           !! where the later end is on the master segment below: the slave runs against it
+    real(wp) :: low(n_room)           !! where the later end is on the master segment below: the
+                                      !! slave runs against it
     real(wp) :: high(n_room)          !! where the earlier end is
     real(wp) :: lies_on_one(n_room)   !! 1: both are on that segment, 0: not
     integer :: n_part(n_room)         !! portions
@@ -42,7 +47,8 @@ module contact_halves_m
 
 contains
 
-  !> List the halves of some touching virtual nodes, each to be seen from the master segment below it.
+  !> List the halves of some touching virtual nodes, each to be seen from the master segment below
+  !> it.
   pure subroutine list_halves(n, touching, master, segments, halves, sights)
     integer, intent(in) :: n, touching(n) !! virtual nodes
     integer, intent(in) :: master(*)      !! master segments below these
@@ -81,8 +87,9 @@ contains
     type(sights_t), intent(inout) :: sights
 
     associate (n => sights%n - sights%n_seen, j => sights%n_seen + 1)
-      call see_pieces(n, sights%ends(1, j), sights%master(j), contact%master%segments, memory%n_slave, &
-        memory%places, sights%nodes(1, j), sights%own(1, j), sights%other(1, j), sights%way(1, j))
+      call see_pieces(n, sights%ends(1, j), sights%master(j), contact%master%segments, &
+        memory%n_slave, memory%places, sights%nodes(1, j), sights%own(1, j), sights%other(1, j), &
+        sights%way(1, j))
       call project_ends(n, memory%spot_xi, sights%own(1, j), sights%other(1, j), sights%way(1, j), &
         sights%place(j, 1), sights%length(j))
     end associate
@@ -111,7 +118,8 @@ contains
     end do
   end subroutine project_ends
 
-  !> Both ends of the halves on the segments that these are seen from, and the portion of each that lies on one.
+  !> Both ends of the halves on the segments that these are seen from, and the portion of each that
+  !> lies on one.
   pure subroutine place_halves(sights, halves)
     type(sights_t), intent(in) :: sights
     type(halves_t), intent(inout) :: halves
@@ -127,7 +135,8 @@ contains
       high = sights%place(j, halves%side(k))
       halves%low(k) = low
       halves%high(k) = high
-      halves%lies_on_one(k) = merge(1.0_wp, 0.0_wp, low >= 0.0_wp .and. high <= 1.0_wp .and. high > low)
+      halves%lies_on_one(k) = merge(1.0_wp, 0.0_wp, low >= 0.0_wp .and. high <= 1.0_wp .and. high &
+        > low)
       halves%n_part(k) = 1
       halves%sight(k, 2) = j
       halves%foot(k, 1) = 0.5_wp*(low + high)
@@ -137,8 +146,8 @@ contains
     end do
   end subroutine place_halves
 
-  !> The sight of the slave segment of sight `j` from another master segment: where it may be on the list, or new at
-  !> its end.
+  !> The sight of the slave segment of sight `j` from another master segment: where it may be on the
+  !> list, or new at its end.
   pure subroutine find_sight(j, segment, guess, sights, other)
     integer, intent(in) :: j, segment, guess
     type(sights_t), intent(inout) :: sights

@@ -110,9 +110,10 @@ contains
     tracking%next_wake = -huge(1.0_wp)
   end subroutine start_tracking
 
-  !> Deepest first contact: SRCH, or half of the shortest of the spot's own segments, the segment that it
-  !> meets, and the thickness of the element behind that. All from the initial mesh. The reach also is the longest
-  !> segment of both sides: what faces any part of a segment is within reach of one of its ends.
+  !> Deepest first contact: SRCH, or half of the shortest of the spot's own segments, the segment
+  !> that it meets, and the thickness of the element behind that. All from the initial mesh. The
+  !> reach also is the longest segment of both sides: what faces any part of a segment is within
+  !> reach of one of its ends.
   subroutine set_depths(tracking, contact, model, own, surface, owners)
     type(tracking_t), intent(inout) :: tracking
     type(contact_t), intent(in) :: contact
@@ -202,8 +203,8 @@ contains
       if (tracking%status(i) == is_touching) cycle
       if (.not. is_inside_body(finder, model, model%mesh%coordinates(:, surface%nodes(1)) &
         + (spots(1:2, i) - chain(1:2, 1)), own%nodes(own_nodes(own, owners(:, i))))) cycle
-      foot = closest_foot(surface, chain, spots(:, i), nearest_segment(tracking%grid, surface, chain, &
-        spots(:, i)))
+      foot = closest_foot(surface, chain, spots(:, i), &
+        nearest_segment(tracking%grid, surface, chain, spots(:, i)))
       if (.not. foot%is_on .or. foot%gap >= 0.0_wp) cycle
       tracking%segment(i) = foot%segment
       tracking%status(i) = is_touching
@@ -226,8 +227,8 @@ contains
     end if
   end function own_nodes
 
-  !> Segment of a surface that is nearest to a place, the first of equally near neighbours: by the grid, or by looking
-  !> at all where none is near.
+  !> Segment of a surface that is nearest to a place, the first of equally near neighbours: by the
+  !> grid, or by looking at all where none is near.
   pure function nearest_segment(grid, surface, chain, place) result(segment)
     type(bucket_grid_t), intent(in) :: grid !! filled at a travel of 0
     type(surface_t), intent(in) :: surface

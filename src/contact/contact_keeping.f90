@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Spots that stay in contact where they are: the common case of the search, many spots at a time. Their feet go to the
-!> tracking; or straight onto the list of points, where the points of these spots stand already: then the points know the nodes
-!> of either side, and nothing is written twice: 15 to 20 % of the contact of types 1 to 3, 4 % of
-!> type 5 where the lists are longer than the caches.
+!> Spots that stay in contact where they are: the common case of the search, many spots at a time.
+!> Their feet go to the tracking; or straight onto the list of points, where the points of these
+!> spots stand already: then the points know the nodes of either side, and nothing is written twice:
+!> 15 to 20 % of the contact of types 1 to 3, 4 % of type 5 where the lists are longer than the
+!> caches.
 module contact_keeping_m
   use contact_state_m, only : contact_points_t, tracking_t, n_side
   use kinds_m, only : wp
@@ -33,7 +34,8 @@ contains
       call see_spots(n, tracking%touching(first), tracking%segment, ends, chain, spots, edge, way)
       i = tracking%touching(first)
       if (tracking%touching(first + n - 1) == i + n - 1) then
-        call project_block(n, edge, way, tracking%xi(i), tracking%gap(i), tracking%normal(1, i), beside, n_beside)
+        call project_block(n, edge, way, tracking%xi(i), tracking%gap(i), tracking%normal(1, i), &
+          beside, n_beside)
       else
         call project_block(n, edge, way, xi, gap, normal, beside, n_beside)
         do k = 1, n
@@ -63,7 +65,8 @@ contains
     do first = 1, tracking%n_touching, block_size
       n = min(block_size, tracking%n_touching - first + 1)
       p = tracking%first_point + first - 1
-      call see_points(n, tracking%touching(first), offset, points%master_nodes(1, p), chain, spots, edge, way)
+      call see_points(n, tracking%touching(first), offset, points%master_nodes(1, p), chain, &
+        spots, edge, way)
       call project_block(n, edge, way, xi, points%gap(p), points%normal(1, p), beside, n_beside)
       call put_weights(n, xi, points%master_weights(1, p))
       if (n_beside > 0) call list_left(n, beside, first, tracking%due, n_left)
@@ -110,12 +113,14 @@ contains
     end do
   end subroutine see_points
 
-  !> Projections of a block. A loop that stores logicals is not vectorised, so that the answer is a real.
+  !> Projections of a block. A loop that stores logicals is not vectorised, so that the answer is a
+  !> real.
   pure subroutine project_block(n, edge, way, xi, gap, normal, beside, n_beside)
     integer, intent(in) :: n
     real(wp), intent(in) :: edge(2, block_size), way(2, block_size)
     real(wp), intent(inout) :: xi(n), gap(n), normal(2, n)
-    real(wp), intent(inout) :: beside(block_size) !! 0: behind the segment, and not nearer to a neighbour; else 1
+    real(wp), intent(inout) :: beside(block_size) !! 0: behind the segment, and not nearer to a
+                                                  !! neighbour; else 1
     integer, intent(out) :: n_beside              !! sum of these
     real(wp) :: square, along, across, inverse, total
     integer :: k
@@ -151,7 +156,8 @@ contains
     end do
   end subroutine put_weights
 
-  !> List the spots of a block that were not kept, by their position on the list of those in contact.
+  !> List the spots of a block that were not kept, by their position on the list of those in
+  !> contact.
   pure subroutine list_left(n, beside, first, left, n_left)
     integer, intent(in) :: n
     real(wp), intent(in) :: beside(n)
@@ -184,7 +190,8 @@ contains
     end do
   end subroutine move_points
 
-  !> Take the feet of spots that were kept from the points to the tracking: the list of these spots has changed.
+  !> Take the feet of spots that were kept from the points to the tracking: the list of these spots
+  !> has changed.
   pure subroutine take_feet(points, n_left, tracking)
     type(contact_points_t), intent(in) :: points
     integer, intent(in) :: n_left

@@ -33,8 +33,8 @@ contains
     tracking%first_point = 0
   end subroutine forget_list
 
-  !> List the spots that are not in contact and do not sleep any more: those before, between and behind the runs of spots
-  !> in contact.
+  !> List the spots that are not in contact and do not sleep any more: those before, between and
+  !> behind the runs of spots in contact.
   pure subroutine list_waking(n_touching, touching, n, wake, travel, next_wake, due, n_due)
     integer, intent(in) :: n_touching, touching(n_touching)
     integer, intent(in) :: n                !! spots

@@ -2,8 +2,8 @@
 !> Feet of places that are near a known master segment.
 module contact_local_foot_m
   use contact_plain_foot_m, only : plain_foot, corner_behind, is_plainly_behind, is_well_inside
-  use contact_projection_m, only : foot_t, closest_foot, face_foot, follow_contact, walk_to_closest, &
-    see_segment
+  use contact_projection_m, only : foot_t, closest_foot, face_foot, follow_contact, &
+    walk_to_closest, see_segment
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t
@@ -30,8 +30,8 @@ contains
     end associate
   end function free_foot
 
-  !> Foot of a place that is known to be near a master segment: behind the surface it belongs to the face that it
-  !> came through, outside to the closest one.
+  !> Foot of a place that is known to be near a master segment: behind the surface it belongs to the
+  !> face that it came through, outside to the closest one.
   pure function local_foot(contact, memory, place, start) result(foot)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory

@@ -12,8 +12,8 @@ module contact_log_m
   private
   public :: log_contact, penalty_text, report_initial_contact, report_released
 
-  !> Part of the search reach below which a penetration at time zero is round-off, that of coordinates
-  !> written with some eight digits included.
+  !> Part of the search reach below which a penetration at time zero is round-off, that of
+  !> coordinates written with some eight digits included.
   real(wp), parameter :: round_off = 1.0e-6_wp
 
 contains
@@ -34,11 +34,11 @@ contains
       //to_text(kind%number)//')'//trim(merge(', chosen by keyword', '                   ', &
       contact%chosen_by_keyword)))
     call write_log(log, '  slave: '//to_text(contact%slave%n_node)//' nodes, ' &
-      //to_text(contact%slave%n_segment)//' segments of mean length '//to_text(mean_length(contact%slave, model)) &
-      //' m')
+      //to_text(contact%slave%n_segment)//' segments of mean length ' &
+      //to_text(mean_length(contact%slave, model))//' m')
     call write_log(log, '  master: '//to_text(contact%master%n_node)//' nodes, ' &
-      //to_text(contact%master%n_segment)//' segments of mean length '//to_text(mean_length(contact%master, &
-      model))//' m')
+      //to_text(contact%master%n_segment)//' segments of mean length ' &
+      //to_text(mean_length(contact%master, model))//' m')
     if (contact%penalty_unit == penalty_share) then
       call write_log(log, '  penalty: '//to_text(contact%penalty)//' of the largest stable one')
     else
@@ -46,8 +46,8 @@ contains
     end if
     if (kind%uses_gauss_points) call write_log(log, '  Gauss points of a slave segment: ' &
       //to_text(contact%n_gauss))
-    if (contact%strict) call write_log(log, '  strict rule where a slave segment hangs over the end ' &
-      //'of the master (IPF = 1)')
+    if (contact%strict) call write_log(log, &
+      '  strict rule where a slave segment hangs over the end '//'of the master (IPF = 1)')
     if (contact%damping > 0.0_wp) call write_log(log, '  damping: ' &
       //to_text(contact%damping)//' of critical')
     call write_log(log, '  deepest first contact: '//to_text(minval( &
@@ -70,8 +70,8 @@ contains
       //' N/m per master node = '//to_text(memory%master_penalty)//' N/m^2'
   end function penalty_text
 
-  !> Warn of the deepest penetration at time zero, with the force that it causes; nothing when there is none.
-  !> Initial penetrations are taken as they are.
+  !> Warn of the deepest penetration at time zero, with the force that it causes; nothing when there
+  !> is none. Initial penetrations are taken as they are.
   subroutine report_initial_contact(contact, model, memory, log)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model

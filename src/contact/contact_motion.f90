@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What an interface takes from the mesh in each step and gives back to it: places, a bound on relative motion,
-!> forces and their power. Sums and extremes are formed in several lanes: one chain of additions
-!> through all nodes takes 4 cycles a node.
+!> What an interface takes from the mesh in each step and gives back to it: places, a bound on
+!> relative motion, forces and their power. Sums and extremes are formed in several lanes: one chain
+!> of additions through all nodes takes 4 cycles a node.
 module contact_motion_m
   use contact_state_m, only : contact_state_t
   use kinds_m, only : wp
@@ -14,8 +14,8 @@ module contact_motion_m
 
 contains
 
-  !> Take the present displacements into the memory and let its travel grow by a bound on how far any two nodes have
-  !> moved relative to each other since the last call.
+  !> Take the present displacements into the memory and let its travel grow by a bound on how far
+  !> any two nodes have moved relative to each other since the last call.
   pure subroutine gather_places(motion, memory)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
@@ -25,8 +25,8 @@ contains
     memory%travel = memory%travel + spread
   end subroutine gather_places
 
-  !> Set the forces of the last call aside. Both lists trade places: the former forces are zero since `add_force`
-  !> has taken them, or there have been none.
+  !> Set the forces of the last call aside. Both lists trade places: the former forces are zero
+  !> since `add_force` has taken them, or there have been none.
   pure subroutine keep_former(memory)
     type(contact_state_t), intent(inout) :: memory
     real(wp), allocatable :: spare(:, :)
@@ -94,9 +94,9 @@ contains
     spread = sqrt((high(1, 1) - low(1, 1))**2 + (high(2, 1) - low(2, 1))**2)
   end subroutine take_places
 
-  !> Add the forces of the interface to those of the mesh. Their power and that of the former ones, with the same
-  !> velocity, are formed on the way: v is read once. The former ones are zero afterwards: to clear them here costs
-  !> less than to go through them once more.
+  !> Add the forces of the interface to those of the mesh. Their power and that of the former ones,
+  !> with the same velocity, are formed on the way: v is read once. The former ones are zero
+  !> afterwards: to clear them here costs less than to go through them once more.
   pure subroutine add_force(nodes, former, present, motion, force, power)
     integer, intent(in), contiguous :: nodes(:)
     real(wp), intent(in) :: present(2, *), motion(4, *)
@@ -110,12 +110,14 @@ contains
       !GCC$ UNROLL 4
       do k = 1, n_lane
         associate (j => i - n_lane + k)
-          call add_to_node(former(1, j), present(1, j), motion(1, nodes(j)), force(1, nodes(j)), lanes(k))
+          call add_to_node(former(1, j), present(1, j), motion(1, nodes(j)), force(1, nodes(j)), &
+            lanes(k))
         end associate
       end do
     end do
     do i = size(nodes) - modulo(size(nodes), n_lane) + 1, size(nodes)
-      call add_to_node(former(1, i), present(1, i), motion(1, nodes(i)), force(1, nodes(i)), lanes(1))
+      call add_to_node(former(1, i), present(1, i), motion(1, nodes(i)), force(1, nodes(i)), &
+        lanes(1))
     end do
     power = sum(lanes)
   end subroutine add_force

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Tangent where pressure comes from averaged gaps of slave nodes (types 6 and 7; doc/theory/contact.md, section 9.5):
-!> the points under their present nodal pressures, and for each loaded slave node one product of the
-!> force of unit pressure and the gradient of the pressure.
+!> Tangent where pressure comes from averaged gaps of slave nodes (types 6 and 7;
+!> doc/theory/contact.md, section 9.5): the points under their present nodal pressures, and for each
+!> loaded slave node one product of the force of unit pressure and the gradient of the pressure.
 module contact_nodal_tangent_m
   use contact_assembly_m, only : add_varied_point, pattern_t, start_pattern, add_to_row, &
     add_to_column, add_product
@@ -117,8 +117,8 @@ contains
     if (k == 1) share = point%area - share
   end function nodal_share
 
-  !> For one slave node: the force of all points under unit pressure of the node as column, and as row content times the
-  !> gradient of the averaged gap.
+  !> For one slave node: the force of all points under unit pressure of the node as column, and as
+  !> row content times the gradient of the averaged gap.
   pure subroutine fill_pattern(contact, list, node, gap, pattern)
     type(contact_t), intent(in) :: contact
     type(varied_list_t), intent(in) :: list

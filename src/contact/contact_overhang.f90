@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Warning at the start of places of the slave that stand just beyond an end of the master. Such a place sinks beside the
-!> end without a spring; when the bodies spread it comes in over the end and is caught at that depth by a whole
-!> spring, which makes energy at any time step (doc/theory/contact.md, section 7.4).
+!> Warning at the start of places of the slave that stand just beyond an end of the master. Such a
+!> place sinks beside the end without a spring; when the bodies spread it comes in over the end and
+!> is caught at that depth by a whole spring, which makes energy at any time step
+!> (doc/theory/contact.md, section 7.4).
 module contact_overhang_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_projection_m, only : see_segment, end_tolerance
@@ -16,11 +17,14 @@ module contact_overhang_m
   private
   public :: overhang_t, report_overhang, find_overhang
 
-  !> Deepest first contact that keeps the energy of a catch at a hundredth of what it may be by default.
+  !> Deepest first contact that keeps the energy of a catch at a hundredth of what it may be by
+  !> default.
   real(wp), parameter :: cautious = 0.1_wp
-  !> Part of its deepest first contact (half of the shorter of its own segments) within which a place is just beyond an end.
+  !> Part of its deepest first contact (half of the shorter of its own segments) within which a
+  !> place is just beyond an end.
   real(wp), parameter :: just_beyond = 0.5_wp
-  !> Cosine between the directions of a place's own surface and the end segment below which they face each other.
+  !> Cosine between the directions of a place's own surface and the end segment below which they
+  !> face each other.
   real(wp), parameter :: facing = -0.5_wp
 
   !> Places of the slave just beyond ends of the master.
@@ -34,7 +38,8 @@ module contact_overhang_m
 
 contains
 
-  !> Warn of one interface, unless the deck limits first contacts or what is beyond the end weighs nothing.
+  !> Warn of one interface, unless the deck limits first contacts or what is beyond the end weighs
+  !> nothing.
   subroutine report_overhang(contact, model, memory, log)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -115,9 +120,10 @@ contains
     end do
   end subroutine find_overhang
 
-  !> How far spot `i` stands beyond the first or the last end of a segment, along it; huge where it is not beyond the
-  !> tolerance, out of reach, or where its own surface does not face the segment.
-  pure function distance_beyond(master, chain, spots, tracking, segment, is_first, i) result(distance)
+  !> How far spot `i` stands beyond the first or the last end of a segment, along it; huge where it
+  !> is not beyond the tolerance, out of reach, or where its own surface does not face the segment.
+  pure function distance_beyond(master, chain, spots, tracking, segment, is_first, &
+      i) result(distance)
     type(surface_t), intent(in) :: master
     real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
     type(tracking_t), intent(in) :: tracking

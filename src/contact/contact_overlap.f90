@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Which part of a slave segment faces which master segments. Both chains are ordered and run against
-!> each other: walking the master chain from the foot of one end of a slave segment to that of the other
-!> meets every master node in between. Projected on the slave segment these nodes cut it into
-!> pieces, each facing one master segment; there is no search (doc/theory/contact.md, section 3.5).
+!> Which part of a slave segment faces which master segments. Both chains are ordered and run
+!> against each other: walking the master chain from the foot of one end of a slave segment to that
+!> of the other meets every master node in between. Projected on the slave segment these nodes cut
+!> it into pieces, each facing one master segment; there is no search (doc/theory/contact.md,
+!> section 3.5).
 module contact_overlap_m
   use contact_local_foot_m, only : free_foot
   use contact_placing_m, only : tracked_foot
@@ -16,8 +17,9 @@ module contact_overlap_m
   public :: cover_t, piece_t, find_cover, first_piece, next_piece, see_master_node, facing_share, &
     side_on, face_on
 
-  !> Cosine of the angle between two outward normals up to which surfaces face each other entirely (60 degrees between
-  !> the surfaces). From there to `side_on` the share falls smoothly: a jump would create energy when a body turns.
+  !> Cosine of the angle between two outward normals up to which surfaces face each other entirely
+  !> (60 degrees between the surfaces). From there to `side_on` the share falls smoothly: a jump
+  !> would create energy when a body turns.
   real(wp), parameter :: face_on = -0.5_wp
 
   !> A slave segment over the master chain.
@@ -26,7 +28,8 @@ module contact_overlap_m
     integer :: ends(2) = 0         !! its nodes
     logical :: exists = .false.    !! some master segment is near
     type(foot_t) :: feet(2)        !! of its two ends
-    integer :: far_segment = 0     !! master segment below the second end, where that is of another chain; else 0
+    integer :: far_segment = 0     !! master segment below the second end, where that is of another
+                                   !! chain; else 0
   end type cover_t
 
   !> A stretch of slave segment over one master segment.
@@ -36,7 +39,8 @@ module contact_overlap_m
     integer :: n_step = 0          !! master segments passed
     integer :: low_node = 0        !! master node that cuts at `low`, 0: none
     integer :: high_node = 0       !! master node that cuts at `high`, 0: none
-    real(wp) :: share = 0.0_wp     !! part of it that counts: none where the two segments do not face
+    real(wp) :: share = 0.0_wp     !! part of it that counts: none where the two segments do not
+                                   !! face
     real(wp) :: low = 0.0_wp       !! where it starts on the slave segment, 0 to 1
     real(wp) :: high = 0.0_wp      !! where it ends
     logical :: is_last = .false.
@@ -44,8 +48,9 @@ module contact_overlap_m
 
 contains
 
-  !> Feet of both ends of a slave segment. Ends in contact are where the tracking has them; others are
-  !> looked for from the foot of the other end, so that both are on the same stretch of the chain.
+  !> Feet of both ends of a slave segment. Ends in contact are where the tracking has them; others
+  !> are looked for from the foot of the other end, so that both are on the same stretch of the
+  !> chain.
   pure subroutine find_cover(contact, memory, segment, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -78,8 +83,8 @@ contains
     call take_nodes_in(contact, cover%feet)
   end subroutine find_cover
 
-  !> A foot on a master node belongs to two segments; it takes the outer one, so that the node lies between the
-  !> feet whatever round-off decided.
+  !> A foot on a master node belongs to two segments; it takes the outer one, so that the node lies
+  !> between the feet whatever round-off decided.
   pure subroutine take_nodes_in(contact, feet)
     type(contact_t), intent(in) :: contact
     type(foot_t), intent(inout) :: feet(2)
@@ -98,7 +103,8 @@ contains
     end associate
   end subroutine take_nodes_in
 
-  !> Where the walk along a covered segment starts: at its first end, or at the end of the master chain.
+  !> Where the walk along a covered segment starts: at its first end, or at the end of the master
+  !> chain.
   pure subroutine first_piece(contact, memory, cover, piece)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -124,8 +130,9 @@ contains
     piece%high_node = node
   end subroutine first_piece
 
-  !> Whether the way along the master chain from the first foot to the second is shorter backwards. Otherwise slave and
-  !> master do not face: the side of a body, seen from the chain, runs along with it.
+  !> Whether the way along the master chain from the first foot to the second is shorter backwards.
+  !> Otherwise slave and master do not face: the side of a body, seen from the chain, runs along
+  !> with it.
   pure function runs_against(contact, feet) result(against)
     type(contact_t), intent(in) :: contact
     type(foot_t), intent(in) :: feet(2)
@@ -143,7 +150,8 @@ contains
     end do
   end function runs_against
 
-  !> The next piece along the slave segment; it may be empty (high = low) where the chain is bent back.
+  !> The next piece along the slave segment; it may be empty (high = low) where the chain is bent
+  !> back.
   pure subroutine next_piece(contact, memory, cover, piece)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -177,8 +185,9 @@ contains
     piece%high_node = contact%master%segments(1, piece%segment)
   end subroutine next_piece
 
-  !> At the end of the chain below the first end of a slave segment, or at a sharp corner of it, go over to the
-  !> chain below the other end: to the segment with which that chain, or its stretch up to a sharp corner, begins.
+  !> At the end of the chain below the first end of a slave segment, or at a sharp corner of it, go
+  !> over to the chain below the other end: to the segment with which that chain, or its stretch up
+  !> to a sharp corner, begins.
   pure subroutine cross_over(contact, memory, cover, piece)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -253,7 +262,8 @@ contains
     end if
   end function share_of_segment
 
-  !> How much of a surface counts where its outward normal and that of the other side have this cosine, 0 to 1.
+  !> How much of a surface counts where its outward normal and that of the other side have this
+  !> cosine, 0 to 1.
   pure function facing_share(cosine) result(share)
     real(wp), intent(in) :: cosine
     real(wp) :: share

@@ -9,15 +9,15 @@ module contact_penalty_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: set_penalties, mean_length, press_points, press_each, pressures_of, average_gaps, share_pressure, &
-    stored_energy, damp_points
+  public :: set_penalties, mean_length, press_points, press_each, pressures_of, average_gaps, &
+    share_pressure, stored_energy, damp_points
 
 contains
 
-  !> All equivalents of the penalty. The seed's rule eps_hat = eps/l with the mean segment length of the
-  !> initial mesh converts; l is that of the slave surface for eps_hat of the slave pass and for
-  !> eps of type 1, that of the master surface for eps_hat of the master pass. A share of the largest stable
-  !> penalty stands as it is until the step is known.
+  !> All equivalents of the penalty. The seed's rule eps_hat = eps/l with the mean segment length of
+  !> the initial mesh converts; l is that of the slave surface for eps_hat of the slave pass and for
+  !> eps of type 1, that of the master surface for eps_hat of the master pass. A share of the
+  !> largest stable penalty stands as it is until the step is known.
   pure subroutine set_penalties(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -68,8 +68,8 @@ contains
     end associate
   end function initial_length
 
-  !> K L/A of one side, N/m^2: bulk modulus and area of the element behind each segment, mean over the
-  !> length of the surface.
+  !> K L/A of one side, N/m^2: bulk modulus and area of the element behind each segment, mean over
+  !> the length of the surface.
   pure function side_stiffness(surface, model) result(stiffness)
     type(surface_t), intent(in) :: surface
     type(model_t), intent(in) :: model
@@ -99,11 +99,12 @@ contains
     real(wp) :: x(2, 4)
 
     x = model%mesh%coordinates(:, model%mesh%element_nodes(:, element))
-    area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+    area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
+      - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
   end function element_area
 
-  !> Pressure of all points before damping: p = stiffness * max(0, -gap) at the point, or shared out from the
-  !> slave nodes.
+  !> Pressure of all points before damping: p = stiffness * max(0, -gap) at the point, or shared out
+  !> from the slave nodes.
   pure subroutine press_points(memory)
     type(contact_state_t), intent(inout) :: memory
 
@@ -112,7 +113,8 @@ contains
       call share_pressure(memory%points%n, memory%points%slave_nodes, memory%points%slave_weights, &
         memory%slave_penalty, memory%nodal, memory%points%pressure)
     else
-      call press_each(memory%points%n, memory%points%stiffness, memory%points%gap, memory%points%pressure)
+      call press_each(memory%points%n, memory%points%stiffness, memory%points%gap, &
+        memory%points%pressure)
     end if
   end subroutine press_points
 
@@ -128,8 +130,8 @@ contains
     end do
   end subroutine press_each
 
-  !> Pressures that the present forces come from. Where each point has its own, which nothing but its gap decides, the list
-  !> need not have it.
+  !> Pressures that the present forces come from. Where each point has its own, which nothing but
+  !> its gap decides, the list need not have it.
   pure function pressures_of(contact, memory) result(pressures)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -143,19 +145,22 @@ contains
   end function pressures_of
 
   !> What makes the pressure at slave nodes, p_A = stiffness * max(0, -g_A) with the averaged gap
-  !> g_A = sum(N_A a g)/sum(N_A a); points get it by the slave shape functions (Fischer & Wriggers 2005). The forces that
-  !> follow are the derivative of the energy sum of p_A^2 sum(N_A a)/(2 stiffness) at frozen weights.
+  !> g_A = sum(N_A a g)/sum(N_A a); points get it by the slave shape functions (Fischer & Wriggers
+  !> 2005). The forces that follow are the derivative of the energy sum of p_A^2 sum(N_A a)/(2
+  !> stiffness) at frozen weights.
   pure subroutine average_gaps(points, n_slave, nodal)
     type(contact_points_t), intent(in) :: points
     integer, intent(in) :: n_slave
-    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave or more) out: (1, :) max(0, -g_A), m
+    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, n_slave or more) out: (1, :) max(0,
+                                                       !! -g_A), m
     integer :: node
 
     do node = 1, n_slave
       nodal(1, node) = 0.0_wp
       nodal(2, node) = 0.0_wp
     end do
-    call sum_gaps(points%n, points%slave_nodes, points%slave_weights, points%area, points%gap, nodal)
+    call sum_gaps(points%n, points%slave_nodes, points%slave_weights, points%area, points%gap, &
+      nodal)
     do node = 1, n_slave
       nodal(1, node) = max(0.0_wp, -nodal(1, node))/max(nodal(2, node), tiny(1.0_wp))
     end do
@@ -175,8 +180,8 @@ contains
     end do
   end subroutine share_pressure
 
-  !> Sums of weight times area times gap, and of weight times area, by slave node. Points of one segment
-  !> follow each other and are summed before they are given to the nodes.
+  !> Sums of weight times area times gap, and of weight times area, by slave node. Points of one
+  !> segment follow each other and are summed before they are given to the nodes.
   pure subroutine sum_gaps(n, slave_nodes, slave_weights, area, gap, nodal)
     integer, intent(in) :: n, slave_nodes(n_side, *)
     real(wp), intent(in) :: slave_weights(n_side, *), area(*), gap(*)
@@ -213,10 +218,10 @@ contains
     energy = -0.5_wp*sum(points%area(:n)*points%pressure(:n)*points%gap(:n))
   end function stored_energy
 
-  !> Add the damping of points in contact, -2 fraction k/omega times the opening velocity, with omega^2 = sum of
-  !> w K/m over the nodes of both sides, where K is the sum of all springs at a node. For two masses and one spring it
-  !> is the fraction of critical, and it does not depend on how many points share a node's spring. The
-  !> total never pulls.
+  !> Add the damping of points in contact, -2 fraction k/omega times the opening velocity, with
+  !> omega^2 = sum of w K/m over the nodes of both sides, where K is the sum of all springs at a
+  !> node. For two masses and one spring it is the fraction of critical, and it does not depend on
+  !> how many points share a node's spring. The total never pulls.
   pure subroutine damp_points(points, fraction, nodes, motion, mass, nodal)
     type(contact_points_t), intent(inout) :: points
     real(wp), intent(in) :: fraction
@@ -247,7 +252,8 @@ contains
     end do
   end subroutine damp_points
 
-  !> Springs of all pressed points by node, N/m, into nodal(1, :): in two passes a node stands on either side.
+  !> Springs of all pressed points by node, N/m, into nodal(1, :): in two passes a node stands on
+  !> either side.
   pure subroutine sum_springs(points, nodal)
     type(contact_points_t), intent(in) :: points
     real(wp), intent(inout), contiguous :: nodal(:, :)

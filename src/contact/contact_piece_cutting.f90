@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Projections of master segments on slave segments, a list of pieces at a time: the arithmetic of contact_plain_cover.
+!> Projections of master segments on slave segments, a list of pieces at a time: the arithmetic of
+!> contact_plain_cover.
 module contact_piece_cutting_m
   use contact_overlap_m, only : face_on
   use contact_plain_foot_m, only : well_inside
@@ -59,8 +60,9 @@ contains
     end do
   end subroutine cut_pieces
 
-  !> Where the pieces start and end, and which of them are odd: not one behind the other, or not facing the slave segment
-  !> entirely. All at once: segment by segment it took a tenth of the pairing.
+  !> Where the pieces start and end, and which of them are odd: not one behind the other, or not
+  !> facing the slave segment entirely. All at once: segment by segment it took a tenth of the
+  !> pairing.
   pure subroutine order_pieces(n, facing, is_end, low, high, odd, n_odd)
     integer, intent(in) :: n
     real(wp), dimension(n_room), intent(in) :: facing, is_end

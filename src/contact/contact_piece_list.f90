@@ -1,12 +1,13 @@
 ! SPDX-License-Identifier: MIT
-!> Gauss points of type 7 on pieces of slave segments, many at a time (doc/theory/contact.md, section 3.5).
+!> Gauss points of type 7 on pieces of slave segments, many at a time (doc/theory/contact.md,
+!> section 3.5).
 module contact_piece_list_m
   use contact_overlap_m, only : facing_share
   use contact_piece_points_m, only : plain_points_t, tell_foot
   use contact_pieces_m, only : slave_t, n_gauss, add_local
   use contact_placing_m, only : add_plain_point
-  use contact_plain_cover_m, only : plain_cover_t
-  use contact_state_m, only : contact_state_t, contact_points_t, make_room, n_side, is_free, is_touching
+  use contact_plain_cover_m, only : plain_cover_t, note_plain_contact
+  use contact_state_m, only : contact_state_t, contact_points_t, make_room, n_side
   use contacts_m, only : contact_t
   use kinds_m, only : wp
   implicit none
@@ -15,9 +16,9 @@ module contact_piece_list_m
 
 contains
 
-  !> Smallest gaps of the segments on a list, and whether all of their pieces are plain. Most segments have besides both ends
-  !> in contact: these stay, whatever their gaps, and are noted here (as `note_plain_contact` has it). Judging each of them in
-  !> a call of its own took 3 % of the whole contact.
+  !> Smallest gaps of the segments on a list, and whether all of their pieces are plain. Most
+  !> segments have besides both ends in contact: these stay, whatever their gaps, and are noted
+  !> here. Judging each of them later took 3 % of the whole contact.
   pure subroutine look_at_segments(cover, memory, found)
     type(plain_cover_t), intent(in) :: cover
     type(contact_state_t), intent(inout) :: memory
@@ -36,9 +37,9 @@ contains
       found%is_plain(i) = cover%is_plain(i) .and. least > 0.0_wp
       found%stays(i) = found%is_plain(i) .and. cover%touches(i)
       if (.not. found%stays(i)) cycle
-      associate (s => cover%slave(i), is_deep => deepest < memory%closed_gap)
-        memory%cover%status(s) = merge(is_touching, is_free, is_deep)
-        memory%cover%wake(s) = merge(-huge(1.0_wp), memory%travel, is_deep)
+      associate (s => cover%slave(i))
+        call note_plain_contact(deepest < memory%closed_gap, memory%travel, &
+          memory%cover%status(s), memory%cover%wake(s))
       end associate
     end do
   end subroutine look_at_segments
@@ -81,7 +82,8 @@ contains
         share = facing_share(dot_product(slave%normal, normal))
         if (.not. share > 0.0_wp) cycle
         call make_room(memory%points, 1)
-        call add_plain_point(slave%ends, found%xi(q, k), cover%nodes(:, k), foot, normal, gap, memory%points)
+        call add_plain_point(slave%ends, found%xi(q, k), cover%nodes(:, k), foot, normal, gap, &
+          memory%points)
         memory%points%area(memory%points%n) = share*found%area(k)
         memory%points%stiffness(memory%points%n) = memory%slave_penalty
       else
@@ -125,7 +127,8 @@ contains
     end associate
   end subroutine put_points
 
-  !> Nodes and weights of the points on `n` pieces, written out for both: a loop over them takes twice as long.
+  !> Nodes and weights of the points on `n` pieces, written out for both: a loop over them takes
+  !> twice as long.
   pure subroutine put_sides(n, ends, nodes, xi, foot, slave_nodes, slave_weights, master_nodes, &
       master_weights)
     integer, intent(in) :: n, ends(2, n), nodes(2, n)  !! of the slave and of the master segments

@@ -12,19 +12,23 @@ module contact_piece_points_m
   private
   public :: plain_points_t, find_points, look_over, tell_foot
 
-  !> Gauss points of the pieces on a list. Without default values, which would be written before each use.
+  !> Gauss points of the pieces on a list. Without default values, which would be written before
+  !> each use.
   type :: plain_points_t
     real(wp) :: xi(n_gauss, n_room)        !! place on the slave segment
     real(wp) :: foot(n_gauss, n_room)      !! place on the master segment
     real(wp) :: gap(n_gauss, n_room)       !! m
     real(wp) :: normal(2, n_room)          !! of the master
     real(wp) :: area(n_room)               !! of each, m
-    real(wp) :: depth(n_room)              !! more than 0 (only its sign counts) where both are behind the master segment
-                                           !! and nearer to it than to its ends, or over it and no neighbour of it
+    real(wp) :: depth(n_room)              !! more than 0 (only its sign counts) where both are
+                                           !! behind the master segment and nearer to it than to its
+                                           !! ends, or over it and no neighbour of it
     real(wp) :: deepest(n_room)            !! smallest gap of each segment, m
-    real(wp) :: before(2, n_room)          !! vectors of the neighbours of the master segments, both towards these, m;
+    real(wp) :: before(2, n_room)          !! vectors of the neighbours of the master segments, both
+                                           !! towards these, m;
     real(wp) :: after(2, n_room)           !! only where one of the list is not deep
-    logical :: is_plain(n_room)            !! all points of the segment are on the master segments of their pieces
+    logical :: is_plain(n_room)            !! all points of the segment are on the master segments
+                                           !! of their pieces
     logical :: stays(n_room)               !! besides, both ends of it are in contact
   end type plain_points_t
 
@@ -63,8 +67,8 @@ contains
     end do
   end subroutine find_points
 
-  !> Tell the pieces apart whose Gauss points may not be on their master segment. A point that is nearer to a neighbour of
-  !> that has its foot there (as contact_projection has it).
+  !> Tell the pieces apart whose Gauss points may not be on their master segment. A point that is
+  !> nearer to a neighbour of that has its foot there (as contact_projection has it).
   pure subroutine look_over(contact, memory, cover, found)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -73,14 +77,16 @@ contains
 
     if (minval(found%depth(:cover%n_piece)) > 0.0_wp) return
     call see_neighbours(cover%n_piece, cover%master, cover%nodes, contact%master%segments, &
-      contact%master%previous, contact%master%next, memory%n_slave, memory%places, found%before, found%after)
-    call raise_depths(cover%n_piece, cover%own, cover%other, cover%way, found%before, found%after, found%xi, &
-      found%foot, found%depth)
+      contact%master%previous, contact%master%next, memory%n_slave, memory%places, found%before, &
+      found%after)
+    call raise_depths(cover%n_piece, cover%own, cover%other, cover%way, found%before, found%after, &
+      found%xi, found%foot, found%depth)
   end subroutine look_over
 
-  !> Vectors of the neighbours of the pieces' master segments, both towards these. Where one is missing the chain may as
-  !> well go straight on.
-  pure subroutine see_neighbours(n, master, nodes, segments, previous, next, n_slave, places, before, after)
+  !> Vectors of the neighbours of the pieces' master segments, both towards these. Where one is
+  !> missing the chain may as well go straight on.
+  pure subroutine see_neighbours(n, master, nodes, segments, previous, next, n_slave, places, &
+      before, after)
     integer, intent(in) :: n, master(*), nodes(2, *), segments(2, *), previous(*), next(*)
     integer, intent(in) :: n_slave !! local number before the first master node
     real(wp), intent(in) :: places(4, *)
@@ -118,22 +124,24 @@ contains
 
     !$omp simd private(squares, slope, past, inside)
     do k = 1, n
-      squares = way(1, k)*way(1, k) + way(2, k)*way(2, k) + own(1, k)*own(1, k) + own(2, k)*own(2, k) &
-        + other(1, k)*other(1, k) + other(2, k)*other(2, k)
+      squares = way(1, k)*way(1, k) + way(2, k)*way(2, k) + own(1, k)*own(1, k) &
+        + own(2, k)*own(2, k) + other(1, k)*other(1, k) + other(2, k)*other(2, k)
       slope = own(1, k)*before(1, k) + own(2, k)*before(2, k)
-      past(1) = way(1, k)*before(1, k) + way(2, k)*before(2, k) + min(xi(1, k)*slope, xi(2, k)*slope) &
-        - well_inside*(squares + before(1, k)*before(1, k) + before(2, k)*before(2, k))
+      past(1) = way(1, k)*before(1, k) + way(2, k)*before(2, k) &
+        + min(xi(1, k)*slope, xi(2, k)*slope) - well_inside*(squares + before(1, k)*before(1, k) &
+        + before(2, k)*before(2, k))
       slope = own(1, k)*after(1, k) + own(2, k)*after(2, k)
       past(2) = (way(1, k) - other(1, k))*after(1, k) + (way(2, k) - other(2, k))*after(2, k) &
         + min(xi(1, k)*slope, xi(2, k)*slope) &
         - well_inside*(squares + after(1, k)*after(1, k) + after(2, k)*after(2, k))
-      inside = min(foot(1, k), foot(2, k), 1.0_wp - foot(1, k), 1.0_wp - foot(2, k)) - 2.0_wp*well_inside
+      inside = min(foot(1, k), foot(2, k), 1.0_wp - foot(1, k), 1.0_wp - foot(2, k)) &
+        - 2.0_wp*well_inside
       depth(k) = max(depth(k), min(past(1), past(2), inside))
     end do
   end subroutine raise_depths
 
-  !> Foot of a point that is surely over its master segment and no neighbour, or surely behind the node between both and over
-  !> neither. In a valley most odd points are of the latter kind.
+  !> Foot of a point that is surely over its master segment and no neighbour, or surely behind the
+  !> node between both and over neither. In a valley most odd points are of the latter kind.
   pure subroutine tell_foot(cover, found, k, q, is_told, foot, gap, normal)
     type(plain_cover_t), intent(in) :: cover
     type(plain_points_t), intent(in) :: found
@@ -146,8 +154,8 @@ contains
       after => found%after(:, k))
       d = cover%way(:, k) + found%xi(q, k)*own
       from_second = d - other
-      rounding = well_inside*(dot_product(d, d) + dot_product(own, own) + dot_product(other, other) &
-        + dot_product(before, before) + dot_product(after, after))
+      rounding = well_inside*(dot_product(d, d) + dot_product(own, own) &
+        + dot_product(other, other) + dot_product(before, before) + dot_product(after, after))
       past = [dot_product(d, before), dot_product(from_second, after)] - rounding
       foot = found%foot(q, k)
       gap = found%gap(q, k)

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Gauss points of type 7 on the pieces of one slave segment, piece by piece and each over whatever master segment is
-!> closest (doc/theory/contact.md, section 5.7).
+!> Gauss points of type 7 on the pieces of one slave segment, piece by piece and each over whatever
+!> master segment is closest (doc/theory/contact.md, section 5.7).
 module contact_pieces_m
   use contact_local_foot_m, only : local_foot
   use contact_overlap_m, only : cover_t, piece_t, first_piece, next_piece, facing_share
@@ -55,7 +55,8 @@ contains
     type(slave_t) :: slave
     type(sight_t) :: sight
 
-    sight = sight_of_segment(memory%places(:, ends(2)), memory%places(:, ends(1)), memory%places(:, ends(2)))
+    sight = sight_of_segment(memory%places(:, ends(2)), memory%places(:, ends(1)), &
+      memory%places(:, ends(2)))
     slave%ends = ends
     slave%normal = sight_normal(sight)
     slave%length = sqrt(sight%square)

@@ -7,18 +7,20 @@ module contact_placing_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: add_touching_nodes, put_stiffness, forget_other_stiffness, add_segment_point, add_plain_point, tracked_foot, &
-    place_on_segment
+  public :: add_touching_nodes, put_stiffness, forget_other_stiffness, add_segment_point, &
+    add_plain_point, tracked_foot, place_on_segment
 
   !> Nodes placed together.
   integer, parameter :: n_room = 64
 
 contains
 
-  !> Append a point for each tracked node in contact; area and stiffness are left to the formulation.
-  !> The tracked node stands on the slave side of the record, whichever surface it belongs to. Where the points stand already
-  !> (`is_known`) that side is not written again; nor is the other one if the search has brought it up to date.
-  pure subroutine add_touching_nodes(tracking, chain_surface, spot_offset, chain_offset, points, is_known)
+  !> Append a point for each tracked node in contact; area and stiffness are left to the
+  !> formulation. The tracked node stands on the slave side of the record, whichever surface it
+  !> belongs to. Where the points stand already (`is_known`) that side is not written again; nor is
+  !> the other one if the search has brought it up to date.
+  pure subroutine add_touching_nodes(tracking, chain_surface, spot_offset, chain_offset, points, &
+      is_known)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: chain_surface
     integer, intent(in) :: spot_offset, chain_offset !! local number before the first node of each
@@ -44,8 +46,8 @@ contains
       n = min(n_room, tracking%n_touching - first + 1)
       p = points%n + first
       i = tracking%touching(first)
-      call put_segments(n, tracking%touching(first), tracking%segment, chain_surface%segments, chain_offset, &
-        points%master_nodes(1, p))
+      call put_segments(n, tracking%touching(first), tracking%segment, chain_surface%segments, &
+        chain_offset, points%master_nodes(1, p))
       if (tracking%touching(first + n - 1) == i + n - 1) then
         call put_run(n, tracking%xi(i), tracking%gap(i), tracking%normal(1, i), &
           points%master_weights(1, p), points%gap(p), points%normal(1, p))
@@ -128,7 +130,8 @@ contains
     points%stiffness(:points%n) = stiffness
   end subroutine put_stiffness
 
-  !> Points stand as the placement before left them only as long as the stiffness, which all have in common, is the same.
+  !> Points stand as the placement before left them only as long as the stiffness, which all have in
+  !> common, is the same.
   pure subroutine forget_other_stiffness(stiffness, points)
     real(wp), intent(in) :: stiffness
     type(contact_points_t), intent(inout) :: points
@@ -136,7 +139,8 @@ contains
     if (abs(points%stiffness(1) - stiffness) > 0.0_wp) points%n_former = 0
   end subroutine forget_other_stiffness
 
-  !> Append a point between the nodes of a slave segment; area and stiffness are left to the formulation.
+  !> Append a point between the nodes of a slave segment; area and stiffness are left to the
+  !> formulation.
   pure subroutine add_segment_point(master, n_slave, ends, xi, foot, points)
     type(surface_t), intent(in) :: master
     integer, intent(in) :: n_slave    !! local number before the first master node

@@ -1,9 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> The common case of contact_overlap: both ends of a slave segment are in contact or plainly over the master, a few
-!> master segments face it entirely and the nodes between these cut it one after the other. What is found is the
-!> same; only the decisions that have no part in this case are left out. Segments are listed first and then cut many at a
-!> time, so that the roots and quotients of a list are formed together: one by one, waiting for these and for
-!> small arrays on their way to memory and back took two thirds of the pairing.
+!> The common case of contact_overlap: both ends of a slave segment are in contact or plainly over
+!> the master, a few master segments face it entirely and the nodes between these cut it one after
+!> the other. What is found is the same; only the decisions that have no part in this case are left
+!> out. Segments are listed first and then cut many at a time, so that the roots and quotients of a
+!> list are formed together: one by one, waiting for these and for small arrays on their way to
+!> memory and back took two thirds of the pairing.
 module contact_plain_cover_m
   use contact_piece_cutting_m, only : see_pieces, cut_pieces, order_pieces, n_room
   use contact_plain_ends_m, only : find_ends, is_inside, n_most, short_chain
@@ -12,11 +13,11 @@ module contact_plain_cover_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: plain_cover_t, clear_list, list_touching, list_pointed, list_segment, list_other, cut_segments, &
-    note_plain_contact, n_room
+  public :: plain_cover_t, clear_list, list_touching, list_pointed, list_segment, list_other, &
+    cut_segments, note_plain_contact, n_room
 
-  !> Slave segments cut into pieces, one piece behind the other. Without default values, which would be written
-  !> before each use.
+  !> Slave segments cut into pieces, one piece behind the other. Without default values, which would
+  !> be written before each use.
   type :: plain_cover_t
     integer :: n_segment
     integer :: n_piece
@@ -31,13 +32,16 @@ module contact_plain_cover_m
     real(wp) :: is_end(n_room)          !! (n_piece) 1 for the last piece of a segment, else 0
     real(wp) :: own(2, n_room)          !! (n_piece) vector of the slave segment, m
     real(wp) :: other(2, n_room)        !! (n_piece) vector of the master segment, m
-    real(wp) :: way(2, n_room)          !! (n_piece) from the master segment's first node to the first end, m
+    real(wp) :: way(2, n_room)          !! (n_piece) from the master segment's first node to the
+                                        !! first end, m
     real(wp) :: length(n_room)          !! (n_piece) of the slave segment, m
     real(wp) :: inverse(n_room)         !! (n_piece) 1/length, 1/m
     real(wp) :: low(n_room)             !! (n_piece) where it starts on the slave segment, 0 to 1
-    real(wp) :: high(n_room)            !! (n_piece) where it ends: projection of the master segment's first node, or 1
+    real(wp) :: high(n_room)            !! (n_piece) where it ends: projection of the master
+                                        !! segment's first node, or 1
     real(wp) :: gap(n_room)             !! (n_piece) of that node to the slave segment, m
-    real(wp) :: facing(n_room)          !! (n_piece) more than 0 where it faces the slave segment entirely
+    real(wp) :: facing(n_room)          !! (n_piece) more than 0 where it faces the slave segment
+                                        !! entirely
   end type plain_cover_t
 
 contains
@@ -52,8 +56,8 @@ contains
     cover%is_full = .false.
   end subroutine clear_list
 
-  !> Put slave segments from s on with both ends in contact on the list, up to the first that is of another kind or
-  !> has no room: s is then that one.
+  !> Put slave segments from s on with both ends in contact on the list, up to the first that is of
+  !> another kind or has no room: s is then that one.
   pure subroutine list_touching(contact, memory, s, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -83,13 +87,15 @@ contains
       two = ends(2, s)
       if (status(one) /= is_touching .or. status(two) /= is_touching) return
       if (.not. (is_inside(xi(one)) .and. is_inside(xi(two)))) return
-      call list_pieces(s, ends(1, s), segment(one), segment(two), previous, .true., cover, is_listed)
+      call list_pieces(s, ends(1, s), segment(one), segment(two), previous, .true., cover, &
+        is_listed)
       if (.not. is_listed) return
       s = s + 1
     end do
   end subroutine list_run
 
-  !> The same where points stand at the slave nodes in contact: `mark` says which, and their weights where the feet are.
+  !> The same where points stand at the slave nodes in contact: `mark` says which, and their weights
+  !> where the feet are.
   pure subroutine list_pointed(contact, memory, s, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -97,15 +103,17 @@ contains
     type(plain_cover_t), intent(inout) :: cover
 
     if (contact%master%n_segment <= short_chain) return
-    call list_run_of_points(contact%slave%n_segment, contact%slave%segments, memory%mark, memory%points%master_weights, &
-      memory%slave_tracking%segment, contact%master%previous, s, cover)
+    call list_run_of_points(contact%slave%n_segment, contact%slave%segments, memory%mark, &
+      memory%points%master_weights, memory%slave_tracking%segment, contact%master%previous, s, &
+      cover)
   end subroutine list_pointed
 
   !> The same on arrays of known shape.
   pure subroutine list_run_of_points(n_segment, ends, mark, weights, segment, previous, s, cover)
     integer, intent(in) :: n_segment, ends(2, n_segment)   !! of the slave
     integer, intent(in) :: mark(*), segment(*)             !! of the slave nodes
-    real(wp), intent(in) :: weights(2, *)                  !! of the points, on their master segments
+    real(wp), intent(in) :: weights(2, *)                  !! of the points, on their master
+                                                           !! segments
     integer, intent(in) :: previous(*)                     !! of the master
     integer, intent(inout) :: s
     type(plain_cover_t), intent(inout) :: cover
@@ -132,8 +140,8 @@ contains
     end do
   end subroutine list_run_of_points
 
-  !> Put the pieces of a slave segment on the list, from the master segment below its first end back to that below
-  !> the second one, if these are not too many.
+  !> Put the pieces of a slave segment on the list, from the master segment below its first end back
+  !> to that below the second one, if these are not too many.
   pure subroutine list_pieces(s, ends, first, last, previous, touches, cover, is_listed)
     integer, intent(in) :: s, ends(2)   !! slave segment and its nodes
     integer, intent(in) :: first, last
@@ -167,13 +175,14 @@ contains
     cover%is_full = k > n_room - n_most .or. cover%n_segment == n_room
   end subroutine list_pieces
 
-  !> Put any other slave segment on the list if the master segments below its ends can be told: corners, and whatever else
-  !> needs a decision, are left to contact_overlap.
+  !> Put any other slave segment on the list if the master segments below its ends can be told:
+  !> corners, and whatever else needs a decision, are left to contact_overlap.
   pure subroutine list_segment(contact, memory, s, with_nodes, cover, is_listed)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s           !! slave segment
-    logical, intent(in) :: with_nodes  !! also where the foot of an end in contact is a node, which is common in valleys
+    logical, intent(in) :: with_nodes  !! also where the foot of an end in contact is a node, which
+                                       !! is common in valleys
     type(plain_cover_t), intent(inout) :: cover
     logical, intent(out) :: is_listed
     integer :: first, last
@@ -188,8 +197,8 @@ contains
     end associate
   end subroutine list_segment
 
-  !> Put a slave segment that is not the common case on the list, without pieces, so that its points keep their place among
-  !> those of the others.
+  !> Put a slave segment that is not the common case on the list, without pieces, so that its points
+  !> keep their place among those of the others.
   pure subroutine list_other(s, cover)
     integer, intent(in) :: s
     type(plain_cover_t), intent(inout) :: cover
@@ -209,8 +218,8 @@ contains
     integer :: i, n_odd
     real(wp) :: odd(n_room)
 
-    call see_pieces(cover%n_piece, cover%ends, cover%master, contact%master%segments, memory%n_slave, &
-      memory%places, cover%nodes, cover%own, cover%other, cover%way)
+    call see_pieces(cover%n_piece, cover%ends, cover%master, contact%master%segments, &
+      memory%n_slave, memory%places, cover%nodes, cover%own, cover%other, cover%way)
     call cut_pieces(cover%n_piece, cover%own, cover%other, cover%way, cover%length, cover%inverse, &
       cover%high, cover%gap, cover%facing)
     call order_pieces(cover%n_piece, cover%facing, cover%is_end, cover%low, cover%high, odd, n_odd)
@@ -221,14 +230,17 @@ contains
     end do
   end subroutine cut_segments
 
-  !> What contact_admission notes of a segment with both ends in contact: it stays.
-  pure subroutine note_plain_contact(memory, s, is_deep)
-    type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: s
-    logical, intent(in) :: is_deep !! one of its points counts as closed
+  !> What contact_admission notes of a segment with both ends in contact: it stays, whatever its
+  !> gaps. One in contact is awake: nothing is written again.
+  pure subroutine note_plain_contact(is_deep, travel, status, wake)
+    logical, intent(in) :: is_deep   !! some gap of it is closed
+    real(wp), intent(in) :: travel   !! m
+    integer, intent(inout) :: status !! of the segment
+    real(wp), intent(inout) :: wake  !! m
 
-    memory%cover%status(s) = merge(is_touching, is_free, is_deep)
-    memory%cover%wake(s) = merge(-huge(1.0_wp), memory%travel, is_deep)
+    if (is_deep .and. status == is_touching) return
+    status = merge(is_touching, is_free, is_deep)
+    wake = merge(-huge(1.0_wp), travel, is_deep)
   end subroutine note_plain_contact
 
 end module contact_plain_cover_m

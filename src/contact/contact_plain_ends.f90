@@ -17,7 +17,8 @@ module contact_plain_ends_m
 
 contains
 
-  !> Master segments below both ends of a slave segment; free ends are looked for from where contact_overlap does.
+  !> Master segments below both ends of a slave segment; free ends are looked for from where
+  !> contact_overlap does.
   pure subroutine find_ends(contact, memory, one, two, with_nodes, first, second, touch)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -55,9 +56,10 @@ contains
     end associate
   end subroutine find_ends
 
-  !> Master segment of the first or the last piece of a slave segment where the foot of that end is a node. Of the two at
-  !> that node the outer one has a piece only where the node projects on the slave segment. In a closed chain it may lie
-  !> one segment beyond the others at either end: hence two more than a short chain has.
+  !> Master segment of the first or the last piece of a slave segment where the foot of that end is
+  !> a node. Of the two at that node the outer one has a piece only where the node projects on the
+  !> slave segment. In a closed chain it may lie one segment beyond the others at either end: hence
+  !> two more than a short chain has.
   pure function segment_at_node(contact, memory, one, two, node) result(segment)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -77,8 +79,8 @@ contains
       if (.not. abs(xi - 1.0_wp) > 0.0_wp) before = contact%master%next(before)
     end associate
     if (before == behind .or. min(before, behind) == 0) return
-    sight = sight_of_segment(memory%places(:, memory%n_slave + contact%master%segments(1, before)), &
-      memory%places(:, one), memory%places(:, two))
+    sight = sight_of_segment(memory%places(:, memory%n_slave &
+      + contact%master%segments(1, before)), memory%places(:, one), memory%places(:, two))
     part = sight%along/sight%square
     if (node == two) part = 1.0_wp - part
     if (abs(part) > well_inside .and. abs(part) < 1.0_wp) &

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> The common cases of contact_projection, told by signs of products alone: a spot that is over a segment and not nearer to
-!> any neighbour of it than to it. No distance is formed; the foot costs one root, the segment alone none.
+!> The common cases of contact_projection, told by signs of products alone: a spot that is over a
+!> segment and not nearer to any neighbour of it than to it. No distance is formed; the foot costs
+!> one root, the segment alone none.
 module contact_plain_foot_m
   use contact_projection_m, only : foot_t, face_foot, corner_foot, see_segment, is_before
   use geometry_m, only : sight_t, sight_of_segment, separation
@@ -18,7 +19,8 @@ module contact_plain_foot_m
 
 contains
 
-  !> Whether a place behind a face stays on it without a look at its neighbours (as `follow_contact` has it).
+  !> Whether a place behind a face stays on it without a look at its neighbours (as `follow_contact`
+  !> has it).
   pure function is_plainly_behind(sight) result(is_behind)
     type(sight_t), intent(in) :: sight
     logical :: is_behind
@@ -27,8 +29,9 @@ contains
       .and. sight%across + sight%square >= sight%along
   end function is_plainly_behind
 
-  !> What `walk_to_closest` and `closest_foot` find where a segment at or next to the start has the spot over it, while
-  !> the closest points of all neighbours seen on the way are the nodes in common, which are farther away.
+  !> What `walk_to_closest` and `closest_foot` find where a segment at or next to the start has the
+  !> spot over it, while the closest points of all neighbours seen on the way are the nodes in
+  !> common, which are farther away.
   pure subroutine plain_foot(surface, chain, spot, start, is_found, foot)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :)
@@ -44,8 +47,9 @@ contains
     if (is_found) foot = face_foot(sight, segment)
   end subroutine plain_foot
 
-  !> Foot of a spot behind the node between a segment and its neighbour, over neither of them: there `plain_foot` finds nothing
-  !> and `follow_contact` goes no further. In a valley many spots are of this kind.
+  !> Foot of a spot behind the node between a segment and its neighbour, over neither of them: there
+  !> `plain_foot` finds nothing and `follow_contact` goes no further. In a valley many spots are of
+  !> this kind.
   pure subroutine corner_behind(surface, chain, spot, segment, sight, is_found, foot)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :)
@@ -78,7 +82,8 @@ contains
     integer, intent(out) :: segment !! 0: another case
     type(sight_t), intent(out) :: sight
 
-    call walk_to_plain(surface%segments, surface%previous, surface%next, chain, spot, start, segment, sight)
+    call walk_to_plain(surface%segments, surface%previous, surface%next, chain, spot, start, &
+      segment, sight)
   end subroutine see_plain_segment
 
   !> The same on arrays of known shape.
@@ -99,8 +104,10 @@ contains
       if (is_well_inside(sight)) exit
       if (i_step == n_walk .or. (backwards .neqv. sight%along < 0.0_wp)) return
       if (i_step == 1) then
-        if (backwards .and. along_neighbour(ends, next(here), chain, sight%d - sight%t) > 0.0_wp) return
-        if (.not. backwards .and. along_neighbour(ends, previous(here), chain, sight%d) < 0.0_wp) return
+        if (backwards .and. along_neighbour(ends, next(here), chain, sight%d - sight%t) > 0.0_wp) &
+          return
+        if (.not. backwards .and. along_neighbour(ends, previous(here), chain, sight%d) < 0.0_wp) &
+          return
       end if
       here = merge(previous(here), next(here), backwards)
       if (here == 0) return

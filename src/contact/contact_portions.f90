@@ -18,9 +18,9 @@ module contact_portions_m
 
 contains
 
-  !> Project a place on a chain, starting at a segment and going on to the neighbour where it runs over a node. It
-  !> stops at the chain's end (with the usual overshoot), at a sharp corner, and at a node that no
-  !> neighbour sees it beyond.
+  !> Project a place on a chain, starting at a segment and going on to the neighbour where it runs
+  !> over a node. It stops at the chain's end (with the usual overshoot), at a sharp corner, and at
+  !> a node that no neighbour sees it beyond.
   pure function walk_to_mark(surface, chain, place, start) result(mark)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node) places

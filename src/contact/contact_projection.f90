@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Where a spot stands on a chain: the foot of the spot, with corners and ends treated as METHODS asks.
-!> Two ways to find it: `closest_foot` knows nothing of the past; `follow_contact` keeps a spot that
-!> is in contact on the face through which it came (doc/theory/contact.md, section 3).
+!> Where a spot stands on a chain: the foot of the spot, with corners and ends treated as METHODS
+!> asks. Two ways to find it: `closest_foot` knows nothing of the past; `follow_contact` keeps a
+!> spot that is in contact on the face through which it came (doc/theory/contact.md, section 3).
 module contact_projection_m
   use geometry_m, only : sight_t, sight_of_segment, closest_distance, sight_normal
   use kinds_m, only : wp
@@ -13,11 +13,11 @@ module contact_projection_m
 
   !> Overshoot accepted beyond the end of a chain, as a part of the segment; not clamped.
   real(wp), parameter :: end_tolerance = 0.01_wp
-  !> Cosine of the turn between two segments up to which their corner is gentle: a spot in
-  !> contact changes over to the nearer one. At sharper corners it stays on its face until the face ends.
+  !> Cosine of the turn between two segments up to which their corner is gentle: a spot in contact
+  !> changes over to the nearer one. At sharper corners it stays on its face until the face ends.
   real(wp), parameter :: gentle_turn = 0.5_wp
-  !> Cosine of the angle between two outward normals from which on surfaces do not face each other (a block's
-  !> side that stands on a surface has no part in its contact).
+  !> Cosine of the angle between two outward normals from which on surfaces do not face each other
+  !> (a block's side that stands on a surface has no part in its contact).
   real(wp), parameter :: side_on = -0.1_wp
 
   !> The foot of a spot: the place weights (1 - xi, xi) on `segment`; spot - foot = gap * normal.
@@ -123,9 +123,10 @@ contains
     end if
   end function face_foot
 
-  !> Foot at the node between two segments, neither of which has the spot over it. Outside of a convex
-  !> corner the gap is the distance. Inside of a re-entrant one it is minus the distance and the
-  !> normal points from the spot to the node, so that P2 holds. The sides are told apart by the mean normal.
+  !> Foot at the node between two segments, neither of which has the spot over it. Outside of a
+  !> convex corner the gap is the distance. Inside of a re-entrant one it is minus the distance and
+  !> the normal points from the spot to the node, so that P2 holds. The sides are told apart by the
+  !> mean normal.
   pure function corner_foot(sight, other, segment) result(foot)
     type(sight_t), intent(in) :: sight !! from `segment`
     type(sight_t), intent(in) :: other !! from its neighbour at the corner
@@ -149,9 +150,9 @@ contains
     end if
   end function corner_foot
 
-  !> Foot of a spot in contact, starting from the segment it was on: stays on the face until it ends,
-  !> goes on to the next one there, changes to a nearer face across gentle corners.
-  !> When the contact has ended the foot is not on the chain or its gap is not negative.
+  !> Foot of a spot in contact, starting from the segment it was on: stays on the face until it
+  !> ends, goes on to the next one there, changes to a nearer face across gentle corners. When the
+  !> contact has ended the foot is not on the chain or its gap is not negative.
   pure function follow_contact(surface, chain, spot, start) result(foot)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :)
@@ -209,8 +210,8 @@ contains
     before = merge(sight%along > sight%square, sight%along < 0.0_wp, backwards)
   end function is_before
 
-  !> Neighbour across a gentle corner that a penetrating spot is nearer to, or 0. Such a neighbour can
-  !> only be nearer when the gap exceeds the distance to the end of the segment.
+  !> Neighbour across a gentle corner that a penetrating spot is nearer to, or 0. Such a neighbour
+  !> can only be nearer when the gap exceeds the distance to the end of the segment.
   pure function nearer_face(surface, chain, spot, segment, sight) result(neighbour)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :)

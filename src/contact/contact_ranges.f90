@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Points of many spots, placed, pressed and scattered range by range in the same columns of the list, which stay in the cache: a
-!> whole list of 100,000 slave nodes goes to the memory and back (a quarter of the contact of type 4). Formulations that can
-!> place some points without the others come here.
+!> Points of many spots, placed, pressed and scattered range by range in the same columns of the
+!> list, which stay in the cache: a whole list of 100,000 slave nodes goes to the memory and back (a
+!> quarter of the contact of type 4). Formulations that can place some points without the others
+!> come here.
 module contact_ranges_m
   use clock_m, only : clock_t, lap, phase_contact_pairing, phase_contact_force
   use contact_dispatch_m, only : place_points, place_range, places_ranges
@@ -14,8 +15,8 @@ module contact_ranges_m
   private
   public :: range_size, goes_in_ranges, press_ranges, is_listed, list_again
 
-  !> Spots of a range; so many or fewer have a whole list. From 500 to 2000 it makes little difference; a multiple of what
-  !> formulations place together keeps the points in their order.
+  !> Spots of a range; so many or fewer have a whole list. From 500 to 2000 it makes little
+  !> difference; a multiple of what formulations place together keeps the points in their order.
   integer, parameter :: range_size = 1024
 
 contains
@@ -28,11 +29,13 @@ contains
     logical :: goes_in_ranges
 
     goes_in_ranges = .false.
-    if (memory%slave_tracking%n_touching <= range_size .or. contact%damping > 0.0_wp .or. cycle == 0) return
+    if (memory%slave_tracking%n_touching <= range_size .or. contact%damping > 0.0_wp .or. cycle &
+      == 0) return
     goes_in_ranges = places_ranges(contact)
   end function goes_in_ranges
 
-  !> Place, press and scatter, counting the points that carry pressure. The list is empty in the end.
+  !> Place, press and scatter, counting the points that carry pressure. The list is empty in the
+  !> end.
   subroutine press_ranges(contact, clock, memory)
     type(contact_t), intent(in) :: contact
     type(clock_t), intent(inout) :: clock
@@ -53,7 +56,8 @@ contains
     memory%points%n = 0
   end subroutine press_ranges
 
-  !> Whether the points of the last call are on the list. If not, some carry pressure and none is there.
+  !> Whether the points of the last call are on the list. If not, some carry pressure and none is
+  !> there.
   pure function is_listed(memory)
     type(contact_state_t), intent(in) :: memory
     logical :: is_listed

@@ -124,8 +124,8 @@ contains
     end associate
   end function touching_gaps
 
-  !> Gap of a slave node at the present places; 0 when it is unpaired. A spot that sleeps keeps its segment although
-  !> it may have gone out of reach since.
+  !> Gap of a slave node at the present places; 0 when it is unpaired. A spot that sleeps keeps its
+  !> segment although it may have gone out of reach since.
   pure function present_gap(contact, chain, place, memory, i, touching_gap) result(gap)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_master) present places
@@ -168,7 +168,8 @@ contains
     foot = closest_foot(surface, chain, place, walk_to_closest(surface, chain, place, segment))
   end function nearest_foot
 
-  !> The spot at a slave node, or of those on its segments the one next to it that is in contact, if any.
+  !> The spot at a slave node, or of those on its segments the one next to it that is in contact, if
+  !> any.
   pure function spot_at_node(slave, memory, i) result(spot)
     type(surface_t), intent(in) :: slave
     type(contact_state_t), intent(in) :: memory

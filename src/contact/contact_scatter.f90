@@ -6,13 +6,15 @@ module contact_scatter_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: end_t, scatter_points, scatter_runs, scatter_averaged, scatter_range, close_run, add_gap_round_off
+  public :: end_t, scatter_points, scatter_runs, scatter_averaged, scatter_range, close_run, &
+    add_gap_round_off
 
   !> Points pressed and scattered together.
   integer, parameter :: block_size = 128
 
-  !> What the last points in a row with the same nodes on a side give to one of these, and it has not got yet. Node and
-  !> force in turn: with all forces in a row the compiler makes vectors of them and forms each sum twice.
+  !> What the last points in a row with the same nodes on a side give to one of these, and it has
+  !> not got yet. Node and force in turn: with all forces in a row the compiler makes vectors of
+  !> them and forms each sum twice.
   type :: end_t
     integer :: node = 0  !! 0: no points yet
     real(wp) :: force(2) !! N/m
@@ -21,10 +23,10 @@ module contact_scatter_m
 contains
 
   !> Add the force of each point to its nodes: pressure*area*normal by the weights, slave side with
-  !> plus and master side with minus. Counts the points that carry pressure. Block by block, and where the
-  !> pressure of each is not there yet (`is_unpressed`) it is formed on the way: a block stays in the cache, a long
-  !> list does not (4 to 7 % of the contact at 100,000 nodes). It is not kept either (another 3 to 6 %): whoever wants it
-  !> later asks `pressures_of`.
+  !> plus and master side with minus. Counts the points that carry pressure. Block by block, and
+  !> where the pressure of each is not there yet (`is_unpressed`) it is formed on the way: a block
+  !> stays in the cache, a long list does not (4 to 7 % of the contact at 100,000 nodes). It is not
+  !> kept either (another 3 to 6 %): whoever wants it later asks `pressures_of`.
   pure subroutine scatter_points(points, is_unpressed, force, n_active)
     type(contact_points_t), intent(in) :: points
     logical, intent(in) :: is_unpressed
@@ -34,8 +36,8 @@ contains
     integer :: p, n
 
     if (.not. is_unpressed) then
-      call scatter_each(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, points%master_weights, &
-        points%normal, points%pressure, points%area, force)
+      call scatter_each(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
+        points%master_weights, points%normal, points%pressure, points%area, force)
       n_active = count_active(points%n, points%pressure)
       return
     end if
@@ -43,8 +45,9 @@ contains
     do p = 1, points%n, block_size
       n = min(block_size, points%n - p + 1)
       call press_each(n, points%stiffness(p), points%gap(p), pressure)
-      call scatter_each(n, points%slave_nodes(1, p), points%slave_weights(1, p), points%master_nodes(1, p), &
-        points%master_weights(1, p), points%normal(1, p), pressure, points%area(p), force)
+      call scatter_each(n, points%slave_nodes(1, p), points%slave_weights(1, p), &
+        points%master_nodes(1, p), points%master_weights(1, p), points%normal(1, p), pressure, &
+        points%area(p), force)
       n_active = n_active + count_active(n, pressure)
     end do
   end subroutine scatter_points
@@ -62,8 +65,8 @@ contains
     call close_run(run, force)
   end subroutine scatter_runs
 
-  !> The same where the pressure is shared out from the slave nodes and is not there yet: it is formed, kept and counted
-  !> block by block.
+  !> The same where the pressure is shared out from the slave nodes and is not there yet: it is
+  !> formed, kept and counted block by block.
   pure subroutine scatter_averaged(points, stiffness, nodal, force, n_active)
     type(contact_points_t), intent(inout) :: points
     real(wp), intent(in) :: stiffness      !! of all points, N/m^2
@@ -76,17 +79,18 @@ contains
     n_active = 0
     do p = 1, points%n, block_size
       n = min(block_size, points%n - p + 1)
-      call share_pressure(n, points%slave_nodes(1, p), points%slave_weights(1, p), stiffness, nodal, &
-        points%pressure(p))
-      call scatter_in_runs(n, points%slave_nodes(1, p), points%slave_weights(1, p), points%master_nodes(1, p), &
-        points%master_weights(1, p), points%normal(1, p), points%pressure(p), points%area(p), run, force)
+      call share_pressure(n, points%slave_nodes(1, p), points%slave_weights(1, p), stiffness, &
+        nodal, points%pressure(p))
+      call scatter_in_runs(n, points%slave_nodes(1, p), points%slave_weights(1, p), &
+        points%master_nodes(1, p), points%master_weights(1, p), points%normal(1, p), &
+        points%pressure(p), points%area(p), run, force)
       n_active = n_active + count_active(n, points%pressure(p))
     end do
     call close_run(run, force)
   end subroutine scatter_averaged
 
-  !> The same for the next points of many that are not on the list together; the last run stays open, so that sums do not
-  !> depend on where the list ends.
+  !> The same for the next points of many that are not on the list together; the last run stays
+  !> open, so that sums do not depend on where the list ends.
   pure subroutine scatter_range(points, run, force, n_active)
     type(contact_points_t), intent(in) :: points
     type(end_t), intent(inout) :: run(4) !! two of the slave side, two of the master side
@@ -127,10 +131,10 @@ contains
     n_active = count(pressure > 0.0_wp)
   end function count_active
 
-  !> On arrays of known shape: through the list each access costs a multiplication by its stride. A point at a node has
-  !> it at both ends of that side, and all of the force goes there.
-  pure subroutine scatter_each(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
-    pressure, area, force)
+  !> On arrays of known shape: through the list each access costs a multiplication by its stride. A
+  !> point at a node has it at both ends of that side, and all of the force goes there.
+  pure subroutine scatter_each(n, slave_nodes, slave_weights, master_nodes, master_weights, &
+      normal, pressure, area, force)
     integer, intent(in) :: n
     integer, intent(in) :: slave_nodes(n_side, *), master_nodes(n_side, *)
     real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
@@ -165,12 +169,13 @@ contains
     end do
   end subroutine scatter_each
 
-  !> The forces of a run of points are summed before they are given to its nodes: a sum in memory has to be
-  !> stored before it can be read again. A run is closed by the first point beyond it: to look ahead from each point takes
-  !> twice as many instructions. Both components of a node are read before one is written, so that pairs stay pairs in
-  !> the registers; else the compiler takes them apart, which costs half as much again.
-  pure subroutine scatter_in_runs(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
-    pressure, area, run, force)
+  !> The forces of a run of points are summed before they are given to its nodes: a sum in memory
+  !> has to be stored before it can be read again. A run is closed by the first point beyond it: to
+  !> look ahead from each point takes twice as many instructions. Both components of a node are read
+  !> before one is written, so that pairs stay pairs in the registers; else the compiler takes them
+  !> apart, which costs half as much again.
+  pure subroutine scatter_in_runs(n, slave_nodes, slave_weights, master_nodes, master_weights, &
+      normal, pressure, area, run, force)
     integer, intent(in) :: n
     integer, intent(in) :: slave_nodes(n_side, *), master_nodes(n_side, *)
     real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
@@ -215,8 +220,8 @@ contains
     run(1)%force = to_a; run(2)%force = to_b; run(3)%force = to_c; run(4)%force = to_d
   end subroutine scatter_in_runs
 
-  !> What the rounding of places, one part in 1/epsilon of them, makes of the nodal forces of all pressed points: a gap along
-  !> n is known to n_x X and n_y Y. Times epsilon it is a force.
+  !> What the rounding of places, one part in 1/epsilon of them, makes of the nodal forces of all
+  !> pressed points: a gap along n is known to n_x X and n_y Y. Times epsilon it is a force.
   pure subroutine add_gap_round_off(memory, total)
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(inout), contiguous :: total(:, :) !! (2, n_node of the mesh) N/m
@@ -228,7 +233,8 @@ contains
         if (.not. points%pressure(p) > 0.0_wp) cycle
         normal = abs(points%normal(:, p))
         node = points%master_nodes(1, p)
-        force = points%stiffness(p)*points%area(p)*dot_product(normal, abs(memory%places(1:2, node)))
+        force = points%stiffness(p)*points%area(p) &
+          *dot_product(normal, abs(memory%places(1:2, node)))
         do k = 1, n_side
           node = memory%nodes(points%slave_nodes(k, p))
           total(:, node) = total(:, node) + abs(points%slave_weights(k, p))*force*normal

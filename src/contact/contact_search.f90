@@ -8,7 +8,8 @@ module contact_search_m
   use contact_projection_m, only : foot_t, see_segment, closest_foot, follow_contact, &
     walk_to_closest, is_over_segment, turns_gently, end_tolerance, &
     side_on
-  use contact_state_m, only : contact_points_t, tracking_t, is_free, is_in_front, is_touching, is_behind
+  use contact_state_m, only : contact_points_t, tracking_t, is_free, is_in_front, is_touching, &
+    is_behind
   use geometry_m, only : sight_t, separation
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
@@ -18,9 +19,11 @@ module contact_search_m
 
 contains
 
-  !> Bring the pairs of all spots up to date and list the spots in contact. Where the list of points is given, the feet of
-  !> spots whose points stand on it are brought up to date there, and not in the tracking.
-  pure subroutine update_tracking(tracking, surface, chain, spots, travel, n_released, offset, points)
+  !> Bring the pairs of all spots up to date and list the spots in contact. Where the list of points
+  !> is given, the feet of spots whose points stand on it are brought up to date there, and not in
+  !> the tracking.
+  pure subroutine update_tracking(tracking, surface, chain, spots, travel, n_released, offset, &
+      points)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface            !! the chain tracked upon
     real(wp), intent(in), contiguous :: chain(:, :)   !! (4, n_node) places of its nodes
@@ -53,7 +56,8 @@ contains
   end subroutine update_tracking
 
   !> Spots that were not kept; and those that are not in contact, if any of them is due.
-  pure subroutine update_others(tracking, surface, chain, spots, travel, n_left, n_released, has_changed)
+  pure subroutine update_others(tracking, surface, chain, spots, travel, n_left, n_released, &
+      has_changed)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
@@ -64,15 +68,16 @@ contains
     integer :: i, k, n_due
 
     n_due = n_left
-    if (.not. travel < tracking%next_wake) call list_waking(tracking%n_touching, tracking%touching, tracking%n, &
-      tracking%wake, travel, tracking%next_wake, tracking%due, n_due)
+    if (.not. travel < tracking%next_wake) call list_waking(tracking%n_touching, &
+      tracking%touching, tracking%n, tracking%wake, travel, tracking%next_wake, tracking%due, n_due)
     has_changed = .false.
     do k = 1, n_due
       i = tracking%due(k)
       if (k <= n_left) i = tracking%touching(i)
       call update_spot(tracking, surface, chain, spots, i, travel, n_released)
       has_changed = has_changed .or. (tracking%status(i) == is_touching .neqv. k <= n_left)
-      if (tracking%status(i) /= is_touching) tracking%next_wake = min(tracking%next_wake, tracking%wake(i))
+      if (tracking%status(i) /= is_touching) tracking%next_wake = &
+        min(tracking%next_wake, tracking%wake(i))
     end do
   end subroutine update_others
 
@@ -115,8 +120,8 @@ contains
     call judge_foot(tracking, surface, chain, spots, i, foot, travel, n_released)
   end subroutine update_spot
 
-  !> Closest foot of a spot that is not in contact: by walking where that is safe, else by the global
-  !> search. foot%segment = 0: none within reach.
+  !> Closest foot of a spot that is not in contact: by walking where that is safe, else by the
+  !> global search. foot%segment = 0: none within reach.
   pure subroutine find_foot(tracking, surface, chain, spot, i, travel, foot)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface
@@ -169,8 +174,8 @@ contains
       n_deep = 0
       is_new = tracking%segment(i) == 0
       call begin_contact(tracking, i, foot, n_deep)
-      ! What is found behind at first sight is a deep contact only within the first row of elements; beyond
-      ! that it may as well be the far side of a body.
+      ! What is found behind at first sight is a deep contact only within the first row of elements;
+      ! beyond that it may as well be the far side of a body.
       if (.not. is_new .or. -foot%gap < 2.0_wp*tracking%segment_depth(foot%segment)) &
         n_released = n_released + n_deep
     else
@@ -212,10 +217,11 @@ contains
     tracking%normal(:, i) = foot%normal
   end subroutine store_foot
 
-  !> Face that a spot stands before: its own segment, but next to a sharp corner the one that the spot's own
-  !> surface faces most, among those it is over. 0 when it stands before none. Without this a node at a
-  !> flush edge belongs to the top or to the side of the other body by round-off. At time zero (`is_start`) faces that the spot is
-  !> behind count too, and any depth is next to the corner where the spot's own surface faces the other face only.
+  !> Face that a spot stands before: its own segment, but next to a sharp corner the one that the
+  !> spot's own surface faces most, among those it is over. 0 when it stands before none. Without
+  !> this a node at a flush edge belongs to the top or to the side of the other body by round-off.
+  !> At time zero (`is_start`) faces that the spot is behind count too, and any depth is next to the
+  !> corner where the spot's own surface faces the other face only.
   pure function most_facing(tracking, surface, chain, spots, i, foot, is_start) result(face)
     type(tracking_t), intent(in) :: tracking
     type(surface_t), intent(in) :: surface

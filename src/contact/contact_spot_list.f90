@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Gauss points of slave segments that touch in part, listed first and then seen many at a time, so that the roots and
-!> quotients of a list are formed together (one by one, they took a third of the time of type 6). What is found is
-!> what `local_foot` finds; spots that are not plainly over one master segment are left to that.
+!> Gauss points of slave segments that touch in part, listed first and then seen many at a time, so
+!> that the roots and quotients of a list are formed together (one by one, they took a third of the
+!> time of type 6). What is found is what `local_foot` finds; spots that are not plainly over one
+!> master segment are left to that.
 module contact_spot_list_m
   use contact_local_foot_m, only : local_foot
   use contact_overlap_m, only : facing_share, face_on
@@ -37,9 +38,11 @@ module contact_spot_list_m
     real(wp) :: gap(n_room)          !! m
     real(wp) :: normal(2, n_room)    !! of the master
     real(wp) :: length(n_room)       !! of the slave segment, m
-    real(wp) :: inside(n_room)       !! more than 0 where the spot is well inside this master segment, m^2
+    real(wp) :: inside(n_room)       !! more than 0 where the spot is well inside this master
+                                     !! segment, m^2
     real(wp) :: past(n_room)         !! not less than 0 where it is over no neighbour of that, m^2
-    real(wp) :: facing(n_room)       !! more than 0 where the segments surely face each other entirely
+    real(wp) :: facing(n_room)       !! more than 0 where the segments surely face each other
+                                     !! entirely
   end type spot_list_t
 
 contains
@@ -120,7 +123,8 @@ contains
       ! The neighbours' nodes in common are those of this segment.
       if (previous(list%master(k)) > 0) before = places(:, a) &
         - places(:, n_slave + segments(1, previous(list%master(k))))
-      if (next(list%master(k)) > 0) after = places(:, n_slave + segments(2, next(list%master(k)))) - places(:, b)
+      if (next(list%master(k)) > 0) after = places(:, n_slave + segments(2, next(list%master(k)))) &
+        - places(:, b)
       list%own(:, k) = own(1:2) + own(3:4)
       list%t(:, k) = t(1:2) + t(3:4)
       list%d(:, k) = d(1:2) + d(3:4)
@@ -129,12 +133,14 @@ contains
     end do
   end subroutine see_spots
 
-  !> Project them. The second product of a sum is in parentheses, rounded first, since that is how `sight_of_segment` comes out
-  !> where products and sums are fused: one by one or on a list, the bits are the same.
+  !> Project them. The second product of a sum is in parentheses, rounded first, since that is how
+  !> `sight_of_segment` comes out where products and sums are fused: one by one or on a list, the
+  !> bits are the same.
   pure subroutine project_spots(n, t, d, before, after, xi, gap, normal, inside, past)
     integer, intent(in) :: n
     real(wp), dimension(2, n_room), intent(in) :: t, d, before, after
-    real(wp), intent(inout) :: xi(n_room), gap(n_room), normal(2, n_room), inside(n_room), past(n_room)
+    real(wp), intent(inout) :: xi(n_room), gap(n_room), normal(2, n_room), inside(n_room), &
+      past(n_room)
     real(wp) :: square, length, along
     integer :: k
 
@@ -186,7 +192,8 @@ contains
     end do
   end subroutine face_spots
 
-  !> Feet that need a decision; spots that are beyond an end of the master or do not face it leave the list.
+  !> Feet that need a decision; spots that are beyond an end of the master or do not face it leave
+  !> the list.
   pure subroutine finish_spots(contact, memory, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -219,7 +226,8 @@ contains
     integer, intent(in) :: k
     real(wp) :: share
 
-    share = facing_share(dot_product([list%own(2, k), -list%own(1, k)]/list%length(k), list%normal(:, k)))
+    share = facing_share(dot_product([list%own(2, k), -list%own(1, k)]/list%length(k), &
+      list%normal(:, k)))
   end function share_of
 
   !> Drop the spots without a master.
@@ -245,8 +253,8 @@ contains
   end subroutine close_ranks
 
   !> Nodes and weights of the points on the list.
-  pure subroutine emit_sides(list, n_slave, spot_xi, segments, slave_nodes, slave_weights, master_nodes, &
-      master_weights)
+  pure subroutine emit_sides(list, n_slave, spot_xi, segments, slave_nodes, slave_weights, &
+      master_nodes, master_weights)
     type(spot_list_t), intent(in) :: list
     integer, intent(in) :: n_slave              !! local number before the first master node
     real(wp), intent(in) :: spot_xi(*)

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Where the followed spots of the slave side are: at its nodes, or at fixed places of every segment. Spots of
-!> segments move with the segment's nodes; spot number (segment - 1)*(spots per segment) + position.
+!> Where the followed spots of the slave side are: at its nodes, or at fixed places of every
+!> segment. Spots of segments move with the segment's nodes; spot number (segment - 1)*(spots per
+!> segment) + position.
 module contact_spots_m
   use contact_state_m, only : contact_state_t
   use kinds_m, only : wp
@@ -16,8 +17,8 @@ module contact_spots_m
 
 contains
 
-  !> Places on each segment and the part of its length that each stands for; nothing is allocated for spots at
-  !> nodes, which are in `memory%places` already.
+  !> Places on each segment and the part of its length that each stands for; nothing is allocated
+  !> for spots at nodes, which are in `memory%places` already.
   pure subroutine start_spots(rule, n_gauss, slave, memory)
     integer, intent(in) :: rule    !! one of the constants above
     integer, intent(in) :: n_gauss !! Gauss points of a segment
@@ -56,8 +57,8 @@ contains
       spots)
   end subroutine move_spots
 
-  !> The same on arrays of known shape. Both components of a spot are formed together: vectors over the few
-  !> spots of a segment take 2 to 4 % more of the contact of type 4.
+  !> The same on arrays of known shape. Both components of a spot are formed together: vectors over
+  !> the few spots of a segment take 2 to 4 % more of the contact of type 4.
   pure subroutine move_on_segments(n, segments, n_xi, xi, places, spots)
     integer, intent(in) :: n, segments(2, n), n_xi
     real(wp), intent(in) :: xi(n_xi), places(4, *)
@@ -79,7 +80,8 @@ contains
     end do
   end subroutine move_on_segments
 
-  !> Segments of the own surface that each spot belongs to: one, or the two at a node (0: none there).
+  !> Segments of the own surface that each spot belongs to: one, or the two at a node (0: none
+  !> there).
   pure function list_owners(surface, n_per_segment) result(owners)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: n_per_segment !! 0 for spots at nodes
@@ -98,8 +100,8 @@ contains
     end if
   end function list_owners
 
-  !> Two spots of the own surface whose connection tells its direction at each spot: the first and the last of a
-  !> segment, or the neighbours of a node or of a lonely spot.
+  !> Two spots of the own surface whose connection tells its direction at each spot: the first and
+  !> the last of a segment, or the neighbours of a node or of a lonely spot.
   pure function list_chords(surface, n_per_segment) result(chords)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: n_per_segment

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> How stiff the penalty springs of an interface can hold each of its nodes.
-!> A node of the tracked side carries at most its competence length in all formulations, for a node of the other side
-!> see `most_on_nodes` (doc/theory/contact.md, section 7).
+!> How stiff the penalty springs of an interface can hold each of its nodes. A node of the tracked
+!> side carries at most its competence length in all formulations, for a node of the other side see
+!> `most_on_nodes` (doc/theory/contact.md, section 7).
 module contact_spring_ratios_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_competence_m, only : competence_length
@@ -16,8 +16,8 @@ module contact_spring_ratios_m
 
 contains
 
-  !> Most K/m of each node, K being the sum of spring stiffness times weight, 1/s^2. `places` are those in the
-  !> memory, all nodes in contact.
+  !> Most K/m of each node, K being the sum of spring stiffness times weight, 1/s^2. `places` are
+  !> those in the memory, all nodes in contact.
   pure function spring_ratios(contact, mass, memory) result(ratio)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: mass(:) !! (n_node) kg/m
@@ -75,11 +75,12 @@ contains
     end do
   end function lengths
 
-  !> Most length that points of the other side can put on each node, by its hat function over segments of
-  !> length h. At equal distances s, each with the length s: with a point at the node, s/2 and
-  !> sum(s (1 - i s/h), i s < h) for each neighbouring segment. At distances up to s, or integrating segments of up to s: h/2, and
-  !> the largest error of the trapezoidal rule at the foot of the hat, s^2/(8h), or (s - h)/2 when s > 2h (the midpoint
-  !> rule errs as much at the top, Gauss rules less). Points at a chain's end may stand for a part `overhang` of s beyond it.
+  !> Most length that points of the other side can put on each node, by its hat function over
+  !> segments of length h. At equal distances s, each with the length s: with a point at the node,
+  !> s/2 and sum(s (1 - i s/h), i s < h) for each neighbouring segment. At distances up to s, or
+  !> integrating segments of up to s: h/2, and the largest error of the trapezoidal rule at the foot
+  !> of the hat, s^2/(8h), or (s - h)/2 when s > 2h (the midpoint rule errs as much at the top,
+  !> Gauss rules less). Points at a chain's end may stand for a part `overhang` of s beyond it.
   pure function most_on_nodes(surface, places, s, overhang, at_equal_distances) result(most)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: places(:, :)

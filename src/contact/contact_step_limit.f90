@@ -1,13 +1,15 @@
 ! SPDX-License-Identifier: MIT
 !> The step that the penalty springs of all interfaces and the elements allow together.
-!> With springs k_p between weighted means of slave and master nodes, (s - m)^2 <= (1 + c) s^2 + (1 + 1/c) m^2
-!> for any c > 0 and the convexity of the square give
+!> With springs k_p between weighted means of slave and master nodes,
+!> (s - m)^2 <= (1 + c) s^2 + (1 + 1/c) m^2 for any c > 0 and the convexity of the square give
 !>
-!>     omega^2 <= max over nodes of sum over interfaces of (1 + c) K/m (slave side) or (1 + 1/c) K/m (master side),
+!>     omega^2 <= max over nodes of sum over interfaces of
+!>                (1 + c) K/m (slave side) or (1 + 1/c) K/m (master side),
 !>
-!> with a c of each interface and the ratios K/m of `spring_ratios`. One interface alone: c = B/A gives
-!> max_s K/m + max_m K/m = A + B, exact for two masses and one spring. Averaging the gaps of points over slave nodes only
-!> lowers omega: by convexity again the energy is no more than that of springs at the points.
+!> with a c of each interface and the ratios K/m of `spring_ratios`. One interface alone: c = B/A
+!> gives max_s K/m + max_m K/m = A + B, exact for two masses and one spring. Averaging the gaps of
+!> points over slave nodes only lowers omega: by convexity again the energy is no more than that of
+!> springs at the points.
 !> Squares of frequencies of elements and springs add up at most (doc/theory/contact.md, section 7).
 module contact_step_limit_m
   use contact_spring_ratios_m, only : spring_ratios
@@ -18,7 +20,8 @@ module contact_step_limit_m
   private
   public :: spring_bound_t, bound_springs, stable_step, fitting_scale
 
-  !> What is known of the springs at the nodes of one interface, those of other interfaces there included.
+  !> What is known of the springs at the nodes of one interface, those of other interfaces there
+  !> included.
   type :: spring_bound_t
     real(wp) :: rate = 0.0_wp     !! bound of omega^2, 1/s^2
     real(wp) :: damping = 0.0_wp  !! sum of damping fraction times omega, 1/s
@@ -31,7 +34,8 @@ module contact_step_limit_m
     real(wp) :: c = 1.0_wp            !! share between its sides
   end type ratios_t
 
-  !> Rounds over all interfaces, and halvings of the interval of log c: any c is safe, more only sharpen the bound.
+  !> Rounds over all interfaces, and halvings of the interval of log c: any c is safe, more only
+  !> sharpen the bound.
   integer, parameter :: n_round = 20, n_halving = 40
 
 contains
@@ -108,7 +112,8 @@ contains
     weighted(n_slave + 1:) = (1.0_wp + 1.0_wp/c)*ratios%at(n_slave + 1:)
   end function weighted
 
-  !> The c for which both sides of an interface are loaded alike, on top of what others put on the nodes.
+  !> The c for which both sides of an interface are loaded alike, on top of what others put on the
+  !> nodes.
   pure function even_share(ratios, n_slave, others) result(c)
     type(ratios_t), intent(in) :: ratios
     integer, intent(in) :: n_slave
@@ -130,7 +135,8 @@ contains
     end do
   end function even_share
 
-  !> Largest dt with (dt/element_limit)^2 + dt^2 rate/4 + dt damping <= 1; without springs that of the elements.
+  !> Largest dt with (dt/element_limit)^2 + dt^2 rate/4 + dt damping <= 1; without springs that of
+  !> the elements.
   pure elemental function stable_step(element_limit, bound) result(limit)
     real(wp), intent(in) :: element_limit !! s
     type(spring_bound_t), intent(in) :: bound
@@ -143,7 +149,8 @@ contains
     limit = 2.0_wp/(bound%damping + sqrt(bound%damping**2 + 4.0_wp*square))
   end function stable_step
 
-  !> Factor on the penalties for which the step `dt` is just stable; 0 where the elements leave no room.
+  !> Factor on the penalties for which the step `dt` is just stable; 0 where the elements leave no
+  !> room.
   pure elemental function fitting_scale(dt, element_limit, bound) result(scale)
     real(wp), intent(in) :: dt, element_limit !! s
     type(spring_bound_t), intent(in) :: bound !! with a rate above 0

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Contact points with the derivatives of all that they consist of: the parts from which the tangents of the
-!> formulations are made (doc/theory/contact.md, section 9). The placements decide which segments and nodes a
-!> point depends on; here the same geometry is gone through once more in dual numbers.
+!> Contact points with the derivatives of all that they consist of: the parts from which the
+!> tangents of the formulations are made (doc/theory/contact.md, section 9). The placements decide
+!> which segments and nodes a point depends on; here the same geometry is gone through once more in
+!> dual numbers.
 module contact_variation_m
   use contact_overlap_m, only : cover_t, piece_t, see_master_node, side_on, face_on
   use contact_state_m, only : contact_state_t
@@ -12,15 +13,17 @@ module contact_variation_m
   implicit none
   private
   public :: varied_point_t, varied_foot_t, n_slot, round_off, apart, length_between, project, &
-    spot_foot, take_foot, see_from, take_piece, piece_ends, vary_share
+    spot_foot, put_foot, see_from, take_piece, piece_ends, vary_share
 
   !> Nodes that a point depends on, at most.
   integer, parameter :: n_slot = n_partial/2
-  !> A place no farther beyond a segment than this part of it is over it: at a node round-off decides.
+  !> A place no farther beyond a segment than this part of it is over it: at a node round-off
+  !> decides.
   real(wp), parameter :: round_off = 1.0e-12_wp
 
-  !> A point. Its forces act on the nodes in slots 1, 2 (slave side of the record) and 3, 4 (master side); it may depend
-  !> on those in the other slots too. A node may stand in several slots; variable 2 i - 1 is u_x of slot i, 2 i its u_y.
+  !> A point. Its forces act on the nodes in slots 1, 2 (slave side of the record) and 3, 4 (master
+  !> side); it may depend on those in the other slots too. A node may stand in several slots;
+  !> variable 2 i - 1 is u_x of slot i, 2 i its u_y.
   type :: varied_point_t
     integer :: nodes(n_slot) = 0   !! local numbers, 0 = slot not used
     type(dual_t) :: slave_xi       !! weights of slots 1, 2 are (1 - xi, xi)
@@ -78,7 +81,8 @@ contains
   end function project
 
   !> Foot like a known one: on the line of the segment, or at its node at a corner, where the normal
-  !> points along the connection. A corner foot so close that its normal means nothing stands on the line.
+  !> points along the connection. A corner foot so close that its normal means nothing stands on the
+  !> line.
   pure function vary_foot(d, t, xi, gap, closed_gap) result(foot)
     type(dual_t), intent(in) :: d(2)      !! from the segment's first node to the place
     type(dual_t), intent(in) :: t(2)      !! the segment
@@ -98,8 +102,8 @@ contains
     foot%normal = [from_node(1)/foot%gap, from_node(2)/foot%gap]
   end function vary_foot
 
-  !> Foot of the point's spot, at slave_xi between slots 1 and 2 (at slot 1 where 2 is not used), on the segment in
-  !> slots i and i + 1, like a known one.
+  !> Foot of the point's spot, at slave_xi between slots 1 and 2 (at slot 1 where 2 is not used), on
+  !> the segment in slots i and i + 1, like a known one.
   pure function spot_foot(places, point, i, xi, gap, closed_gap) result(foot)
     real(wp), intent(in), contiguous :: places(:, :)
     type(varied_point_t), intent(in) :: point
@@ -124,17 +128,18 @@ contains
   end function see_from
 
   !> Let a foot on slots 3, 4 be that of the point.
-  pure subroutine take_foot(point, foot)
+  pure subroutine put_foot(point, foot)
     type(varied_point_t), intent(inout) :: point
     type(varied_foot_t), intent(in) :: foot
 
     point%master_xi = foot%xi
     point%gap = foot%gap
     point%normal = foot%normal
-  end subroutine take_foot
+  end subroutine put_foot
 
-  !> Put a slave segment into slots 1, 2 and the nodes that cut off a piece of it into slots 5 and 6. Where the walk
-  !> has gone over to another chain that begins behind the last cut, this still is where the piece starts.
+  !> Put a slave segment into slots 1, 2 and the nodes that cut off a piece of it into slots 5 and
+  !> 6. Where the walk has gone over to another chain that begins behind the last cut, this still is
+  !> where the piece starts.
   pure subroutine take_piece(memory, cover, before, piece, point)
     type(contact_state_t), intent(in) :: memory
     type(cover_t), intent(in) :: cover
@@ -153,8 +158,8 @@ contains
     where (cuts > 0) point%nodes(5:6) = memory%n_slave + cuts
   end subroutine take_piece
 
-  !> Where a piece of the slave segment in slots 1, 2 starts and ends on it; its cuts are the nodes in slots 5
-  !> and 6, where there are any.
+  !> Where a piece of the slave segment in slots 1, 2 starts and ends on it; its cuts are the nodes
+  !> in slots 5 and 6, where there are any.
   pure function piece_ends(places, nodes, piece) result(xi)
     real(wp), intent(in), contiguous :: places(:, :)
     integer, intent(in) :: nodes(n_slot)
@@ -171,7 +176,8 @@ contains
     end do
   end function piece_ends
 
-  !> Share of the slave segment in slots i, i + 1 that counts as facing a foot with the given normal.
+  !> Share of the slave segment in slots i, i + 1 that counts as facing a foot with the given
+  !> normal.
   pure function vary_share(places, nodes, i, normal) result(share)
     real(wp), intent(in), contiguous :: places(:, :)
     integer, intent(in) :: nodes(n_slot)

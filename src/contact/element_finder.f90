@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Whether a place lies inside the elements of certain parts at time zero, and not just on their boundary.
-!> Elements are sorted into the cells of a uniform grid by their boxes; used once, at the start.
+!> Whether a place lies inside the elements of certain parts at time zero, and not just on their
+!> boundary. Elements are sorted into the cells of a uniform grid by their boxes; used once, at the
+!> start.
 module element_finder_m
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -91,8 +92,8 @@ contains
     cell = max(0, min(finder%cells - 1, int((x - finder%low)/finder%cell)))
   end function cell_of
 
-  !> Whether four places round `x`, a hair away, are all in elements that do not have the nodes which carry
-  !> the place. (x alone would not tell an edge between two elements from the boundary.)
+  !> Whether four places round `x`, a hair away, are all in elements that do not have the nodes
+  !> which carry the place. (x alone would not tell an edge between two elements from the boundary.)
   pure function is_inside_body(finder, model, x, carriers) result(inside)
     type(element_finder_t), intent(in) :: finder
     type(model_t), intent(in) :: model

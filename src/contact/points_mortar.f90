@@ -14,7 +14,8 @@ module points_mortar_m
 
 contains
 
-  !> Place the points of all segments that share a node with one in contact: these decide on nodal pressures.
+  !> Place the points of all segments that share a node with one in contact: these decide on nodal
+  !> pressures.
   pure subroutine place_mortar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -28,7 +29,8 @@ contains
     list%is_full = .false.
     s = 1
     do while (s <= contact%slave%n_segment)
-      near = max(memory%mark(contact%slave%segments(1, s)), memory%mark(contact%slave%segments(2, s)))
+      near = max(memory%mark(contact%slave%segments(1, s)), &
+        memory%mark(contact%slave%segments(2, s)))
       if (near > 0) then
         call add_segments(contact, memory, near, list, s)
       else
@@ -39,7 +41,8 @@ contains
     memory%mark = 0
   end subroutine place_mortar
 
-  !> Note at both ends of each segment with a spot in contact the master segment of the first of these spots.
+  !> Note at both ends of each segment with a spot in contact the master segment of the first of
+  !> these spots.
   pure subroutine mark_ends(n, touching, segment, n_per_segment, ends, mark)
     integer, intent(in) :: n, touching(n)  !! spots in contact
     integer, intent(in) :: segment(*)      !! of the master below each spot
@@ -60,9 +63,9 @@ contains
     end do
   end subroutine mark_ends
 
-  !> The points of a segment and of those behind it, as long as all their Gauss points are in contact; s is then the next
-  !> segment. A segment that touches in part, or does not face the master entirely, goes on the list. `near` is a master
-  !> segment close by.
+  !> The points of a segment and of those behind it, as long as all their Gauss points are in
+  !> contact; s is then the next segment. A segment that touches in part, or does not face the
+  !> master entirely, goes on the list. `near` is a master segment close by.
   pure subroutine add_segments(contact, memory, near, list, s)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -73,7 +76,8 @@ contains
     logical :: all_face
 
     m = size(memory%spot_xi)
-    n = count_touching(m, contact%slave%n_segment - s + 1, memory%slave_tracking%status((s - 1)*m + 1:))
+    n = count_touching(m, contact%slave%n_segment - s + 1, &
+      memory%slave_tracking%status((s - 1)*m + 1:))
     all_face = n > 0
     if (all_face) then
       if (list%n > 0) call put_spots(contact, memory, list)
@@ -84,7 +88,8 @@ contains
       n = max(1, n)
       do k = s, s + n - 1
         if (list%is_full) call put_spots(contact, memory, list)
-        call list_spots(m, k, contact%slave%segments(:, k), memory%slave_tracking%status((k - 1)*m + 1), &
+        call list_spots(m, k, contact%slave%segments(:, k), &
+          memory%slave_tracking%status((k - 1)*m + 1), &
           memory%slave_tracking%segment((k - 1)*m + 1), near, list)
       end do
     end if
@@ -112,15 +117,15 @@ contains
     integer :: m
 
     m = size(memory%spot_xi)
-    associate (points => memory%points, p => memory%points%n + 1, tracking => memory%slave_tracking, &
-      i => (s - 1)*m + 1)
+    associate (points => memory%points, p => memory%points%n + 1, &
+      tracking => memory%slave_tracking, i => (s - 1)*m + 1)
       call put_areas(m, n, contact%slave%segments(1, s), memory%places, tracking%normal(1, i), &
         memory%spot_share, points%area(p), points%normal(1, p), all_face)
       if (.not. all_face) return
       if (.not. is_known(m*n, contact%slave%segments(1, s), contact%slave%segments(1, s + n - 1), &
         memory%slave_penalty, points)) then
-        call put_sides(m, n, contact%slave%segments(1, s), memory%spot_xi, points%slave_nodes(1, p), &
-          points%slave_weights(1, p))
+        call put_sides(m, n, contact%slave%segments(1, s), memory%spot_xi, &
+          points%slave_nodes(1, p), points%slave_weights(1, p))
         points%stiffness(p:points%n + m*n) = memory%slave_penalty
       end if
       call put_master_side(m*n, tracking%segment(i), tracking%xi(i), contact%master%segments, &
@@ -130,9 +135,10 @@ contains
     end associate
   end subroutine add_touching
 
-  !> Whether the next n points were those of the same segments at the last placement, so that their slave side and
-  !> stiffness stand there. A segment has a point at each of its Gauss points at most, and segments are placed in
-  !> order: where the first and the last point are those of the first and the last segment, so are all between.
+  !> Whether the next n points were those of the same segments at the last placement, so that their
+  !> slave side and stiffness stand there. A segment has a point at each of its Gauss points at
+  !> most, and segments are placed in order: where the first and the last point are those of the
+  !> first and the last segment, so are all between.
   pure function is_known(n, first, last, stiffness, points)
     integer, intent(in) :: n
     integer, intent(in) :: first(n_side), last(n_side) !! nodes of the first and the last segment
@@ -143,12 +149,14 @@ contains
     is_known = points%n + n <= points%n_former
     if (.not. is_known) return
     associate (p => points%n + 1, q => points%n + n)
-      is_known = all(points%slave_nodes(:, p) == first) .and. all(points%slave_nodes(:, q) == last) &
+      is_known = all(points%slave_nodes(:, p) == first) &
+        .and. all(points%slave_nodes(:, q) == last) &
         .and. .not. abs(points%stiffness(p) - stiffness) > 0.0_wp
     end associate
   end function is_known
 
-  !> Areas and normals of the Gauss points of some segments, if all of them face the master entirely.
+  !> Areas and normals of the Gauss points of some segments, if all of them face the master
+  !> entirely.
   pure subroutine put_areas(m, n, ends, places, normals, shares, areas, point_normals, all_face)
     integer, intent(in) :: m, n, ends(2, n)
     real(wp), intent(in) :: places(4, *)

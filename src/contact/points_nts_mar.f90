@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Type 5, NTS-mAR: type 2 with a modified competence length, and in addition the master nodes between the
-!> feet of the two ends of a slave segment, projected on that segment
+!> Type 5, NTS-mAR: type 2 with a modified competence length, and in addition the master nodes
+!> between the feet of the two ends of a slave segment, projected on that segment
 !> (doc/theory/contact.md, section 5.5).
 module points_nts_mar_m
   use contact_admission_m, only : all_asleep, is_asleep, judge_segment, note_next_wake
@@ -24,7 +24,8 @@ module points_nts_mar_m
 
 contains
 
-  !> Place the points: slave nodes first; then, segment by segment, their areas and the master nodes.
+  !> Place the points: slave nodes first; then, segment by segment, their areas and the master
+  !> nodes.
   pure subroutine place_nts_mar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -71,7 +72,8 @@ contains
     end do
   end subroutine take_segment
 
-  !> Take the feet of some slave nodes to the tracking, where those of the nodes in contact are on the points only.
+  !> Take the feet of some slave nodes to the tracking, where those of the nodes in contact are on
+  !> the points only.
   pure subroutine take_feet_of(nodes, memory)
     integer, intent(in) :: nodes(2)
     type(contact_state_t), intent(inout) :: memory
@@ -96,7 +98,8 @@ contains
     end do
   end subroutine mark_points
 
-  !> Nodes at a tip keep their whole competence length. Their feet are in the tracking since their segments were shared.
+  !> Nodes at a tip keep their whole competence length. Their feet are in the tracking since their
+  !> segments were shared.
   pure subroutine finish_nodes(contact, memory, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -150,9 +153,10 @@ contains
     call clear_list(cover)
   end subroutine share_list
 
-  !> Divide a slave segment among its ends and the master nodes between their feet: half of each piece to either of its
-  !> ends. The strict rule adds no node where an end of the segment has no foot; otherwise the part
-  !> beyond the last master node carries nothing, nor do pieces that do not face the master.
+  !> Divide a slave segment among its ends and the master nodes between their feet: half of each
+  !> piece to either of its ends. The strict rule adds no node where an end of the segment has no
+  !> foot; otherwise the part beyond the last master node carries nothing, nor do pieces that do not
+  !> face the master.
   pure subroutine share_segment(contact, memory, s)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory

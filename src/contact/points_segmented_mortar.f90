@@ -7,8 +7,8 @@ module points_segmented_mortar_m
   use contact_piece_list_m, only : look_at_segments, put_points, put_pieces
   use contact_piece_points_m, only : plain_points_t, find_points, look_over
   use contact_pieces_m, only : gauss_xi, add_pieces
-  use contact_plain_cover_m, only : plain_cover_t, clear_list, list_touching, list_segment, list_other, &
-    cut_segments, note_plain_contact
+  use contact_plain_cover_m, only : plain_cover_t, clear_list, list_touching, list_segment, &
+    list_other, cut_segments, note_plain_contact
   use contact_placing_m, only : forget_other_stiffness
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
@@ -19,8 +19,8 @@ module points_segmented_mortar_m
 
 contains
 
-  !> Place the points: of all segments that may touch, then of their neighbours that can not, since these have a
-  !> part in the averaged gaps of common nodes.
+  !> Place the points: of all segments that may touch, then of their neighbours that can not, since
+  !> these have a part in the averaged gaps of common nodes.
   pure subroutine place_segmented_mortar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -64,7 +64,8 @@ contains
     call place_list(contact, memory, .true., n_edge, cover)
   end subroutine place_awake
 
-  !> Neighbours of segments in contact that have not been placed. A segment with both ends in contact has none.
+  !> Neighbours of segments in contact that have not been placed. A segment with both ends in
+  !> contact has none.
   pure subroutine place_neighbours(contact, memory, n_edge, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -101,7 +102,8 @@ contains
     if (cover%is_full) call place_list(contact, memory, may_touch, n_edge, cover)
   end subroutine take_segment
 
-  !> Place the points of the segments on a list, and clear it. Those of segments that may touch are judged by them.
+  !> Place the points of the segments on a list, and clear it. Those of segments that may touch are
+  !> judged by them.
   pure subroutine place_list(contact, memory, may_touch, n_edge, cover)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -128,7 +130,8 @@ contains
         if (may_touch) found%deepest(i) = minval(memory%points%gap(n_before + 1:memory%points%n))
       end if
       if (.not. may_touch) cycle
-      call judge_points(contact, memory, cover%slave(i), cover%touches(i), found%deepest(i), n_edge, counts)
+      call judge_points(contact, memory, cover%slave(i), cover%touches(i), found%deepest(i), &
+        n_edge, counts)
       if (counts) cycle
       if (found%is_plain(i)) then
         call put_points(memory, cover, found, first, cover%last(i - 1))
@@ -158,8 +161,9 @@ contains
     end if
   end subroutine place_segment
 
-  !> Whether the points of a segment count. Where neither they nor an end of it is in contact they are left to the second
-  !> round, like those of a segment that sleeps: so sums over the points of a node do not depend on who sleeps.
+  !> Whether the points of a segment count. Where neither they nor an end of it is in contact they
+  !> are left to the second round, like those of a segment that sleeps: so sums over the points of a
+  !> node do not depend on who sleeps.
   pure subroutine judge_points(contact, memory, s, touches, deepest, n_edge, counts)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -171,7 +175,8 @@ contains
 
     counts = .true.
     if (touches) then
-      call note_plain_contact(memory, s, deepest < memory%closed_gap)
+      call note_plain_contact(deepest < memory%closed_gap, memory%travel, memory%cover%status(s), &
+        memory%cover%wake(s))
       return
     end if
     associate (ends => contact%slave%segments(:, s))

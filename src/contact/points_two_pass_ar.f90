@@ -22,8 +22,8 @@ contains
 
     call place_nts_ar(contact, memory)
     first = memory%points%n + 1
-    call add_touching_nodes(memory%master_tracking, contact%slave, memory%n_slave, 0, memory%points, &
-      is_known)
+    call add_touching_nodes(memory%master_tracking, contact%slave, memory%n_slave, 0, &
+      memory%points, is_known)
     if (memory%points%n < first) return
     call put_competence(contact%master, memory%places(:, memory%n_slave + 1:), &
       memory%points%n - first + 1, memory%points%slave_nodes(1, first), memory%n_slave, &

@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Type 4, VTS-PPT (virtual-slave-node-to-segment): the gap of a virtual slave node in the middle of each half of a slave
-!> segment, its force handed to the master by the portions that the half covers, at the centre of each
-!> (Zavarise & De Lorenzis 2009; doc/theory/contact.md, section 5.4).
-!> All portions have the gap and the normal of the virtual node, so P2 holds for directions only in parallel: the net
-!> moment is not exactly zero on a kinked master.
+!> Type 4, VTS-PPT (virtual-slave-node-to-segment): the gap of a virtual slave node in the middle of
+!> each half of a slave segment, its force handed to the master by the portions that the half
+!> covers, at the centre of each (Zavarise & De Lorenzis 2009; doc/theory/contact.md, section 5.4).
+!> All portions have the gap and the normal of the virtual node, so P2 holds for directions only in
+!> parallel: the net moment is not exactly zero on a kinked master.
 module points_vts_ppt_m
   use contact_placing_m, only : add_plain_point, place_on_segment
   use contact_halves_m, only : halves_t, sights_t, list_halves, see_segments, place_halves, &
@@ -21,9 +21,9 @@ module points_vts_ppt_m
 
 contains
 
-  !> Place the points of the virtual nodes `start` to `last` of those in contact: one portion for a half with both ends over
-  !> the same master segment, two where a master node lies between them; whatever else needs a decision goes
-  !> through `add_portions`.
+  !> Place the points of the virtual nodes `start` to `last` of those in contact: one portion for a
+  !> half with both ends over the same master segment, two where a master node lies between them;
+  !> whatever else needs a decision goes through `add_portions`.
   pure subroutine place_vts_ppt(contact, start, last, memory)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: start, last !! on the list of those in contact
@@ -129,7 +129,8 @@ contains
     integer :: n
 
     n = sum(halves%n_part(:halves%n))
-    ! Two more: `put_sides` and `put_springs` write two for each half, also for a last one that has none.
+    ! Two more: `put_sides` and `put_springs` write two for each half, also for a last one that has
+    ! none.
     call make_room(memory%points, n + 2)
     associate (points => memory%points, tracking => memory%slave_tracking, p => memory%points%n + 1)
       call put_sides(halves, sights, memory%spot_xi, points%slave_nodes(1, p), &
@@ -141,8 +142,8 @@ contains
     end associate
   end subroutine add_halves
 
-  !> Both sides of these points. Two are written for each half, and the next half starts where those that count end: a
-  !> decision at each half costs more.
+  !> Both sides of these points. Two are written for each half, and the next half starts where those
+  !> that count end: a decision at each half costs more.
   pure subroutine put_sides(halves, sights, spot_xi, slave_nodes, slave_weights, master_nodes, &
     master_weights)
     type(halves_t), intent(in) :: halves
@@ -233,7 +234,8 @@ contains
     end_of_half = xi + (1.5_wp - k)*0.5_wp
   end function end_of_half
 
-  !> One portion: from `low` to `high` on a master segment, whose centre takes the force; area = its length until all are known.
+  !> One portion: from `low` to `high` on a master segment, whose centre takes the force; area = its
+  !> length until all are known.
   pure subroutine add_portion(contact, memory, spot, ends, segment, low, high)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory

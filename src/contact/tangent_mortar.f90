@@ -8,7 +8,7 @@ module tangent_mortar_m
   use contact_placing_m, only : place_on_segment
   use contact_projection_m, only : foot_t
   use contact_state_m, only : contact_state_t
-  use contact_variation_m, only : varied_point_t, spot_foot, take_foot, length_between, &
+  use contact_variation_m, only : varied_point_t, spot_foot, put_foot, length_between, &
     take_piece, piece_ends, vary_share
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
@@ -36,7 +36,7 @@ contains
       associate (points => memory%points)
         point%nodes(:4) = [points%slave_nodes(:, p), points%master_nodes(:, p)]
         point%slave_xi = constant(points%slave_weights(2, p))
-        call take_foot(point, spot_foot(memory%places, point, 3, points%master_weights(2, p), &
+        call put_foot(point, spot_foot(memory%places, point, 3, points%master_weights(2, p), &
           points%gap(p), memory%closed_gap))
         point%area = length_between(memory%places, point%nodes, 1, 2) &
           *vary_share(memory%places, point%nodes, 1, point%normal)
@@ -97,7 +97,8 @@ contains
       if (.not. foot%is_on) cycle
       point%nodes(3:4) = memory%n_slave + contact%master%segments(:, foot%segment)
       point%slave_xi = xi(1) + gauss_xi(q)*(xi(2) - xi(1))
-      call take_foot(point, spot_foot(memory%places, point, 3, foot%xi, foot%gap, memory%closed_gap))
+      call put_foot(point, spot_foot(memory%places, point, 3, foot%xi, foot%gap, &
+        memory%closed_gap))
       share = vary_share(memory%places, point%nodes, 1, point%normal)
       if (.not. share%value > 0.0_wp) cycle
       point%area = 0.5_wp*share*length

@@ -4,7 +4,7 @@
 module tangent_nts_m
   use contact_assembly_m, only : add_spring_point
   use contact_state_m, only : contact_state_t
-  use contact_variation_m, only : varied_point_t, spot_foot, take_foot, length_between
+  use contact_variation_m, only : varied_point_t, spot_foot, put_foot, length_between
   use contacts_m, only : contact_t
   use dual_m, only : constant, operator(+), operator(*)
   use kinds_m, only : wp
@@ -60,11 +60,12 @@ contains
     point%nodes(3:4) = memory%points%master_nodes(:, p)
     point%slave_xi = constant(0.0_wp)
     point%area = constant(1.0_wp)
-    call take_foot(point, spot_foot(memory%places, point, 3, memory%points%master_weights(2, p), &
+    call put_foot(point, spot_foot(memory%places, point, 3, memory%points%master_weights(2, p), &
       memory%points%gap(p), memory%closed_gap))
   end function vary_node
 
-  !> Let the area of a point at a node be the node's competence length; its neighbours go into slots 5 and 6.
+  !> Let the area of a point at a node be the node's competence length; its neighbours go into slots
+  !> 5 and 6.
   pure subroutine vary_competence(surface, offset, memory, point)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: offset !! local number before the first node of the surface
@@ -72,7 +73,8 @@ contains
     type(varied_point_t), intent(inout) :: point
     integer :: segments(2), k
 
-    segments = [surface%incoming(point%nodes(1) - offset), surface%outgoing(point%nodes(1) - offset)]
+    segments = [surface%incoming(point%nodes(1) - offset), &
+      surface%outgoing(point%nodes(1) - offset)]
     point%area = constant(0.0_wp)
     do k = 1, 2
       if (segments(k) == 0) cycle

@@ -1,12 +1,13 @@
 ! SPDX-License-Identifier: MIT
-!> Tangent of type 5: half of each piece of slave segment is the area of a point of its own at either of the piece's
-!> ends, so that each depends on few nodes (doc/theory/contact.md, section 9.4).
+!> Tangent of type 5: half of each piece of slave segment is the area of a point of its own at
+!> either of the piece's ends, so that each depends on few nodes (doc/theory/contact.md, section
+!> 9.4).
 module tangent_nts_mar_m
   use contact_assembly_m, only : add_spring_point
   use contact_overlap_m, only : cover_t, piece_t, find_cover, first_piece, next_piece
   use contact_state_m, only : contact_state_t, is_touching
   use contact_variation_m, only : varied_point_t, varied_foot_t, apart, length_between, project, &
-    spot_foot, take_foot, take_piece, piece_ends, vary_share
+    spot_foot, put_foot, take_piece, piece_ends, vary_share
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
   use kinds_m, only : wp
@@ -74,8 +75,8 @@ contains
     end do
   end subroutine add_segment
 
-  !> Half of a piece as area: slave segment in slots 1, 2, cuts in slots 5, 6, and the master segment in slots 7, 8
-  !> where the share that faces it is not all of the piece.
+  !> Half of a piece as area: slave segment in slots 1, 2, cuts in slots 5, 6, and the master
+  !> segment in slots 7, 8 where the share that faces it is not all of the piece.
   pure function vary_half(contact, memory, cover, before, piece) result(point)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -150,7 +151,7 @@ contains
     point%slave_xi = constant(k - 1.0_wp)
     associate (tracking => memory%slave_tracking)
       point%nodes(3:4) = memory%n_slave + contact%master%segments(:, tracking%segment(node))
-      call take_foot(point, spot_foot(memory%places, point, 3, tracking%xi(node), &
+      call put_foot(point, spot_foot(memory%places, point, 3, tracking%xi(node), &
         tracking%gap(node), memory%closed_gap))
     end associate
   end subroutine stand_at_end

@@ -79,7 +79,8 @@ contains
     portions = portions(:n)
   end subroutine vary_portions
 
-  !> What all portions of a virtual node share: its segment in slots 1, 2, its master segment in slots 5, 6, gap and normal.
+  !> What all portions of a virtual node share: its segment in slots 1, 2, its master segment in
+  !> slots 5, 6, gap and normal.
   pure subroutine start_point(contact, memory, spot, point)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -153,8 +154,8 @@ contains
     point%area = length_between(memory%places, point%nodes, 3, 4)
   end subroutine set_whole
 
-  !> Share out half of the slave segment by the portions' lengths: each share at a constant sum of these, and the change
-  !> of the sum as one product of two vectors.
+  !> Share out half of the slave segment by the portions' lengths: each share at a constant sum of
+  !> these, and the change of the sum as one product of two vectors.
   pure subroutine add_portions(portions, memory, pattern, equations, matrix)
     type(varied_point_t), intent(in) :: portions(:)
     type(contact_state_t), intent(in) :: memory

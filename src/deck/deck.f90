@@ -43,7 +43,8 @@ module deck_m
     character(:), allocatable :: path
     character(:), allocatable :: overrides(:) !! `name=value`, `name.interface=value`,
                                               !! `p:NAME=value`
-    character(:), allocatable :: text         !! of the deck where it is no file; `path` names it then
+    character(:), allocatable :: text         !! of the deck where it is no file; `path` names it
+                                              !! then
   end type deck_request_t
 
 contains

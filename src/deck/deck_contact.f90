@@ -146,7 +146,8 @@ contains
         //'contact node, 1 N/m^2, 2 factor on the built-in estimate, 3 share of the largest ' &
         //'stable one)')
       if (cards(2)%i(3) == penalty_share .and. cards(1)%r(5) > 1.0_wp) call report_field(deck, &
-        cursor, cards(1), 5, 'is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)')
+        cursor, cards(1), 5, &
+        'is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)')
       contact%master_penalty = contact%penalty
       if (abs(cards(2)%r(4)) > 0.0_wp) contact%master_penalty = cards(2)%r(4)
       if (cards(2)%r(4) < 0.0_wp) call report_field(deck, cursor, cards(2), 4, &

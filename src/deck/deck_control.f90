@@ -31,7 +31,8 @@ contains
     call open_cursor(deck, i_block, cursor)
     do k = 1, cursor%n_card
       if (k == 3 .and. deck%blocks(i_block)%name == 'CONTROL_IMPLICIT_SOLUTION') then
-        if (cards(2)%i(1) >= 0) cycle ! the card of strict tolerances comes with a negative DNORM alone
+        ! The card of strict tolerances comes with a negative DNORM alone.
+        if (cards(2)%i(1) >= 0) cycle
       end if
       call next_card(deck, parameters, cursor, k, cards(k))
     end do

@@ -71,8 +71,9 @@ contains
     type(log_t), intent(inout) :: log
 
     associate (plan => model%controls%output)
-      if (any([plan%glstat%is_binout, plan%matsum%is_binout, plan%rcforc%is_binout, plan%nodout%is_binout, &
-        plan%sleout%is_binout, plan%spcforc%is_binout])) call write_log(log, 'BINARY asks for binout: ' &
+      if (any([plan%glstat%is_binout, plan%matsum%is_binout, plan%rcforc%is_binout, &
+        plan%nodout%is_binout, plan%sleout%is_binout, &
+        plan%spcforc%is_binout])) call write_log(log, 'BINARY asks for binout: ' &
         //"'slideline-tools binout' writes it from the results")
     end associate
   end subroutine echo_binout

@@ -38,8 +38,9 @@ contains
     call next_card(deck, parameters, cursor, 3, strains)
     call next_card(deck, parameters, cursor, 4, stresses)
     if (hardening%curve > 0) then
-      if (any(abs(strains%r(:8)) > 0.0_wp) .or. any(abs(stresses%r(:8)) > 0.0_wp)) call line_warning( &
-        deck, strains%line, 'points', 'EPS and ES have no effect where LCSS gives the yield stress')
+      if (any(abs(strains%r(:8)) > 0.0_wp) .or. any(abs(stresses%r(:8)) > 0.0_wp)) &
+        call line_warning(deck, strains%line, 'points', &
+        'EPS and ES have no effect where LCSS gives the yield stress')
     else if (any(abs(strains%r(:8)) > 0.0_wp) .or. any(abs(stresses%r(:8)) > 0.0_wp)) then
       call read_points(deck, cursor, strains, stresses, hardening)
     else if (.not. rate%bad(3)) then
@@ -59,15 +60,17 @@ contains
     type(card_t), intent(inout) :: card
     type(raw_hardening_t), intent(inout) :: hardening
 
-    if (card%r(1) < 0.0_wp) call report_field(deck, cursor, card, 1, 'is negative: the logarithmic ' &
-      //'rate effect is not part of this law')
-    if (card%r(1) > 0.0_wp .and. .not. card%r(2) > 0.0_wp) call report_field(deck, cursor, card, 2, &
+    if (card%r(1) < 0.0_wp) call report_field(deck, cursor, card, 1, &
+      'is negative: the logarithmic '//'rate effect is not part of this law')
+    if (card%r(1) > 0.0_wp .and. .not. card%r(2) > 0.0_wp) &
+      call report_field(deck, cursor, card, 2, &
       'is not an exponent (more than 0) for the C beside it')
     if (card%i(3) < 0) call report_field(deck, cursor, card, 3, 'is not a curve or table number')
     if (card%i(4) < 0) call report_field(deck, cursor, card, 4, 'is not a curve number')
     hardening%is_viscoplastic = abs(card%r(5) - 1.0_wp) <= 0.0_wp
-    if (abs(card%r(5)) > 0.0_wp .and. .not. hardening%is_viscoplastic) call report_field(deck, cursor, &
-      card, 5, 'is a rate form that this version does not have (0 scales the yield stress with the ' &
+    if (abs(card%r(5)) > 0.0_wp .and. .not. hardening%is_viscoplastic) &
+      call report_field(deck, cursor, card, 5, &
+      'is a rate form that this version does not have (0 scales the yield stress with the ' &
       //'total strain rate)')
     hardening%curve = max(card%i(3), 0)
     hardening%rate_curve = max(card%i(4), 0)
@@ -93,10 +96,10 @@ contains
     do k = 2, 8
       if (abs(strains%r(k)) > 0.0_wp .or. abs(stresses%r(k)) > 0.0_wp) n = k
     end do
-    if (n < 2) call report_field(deck, cursor, strains, 2, 'ends the points, of which there must be ' &
-      //'two or more')
-    if (abs(strains%r(1)) > 0.0_wp) call report_field(deck, cursor, strains, 1, 'is not 0: the first ' &
-      //'point is the initial yield stress')
+    if (n < 2) call report_field(deck, cursor, strains, 2, &
+      'ends the points, of which there must be '//'two or more')
+    if (abs(strains%r(1)) > 0.0_wp) call report_field(deck, cursor, strains, 1, &
+      'is not 0: the first '//'point is the initial yield stress')
     do k = 1, n
       if (.not. stresses%r(k) > 0.0_wp) call report_field(deck, cursor, stresses, k, &
         'is not a yield stress (more than 0)')

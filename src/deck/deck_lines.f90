@@ -62,7 +62,8 @@ module deck_lines_m
     integer :: n_block = 0
     character(:), allocatable :: patch        !! text of changed lines
     integer :: n_patch = 0                    !! characters of it in use
-    integer, allocatable :: replaced(:, :)    !! (3, n) lines in `patch`, and where their file has them
+    integer, allocatable :: replaced(:, :)    !! (3, n) lines in `patch`, and where their file has
+                                              !! them
     integer :: n_replaced = 0
     logical :: incomplete = .false.           !! an included file could not be read
     type(report_t) :: report

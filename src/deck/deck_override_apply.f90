@@ -45,7 +45,8 @@ contains
     call check_interfaces(deck, overrides, raw)
   end subroutine apply_overrides
 
-  !> What is meant for one interface must find it; what is meant for all says so where there is none.
+  !> What is meant for one interface must find it; what is meant for all says so where there is
+  !> none.
   subroutine check_interfaces(deck, overrides, raw)
     type(deck_t), intent(inout) :: deck
     type(overrides_t), intent(in) :: overrides

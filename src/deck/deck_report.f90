@@ -21,7 +21,8 @@ module deck_report_m
     character(80) :: keyword = ''        !! without asterisk
     integer :: card = 0, field = 0       !! 0: the line as a whole
     character(12) :: name = ''              !! of the field
-    integer :: first = 0, last = 0       !! columns of the field; 0 where the line as read is not that of the file
+    integer :: first = 0, last = 0       !! columns of the field; 0 where the line as read is not
+                                         !! that of the file
     character(:), allocatable :: found   !! text of the field
   end type spot_t
 

@@ -11,9 +11,9 @@ module deck_resolve_m
   use deck_cards_m, only : reject_field
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
-  use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, row_motion_set, &
-    output_plot, output_glstat, output_matsum, output_rcforc, output_nodout, output_rwforc, &
-    output_sleout, output_spcforc
+  use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, &
+    row_motion_set, output_plot, output_glstat, output_matsum, output_rcforc, output_nodout, &
+    output_rwforc, output_sleout, output_spcforc
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
   use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
@@ -37,9 +37,10 @@ contains
 
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
-        if (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) call line_error( &
-          deck, raw%parts(i)%line, 'part '//to_text(part%id)//' has bulk viscosity ' &
-          //'(*CONTROL_BULK_VISCOSITY or *HOURGLASS), which the implicit method does not have')
+        if (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) &
+          call line_error(deck, raw%parts(i)%line, 'part '//to_text(part%id)//' has bulk ' &
+          //'viscosity (*CONTROL_BULK_VISCOSITY or *HOURGLASS), which the implicit method ' &
+          //'does not have')
         if (part%section == 0) cycle
         if (.not. model%sections(part%section)%is_full) call line_error(deck, &
           raw%section_line(part%section), 'part '//to_text(part%id)//' has one-point quads; the ' &
@@ -51,16 +52,18 @@ contains
       associate (row => raw%rows(i))
         if (row%kind == row_damping) call line_error(deck, row%line, &
           '*DAMPING_GLOBAL is damping that the implicit method does not have')
-        if ((row%kind == row_motion_node .or. row%kind == row_motion_set) .and. row%i(3) &
-          == motion_acceleration .and. .not. model%controls%implicit%is_dynamic) call reject_field( &
-          deck, place_t(row%line, 1, 3), 'is an acceleration, which has no meaning in statics ' &
+        if ((row%kind == row_motion_node .or. row%kind == row_motion_set) &
+          .and. row%i(3) == motion_acceleration .and. .not. model%controls%implicit%is_dynamic) &
+          call reject_field(deck, place_t(row%line, 1, 3), &
+          'is an acceleration, which has no meaning in statics ' &
           //'(0 velocity or 2 displacement, or IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
       end associate
     end do
     do i = 1, deck%n_block
       if (deck%blocks(i)%name == 'CONTROL_TERMINATION' .and. raw%controls%dt_floor > 0.0_wp) &
-        call line_warning(deck, deck%blocks(i)%keyword, 'implicit step floor', 'DTMIN has no effect ' &
-        //'with the implicit method; DTMIN of *CONTROL_IMPLICIT_AUTO is its shortest step')
+        call line_warning(deck, deck%blocks(i)%keyword, 'implicit step floor', &
+        'DTMIN has no effect with the implicit method; DTMIN of *CONTROL_IMPLICIT_AUTO is its ' &
+        //'shortest step')
     end do
     do i = 1, size(raw%contacts)
       if (raw%contacts(i)%contact%damping > 0.0_wp) call line_warning(deck, &

@@ -153,7 +153,8 @@ contains
     if (raw%lost%curves) return
     if (abs(curve%abscissa(1)) > 0.0_wp) call line_error(deck, line, name &
       //'start at plastic strain 0, not '//to_text(curve%abscissa(1)))
-    if (.not. minval(curve%ordinate) > 0.0_wp) call line_error(deck, line, name//'be above 0 everywhere')
+    if (.not. minval(curve%ordinate) > 0.0_wp) call line_error(deck, line, name &
+      //'be above 0 everywhere')
   end subroutine check_curve
 
   !> Rate effect: a table comes before LCSR, LCSR before C and P.
@@ -175,8 +176,8 @@ contains
       else if (k > 0) then
         model%curves(k)%is_of_time = .false.
         if (.not. minval(model%curves(k)%ordinate) > 0.0_wp) call reject_field(deck, &
-          entry%rate_curve_place, 'is a curve that is not above 0 everywhere: it is a factor on the ' &
-          //'yield stress')
+          entry%rate_curve_place, 'is a curve that is not above 0 everywhere: it is a ' &
+          //'factor on the yield stress')
         if (entry%rate_constant > 0.0_wp) call line_warning(deck, line, 'rates of a curve', &
           'LCSR gives the rate effect: C and P have none')
         material%curve%rate_factor = model%curves(k)
@@ -195,16 +196,16 @@ contains
     type(hardening_t), intent(in) :: hardening
 
     if (.not. depends_on_rate(hardening)) then
-      if (entry%is_viscoplastic) call line_warning(deck, entry%form_place%line, 'form of no rates', &
-        'VP has no effect: the material has no rate effect')
+      if (entry%is_viscoplastic) call line_warning(deck, entry%form_place%line, &
+        'form of no rates', 'VP has no effect: the material has no rate effect')
       return
     end if
-    if (entry%is_viscoplastic) call reject_field(deck, entry%form_place, 'asks for the viscoplastic ' &
-      //'rate form, which this version does not have; 0 scales the yield stress with the total ' &
-      //'strain rate')
-    if (minval(hardening%slope) < 0.0_wp) call reject_field(deck, entry%rate_place, 'begins a card ' &
-      //'with a rate effect, but the yield stress falls somewhere: both together are not part of ' &
-      //'this law')
+    if (entry%is_viscoplastic) call reject_field(deck, entry%form_place, &
+      'asks for the viscoplastic rate form, which this version does not have; 0 scales the ' &
+      //'yield stress with the total strain rate')
+    if (minval(hardening%slope) < 0.0_wp) call reject_field(deck, entry%rate_place, &
+      'begins a card with a rate effect, but the yield stress falls somewhere: both together ' &
+      //'are not part of this law')
   end subroutine check_rates
 
   !> The implicit method has steps, but in statics no rates.

@@ -42,7 +42,8 @@ contains
     call next_card(deck, parameters, cursor, 1, card)
     call next_card(deck, parameters, cursor, 2, place)
     call check_rest(deck, cursor)
-    if (card%i(1) < 0) call report_field(deck, cursor, card, 1, 'is not a node set, nor 0 (all nodes)')
+    if (card%i(1) < 0) call report_field(deck, cursor, card, 1, &
+      'is not a node set, nor 0 (all nodes)')
     if (card%i(2) < 0) call report_field(deck, cursor, card, 2, 'is not a node set')
     if (card%r(4) < 0.0_wp) call report_field(deck, cursor, card, 4, 'is negative')
     if (.not. abs(card%r(6)) > 0.0_wp) card%r(6) = 1.0e20_wp
@@ -79,11 +80,11 @@ contains
     wall%foot = card%r(1:2)
     arrow = card%r(4:5) - card%r(1:2)
     if (abs(card%r(6) - card%r(3)) > 0.0_wp) then
-      call report_field(deck, cursor, card, 6, 'is not ZT: the normal of the wall must lie in the ' &
-        //'plane of the mesh')
+      call report_field(deck, cursor, card, 6, &
+        'is not ZT: the normal of the wall must lie in the '//'plane of the mesh')
     else if (.not. maxval(abs(arrow)) > 0.0_wp) then
-      call report_field(deck, cursor, card, 4, 'with YH gives the tail again: the normal points from ' &
-        //'tail (XT, YT) to head (XH, YH)')
+      call report_field(deck, cursor, card, 4, &
+        'with YH gives the tail again: the normal points from '//'tail (XT, YT) to head (XH, YH)')
     else
       arrow = arrow/maxval(abs(arrow))
       wall%normal = arrow/norm2(arrow)

@@ -53,7 +53,8 @@ contains
           call advance_full(i_chunk, model%layout%slot_nodes(1, first), motion, &
             model%materials(part%material), part%hourglass, dt, elements, chunk)
         end select
-        call scatter_chunk(model%layout%chunk_elements(i_chunk), model%layout%slot_local(1, first), chunk, force)
+        call scatter_chunk(model%layout%chunk_elements(i_chunk), &
+          model%layout%slot_local(1, first), chunk, force)
       end associate
     end do
   end subroutine add_tile_forces

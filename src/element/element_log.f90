@@ -26,7 +26,8 @@ contains
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
         if (model%materials(part%material)%is_rigid) then
-          call write_log(log, 'part '//to_text(part%id)//': rigid body, its elements carry no stress')
+          call write_log(log, 'part '//to_text(part%id) &
+            //': rigid body, its elements carry no stress')
           cycle
         end if
         if (point_count(model%sections(part%section)) == 1) then

@@ -156,8 +156,9 @@ contains
       else
         reference = elements%reference(slot, :)
         call point_ratios(reference, none, stretch, start)
-        stride = chunk_size*history_size(model%materials(model%parts(model%layout%chunk_part(i_chunk)) &
-          %material))
+        associate (part => model%parts(model%layout%chunk_part(i_chunk)))
+          stride = chunk_size*history_size(model%materials(part%material))
+        end associate
         plastic_strain(i) = sum([(start(k)*elements%history(first + (k - 1)*stride), &
           k = 1, n_point)])/sum(start)
       end if

@@ -31,14 +31,15 @@ contains
     integer :: equations(8), i_chunk, slot
 
     do i_chunk = 1, model%layout%n_chunk
-      associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+      associate (material => &
+        model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
         do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
           if (model%layout%slot_element(slot) == 0) cycle
           associate (nodes => model%layout%slot_nodes(:, slot))
             equations = reshape(equation(:, nodes), [8])
             if (all(equations == 0)) cycle
-            call load_points(i_chunk, mod(slot - 1, chunk_size), history_size(material), committed, &
-              points)
+            call load_points(i_chunk, mod(slot - 1, chunk_size), history_size(material), &
+              committed, points)
             reference = committed%reference(slot, :)
             u = motion(1:2, nodes)
             du = dt*motion(3:4, nodes)

@@ -60,7 +60,8 @@ contains
       strain_y(i) = old_y + dt*chunk%gy(i)
       chunk%qx(i) = stiffness*strain_x(i)
       chunk%qy(i) = stiffness*strain_y(i)
-      work = work + stiffness*((strain_x(i) + old_x)*chunk%gx(i) + (strain_y(i) + old_y)*chunk%gy(i))
+      work = work + stiffness*((strain_x(i) + old_x)*chunk%gx(i) &
+        + (strain_y(i) + old_y)*chunk%gy(i))
     end do
     work = 0.5_wp*dt*work
   end subroutine resist_elastically

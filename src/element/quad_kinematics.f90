@@ -17,7 +17,8 @@ contains
   !> nearly undeformed element keeps all digits of its strain.
   pure subroutine form_present_shape(reference, stride, chunk)
     integer, intent(in) :: stride                 !! length of one stream
-    real(wp), intent(in) :: reference(stride, *)  !! first slot of this chunk; X31 Y31 X42 Y42 h.X h.Y
+    real(wp), intent(in) :: reference(stride, *)  !! first slot of this chunk; X31 Y31 X42 Y42 h.X
+                                                  !! h.Y
     type(element_chunk_t), intent(inout) :: chunk
     real(wp) :: growth, start, both
     integer :: i

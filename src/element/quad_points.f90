@@ -29,9 +29,11 @@ contains
   pure subroutine form_point(k, stride, reference, element, point_reference, point)
     integer, intent(in) :: k
     integer, intent(in) :: stride                  !! length of one stream
-    real(wp), intent(in) :: reference(stride, *)   !! X31 Y31 X42 Y42 h.X h.Y, first slot of the chunk
+    real(wp), intent(in) :: reference(stride, *)   !! X31 Y31 X42 Y42 h.X h.Y, first slot of the
+                                                   !! chunk
     type(element_chunk_t), intent(in) :: element
-    real(wp), intent(out) :: point_reference(chunk_size, 6) !! the same of the point, without h.X, h.Y
+    real(wp), intent(out) :: point_reference(chunk_size, 6) !! the same of the point, without h.X,
+                                                            !! h.Y
     type(element_chunk_t), intent(inout) :: point
     integer :: i
 

@@ -62,7 +62,8 @@ contains
     real(wp), intent(in) :: pattern(4)
     real(wp) :: d(2)
 
-    d = pattern(2)*(u(:, 2) - u(:, 1)) + pattern(3)*(u(:, 3) - u(:, 1)) + pattern(4)*(u(:, 4) - u(:, 1))
+    d = pattern(2)*(u(:, 2) - u(:, 1)) + pattern(3)*(u(:, 3) - u(:, 1)) &
+      + pattern(4)*(u(:, 4) - u(:, 1))
   end function differences
 
   !> Volumetric part of a parallelogram: p B with p = K ln(A/A0), dp = K dA/A, dA = B.d.
@@ -177,7 +178,8 @@ contains
       columns(:, 2*a) = weight*(small(:, 2)*pattern(a, 1) + small(:, 4)*pattern(a, 2))
     end do
     do a = 1, 4
-      matrix(2*a - 1, :) = matrix(2*a - 1, :) + (pattern(a, 1)*columns(1, :) + pattern(a, 2)*columns(3, :))
+      matrix(2*a - 1, :) = matrix(2*a - 1, :) + (pattern(a, 1)*columns(1, :) &
+        + pattern(a, 2)*columns(3, :))
       matrix(2*a, :) = matrix(2*a, :) + (pattern(a, 1)*columns(2, :) + pattern(a, 2)*columns(4, :))
     end do
   end subroutine add_pattern

@@ -85,8 +85,8 @@ contains
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
       associate (material => model%materials(part%material))
         if (point_count(model%sections(part%section)) == 1) then
-          call stable_step(model%controls%length_rule, material%sound_speed, part%hourglass, nodes, &
-            chunk, step, volume)
+          call stable_step(model%controls%length_rule, material%sound_speed, part%hourglass, &
+            nodes, chunk, step, volume)
         else
           step = full_step_of(material, part%hourglass, nodes, shape, chunk)
         end if

@@ -48,7 +48,8 @@ contains
           inverse_mass(motions(i)%direction, motions(i)%node) = 1.0_wp/mass(motions(i)%node)
       end do
       do i = 1, size(motions)
-        if (is_active(motions(i), time)) inverse_mass(motions(i)%direction, motions(i)%node) = 0.0_wp
+        if (is_active(motions(i), time)) inverse_mass(motions(i)%direction, motions(i)%node) &
+          = 0.0_wp
       end do
     end associate
   end subroutine update_activity

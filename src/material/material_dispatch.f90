@@ -35,8 +35,8 @@ contains
   pure subroutine update_stress(material, chunk, history)
     type(material_t), intent(in) :: material
     type(stress_chunk_t), intent(inout) :: chunk
-    real(wp), intent(inout), optional :: history(chunk_size, *) !! history_size(material) columns; absent
-                                                                !! for a law without history
+    real(wp), intent(inout), optional :: history(chunk_size, *) !! history_size(material) columns;
+                                                                !! absent for a law without history
 
     select case (material%law)
     case (law_elastic)

@@ -18,9 +18,11 @@ contains
   !> Advance a chunk by one step; isotropic hardening (beta = 1), no back stress.
   pure subroutine update_j2_isotropic(material, chunk, plastic_strain)
     type(material_t), intent(in) :: material
-    type(stress_chunk_t), intent(inout) :: chunk          !! increments in, deviator in and out, work out
+    type(stress_chunk_t), intent(inout) :: chunk          !! increments in, deviator in and out,
+                                                          !! work out
     real(wp), intent(inout) :: plastic_strain(chunk_size) !! effective plastic strain
-    real(wp) :: third, exx, eyy, exy, sxx, syy, sxy, mises, growth, factor, double_shear, inverse, work
+    real(wp) :: third, exx, eyy, exy, sxx, syy, sxy, mises, growth, factor, double_shear, inverse, &
+      work
     integer :: i
 
     double_shear = 2.0_wp*material%shear

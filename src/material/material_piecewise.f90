@@ -23,7 +23,8 @@ contains
   pure subroutine update_piecewise(shear, hardening, chunk, plastic_strain)
     real(wp), intent(in) :: shear                         !! G
     type(hardening_t), intent(in) :: hardening
-    type(stress_chunk_t), intent(inout) :: chunk          !! increments in, deviator in and out, work out
+    type(stress_chunk_t), intent(inout) :: chunk          !! increments in, deviator in and out,
+                                                          !! work out
     real(wp), intent(inout) :: plastic_strain(chunk_size) !! effective plastic strain
     real(wp), dimension(chunk_size) :: mises, growth
 
@@ -32,8 +33,8 @@ contains
       call grow_with_rate(hardening, size(hardening%strain), size(hardening%rate), &
         hardening%stress, hardening%slope, shear, chunk, mises, plastic_strain, growth)
     else
-      call grow(size(hardening%strain), hardening%strain, hardening%stress, hardening%slope, shear, &
-        mises, plastic_strain, growth)
+      call grow(size(hardening%strain), hardening%strain, hardening%stress, hardening%slope, &
+        shear, mises, plastic_strain, growth)
     end if
     call return_to_surface(shear, mises, growth, chunk, plastic_strain)
   end subroutine update_piecewise
@@ -94,16 +95,16 @@ contains
       inverse = 1.0_wp/(3.0_wp*shear + slope(k))
       !$omp simd
       do i = 1, chunk_size
-        growth(i) = merge(max(0.0_wp, mises(i) - foot - slope(k)*plastic_strain(i))*inverse, growth(i), &
-          goal(i) >= start)
+        growth(i) = merge(max(0.0_wp, mises(i) - foot - slope(k)*plastic_strain(i))*inverse, &
+          growth(i), goal(i) >= start)
       end do
     end do
   end subroutine grow
 
   !> The same where each slot has its own factor on the yield stress and its
   !> own place between the rates.
-  pure subroutine grow_with_rate(hardening, n, n_rate, stress, slope, shear, chunk, mises, plastic_strain, &
-    growth)
+  pure subroutine grow_with_rate(hardening, n, n_rate, stress, slope, shear, chunk, mises, &
+      plastic_strain, growth)
     type(hardening_t), intent(in) :: hardening
     integer, intent(in) :: n, n_rate
     real(wp), intent(in), dimension(n, n_rate) :: stress, slope !! of `hardening`
@@ -196,8 +197,8 @@ contains
         factor(i) = curve_value(hardening%rate_factor, rate(i))
       end do
     else if (hardening%rate_constant > 0.0_wp) then
-      call grow(size(hardening%strain), hardening%strain, hardening%stress, hardening%slope, shear, &
-        mises, plastic_strain, growth)
+      call grow(size(hardening%strain), hardening%strain, hardening%stress, hardening%slope, &
+        shear, mises, plastic_strain, growth)
       do i = 1, chunk_size
         if (growth(i) > 0.0_wp) factor(i) = 1.0_wp &
           + (rate(i)/hardening%rate_constant)**hardening%rate_exponent
@@ -221,8 +222,8 @@ contains
       chunk%syy(i) = factor*chunk%syy(i)
       chunk%sxy(i) = factor*chunk%sxy(i)
       plastic_strain(i) = plastic_strain(i) + growth(i)
-      chunk%work(i) = 0.5_wp*(chunk%work(i) + chunk%sxx(i)*chunk%dxx(i) + chunk%syy(i)*chunk%dyy(i) &
-        + 2.0_wp*chunk%sxy(i)*chunk%dxy(i))
+      chunk%work(i) = 0.5_wp*(chunk%work(i) + chunk%sxx(i)*chunk%dxx(i) &
+        + chunk%syy(i)*chunk%dyy(i) + 2.0_wp*chunk%sxy(i)*chunk%dxy(i))
     end do
   end subroutine return_to_surface
 

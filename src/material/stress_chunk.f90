@@ -13,7 +13,8 @@ module stress_chunk_m
     real(wp) :: dt = 0.0_wp                          !! step
     real(wp), dimension(chunk_size) :: cosine, sine  !! of the rotation of the step
     real(wp), dimension(chunk_size) :: cos2, sin2    !! of twice that rotation
-    real(wp), dimension(chunk_size) :: sxx, syy, sxy !! deviator, s_zz = -(s_xx + s_yy); before the law the old one, turned
+    real(wp), dimension(chunk_size) :: sxx, syy, sxy !! deviator, s_zz = -(s_xx + s_yy); before the
+                                                     !! law the old one, turned
     real(wp), dimension(chunk_size) :: work          !! work of the deviator per volume in this step
   end type stress_chunk_t
 

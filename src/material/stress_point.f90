@@ -16,7 +16,8 @@ module stress_point_m
     real(wp) :: plastic_strain = 0.0_wp     !! at the start of the step
     real(wp) :: back(3) = 0.0_wp            !! back stress at the start of the step
     real(wp) :: stress(3) = 0.0_wp          !! deviator at its end
-    real(wp) :: tangent(3, 4) = 0.0_wp      !! its derivative with respect to `strain` and the rotation
+    real(wp) :: tangent(3, 4) = 0.0_wp      !! its derivative with respect to `strain` and the
+                                            !! rotation
   end type stress_point_t
 
 contains

@@ -57,7 +57,8 @@ module conditions_m
     integer, allocatable :: fixed_nodes(:)      !! nodes with a fixed degree of freedom ...
     integer, allocatable :: fixed_directions(:) !! ... and its direction, each pair once
     type(prescribed_motion_t), allocatable :: motions(:)
-    type(prescribed_motion_t), allocatable :: rigid_motions(:) !! of bodies: `node` is the body, 3 its turn
+    type(prescribed_motion_t), allocatable :: rigid_motions(:) !! of bodies: `node` is the body, 3
+                                                               !! its turn
     type(nodal_load_t), allocatable :: nodal_loads(:)
     type(pressure_load_t), allocatable :: pressures(:)
     type(body_load_t), allocatable :: body_loads(:)

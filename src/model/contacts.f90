@@ -5,8 +5,8 @@ module contacts_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: contact_t, contact_kind_t, most_gauss, penalty_per_node, penalty_distributed, penalty_factor, &
-    penalty_share
+  public :: contact_t, contact_kind_t, most_gauss, penalty_per_node, penalty_distributed, &
+    penalty_factor, penalty_share
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
   !> share of the largest penalty for which the step is stable.
@@ -39,8 +39,10 @@ module contacts_m
     real(wp) :: birth = 0.0_wp             !! TBIRTH
     real(wp) :: death = 1.0e20_wp          !! TDEATH
     logical :: strict = .false.            !! IPF = 1: strict type 5
-    integer :: search_interval = 0         !! FREQ, cycles between global searches; 0 = the program's choice
-    real(wp) :: search_depth = 0.0_wp      !! SRCH: deepest first contact that is caught; 0 = automatic
+    integer :: search_interval = 0         !! FREQ, cycles between global searches; 0 = the
+                                           !! program's choice
+    real(wp) :: search_depth = 0.0_wp      !! SRCH: deepest first contact that is caught; 0 =
+                                           !! automatic
   end type contact_t
 
 end module contacts_m

@@ -33,10 +33,12 @@ module controls_m
     type(interval_t) :: sleout
     type(interval_t) :: spcforc
     integer, allocatable :: history_nodes(:) !! node indices of *DATABASE_HISTORY_NODE
-    integer :: dump_cycles = -1    !! cycles between restart files that stay (*DATABASE_BINARY_D3DUMP), 0 =
-                                   !! at the end alone, -1 = none
-    integer :: running_cycles = 0  !! cycles between restart files that replace each other (RUNRSF), 0 = none
-    integer :: status_interval = 0 !! cycles between progress lines (IKEDIT); 0 = the program's choice
+    integer :: dump_cycles = -1    !! cycles between restart files that stay
+                                   !! (*DATABASE_BINARY_D3DUMP), 0 = at the end alone, -1 = none
+    integer :: running_cycles = 0  !! cycles between restart files that replace each other (RUNRSF),
+                                   !! 0 = none
+    integer :: status_interval = 0 !! cycles between progress lines (IKEDIT); 0 = the program's
+                                   !! choice
   end type output_plan_t
 
   !> The implicit method (*CONTROL_IMPLICIT_...). Time integration is the generalised-alpha family
@@ -55,7 +57,8 @@ module controls_m
     real(wp) :: energy_tolerance = 1.0e-20_wp  !! ECTOL: |dU.R|/|dU0.R0|
     real(wp) :: step_tolerance = 0.0_wp        !! DCTOL: |dU|/|U(n+1) - U(n)|, 0 = off
     real(wp) :: residual_tolerance = 0.0_wp    !! RCTOL: |R|/|R0|, 0 = off
-    real(wp) :: search_tolerance = 0.9_wp      !! LSTOL: line search until |dU.R| falls below this part
+    real(wp) :: search_tolerance = 0.9_wp      !! LSTOL: line search until |dU.R| falls below this
+                                               !! part
     logical :: is_automatic = .false.  !! IAUTO = 1: steps grow and shrink
     integer :: best_iterations = 11    !! ITEOPT
     integer :: iteration_window = 5    !! ITEWIN
@@ -69,7 +72,8 @@ module controls_m
     real(wp) :: end_time = 0.0_wp            !! ENDTIM
     integer :: end_cycle = 0                 !! ENDCYC, 0 = no limit
     real(wp) :: dt_floor = 0.0_wp            !! DTMIN, as a factor on the first step
-    real(wp) :: energy_limit = 0.0_wp        !! ENDENG: change of the energy ratio in per cent, 0 = off
+    real(wp) :: energy_limit = 0.0_wp        !! ENDENG: change of the energy ratio in per cent, 0 =
+                                             !! off
     logical :: check_only = .false.          !! NOSOL: stop after initialisation
     real(wp) :: dt_initial = 0.0_wp          !! DTINIT, 0 = computed
     real(wp) :: dt_scale = 0.9_wp            !! TSSFAC

@@ -11,10 +11,13 @@ module hardenings_m
   !> plastic strains. Between points and between rates the yield stress is linear; outside the
   !> rates the outermost row holds.
   type :: hardening_t
-    real(wp), allocatable :: strain(:)     !! (n) plastic strain of the points, increasing, the first 0
+    real(wp), allocatable :: strain(:)     !! (n) plastic strain of the points, increasing, the
+                                           !! first 0
     real(wp), allocatable :: stress(:, :)  !! (n, n_rate) yield stress at the points
-    real(wp), allocatable :: slope(:, :)   !! (n, n_rate) from each point on; the last goes on for ever
-    real(wp), allocatable :: rate(:)       !! (n_rate) increasing, 1/s; a single row holds at any rate
+    real(wp), allocatable :: slope(:, :)   !! (n, n_rate) from each point on; the last goes on for
+                                           !! ever
+    real(wp), allocatable :: rate(:)       !! (n_rate) increasing, 1/s; a single row holds at any
+                                           !! rate
     real(wp) :: rate_constant = 0.0_wp     !! C of Cowper and Symonds, 1/s, 0 = none
     real(wp) :: rate_exponent = 1.0_wp     !! 1/P
     type(curve_t), allocatable :: rate_factor !! factor on the yield stress against the strain rate

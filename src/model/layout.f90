@@ -22,8 +22,8 @@ module layout_m
   type :: tile_t
     integer :: first_chunk = 1, last_chunk = 0
     integer :: first_node = 1, last_node = 0     !! interior nodes
-    integer :: first_owned = 1, last_owned = 0   !! special nodes that its thread sums and moves; of the last
-                                                 !! tile also those that none touches
+    integer :: first_owned = 1, last_owned = 0   !! special nodes that its thread sums and moves; of
+                                                 !! the last tile also those that none touches
     integer :: first_special = 1, last_special = 0 !! its range in the list of force slots
   end type tile_t
 
@@ -39,10 +39,11 @@ module layout_m
     integer, allocatable :: slot_element(:)  !! (n_slot) element index, 0 for padding
     integer, allocatable :: element_slot(:)  !! (n_element) slot of each element
     integer, allocatable :: slot_nodes(:, :) !! (4, n_slot) node indices; all equal in padding
-    integer, allocatable :: slot_local(:, :) !! (4, n_slot) local numbers in the tile: interior nodes
-                                             !! from 1, then its special nodes; 0 in padding
+    integer, allocatable :: slot_local(:, :) !! (4, n_slot) local numbers in the tile: interior
+                                             !! nodes from 1, then its special nodes; 0 in padding
     integer, allocatable :: special_node(:)  !! (force slots) node of each force slot, tile by tile
-    integer, allocatable :: node_slots(:)    !! (n_special + 1) where each special node's list starts ...
+    integer, allocatable :: node_slots(:)    !! (n_special + 1) where each special node's list
+                                             !! starts ...
     integer, allocatable :: slot_list(:)     !! ... in this list of force slots
   end type layout_t
 

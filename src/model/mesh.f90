@@ -20,7 +20,8 @@ module mesh_m
     integer, allocatable :: element_nodes(:, :) !! (4, n_element) node indices, counter-clockwise;
                                                 !! a triangle repeats its third node
     integer, allocatable :: element_part(:)     !! (n_element) index into model%parts
-    integer, allocatable :: deck_node(:)        !! (n_node) index of the node that came k-th in the deck
+    integer, allocatable :: deck_node(:)        !! (n_node) index of the node that came k-th in the
+                                                !! deck
   end type mesh_t
 
 end module mesh_m

@@ -37,7 +37,8 @@ module parts_m
     real(wp) :: hardening = 0.0_wp !! plastic modulus E_p = E Et/(E - Et)
     real(wp) :: beta = 1.0_wp      !! 1 isotropic, 0 kinematic, between mixed
     type(hardening_t), allocatable :: curve !! yield stress by points, of a piecewise linear law
-    logical :: is_rigid = .false.  !! no stress: parts of it are rigid bodies; E and nu serve contact
+    logical :: is_rigid = .false.  !! no stress: parts of it are rigid bodies; E and nu serve
+                                   !! contact
     logical :: is_fixed(3) = .false. !! of a rigid body: x, y and the turn about z do not move
   end type material_t
 

@@ -11,7 +11,8 @@ module surfaces_m
   type :: surface_t
     integer :: n_node = 0
     integer :: n_segment = 0
-    integer, allocatable :: nodes(:)           !! (n_node) node indices in the mesh, chain after chain
+    integer, allocatable :: nodes(:)           !! (n_node) node indices in the mesh, chain after
+                                               !! chain
     integer, allocatable :: segments(:, :)     !! (2, n_segment) local numbers of start and end node
     integer, allocatable :: segment_element(:) !! (n_segment) index of the element behind
     integer, allocatable :: previous(:)        !! (n_segment) segment before, 0 at a chain's start

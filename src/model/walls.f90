@@ -14,7 +14,8 @@ module walls_m
     real(wp) :: birth = 0.0_wp               !! the wall is there from this time
     real(wp) :: death = 1.0e20_wp            !! until this time
     integer, allocatable :: nodes(:)         !! indices of the nodes that see it
-    integer, allocatable :: place(:)         !! (n_special) where each special node stands in `nodes`, 0 = not there
+    integer, allocatable :: place(:)         !! (n_special) where each special node stands in
+                                             !! `nodes`, 0 = not there
   end type wall_t
 
 contains

@@ -74,7 +74,8 @@ contains
     else
       call h5screate_f(H5S_NULL_F, space, status(1))
     end if
-    call h5dcreate_f(archive%id, archive%folder//name, file_type(content), space, dataset, status(2))
+    call h5dcreate_f(archive%id, archive%folder//name, file_type(content), space, dataset, &
+      status(2))
     if (status(2) >= 0) then
       if (is_there .and. product(extents) > 0) &
         call h5dwrite_f(dataset, memory_type(content), values, status(3))

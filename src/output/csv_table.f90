@@ -50,7 +50,8 @@ contains
     character(*), intent(in) :: header   !! column names with commas between
     integer, intent(in) :: kinds(:)      !! `kind_` of each column
     type(error_t), allocatable, intent(out) :: error
-    character(*), intent(in), optional :: further !! names of the columns that the CSV file leaves out
+    character(*), intent(in), optional :: further !! names of the columns that the CSV file leaves
+                                                  !! out
     integer :: i
 
     call create_text_file(table%file, prefix//'.'//name//'.csv', error)

@@ -7,12 +7,12 @@ module dyna_layouts_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: layout_glstat, layout_rcforc, layout_nodout, layout_matsum, layout_sleout, layout_spcforc, &
-    line_size, n_line_of, form_block
+  public :: layout_glstat, layout_rcforc, layout_nodout, layout_matsum, layout_sleout, &
+    layout_spcforc, line_size, n_line_of, form_block
 
   !> The files.
-  integer, parameter :: layout_glstat = 1, layout_rcforc = 2, layout_nodout = 3, layout_matsum = 4, &
-    layout_sleout = 5, layout_spcforc = 6
+  integer, parameter :: layout_glstat = 1, layout_rcforc = 2, layout_nodout = 3, &
+    layout_matsum = 4, layout_sleout = 5, layout_spcforc = 6
   !> Bytes of the longest line.
   integer, parameter :: line_size = 160
   !> Labels of glstat, each with its dots.
@@ -95,14 +95,14 @@ contains
     call add_line('', lines, n_line)
     call add_line('', lines, n_line)
     if (nint(row(15)) > 0) then
-      call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by shell '//number(row(15), 8) &
-        //' of part '//number(row(16), 8), lines, n_line)
+      call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by shell ' &
+        //number(row(15), 8)//' of part '//number(row(16), 8), lines, n_line)
     else
       call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by '//control, lines, n_line)
     end if
     call add_line('', lines, n_line)
-    values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), row(9), row(10), &
-      0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(13), row(14), 0.0_wp]
+    values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), row(9), &
+      row(10), 0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(13), row(14), 0.0_wp]
     do i = 1, n_label
       write (line, '(a,es14.5)') labels(i), tidy(values(i))
       call add_line(line, lines, n_line)
@@ -120,8 +120,8 @@ contains
 
     do i = 1, size(rows, 2)
       write (line, '(2x,a,i11,a,es12.5,3(a,es12.5),a,es12.5)') merge('slave ', 'master', &
-        nint(rows(3, i)) == 1), nint(rows(2, i)), ' time', tidy(rows(1, i)), '  x ', tidy(rows(4, i)), &
-        '  y ', tidy(rows(5, i)), '  z ', 0.0_wp, ' mass ', 0.0_wp
+        nint(rows(3, i)) == 1), nint(rows(2, i)), ' time', tidy(rows(1, i)), '  x ', &
+        tidy(rows(4, i)), '  y ', tidy(rows(5, i)), '  z ', 0.0_wp, ' mass ', 0.0_wp
       call add_line(line, lines, n_line)
     end do
   end subroutine form_rcforc
@@ -138,12 +138,14 @@ contains
     do i = 1, 3
       call add_line('', lines, n_line)
     end do
-    write (line, '(2a,30x,a,es14.7,a)') ' n o d a l   p r i n t   o u t   f o r   t i m e  s t e p', &
+    write (line, '(2a,30x,a,es14.7,a)') &
+      ' n o d a l   p r i n t   o u t   f o r   t i m e  s t e p', &
       number(rows(11, 1), 8), '( at time', tidy(rows(1, 1)), ' )'
     call add_line(line, lines, n_line)
     call add_line('', lines, n_line)
-    call add_line(' nodal point  x-disp     y-disp      z-disp      x-vel       y-vel       z-vel      ' &
-      //'x-accl      y-accl      z-accl      x-coor      y-coor      z-coor', lines, n_line)
+    call add_line(' nodal point  x-disp     y-disp      z-disp      x-vel       y-vel       ' &
+      //'z-vel      x-accl      y-accl      z-accl      x-coor      y-coor      z-coor', lines, &
+      n_line)
     do i = 1, size(rows, 2)
       id = number(rows(2, i), 9)
       if (len(id) == 9) id = id//' '
@@ -180,7 +182,8 @@ contains
       write (line, vectors) ' x-rbv=', tidy(velocity(1)), '     y-rbv=', tidy(velocity(2)), &
         '     z-rbv=', 0.0_wp
       call add_line(line, lines, n_line)
-      write (line, '(25x,a,es13.4,5x,a,es13.4)') 'hgeng=', tidy(rows(5, i)), '+mass=', tidy(rows(8, i))
+      write (line, '(25x,a,es13.4,5x,a,es13.4)') 'hgeng=', tidy(rows(5, i)), '+mass=', &
+        tidy(rows(8, i))
       call add_line(line, lines, n_line)
     end do
   end subroutine form_matsum

@@ -4,8 +4,8 @@
 !> buffer of whole lines and reach the file like those of the table.
 module dyna_text_m
   use build_info_m, only : version
-  use dyna_layouts_m, only : layout_rcforc, layout_nodout, layout_matsum, layout_spcforc, line_size, &
-    n_line_of, form_block
+  use dyna_layouts_m, only : layout_rcforc, layout_nodout, layout_matsum, layout_spcforc, &
+    line_size, n_line_of, form_block
   use errors_m, only : error_t
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use kinds_m, only : wp, long
@@ -86,7 +86,8 @@ contains
       end do
     case (layout_nodout)
       do i = 1, size(model%controls%output%history_nodes)
-        call put_entity(text, has_legend, model%mesh%node_id(model%controls%output%history_nodes(i)), 'node')
+        call put_entity(text, has_legend, &
+          model%mesh%node_id(model%controls%output%history_nodes(i)), 'node')
       end do
     end select
     if (.not. has_legend) return

@@ -45,7 +45,8 @@ contains
     type(error_t), allocatable, intent(inout) :: error  !! kept when there is one already
 
     if (status >= 0 .or. allocated(error)) return
-    call raise(error, 'cannot write '//what//' (is the disk full, or a quota used up?)', status_files)
+    call raise(error, 'cannot write '//what//' (is the disk full, or a quota used up?)', &
+      status_files)
   end subroutine check_status
 
   !> HDF5 type in memory of a kind of content.

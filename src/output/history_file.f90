@@ -59,14 +59,17 @@ contains
         select case (k)
         case (table_glstat)
           call open_table(table, prefix, 'glstat', glstat_columns, &
-            [r, i, r, r, r, r, r, r, r, r, r, r, r, r, i, i], error, 'velocity_x,velocity_y,element,element_part')
+            [r, i, r, r, r, r, r, r, r, r, r, r, r, r, i, i], error, &
+            'velocity_x,velocity_y,element,element_part')
         case (table_rcforc)
-          call open_table(table, prefix, 'rcforc', rcforc_columns, [r, i, kind_side, r, r, i], error)
+          call open_table(table, prefix, 'rcforc', rcforc_columns, [r, i, kind_side, r, r, i], &
+            error)
         case (table_nodout)
-          call open_table(table, prefix, 'nodout', nodout_columns, [r, i, r, r, r, r, r, r, r, r, i], error, &
-            'cycle')
+          call open_table(table, prefix, 'nodout', nodout_columns, &
+            [r, i, r, r, r, r, r, r, r, r, i], error, 'cycle')
         case (table_contact)
-          call open_table(table, prefix, 'contact', contact_columns, [r, i, i, r, r, r, r, r, r, r, r], error)
+          call open_table(table, prefix, 'contact', contact_columns, &
+            [r, i, i, r, r, r, r, r, r, r, r], error)
         case (table_matsum)
           call open_table(table, prefix, 'matsum', matsum_columns, [r, i, r, r, r, r, r, r], error)
         case (table_rwforc)
@@ -127,8 +130,9 @@ contains
 
       if (allocated(error)) return
       associate (table => histories%tables(i_table))
-        if (table%is_open .and. interval%is_text .and. is_asked(interval)) call open_dyna_text(table%text, &
-          prefix//'.'//table%name, layout, model, [n_columns(table), n_row_of_block(model, i_table)], error)
+        if (table%is_open .and. interval%is_text .and. is_asked(interval)) &
+          call open_dyna_text(table%text, prefix//'.'//table%name, layout, model, &
+          [n_columns(table), n_row_of_block(model, i_table)], error)
       end associate
     end subroutine open_text
 

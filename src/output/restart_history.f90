@@ -22,7 +22,8 @@ contains
   subroutine keep_schedule(archive, name, time, dt, schedule)
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
-    real(wp), intent(in) :: time, dt                !! of the state before, as given to `is_due` then
+    real(wp), intent(in) :: time, dt                !! of the state before, as given to `is_due`
+                                                    !! then
     type(schedule_t), intent(inout) :: schedule     !! planned from the deck
     type(schedule_t) :: kept
 

@@ -20,8 +20,8 @@ module results_file_m
   use results_tables_m, only : run_info_t, write_run, write_histories
   use results_mesh_m, only : write_mesh, deck_nodes
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
-    planned_states, block_rows, unfinished, n_point_field, n_cell_field, n_step_array, step_values, &
-    step_points, step_ones
+    planned_states, block_rows, unfinished, n_point_field, n_cell_field, n_step_array, &
+    step_values, step_points, step_ones
   use hdf5_writing_m, only : append_rows, close_growing, make_group, write_string_attribute, &
     write_index_attribute, check_status
   implicit none
@@ -130,7 +130,8 @@ contains
         n = min(block_rows, model%mesh%n_node - first + 1)
         associate (nodes => deck_nodes(model%mesh, first, n))
           select case (i)
-          case (1); call gather_vectors(nodes, snapshot%displacement, file%rows, model%mesh%coordinates)
+          case (1); call gather_vectors(nodes, snapshot%displacement, file%rows, &
+            model%mesh%coordinates)
           case (2); call gather_vectors(nodes, snapshot%displacement, file%rows)
           case (3); call gather_vectors(nodes, snapshot%velocity, file%rows)
           case (4); call gather_vectors(nodes, snapshot%contact_force, file%rows)

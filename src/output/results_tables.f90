@@ -132,7 +132,8 @@ contains
     call make_group(id, 'history/'//table%name, error)
     if (n_columns(table) > table%n_csv) call make_group(id, 'dyna/'//table%name, error)
     do i = 1, n_columns(table)
-      name = trim(merge('history/', 'dyna/   ', i <= table%n_csv))//table%name//'/'//column_name(table, i)
+      name = trim(merge('history/', 'dyna/   ', i <= table%n_csv))//table%name//'/' &
+        //column_name(table, i)
       reals = table%values(i, :table%n_row)
       if (table%kinds(i) == kind_real) then
         call write_rows(id, name, as_real, size(reals), c_loc(reals), error)

@@ -65,7 +65,8 @@ contains
     if (.not. allocated(clock%interface_ticks)) return
     do i = 1, ubound(clock%interface_ticks, 2)
       text = text//timing_row(trim(phase_names(i_phase))//'.'//to_text(i), &
-        in_nanoseconds(clock%interface_ticks(i_row, i), rate), clock%interface_calls(i_row, i), total)
+        in_nanoseconds(clock%interface_ticks(i_row, i), rate), clock%interface_calls(i_row, i), &
+        total)
     end do
   end function interface_rows
 

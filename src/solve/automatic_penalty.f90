@@ -19,7 +19,8 @@ module automatic_penalty_m
   public :: set_automatic_penalties
 
   integer, parameter :: n_halving = 60           !! of the common factor
-  real(wp), parameter :: round_off = 1.0e-12_wp  !! by which a bound may miss the step that it was made for
+  real(wp), parameter :: round_off = 1.0e-12_wp  !! by which a bound may miss the step that it was
+                                                 !! made for
 
 contains
 
@@ -47,8 +48,8 @@ contains
       if (model%contacts(i)%penalty_unit /= penalty_share) cycle
       if (.not. factor(i) > 0.0_wp) then
         call raise(error, 'interface '//to_text(model%contacts(i)%id)//': the penalties of other ' &
-          //'interfaces at its nodes leave no room for an automatic one (PUNIT 3) at the time step ' &
-          //to_text(dt), status_input)
+          //'interfaces at its nodes leave no room for an automatic one (PUNIT 3) at the time ' &
+          //'step '//to_text(dt), status_input)
         return
       end if
       associate (memory => state%contacts(i))
@@ -71,7 +72,8 @@ contains
 
     allocate (force(2, model%layout%n_local))
     do i = 1, size(model%layout%tiles)
-      call add_tile_forces(model, model%layout%tiles(i), state%motion, 0.0_wp, state%elements, force)
+      call add_tile_forces(model, model%layout%tiles(i), state%motion, 0.0_wp, state%elements, &
+        force)
     end do
   end subroutine find_element_limits
 

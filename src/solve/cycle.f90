@@ -9,8 +9,8 @@ module cycle_m
   use cycle_loads_m, only : apply_loads
   use energies_m, only : energy_ratio, total_energy
   use errors_m, only : error_t
-  use health_m, only : tile_check_t, are_sound, check_elements, check_step, check_cycle, check_energy, &
-    judge_energies
+  use health_m, only : tile_check_t, are_sound, check_elements, check_step, check_cycle, &
+    check_energy, judge_energies
   use kinds_m, only : wp
   use model_log_m, only : log_smallest_steps
   use model_m, only : model_t
@@ -45,7 +45,8 @@ module cycle_m
     type(step_plan_t) :: steps
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
-    type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have come to
+    type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
+                                                 !! come to
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
     real(wp) :: ratio = 1.0_wp       !! last energy ratio known
     real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
@@ -224,7 +225,8 @@ contains
     if (cycle%finished) return
     if (.not. cycle%writes) then
       call count_sums(cycle%sums, state%external_work, state%damping_work)
-      if (.not. are_sound(cycle%checks, state%contacts)) call check_elements(model, state, cycle%error)
+      if (.not. are_sound(cycle%checks, state%contacts)) &
+        call check_elements(model, state, cycle%error)
     end if
     if (size(cycle%velocity) > 0) then
       before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
@@ -244,8 +246,8 @@ contains
     if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     if (allocated(cycle%error)) cycle%finished = .true.
     if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
-    call follow_progress(monitor%progress, monitor%clock, state%cycle, .false., state%time, state%dt, &
-      cycle%ratio)
+    call follow_progress(monitor%progress, monitor%clock, state%cycle, .false., state%time, &
+      state%dt, cycle%ratio)
   end subroutine end_cycle
 
   !> Stop, restart files, states and lines that are due or that someone asks for; for restart files
@@ -261,9 +263,9 @@ contains
     call take_requests(state, cycle%ratio, .false., monitor, asked, cycle%error)
     cycle%plots = asked%plot
     ends = is_last(cycle%steps, state%cycle, state%time)
-    if (.not. allocated(cycle%error)) call write_restarts(wanted_files(monitor%restarts, state%cycle, asked%dump, &
-      ends, asked%signalled .and. .not. ends), state, monitor, cycle%steps, cycle%damping, cycle%ratio, &
-      cycle%error)
+    if (.not. allocated(cycle%error)) call write_restarts(wanted_files(monitor%restarts, &
+      state%cycle, asked%dump, ends, asked%signalled .and. .not. ends), state, monitor, &
+      cycle%steps, cycle%damping, cycle%ratio, cycle%error)
     cycle%finished = allocated(cycle%error)
     if (ends .or. .not. asked%stop) return
     cycle%last = .true.

@@ -157,7 +157,8 @@ contains
     do i_tile = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i_tile))
         if (tile%last_node >= tile%first_node) call move_tile_nodes(cycle%leap, tile%first_node, &
-          tile%last_node, state%internal_force(1, tile%first_node), state%inverse_mass, state%motion)
+          tile%last_node, state%internal_force(1, tile%first_node), state%inverse_mass, &
+          state%motion)
         call move_special_nodes(cycle%leap, tile%first_owned, tile%last_owned, state)
       end associate
     end do

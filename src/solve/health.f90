@@ -93,9 +93,10 @@ contains
           return
         end do
         if (abs(contact%energy) <= most_work) cycle
-        call raise(error, 'the work '//to_text(-contact%energy)//' of the contact forces of interface ' &
-          //to_text(model%contacts(i)%id)//' at cycle '//to_text(state%cycle)//', time ' &
-          //to_text(state%time)//' is beyond all measure', status_run)
+        call raise(error, 'the work '//to_text(-contact%energy) &
+          //' of the contact forces of interface '//to_text(model%contacts(i)%id)//' at cycle ' &
+          //to_text(state%cycle)//', time '//to_text(state%time)//' is beyond all measure', &
+          status_run)
         return
       end associate
     end do
@@ -127,8 +128,9 @@ contains
       return
     end do
     call name_wild_chunk(model, state, error)
-    if (.not. allocated(error)) call raise(error, 'negative area or values that are not finite at cycle ' &
-      //to_text(state%cycle)//', time '//to_text(state%time), status_run)
+    if (.not. allocated(error)) call raise(error, &
+      'negative area or values that are not finite at cycle '//to_text(state%cycle)//', time ' &
+      //to_text(state%time), status_run)
   end subroutine name_bad_chunk
 
   !> The element that is under the largest stress of those whose chunk has
@@ -146,8 +148,8 @@ contains
       last = min(chunk*chunk_size, model%layout%n_slot)
       associate (elements => model%layout%slot_element(first:last), &
         stress => maxval(abs(state%elements%deviator(first:last, :)), 2))
-        call blame(model, state, first - 1 + maxloc(stress, 1, elements > 0), 'work beyond all measure', &
-          error)
+        call blame(model, state, first - 1 + maxloc(stress, 1, elements > 0), &
+          'work beyond all measure', error)
       end associate
     end associate
   end subroutine name_wild_chunk
@@ -188,8 +190,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (cycle < huge(cycle)) return
-    call raise(error, 'cycle '//to_text(cycle)//' at time '//to_text(time)//' is the last that can be ' &
-      //'counted: a run has to end before', status_run)
+    call raise(error, 'cycle '//to_text(cycle)//' at time '//to_text(time) &
+      //' is the last that can be '//'counted: a run has to end before', status_run)
   end subroutine check_cycle
 
   !> Energies must be finite; where the deck sets ENDENG the energy ratio must stay within so many
@@ -203,8 +205,9 @@ contains
       call raise(error, 'the total energy is not finite', status_run)
     else if (controls%energy_limit > 0.0_wp .and. &
       abs(energy_ratio(energies) - 1.0_wp) > 0.01_wp*controls%energy_limit) then
-      call raise(error, 'the energy ratio '//to_text(energy_ratio(energies))//' changed by more than ' &
-        //to_text(controls%energy_limit)//' per cent (ENDENG)', status_run)
+      call raise(error, 'the energy ratio '//to_text(energy_ratio(energies)) &
+        //' changed by more than '//to_text(controls%energy_limit)//' per cent (ENDENG)', &
+        status_run)
     else if (controls%energy_limit > 0.0_wp .and. &
       energies%contact < -0.01_wp*controls%energy_limit*largest_energy(energies)) then
       call raise(error, 'the contact forces created energy: '//to_text(-energies%contact)//' of ' &
@@ -230,8 +233,8 @@ contains
     largest = largest_energy(energies)
     if (energies%contact < -0.05_wp*largest) call warn(log, 'the contact forces created energy: ' &
       //to_text(energies%contact)//' of '//to_text(largest) &
-      //'; the penalty or the time step is too large, or places of the slave came in deep beside the ' &
-      //'end of a surface (SRCH limits that)')
+      //'; the penalty or the time step is too large, or places of the slave came in deep beside ' &
+      //'the end of a surface (SRCH limits that)')
     if (energies%hourglass > 0.1_wp*max(energies%internal, 1.0e-6_wp*largest)) call warn(log, &
       'the hourglass energy '//to_text(energies%hourglass)//' is more than 10 % of the internal ' &
       //'energy '//to_text(energies%internal))

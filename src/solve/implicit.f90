@@ -102,8 +102,8 @@ contains
     last = last .or. asked%stop
     planned = march%control
     call plan_next(model, last, state, planned, ends)
-    call write_restarts(wanted_files(monitor%restarts, state%cycle, asked%dump, ends, asked%signalled), &
-      state, monitor, march, error)
+    call write_restarts(wanted_files(monitor%restarts, state%cycle, asked%dump, ends, &
+      asked%signalled), state, monitor, march, error)
     last = last .and. .not. allocated(error)
     march%control = planned
   end subroutine heed_requests
@@ -187,12 +187,13 @@ contains
     if (step%is_dynamic) then
       acceleration = new_acceleration(state, step, attempt)
       velocity = new_velocity(state, step, acceleration)
-      state%external_work = state%external_work + reactions_work(model, step%equations, trial, attempt, &
-        reshape([state%motion(3:4, :), velocity], [2, size(velocity, 2), 2]))
+      state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
+        attempt, reshape([state%motion(3:4, :), velocity], [2, size(velocity, 2), 2]))
       state%motion(3:4, :) = velocity
       state%acceleration = acceleration
     else
-      state%external_work = state%external_work + reactions_work(model, step%equations, trial, attempt)
+      state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
+        attempt)
     end if
     state%motion(1:2, :) = attempt%motion(1:2, :)
     state%elements = attempt%elements

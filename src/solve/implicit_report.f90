@@ -28,7 +28,8 @@ contains
   subroutine report_step(model, state, force, last, plots, monitor, written, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    real(wp), intent(in) :: force(:, :)   !! (2, n_node) internal minus contact and external forces of the state
+    real(wp), intent(in) :: force(:, :)   !! (2, n_node) internal minus contact and external forces
+                                          !! of the state
     logical, intent(in) :: last
     logical, intent(in) :: plots          !! someone asks for a plot state
     type(monitor_t), intent(inout) :: monitor
@@ -58,11 +59,13 @@ contains
       end if
       if (due%matsum) call fill_consistent_parts(model, shot)
       if (due%rcforc .or. due%sleout) call fill_interfaces(model, state, shot)
-      if (due%spcforc) call fill_reactions(model, force + mass_times(model, shot%acceleration), shot)
+      if (due%spcforc) call fill_reactions(model, force + mass_times(model, shot%acceleration), &
+        shot)
       if (due%plot) call fill_plot(model, state, shot)
       call write_due(model, due, dt, monitor, error)
-      if (due%plot .and. .not. allocated(error)) call show_progress(monitor%progress, monitor%clock, &
-        state%cycle, state%time, state%dt, energy_ratio(shot%energies), 'write vtkhdf state')
+      if (due%plot .and. .not. allocated(error)) &
+        call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, &
+        energy_ratio(shot%energies), 'write vtkhdf state')
       if (.not. allocated(error)) call check_energy(model%controls, shot%energies, error)
       if (last .and. .not. allocated(error)) call judge_energies(shot%energies, monitor%log)
     end associate
@@ -105,7 +108,8 @@ contains
     type(model_t), intent(in) :: model
     type(equations_t), intent(in) :: equations
     type(trial_t), intent(in) :: before, after
-    real(wp), intent(in), optional :: velocities(:, :, :) !! (2, n_node, 2) v(n) and v(n+1); absent: static
+    real(wp), intent(in), optional :: velocities(:, :, :) !! (2, n_node, 2) v(n) and v(n+1); absent:
+                                                          !! static
     real(wp) :: work
     real(wp), allocatable :: reaction(:, :)
 

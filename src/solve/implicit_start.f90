@@ -136,7 +136,8 @@ contains
     call assemble_forces(model, state, 0.0_wp, .false., monitor%clock, march%trial)
     state%contacts = march%trial%contacts
     march%step%old_force = net_force(march%trial)
-    if (march%step%is_dynamic) call find_first_acceleration(model, monitor, march%step, state, error)
+    if (march%step%is_dynamic) call find_first_acceleration(model, monitor, march%step, state, &
+      error)
     call lap(monitor%clock, phase_solver)
   end subroutine start_implicit
 

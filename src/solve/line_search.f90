@@ -70,7 +70,8 @@ contains
     slope_start = -dot_product(way%x, way%b)
     if (.not. slope_start < 0.0_wp) return
     do i = 1, most_searches
-      slope = dot_product(way%x, take_free(step%equations, assemble_residual(model, state, step, trial)))
+      slope = dot_product(way%x, take_free(step%equations, &
+        assemble_residual(model, state, step, trial)))
       if (slope <= model%controls%implicit%search_tolerance*abs(slope_start)) return
       sound_factor = way%factor
       way%factor = way%factor*max(least_part, slope_start/(slope_start - slope))

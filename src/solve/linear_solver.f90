@@ -37,8 +37,10 @@ module linear_solver_m
     real(wp) :: residual = huge(1.0_wp)   !! max |b - A x| / max(|A||x| + |b|), A equilibrated
     integer :: n_refinement = 0           !! steps of iterative refinement
     logical :: is_singular = .false.      !! a motion meets no stiffness, or next to none, ...
-    integer :: equation = 0               !! ... largest here (0: unknown); or an entry is not finite
-    real(wp) :: stiffness = 0.0_wp        !! norm of A z / norm of |A||z|, z the motion that meets least
+    integer :: equation = 0               !! ... largest here (0: unknown); or an entry is not
+                                          !! finite
+    real(wp) :: stiffness = 0.0_wp        !! norm of A z / norm of |A||z|, z the motion that meets
+                                          !! least
     logical :: out_of_memory = .false.    !! the factors do not fit
     character(:), allocatable :: message  !! what is wrong, in words
   end type report_t
@@ -251,7 +253,8 @@ contains
       report%n_refinement = report%n_refinement + 1
     end do
     report%is_solved = report%residual <= residual_tolerance .and. .not. report%is_singular
-    if (.not. (report%is_solved .or. report%is_singular)) report%message = 'the linear system could not be solved accurately'
+    if (.not. (report%is_solved .or. report%is_singular)) &
+      report%message = 'the linear system could not be solved accurately'
   end subroutine solve_refined
 
   !> |A||x|.

@@ -41,7 +41,8 @@ contains
       end associate
     end do
     do k = 1, size(model%parts)
-      call write_log(log, 'part '//to_text(model%parts(k)%id)//': '//mass_text(counts(k), sums(:, k)))
+      call write_log(log, 'part '//to_text(model%parts(k)%id)//': ' &
+        //mass_text(counts(k), sums(:, k)))
     end do
     call write_log(log, 'all parts: '//mass_text(sum(counts), sum(sums, 2))//'; ' &
       //to_text(count(model%mesh%element_nodes(4, :) == model%mesh%element_nodes(3, :))) &

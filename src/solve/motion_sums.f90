@@ -18,9 +18,11 @@ module motion_sums_m
   !> Partial sums of one cycle, and what they are for.
   type :: motion_sums_t
     integer, allocatable :: blocks(:, :) !! (2, blocks) first and last node
-    real(wp), allocatable :: parts(:, :) !! (4, tiles and then blocks) m v_x, m v_y, m v_x^2, m v_y^2;
-                                         !! allocated only where the deck has body loads or damping
-    real(wp) :: share(4) = 0.0_wp        !! what each counts: two in external work, two in that of damping
+    real(wp), allocatable :: parts(:, :) !! (4, tiles and then blocks) m v_x, m v_y, m v_x^2, m
+                                         !! v_y^2; allocated only where the deck has body loads or
+                                         !! damping
+    real(wp) :: share(4) = 0.0_wp        !! what each counts: two in external work, two in that of
+                                         !! damping
   end type motion_sums_t
 
 contains
@@ -32,7 +34,8 @@ contains
     type(motion_sums_t), intent(out) :: sums
     integer :: n_tile, n_special, n_moved, n_block, i
 
-    if (size(model%conditions%body_loads) == 0 .and. .not. allocated(model%conditions%damping)) return
+    if (size(model%conditions%body_loads) == 0 .and. .not. allocated(model%conditions%damping)) &
+      return
     n_tile = size(model%layout%tiles)
     n_special = model%layout%n_special
     n_moved = n_special

@@ -89,8 +89,9 @@ contains
       if (outcome%converged) return
     end do
     call find_equation(step%equations, now%worst, node, direction)
-    outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations, most force out of ' &
-      //'balance at node '//to_text(model%mesh%node_id(max(node, 1)))//' in '//merge('x', 'y', direction == 1) &
+    outcome%reason = 'no equilibrium after '//to_text(outcome%iterations) &
+      //' iterations, most force out of '//'balance at node ' &
+      //to_text(model%mesh%node_id(max(node, 1)))//' in '//merge('x', 'y', direction == 1) &
       //contacts_of(model, max(node, 1))
   end subroutine find_equilibrium
 
@@ -104,8 +105,10 @@ contains
     words = ''
     do i = 1, size(model%contacts)
       associate (contact => model%contacts(i))
-        if (any(contact%slave%nodes == node)) words = words//', a slave node of interface '//to_text(contact%id)
-        if (any(contact%master%nodes == node)) words = words//', a master node of interface '//to_text(contact%id)
+        if (any(contact%slave%nodes == node)) words = words//', a slave node of interface ' &
+          //to_text(contact%id)
+        if (any(contact%master%nodes == node)) words = words//', a master node of interface ' &
+          //to_text(contact%id)
       end associate
     end do
   end function contacts_of
@@ -168,7 +171,8 @@ contains
     now%residual = norm2(u)
     now%worst = maxloc(abs(u), 1)
     u = abs(take_free(step%equations, trial%motion(1:2, :)))
-    total = take_free(step%equations, abs(trial%internal) + abs(trial%contact) + abs(trial%external))
+    total = take_free(step%equations, abs(trial%internal) + abs(trial%contact) &
+      + abs(trial%external))
     do i = 1, matrix%n
       do k = matrix%first(i), matrix%first(i + 1) - 1
         total(i) = total(i) + abs(matrix%value(k))*u(matrix%column(k))
@@ -190,8 +194,8 @@ contains
     real(wp), intent(in) :: step !! norm of the displacement of the whole step
     logical :: converged
 
-    converged = implicit%is_linear .or. now%residual <= floor_margin*now%floor .or. (now%residual <= floor_margin*now%gap_floor &
-      .and. now%residual > stagnation*now%before)
+    converged = implicit%is_linear .or. now%residual <= floor_margin*now%floor &
+      .or. (now%residual <= floor_margin*now%gap_floor .and. now%residual > stagnation*now%before)
     if (converged) return
     converged = now%energy <= implicit%energy_tolerance*first%energy
     if (implicit%step_tolerance > 0.0_wp) converged = converged .and. now%step &

@@ -74,7 +74,8 @@ contains
       !$omp simd simdlen(2)
       do k = 1, 2
         motion(2 + k, i) = leap%keep(k)*motion(2 + k, i) + leap%half(k) &
-          *(merge(leap%body(k), 0.0_wp, inverse_mass(k, i) > 0.0_wp) - force(k, i)*inverse_mass(k, i))
+          *(merge(leap%body(k), 0.0_wp, inverse_mass(k, i) > 0.0_wp) &
+          - force(k, i)*inverse_mass(k, i))
         motion(k, i) = motion(k, i) + leap%dt*motion(2 + k, i)
       end do
     end do
@@ -116,8 +117,8 @@ contains
     integer, intent(in) :: first, last
     type(state_t), intent(inout) :: state
 
-    call move_each(leap, first, last, state%force_special, state%internal_force, state%inverse_mass, &
-      state%motion)
+    call move_each(leap, first, last, state%force_special, state%internal_force, &
+      state%inverse_mass, state%motion)
   end subroutine move_special_nodes
 
   !> The same for arrays of known shape.

@@ -52,7 +52,8 @@ contains
 
     do i = 1, size(model%conditions%motions)
       associate (prescribed => model%conditions%motions(i))
-        if (prescribed%kind /= motion_displacement .or. .not. is_active(prescribed, state%time)) cycle
+        if (prescribed%kind /= motion_displacement .or. .not. is_active(prescribed, state%time)) &
+          cycle
         state%motion(2 + prescribed%direction, prescribed%node) = velocity(i)
         state%prescribed_velocity(i) = velocity(i)
       end associate
@@ -61,7 +62,8 @@ contains
 
   !> Work R.v dt/2 of the reactions over half a step, with
   !> R = m a + f_int - f_special - m g + D m v(n).
-  pure function prescribed_work(model, state, velocity, damping, factor_old, factor_new) result(work)
+  pure function prescribed_work(model, state, velocity, damping, factor_old, &
+      factor_new) result(work)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: velocity(:)            !! (n_motion) v(n+1/2)

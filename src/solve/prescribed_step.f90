@@ -29,7 +29,8 @@ module prescribed_step_m
     real(wp), allocatable :: increment(:)    !! u(n+1) - u(n)
     real(wp), allocatable :: velocity(:)     !! v(n+1)
     real(wp), allocatable :: acceleration(:) !! a(n+1)
-    real(wp), allocatable :: mean(:)         !! (v(n+1) - v(n))/dt, which the inertia of the step feels
+    real(wp), allocatable :: mean(:)         !! (v(n+1) - v(n))/dt, which the inertia of the step
+                                             !! feels
   end type prescribed_step_t
 
 contains
@@ -135,7 +136,8 @@ contains
     is_future = time + dt <= life(2) + same_time*dt
     x = [time - dt, time + dt]
     if (.not. is_future) then
-      x = [max(time - dt, life(1), maxval(curve%abscissa, mask=curve%abscissa < time - same_time*dt)), time]
+      x = [max(time - dt, life(1), maxval(curve%abscissa, mask=curve%abscissa < time &
+        - same_time*dt)), time]
     else if (.not. is_past) then
       x = [time, min(time + dt, minval(curve%abscissa, mask=curve%abscissa > time + same_time*dt))]
     end if
@@ -191,8 +193,8 @@ contains
     associate (conditions => model%conditions)
       changes = [conditions%motions%birth, conditions%motions%death]
       if (.not. model%controls%implicit%is_automatic) return
-      changes = [changes, conditions%pressures%arrival, model%contacts%birth, model%contacts%death, &
-        plot_times(model%controls)]
+      changes = [changes, conditions%pressures%arrival, model%contacts%birth, &
+        model%contacts%death, plot_times(model%controls)]
       do i = 1, size(model%curves)
         if (any(conditions%motions%curve == i) .or. any(conditions%nodal_loads%curve == i) &
           .or. any(conditions%body_loads%curve == i)) &
@@ -231,7 +233,8 @@ contains
 
     n = size(curve%abscissa)
     slope = 0.0_wp
-    slope(1:n - 1) = (curve%ordinate(2:) - curve%ordinate(:n - 1))/(curve%abscissa(2:) - curve%abscissa(:n - 1))
+    slope(1:n - 1) = (curve%ordinate(2:) - curve%ordinate(:n - 1))/(curve%abscissa(2:) &
+      - curve%abscissa(:n - 1))
     times = pack(curve%abscissa, abs(slope(1:n) - slope(0:n - 1)) &
       > corner*max(abs(slope(1:n)), abs(slope(0:n - 1))))
   end function turning_points

@@ -4,8 +4,8 @@
 !> closed window, a full disk behind `>`) does not end a run: the log has the same lines.
 module progress_m
   use, intrinsic :: iso_fortran_env, only : output_unit
-  use clock_m, only : clock_t, look_at_clock, elapsed_seconds, total_seconds, phase_seconds, lap_seconds, &
-    phase_names, n_phase, phase_input, phase_output
+  use clock_m, only : clock_t, look_at_clock, elapsed_seconds, total_seconds, phase_seconds, &
+    lap_seconds, phase_names, n_phase, phase_input, phase_output
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log
   use signals_m, only : output_is_terminal
@@ -44,7 +44,8 @@ contains
     progress%end_time = end_time
     progress%status_interval = status_interval
     call system_clock(now, rate)
-    progress%wait = int(merge(terminal_interval, pipe_interval, progress%terminal)*real(rate, wp), long)
+    progress%wait = int(merge(terminal_interval, pipe_interval, progress%terminal)*real(rate, wp), &
+      long)
     progress%next_tick = now + progress%wait
   end subroutine start_progress
 
@@ -97,15 +98,15 @@ contains
     if (progress%terminal) then
       share = min(1.0_wp, time/progress%end_time)
       to_go = max(0.0_wp, seconds_to_go(progress%status, elapsed_seconds(clock)))
-      write (output_unit, '(a,es11.4,a,f5.1,a,i0,a,es9.2,a,f8.5,a,a)', advance='no', iostat=ignored) &
-        achar(13)//' t', time, '  ', 100.0_wp*share, ' %  cycle ', cycle, '  dt', dt, &
-        '  energy ratio', ratio, '  to go ', duration(to_go)//'   '
+      write (output_unit, '(a,es11.4,a,f5.1,a,i0,a,es9.2,a,f8.5,a,a)', advance='no', &
+        iostat=ignored) achar(13)//' t', time, '  ', 100.0_wp*share, ' %  cycle ', cycle, '  dt', &
+        dt, '  energy ratio', ratio, '  to go ', duration(to_go)//'   '
       progress%line_open = .true.
     else
       call date_and_time(date, hour)
-      write (output_unit, '(i10,a,es10.4,a,es8.2,1x,a22,10x,a)', iostat=ignored) cycle, ' t ', time, ' dt ', dt, &
-        event, date(5:6)//'/'//date(7:8)//'/'//date(3:4)//' '//hour(1:2)//':'//hour(3:4)//':' &
-        //hour(5:6)
+      write (output_unit, '(i10,a,es10.4,a,es8.2,1x,a22,10x,a)', iostat=ignored) cycle, ' t ', &
+        time, ' dt ', dt, event, date(5:6)//'/'//date(7:8)//'/'//date(3:4)//' '//hour(1:2)//':' &
+        //hour(3:4)//':'//hour(5:6)
     end if
     flush (output_unit, iostat=ignored)
   end subroutine show_progress
@@ -146,8 +147,9 @@ contains
     seconds = phase_seconds(clock)
     elapsed = elapsed_seconds(clock)
     cost = 0.0_wp
-    if (cycle > progress%first_cycle) cost = 1.0e9_wp*(total_seconds(clock) - sum(seconds([phase_output, phase_input]))) &
-      /real(cycle - progress%first_cycle, wp)/n_element
+    if (cycle > progress%first_cycle) cost = 1.0e9_wp &
+      *(total_seconds(clock) - sum(seconds([phase_output, phase_input])))/real(cycle &
+      - progress%first_cycle, wp)/n_element
     call say(log, '')
     call say(log, ' *** '//reason//' ***')
     if (normal) then
@@ -188,8 +190,9 @@ contains
       call say(log, trim(line))
     end do
     each = lap_seconds()
-    write (line, '(a,i0,a,f0.1,a,f0.2,a)') ' Clock               = ', sum(clock%calls), ' laps of ', &
-      1.0e9_wp*each, ' nanoseconds, ', 100.0_wp*each*sum(clock%calls)/total, ' % of the time'
+    write (line, '(a,i0,a,f0.1,a,f0.2,a)') ' Clock               = ', sum(clock%calls), &
+      ' laps of ', 1.0e9_wp*each, ' nanoseconds, ', 100.0_wp*each*sum(clock%calls)/total, &
+      ' % of the time'
     call say(log, trim(line))
   end subroutine show_timing
 

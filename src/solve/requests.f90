@@ -52,8 +52,8 @@ contains
     asked%stop = asked%signalled .or. switch == switch_dump_and_stop .or. switch == switch_stop
     select case (switch)
     case (switch_status)
-      call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, ratio, &
-        'status (sw2)')
+      call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, &
+        ratio, 'status (sw2)')
     case (switch_flush)
       if (.not. allocated(error)) call flush_histories(monitor%histories, error)
     case (switch_unknown)

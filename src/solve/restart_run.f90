@@ -33,7 +33,8 @@ contains
   !> How far the outputs are.
   subroutine keep_outputs(archive, time, dt, monitor)
     type(archive_t), intent(inout) :: archive
-    real(wp), intent(in) :: time, dt    !! of the state before, and the step within which it was early for an output
+    real(wp), intent(in) :: time, dt    !! of the state before, and the step within which it was
+                                        !! early for an output
     type(monitor_t), intent(inout) :: monitor
     real(wp), allocatable :: times(:)
 

@@ -24,7 +24,8 @@ contains
 
     snapshot%slowest = 0
     if (model%controls%dt_curve > 0) then
-      if (.not. abs(curve_value(model%curves(model%controls%dt_curve), state%time) - state%dt) > 0.0_wp) return
+      if (.not. abs(curve_value(model%curves(model%controls%dt_curve), state%time) - state%dt) &
+        > 0.0_wp) return
     end if
     call find_smallest_steps(model, state%elements, state%motion, 1, found, steps)
     if (size(found) == 0) return

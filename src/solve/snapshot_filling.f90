@@ -52,8 +52,8 @@ contains
     type(model_t), intent(in) :: model
     logical :: keeps
 
-    keeps = is_asked(model%controls%output%plot) .or. size(model%controls%output%history_nodes) > 0 &
-      .or. size(model%conditions%motions) > 0 .or. size(model%rigids) > 0 &
+    keeps = is_asked(model%controls%output%plot) .or. size(model%controls%output%history_nodes) &
+      > 0 .or. size(model%conditions%motions) > 0 .or. size(model%rigids) > 0 &
       .or. model%controls%implicit%is_on
   end function keeps_motion
 

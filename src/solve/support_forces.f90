@@ -26,7 +26,8 @@ contains
       if (interval%dt > 0.0_wp .or. interval%curve > 0) &
         snapshot%supports = pack([(i, i=1, model%mesh%n_node)], mark_supports(model))
     end associate
-    snapshot%supports = snapshot%supports(sorted_order(int(model%mesh%node_id(snapshot%supports), long)))
+    snapshot%supports = snapshot%supports(sorted_order(int(model%mesh%node_id(snapshot%supports), &
+      long)))
     allocate (snapshot%reaction(2, size(snapshot%supports)), source=0.0_wp)
   end subroutine find_supports
 
@@ -43,7 +44,8 @@ contains
     do i = 1, size(model%conditions%fixed_nodes)
       is_fixed(model%conditions%fixed_directions(i), model%conditions%fixed_nodes(i)) = .true.
     end do
-    snapshot%reaction = merge(reaction(:, snapshot%supports), 0.0_wp, is_fixed(:, snapshot%supports))
+    snapshot%reaction = merge(reaction(:, snapshot%supports), 0.0_wp, &
+      is_fixed(:, snapshot%supports))
   end subroutine fill_reactions
 
   !> Reactions of the explicit method; a body load pulls at the mass of fixed nodes too.

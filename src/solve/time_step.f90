@@ -25,7 +25,8 @@ module time_step_m
     integer :: end_cycle = 0         !! ENDCYC, 0 = none
     real(wp) :: end_time = 0.0_wp
     logical :: warned = .false.      !! the cap has been found above the stable step
-    type(spring_bound_t), allocatable :: springs(:) !! that the step must respect; none unless ECDT = 2
+    type(spring_bound_t), allocatable :: springs(:) !! that the step must respect; none unless ECDT
+                                                    !! = 2
   end type step_plan_t
 
 contains

@@ -74,8 +74,8 @@ contains
 
   !> What the force of one wall lacks so that the node does not pass; never so
   !> negative that the wall pulls.
-  pure function missing_force(wall, time, dt, coordinates, displacement, velocity, mobility, force) &
-    result(more)
+  pure function missing_force(wall, time, dt, coordinates, displacement, velocity, mobility, &
+      force) result(more)
     type(wall_t), intent(in) :: wall
     real(wp), intent(in) :: time, dt
     real(wp), intent(in) :: coordinates(2), displacement(2)
@@ -126,8 +126,8 @@ contains
           if (is_before) work = work + memory%force(k)*0.5_wp*state%dt_before*memory%speed(k)
           if (.not. is_after) cycle
           next = dot_product(wall%normal, state%motion(3:4, wall%nodes(k)))
-          work = work + memory%force(k)*(0.25_wp*(state%dt_before + state%dt)*(memory%speed(k) + next) &
-            - 0.5_wp*state%dt_before*memory%speed(k))
+          work = work + memory%force(k)*(0.25_wp*(state%dt_before + state%dt) &
+            *(memory%speed(k) + next) - 0.5_wp*state%dt_before*memory%speed(k))
         end do
         memory%impulse = memory%impulse + length*sum(memory%force)
         memory%work = memory%work + work

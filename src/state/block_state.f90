@@ -10,21 +10,28 @@ module block_state_m
   !> Element history. The volumetric stress follows from the displacement, so only the deviator is
   !> stored: s_zz = -(s_xx + s_yy). Work and limits end with the last tile: rigid parts have none.
   type :: block_state_t
-    real(wp), allocatable :: reference(:, :)  !! (n_slot, 6) X31 Y31 X42 Y42 and h.X, h.Y at time zero
+    real(wp), allocatable :: reference(:, :)  !! (n_slot, 6) X31 Y31 X42 Y42 and h.X, h.Y at time
+                                              !! zero
     real(wp), allocatable :: deviator(:, :)   !! (n_slot, 3) s_xx, s_yy, s_xy, Pa; the mean over the
                                               !! points where an element has several
-    integer, allocatable :: point_start(:)    !! (n_chunk) where the points of a chunk start, 0 = one point
-    real(wp), allocatable :: point_deviator(:) !! chunk by chunk, point by point: s_xx, then s_yy, s_xy
-    integer, allocatable :: history_start(:)  !! (n_chunk) where a chunk's own history starts, 0 = none
-    real(wp), allocatable :: history(:)       !! chunk by chunk, point by point: plastic strain, then
-                                              !! back stress xx yy xy
-    integer, allocatable :: hourglass_start(:) !! (n_chunk) where a chunk's hourglass memory starts, 0 = none
+    integer, allocatable :: point_start(:)    !! (n_chunk) where the points of a chunk start, 0 =
+                                              !! one point
+    real(wp), allocatable :: point_deviator(:) !! chunk by chunk, point by point: s_xx, then s_yy,
+                                               !! s_xy
+    integer, allocatable :: history_start(:)  !! (n_chunk) where a chunk's own history starts, 0 =
+                                              !! none
+    real(wp), allocatable :: history(:)       !! chunk by chunk, point by point: plastic strain,
+                                              !! then back stress xx yy xy
+    integer, allocatable :: hourglass_start(:) !! (n_chunk) where a chunk's hourglass memory starts,
+                                               !! 0 = none
     real(wp), allocatable :: hourglass_strain(:) !! chunk by chunk: q_x, then q_y (stiffness form)
     real(wp), allocatable :: deviatoric_work(:) !! (n_chunk) accumulated work of the deviator, J/m
-    real(wp), allocatable :: hourglass_work(:)  !! (n_chunk) accumulated work of the hourglass forces
+    real(wp), allocatable :: hourglass_work(:)  !! (n_chunk) accumulated work of the hourglass
+                                                !! forces
     real(wp), allocatable :: viscous_work(:)    !! (n_chunk) accumulated work of the bulk viscosity
     real(wp), allocatable :: time_limit(:)      !! (n_chunk) smallest L/c of the last step, s
-    real(wp), allocatable :: volume_limit(:)    !! (n_chunk) smallest A/A0 (or J of a point) of the last step
+    real(wp), allocatable :: volume_limit(:)    !! (n_chunk) smallest A/A0 (or J of a point) of the
+                                                !! last step
   end type block_state_t
 
 end module block_state_m

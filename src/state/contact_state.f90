@@ -3,18 +3,18 @@
 !>
 !> A contact point is the only thing that a formulation makes. Whoever places points promises:
 !> P1: the weights sum to one on each side;
-!> P2: x_slave - x_master = gap * normal, with positions taken by those weights, normal pointing from
-!>     master to slave and gap < 0 in penetration.
+!> P2: x_slave - x_master = gap * normal, with positions taken by those weights, normal pointing
+!>     from master to slave and gap < 0 in penetration.
 !> Balance of momentum follows from P1, balance of angular momentum from P2.
 !>
 !> Node numbers here are local to the interface: 1 .. n_slave for slave nodes, then
-!> n_slave + 1 .. n_slave + n_master for master nodes. A place is (X, Y, u_x, u_y), X and Y relative to the
-!> first slave node, so that places between nodes lose no digit far from the origin.
+!> n_slave + 1 .. n_slave + n_master for master nodes. A place is (X, Y, u_x, u_y), X and Y relative
+!> to the first slave node, so that places between nodes lose no digit far from the origin.
 !>
-!> A tracking follows spots (nodes of one surface, or places between them) over the chain of the other. It measures time in
-!> `travel`: the sum over all steps of a bound on how far any two nodes of the interface have
-!> moved relative to each other. A spot at distance d from everything cannot touch before the
-!> travel has grown by d: until then it sleeps.
+!> A tracking follows spots (nodes of one surface, or places between them) over the chain of the
+!> other. It measures time in `travel`: the sum over all steps of a bound on how far any two nodes
+!> of the interface have moved relative to each other. A spot at distance d from everything cannot
+!> touch before the travel has grown by d: until then it sleeps.
 module contact_state_m
   use kinds_m, only : wp
   implicit none
@@ -41,13 +41,15 @@ module contact_state_m
     real(wp), allocatable :: gap(:)            !! m, negative = penetration
     real(wp), allocatable :: area(:)           !! m (1 for type 1)
     real(wp), allocatable :: stiffness(:)      !! N/m^2 (N/m for type 1)
-    real(wp), allocatable :: pressure(:)       !! N/m (N for type 1), >= 0; not always kept: `pressures_of` tells it
+    real(wp), allocatable :: pressure(:)       !! N/m (N for type 1), >= 0; not always kept:
+                                               !! `pressures_of` tells it
   end type contact_points_t
 
   !> Segments sorted into square cells by hashing; tells which segments are near a place.
   type :: bucket_grid_t
     real(wp) :: cell = 0.0_wp         !! side of a cell, m; 0 = never filled
-    real(wp) :: least_cell = 0.0_wp   !! smallest side, m: cells that much smaller than the reach cost more
+    real(wp) :: least_cell = 0.0_wp   !! smallest side, m: cells that much smaller than the reach
+                                      !! cost more
     real(wp) :: filled_at = 0.0_wp    !! travel when it was filled
     real(wp) :: low(2) = 0.0_wp       !! corners of the box of the chain, relative to its first node
     real(wp) :: high(2) = 0.0_wp
@@ -59,13 +61,17 @@ module contact_state_m
   type :: tracking_t
     integer :: n = 0                         !! spots
     integer :: n_touching = 0
-    integer :: first_point = 0               !! of the spots in contact, which have one each; 0: none stand
-    logical :: has_feet = .true.             !! xi, gap and normal of spots in contact are here; else on the points
-    real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot that is not in contact can change
+    integer :: first_point = 0               !! of the spots in contact, which have one each; 0:
+                                             !! none stand
+    logical :: has_feet = .true.             !! xi, gap and normal of spots in contact are here;
+                                             !! else on the points
+    real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot that is not in contact
+                                             !! can change
     real(wp) :: reach = 0.0_wp               !! spots farther away than this are unpaired, m
     integer, allocatable :: touching(:)      !! (n) the first n_touching: spots in contact, in order
-    integer, allocatable :: due(:)           !! (n) scratch: what is to be looked at, first the spots of that
-                                             !! list by their place on it, then others by number
+    integer, allocatable :: due(:)           !! (n) scratch: what is to be looked at, first the
+                                             !! spots of that list by their place on it, then others
+                                             !! by number
     integer, allocatable :: segment(:)       !! (n) segment of the chain, 0 = unpaired
     integer, allocatable :: status(:)        !! (n) one of the constants above
     real(wp), allocatable :: xi(:)           !! (n) 0 to 1 along the segment (a little more at ends)
@@ -81,7 +87,8 @@ module contact_state_m
 
   !> What formulations that go along both chains remember of each slave segment; empty for others.
   type :: cover_memory_t
-    integer, allocatable :: status(:)     !! (n_segment) is_free, is_touching (may be deep) or is_behind
+    integer, allocatable :: status(:)     !! (n_segment) is_free, is_touching (may be deep) or
+                                          !! is_behind
     real(wp), allocatable :: wake(:)      !! (n_segment) travel before which it can not touch
     logical, allocatable :: is_placed(:)  !! (n_segment) scratch of placements
     real(wp) :: next_wake = -huge(1.0_wp) !! travel before which none can touch
@@ -91,27 +98,34 @@ module contact_state_m
   type :: contact_state_t
     integer :: n_slave = 0, n_master = 0
     integer, allocatable :: nodes(:)        !! (n_slave + n_master) node indices in the mesh
-    real(wp), allocatable :: places(:, :)   !! (4, n_slave + n_master) X, Y, u_x, u_y of the last call
+    real(wp), allocatable :: places(:, :)   !! (4, n_slave + n_master) X, Y, u_x, u_y of the last
+                                            !! call
     real(wp) :: travel = 0.0_wp             !! bound on relative motion since the start, m
     logical :: is_stale = .false.           !! tracking has been left alone outside birth .. death
     integer :: next_search = 0              !! cycle at which FREQ asks for a global search
     real(wp), allocatable :: spots(:, :)    !! (4, n_spot) places of spots that are not nodes
     real(wp), allocatable :: spot_xi(:)     !! (spots of a segment) where on the segment they are
-    real(wp), allocatable :: spot_share(:)  !! (spots of a segment) part of its length they stand for
+    real(wp), allocatable :: spot_share(:)  !! (spots of a segment) part of its length they stand
+                                            !! for
     type(tracking_t) :: slave_tracking      !! slave nodes, or `spots`, over the master chain
     type(tracking_t) :: master_tracking     !! master nodes over the slave chain; empty for one pass
     type(cover_memory_t) :: cover
     type(contact_points_t) :: points
-    logical :: has_point_per_spot = .false. !! a point at each spot in contact, these first on the list
+    logical :: has_point_per_spot = .false. !! a point at each spot in contact, these first on the
+                                            !! list
     logical :: laps_pairing = .false.       !! placing the points is work of its own for the clock
     logical :: averages_pressure = .false.  !! pressure comes from slave nodes, not from each point
-    real(wp), allocatable :: nodal(:, :)    !! (2, n_slave + n_master) scratch of such a pressure and of damping
-    integer, allocatable :: mark(:)         !! (n_slave) scratch of placements, 0 between steps: marks of nodes; type 7:
-                                            !! segments, of which there are no more; type 5: point at each node, kept
-    real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where a tangent
-                                            !! of touching bodies is wanted
-    real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last call
-    real(wp), allocatable :: former_force(:, :) !! scratch: those of the call before, 0 between calls
+    real(wp), allocatable :: nodal(:, :)    !! (2, n_slave + n_master) scratch of such a pressure
+                                            !! and of damping
+    integer, allocatable :: mark(:)         !! (n_slave) scratch of placements, 0 between steps:
+                                            !! marks of nodes; type 7: segments, of which there are
+                                            !! no more; type 5: point at each node, kept
+    real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where
+                                            !! a tangent of touching bodies is wanted
+    real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last
+                                            !! call
+    real(wp), allocatable :: former_force(:, :) !! scratch: those of the call before, 0 between
+                                                !! calls
     real(wp) :: slave_penalty = 0.0_wp      !! distributed penalty eps_hat of the slave pass, N/m^2
     real(wp) :: master_penalty = 0.0_wp     !! of the master pass
     real(wp) :: node_penalty = 0.0_wp       !! eps of type 1, N/m
@@ -134,8 +148,8 @@ contains
       points%pressure(capacity), source=0.0_wp)
   end subroutine allocate_points
 
-  !> Make room for `n_more` points. The capacity of the start serves chains that face each other once; only where
-  !> slave segments lie upon each other is more needed, and the list then doubles.
+  !> Make room for `n_more` points. The capacity of the start serves chains that face each other
+  !> once; only where slave segments lie upon each other is more needed, and the list then doubles.
   pure subroutine make_room(points, n_more)
     type(contact_points_t), intent(inout) :: points
     integer, intent(in) :: n_more
@@ -158,15 +172,16 @@ contains
     points = larger
   end subroutine make_room
 
-  !> Allocate for `n` spots over `n_segment` segments. A segment lies in few cells: cells are at least as
-  !> long as the mean segment, so that all together fill at most 8 items per segment.
+  !> Allocate for `n` spots over `n_segment` segments. A segment lies in few cells: cells are at
+  !> least as long as the mean segment, so that all together fill at most 8 items per segment.
   pure subroutine allocate_tracking(tracking, n, n_segment)
     type(tracking_t), intent(inout) :: tracking
     integer, intent(in) :: n, n_segment
     integer :: n_bucket
 
     tracking%n = n
-    allocate (tracking%touching(n), tracking%due(n), tracking%segment(n), tracking%status(n), source=0)
+    allocate (tracking%touching(n), tracking%due(n), tracking%segment(n), tracking%status(n), &
+      source=0)
     allocate (tracking%xi(n), tracking%gap(n), tracking%normal(2, n), tracking%spot_depth(n), &
       tracking%segment_depth(n_segment), source=0.0_wp)
     allocate (tracking%wake(n), tracking%recheck(n), source=-huge(1.0_wp))

@@ -59,9 +59,12 @@ module snapshot_m
     real(wp), allocatable :: contact_pressure(:) !! (n_node)
     real(wp), allocatable :: gap(:)              !! (n_node)
     real(wp) :: mean_velocity(2) = 0.0_wp        !! momentum over mass, of all nodes
-    integer :: slowest(2) = 0                    !! ids of the element that rules the step and of its part, 0 = none
-    integer, allocatable :: supports(:)          !! nodes with a fixed degree of freedom, by rising id
-    real(wp), allocatable :: reaction(:, :)      !! (2, n_support) force of the constraint on the node
+    integer :: slowest(2) = 0                    !! ids of the element that rules the step and of
+                                                 !! its part, 0 = none
+    integer, allocatable :: supports(:)          !! nodes with a fixed degree of freedom, by rising
+                                                 !! id
+    real(wp), allocatable :: reaction(:, :)      !! (2, n_support) force of the constraint on the
+                                                 !! node
     real(wp), allocatable :: stress(:, :)        !! (6, n_element) xx yy zz xy yz xz
     real(wp), allocatable :: plastic_strain(:)   !! (n_element)
     type(interface_result_t), allocatable :: interfaces(:)

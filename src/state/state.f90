@@ -25,15 +25,18 @@ module state_m
     real(wp), allocatable :: motion(:, :)      !! (4, n_node) u_x, u_y, v_x, v_y: one load a node
     real(wp), allocatable :: mass(:)           !! (n_node) lumped mass
     real(wp), allocatable :: inverse_mass(:, :) !! (2, n_node) 1/m, 0 where the motion is prescribed
-    real(wp), allocatable :: contact_mass(:)   !! (n_special) mass that contact feels: lumped, or of a rigid body
+    real(wp), allocatable :: contact_mass(:)   !! (n_special) mass that contact feels: lumped, or of
+                                               !! a rigid body
     real(wp), allocatable :: force_special(:, :) !! (2, n_special) contact + external force
-    real(wp), allocatable :: external(:, :)    !! (2, n_special) external force; only where the deck has loads
+    real(wp), allocatable :: external(:, :)    !! (2, n_special) external force; only where the deck
+                                               !! has loads
     real(wp), allocatable :: force_slots(:, :) !! (2, force slots) internal force, tile by tile
-    real(wp), allocatable :: internal_force(:, :) !! (2, n_node) divergence of stress; of interior nodes
-                                               !! only in cycles that write
-    real(wp), allocatable :: prescribed_velocity(:) !! (n_motion) v(n-1/2), v(n+1/2) once the cycle knows it
-    real(wp), allocatable :: acceleration(:, :) !! (2, n_node) of the implicit driver, whose v and a belong
-                                                !! to the instant of u
+    real(wp), allocatable :: internal_force(:, :) !! (2, n_node) divergence of stress; of interior
+                                                  !! nodes only in cycles that write
+    real(wp), allocatable :: prescribed_velocity(:) !! (n_motion) v(n-1/2), v(n+1/2) once the cycle
+                                                    !! knows it
+    real(wp), allocatable :: acceleration(:, :) !! (2, n_node) of the implicit driver, whose v and a
+                                                !! belong to the instant of u
     real(wp) :: body_acceleration(2) = 0.0_wp  !! of *LOAD_BODY at `time`
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)

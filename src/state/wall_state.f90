@@ -8,8 +8,10 @@ module wall_state_m
 
   !> One wall.
   type :: wall_state_t
-    real(wp), allocatable :: force(:) !! (nodes of the wall) what it pushes with along its normal now, N/m
-    real(wp), allocatable :: speed(:) !! (nodes of the wall) velocity along its normal before that, m/s
+    real(wp), allocatable :: force(:) !! (nodes of the wall) what it pushes with along its normal
+                                      !! now, N/m
+    real(wp), allocatable :: speed(:) !! (nodes of the wall) velocity along its normal before that,
+                                      !! m/s
     real(wp) :: impulse = 0.0_wp      !! of all its nodes so far, N s/m
     real(wp) :: work = 0.0_wp         !! on all its nodes so far, J/m; negative: lost in impacts
   end type wall_state_t

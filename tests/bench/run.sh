@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# usage: tests/bench/run.sh [--quick | --publish] [--rounds N] [--parts step contact search files]
+# usage: tests/bench/run.sh [--quick | --publish] [--rounds N] [--parts ...] [--sizes ...]
 # Builds the Release program and its benchmarks and runs them on this machine: results/bench/bench.csv, and the
 # page with its chart in results/bench/doc (--publish: doc/studies/speed.md). Five rounds take a quarter of an hour
 # (--quick: a minute, into results/bench-quick). Keep the machine quiet: what counts are the ratios to the element kernel and to the memory's

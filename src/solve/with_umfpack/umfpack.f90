@@ -20,8 +20,8 @@ module umfpack_m
   integer, parameter :: n_control = 20, n_info = 90
   integer, parameter :: control_strategy = 6, control_refinement = 8, control_ordering = 11, &
     control_scale = 17
-  integer, parameter :: info_lower_entries = 24, info_upper_entries = 25, info_factor_entries = 37, &
-    info_smallest_pivot = 72
+  integer, parameter :: info_lower_entries = 24, info_upper_entries = 25, &
+    info_factor_entries = 37, info_smallest_pivot = 72
   !> Values of settings: pivots on the diagonal where they are good; minimum degree or nested
   !> dissection; rows as given.
   real(c_double), parameter :: strategy_symmetric = 3, ordering_amd = 1, ordering_metis = 3, &
