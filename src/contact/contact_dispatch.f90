@@ -5,7 +5,7 @@
 module contact_dispatch_m
   use contact_spots_m, only : spots_at_nodes, spots_at_quarters, spots_at_gauss_points
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t, contact_kind_t
+  use contacts_m, only : contact_t, contact_kind_t, kind_text
   use points_mortar_m, only : place_mortar
   use points_nts_m, only : place_nts
   use points_nts_ar_m, only : place_nts_ar
@@ -20,7 +20,7 @@ module contact_dispatch_m
   use tangent_vts_ppt_m, only : add_vts_ppt_tangent
   implicit none
   private
-  public :: contact_kinds, formulation_t, formulation_of, place_points, &
+  public :: contact_kinds, formulation_t, formulation_of, is_strict, covering_names, place_points, &
     places_ranges, place_range, add_tangent
 
   !> What the frame must know of a formulation before it places points.
@@ -49,8 +49,8 @@ module contact_dispatch_m
       has_point_per_spot=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_vts_ppt, 'VTS-PPT'), spots=spots_at_quarters, &
       places_ranges=.true., points_per_master=1), &
-    formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR'), covers_segments=.true., &
-      has_point_per_spot=.true., points_per_master=1), &
+    formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR', has_strict_rule=.true.), &
+      covers_segments=.true., has_point_per_spot=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_mortar, 'mortar', uses_gauss_points=.true.), &
       spots=spots_at_gauss_points, averages_pressure=.true.), &
     formulation_t(contact_kind_t(type_segmented_mortar, 'segmented mortar'), &
@@ -71,6 +71,29 @@ contains
       if (formulations(i)%kind%number == contact%contact_type) formulation = formulations(i)
     end do
   end function formulation_of
+
+  !> Whether a contact follows the strict rule at the ends of the master, which not all kinds have.
+  pure function is_strict(contact) result(strict)
+    type(contact_t), intent(in) :: contact
+    logical :: strict
+    type(formulation_t) :: formulation
+
+    formulation = formulation_of(contact)
+    strict = formulation%kind%has_strict_rule .and. contact%strict
+  end function is_strict
+
+  !> Names of the kinds that give what hangs over an end of the master no weight, for messages.
+  pure function covering_names() result(text)
+    character(:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(formulations)
+      if (.not. formulations(i)%covers_segments) cycle
+      if (len(text) > 0) text = text//' and '
+      text = text//kind_text(formulations(i)%kind)
+    end do
+  end function covering_names
 
   !> Place the contact points of one interface for the places and pairs in its memory.
   pure subroutine place_points(contact, memory)

@@ -2,9 +2,9 @@
 !> What the log says about an interface.
 module contact_log_m
   use contact_dispatch_m, only : formulation_t, formulation_of
-  use contact_penalty_m, only : mean_length
+  use contact_penalty_m, only : mean_length, built_in_penalty
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t, contact_kind_t, penalty_share
+  use contacts_m, only : contact_t, contact_kind_t, kind_text, penalty_share
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
@@ -30,9 +30,8 @@ contains
     title = ''
     if (allocated(contact%title)) title = contact%title
     if (len(title) > 0) title = ' "'//title//'"'
-    call write_log(log, 'interface '//to_text(contact%id)//title//': '//trim(kind%name)//' (type ' &
-      //to_text(kind%number)//')'//trim(merge(', chosen by keyword', '                   ', &
-      contact%chosen_by_keyword)))
+    call write_log(log, 'interface '//to_text(contact%id)//title//': '//kind_text(kind) &
+      //trim(merge(', chosen by keyword', '                   ', contact%chosen_by_keyword)))
     call write_log(log, '  slave: '//to_text(contact%slave%n_node)//' nodes, ' &
       //to_text(contact%slave%n_segment)//' segments of mean length ' &
       //to_text(mean_length(contact%slave, model))//' m')
@@ -46,13 +45,22 @@ contains
     end if
     if (kind%uses_gauss_points) call write_log(log, '  Gauss points of a slave segment: ' &
       //to_text(contact%n_gauss))
-    if (contact%strict) call write_log(log, &
-      '  strict rule where a slave segment hangs over the end '//'of the master (IPF = 1)')
+    if (kind%has_strict_rule) call write_log(log, '  '//overhang_text(contact%strict))
     if (contact%damping > 0.0_wp) call write_log(log, '  damping: ' &
       //to_text(contact%damping)//' of critical')
     call write_log(log, '  deepest first contact: '//to_text(minval( &
       memory%slave_tracking%spot_depth))//' m or less')
   end subroutine log_contact
+
+  !> What counts of a slave segment that hangs over the end of the master.
+  pure function overhang_text(is_strict) result(text)
+    logical, intent(in) :: is_strict
+    character(:), allocatable :: text
+
+    text = 'strict rule where a slave segment hangs over the end of the master (IPF = 1)'
+    if (.not. is_strict) text = 'where a slave segment hangs over the end of the master, the ' &
+      //'master nodes inside it count too and the rest carries nothing (default, IPF = 0)'
+  end function overhang_text
 
   !> All equivalents of the penalty, of the passes that the formulation has.
   function penalty_text(contact, model, memory) result(text)
@@ -60,14 +68,22 @@ contains
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(in) :: memory
     character(:), allocatable :: text
+    character(:), allocatable :: factor !! PEN with PUNIT 2
     type(formulation_t) :: formulation
+    real(wp) :: estimate
 
     text = to_text(memory%node_penalty)//' N/m per slave node = '//to_text(memory%slave_penalty) &
       //' N/m^2'
+    estimate = built_in_penalty(contact, model)
+    factor = to_text(memory%slave_penalty/estimate)
     formulation = formulation_of(contact)
-    if (formulation%has_two_passes) text = text//'; master pass ' &
-      //to_text(memory%master_penalty*mean_length(contact%master, model)) &
-      //' N/m per master node = '//to_text(memory%master_penalty)//' N/m^2'
+    if (formulation%has_two_passes) then
+      text = text//'; master pass ' &
+        //to_text(memory%master_penalty*mean_length(contact%master, model)) &
+        //' N/m per master node = '//to_text(memory%master_penalty)//' N/m^2'
+      factor = factor//' and '//to_text(memory%master_penalty/estimate)
+    end if
+    text = text//'; '//factor//' times the built-in estimate'
   end function penalty_text
 
   !> Warn of the deepest penetration at time zero, with the force that it causes; nothing when there

@@ -4,7 +4,7 @@
 !> is caught at that depth by a whole spring, which makes energy at any time step
 !> (doc/theory/contact.md, section 7.4).
 module contact_overhang_m
-  use contact_dispatch_m, only : formulation_t, formulation_of
+  use contact_dispatch_m, only : formulation_t, formulation_of, covering_names
   use contact_projection_m, only : see_segment, end_tolerance
   use contact_state_m, only : contact_state_t, tracking_t
   use contacts_m, only : contact_t
@@ -69,7 +69,7 @@ contains
       //to_text(model%mesh%node_id(contact%master%nodes(found%node)))//others(found%n - 1) &
       //'; should it sink there and come in over the end, it is caught up to '//to_text(limit) &
       //' m deep, which makes energy at any time step: SRCH '//to_text(cautious*limit) &
-      //' would prevent it, types 5 and 7 do without')
+      //' would prevent it, '//covering_names()//' do without')
   end subroutine report_overhang
 
   !> Words on further places.

@@ -9,8 +9,8 @@ module contact_penalty_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: set_penalties, mean_length, press_points, press_each, pressures_of, average_gaps, &
-    share_pressure, stored_energy, damp_points
+  public :: set_penalties, built_in_penalty, mean_length, press_points, press_each, pressures_of, &
+    average_gaps, share_pressure, stored_energy, damp_points
 
 contains
 
@@ -34,13 +34,22 @@ contains
       memory%slave_penalty = contact%penalty
       memory%master_penalty = master_value
     case (penalty_factor)
-      estimate = model%controls%penalty_scale*min(side_stiffness(contact%slave, model), &
-        side_stiffness(contact%master, model))
+      estimate = built_in_penalty(contact, model)
       memory%slave_penalty = contact%penalty*estimate
       memory%master_penalty = master_value*estimate
     end select
     memory%node_penalty = memory%slave_penalty*mean_length(contact%slave, model)
   end subroutine set_penalties
+
+  !> The built-in estimate of the distributed penalty, N/m^2: SLSFAC K L/A of the softer side.
+  pure function built_in_penalty(contact, model) result(estimate)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    real(wp) :: estimate
+
+    estimate = model%controls%penalty_scale*min(side_stiffness(contact%slave, model), &
+      side_stiffness(contact%master, model))
+  end function built_in_penalty
 
   !> Mean length of the segments of a surface at time zero, m.
   pure function mean_length(surface, model) result(length)

@@ -3,7 +3,7 @@
 !> side carries at most its competence length in all formulations, for a node of the other side see
 !> `most_on_nodes` (doc/theory/contact.md, section 7).
 module contact_spring_ratios_m
-  use contact_dispatch_m, only : formulation_t, formulation_of
+  use contact_dispatch_m, only : formulation_t, formulation_of, is_strict
   use contact_competence_m, only : competence_length
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
@@ -30,7 +30,7 @@ contains
 
     n = memory%n_slave
     formulation = formulation_of(contact)
-    overhang = merge(0.0_wp, 0.5_wp, formulation%covers_segments .and. .not. contact%strict)
+    overhang = merge(0.0_wp, 0.5_wp, formulation%covers_segments .and. .not. is_strict(contact))
     associate (slave => memory%places(:, :n), master => memory%places(:, n + 1:))
       slave_spring = memory%slave_penalty*areas(contact%slave, slave)
       master_spring = memory%slave_penalty*most_on_nodes(contact%master, master, &

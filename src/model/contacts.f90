@@ -2,11 +2,12 @@
 !> Contact interfaces as the deck describes them.
 module contacts_m
   use kinds_m, only : wp
+  use log_m, only : to_text
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: contact_t, contact_kind_t, most_gauss, penalty_per_node, penalty_distributed, &
-    penalty_factor, penalty_share
+  public :: contact_t, contact_kind_t, kind_text, most_gauss, penalty_per_node, &
+    penalty_distributed, penalty_factor, penalty_share
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
   !> share of the largest penalty for which the step is stable.
@@ -22,6 +23,7 @@ module contacts_m
     integer :: number = 0             !! CTYPE
     character(40) :: name = ''        !! name in messages
     logical :: uses_gauss_points = .false. !! whether NGAUSS has a meaning
+    logical :: has_strict_rule = .false.   !! whether IPF has a meaning
   end type contact_kind_t
 
   !> One interface.
@@ -38,11 +40,21 @@ module contacts_m
     real(wp) :: damping = 0.0_wp           !! VDC as a fraction of critical
     real(wp) :: birth = 0.0_wp             !! TBIRTH
     real(wp) :: death = 1.0e20_wp          !! TDEATH
-    logical :: strict = .false.            !! IPF = 1: strict type 5
+    logical :: strict = .false.            !! IPF = 1: strict rule, of kinds that have one
     integer :: search_interval = 0         !! FREQ, cycles between global searches; 0 = the
                                            !! program's choice
     real(wp) :: search_depth = 0.0_wp      !! SRCH: deepest first contact that is caught; 0 =
                                            !! automatic
   end type contact_t
+
+contains
+
+  !> `name (type n)`.
+  pure function kind_text(kind) result(text)
+    type(contact_kind_t), intent(in) :: kind
+    character(:), allocatable :: text
+
+    text = trim(kind%name)//' (type '//to_text(kind%number)//')'
+  end function kind_text
 
 end module contacts_m
