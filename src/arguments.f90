@@ -106,6 +106,8 @@ contains
     integer :: equals
 
     equals = index(word, '=')
+    ! No name before a value holds a slash: this is a path.
+    if (equals > 0 .and. index(word(:equals), '/') > 0) equals = 0
     if (word == '--help' .or. word == '-h') then
       arguments%help = .true.
       return

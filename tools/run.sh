@@ -12,7 +12,7 @@ if [ $# -lt 1 ]; then
   complain "usage: tools/run.sh DECK [program arguments...]"
   exit 1
 fi
-deck=${1#i=}
+deck=${1#[iI]=}
 shift
 if [ ! -f "$deck" ]; then
   complain "no such deck: $deck"
@@ -26,11 +26,11 @@ place=("d=$folder")
 job=$case_name
 for argument in "$@"; do
   case $argument in
-    d=*)
-      folder=${argument#d=}
+    [dD]=*)
+      folder=${argument#*=}
       place=()
       ;;
-    jobid=*) job=${argument#jobid=} ;;
+    [jJ][oO][bB][iI][dD]=*) job=${argument#*=} ;;
   esac
 done
 

@@ -26,6 +26,19 @@ def test_bare_deck_path_and_defaults(slideline, tmp_path):
     assert (tmp_path / "first.vtkhdf").exists()
 
 
+def test_bare_path_with_an_equals_sign(slideline, tmp_path):
+    """A word with a slash before its = is a path; one without is NAME=VALUE, whatever follows."""
+    (tmp_path / "runs/pen=1e9").mkdir(parents=True)
+    (tmp_path / "runs/pen=1e9/deck.k").write_text(drop(end_time=0.002).text())
+    done = slideline("runs/pen=1e9/deck.k", "d=out/pen=1e9")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out/pen=1e9/deck.glstat.csv").exists()
+    done = slideline("runs=/deck.k")
+    assert done.returncode == 1 and 'unknown argument "runs=/deck.k"' in done.stderr
+    done = slideline("--runs/pen=1e9/deck.k")
+    assert done.returncode == 1 and 'unknown argument "--runs/pen=1e9/deck.k"' in done.stderr
+
+
 def test_results_folder_with_parents_and_job_name(slideline, tmp_path):
     done = slideline("d=a/b/c", "jobid=other", deck=drop(end_time=0.002))
     assert done.returncode == 0, done.stderr
