@@ -62,7 +62,7 @@ contains
         call put_text(buffer, deck%blocks(i)%replacement)
         cycle
       end if
-      call put(buffer, '*'//trim(deck%blocks(i)%given)//layout_mark(deck%blocks(i)%layout))
+      call put(buffer, '*'//deck%blocks(i)%given//layout_mark(deck%blocks(i)%layout))
       source = deck%blocks(i)%source
       do line = deck%blocks(i)%first, deck%blocks(i)%last
         if (deck%first(line) < 0) then

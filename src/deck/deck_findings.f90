@@ -3,6 +3,7 @@
 module deck_findings_m
   use deck_report_m, only : report_t, note_t, spot_t, deck_order
   use log_m, only : to_text
+  use text_m, only : text_of
   implicit none
   private
   public :: list_findings, add_finding, json_text
@@ -45,7 +46,7 @@ contains
     text = '{"severity": "'//severity//'"'
     if (allocated(spot%file)) text = text//', "file": '//json_text(spot%file)
     if (spot%line > 0) text = text//', "line": '//to_text(spot%line) &
-      //', "keyword": '//json_text('*'//trim(spot%keyword))
+      //', "keyword": '//json_text('*'//text_of(spot%keyword))
     if (spot%card > 0) text = text//', "card": '//to_text(spot%card)//', "field": ' &
       //to_text(spot%field)//', "name": '//json_text(trim(spot%name))
     if (spot%first > 0) text = text//', "first_column": '//to_text(spot%first) &

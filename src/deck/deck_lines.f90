@@ -31,9 +31,10 @@ module deck_lines_m
 
   !> One keyword with its data lines (comments left out, blank lines kept).
   type :: block_t
-    character(80) :: name = ''           !! upper case, without asterisk, options and marks
-    character(80) :: given = ''          !! the same with the options
-    character(80) :: rest = ''           !! what follows the name on its line
+    character(80) :: name = ''           !! upper case, without asterisk, options and marks; longer
+                                         !! than all that are known, so a cut one is not known
+    character(:), allocatable :: given   !! the same with the options, never cut
+    character(:), allocatable :: rest    !! what follows the name on its line
     integer :: source = 0
     integer :: keyword = 0               !! line of the keyword
     integer :: first = 1, last = 0       !! data lines
@@ -119,7 +120,7 @@ contains
       return
     end if
     text = deck%sources(deck%blocks(i_block)%source)%path//':'//to_text(deck%number(line)) &
-      //': *'//trim(deck%blocks(i_block)%given)
+      //': *'//deck%blocks(i_block)%given
   end function where_text
 
   !> An error of a whole line, with the line under it.

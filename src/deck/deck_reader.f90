@@ -16,6 +16,11 @@ module deck_reader_m
   !> Characters of all files of a deck together.
   integer, parameter :: max_character = 2000000000
 
+  !> A folder of *INCLUDE_PATH.
+  type :: folder_t
+    character(:), allocatable :: path
+  end type folder_t
+
 contains
 
   !> Read a deck and all that it includes. `error` is set when the deck itself cannot be read;
@@ -39,7 +44,7 @@ contains
     character(*), intent(in) :: path
     character(:), allocatable, intent(inout) :: text !! moves into the deck
     type(deck_t), intent(inout) :: deck
-    character(1000) :: folders(0)
+    type(folder_t) :: folders(0)
 
     allocate (deck%sources(max_source), deck%blocks(64))
     deck%n_source = 1
@@ -53,14 +58,14 @@ contains
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
     integer, intent(in) :: depth
-    character(*), intent(in) :: folders_above(:) !! *INCLUDE_PATH entries so far
+    type(folder_t), intent(in) :: folders_above(:) !! *INCLUDE_PATH entries so far
     integer :: start, last, next, number, n_stray
     integer(int8) :: flags
-    character(1000), allocatable :: folders(:)
+    type(folder_t), allocatable :: folders(:)
     logical :: in_block
 
     call reserve_lines(deck, len(deck%sources(source)%text)/60 + 64)
-    allocate (folders(size(folders_above)), source=folders_above)
+    folders = folders_above
     start = 1
     number = 0
     n_stray = 0
@@ -116,8 +121,9 @@ contains
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
     integer, intent(in) :: depth
-    character(1000), allocatable, intent(inout) :: folders(:)
+    type(folder_t), allocatable, intent(inout) :: folders(:)
     character(:), allocatable :: name
+    type(folder_t) :: folder
     integer :: i_block, line
 
     i_block = deck%n_block
@@ -138,7 +144,8 @@ contains
       if (deck%blocks(i_block)%name == 'INCLUDE') then
         call include_file(deck, source, depth, folders, name, line - 1)
       else
-        folders = [character(1000) :: folders, name]
+        folder%path = name
+        folders = [folders, folder]
       end if
     end do
   end subroutine close_block
@@ -173,7 +180,7 @@ contains
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
     integer, intent(in) :: depth
-    character(*), intent(in) :: folders(:)
+    type(folder_t), intent(in) :: folders(:)
     character(*), intent(in) :: name
     integer, intent(in) :: line !! where it is included
     character(:), allocatable :: path, reason
@@ -234,7 +241,7 @@ contains
   subroutine find_file(main, including, folders, name, path)
     character(*), intent(in) :: main       !! the deck itself
     character(*), intent(in) :: including
-    character(*), intent(in) :: folders(:)
+    type(folder_t), intent(in) :: folders(:)
     character(*), intent(in) :: name
     character(:), allocatable, intent(out) :: path !! empty when there is none
     logical :: exists
@@ -245,10 +252,10 @@ contains
     if (exists) return
     if (name(1:1) /= '/') then
       do i = 1, size(folders)
-        path = trim(folders(i))//'/'//name
+        path = folders(i)%path//'/'//name
         inquire (file=path, exist=exists)
         if (exists) return
-        path = main(:index(main, '/', back=.true.))//trim(folders(i))//'/'//name
+        path = main(:index(main, '/', back=.true.))//folders(i)%path//'/'//name
         inquire (file=path, exist=exists)
         if (exists) return
       end do

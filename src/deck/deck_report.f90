@@ -18,7 +18,7 @@ module deck_report_m
     character(:), allocatable :: message !! without place and card
     character(:), allocatable :: file
     integer :: line = 0                  !! in the file, 0: none
-    character(80) :: keyword = ''        !! without asterisk
+    character(:), allocatable :: keyword !! without asterisk
     integer :: card = 0, field = 0       !! 0: the line as a whole
     character(12) :: name = ''              !! of the field
     integer :: first = 0, last = 0       !! columns of the field; 0 where the line as read is not

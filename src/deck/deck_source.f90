@@ -160,14 +160,13 @@ contains
     associate (block => deck%blocks(deck%n_block))
       block%given = upper_case(text(:n_name))
       block%name = block%given
-      block%rest = ''
-      if (n_name < len(text)) block%rest = adjustl(text(n_name + 1:))
+      block%rest = trim(adjustl(text(n_name + 1:)))//' '
       block%source = source
       block%keyword = deck%n_line
       block%first = deck%n_line + 1
       block%last = deck%n_line
       block%layout = deck%sources(source)%layout
-      if (len_trim(block%rest) == 1 .or. block%rest(2:2) == ' ') then
+      if (index(block%rest, ' ') == 2) then
         select case (block%rest(1:1))
         case ('+')
           block%layout = format_long
