@@ -27,7 +27,7 @@ module deck_m
   use deck_hardening_m, only : read_piecewise
   use deck_material_m, only : read_elastic, read_plastic_kinematic
   use deck_conditions_m, only : read_condition, read_initial_velocity
-  use deck_control_m, only : read_control
+  use deck_control_m, only : read_control, check_step
   use deck_output_m, only : read_database
   use deck_contact_m, only : read_contact
   use deck_wall_m, only : read_wall
@@ -104,11 +104,14 @@ contains
     end if
     call read_parameters(deck, parameters)
     raw%end_given = len(override_text(overrides, 'ENDTIM', 0)) > 0
+    raw%step_given = len(override_text(overrides, 'DT', 0)) > 0
+    raw%scale_given = len(override_text(overrides, 'TSSFAC', 0)) > 0
     raw%controls%title = ''
     do i = 1, deck%n_block
       if (known(i) == known_honoured) call read_block(deck, parameters, i, kinds, overrides, raw)
     end do
-    call apply_overrides(deck, kinds, overrides, raw, tail)
+    call apply_overrides(deck, overrides, raw, tail)
+    call check_step(deck, raw)
     if (.not. raw%terminated .and. .not. raw%end_given) call line_error(deck, 0, &
       'the deck has no end time (*CONTROL_TERMINATION)')
     call resolve_model(deck, raw, model)
@@ -135,7 +138,7 @@ contains
     if (deck%n_block == 0) call line_error(deck, 0, 'holds no keyword (a line that starts with *)')
     do i = 1, deck%n_block
       associate (block => deck%blocks(i))
-        call find_keyword(trim(block%given), name, known(i), block%titled, reason)
+        call find_keyword(block%given, name, known(i), block%titled, reason)
         select case (known(i))
         case (known_honoured)
           block%name = name(:len(block%name))
@@ -144,7 +147,7 @@ contains
             block%dropped = .true.
           end select
         case (known_ignored)
-          call line_warning(deck, block%keyword, 'ignored'//trim(block%given), 'has no effect here')
+          call line_warning(deck, block%keyword, 'ignored'//block%given, 'has no effect here')
         case (known_refused)
           call line_error(deck, block%keyword, reason//' not part of this version')
           call note_lost(block%given, raw%lost)

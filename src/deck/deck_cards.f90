@@ -4,9 +4,10 @@
 module deck_cards_m
   use kinds_m, only : wp
   use log_m, only : to_text
+  use text_m, only : read_integer, number_good
   use deck_report_m, only : is_full
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
-    flag_parameter, block_of_line
+    flag_parameter, block_of_line, format_long
   use deck_card_specs_m, only : card_spec_t, make_spec, max_field
   use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error
   use deck_schema_m, only : keyword_cards, refusal_reason, max_card
@@ -14,8 +15,8 @@ module deck_cards_m
   use deck_parameters_m, only : substitute
   implicit none
   private
-  public :: cursor_t, open_cursor, skip_title, next_card, next_row, next_text, check_rest, &
-    report_field, row_comes, reject_field
+  public :: cursor_t, open_cursor, skip_title, next_card, next_row, next_text, next_heading, &
+    check_rest, report_field, row_comes, reject_field
 
   !> A place in a block.
   type :: cursor_t
@@ -120,6 +121,27 @@ contains
     text = trim(line_text(deck, cursor%line))
     cursor%line = cursor%line + 1
   end subroutine next_text
+
+  !> The title line of something that has a number: the number in columns 1 to 10 where there is
+  !> one (0: there is none), then the name. In the long layout the number has 20 columns; one that
+  !> stands in the first ten counts there too.
+  subroutine next_heading(deck, cursor, number, name)
+    type(deck_t), intent(in) :: deck
+    type(cursor_t), intent(inout) :: cursor
+    integer, intent(out) :: number
+    character(:), allocatable, intent(out) :: name
+    character(:), allocatable :: text
+    integer :: width, status
+
+    call next_text(deck, cursor, text)
+    do width = merge(20, 10, deck%blocks(cursor%block)%layout == format_long), 10, -10
+      name = trim(adjustl(text(min(width, len(text)) + 1:)))
+      call read_integer(text(:min(width, len(text))), number, status)
+      if (status == number_good .and. number > 0) return
+    end do
+    number = 0
+    name = trim(adjustl(text))
+  end subroutine next_heading
 
   !> Move past the title line of a keyword that has the option.
   subroutine skip_title(deck, cursor)

@@ -4,17 +4,19 @@
 module deck_contact_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use text_m, only : read_integer, number_good
-  use contacts_m, only : contact_kind_t, most_gauss, penalty_per_node, penalty_share, penalty_factor
+  use contacts_m, only : contact_kind_t, kind_text, penalty_factor
   use deck_lines_m, only : deck_t, place_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, check_rest, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
+    report_field
+  use deck_contact_values_m, only : origins_t, find_commanded, take_overrides, check_values, &
+    kind_names, of_type, of_gauss, of_penalty, of_unit, of_master_penalty, of_damping
   use deck_raw_m, only : raw_t, raw_contact_t
-  use deck_overrides_m, only : overrides_t, override_text
+  use deck_overrides_m, only : overrides_t
   implicit none
   private
-  public :: read_contact, kind_names
+  public :: read_contact
 
 contains
 
@@ -29,17 +31,14 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: cards(4)
     type(raw_contact_t) :: entry
-    character(:), allocatable :: title
-    logical :: typed
+    type(origins_t) :: origins
     integer :: k
 
     call open_cursor(deck, i_block, cursor)
-    entry%contact%id = size(raw%contacts) + 1
     entry%contact%title = ''
-    if (deck%blocks(i_block)%titled) then
-      call next_text(deck, cursor, title)
-      call take_title(title, entry)
-    end if
+    if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%contact%id, &
+      entry%contact%title)
+    if (entry%contact%id == 0) entry%contact%id = size(raw%contacts) + 1
     if (any(raw%contacts%contact%id == entry%contact%id)) call line_error(deck, &
       deck%blocks(i_block)%keyword, 'the interface number '//to_text(entry%contact%id) &
       //' belongs to an earlier interface (without a number it is the position in the deck)')
@@ -49,17 +48,19 @@ contains
     call check_rest(deck, cursor)
     call take_sides(deck, cursor, cards(1), entry)
     entry%block = i_block
-    typed = len(override_text(overrides, 'CTYPE', entry%contact%id)) > 0
+    origins%commanded = find_commanded(overrides, entry%contact%id)
     entry%contact%contact_type = stock_type(trim(deck%blocks(i_block)%name))
     select case (deck%blocks(i_block)%name)
     case ('CONTACT_2D_SLIDELINE')
-      call take_slideline(deck, cursor, cards, kinds, typed, entry)
+      call take_slideline(deck, cursor, cards, kinds, origins, entry)
     case ('CONTACT_2D_PENALTY')
-      call take_penalty(deck, cursor, cards, entry)
+      call take_penalty(deck, cursor, cards, origins, entry)
     case default
-      call take_automatic(deck, cursor, cards, entry)
+      call take_automatic(deck, cursor, cards, origins, entry)
     end select
-    if (entry%contact%chosen_by_keyword .and. .not. typed) then
+    call take_overrides(overrides, entry)
+    call check_values(deck, cursor, cards, kinds, overrides, origins, entry)
+    if (entry%contact%chosen_by_keyword) then
       if (.not. any(kinds%number == entry%contact%contact_type)) call line_error(deck, &
         deck%blocks(i_block)%keyword, 'stands for contact type ' &
         //to_text(entry%contact%contact_type)//', which this version does not have' &
@@ -87,22 +88,6 @@ contains
     end select
   end function stock_type
 
-  !> Title line: id in columns 1 to 10 where there is one, then the name.
-  subroutine take_title(title, entry)
-    character(*), intent(in) :: title
-    type(raw_contact_t), intent(inout) :: entry
-    integer :: id, status, n
-
-    n = min(10, len(title))
-    call read_integer(title(:n), id, status)
-    if (status == number_good .and. id > 0) then
-      entry%contact%id = id
-      entry%contact%title = trim(adjustl(title(n + 1:)))
-    else
-      entry%contact%title = trim(adjustl(title))
-    end if
-  end subroutine take_title
-
   !> SURFA and SURFB.
   subroutine take_sides(deck, cursor, card, entry)
     type(deck_t), intent(inout) :: deck
@@ -120,77 +105,86 @@ contains
   end subroutine take_sides
 
   !> *CONTACT_2D_SLIDELINE.
-  subroutine take_slideline(deck, cursor, cards, kinds, typed, entry)
+  subroutine take_slideline(deck, cursor, cards, kinds, origins, entry)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: cards(:)
     type(contact_kind_t), intent(in) :: kinds(:)
-    logical, intent(in) :: typed      !! the command line gives the type
+    type(origins_t), intent(inout) :: origins
     type(raw_contact_t), intent(inout) :: entry
 
     associate (contact => entry%contact)
       contact%contact_type = cards(1)%i(3)
-      if (.not. (typed .or. any(kinds%number == cards(1)%i(3)))) call report_field(deck, cursor, &
-        cards(1), 3, 'is not a contact type'//kind_names(kinds))
       contact%n_gauss = cards(1)%i(4)
       if (cards(1)%blank(4) .or. cards(1)%i(4) == 0) contact%n_gauss = 2
-      if (contact%n_gauss < 1 .or. contact%n_gauss > most_gauss) call report_field(deck, cursor, &
-        cards(1), 4, 'is not a number of Gauss points from 1 to '//to_text(most_gauss))
       contact%penalty = cards(1)%r(5)
-      if (cards(1)%r(5) <= 0.0_wp) call report_field(deck, cursor, cards(1), 5, &
-        'is not a penalty (more than 0)')
       contact%penalty_unit = cards(2)%i(3)
       entry%unit_place = place_t(line=cards(2)%line, card=2, field=3)
-      if (cards(2)%i(3) < penalty_per_node .or. cards(2)%i(3) > penalty_share) &
-        call report_field(deck, cursor, cards(2), 3, 'is not a unit of the penalty (0 N/m per ' &
-        //'contact node, 1 N/m^2, 2 factor on the built-in estimate, 3 share of the largest ' &
-        //'stable one)')
-      if (cards(2)%i(3) == penalty_share .and. cards(1)%r(5) > 1.0_wp) call report_field(deck, &
-        cursor, cards(1), 5, &
-        'is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)')
       contact%master_penalty = contact%penalty
       if (abs(cards(2)%r(4)) > 0.0_wp) contact%master_penalty = cards(2)%r(4)
-      if (cards(2)%r(4) < 0.0_wp) call report_field(deck, cursor, cards(2), 4, &
-        'is not a penalty (more than 0)')
+      if (cards(2)%r(4) < 0.0_wp .and. .not. origins%commanded(of_master_penalty)) &
+        call report_field(deck, cursor, cards(2), 4, 'is not a penalty (more than 0)')
       call take_times(deck, cursor, cards(2), 1, entry)
-      call take_damping(deck, cursor, cards(2), 5, entry)
+      entry%per_cent = cards(2)%r(5)
       if (cards(2)%i(6) < 0 .or. cards(2)%i(6) > 1) call report_field(deck, cursor, cards(2), 6, &
-        'is not 0 or 1 (strict rule of type 5)')
+        'is not 0 or 1'//strict_names(kinds))
       contact%strict = cards(2)%i(6) == 1
       if (cards(2)%i(7) < 0) call report_field(deck, cursor, cards(2), 7, 'is negative')
       contact%search_interval = max(cards(2)%i(7), 0)
       if (cards(2)%r(8) < 0.0_wp) call report_field(deck, cursor, cards(2), 8, 'is negative')
       contact%search_depth = cards(2)%r(8)
     end associate
+    origins%card([of_type, of_gauss, of_penalty]) = 1
+    origins%field([of_type, of_gauss, of_penalty]) = [3, 4, 5]
+    origins%card([of_unit, of_damping]) = 2
+    origins%field([of_unit, of_damping]) = [3, 5]
   end subroutine take_slideline
 
+  !> What IPF = 1 asks for: `: the strict rule of name (type n)`.
+  pure function strict_names(kinds) result(text)
+    type(contact_kind_t), intent(in) :: kinds(:)
+    character(:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(kinds)
+      if (kinds(i)%has_strict_rule) text = text//trim(merge(': the strict rule of', &
+        ',                   ', len(text) == 0))//' '//kind_text(kinds(i))
+    end do
+  end function strict_names
+
   !> *CONTACT_2D_AUTOMATIC_: penalty as a factor on the built-in estimate.
-  subroutine take_automatic(deck, cursor, cards, entry)
+  subroutine take_automatic(deck, cursor, cards, origins, entry)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: cards(:)
+    type(origins_t), intent(inout) :: origins
     type(raw_contact_t), intent(inout) :: entry
 
     associate (contact => entry%contact)
       contact%chosen_by_keyword = .true.
       contact%penalty_unit = penalty_factor
       contact%penalty = 1.0_wp
-      if (cards(1)%r(3) < 0.0_wp) call report_field(deck, cursor, cards(1), 3, 'is negative')
+      if (cards(1)%r(3) < 0.0_wp .and. .not. origins%commanded(of_penalty)) &
+        call report_field(deck, cursor, cards(1), 3, 'is negative')
       if (cards(1)%r(3) > 0.0_wp) contact%penalty = cards(1)%r(3)
       contact%master_penalty = contact%penalty
       if (cards(1)%i(4) < 0) call report_field(deck, cursor, cards(1), 4, 'is negative')
       contact%search_interval = max(cards(1)%i(4), 0)
       call take_times(deck, cursor, cards(2), 1, entry)
-      call take_damping(deck, cursor, cards(3), 2, entry)
+      entry%per_cent = cards(3)%r(2)
     end associate
+    origins%card(of_damping) = 3
+    origins%field(of_damping) = 2
   end subroutine take_automatic
 
   !> *CONTACT_2D_PENALTY: node sets, written with a positive number there; PEN is the factor on the
   !> built-in estimate that the others multiply from SFACT and SLSFAC.
-  subroutine take_penalty(deck, cursor, cards, entry)
+  subroutine take_penalty(deck, cursor, cards, origins, entry)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: cards(:)
+    type(origins_t), intent(in) :: origins
     type(raw_contact_t), intent(inout) :: entry
     integer :: k
 
@@ -202,7 +196,8 @@ contains
           'is not a node set number (1 or more)')
         entry%sides(k) = -abs(entry%sides(k))
       end do
-      if (cards(2)%r(5) < 0.0_wp) call report_field(deck, cursor, cards(2), 5, 'is negative')
+      if (cards(2)%r(5) < 0.0_wp .and. .not. origins%commanded(of_penalty)) &
+        call report_field(deck, cursor, cards(2), 5, 'is negative')
       contact%penalty = 1.0_wp
       if (cards(2)%r(5) > 0.0_wp) contact%penalty = cards(2)%r(5)/0.1_wp
       contact%master_penalty = contact%penalty
@@ -224,33 +219,5 @@ contains
     if (entry%contact%death <= entry%contact%birth) call report_field(deck, cursor, card, k + 1, &
       'is not after TBIRTH "'//to_text(card%r(k))//'"')
   end subroutine take_times
-
-  !> VDC in per cent of critical.
-  subroutine take_damping(deck, cursor, card, k, entry)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    integer, intent(in) :: k
-    type(raw_contact_t), intent(inout) :: entry
-
-    if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, 'is negative')
-    if (card%r(k) > 1.0e6_wp) call report_field(deck, cursor, card, k, &
-      'is not a damping in per cent of critical')
-    entry%per_cent = card%r(k)
-    entry%contact%damping = card%r(k)/100.0_wp
-  end subroutine take_damping
-
-  !> ` (1 name, 2 name, ...)`.
-  pure function kind_names(kinds) result(text)
-    type(contact_kind_t), intent(in) :: kinds(:)
-    character(:), allocatable :: text
-    integer :: i
-
-    text = ''
-    do i = 1, size(kinds)
-      text = text//merge(' (', ', ', i == 1)//to_text(kinds(i)%number)//' '//trim(kinds(i)%name)
-    end do
-    if (size(kinds) > 0) text = text//')'
-  end function kind_names
 
 end module deck_contact_m

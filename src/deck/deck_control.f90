@@ -14,7 +14,7 @@ module deck_control_m
   use deck_part_m, only : hourglass_form, hourglass_coefficient
   implicit none
   private
-  public :: read_control
+  public :: read_control, check_step
 
 contains
 
@@ -110,20 +110,34 @@ contains
     type(raw_t), intent(inout) :: raw
 
     if (card%r(1) < 0.0_wp) call report_field(deck, cursor, card, 1, 'is negative')
-    if (card%r(2) < 0.0_wp) call report_field(deck, cursor, card, 2, &
+    if (card%r(2) < 0.0_wp .and. .not. raw%scale_given) call report_field(deck, cursor, card, 2, &
       'is negative: the scale of the step is more than 0 (blank and 0 mean 0.9)')
-    if (card%r(2) > 1.0_wp) call line_warning(deck, card%line, 'tssfac', &
-      'TSSFAC is above 1: the run may become unstable')
     if (card%i(3) < 0 .or. card%i(3) > 1) call report_field(deck, cursor, card, 3, &
       'is not an element length rule (0 area over longest side, 1 area over longest diagonal)')
-    if (card%i(6) < 0) call report_field(deck, cursor, card, 6, 'is not a curve number')
+    if (card%i(6) < 0 .and. .not. raw%step_given) call report_field(deck, cursor, card, 6, &
+      'is not a curve number')
     raw%controls%dt_initial = card%r(1)
     raw%controls%dt_scale = 0.9_wp
     if (card%r(2) > 0.0_wp) raw%controls%dt_scale = card%r(2)
     raw%controls%length_rule = merge(length_by_diagonal, length_by_side, card%i(3) == 1)
+    raw%step_line = card%line
     raw%dt_curve = card%i(6)
     raw%dt_curve_place = place_t(line=card%line, card=1, field=6)
   end subroutine take_timestep
+
+  !> Rules of the step, from the card or from the command line.
+  subroutine check_step(deck, raw)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+
+    if (raw%controls%dt_scale > 1.0_wp) call line_warning(deck, merge(0, raw%step_line, &
+      raw%scale_given), 'tssfac', 'TSSFAC'//trim(merge(' on the command line', &
+      '                    ', raw%scale_given))//' is above 1: the run may become unstable')
+    if (raw%controls%dt_initial > 0.0_wp .and. raw%dt_curve > 0 .and. &
+      .not. raw%controls%implicit%is_on) call line_warning(deck, raw%step_line, 'dtinit', &
+      'DTINIT has no effect: '//trim(merge('dt= on the command line', &
+      'the curve LCTM         ', raw%step_given))//' gives the first step')
+  end subroutine check_step
 
   !> *CONTROL_BULK_VISCOSITY: off without the keyword; blank fields of it are LS-DYNA's defaults.
   subroutine take_bulk_viscosity(deck, cursor, card, raw)

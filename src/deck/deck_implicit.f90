@@ -4,14 +4,14 @@ module deck_implicit_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use controls_m, only : implicit_t
-  use deck_lines_m, only : deck_t
+  use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, report_field
   use deck_raw_m, only : raw_t
   implicit none
   private
   public :: take_implicit, take_dynamics, take_spectral_radius, take_solution, take_automatic, &
-    settle_scheme
+    settle_scheme, check_scheme
 
   !> Spectral radius at infinite frequency where the deck gives none.
   real(wp), parameter :: default_radius = 0.8_wp
@@ -28,8 +28,8 @@ contains
     if (card%i(1) < 0 .or. card%i(1) > 1) call report_field(deck, cursor, card, 1, &
       'is not a method that this version has (0 explicit, 1 implicit; no switching)')
     raw%controls%implicit%is_on = card%i(1) == 1
-    if (card%i(1) == 1 .and. card%r(2) <= 0.0_wp) call report_field(deck, cursor, card, 2, &
-      'is not a step (more than 0)')
+    if (card%i(1) == 1 .and. card%r(2) <= 0.0_wp .and. .not. raw%step_given) &
+      call report_field(deck, cursor, card, 2, 'is not a step (more than 0)')
     raw%controls%implicit%dt = card%r(2)
   end subroutine take_implicit
 
@@ -50,6 +50,7 @@ contains
       deck, cursor, card, 3, 'is not a stable BETA of Newmark''s method (0.25 or more)')
     if (card%r(8) > 0.0_wp .or. card%r(8) < -1.0_wp/3.0_wp) call report_field(deck, cursor, card, &
       8, 'is not ALPHA of the HHT method (-1/3 to 0); Bathe''s method is not supported')
+    raw%newmark_line = card%line
     raw%newmark = [card%r(2), card%r(3)]
     raw%hht = -card%r(8)
   end subroutine take_dynamics
@@ -145,5 +146,22 @@ contains
     implicit%gamma = 0.5_wp - implicit%alpha_m + implicit%alpha_f
     implicit%beta = 0.25_wp*(1.0_wp - implicit%alpha_m + implicit%alpha_f)**2
   end subroutine settle_scheme
+
+  !> A scheme that is not stable at every step: beta below (gamma + 1/2)^2/4, which only Newmark's
+  !> method with parameters of the deck can have.
+  subroutine check_scheme(deck, line, implicit)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line       !! of *CONTROL_IMPLICIT_DYNAMICS
+    type(implicit_t), intent(in) :: implicit
+    real(wp), parameter :: round_off = 1.0e-9_wp
+    real(wp) :: least
+
+    if (.not. (implicit%is_on .and. implicit%is_dynamic)) return
+    least = 0.25_wp*(implicit%gamma + 0.5_wp)**2
+    if (implicit%beta >= least*(1.0_wp - round_off)) return
+    call line_warning(deck, line, 'newmark', 'Newmark''s method with GAMMA ' &
+      //to_text(implicit%gamma)//' and BETA '//to_text(implicit%beta)//' is stable for small ' &
+      //'steps only: for all steps BETA must be at least (GAMMA + 1/2)^2/4 = '//to_text(least))
+  end subroutine check_scheme
 
 end module deck_implicit_m

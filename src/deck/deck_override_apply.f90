@@ -4,14 +4,11 @@ module deck_override_apply_m
   use kinds_m, only : wp
   use text_m, only : exact_text
   use log_m, only : to_text
-  use contacts_m, only : contact_kind_t, most_gauss, penalty_per_node, penalty_share
   use curves_m, only : curve_t
   use deck_lines_m, only : deck_t, place_t, line_text, line_error, line_warning, layout_mark
   use deck_fields_m, only : card_t, cut_card, field_text
   use deck_cards_m, only : cursor_t, open_cursor
-  use deck_contact_m, only : kind_names
-  use deck_overrides_m, only : overrides_t, contact_names, override_text, override_real, &
-    override_integer
+  use deck_overrides_m, only : overrides_t, contact_names, override_text, override_real
   use deck_raw_m, only : raw_t, raw_contact_t
   implicit none
   private
@@ -19,10 +16,10 @@ module deck_override_apply_m
 
 contains
 
-  !> Apply all overrides; `tail` is what the effective deck says besides its blocks.
-  subroutine apply_overrides(deck, kinds, overrides, raw, tail)
+  !> Apply all overrides (interfaces have theirs from when they were read); `tail` is what the
+  !> effective deck says besides its blocks.
+  subroutine apply_overrides(deck, overrides, raw, tail)
     type(deck_t), intent(inout) :: deck
-    type(contact_kind_t), intent(in) :: kinds(:)
     type(overrides_t), intent(in) :: overrides
     type(raw_t), intent(inout) :: raw
     character(:), allocatable, intent(out) :: tail
@@ -40,7 +37,9 @@ contains
       override_text(overrides, 'TSSFAC', 0), tail)
     call override_step(deck, overrides, raw, tail)
     do i = 1, size(raw%contacts)
-      call override_contact(deck, kinds, overrides, raw%contacts(i))
+      associate (entry => raw%contacts(i))
+        if (entry%overridden) deck%blocks(entry%block)%replacement = contact_text(entry)
+      end associate
     end do
     call check_interfaces(deck, overrides, raw)
   end subroutine apply_overrides
@@ -88,10 +87,7 @@ contains
       call replace_field(deck, 'CONTROL_IMPLICIT_GENERAL', 2, text, tail)
       return
     end if
-    curve%id = 1
-    do while (any(raw%curves%id == curve%id))
-      curve%id = curve%id + 1
-    end do
+    curve%id = unused_number(raw)
     allocate (curve%abscissa(2), curve%ordinate(2))
     curve%abscissa = [0.0_wp, 1.0e20_wp]
     curve%ordinate = dt
@@ -103,6 +99,24 @@ contains
     tail = tail//'*DEFINE_CURVE'//new_line('a')//to_text(curve%id)//','//new_line('a') &
       //'0.0,'//text//new_line('a')//'1.0e20,'//text//new_line('a')
   end subroutine override_step
+
+  !> A number for one more curve: above those of all curves and tables and all references, so that a
+  !> reference to nothing stays one. It starts high, so that the deck of changes that a restart may
+  !> have does not meet it by chance either.
+  pure function unused_number(raw) result(number)
+    type(raw_t), intent(in) :: raw
+    integer :: number
+    integer, parameter :: high = 90000000
+    integer, allocatable :: used(:)
+    integer :: i
+
+    used = [raw%curves%id, raw%tables%id, raw%outputs%curve, raw%hardenings%curve, &
+      raw%hardenings%rate_curve, (maxval(raw%rows(i)%i), i=1, raw%n_row)]
+    number = min(max(high, maxval(used)), huge(number) - 1) + 1
+    do while (any(used == number))
+      number = number - 1
+    end do
+  end function unused_number
 
   !> Give field `field` of card 1 of the last keyword of a name a new text; a new keyword goes to
   !> the tail when there is none.
@@ -172,56 +186,6 @@ contains
     last = first + scan(tail(first:), ','//new_line('a')) - 2
     tail = tail(:first - 1)//text//tail(last + 1:)
   end subroutine replace_in_tail
-
-  !> Overrides of one interface, which the effective deck then gives as *CONTACT_2D_SLIDELINE.
-  subroutine override_contact(deck, kinds, overrides, entry)
-    type(deck_t), intent(inout) :: deck
-    type(contact_kind_t), intent(in) :: kinds(:)
-    type(overrides_t), intent(in) :: overrides
-    type(raw_contact_t), intent(inout) :: entry
-    logical :: changed, typed, priced, damped
-    integer :: id, unit
-
-    id = entry%contact%id
-    changed = .false.
-    typed = .false.
-    priced = .false.
-    damped = .false.
-    associate (contact => entry%contact)
-      call override_integer(overrides, 'CTYPE', id, contact%contact_type, typed)
-      if (typed) contact%chosen_by_keyword = .false.
-      if (typed .and. .not. any(kinds%number == contact%contact_type)) call line_error(deck, 0, &
-        '"'//to_text(contact%contact_type)//'" on the command line is not a contact type' &
-        //kind_names(kinds))
-      call override_integer(overrides, 'NGAUSS', id, contact%n_gauss, changed)
-      if (contact%n_gauss < 1 .or. contact%n_gauss > most_gauss) then
-        if (changed) call line_error(deck, 0, '"'//to_text(contact%n_gauss)//'" on the command ' &
-          //'line is not a number of Gauss points from 1 to '//to_text(most_gauss))
-      end if
-      if (contact%master_penalty <= contact%penalty .and. &
-        contact%master_penalty >= contact%penalty) then
-        call override_real(overrides, 'PEN', id, contact%penalty, priced)
-        contact%master_penalty = contact%penalty
-      else
-        call override_real(overrides, 'PEN', id, contact%penalty, priced)
-      end if
-      call override_real(overrides, 'PENT', id, contact%master_penalty, priced)
-      unit = contact%penalty_unit
-      call override_integer(overrides, 'PUNIT', id, contact%penalty_unit, priced)
-      if (contact%penalty_unit /= unit) entry%unit_place%line = 0
-      if (contact%penalty_unit < penalty_per_node .or. contact%penalty_unit > penalty_share) then
-        if (priced) call line_error(deck, 0, '"'//to_text(contact%penalty_unit)//'" on the ' &
-          //'command line is not a unit of the penalty (0, 1, 2 or 3)')
-      end if
-      if (priced .and. contact%penalty_unit == penalty_share .and. contact%penalty > 1.0_wp) &
-        call line_error(deck, 0, 'with the command line the penalty "'//to_text(contact%penalty) &
-        //'" is not a share of the largest stable one (punit=3: pen= above 0, at most 1)')
-      call override_real(overrides, 'VDC', id, entry%per_cent, damped)
-      if (damped) contact%damping = entry%per_cent/100.0_wp
-    end associate
-    if (changed .or. typed .or. priced .or. damped) &
-      deck%blocks(entry%block)%replacement = contact_text(entry)
-  end subroutine override_contact
 
   !> An interface as *CONTACT_2D_SLIDELINE in free format.
   function contact_text(entry) result(text)

@@ -80,6 +80,7 @@ module deck_raw_m
     integer :: sides(2) = 0             !! SURFA, SURFB as in the deck: > 0 part set, < 0 node set
     type(place_t) :: places(2)
     type(place_t) :: unit_place         !! PUNIT; line 0 where the command line gives it
+    logical :: overridden = .false.     !! the command line changes values
   end type raw_contact_t
 
   !> One *RIGIDWALL_PLANAR.
@@ -137,11 +138,14 @@ module deck_raw_m
     type(raw_contact_t), allocatable :: contacts(:)
     type(raw_wall_t), allocatable :: walls(:)
     type(controls_t) :: controls
-    logical :: end_given = .false.             !! ENDTIM comes from the command line
+    logical :: end_given = .false., step_given = .false., scale_given = .false. !! ENDTIM, the step,
+                                               !! TSSFAC come from the command line
     logical :: terminated = .false.            !! the deck has *CONTROL_TERMINATION
     real(wp) :: newmark(2) = 0.0_wp            !! GAMMA and BETA of the implicit method, 0 = blank
     real(wp) :: hht = 0.0_wp                   !! minus ALPHA of the implicit method
     real(wp) :: spectral_radius = -1.0_wp      !! of the implicit method, negative = not given
+    integer :: step_line = 0                   !! card of *CONTROL_TIMESTEP, 0 = none
+    integer :: newmark_line = 0                !! card of *CONTROL_IMPLICIT_DYNAMICS, 0 = none
     integer :: dt_curve = 0                    !! LCTM, user id
     type(place_t) :: dt_curve_place
     type(history_t) :: outputs(n_output)

@@ -4,7 +4,7 @@ module deck_resolve_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use controls_m, only : interval_t
-  use deck_implicit_m, only : settle_scheme
+  use deck_implicit_m, only : settle_scheme, check_scheme
   use model_m, only : model_t
   use conditions_m, only : motion_acceleration
   use contacts_m, only : penalty_share
@@ -101,6 +101,7 @@ contains
     model%controls = raw%controls
     if (model%controls%implicit%is_on) call settle_scheme(raw%newmark, raw%hht, &
       raw%spectral_radius, model%controls%implicit)
+    call check_scheme(deck, raw%newmark_line, model%controls%implicit)
     call resolve_parts(deck, raw, maps, model)
     call resolve_hardenings(deck, raw, maps, model)
     call resolve_mesh(deck, raw, maps, model, sound)

@@ -3,12 +3,12 @@
 module deck_wall_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use text_m, only : read_integer, number_good
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
   use supports_m, only : mark_meshed_nodes
   use walls_m, only : wall_t, wall_distance
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, check_rest, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
+    report_field
   use deck_fields_m, only : card_t
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_maps_m, only : maps_t, resolve_id
@@ -33,10 +33,7 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     entry%line = deck%blocks(i_block)%keyword
-    if (deck%blocks(i_block)%titled) then
-      call next_text(deck, cursor, title)
-      call take_number(title, entry%wall%id)
-    end if
+    if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%wall%id, title)
     if (entry%wall%id > 0 .and. any(raw%walls%wall%id == entry%wall%id)) call line_error(deck, &
       entry%line, 'the wall number '//to_text(entry%wall%id)//' belongs to an earlier wall')
     call next_card(deck, parameters, cursor, 1, card)
@@ -57,17 +54,6 @@ contains
     call take_plane(deck, cursor, place, entry%wall)
     raw%walls = [raw%walls, entry]
   end subroutine read_wall
-
-  !> The number before a heading, where there is one.
-  pure subroutine take_number(title, number)
-    character(*), intent(in) :: title
-    integer, intent(inout) :: number
-    integer :: value, status
-
-    if (len_trim(title(:min(10, len(title)))) == 0) return
-    call read_integer(trim(adjustl(title(:min(10, len(title))))), value, status)
-    if (status == number_good .and. value > 0) number = value
-  end subroutine take_number
 
   !> Tail and head: a point of the wall, and its normal.
   subroutine take_plane(deck, cursor, card, wall)

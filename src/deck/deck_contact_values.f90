@@ -1,0 +1,135 @@
+! SPDX-License-Identifier: MIT
+!> Values of an interface that the command line may give in place of the card: which one counts, and
+!> the rules that both must keep.
+module deck_contact_values_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use contacts_m, only : contact_kind_t, most_gauss, penalty_per_node, penalty_share
+  use deck_lines_m, only : deck_t, line_error
+  use deck_fields_m, only : card_t
+  use deck_cards_m, only : cursor_t, report_field
+  use deck_overrides_m, only : overrides_t, contact_names, override_text, override_real, &
+    override_integer
+  use deck_raw_m, only : raw_contact_t
+  implicit none
+  private
+  public :: origins_t, find_commanded, take_overrides, check_values, kind_names, of_type, &
+    of_gauss, of_penalty, of_unit, of_master_penalty, of_damping
+
+  !> Values by their place in `contact_names`.
+  integer, parameter :: of_type = 1, of_gauss = 2, of_penalty = 3, of_unit = 4, &
+    of_master_penalty = 5, of_damping = 6
+
+  !> Most damping, per cent of critical.
+  real(wp), parameter :: most_damping = 1.0e6_wp
+
+  !> Where the values of an interface come from.
+  type :: origins_t
+    integer :: card(size(contact_names)) = 0       !! 0: the keyword has no field for the value
+    integer :: field(size(contact_names)) = 0
+    logical :: commanded(size(contact_names)) = .false. !! the command line gives the value
+  end type origins_t
+
+contains
+
+  !> Which values of an interface the command line gives.
+  pure function find_commanded(overrides, id) result(commanded)
+    type(overrides_t), intent(in) :: overrides
+    integer, intent(in) :: id
+    logical :: commanded(size(contact_names))
+    integer :: k
+
+    do k = 1, size(contact_names)
+      commanded(k) = len(override_text(overrides, trim(contact_names(k)), id)) > 0
+    end do
+  end function find_commanded
+
+  !> Put the values of the command line in place of those of the deck. PENT follows PEN where the
+  !> deck makes them the same.
+  pure subroutine take_overrides(overrides, entry)
+    type(overrides_t), intent(in) :: overrides
+    type(raw_contact_t), intent(inout) :: entry
+    logical :: given(size(contact_names)), follows
+
+    given = .false.
+    associate (contact => entry%contact, id => entry%contact%id)
+      follows = .not. abs(contact%master_penalty - contact%penalty) > 0.0_wp
+      call override_integer(overrides, 'CTYPE', id, contact%contact_type, given(of_type))
+      call override_integer(overrides, 'NGAUSS', id, contact%n_gauss, given(of_gauss))
+      call override_real(overrides, 'PEN', id, contact%penalty, given(of_penalty))
+      if (follows) contact%master_penalty = contact%penalty
+      call override_real(overrides, 'PENT', id, contact%master_penalty, given(of_master_penalty))
+      call override_integer(overrides, 'PUNIT', id, contact%penalty_unit, given(of_unit))
+      call override_real(overrides, 'VDC', id, entry%per_cent, given(of_damping))
+      contact%damping = entry%per_cent/100.0_wp
+      contact%chosen_by_keyword = contact%chosen_by_keyword .and. .not. given(of_type)
+      if (given(of_unit)) entry%unit_place%line = 0
+      entry%overridden = any(given)
+    end associate
+  end subroutine take_overrides
+
+  !> The rules of all values, wherever they come from.
+  subroutine check_values(deck, cursor, cards, kinds, overrides, origins, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: cards(:)
+    type(contact_kind_t), intent(in) :: kinds(:)
+    type(overrides_t), intent(in) :: overrides
+    type(origins_t), intent(in) :: origins
+    type(raw_contact_t), intent(in) :: entry
+
+    associate (contact => entry%contact)
+      if (.not. any(kinds%number == contact%contact_type)) call refuse(of_type, &
+        'is not a contact type'//kind_names(kinds))
+      if (contact%n_gauss < 1 .or. contact%n_gauss > most_gauss) call refuse(of_gauss, &
+        'is not a number of Gauss points from 1 to '//to_text(most_gauss))
+      if (contact%penalty <= 0.0_wp) call refuse(of_penalty, 'is not a penalty (more than 0)')
+      if (contact%penalty_unit < penalty_per_node .or. contact%penalty_unit > penalty_share) &
+        call refuse(of_unit, 'is not a unit of the penalty (0 N/m per contact node, 1 N/m^2, ' &
+        //'2 factor on the built-in estimate, 3 share of the largest stable one)')
+      if (entry%per_cent < 0.0_wp) call refuse(of_damping, 'is negative')
+      if (entry%per_cent > most_damping) call refuse(of_damping, &
+        'is not a damping in per cent of critical (at most 1e6)')
+      if (contact%penalty_unit == penalty_share .and. contact%penalty > 1.0_wp) then
+        if (origins%commanded(of_penalty) .or. origins%commanded(of_unit)) then
+          call line_error(deck, 0, 'with the command line the penalty "' &
+            //to_text(contact%penalty)//'" is not a share of the largest stable one (punit=3: ' &
+            //'pen= above 0, at most 1)')
+        else
+          call refuse(of_penalty, &
+            'is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)')
+        end if
+      end if
+    end associate
+
+  contains
+
+    !> An error of a value where it was given.
+    subroutine refuse(k, message)
+      integer, intent(in) :: k
+      character(*), intent(in) :: message
+
+      if (origins%commanded(k)) then
+        call line_error(deck, 0, '"'//override_text(overrides, contact_names(k), &
+          entry%contact%id)//'" on the command line '//message)
+      else if (origins%card(k) > 0) then
+        call report_field(deck, cursor, cards(origins%card(k)), origins%field(k), message)
+      end if
+    end subroutine refuse
+
+  end subroutine check_values
+
+  !> ` (1 name, 2 name, ...)`.
+  pure function kind_names(kinds) result(text)
+    type(contact_kind_t), intent(in) :: kinds(:)
+    character(:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(kinds)
+      text = text//merge(' (', ', ', i == 1)//to_text(kinds(i)%number)//' '//trim(kinds(i)%name)
+    end do
+    if (size(kinds) > 0) text = text//')'
+  end function kind_names
+
+end module deck_contact_values_m
