@@ -10,6 +10,7 @@ module check_m
   use deck_report_m, only : spot_t
   use errors_m, only : error_t
   use explicit_m, only : advance_explicit
+  use implicit_m, only : advance_implicit
   use log_m, only : log_t, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t
@@ -31,6 +32,7 @@ contains
     type(model_t) :: model
     type(monitor_t) :: monitor
     character(:), allocatable :: effective, findings
+    integer :: ignored
 
     request%path = arguments%deck
     request%overrides = arguments%overrides
@@ -48,15 +50,14 @@ contains
     if (arguments%json) then
       call show_json(arguments%deck, findings, allocated(error))
     else if (.not. allocated(error)) then
-      write (output_unit, '(a)') arguments%deck//': accepted, ' &
+      write (output_unit, '(a)', iostat=ignored) arguments%deck//': accepted, ' &
         //to_text(model%mesh%n_element)//' elements, '//to_text(model%mesh%n_node)//' nodes, ' &
         //to_text(size(model%contacts))//' interfaces, '//to_text(monitor%log%n_warning) &
         //' warnings'
     end if
   end subroutine check_deck
 
-  !> The state at time zero: forces, step, and what the run says of them. An implicit run says no
-  !> more than that its model can be built.
+  !> The state at time zero: forces, step or acceleration, and what the run says of them.
   subroutine start_run(model, monitor, error)
     type(model_t), intent(inout) :: model
     type(monitor_t), intent(inout) :: monitor
@@ -66,11 +67,15 @@ contains
 
     call renumber_model(model)
     call start_state(model, monitor%log, state, error)
-    if (allocated(error) .or. model%controls%implicit%is_on) return
+    if (allocated(error)) return
     monitor%only_checks = .true.
     monitor%clock%is_on = .false.
     call start_snapshot(model, size(state%elements%history) > 0, monitor%snapshot)
-    call advance_explicit(model, 1, state, monitor, reason, error)
+    if (model%controls%implicit%is_on) then
+      call advance_implicit(model, state, monitor, reason, error)
+    else
+      call advance_explicit(model, 1, state, monitor, reason, error)
+    end if
   end subroutine start_run
 
   !> The warnings that wait in a log.
@@ -103,11 +108,12 @@ contains
   subroutine show_json(deck, findings, refused)
     character(*), intent(in) :: deck, findings
     logical, intent(in) :: refused
+    integer :: ignored
 
-    write (output_unit, '(a)') '{', '  "deck": '//json_text(deck)//',', &
+    write (output_unit, '(a)', iostat=ignored) '{', '  "deck": '//json_text(deck)//',', &
       '  "accepted": '//trim(merge('false', 'true ', refused))//',', '  "findings": ['
-    if (len(findings) > 0) write (output_unit, '(a)') findings
-    write (output_unit, '(a)') '  ]', '}'
+    if (len(findings) > 0) write (output_unit, '(a)', iostat=ignored) findings
+    write (output_unit, '(a)', iostat=ignored) '  ]', '}'
   end subroutine show_json
 
 end module check_m

@@ -8,7 +8,9 @@ program slideline
   use build_info_m, only : version, build_type, compiler, flags, solvers
   use errors_m, only : error_t
   use files_m, only : fill_standard_streams
+  use progress_m, only : error_ending
   use run_m, only : run_deck
+  use signals_m, only : ignore_closed_pipes
   use source_version_m, only : source_version
   implicit none
 
@@ -24,25 +26,28 @@ program slideline
   type(error_t), allocatable :: error
   integer(c_int) :: status
   integer :: ignored
+  logical :: has_ended = .true. !! no end is left to be told
 
   call fill_standard_streams()
+  call ignore_closed_pipes()
   call read_arguments(arguments, error)
   if (.not. allocated(error)) then
     if (arguments%help) then
-      write (output_unit, '(a)') help_text()
+      write (output_unit, '(a)', iostat=ignored) help_text()
     else if (arguments%version) then
-      write (output_unit, '(a)') 'slideline '//version//' (source '//source_version//')', 'build ' &
-        //build_type//', '//compiler, 'flags '//flags, 'linear solvers '//solvers
+      write (output_unit, '(a)', iostat=ignored) 'slideline '//version//' (source ' &
+        //source_version//')', 'build '//build_type//', '//compiler, 'flags '//flags, 'linear solvers '//solvers
     else if (arguments%check) then
       call check_deck(arguments, error)
     else
-      call run_deck(arguments, error)
+      call run_deck(arguments, has_ended, error)
     end if
   end if
   if (allocated(error)) then
     write (error_unit, '(a)', iostat=ignored) error%message
-    flush (output_unit, iostat=ignored)
     flush (error_unit, iostat=ignored)
+    if (.not. has_ended) write (output_unit, '(a)', iostat=ignored) error_ending
+    flush (output_unit, iostat=ignored)
     status = int(error%status, c_int)
     deallocate (error)
     call c_exit(status)

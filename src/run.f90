@@ -12,6 +12,7 @@ module run_m
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
   use files_m, only : make_directory, join_path
+  use history_file_m, only : close_histories
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use go_on_m, only : take_up_deck
   use heap_m, only : give_back_memory
@@ -39,8 +40,9 @@ module run_m
 contains
 
   !> Run what the command line asks for.
-  subroutine run_deck(arguments, error)
+  subroutine run_deck(arguments, has_ended, error)
     type(arguments_t), intent(inout) :: arguments !! gets the job name of a restart file
+    logical, intent(out) :: has_ended             !! how the run ended has been told
     type(error_t), allocatable, intent(out) :: error
     type(model_t) :: model
     type(state_t) :: state
@@ -49,6 +51,7 @@ contains
     type(deck_request_t) :: request
     character(:), allocatable :: prefix
 
+    has_ended = .false.
     call start_clock(monitor%clock)
     monitor%clock%is_on = arguments%timing /= timing_off
     call catch_signals()
@@ -70,23 +73,18 @@ contains
         call take_up_results(monitor%restarts, model, prefix//'.vtkhdf', error)
       if (allocated(error)) return
     end if
-    call open_outputs(arguments, prefix, info%effective_deck, monitor, error)
+    call make_directory(arguments%directory, error)
+    if (.not. allocated(error)) &
+      call open_log(monitor%log, prefix//'.log', monitor%restarts%goes_on, error)
     if (allocated(error)) return
-    call describe_run(arguments, model, monitor%restarts, info)
-    call open_files(model, prefix, info, monitor, error)
-    if (allocated(error)) return
-    deallocate (info%effective_deck)
-    if (.not. monitor%restarts%goes_on) call start_state(model, monitor%log, state, error)
-    if (allocated(error)) return
-    call start_monitor(model, size(state%elements%history) > 0, monitor)
-    call forget_start(model)
-    call give_back_memory()
-    monitor%progress%first_cycle = state%cycle
-    if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
-    if (allocated(error)) return
-    call begin_status(model, state, monitor)
+    call begin_run(arguments, prefix, model, info, state, monitor, error)
     call lap(monitor%clock, phase_input)
-    call drive(arguments, model, prefix, state, monitor, error)
+    if (allocated(error)) then
+      call give_up(model, prefix, state, monitor, error)
+    else
+      call drive(arguments, model, prefix, state, monitor, error)
+    end if
+    has_ended = .true.
     call close_log(monitor%log)
     if (.not. allocated(error) .and. allocated(monitor%log%trouble)) &
       call move_alloc(monitor%log%trouble, error)
@@ -132,24 +130,46 @@ contains
     info%checksum = restarts%effective_deck_checksum
   end subroutine describe_run
 
-  !> Make the directory, the log and the effective deck, which restart files will hold.
-  subroutine open_outputs(arguments, prefix, effective, monitor, error)
+  !> Open the files and make the state from which the run begins.
+  subroutine begin_run(arguments, prefix, model, info, state, monitor, error)
+    type(arguments_t), intent(in) :: arguments
+    character(*), intent(in) :: prefix
+    type(model_t), intent(inout) :: model
+    type(run_info_t), intent(inout) :: info
+    type(state_t), intent(inout) :: state  !! where the run goes on it is known already
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+
+    call write_deck(arguments, prefix, info%effective_deck, monitor, error)
+    if (allocated(error)) return
+    call describe_run(arguments, model, monitor%restarts, info)
+    call open_files(model, prefix, info, monitor, error)
+    if (allocated(error)) return
+    deallocate (info%effective_deck)
+    if (.not. monitor%restarts%goes_on) call start_state(model, monitor%log, state, error)
+    if (allocated(error)) return
+    call start_monitor(model, size(state%elements%history) > 0, monitor)
+    call forget_start(model)
+    call give_back_memory()
+    monitor%progress%first_cycle = state%cycle
+    if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
+    if (.not. allocated(error)) call begin_status(model, state, monitor)
+  end subroutine begin_run
+
+  !> Make the effective deck, which restart files will hold.
+  subroutine write_deck(arguments, prefix, effective, monitor, error)
     type(arguments_t), intent(in) :: arguments
     character(*), intent(in) :: prefix, effective
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
     type(text_file_t) :: file
 
-    call make_directory(arguments%directory, error)
-    if (allocated(error)) return
-    call open_log(monitor%log, prefix//'.log', monitor%restarts%goes_on, error)
-    if (allocated(error)) return
     call prepare_restarts(arguments, prefix, effective, monitor%restarts, error)
     if (allocated(error)) return
     call create_text_file(file, prefix//'.effective.k', error)
     if (.not. allocated(error)) call append_text(file, effective, error)
     if (.not. allocated(error)) call close_text_file(file, error)
-  end subroutine open_outputs
+  end subroutine write_deck
 
   !> What restart files need to know; what an earlier run of this name has left of them is removed.
   subroutine prepare_restarts(arguments, prefix, effective, restarts, error)
@@ -218,20 +238,47 @@ contains
     stopped = reason == 'stopped on request'
     if (stopped) reason = reason//' (exit status '//to_text(status_stopped)//') before the ' &
       //'termination time '//to_text(model%controls%end_time)
-    if (allocated(error)) reason = error%message
     call finish_monitor(monitor, closing_error)
     if (.not. allocated(error) .and. allocated(closing_error)) &
       call move_alloc(closing_error, error)
-    call lap(monitor%clock, phase_output)
-    call look_at_clock(monitor%clock)
-    call write_timing(prefix//'.timing.csv', monitor%clock, closing_error)
-    if (.not. allocated(error) .and. allocated(closing_error)) &
-      call move_alloc(closing_error, error)
-    if (.not. allocated(error) .and. allocated(monitor%log%trouble)) error = monitor%log%trouble
-    call show_end(monitor%progress, monitor%clock, monitor%log, .not. allocated(error), reason, &
-      state%cycle, state%time, model%mesh%n_element)
+    call tell_end(model, prefix, state, reason, monitor, error)
     if (stopped .and. .not. allocated(error)) call raise(error, &
       'stopped on request at time '//to_text(state%time), status_stopped)
   end subroutine drive
+
+  !> The end of a run that could not begin. The results file has no state and does not take its
+  !> name: that of a run before a restart keeps its states.
+  subroutine give_up(model, prefix, state, monitor, error)
+    type(model_t), intent(in) :: model
+    character(*), intent(in) :: prefix
+    type(state_t), intent(in) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(inout) :: error
+    type(error_t), allocatable :: ignored
+
+    call close_histories(monitor%histories, ignored)
+    call tell_end(model, prefix, state, '', monitor, error)
+  end subroutine give_up
+
+  !> Write the timing file and say how the run ended: by `error` or else for `reason`.
+  subroutine tell_end(model, prefix, state, reason, monitor, error)
+    type(model_t), intent(in) :: model
+    character(*), intent(in) :: prefix, reason
+    type(state_t), intent(in) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(inout) :: error
+    type(error_t), allocatable :: problem
+    character(:), allocatable :: told
+
+    call lap(monitor%clock, phase_output)
+    call look_at_clock(monitor%clock)
+    call write_timing(prefix//'.timing.csv', monitor%clock, model%contacts%id, problem)
+    if (.not. allocated(error) .and. allocated(problem)) call move_alloc(problem, error)
+    if (.not. allocated(error) .and. allocated(monitor%log%trouble)) error = monitor%log%trouble
+    told = reason
+    if (allocated(error)) told = error%message
+    call show_end(monitor%progress, monitor%clock, monitor%log, .not. allocated(error), told, &
+      state%cycle, state%time, model%mesh%n_element)
+  end subroutine tell_end
 
 end module run_m

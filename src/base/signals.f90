@@ -1,16 +1,17 @@
 ! SPDX-License-Identifier: MIT
-!> Requests from outside (SIGTERM and SIGINT: stop, SIGUSR1: restart file, SIGUSR2: plot state) and
-!> the question whether a person watches. A signal handler has no argument to carry a state, so this
-!> module holds the only saved variable of the program.
+!> Requests from outside (SIGTERM, SIGINT and SIGHUP: stop, SIGUSR1: restart file, SIGUSR2: plot
+!> state) and the question whether a person watches. A signal handler has no argument to carry a
+!> state, so this module holds the only saved variable of the program.
 module signals_m
   use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
   implicit none
   private
-  public :: catch_signals, stop_requested, take_signals, output_is_terminal
+  public :: ignore_closed_pipes, catch_signals, stop_requested, take_signals, output_is_terminal
 
   !> Numbers of the signals, as Linux has them.
-  integer(c_int), parameter :: signal_interrupt = 2, signal_user_1 = 10, signal_user_2 = 12, &
-    signal_terminate = 15, signal_cpu_limit = 24, signal_file_limit = 25
+  integer(c_int), parameter :: signal_hang_up = 1, signal_interrupt = 2, signal_user_1 = 10, &
+    signal_user_2 = 12, signal_pipe = 13, signal_terminate = 15, signal_cpu_limit = 24, &
+    signal_file_limit = 25
   !> The handler that ignores (SIG_IGN of all C libraries).
   integer(c_intptr_t), parameter :: ignore = 1
   !> Signals received: a stop, a restart file, a plot state; 0 = none.
@@ -35,12 +36,22 @@ module signals_m
 
 contains
 
-  !> From now on these signals only ask for something: SIGTERM, SIGINT and a used up processor time
-  !> (SIGXCPU) for a stop; a file that reaches the largest size allowed (SIGXFSZ) is a failed write
-  !> and no end of the process.
+  !> A pipe whose reader has gone (SIGPIPE) is a failed write and no end of the process.
+  subroutine ignore_closed_pipes()
+    type(c_funptr) :: previous
+
+    previous = c_signal(signal_pipe, transfer(ignore, c_null_funptr))
+  end subroutine ignore_closed_pipes
+
+  !> From now on these signals only ask for something: SIGTERM, SIGINT, SIGHUP and a used up
+  !> processor time (SIGXCPU) for a stop; a file that reaches the largest size allowed (SIGXFSZ) is
+  !> a failed write and no end of the process. SIGHUP stays ignored where it was (nohup).
   subroutine catch_signals()
     type(c_funptr) :: previous
 
+    previous = c_signal(signal_hang_up, transfer(ignore, c_null_funptr))
+    if (transfer(previous, ignore) /= ignore) &
+      previous = c_signal(signal_hang_up, c_funloc(note_signal))
     previous = c_signal(signal_terminate, c_funloc(note_signal))
     previous = c_signal(signal_interrupt, c_funloc(note_signal))
     previous = c_signal(signal_user_1, c_funloc(note_signal))

@@ -86,23 +86,24 @@ contains
     text = text//'; '//factor//' times the built-in estimate'
   end function penalty_text
 
-  !> Warn of the deepest penetration at time zero, with the force that it causes; nothing when there
-  !> is none. Initial penetrations are taken as they are.
+  !> Warn of the deepest penetration at time zero, with the node next to it and the force that it
+  !> causes; nothing when there is none. Initial penetrations are taken as they are.
   subroutine report_initial_contact(contact, model, memory, log)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
     real(wp) :: depth !! that counts, m
-    integer :: p
+    integer :: p, k
 
     if (memory%points%n == 0) return
     p = minloc(memory%points%gap(:memory%points%n), 1)
     depth = round_off*memory%slave_tracking%reach
     if (-memory%points%gap(p) <= depth) return
+    k = maxloc(memory%points%slave_weights(:, p), 1)
     call warn(log, 'interface '//to_text(contact%id)//': initial penetration at ' &
       //to_text(count(memory%points%gap(:memory%points%n) < -depth))//' points, deepest at node ' &
-      //to_text(model%mesh%node_id(memory%nodes(memory%points%slave_nodes(1, p))))//': ' &
+      //to_text(model%mesh%node_id(memory%nodes(memory%points%slave_nodes(k, p))))//': ' &
       //to_text(-memory%points%gap(p))//' m, force of that point ' &
       //to_text(memory%points%pressure(p)*memory%points%area(p))//' N/m; it is kept, so that the ' &
       //'run starts with these forces')

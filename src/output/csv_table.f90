@@ -11,8 +11,8 @@ module csv_table_m
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   implicit none
   private
-  public :: csv_table_t, open_table, add_row, flush_table, close_table, column_name, n_columns, &
-    row_text, kind_real, kind_integer, kind_side
+  public :: csv_table_t, open_table, add_row, check_table, flush_table, close_table, column_name, &
+    n_columns, row_text, kind_real, kind_integer, kind_side
 
   !> Kinds of columns: a real, an integer, a side of an interface (1 = slave, 2 = master).
   integer, parameter :: kind_real = 1, kind_integer = 2, kind_side = 3
@@ -37,7 +37,7 @@ module csv_table_m
     character(:), allocatable :: buffer     !! lines that wait
     integer :: n_waiting = 0                !! bytes of them
     integer(long) :: flushed = 0            !! clock tick of the last write
-    type(error_t), allocatable :: trouble   !! first failure; reported by the next flush or close
+    type(error_t), allocatable :: trouble   !! first failure; reported by the next check or flush
   end type csv_table_t
 
 contains
@@ -186,6 +186,15 @@ contains
     table%n_waiting = 0
     call system_clock(table%flushed)
   end subroutine write_waiting
+
+  !> The failure that the table or its text file has had, if any.
+  pure subroutine check_table(table, error)
+    type(csv_table_t), intent(in) :: table
+    type(error_t), allocatable, intent(out) :: error
+
+    if (allocated(table%text%trouble)) error = table%text%trouble
+    if (allocated(table%trouble)) error = table%trouble
+  end subroutine check_table
 
   !> Bring all rows into the file.
   subroutine flush_table(table, error)

@@ -6,14 +6,14 @@ module history_file_m
   use model_m, only : model_t
   use controls_m, only : interval_t, is_asked
   use supports_m, only : mark_supports
-  use csv_table_m, only : csv_table_t, open_table, flush_table, close_table, n_columns, kind_real, &
-    kind_integer, kind_side
+  use csv_table_m, only : csv_table_t, open_table, check_table, flush_table, close_table, &
+    n_columns, kind_real, kind_integer, kind_side
   use dyna_layouts_m, only : layout_glstat, layout_rcforc, layout_nodout, layout_matsum, &
     layout_sleout, layout_spcforc
   use dyna_text_m, only : open_dyna_text
   implicit none
   private
-  public :: histories_t, open_histories, flush_histories, close_histories, n_table, table_glstat, &
+  public :: histories_t, open_histories, check_histories, flush_histories, close_histories, n_table, table_glstat, &
     table_rcforc, table_nodout, table_contact, table_matsum, table_rwforc, table_sleout, &
     table_spcforc
 
@@ -167,6 +167,18 @@ contains
     if (allocated(model%controls%output%history_nodes)) &
       n = size(model%controls%output%history_nodes)
   end function n_history_node
+
+  !> The first failure that any table has had so far.
+  pure subroutine check_histories(histories, error)
+    type(histories_t), intent(in) :: histories
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i_table
+
+    do i_table = 1, n_table
+      call check_table(histories%tables(i_table), error)
+      if (allocated(error)) return
+    end do
+  end subroutine check_histories
 
   !> Bring all rows into the files; reports the first failure of any table.
   subroutine flush_histories(histories, error)

@@ -14,7 +14,7 @@ module results_copy_m
   use model_m, only : model_t
   use results_arrays_m, only : results_file_t, n_point_field, n_cell_field, point_names, &
     point_columns, cell_names, cell_columns
-  use results_file_m, only : append_instant, take_name
+  use results_file_m, only : append_instant, take_name, note_failure
   implicit none
   private
   public :: check_old_results, copy_states
@@ -99,6 +99,7 @@ contains
     end do
     call h5fclose_f(old, status)
     call take_name(file, error)
+    call note_failure(file, error)
   end subroutine copy_states
 
   !> Copy the fields of one state.

@@ -27,7 +27,7 @@ module results_file_m
   implicit none
   private
   public :: results_file_t, run_info_t, open_results, append_state, append_instant, take_name, &
-    finish_results
+    note_failure, finish_results
 
 contains
 

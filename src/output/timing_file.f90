@@ -16,23 +16,25 @@ contains
   !> Write `phase,seconds,calls,share`, one row per phase and the row `total`, which is the time
   !> from the start to the last lap. Where interfaces are timed, rows such as `contact_force.2`
   !> follow their phase and add up to it. Where no laps are taken there is the total alone.
-  subroutine write_timing(path, clock, error)
+  subroutine write_timing(path, clock, interfaces, error)
     character(*), intent(in) :: path
     type(clock_t), intent(in) :: clock
+    integer, intent(in) :: interfaces(:) !! their ids
     type(error_t), allocatable, intent(out) :: error
     type(text_file_t) :: file
 
     call create_text_file(file, path, error)
     if (allocated(error)) return
-    call append_text(file, timing_text(clock), error)
+    call append_text(file, timing_text(clock, interfaces), error)
     if (allocated(error)) return
     call close_text_file(file, error)
   end subroutine write_timing
 
   !> The file as text. Seconds are whole nanoseconds with nine decimals, so that the phases add up
   !> to the total to the last digit.
-  function timing_text(clock) result(text)
+  function timing_text(clock, interfaces) result(text)
     type(clock_t), intent(in) :: clock
+    integer, intent(in) :: interfaces(:) !! their ids
     character(:), allocatable :: text
     integer(long) :: nanoseconds(n_phase), total, first, rate
     integer :: i_phase
@@ -45,14 +47,15 @@ contains
     do i_phase = 1, n_phase
       if (.not. clock%is_on) exit
       text = text//timing_row(phase_names(i_phase), nanoseconds(i_phase), clock%calls(i_phase), &
-        total)//interface_rows(clock, i_phase, rate, total)
+        total)//interface_rows(clock, interfaces, i_phase, rate, total)
     end do
     text = text//timing_row('total', total, 1_long, total)
   end function timing_text
 
-  !> The rows of a contact phase by interface, numbered as in the deck.
-  function interface_rows(clock, i_phase, rate, total) result(text)
+  !> The rows of a contact phase by interface, with its id as in the other tables.
+  function interface_rows(clock, interfaces, i_phase, rate, total) result(text)
     type(clock_t), intent(in) :: clock
+    integer, intent(in) :: interfaces(:)
     integer, intent(in) :: i_phase
     integer(long), intent(in) :: rate          !! ticks of a second
     integer(long), intent(in) :: total         !! nanoseconds of the whole run
@@ -63,8 +66,8 @@ contains
     i_row = i_phase - phase_contact_search + 1
     if (i_row < 1 .or. i_row > n_contact_phase) return
     if (.not. allocated(clock%interface_ticks)) return
-    do i = 1, ubound(clock%interface_ticks, 2)
-      text = text//timing_row(trim(phase_names(i_phase))//'.'//to_text(i), &
+    do i = 1, size(interfaces)
+      text = text//timing_row(trim(phase_names(i_phase))//'.'//to_text(interfaces(i)), &
         in_nanoseconds(clock%interface_ticks(i_row, i), rate), clock%interface_calls(i_row, i), &
         total)
     end do

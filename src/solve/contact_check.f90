@@ -18,23 +18,26 @@ module contact_check_m
 
 contains
 
-  !> Initial penetrations, places just beyond ends of the master, and a warning where the penalty
-  !> demands a smaller step than `state%dt`.
+  !> Initial penetrations, places just beyond ends of the master, and in explicit runs a warning
+  !> where the penalty demands a smaller step than `state%dt`.
   subroutine report_contact_start(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(log_t), intent(inout) :: log
     type(spring_bound_t) :: bounds(size(model%contacts))
     real(wp) :: element_limit
+    logical :: limits_step
     integer :: i
 
+    limits_step = model%controls%contact_step /= contact_step_free &
+      .and. .not. model%controls%implicit%is_on
     element_limit = minval(state%elements%time_limit)
-    if (model%controls%contact_step /= contact_step_free) call bound_springs(model%contacts, &
+    if (limits_step) call bound_springs(model%contacts, &
       state%contact_mass, state%contacts, [(1.0_wp, i=1, size(bounds))], bounds)
     do i = 1, size(model%contacts)
       call report_initial_contact(model%contacts(i), model, state%contacts(i), log)
       call report_overhang(model%contacts(i), model, state%contacts(i), log)
-      if (model%controls%contact_step == contact_step_free) cycle
+      if (.not. limits_step) cycle
       if (state%dt <= stable_step(element_limit, bounds(i))) cycle
       call warn_of_step(model, i, state%dt, element_limit, bounds(i), log)
     end do

@@ -4,13 +4,13 @@
 module cycle_m
   use clock_m, only : lap, share_contact, phase_nodes
   use constraints_m, only : fix_nodes, update_activity
-  use contact_check_m, only : report_contact_start, report_contact_end, follow_springs
+  use contact_check_m, only : report_contact_start, follow_springs
   use contact_force_m, only : apply_contact
   use cycle_loads_m, only : apply_loads
   use energies_m, only : energy_ratio, total_energy
   use errors_m, only : error_t
   use health_m, only : tile_check_t, are_sound, check_elements, check_step, check_cycle, &
-    check_energy, judge_energies
+    check_energy
   use kinds_m, only : wp
   use model_log_m, only : log_smallest_steps
   use model_m, only : model_t
@@ -52,6 +52,7 @@ module cycle_m
     real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
     real(wp), allocatable :: displacement(:) !! (n_motion) u(n) of prescribed motions
     character(:), allocatable :: reason      !! what ended the run
+    type(error_t), allocatable :: verdict    !! ends the run once its sound state is written
     type(error_t), allocatable :: error
   end type cycle_t
 
@@ -170,9 +171,6 @@ contains
     if (.not. allocated(cycle%error) .and. cycle%due%glstat) call check_energy(model%controls, &
       monitor%snapshot%energies, cycle%error)
     cycle%finished = cycle%last .or. allocated(cycle%error)
-    if (.not. cycle%finished) return
-    call report_contact_end(model, state, monitor%log)
-    if (.not. allocated(cycle%error)) call judge_energies(monitor%snapshot%energies, monitor%log)
   end subroutine report_cycle
 
   !> Rigid bodies in a cycle that writes: what their forces ask for, and the work of
@@ -241,14 +239,28 @@ contains
     call follow_springs(model, state, cycle%steps%springs)
     call next_step(model, minval(cycle%checks%time_limit), monitor%log, state%cycle, cycle%steps, &
       state%time, state%dt)
-    if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
-      state%time, state%dt, cycle%error)
-    if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
-    if (allocated(cycle%error)) cycle%finished = .true.
-    if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
+    call judge_step(model, state, cycle)
+    cycle%finished = allocated(cycle%error)
+    if (.not. (cycle%finished .or. allocated(cycle%verdict))) call heed_requests(state, monitor, &
+      cycle)
     call follow_progress(monitor%progress, monitor%clock, state%cycle, .false., state%time, &
       state%dt, cycle%ratio)
   end subroutine end_cycle
+
+  !> A step that is too short, and cycles that can no longer be counted, end the run with the next
+  !> cycle, which writes the state.
+  subroutine judge_step(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(cycle_t), intent(inout) :: cycle
+
+    if (allocated(cycle%error)) return
+    call check_step(model%controls, cycle%steps%first_dt, state%time, state%dt, cycle%verdict)
+    if (.not. allocated(cycle%verdict)) call check_cycle(state%cycle, state%time, cycle%verdict)
+    if (.not. allocated(cycle%verdict)) return
+    cycle%last = .true.
+    if (.not. state%dt > 0.0_wp) cycle%error = cycle%verdict
+  end subroutine judge_step
 
   !> Stop, restart files, states and lines that are due or that someone asks for; for restart files
   !> a stop by a signal counts as an end. The state is that before the next cycle; a run that goes

@@ -7,10 +7,11 @@
 !> written belongs to one instant.
 module explicit_m
   use clock_m, only : lap, phase_elements, phase_nodes, phase_output
+  use contact_check_m, only : report_contact_end
   use cycle_m, only : cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
   use element_dispatch_m, only : add_tile_forces
   use errors_m, only : error_t
-  use health_m, only : check_tile
+  use health_m, only : check_tile, judge_energies
   use kinds_m, only : wp
   use model_m, only : model_t
   use motion_sums_m, only : sum_motion, sum_blocks
@@ -51,6 +52,9 @@ contains
     end if
     reason = cycle%reason
     if (allocated(cycle%error)) call move_alloc(cycle%error, error)
+    if (allocated(cycle%verdict)) call move_alloc(cycle%verdict, error)
+    call report_contact_end(model, state, monitor%log)
+    if (.not. allocated(error)) call judge_energies(monitor%snapshot%energies, monitor%log)
   end subroutine advance_explicit
 
   !> The cycles, run by every thread of the team. The end of a cycle and the beginning of the next

@@ -47,7 +47,7 @@ contains
 
     reason = 'termination time reached'
     call begin_march(model, state, monitor, march, last, error)
-    if (allocated(error)) return
+    if (allocated(error) .or. monitor%only_checks) return
     call report_march(model, state, last, .false., monitor, march, error)
     do while (.not. last .and. .not. allocated(error))
       call take_step(model, state, monitor, march%control, march%step, march%trial, error)

@@ -3,6 +3,7 @@
 module implicit_start_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_solver
+  use contact_check_m, only : report_contact_start
   use element_mass_m, only : add_mass, mass_times
   use equations_m, only : equations_t, number_equations, take_free
   use errors_m, only : error_t, raise, status_run
@@ -51,6 +52,7 @@ contains
     call plan_next(model, last, state, planned, ends)
     if (.not. monitor%restarts%goes_on) then
       call start_implicit(model, planned%next, state, monitor, march, error)
+      if (.not. allocated(error)) call report_contact_start(model, state, monitor%log)
       if (.not. allocated(error)) call write_restarts(wanted_files(monitor%restarts, state%cycle, &
         .false., ends, .false.), state, monitor, march, error)
     end if

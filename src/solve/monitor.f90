@@ -4,7 +4,8 @@ module monitor_m
   use clock_m, only : clock_t
   use controls_m, only : is_asked
   use errors_m, only : error_t
-  use history_file_m, only : histories_t, open_histories, flush_histories, close_histories
+  use history_file_m, only : histories_t, open_histories, check_histories, flush_histories, &
+    close_histories
   use history_rows_m, only : append_glstat, append_rcforc, append_nodout, append_matsum, &
     append_contact, append_rwforc, append_sleout, append_spcforc
   use kinds_m, only : wp
@@ -140,6 +141,8 @@ contains
         call append_state(monitor%results, model, shot, error)
         if (allocated(error)) return
         call flush_histories(histories, error)
+      else
+        call check_histories(histories, error)
       end if
       if (due%glstat) call mark_written(monitor%glstat, shot%time, dt)
       if (due%rcforc) call mark_written(monitor%rcforc, shot%time, dt)

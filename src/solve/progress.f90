@@ -12,7 +12,12 @@ module progress_m
   use status_file_m, only : status_t, keep_status, write_status, seconds_to_go, duration
   implicit none
   private
-  public :: progress_t, start_progress, follow_progress, show_progress, show_note, show_end
+  public :: progress_t, start_progress, follow_progress, show_progress, show_note, show_end, &
+    error_ending
+
+  !> How a run says that it ended.
+  character(*), parameter :: normal_ending = ' N o r m a l    t e r m i n a t i o n', &
+    error_ending = ' E r r o r    t e r m i n a t i o n'
 
   !> Cycles between two looks at a clock that takes no laps.
   integer, parameter :: look_cycles = 64
@@ -152,11 +157,7 @@ contains
       - progress%first_cycle, wp)/n_element
     call say(log, '')
     call say(log, ' *** '//reason//' ***')
-    if (normal) then
-      call say(log, ' N o r m a l    t e r m i n a t i o n')
-    else
-      call say(log, ' E r r o r    t e r m i n a t i o n')
-    end if
+    call say(log, trim(merge(normal_ending, error_ending//'  ', normal)))
     call say(log, '')
     write (line, '(a,es16.8)') ' Problem time        = ', time
     call say(log, trim(line))

@@ -22,7 +22,7 @@ module requests_m
   type :: requests_t
     logical :: dump = .false.      !! a numbered restart file (sw1, sw3, SIGUSR1)
     logical :: plot = .false.      !! a plot state (sw4, SIGUSR2)
-    logical :: stop = .false.      !! an end before its time (sw1, stop, SIGTERM, SIGINT)
+    logical :: stop = .false.      !! an end before its time (sw1, stop, SIGTERM, SIGINT, SIGHUP)
     logical :: signalled = .false. !! a signal asks for that end
   end type requests_t
 

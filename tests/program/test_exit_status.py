@@ -11,6 +11,8 @@ import pytest
 from conftest import drop, numbers
 from meshes import Deck, grid
 
+from slideline_tools.contact_types import ALL_TYPES
+
 NORMAL = "N o r m a l    t e r m i n a t i o n"
 ERROR = "E r r o r    t e r m i n a t i o n"
 
@@ -31,6 +33,44 @@ def test_refused_deck_is_1(slideline, tmp_path):
     for name in ("NTS", "NTS-AR", "two-pass"):
         assert name in done.stderr
     assert not list((tmp_path / "r").glob("*.vtkhdf"))
+
+
+def test_refused_deck_says_how_it_ended(slideline, tmp_path):
+    """A run does, refused or without a folder to write to; a check, a wrong word and --help are no runs."""
+    (tmp_path / "taken").write_text("a file\n")
+    (tmp_path / "wrong.k").write_text(drop(kind=9).text())
+    for words, status in ((["i=wrong.k", "d=r"], 1), (["i=absent.k"], 1), (["r=absent.h5"], 1)):
+        done = slideline(*words)
+        assert (done.returncode, done.stdout) == (status, f" {ERROR}\n"), words
+        assert done.stderr
+    done = slideline("d=taken", deck=drop())
+    assert (done.returncode, done.stdout) == (3, f" {ERROR}\n")
+    for words in (["check", "wrong.k"], ["check", "wrong.k", "--json"], ["wrong.k", "what=1"], ["--help"], []):
+        assert ERROR not in slideline(*words).stdout, words
+    assert not (tmp_path / "r").exists()
+
+
+def check_told_end(folder, done, status, reason):
+    """An error after the log was opened: the reason on the screen and in the log, the ending, the timing table."""
+    assert done.returncode == status, done.stderr
+    assert reason in done.stderr
+    log = (folder / "job.log").read_text()
+    for said in (done.stdout, log):
+        assert said.count(ERROR) == 1 and NORMAL not in said
+        assert reason in said[:said.index(ERROR)]
+    assert "total" in (folder / "job.timing.csv").read_text()
+
+
+def test_no_room_for_an_automatic_penalty_is_told(slideline, tmp_path):
+    done = slideline("d=a", "punit=3", "pen=0.5", "tssfac=1.0", "dt=1.0", deck=drop())
+    check_told_end(tmp_path / "a", done, 1, "finds no room")
+    assert not list((tmp_path / "a").glob("*.vtkhdf"))
+
+
+@pytest.mark.parametrize("name", ["job.effective.k", "job.vtkhdf.part", "job.glstat.csv", "job.dump01.h5"])
+def test_files_that_cannot_be_made_are_told(slideline, tmp_path, name):
+    (tmp_path / "a" / name).mkdir(parents=True)
+    check_told_end(tmp_path / "a", slideline("d=a", deck=drop()), 3, name.removesuffix(".part"))
 
 
 def test_inverted_element_is_2(slideline, tmp_path):
@@ -123,6 +163,18 @@ def test_initial_penetration_is_one_warning(slideline, depth):
     assert f"Warnings            = {len(found)}" in done.stdout
 
 
+@pytest.mark.parametrize("kind", ALL_TYPES)
+def test_initial_penetration_names_the_nearest_node(slideline, kind):
+    """The block is tilted: its last node is the deepest, or the node next to the deepest point."""
+    deck = pushed_in(0.004)
+    for i in range(1, 13):
+        place = next(k for k, line in enumerate(deck.lines) if line.startswith(f"{i},0."))
+        number, x, y = deck.lines[place].split(",")
+        deck.lines[place] = f"{number},{x},{float(y) - 0.02 * (float(x) - 0.2)!r}"
+    done = slideline("d=i", f"ctype={kind}", deck=deck)
+    assert re.search(r"initial penetration at \d+ points, deepest at node 4: ", done.stderr), done.stderr
+
+
 def test_released_first_contacts_are_warned_of(slideline):
     """Born when the blocks overlap deeper than what is caught."""
     deck = pushed_in(0.12)
@@ -135,8 +187,31 @@ def test_released_first_contacts_are_warned_of(slideline):
     assert "Warnings            = 1" in done.stdout
 
 
-def test_step_below_its_floor_is_2(slideline):
-    """A squeezed element wants a smaller step than DTMIN allows."""
+def driven_through(deck, start, drop):
+    """A square of its own, far away, whose one side is driven by `drop` from the time `start` on."""
+    nodes = deck.mesh(*grid(1, 1, 1.0, 1.0, (20.0, 0.0)))
+    deck.curve(7, [(0.0, 0.0), (start, 0.0), (start + 2.0e-4, drop), (1.0, drop)])
+    deck.fix(nodes, y=1).fix(nodes[[0, 2]], x=1)
+    for node in nodes[[1, 3]]:
+        deck.prescribe(node, 1, 2, 7)
+    return deck
+
+
+def test_released_first_contacts_are_told_at_an_error(slideline, tmp_path):
+    """The run ends by an element that turns over in a cycle that writes nothing."""
+    deck = pushed_in(0.12)
+    place = deck.lines.index("*CONTACT_2D_SLIDELINE") + 2
+    deck.lines[place] = "0.001" + deck.lines[place][deck.lines[place].index(","):]
+    done = slideline("d=i", deck=driven_through(deck, 1.55e-3, -3.0))
+    assert done.returncode == 2 and "element" in done.stderr, done.stderr
+    cycle = int(re.search(r"Problem cycle += (\d+)", done.stdout)[1])
+    assert cycle not in numbers(tmp_path / "i" / "job.glstat.csv", "cycle")
+    assert len(re.findall(r"warning: interface 1: \d+ first contacts were deeper", done.stderr)) == 1
+    assert "Warnings            = 1" in done.stdout
+
+
+def test_step_below_its_floor_is_2(slideline, tmp_path):
+    """A squeezed element wants a smaller step than DTMIN allows. Its state is sound and is written."""
     deck = Deck("squeezed")
     deck.add("*CONTROL_TERMINATION", (1.0, 0, 0.5)).add("*CONTROL_TIMESTEP", (0.0, 0.9))
     deck.part().elastic(1.0e4, 1.0e6, 0.3)
@@ -145,9 +220,21 @@ def test_step_below_its_floor_is_2(slideline):
     deck.fix(nodes, y=1).fix(nodes[[0, 2]], x=1)
     for node in nodes[[1, 3]]:
         deck.prescribe(node, 1, 2, 1)
-    done = slideline("d=x", deck=deck)
+    done = slideline("d=x", deck=deck.output(plot=0.1, glstat=0.1, matsum=1.0))
     assert done.returncode == 2
     assert "DTMIN" in done.stderr
+    assert ERROR in done.stdout
+    cycle = int(re.search(r"Problem cycle += (\d+)", done.stdout)[1])
+    time_text = re.search(r"Problem time += +(\S+)", done.stdout)[1]
+    assert numbers(tmp_path / "x" / "job.glstat.csv", "cycle")[-1] == cycle
+    for table in ("glstat", "matsum"):
+        last = numbers(tmp_path / "x" / f"job.{table}.csv", "time")[-1]
+        assert last == pytest.approx(float(time_text), rel=1e-8)
+    row = {name: numbers(tmp_path / "x" / "job.glstat.csv", name)[-1] for name in ("dt", "energy_ratio")}
+    assert 0.0 < row["dt"] < 0.5 * numbers(tmp_path / "x" / "job.glstat.csv", "dt")[0]
+    assert row["energy_ratio"] == pytest.approx(1.0, abs=0.01)
+    with h5py.File(tmp_path / "x" / "job.vtkhdf") as stream:
+        assert stream["VTKHDF/Steps/Values"][-1] == last
 
 
 def test_step_above_the_stable_one_is_not_used(slideline, tmp_path):
@@ -165,10 +252,10 @@ def test_folder_that_is_a_file_is_3(slideline, tmp_path):
     assert (tmp_path / "taken").read_text() == "a file\n"
 
 
-def start_long_run(exe, tmp_path):
+def start_long_run(exe, tmp_path, before=()):
     (tmp_path / "long.k").write_text(drop(end_time=1.0e4).text())
-    process = subprocess.Popen([exe, "i=long.k", "d=out", "dt=1.0e-4"], cwd=tmp_path, text=True,
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process = subprocess.Popen([*before, exe, "i=long.k", "d=out", "dt=1.0e-4"], cwd=tmp_path, text=True,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     path = tmp_path / "out" / "long.glstat.csv"
     for _ in range(100):
         time.sleep(0.1)
@@ -178,9 +265,10 @@ def start_long_run(exe, tmp_path):
     pytest.fail("the run wrote nothing in ten seconds")
 
 
-def test_terminated_is_4(exe, tmp_path):
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_terminated_is_4(exe, tmp_path, number):
     process = start_long_run(exe, tmp_path)
-    process.send_signal(signal.SIGTERM)
+    process.send_signal(number)
     stdout, stderr = process.communicate(timeout=20)
     assert process.returncode == 4, stderr
     assert re.search(r"\*\*\* stopped on request \(exit status 4\) before the termination time "
@@ -190,6 +278,16 @@ def test_terminated_is_4(exe, tmp_path):
         steps = stream["VTKHDF/Steps"]
         last = numbers(tmp_path / "out" / "long.glstat.csv", "time")[-1]
         assert steps["Values"][-1] == last, "the last state is written on the way out"
+
+
+def test_hang_up_under_nohup_is_nothing(exe, tmp_path):
+    process = start_long_run(exe, tmp_path, ["nohup"])
+    process.send_signal(signal.SIGHUP)
+    time.sleep(1.0)
+    assert process.poll() is None
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=20)
+    assert process.returncode == 4
 
 
 def test_killed_run_leaves_files_that_open(exe, tmp_path):

@@ -150,22 +150,27 @@ def timing_table(path):
             in zip(table["phase"], table["seconds"], table["calls"])}
 
 
-def check_interfaces(rows, count):
+def check_interfaces(rows, ids):
     """Rows by interface add up to their phase, and the rows without a dot to the total."""
-    split = {phase: [rows[f"{phase}.{k}"] for k in range(1, count + 1)] for phase in CONTACT_PHASES}
+    split = {phase: [rows[f"{phase}.{k}"] for k in ids] for phase in CONTACT_PHASES}
     for phase, parts in split.items():
         assert (sum(t for t, _ in parts), sum(n for _, n in parts)) == rows[phase]
-    assert set(rows) == PHASES | {f"{p}.{k}" for p in CONTACT_PHASES for k in range(1, count + 1)}
+    assert set(rows) == PHASES | {f"{p}.{k}" for p in CONTACT_PHASES for k in ids}
     assert sum(t for phase, (t, _) in rows.items() if "." not in phase and phase != "total") \
         == rows["total"][0]
     return split
 
 
 def test_timing_by_interface(slideline, tmp_path):
+    """Rows are named by the ids of the interfaces, as those of rcforc are."""
     deck = drop(kind=2).contact(3, 2, 7, 2.0e5)
+    for number in (12, 7):
+        place = deck.lines.index("*CONTACT_2D_SLIDELINE")
+        deck.lines[place:place + 1] = ["*CONTACT_2D_SLIDELINE_TITLE", f"{number:10}"]
     done = slideline("d=x", "timing=interface", deck=deck)
     assert done.returncode == 0, done.stderr
-    split = check_interfaces(timing_table(tmp_path / "x" / "job.timing.csv"), 2)
+    assert set(numbers(tmp_path / "x" / "job.rcforc.csv", "interface")) == {7, 12}
+    split = check_interfaces(timing_table(tmp_path / "x" / "job.timing.csv"), (12, 7))
     cycles = numbers(tmp_path / "x" / "job.glstat.csv", "cycle")[-1] + 1
     assert [n for _, n in split["contact_search"]] == [cycles, cycles]
     # placing the points of type 2 counts as force, that of type 7 is work of its own
@@ -186,7 +191,7 @@ def test_timing_by_interface_of_an_implicit_run(slideline, tmp_path):
         deck.add("*LOAD_NODE_POINT", (int(node), 2, 1, 1.0))
     done = slideline("d=x", "timing=interface", deck=deck)
     assert done.returncode == 0, done.stderr
-    split = check_interfaces(timing_table(tmp_path / "x" / "job.timing.csv"), 2)
+    split = check_interfaces(timing_table(tmp_path / "x" / "job.timing.csv"), (1, 2))
     first, second = split["contact_force"]
     assert first[0] > 0 and second[0] > 0 and first[1] == second[1] > 2
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Disks that are full, folders that cannot be written, names that are taken: status 3, and nothing corrupted."""
 import os
+import re
 import resource
 import shutil
 import signal
@@ -102,6 +103,36 @@ def test_tables_and_log_that_do_not_fit(job):
     assert len(named) > 2 and any("csv" in name for name in named), named
 
 
+def test_tables_that_do_not_fit_end_the_run_soon(job):
+    """Without plot states nothing else asks the tables: the run ends when one fails, not at its end."""
+    folder = job.folder / "soon"
+    folder.mkdir()
+    lines = drop(end_time=20.0).text().replace("*DATABASE_GLSTAT\n0.001,", "*DATABASE_GLSTAT\n1.0e-5,").splitlines()
+    at = lines.index("*DATABASE_BINARY_D3PLOT")
+    (folder / "job.k").write_text("\n".join(lines[:at] + lines[at + 2:]) + "\n")
+    status, said, complaint = run(job, "d=x", folder=folder, limit=150000)
+    assert status == 3 and "job.glstat" in complaint, complaint
+    cycle = int(re.search(r"Problem cycle += (\d+)", said)[1])
+    assert cycle < 2000, said
+    assert "E r r o r" in said and complaint.strip() in said
+
+
+def test_a_restart_whose_states_do_not_fit_tells_it(job):
+    """The copy of the states before the restart fails: the file that has them stays as it is."""
+    folder = job.folder / "copied"
+    shutil.copytree(job.whole, folder)
+    before = (folder / "job.vtkhdf").read_bytes()
+    dump = sorted(folder.glob("job.dump*.h5"))[-1]
+    status, said, complaint = run(job, f"r={dump}", limit=len(before) // 2)
+    assert status == 3 and "job.vtkhdf" in complaint, complaint
+    assert (folder / "job.vtkhdf").read_bytes() == before
+    log = (folder / "job.log").read_text()
+    log = log[log.rindex("command line:"):]
+    for text in (said, log):
+        assert text.count("E r r o r") == 1 and "N o r m a l" not in text and complaint.strip() in text
+    assert "total" in (folder / "job.timing.csv").read_text()
+
+
 @pytest.mark.parametrize("name", [f"job.{kind}" for kind in KINDS] + ["job.vtkhdf.part", "job.runrsf.h5", "job.dump01.h5"])
 def test_a_folder_of_the_name_of_a_file(job, name):
     folder = job.folder / f"taken_{name}"
@@ -127,6 +158,32 @@ def test_a_screen_that_takes_nothing(job):
                               timeout=60, check=False)
         assert done.returncode == 0, redirect
         kill_runs.check_end(job, job.folder / "mute")
+
+
+def run_unread(job, *words, both=False):
+    """Run with a standard output (and error) whose reader has gone; (status, standard error)."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    try:
+        done = subprocess.run([job.exe, *words], cwd=job.folder, stdout=writer, text=True, timeout=60,
+                              stderr=writer if both else subprocess.PIPE, check=False)
+    finally:
+        os.close(writer)
+    return done.returncode, done.stderr
+
+
+@pytest.mark.parametrize("both", [False, True])
+def test_a_reader_that_has_gone(job, both):
+    """As in `| head -1`: the run goes on, and each end has its own status."""
+    shutil.rmtree(job.folder / "unread", ignore_errors=True)
+    assert run_unread(job, "i=job.k", "d=unread", both=both) == (0, None if both else "")
+    kill_runs.check_end(job, job.folder / "unread")
+    (job.folder / "wrong.k").write_text("*KEYWORD\n*NODEX\n*END\n")
+    for words, status in ((["--help"], 0), (["--version"], 0), (["check", "job.k"], 0), (["check", "wrong.k"], 1),
+                          (["check", "job.k", "--json"], 0), (["check", "wrong.k", "--json"], 1), (["wrong.k"], 1)):
+        found, said = run_unread(job, *words, both=both)
+        assert found == status, (words, said)
+        assert both or ("NODEX" in said) == (status == 1), (words, said)
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The implicit method where it must fail: what it says, how it ends, what it leaves."""
+import json
 import math
 import re
 import signal
@@ -127,6 +128,39 @@ def test_inertia_holds_a_free_body(slideline):
     done = slideline("d=x", deck=deck)
     assert done.returncode == 0, done.stderr
     assert NORMAL in done.stdout
+
+
+def overlapping(dynamic, kind=2):
+    """A block that starts 0.004 inside another and reaches 0.02 over its end, and is pressed down."""
+    deck = implicit(1.0, 0.1, dynamic=dynamic).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    lower, upper = deck.mesh(*grid(4, 2)), deck.mesh(*grid(3, 2, 1.0, 1.0, (0.02, 0.996)))
+    deck.fix(lower[:5], x=1, y=1).fix(upper[::4], x=1)
+    deck.node_set(1, upper[:4]).node_set(2, lower[-5:][::-1]).contact(1, 2, kind, 1.0e6)
+    deck.curve(1, [(0.0, -100.0), (1.0, -100.0)])
+    for node in upper[-4:]:
+        deck.add("*LOAD_NODE_POINT", (int(node), 2, 1, 1.0))
+    return deck.output(glstat=0.1).add("*DATABASE_BINARY_D3DUMP", (3,))
+
+
+@pytest.mark.parametrize("dynamic", [False, True])
+def test_contact_at_the_start_is_told_once(slideline, tmp_path, dynamic):
+    """Initial penetration and a node beyond the end of the master: by the run and by its check, not by what goes on."""
+    deck = overlapping(dynamic)
+    done = slideline("d=x", deck=deck)
+    assert done.returncode == 0, done.stderr
+    told = [line.removeprefix("warning: ") for line in done.stderr.splitlines() if "created energy" not in line]
+    assert len(told) == 2, told
+    # Competence length 1/3 of a slave node inside; 1/6 at the first one, whose depth is the same.
+    assert re.search(r"interface 1: initial penetration at 3 points, deepest at node 16: 4\.0+E-03 m, force of that "
+                     r"point 2\.0+E\+03 N/m", told[0]), told
+    assert "slave node 19 stands 2.000000E-02 m beyond the end of the master at node 15" in told[1]
+    log = (tmp_path / "x" / "job.log").read_text()
+    assert [log.count(text) for text in told] == [1, 1]
+    done = slideline("check", "job.k", "--json")
+    assert done.returncode == 0, done.stderr
+    assert [entry["message"] for entry in json.loads(done.stdout)["findings"]] == told
+    done = slideline("r=x/job.dump01.h5")
+    assert done.returncode == 0 and "penetration" not in done.stderr and "stands" not in done.stderr, done.stderr
 
 
 def test_contact_damping_is_warned_of(slideline, tmp_path):

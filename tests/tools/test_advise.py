@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Advice on runs: each check on a small run of its own, built so that one thing is needless."""
+import dataclasses
 import json
 import os
 import subprocess
@@ -152,7 +153,7 @@ def test_run_that_failed_gets_no_advice(runs, tmp_path):
 
 
 def test_contact_time_by_interface(runs):
-    """Shared out by slave nodes, as many on both, or as timed."""
+    """Shared out by slave nodes, as many on both, or as timed, which names the id."""
     run = advise(runs["all"])[0]
     first, second = run.log.interfaces.values()
     assert first.n_slave == second.n_slave
@@ -162,6 +163,8 @@ def test_contact_time_by_interface(runs):
     assert touching.contact_seconds(run, second) == 3.0
     assert touching.contact_seconds(run, second, ("search",)) == 1.0
     assert touching.contact_seconds(run, first) == pytest.approx(shared)
+    run.seconds.update({f"contact_{step}.12": 2.0 for step in ("search", "pairing", "force")})
+    assert touching.contact_seconds(run, dataclasses.replace(first, id=12)) == 6.0
 
 
 def test_run_without_clock_gets_no_advice(runs, tmp_path):

@@ -32,8 +32,7 @@ def slave_rows(run, interface):
 def contact_seconds(run, interface, steps=("search", "pairing", "force")) -> float:
     """Seconds of the contact steps of one interface: as timed (a run with `timing=interface`), or
     shared out by the tracked nodes."""
-    number = list(run.log.interfaces).index(interface.id) + 1
-    timed = [run.seconds.get(f"contact_{step}.{number}") for step in steps]
+    timed = [run.seconds.get(f"contact_{step}.{interface.id}") for step in steps]
     if None not in timed:
         return sum(timed)
 
@@ -76,7 +75,7 @@ def never_touched(run) -> list[Advice]:
             f"leave interface {interface.id} (its *CONTACT_2D... block) out",
             contact_seconds(run, interface) + node_seconds(run, interface),
             ("its contact time" if len(run.log.interfaces) == 1
-             or "contact_search.1" in run.seconds
+             or f"contact_search.{interface.id}" in run.seconds
              else "its share of the contact time by its tracked nodes")
             + ", and what its nodes cost to move"))
     return advice
