@@ -12,9 +12,9 @@ from slideline_tools import UserError
 MESHES = ("3/2", "5/4", "7/5", "2/7", "51/50")
 #: scene -> refinement levels, Gauss points of type 6, what it is
 CONTACT_SCENES = {
-    "collision": ("1 to 4 in the seed", 4, "projectile on a plate, half model"),
-    "sliding": ("1 to 3 in the seed", 6, "die pressed into a plate and drawn along it"),
-    "block": ("1 in the seed", 4, "two soft blocks, explicit or implicit"),
+    "collision": ("1 to 4 in the paper", 4, "projectile on a plate, half model"),
+    "sliding": ("1 to 3 in the paper", 6, "die pressed into a plate and drawn along it"),
+    "block": ("1 in the paper", 4, "two soft blocks, explicit or implicit"),
     "patch": (None, 4, "contact patch test, damped to rest or static"),
     "oblique": (None, 4, "oblique impact of a turned block on a free one"),
     "hertz": ("1 to 8", 4, "elastic cylinder on an elastic block"),
@@ -28,7 +28,8 @@ def add(commands) -> None:
     parser = commands.add_parser(
         "make-deck", help="write the deck of a scene",
         description="Write the keyword deck of a scene. The decks of the folder input are made so; "
-                    "numbers such as the penalty are parameters of the deck, p:NAME=VALUE.")
+                    "numbers such as the penalty are parameters of the deck, p:NAME=VALUE. The "
+                    "paper is that of Kang, Lee & Shin (2023).")
     scenes = parser.add_subparsers(dest="scene", required=True, metavar="SCENE")
     for name, (levels, points, text) in CONTACT_SCENES.items():
         scene = add_scene(scenes, name, text)

@@ -16,10 +16,9 @@ def block_grids(n_slave=51, n_master=50, rows=2):
 def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=False, level=1):
     """The block-to-block scene, explicit or implicit, 200 N_r steps of 1 ms / N_r.
 
-    `n_slave`, `n_master`: quads along each block at level 1, 51 and 50 in the seed. `exchanged`:
+    `n_slave`, `n_master`: quads along each block at level 1, 51 and 50 in the paper. `exchanged`:
     the lower block is the slave; its number of quads is still `n_master`. `implicit`:
-    generalised-alpha, consistent mass and fully integrated quads. `level` = N_r >= 1 (1 in the
-    seed).
+    generalised-alpha, consistent mass and fully integrated quads. `level` = N_r >= 1.
     """
     if level < 1 or level > 8:
         raise ValueError("level of the block scene: 1 to 8")
