@@ -25,8 +25,8 @@ WORDS = re.compile(r"[^\s,]+")
 
 def corpus(largest: int = 60000) -> list[tuple[str, Path]]:
     """Names and paths of the decks that are broken: examples, refused decks, scenes."""
-    folders = ("doc/examples", "tests/rejected", "input/collision", "input/symmetric_plate", "tests/fuzz/decks")
-    found = [path for folder in folders for path in sorted((ROOT / folder).glob("*.k"))]
+    folders = ("doc/examples", "tests/rejected", "input/*", "tests/fuzz/decks")
+    found = [path for folder in folders for path in sorted(ROOT.glob(f"{folder}/*.k"))]
     return [(str(path.relative_to(ROOT)), path) for path in found if path.stat().st_size <= largest]
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from slideline_tools import scenes
 from slideline_tools.decks import Deck, Grid, field, spaced
+from slideline_tools.scenes.patch import MESHES
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WIDTHS = {"NODE": [8, 16, 16], "ELEMENT_SHELL": [8] * 6}
@@ -70,9 +71,13 @@ def test_committed_deck_is_what_the_tool_writes(path, text):
 
 
 def test_no_deck_lies_about_that_nobody_writes():
-    kept = {str(path.relative_to(ROOT / "input")) for scene in ("collision", "symmetric_plate")
-            for path in (ROOT / "input" / scene).glob("*.k")}
+    kept = {str(path.relative_to(ROOT / "input")) for path in (ROOT / "input").rglob("*.k")}
     assert kept == {path for path, _ in DECKS}
+
+
+def test_committed_decks_are_few_and_small():
+    """They come with every clone and every package."""
+    assert sum(len(text) for _, text in DECKS) < 3e6
 
 
 @pytest.mark.parametrize("path, text", DECKS, ids=[path for path, _ in DECKS])
@@ -206,12 +211,6 @@ def test_sliding_with_a_rigid_die():
     np.testing.assert_array_equal(rigid.corners(), elastic.corners())
 
 
-def test_make_deck_with_a_rigid_die(tmp_path, tool):
-    path = tmp_path / "x.k"
-    assert tool("make-deck", "sliding", "--rigid-die", "--output", path).returncode == 0
-    assert path.read_text() == scenes.sliding(rigid_die=True)
-
-
 def test_block():
     model = Model(scenes.block())
     lower, upper = model.corners(1), model.corners(2)
@@ -224,11 +223,24 @@ def test_block():
     assert np.all(model.chain(1)[:, 1] == -0.5) and np.all(model.chain(2)[:, 1] == 0.5)
 
 
-@pytest.mark.parametrize("scene", ["sliding", "block"])
-def test_make_deck_of_the_other_scenes(tmp_path, tool, scene):
-    path = tmp_path / "x.k"
-    assert tool("make-deck", scene, "--ctype", 3, "--output", path).returncode == 0
-    assert Model(path.read_text()).parameters["ctype"] == 3
+@pytest.mark.parametrize("implicit", [False, True])
+def test_level_of_the_block(implicit):
+    coarse, fine = (Model(scenes.block(level=level, implicit=implicit)) for level in (1, 2))
+    assert [len(fine.corners(part)) for part in (1, 2)] == [400, 408]
+    assert np.ptp(fine.corners(2)[:, :, 1]) == 0.5
+    for name, share in (("dt", 0.5), ("pen", 0.5), ("endtim", 1.0), ("v0", 1.0)):
+        assert fine.parameters[name] == share * coarse.parameters[name]
+    with pytest.raises(ValueError, match="level"):
+        scenes.block(level=0)
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+def test_meshes_of_the_patch(mesh):
+    model = Model(scenes.patch(mesh=mesh))
+    assert [len(model.chain(number)) - 1 for number in (3, 4)] == [int(n) for n in mesh.split("/")]
+    assert areas(model.corners()).sum() == pytest.approx(2.0)
+    even = np.ptp(np.diff(model.chain(3)[:, 0])) < 1e-12
+    assert even == (mesh != "7/5")
 
 
 def test_hourglass_choice():
@@ -268,17 +280,3 @@ def test_grid_edges_walk_counter_clockwise():
     assert grid.right.tolist() == [5, 6]
     assert grid.upper.tolist() == [6, 4, 2]
     assert grid.left.tolist() == [2, 1]
-
-
-def test_make_deck_writes_the_committed_deck(tmp_path, tool):
-    path = tmp_path / "new" / "c2.k"
-    assert tool("make-deck", "collision", "--level", 2, "--output", path).returncode == 0
-    assert path.read_text() == (ROOT / "input/collision/collision_2.k").read_text()
-
-
-def test_make_deck_refuses(tmp_path, tool):
-    finished = tool("make-deck", "collision", "--level", 0, "--output", tmp_path / "c.k")
-    assert finished.returncode == 2 and "level" in finished.stderr
-    finished = tool("make-deck", "symmetric_plate", "--nx", 12, "--output", tmp_path / "p.k")
-    assert finished.returncode == 2 and "multiple of 8" in finished.stderr
-    assert not list(tmp_path.iterdir())

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from slideline_tools.scenes.patch import even_lines, patch_grids, relaxation
+from slideline_tools.scenes.patch import even_lines, patch_grids, relaxation, uneven_lines
 from slideline_tools.studies import patch
 
 
@@ -33,8 +33,8 @@ def test_meshes_cover_the_metre_and_do_not_match(layout):
 
 
 def test_uneven_lines_keep_the_ends():
-    assert np.array_equal(patch.uneven_lines(5, 0.0), even_lines(5))
-    assert np.ptp(np.diff(patch.uneven_lines(5, 0.3))) > 0.1
+    assert np.array_equal(uneven_lines(5, 0.0), even_lines(5))
+    assert np.ptp(np.diff(uneven_lines(5, 0.3))) > 0.1
 
 
 def test_names_and_percentages():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The command `slideline-tools`: info, plot, animate, compare, advise, make-deck and bless are here,
-the other commands in the package `commands`."""
+"""The command `slideline-tools`: info, plot, animate, compare, advise and bless are here, the other
+commands in the package `commands`."""
 import argparse
 import dataclasses
 import os
@@ -12,6 +12,7 @@ from slideline_tools import UserError, __version__
 from slideline_tools.commands import completion, help_texts
 from slideline_tools.commands import draw as draw_command
 from slideline_tools.commands import dyna as dyna_command
+from slideline_tools.commands import make_deck as make_deck_command
 from slideline_tools.commands import report as report_command
 
 OK, FAILED, UNUSABLE = 0, 1, 2
@@ -20,74 +21,6 @@ NO_READER = 141  # what a shell gives for a program that SIGPIPE ends
 
 class ToolError(UserError):
     """A request that cannot be met; the text is for the user."""
-
-
-def add_make_deck(commands):
-    parser = commands.add_parser(
-        "make-deck", help="write the deck of a scene",
-        description="Write the keyword deck of a scene.")
-    scenes = parser.add_subparsers(dest="scene", required=True, metavar="SCENE")
-    for name, levels, points, text in (
-            ("collision", "1 to 4 in the seed", 4, "projectile on a plate, half model"),
-            ("sliding", "1 to 3 in the seed", 6, "die pressed into a plate and drawn along it"),
-            ("block", None, 4, "two soft blocks, explicit or implicit"),
-            ("patch", None, 4, "contact patch test, damped to rest or static"),
-            ("oblique", None, 4, "oblique impact of a turned block on a free one"),
-            ("hertz", "1 to 8", 4, "elastic cylinder on an elastic block")):
-        scene = scenes.add_parser(name, help=text)
-        scene.set_defaults(run=make_contact_scene, level=None)
-        if levels:
-            scene.add_argument("--level", type=int, help=f"refinement N_r, {levels} (1)")
-        scene.add_argument("--ctype", type=int, default=2, help="contact type in the deck (2)")
-        scene.add_argument("--ngauss", type=int, default=points,
-                           help=f"Gauss points of type 6 ({points})")
-        scene.add_argument("--exchanged", action="store_true",
-                           help="slave and master surface exchanged")
-        if name in ("patch", "hertz"):
-            scene.add_argument("--static", action="store_true",
-                               help="static steps of the implicit method, not damping to rest")
-        if name == "block":
-            scene.add_argument("--implicit", action="store_true",
-                               help="implicit dynamics instead of the explicit method")
-        if name == "sliding":
-            scene.add_argument("--rigid-die", action="store_true",
-                               help="the die is a rigid body, not elastic")
-        scene.add_argument("--output", "-o", required=True, help="deck file to write")
-    scene = scenes.add_parser("symmetric_plate", help="plate on two pins under a step load")
-    scene.add_argument("--nx", type=int, default=8, help="elements along 8 m, a multiple of 8")
-    scene.add_argument("--ny", type=int, default=4, help="elements through 1 m, even")
-    scene.add_argument("--elastoplastic", action="store_true", help="yield stress 10 MPa")
-    scene.add_argument("--hourglass", choices=("viscous", "stiffness"), default="viscous")
-    scene.add_argument("--coefficient", type=float, help="hourglass coefficient "
-                       "(0.1 viscous, 0.05 stiffness)")
-    scene.add_argument("--output", "-o", required=True, help="deck file to write")
-    scene.set_defaults(run=make_symmetric_plate)
-
-
-def make_contact_scene(options):
-    from slideline_tools import scenes
-    named = {} if options.level is None else {"level": options.level}
-    named |= {name: True for name in ("static", "implicit", "rigid_die") if getattr(options, name, False)}
-    return write_deck(options, getattr(scenes, options.scene), ctype=options.ctype,
-                      ngauss=options.ngauss, exchanged=options.exchanged, **named)
-
-
-def make_symmetric_plate(options):
-    from slideline_tools import scenes
-    return write_deck(options, scenes.symmetric_plate, options.nx, options.ny,
-                      options.elastoplastic, options.hourglass, options.coefficient)
-
-
-def write_deck(options, scene, *arguments, **named):
-    try:
-        text = scene(*arguments, **named)
-    except ValueError as problem:
-        raise ToolError(str(problem)) from problem
-    path = pathlib.Path(options.output)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="ascii")
-    print(f"wrote {path}")
-    return OK
 
 
 def add_info(commands):
@@ -277,8 +210,8 @@ def build_parser():
     parser.add_argument("--version", action="version", version=f"slideline-tools {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for add in (add_info, add_plot, add_animate, add_compare, add_advise, report_command.add,
-                draw_command.add, dyna_command.add_binout, dyna_command.add_d3plot, add_make_deck,
-                add_bless, completion.add):
+                draw_command.add, dyna_command.add_binout, dyna_command.add_d3plot,
+                make_deck_command.add, add_bless, completion.add):
         add(commands)
     help_texts.add_examples(parser, commands)
     return parser

@@ -69,6 +69,7 @@ With lasso-python: Binout("binout0000").as_df("rcforc", "y_force").""",
 
   slideline-tools make-deck collision --level 2 -o collision_2.k
   slideline-tools make-deck hertz --static -o hertz.k
+  slideline-tools make-deck patch --mesh 7/5 --penalty 1e4 -o patch.k
   slideline-tools make-deck SCENE --help""",
     "bless": """Example:
 

@@ -16,9 +16,21 @@ __all__ = ["block", "block_grids", "collision", "collision_grids", "committed_de
 def committed_decks():
     """Path below `input/` and text of every deck kept in the repository."""
     for level in (1, 2, 3, 4):
-        suffix = "" if level == 1 else f"_{level}"
-        yield f"collision/collision{suffix}.k", collision(level)
+        yield f"collision/collision{suffix(level)}.k", collision(level)
+    for level in (1, 2, 3):
+        yield f"sliding/sliding{suffix(level)}.k", sliding(level)
+    for level in (1, 2):
+        yield f"block/block{suffix(level)}.k", block(level=level)
+        yield f"block/block_implicit{suffix(level)}.k", block(level=level, implicit=True)
+    for mesh in ("3/2", "5/4", "7/5", "51/50"):
+        yield f"patch/patch_{mesh.replace('/', '_')}.k", patch(mesh=mesh)
+    yield "hertz/hertz.k", hertz()
     for n_x, n_y in ((8, 4), (16, 8), (32, 16)):
         for law in ("elastic", "elastoplastic"):
             yield (f"symmetric_plate/plate_{n_x}x{n_y}_{law}.k",
                    symmetric_plate(n_x, n_y, elastoplastic=law == "elastoplastic"))
+
+
+def suffix(level):
+    """What the file name of a deck says of its level."""
+    return "" if level == 1 else f"_{level}"

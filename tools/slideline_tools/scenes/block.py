@@ -5,26 +5,35 @@ from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, 
                                            part, plane_strain, roles, slideline)
 
 
-def block_grids(n_slave=51, n_master=50):
-    """Lower (master) and upper (slave) block, so many quads wide."""
-    lower = Grid(spaced((0.0, 10.0, n_master)), spaced((-0.5, 0.0, 2)))
-    upper = Grid(spaced((0.0, 10.0, n_slave)), spaced((0.0, 0.5, 2)),
+def block_grids(n_slave=51, n_master=50, rows=2):
+    """Lower (master) and upper (slave) block, so many quads wide and high."""
+    lower = Grid(spaced((0.0, 10.0, n_master)), spaced((-0.5, 0.0, rows)))
+    upper = Grid(spaced((0.0, 10.0, n_slave)), spaced((0.0, 0.5, rows)),
                  first_node=10001, first_element=10001)
     return lower, upper
 
 
-def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=False):
-    """The block-to-block scene, explicit or implicit, 200 steps of 1 ms.
+def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=False, level=1):
+    """The block-to-block scene, explicit or implicit, 200 N_r steps of 1 ms / N_r.
 
-    `n_slave`, `n_master`: quads along each block, 51 and 50 in the seed. `exchanged`: the lower
-    block is the slave; its number of quads is still `n_master`. `implicit`: generalised-alpha, consistent mass and fully integrated quads.
+    `n_slave`, `n_master`: quads along each block at level 1, 51 and 50 in the paper. `exchanged`:
+    the lower block is the slave; its number of quads is still `n_master`. `implicit`:
+    generalised-alpha, consistent mass and fully integrated quads. `level` = N_r >= 1.
     """
-    lower, upper = block_grids(n_slave, n_master)
-    deck = Deck("block-to-block contact" + (" exchanged" if exchanged else ""), [
+    if level < 1 or level > 8:
+        raise ValueError("level of the block scene: 1 to 8")
+    lower, upper = block_grids(n_slave * level, n_master * level, 2 * level)
+    deck = Deck("block-to-block contact" + (" implicit" if implicit else "") + f" N_r = {level}"
+                + (" exchanged" if exchanged else ""), [
         "The upper of two soft blocks is pressed upon the lower one at 50 mm/s; their meshes "
-        "do not match. SI units (m, kg, s, N, Pa), plane strain, per metre of depth.",
+        "do not match. SI units (m, kg, s, N, Pa), plane strain, per metre of depth. "
+        + ("Implicit dynamics." if implicit else "Explicit dynamics."),
         "",
-        "Dimensions not given by the text of Kang, Lee & Shin (2023), so ours: each block 10 m x 0.5 m.",
+        f"Refinement level N_r = {level}: all cell and step counts times N_r, time step and "
+        "penalty divided by it.",
+        "",
+        "Dimensions not given by the text of Kang, Lee & Shin (2023), so ours: each block "
+        "10 m x 0.5 m.",
         "",
         "Result: contact pressure along the slave surface at 0.2 s.",
     ])
@@ -32,10 +41,10 @@ def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=
     deck.parameters(
         ("ctype", ctype, "contact type: " + CONTACT_TYPES),
         ("ngauss", ngauss, "Gauss points of a slave segment: type 6 only"),
-        ("pen", 1.0e6, "penalty of a contact node in N/m"),
+        ("pen", 1.0e6 / level, "penalty of a contact node in N/m: 1 MN/m over N_r"),
         ("v0", -0.05, "velocity of the upper face in y in m/s"),
-        ("dt", 1.0e-3, "time step in s"),
-        ("endtim", 0.2, "end time in s: 200 steps"))
+        ("dt", 1.0e-3 / level, "time step in s: 1 ms over N_r"),
+        ("endtim", 0.2, f"end time in s: {200 * level} steps"))
     deck.block("When to stop, and " + ("implicit dynamics in constant steps." if implicit else
                "a constant time step (the curve LCTM caps the step)."))
     deck.keyword("CONTROL_TERMINATION")
@@ -47,8 +56,8 @@ def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=
     energies_on(deck)
     deck.block("Output: energies and contact force at each step, a state each 10 ms.")
     deck.database(glstat="&dt", rcforc="&dt", matsum=0.01, binary_d3plot=0.01)
-    deck.block(f"Two bodies of {'fully integrated' if implicit else 'one-point'} plane-strain quads "
-               "(ELFORM 13), one material.")
+    deck.block(f"Two bodies of {'fully integrated' if implicit else 'one-point'} plane-strain "
+               "quads (ELFORM 13), one material.")
     part(deck, 1, "lower block", 1, 1)
     part(deck, 2, "upper block", 1, 1)
     plane_strain(deck, 1, 4 if implicit else 1)
@@ -66,8 +75,8 @@ def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=
     deck.node_set(3, f"{first}: lower face of the upper block", upper.lower)
     deck.node_set(4, f"{second}: upper face of the lower block", lower.upper)
     slideline(deck, 3, 4, exchanged)
-    deck.block(f"Mesh of the lower block: {n_master} x 2 quads.")
+    deck.block(f"Mesh of the lower block: {n_master * level} x {2 * level} quads.")
     lower.write(deck, 1)
-    deck.block(f"Mesh of the upper block: {n_slave} x 2 quads.")
+    deck.block(f"Mesh of the upper block: {n_slave * level} x {2 * level} quads.")
     upper.write(deck, 2)
     return deck.text()

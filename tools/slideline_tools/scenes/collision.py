@@ -22,7 +22,7 @@ def collision_grids(level):
 def collision(level=1, ctype=2, ngauss=4, exchanged=False):
     """A steel projectile hits an aluminium plate; half model.
 
-    `level` = N_r >= 1 (1 to 4 in the seed): cells and steps times N_r, step and penalty over N_r.
+    `level` = N_r >= 1 (1 to 4 in the paper): cells and steps times N_r, step and penalty over N_r.
     `exchanged`: the plate is the slave.
     """
     if level < 1 or level > 8:

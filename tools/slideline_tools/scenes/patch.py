@@ -17,6 +17,23 @@ def even_lines(n):
     return spaced((0.0, 1.0, n))
 
 
+def uneven_lines(n, skew):
+    """n quads over 1 m with the inner lines moved alternately by parts of a quad."""
+    x = even_lines(n)
+    inner = np.arange(1, n)
+    x[1:-1] += skew / n * np.where(inner % 2 == 1, 1.0, -0.6)
+    return x
+
+
+MESHES = {  # quads above (slave) / below (master): lines of both, rows of each block
+    "3/2": (even_lines(3), even_lines(2), None),
+    "5/4": (even_lines(5), even_lines(4), None),
+    "7/5": (uneven_lines(7, 0.35), uneven_lines(5, -0.3), None),
+    "2/7": (even_lines(2), even_lines(7), None),
+    "51/50": (even_lines(51), even_lines(50), 2),
+}
+
+
 def patch_grids(upper_lines=None, lower_lines=None, rows=None):
     """Lower and upper block of 1 m x 1 m, columns at the given lines (4 and 5 even ones).
 
@@ -46,16 +63,20 @@ def relaxation(lower, upper, penalty):
     return float(2.0 * slowest), float(end / np.ceil(end / step)), float(end)
 
 
-def patch(ctype=2, ngauss=4, exchanged=False, penalty=1.0e6, grids=None, static=False):
-    """The contact patch test, meshes 5 / 4 or `grids` as from patch_grids.
+def patch(ctype=2, ngauss=4, exchanged=False, penalty=1.0e6, grids=None, static=False, mesh="5/4"):
+    """The contact patch test with a mesh of MESHES, or `grids` as from patch_grids.
 
     `exchanged`: the lower block is the slave; `penalty` in N/m per contact node; `static`: one
     static step of the implicit method with fully integrated quads, instead of damping to rest.
     """
-    lower, upper = grids or patch_grids()
-    deck = Deck("contact patch test" + (" static" if static else "")
+    if not 0.0 < penalty < np.inf:
+        raise ValueError("penalty of the patch scene: a positive number")
+    lower, upper = grids or patch_grids(*MESHES[mesh])
+    columns = " / ".join(str(len(grid.lower) - 1) for grid in (upper, lower))
+    deck = Deck(f"contact patch test {columns}" + (" static" if static else "")
                 + (" exchanged" if exchanged else ""), [
-        "Two blocks of 1 m x 1 m with non-matching meshes under a pressure of 1 Pa, "
+        f"Two blocks of 1 m x 1 m with non-matching meshes, {columns} quads along the interface "
+        "(upper / lower block), under a pressure of 1 Pa, "
         + ("in static equilibrium" if static else "damped to rest") + ". SI "
         "units (m, kg, s, N, Pa), plane strain, per metre of depth.",
         "",

@@ -39,7 +39,7 @@ def stroke(start, end, distance):
 
 
 def sliding(level=1, ctype=2, ngauss=6, exchanged=False, rigid_die=False):
-    """The sliding scene ("ironing"); `level` = N_r >= 1 (1 to 3 in the seed).
+    """The sliding scene ("ironing"); `level` = N_r >= 1 (1 to 3 in the paper).
 
     `exchanged`: the plate is the slave. `rigid_die`: the die is a rigid body, moved as a whole.
     """

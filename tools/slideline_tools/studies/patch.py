@@ -15,7 +15,7 @@ from slideline_tools import UserError
 from slideline_tools.histories import read_csv
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.results import read
-from slideline_tools.scenes.patch import even_lines, patch, patch_grids
+from slideline_tools.scenes.patch import MESHES, patch, patch_grids
 from slideline_tools.studies.common import (colour, decks_and_page_main, label, markdown_table,
                                             save_small, write_page)
 
@@ -24,21 +24,12 @@ FEW = tuple(10.0 ** k for k in range(3, 9))
 PICTURED, PICTURED_PENALTY = "7_5", 1.0e6
 
 
-def uneven_lines(n, skew):
-    """n quads over 1 m with the inner lines moved alternately by parts of a quad."""
-    x = even_lines(n)
-    inner = np.arange(1, n)
-    x[1:-1] += skew / n * np.where(inner % 2 == 1, 1.0, -0.6)
-    return x
-
-
 LAYOUTS = {  # title, lines above (slave) and below (master), rows, penalties
-    "3_2": ("3 / 2", even_lines(3), even_lines(2), None, ALL),
-    "5_4": ("5 / 4", even_lines(5), even_lines(4), None, ALL),
-    "7_5": ("7 / 5, non-uniform", uneven_lines(7, 0.35), uneven_lines(5, -0.3), None, ALL),
-    "2_7": ("2 / 7: slave segments over three and four master segments", even_lines(2),
-            even_lines(7), None, ALL),
-    "51_50": ("51 / 50 (two rows of quads)", even_lines(51), even_lines(50), 2, FEW),
+    "3_2": ("3 / 2", *MESHES["3/2"], ALL),
+    "5_4": ("5 / 4", *MESHES["5/4"], ALL),
+    "7_5": ("7 / 5, non-uniform", *MESHES["7/5"], ALL),
+    "2_7": ("2 / 7: slave segments over three and four master segments", *MESHES["2/7"], ALL),
+    "51_50": ("51 / 50 (two rows of quads)", *MESHES["51/50"], FEW),
 }
 
 
@@ -132,8 +123,9 @@ Two blocks of 1 m x 1 m (E = 1 MPa, nu = 0) with non-matching meshes, a uniform 
 upper face, the lower face at rest (u_y = 0), u_x = 0 at one node of each of these faces; the scene of section 2
 of Kang, Lee & Shin (2023). The upper block is the slave. Type 6 has 4 points. The explicit program runs with mass
 damping until exp(-{surviving:g}) of the motion is left, with the stiffness form of hourglass control (0.1). Decks:
-`slideline-tools make-deck patch` is the 5 / 4 one. The static solution of types 1, 2, 3 and 6 is checked by
-an independent computation in `tests/verification/contact_patch_explicit`, and so is an inclined interface.
+`slideline-tools make-deck patch --mesh 7/5 --penalty 1e4` and the like; those of 1 MN/m are in `input/patch`, but
+for 2 / 7. The static solution of types 1, 2, 3 and 6 is checked by an independent computation in
+`tests/verification/contact_patch_explicit`, and so is an inclined interface.
 
 Largest deviation |p/p0 - 1| of the nodal pressure (contact force over half the neighbouring segments) on the
 slave side / on the master side in per cent, by the penalty eps in N/m. The stiffness of a 1 m x 1 m block is
