@@ -4,6 +4,7 @@ module implicit_start_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_solver
   use contact_check_m, only : report_contact_start
+  use contact_penalty_m, only : stored_energy
   use element_mass_m, only : add_mass, mass_times
   use equations_m, only : equations_t, number_equations, take_free
   use errors_m, only : error_t, raise, status_run
@@ -127,6 +128,7 @@ contains
     type(monitor_t), intent(inout) :: monitor
     type(march_t), intent(inout) :: march
     type(error_t), allocatable, intent(out) :: error
+    integer :: i
 
     allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
     if (march%step%is_dynamic) then
@@ -137,6 +139,10 @@ contains
     call start_trial(model, state, march%trial)
     call assemble_forces(model, state, 0.0_wp, .false., monitor%clock, march%trial)
     state%contacts = march%trial%contacts
+    ! Springs loaded at time zero hold energy that no force has put in.
+    do i = 1, size(state%contacts)
+      state%contacts(i)%energy = stored_energy(state%contacts(i)%points)
+    end do
     march%step%old_force = net_force(march%trial)
     if (march%step%is_dynamic) call find_first_acceleration(model, monitor, march%step, state, &
       error)
