@@ -90,19 +90,23 @@ contains
       if (entry%per_cent < 0.0_wp) call refuse(of_damping, 'is negative')
       if (entry%per_cent > most_damping) call refuse(of_damping, &
         'is not a damping in per cent of critical (at most 1e6)')
-      if (contact%penalty_unit == penalty_share .and. contact%penalty > 1.0_wp) then
-        if (origins%commanded(of_penalty) .or. origins%commanded(of_unit)) then
-          call line_error(deck, 0, 'with the command line the penalty "' &
-            //to_text(contact%penalty)//'" is not a share of the largest stable one (punit=3: ' &
-            //'pen= above 0, at most 1)')
-        else
-          call refuse(of_penalty, &
-            'is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)')
-        end if
-      end if
+      if (contact%penalty_unit == penalty_share .and. contact%penalty > 1.0_wp) call refuse_share()
     end associate
 
   contains
+
+    !> A penalty that is no share: PEN and PUNIT may come from different places.
+    subroutine refuse_share()
+
+      if (origins%commanded(of_penalty) .or. origins%commanded(of_unit)) then
+        call line_error(deck, 0, 'with the command line the penalty "' &
+          //to_text(entry%contact%penalty)//'" is not a share of the largest stable one ' &
+          //'(punit=3: pen= above 0, at most 1)')
+      else
+        call refuse(of_penalty, &
+          'is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)')
+      end if
+    end subroutine refuse_share
 
     !> An error of a value where it was given.
     subroutine refuse(k, message)

@@ -33,7 +33,8 @@ module deck_lines_m
   type :: block_t
     character(80) :: name = ''           !! upper case, without asterisk, options and marks; longer
                                          !! than all that are known, so a cut one is not known
-    character(:), allocatable :: given   !! the same with the options, never cut
+    character(:), allocatable :: given   !! the same with the options, never cut but where the line
+                                         !! is too long, which is an error
     character(:), allocatable :: rest    !! what follows the name on its line
     integer :: source = 0
     integer :: keyword = 0               !! line of the keyword

@@ -78,7 +78,9 @@ contains
       if (deck%sources(source)%text(start:start) == '*' .and. last >= start) then
         if (in_block) call close_block(deck, source, depth, folders)
         call add_line(deck, start, last, number, flags)
-        call open_block(deck, source, deck%sources(source)%text(start + 1:last))
+        call open_block(deck, source, deck%sources(source)%text(start + 1:min(last, &
+          start + line_length - 1)))
+        call limit_line(deck)
         in_block = .true.
         if (deck%blocks(deck%n_block)%name == 'KEYWORD') then
           call file_options(deck%blocks(deck%n_block)%rest, deck%sources(source)%layout)
@@ -108,13 +110,22 @@ contains
     if (deck%blocks(deck%n_block)%name == 'COMMENT') return
     call add_line(deck, first, last, number, flags)
     deck%blocks(deck%n_block)%last = deck%n_line
-    if (last - first + 1 <= line_length) return
-    if (len_trim(deck%sources(deck%blocks(deck%n_block)%source)%text(first:last)) <= line_length) &
-      return
-    call line_error(deck, deck%n_line, 'the line is longer than '//to_text(line_length) &
-      //' columns')
-    deck%last(deck%n_line) = first + line_length - 1
+    call limit_line(deck)
   end subroutine keep_line
+
+  !> The last line may not be too long.
+  subroutine limit_line(deck)
+    type(deck_t), intent(inout) :: deck
+
+    associate (first => deck%first(deck%n_line), last => deck%last(deck%n_line))
+      if (last - first + 1 <= line_length) return
+      if (len_trim(deck%sources(deck%blocks(deck%n_block)%source)%text(first:last)) <= &
+        line_length) return
+      call line_error(deck, deck%n_line, 'the line is longer than '//to_text(line_length) &
+        //' columns')
+      deck%last(deck%n_line) = first + line_length - 1
+    end associate
+  end subroutine limit_line
 
   !> The block is complete: an include puts its files here.
   recursive subroutine close_block(deck, source, depth, folders)

@@ -175,6 +175,15 @@ def test_keyword_of_any_length_is_named_whole(said):
     name = "NO_SUCH_" + 112 * "X"
     status, text = said(with_cards("*" + name))
     assert status == 1 and f"*{name}: is not a keyword" in text
+    status, text = said(with_cards("*CONTROL_ENERGY" + 700 * " "))
+    assert status == 0, text
+
+
+def test_keyword_line_that_is_too_long_is_refused(said):
+    """A name of a megabyte does not take the memory and the time of a thousand copies; nor is an option dropped."""
+    for line in ("*N" + 1000000 * "O", "*KEYWORD" + 600 * " " + "LONG=Y"):
+        status, text = said(with_cards(line))
+        assert status == 1 and "the line is longer than 512 columns" in text and len(text) < 5000
 
 
 def test_folder_of_any_length_is_searched(said, tmp_path):
