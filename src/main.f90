@@ -6,6 +6,7 @@ program slideline
   use check_m, only : check_deck
   use arguments_m, only : arguments_t, read_arguments, help_text
   use build_info_m, only : version, build_type, compiler, flags, solvers
+  use endings_m, only : watch_end, announce_end
   use errors_m, only : error_t
   use files_m, only : fill_standard_streams
   use progress_m, only : error_ending
@@ -28,6 +29,7 @@ program slideline
   integer :: ignored
   logical :: has_ended = .true. !! no end is left to be told
 
+  call watch_end()
   call fill_standard_streams()
   call ignore_closed_pipes()
   call read_arguments(arguments, error)
@@ -36,13 +38,15 @@ program slideline
       write (output_unit, '(a)', iostat=ignored) help_text()
     else if (arguments%version) then
       write (output_unit, '(a)', iostat=ignored) 'slideline '//version//' (source ' &
-        //source_version//')', 'build '//build_type//', '//compiler, 'flags '//flags, 'linear solvers '//solvers
+        //source_version//')', 'build '//build_type//', '//compiler, 'flags '//flags, &
+        'linear solvers '//solvers
     else if (arguments%check) then
       call check_deck(arguments, error)
     else
       call run_deck(arguments, has_ended, error)
     end if
   end if
+  call announce_end()
   if (allocated(error)) then
     write (error_unit, '(a)', iostat=ignored) error%message
     flush (error_unit, iostat=ignored)

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Requests from outside (SIGTERM, SIGINT and SIGHUP: stop, SIGUSR1: restart file, SIGUSR2: plot
 !> state) and the question whether a person watches. A signal handler has no argument to carry a
-!> state, so this module holds the only saved variable of the program.
+!> state, so that it is saved here.
 module signals_m
   use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
   implicit none

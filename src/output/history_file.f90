@@ -13,9 +13,9 @@ module history_file_m
   use dyna_text_m, only : open_dyna_text
   implicit none
   private
-  public :: histories_t, open_histories, check_histories, flush_histories, close_histories, n_table, table_glstat, &
-    table_rcforc, table_nodout, table_contact, table_matsum, table_rwforc, table_sleout, &
-    table_spcforc
+  public :: histories_t, open_histories, check_histories, flush_histories, close_histories, &
+    n_table, table_glstat, table_rcforc, table_nodout, table_contact, table_matsum, table_rwforc, &
+    table_sleout, table_spcforc
 
   integer, parameter :: n_table = 8
   integer, parameter :: table_glstat = 1, table_rcforc = 2, table_nodout = 3, table_contact = 4, &

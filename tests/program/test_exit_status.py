@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Exit codes 0 to 4, what is said, and what is left on disk."""
 import re
+import resource
 import signal
 import subprocess
 import time
@@ -303,6 +304,27 @@ def test_killed_run_leaves_files_that_open(exe, tmp_path):
         assert len(steps["Values"]) == count
         assert len(stream["VTKHDF/Points"]) >= count * int(stream["VTKHDF/NumberOfPoints"][0])
         assert np.all(np.isfinite(stream["VTKHDF/CellData/stress"][:]))
+
+
+def test_memory_that_is_refused_is_no_refused_input(exe, tmp_path):
+    """Address space in growing portions, until the run fits. Below are the loader (127), a deck that can not be held, as
+    the message says, and a stack that may not grow (SIGSEGV)."""
+    if "-fsanitize" in subprocess.run([exe, "--version"], capture_output=True, text=True, check=True).stdout:
+        pytest.skip("sanitisers take their address space first")
+    deck = Deck("large").control(1.0e-5).part().elastic(1000.0, 1.0e6, 0.3)
+    deck.mesh(*grid(250, 250))
+    (tmp_path / "job.k").write_text(deck.text())
+    found = []
+    for limit in range(24, 2000, 4):
+        done = subprocess.run([exe, "i=job.k"], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60,
+                              preexec_fn=lambda size=limit << 20: resource.setrlimit(resource.RLIMIT_AS, (size, size)))
+        found.append(done.returncode)
+        assert done.returncode in (0, 2, 127, -signal.SIGSEGV) or "not enough memory" in done.stderr, (limit, done.stderr)
+        if done.returncode == 2:
+            assert "allocat" in done.stderr and "error termination" in done.stderr, done.stderr
+        if done.returncode == 0:
+            break
+    assert 2 in found and found[-1] == 0, found
 
 
 def test_many_errors_in_one_pass(slideline, tmp_path):
