@@ -280,7 +280,7 @@ contains
       '  perthread=N   elements for each of several threads, at least (default 300)'//n// &
       '  timing=HOW    phase: wall clock by phase (default); interface: contact phases of each'//n// &
       '                interface too; off: the total alone'//n// &
-      '  memory=...    accepted and ignored'//n//n// &
+      '  memory=...    and memory2=...: accepted and ignored'//n//n// &
       'overrides, for sweeps:'//n// &
       '  ctype=T ngauss=N pen=P      contact of every interface; ctype.2=T of interface 2'//n// &
       '  punit=U pent=P vdc=D        unit of the penalty, that of the master pass, damping'//n// &
@@ -289,7 +289,8 @@ contains
       'results: JOB.vtkhdf (ParaView), JOB.*.csv, JOB.log, JOB.effective.k (the deck as run)'//n// &
       'while it runs: status.out (JOB.status.out with jobid=) says how far it is and how long it may take;'//n// &
       'a file DIR/d3kil with sw1 (restart file, stop), sw2 (status line), sw3 (restart file), sw4 (plot'//n// &
-      'state), swa (histories up to date) or stop; signals TERM and INT (stop), USR1 (sw3), USR2 (sw4)'//n// &
+      'state), swa (histories up to date) or stop; signals TERM, INT, HUP and XCPU (stop), USR1 (sw3),'//n// &
+      'USR2 (sw4)'//n// &
       'exit status: 0 normal, 1 refused input, 2 error termination, 3 files, 4 stopped on request'//n// &
       '--version prints the version, compiler and options'
   end function help_text

@@ -50,7 +50,7 @@ contains
       call move_alloc(deck, request%text)
     end if
     if (.not. only_end_time(arguments)) call raise(error, &
-      'when a run goes on the command line may '//'change its end time alone (endtim=)', &
+      'when a run goes on the command line may change its end time alone (endtim=)', &
       status_input)
   end subroutine take_up_deck
 
@@ -78,7 +78,7 @@ contains
       deallocate (request%overrides) ! they are in the text
     else
       call raise(error, 'the restart file '//arguments%restart &
-        //' is refused: it belongs to another '//'deck (checksum '//deck_identity(deck)//') than ' &
+        //' is refused: it belongs to another deck (checksum '//deck_identity(deck)//') than ' &
         //arguments%deck//' ('//deck_identity(request%text)//')', status_input)
     end if
   end subroutine take_whole_deck

@@ -11,7 +11,7 @@ module run_m
   use errors_m, only : error_t, raise, status_stopped
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
-  use files_m, only : make_directory, join_path
+  use files_m, only : make_directory, remove_file, join_path
   use history_file_m, only : close_histories
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use go_on_m, only : take_up_deck
@@ -25,6 +25,7 @@ module run_m
   use restart_m, only : forget_files
   use restart_plan_m, only : restarts_t
   use restart_reading_m, only : take_up_state, take_up_results, take_up_outputs
+  use results_arrays_m, only : unfinished
   use results_file_m, only : run_info_t
   use sense_switch_m, only : forget_switch
   use signals_m, only : catch_signals
@@ -247,7 +248,7 @@ contains
   end subroutine drive
 
   !> The end of a run that could not begin. The results file has no state and does not take its
-  !> name: that of a run before a restart keeps its states.
+  !> name: that of a run before a restart keeps its states. Nor does status.out speak of a run before.
   subroutine give_up(model, prefix, state, monitor, error)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: prefix
@@ -257,6 +258,9 @@ contains
     type(error_t), allocatable :: ignored
 
     call close_histories(monitor%histories, ignored)
+    if (allocated(monitor%results%path)) &
+      call remove_file(monitor%results%path//unfinished, ignored)
+    call begin_status(model, state, monitor)
     call tell_end(model, prefix, state, '', monitor, error)
   end subroutine give_up
 
@@ -269,10 +273,12 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     type(error_t), allocatable :: problem
     character(:), allocatable :: told
+    integer, allocatable :: interfaces(:) !! their numbers
 
     call lap(monitor%clock, phase_output)
     call look_at_clock(monitor%clock)
-    call write_timing(prefix//'.timing.csv', monitor%clock, model%contacts%id, problem)
+    interfaces = model%contacts%id
+    call write_timing(prefix//'.timing.csv', monitor%clock, interfaces, problem)
     if (.not. allocated(error) .and. allocated(problem)) call move_alloc(problem, error)
     if (.not. allocated(error) .and. allocated(monitor%log%trouble)) error = monitor%log%trouble
     told = reason

@@ -45,20 +45,28 @@ contains
 
   !> From now on these signals only ask for something: SIGTERM, SIGINT, SIGHUP and a used up
   !> processor time (SIGXCPU) for a stop; a file that reaches the largest size allowed (SIGXFSZ) is
-  !> a failed write and no end of the process. SIGHUP stays ignored where it was (nohup).
+  !> a failed write and no end of the process.
   subroutine catch_signals()
     type(c_funptr) :: previous
 
-    previous = c_signal(signal_hang_up, transfer(ignore, c_null_funptr))
-    if (transfer(previous, ignore) /= ignore) &
-      previous = c_signal(signal_hang_up, c_funloc(note_signal))
+    call catch_unless_ignored(signal_hang_up)
+    call catch_unless_ignored(signal_interrupt)
     previous = c_signal(signal_terminate, c_funloc(note_signal))
-    previous = c_signal(signal_interrupt, c_funloc(note_signal))
     previous = c_signal(signal_user_1, c_funloc(note_signal))
     previous = c_signal(signal_user_2, c_funloc(note_signal))
     previous = c_signal(signal_cpu_limit, c_funloc(note_signal))
     previous = c_signal(signal_file_limit, transfer(ignore, c_null_funptr))
   end subroutine catch_signals
+
+  !> A signal that was ignored when the program started stays so: SIGHUP under nohup, SIGINT in a job
+  !> that a script has put behind itself.
+  subroutine catch_unless_ignored(number)
+    integer(c_int), intent(in) :: number
+    type(c_funptr) :: previous
+
+    previous = c_signal(number, transfer(ignore, c_null_funptr))
+    if (transfer(previous, ignore) /= ignore) previous = c_signal(number, c_funloc(note_signal))
+  end subroutine catch_unless_ignored
 
   !> The handler.
   subroutine note_signal(number) bind(c)

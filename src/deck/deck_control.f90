@@ -7,7 +7,7 @@ module deck_control_m
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, reject_field
   use deck_implicit_m, only : take_implicit, take_dynamics, take_spectral_radius, take_solution, &
     take_automatic
   use deck_raw_m, only : raw_t
@@ -114,8 +114,6 @@ contains
       'is negative: the scale of the step is more than 0 (blank and 0 mean 0.9)')
     if (card%i(3) < 0 .or. card%i(3) > 1) call report_field(deck, cursor, card, 3, &
       'is not an element length rule (0 area over longest side, 1 area over longest diagonal)')
-    if (card%i(6) < 0 .and. .not. raw%step_given) call report_field(deck, cursor, card, 6, &
-      'is not a curve number')
     raw%controls%dt_initial = card%r(1)
     raw%controls%dt_scale = 0.9_wp
     if (card%r(2) > 0.0_wp) raw%controls%dt_scale = card%r(2)
@@ -130,13 +128,14 @@ contains
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
 
+    if (raw%dt_curve < 0) call reject_field(deck, raw%dt_curve_place, 'is not a curve number')
     if (raw%controls%dt_scale > 1.0_wp) call line_warning(deck, merge(0, raw%step_line, &
       raw%scale_given), 'tssfac', 'TSSFAC'//trim(merge(' on the command line', &
       '                    ', raw%scale_given))//' is above 1: the run may become unstable')
     if (raw%controls%dt_initial > 0.0_wp .and. raw%dt_curve > 0 .and. &
       .not. raw%controls%implicit%is_on) call line_warning(deck, raw%step_line, 'dtinit', &
-      'DTINIT has no effect: '//trim(merge('dt= on the command line', &
-      'the curve LCTM         ', raw%step_given))//' gives the first step')
+      'DTINIT has no effect beside '//trim(merge('dt= on the command line', &
+      'the curve LCTM         ', raw%step_given)))
   end subroutine check_step
 
   !> *CONTROL_BULK_VISCOSITY: off without the keyword; blank fields of it are LS-DYNA's defaults.

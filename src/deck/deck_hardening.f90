@@ -61,7 +61,7 @@ contains
     type(raw_hardening_t), intent(inout) :: hardening
 
     if (card%r(1) < 0.0_wp) call report_field(deck, cursor, card, 1, &
-      'is negative: the logarithmic '//'rate effect is not part of this law')
+      'is negative: the logarithmic rate effect is not part of this law')
     if (card%r(1) > 0.0_wp .and. .not. card%r(2) > 0.0_wp) &
       call report_field(deck, cursor, card, 2, &
       'is not an exponent (more than 0) for the C beside it')
@@ -97,9 +97,9 @@ contains
       if (abs(strains%r(k)) > 0.0_wp .or. abs(stresses%r(k)) > 0.0_wp) n = k
     end do
     if (n < 2) call report_field(deck, cursor, strains, 2, &
-      'ends the points, of which there must be '//'two or more')
+      'ends the points, of which there must be two or more')
     if (abs(strains%r(1)) > 0.0_wp) call report_field(deck, cursor, strains, 1, &
-      'is not 0: the first '//'point is the initial yield stress')
+      'is not 0: the first point is the initial yield stress')
     do k = 1, n
       if (.not. stresses%r(k) > 0.0_wp) call report_field(deck, cursor, stresses, k, &
         'is not a yield stress (more than 0)')

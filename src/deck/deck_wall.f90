@@ -67,10 +67,10 @@ contains
     arrow = card%r(4:5) - card%r(1:2)
     if (abs(card%r(6) - card%r(3)) > 0.0_wp) then
       call report_field(deck, cursor, card, 6, &
-        'is not ZT: the normal of the wall must lie in the '//'plane of the mesh')
+        'is not ZT: the normal of the wall must lie in the plane of the mesh')
     else if (.not. maxval(abs(arrow)) > 0.0_wp) then
       call report_field(deck, cursor, card, 4, &
-        'with YH gives the tail again: the normal points from '//'tail (XT, YT) to head (XH, YH)')
+        'with YH gives the tail again: the normal points from tail (XT, YT) to head (XH, YH)')
     else
       arrow = arrow/maxval(abs(arrow))
       wall%normal = arrow/norm2(arrow)

@@ -52,7 +52,6 @@ module cycle_m
     real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
     real(wp), allocatable :: displacement(:) !! (n_motion) u(n) of prescribed motions
     character(:), allocatable :: reason      !! what ended the run
-    type(error_t), allocatable :: verdict    !! ends the run once its sound state is written
     type(error_t), allocatable :: error
   end type cycle_t
 
@@ -239,28 +238,14 @@ contains
     call follow_springs(model, state, cycle%steps%springs)
     call next_step(model, minval(cycle%checks%time_limit), monitor%log, state%cycle, cycle%steps, &
       state%time, state%dt)
-    call judge_step(model, state, cycle)
+    if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
+      state%time, state%dt, cycle%error)
+    if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     cycle%finished = allocated(cycle%error)
-    if (.not. (cycle%finished .or. allocated(cycle%verdict))) call heed_requests(state, monitor, &
-      cycle)
+    if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
     call follow_progress(monitor%progress, monitor%clock, state%cycle, .false., state%time, &
       state%dt, cycle%ratio)
   end subroutine end_cycle
-
-  !> A step that is too short, and cycles that can no longer be counted, end the run with the next
-  !> cycle, which writes the state.
-  subroutine judge_step(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(cycle_t), intent(inout) :: cycle
-
-    if (allocated(cycle%error)) return
-    call check_step(model%controls, cycle%steps%first_dt, state%time, state%dt, cycle%verdict)
-    if (.not. allocated(cycle%verdict)) call check_cycle(state%cycle, state%time, cycle%verdict)
-    if (.not. allocated(cycle%verdict)) return
-    cycle%last = .true.
-    if (.not. state%dt > 0.0_wp) cycle%error = cycle%verdict
-  end subroutine judge_step
 
   !> Stop, restart files, states and lines that are due or that someone asks for; for restart files
   !> a stop by a signal counts as an end. The state is that before the next cycle; a run that goes

@@ -52,7 +52,6 @@ contains
     end if
     reason = cycle%reason
     if (allocated(cycle%error)) call move_alloc(cycle%error, error)
-    if (allocated(cycle%verdict)) call move_alloc(cycle%verdict, error)
     call report_contact_end(model, state, monitor%log)
     if (.not. allocated(error)) call judge_energies(monitor%snapshot%energies, monitor%log)
   end subroutine advance_explicit

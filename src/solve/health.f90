@@ -191,7 +191,7 @@ contains
 
     if (cycle < huge(cycle)) return
     call raise(error, 'cycle '//to_text(cycle)//' at time '//to_text(time) &
-      //' is the last that can be '//'counted: a run has to end before', status_run)
+      //' is the last that can be counted: a run has to end before', status_run)
   end subroutine check_cycle
 
   !> Energies must be finite; where the deck sets ENDENG the energy ratio must stay within so many

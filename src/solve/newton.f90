@@ -90,7 +90,7 @@ contains
     end do
     call find_equation(step%equations, now%worst, node, direction)
     outcome%reason = 'no equilibrium after '//to_text(outcome%iterations) &
-      //' iterations, most force out of '//'balance at node ' &
+      //' iterations, most force out of balance at node ' &
       //to_text(model%mesh%node_id(max(node, 1)))//' in '//merge('x', 'y', direction == 1) &
       //contacts_of(model, max(node, 1))
   end subroutine find_equilibrium

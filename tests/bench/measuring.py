@@ -87,12 +87,12 @@ def least_disturbed(samples):
 
 
 def summarise(variant, samples):
-    """One row of the summary: medians, quartiles and the least of the least disturbed samples."""
+    """One row of the summary: medians and quartiles of the least disturbed samples."""
     kept = least_disturbed(samples)
     values = [sample[0] for sample in kept]
     low, middle, high = quartiles(values)
     row = {**dataclasses.asdict(variant), "repeats": len(samples), "kept": len(kept),
-           "median": middle, "low": low, "high": high, "least": min(values),
+           "median": middle, "low": low, "high": high,
            "kernel_ns": statistics.median(s[1] for s in kept),
            "bandwidth_gb_s": statistics.median(s[2] for s in kept),
            "over_kernel": None, "over_bandwidth": None, "over_goal": None,

@@ -36,8 +36,7 @@ KEPT = {
         "leap": "made in each cycle", "sums": "formed in each cycle",
         "checks": "filled in each cycle", "steps": "kept as step_plan_t",
         "timed_motions": "from the deck", "velocity": "made in each cycle",
-        "displacement": "made in each cycle", "reason": "of each run", "error": "of each run",
-        "verdict": "not when a file is written"}),
+        "displacement": "made in each cycle", "reason": "of each run", "error": "of each run"}),
     "march_t": ("solve/march.f90", "solve/march.f90", "", {
         "control": "kept as step_control_t", "step": "kept as step_t", "trial": "kept as trial_t",
         "written": "of another state"}),

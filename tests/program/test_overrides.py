@@ -134,11 +134,18 @@ def test_scale_of_the_step_above_one_is_warned_of(said, scale, word, told):
 def test_first_step_that_the_curve_overrules_is_warned_of(said):
     plain = slide("2,,2.0e5,")
     deck = plain.replace("0.0,0.9,0,0.0,0.0,9001", "1.0e-5,0.9,0,0.0,0.0,9001")
-    assert "DTINIT has no effect: the curve LCTM gives the first step" in said(deck)[1]
+    assert "DTINIT has no effect beside the curve LCTM" in said(deck)[1]
     assert "DTINIT" not in said(plain)[1]
     deck = plain.replace("0.0,0.9,0,0.0,0.0,9001", "1.0e-5,0.9")
     assert "DTINIT" not in said(deck)[1]
-    assert "DTINIT has no effect: dt= on the command line gives the first step" in said(deck, "dt=1.0e-4")[1]
+    assert "DTINIT has no effect beside dt= on the command line" in said(deck, "dt=1.0e-4")[1]
+
+
+def test_curve_number_below_0_stays_a_mistake_of_an_implicit_deck(said):
+    """There dt= replaces DT0 alone: LCTM would stand in the deck as run."""
+    deck = with_cards("*CONTROL_TIMESTEP\n0.0,0.9,0,0.0,0.0,-1", deck=pulled(1.0, dt=0.5))
+    status, text = said(deck, "dt=0.5")
+    assert status == 1 and "LCTM" in text and "is not a curve number" in text, text
 
 
 @pytest.mark.parametrize("gamma, beta, told", [("0.6", "", "GAMMA 6.000000E-01 and BETA 2.500000E-01"), ("0.6", "0.3", "3.025000E-01"),

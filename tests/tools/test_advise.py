@@ -97,7 +97,7 @@ def test_threads(runs):
 
 
 def test_plate_that_yields_and_bodies_that_touch(slideline, tmp_path):
-    """The collision of the seed: neither law nor contact is needless, and it is a half model."""
+    """The collision of the paper: neither law nor contact is needless, and it is a half model."""
     deck = finished.pathlib.Path(__file__).parents[2] / "input/collision/collision.k"
     done = subprocess.run([slideline, f"i={deck}", f"d={tmp_path}", "p:endtim=3e-4"],
                           capture_output=True, text=True, check=False)

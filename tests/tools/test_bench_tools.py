@@ -41,7 +41,7 @@ def test_ratios_are_those_of_the_same_minute():
     assert row["over_kernel"] == pytest.approx(2.5)
     assert row["over_bandwidth"] == pytest.approx(10.0 * 8.0 / measuring.BYTES)
     assert row["over_goal"] == pytest.approx(10.0 / (2.7 * 4.0 + measuring.BYTES / 8.0))
-    assert (row["least"], row["low"], row["median"], row["high"]) == (10.0, 12.5, 15.0, 17.5)
+    assert (row["low"], row["median"], row["high"]) == (12.5, 15.0, 17.5)
 
 
 def test_samples_of_another_program_are_left_alone(tmp_path):
@@ -114,8 +114,7 @@ def bench_rows():
     for material, ns in (("elastic", 10.0), ("yielding", 12.0)):
         for threads, gain in ((1, 1.0), (2, 1.95)):
             variant = measuring.Variant("step", material, 4000, threads, "ns/element")
-            rows.append(measuring.summarise(variant, [(ns / gain * part, 4.0, 8.0, 1.0)
-                                                      for part in (1.0, 1.2, 1.95 / 2.0 if threads == 2 else 1.0)]))
+            rows.append(measuring.summarise(variant, [(ns / gain, 4.0, 8.0, 1.0)]))
         variant = measuring.Variant("step", f"{material}, 2 runs at once", 4000, 1, "ns/element")
         rows.append(measuring.summarise(variant, [(0.8 * ns, 4.0, 8.0, 1.0)]))
     for ctype in ALL_TYPES:
@@ -151,7 +150,6 @@ def test_page_of_speed_judges_the_goals(tmp_path):
     assert ("type 3, 20 slave nodes (20 points), microseconds a step: **0.24**, goal at most 0.4: kept; "
             "60 K, of at most 151") in text
     assert "elastic, the same sizes, speed-up of two threads, the least: **1.95**, goal at least 1.9: kept" in text
-    assert "elastic, the same sizes, the same by the fastest runs of each: 2.00 (" in text
     assert "yielding, the same sizes, two threads over one of two runs at once: 1.56 to 1.56\n" in text
     assert "| elements | elastic, 1 thread | elastic, 2 threads | elastic, 2 runs at once |" in text
     assert "processor: of a test" in text

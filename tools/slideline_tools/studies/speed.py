@@ -108,7 +108,7 @@ class Bench:
             self.rows = list(csv.DictReader(stream))
         for row in self.rows:
             row["size"], row["threads"] = int(row["size"]), int(row["threads"])
-            for name in ("median", "low", "high", "least", "over_kernel", "over_bandwidth", "over_goal",
+            for name in ("median", "low", "high", "over_kernel", "over_bandwidth", "over_goal",
                          "kernel_ns", "bandwidth_gb_s", "share"):
                 row[name] = float(row[name]) if row[name] else math.nan
 
@@ -135,10 +135,10 @@ def verdict(name, value, goal, most=True):
         "kept" if kept else "missed")
 
 
-def speed_up(bench, material, size, base, name="median"):
+def speed_up(bench, material, size, base):
     """Time of the case `base`, one thread, over that of two threads."""
-    alone = [row[name] for row in bench.of("step", base, 1) if row["size"] == size]
-    team = [row[name] for row in bench.of("step", material, 2) if row["size"] == size]
+    alone = [row["median"] for row in bench.of("step", base, 1) if row["size"] == size]
+    team = [row["median"] for row in bench.of("step", material, 2) if row["size"] == size]
     return alone[0] / team[0] if alone and team else math.nan
 
 
@@ -150,10 +150,6 @@ def team_goals(bench, material, sizes):
     if ups:
         lines.append(verdict(f"{material}, the same sizes, speed-up of two threads, the least",
                              min(ups), TEAM_GOAL, most=False))
-        ups = [speed_up(bench, material, size, material, "least") for size in sizes]
-        lines.append(f"- {material}, the same sizes, the same by the fastest runs of each: "
-                     + ", ".join(f"{up:.2f}" for up in ups if not math.isnan(up))
-                     + " (the goal is of two free cores: these runs had them most nearly)")
     ups = [up for up in (speed_up(bench, material, size, material + AT_ONCE) for size in sizes)
            if not math.isnan(up)]
     if ups:
