@@ -248,7 +248,8 @@ contains
   end subroutine drive
 
   !> The end of a run that could not begin. The results file has no state and does not take its
-  !> name: that of a run before a restart keeps its states. Nor does status.out speak of a run before.
+  !> name: that of a run before a restart keeps its states. Nor does status.out speak of a run
+  !> before.
   subroutine give_up(model, prefix, state, monitor, error)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: prefix

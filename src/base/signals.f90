@@ -58,8 +58,8 @@ contains
     previous = c_signal(signal_file_limit, transfer(ignore, c_null_funptr))
   end subroutine catch_signals
 
-  !> A signal that was ignored when the program started stays so: SIGHUP under nohup, SIGINT in a job
-  !> that a script has put behind itself.
+  !> A signal that was ignored when the program started stays so: SIGHUP under nohup, SIGINT in a
+  !> job that a script has put behind itself.
   subroutine catch_unless_ignored(number)
     integer(c_int), intent(in) :: number
     type(c_funptr) :: previous
