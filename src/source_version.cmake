@@ -4,11 +4,17 @@
 find_package(Git QUIET)
 set(source "unknown")
 if(GIT_FOUND)
-  execute_process(COMMAND ${GIT_EXECUTABLE} describe --always --dirty --abbrev=12
+  execute_process(COMMAND ${GIT_EXECUTABLE} describe --always --abbrev=12
     WORKING_DIRECTORY ${folder} OUTPUT_VARIABLE answer OUTPUT_STRIP_TRAILING_WHITESPACE
     RESULT_VARIABLE trouble ERROR_QUIET)
   if(trouble EQUAL 0)
     string(REGEX REPLACE "[^A-Za-z0-9._-]" "" source "${answer}")
+    # A page that a benchmark has written anew makes no other program.
+    execute_process(COMMAND ${GIT_EXECUTABLE} diff --quiet HEAD -- src CMakeLists.txt
+      WORKING_DIRECTORY ${folder} RESULT_VARIABLE changed ERROR_QUIET)
+    if(NOT changed EQUAL 0)
+      string(APPEND source "-dirty")
+    endif()
   endif()
 endif()
 configure_file(${folder}/src/source_version.f90.in ${output} @ONLY)
