@@ -277,9 +277,12 @@ def test_terminated_is_4(exe, tmp_path, number):
         assert steps["Values"][-1] == last, "the last state is written on the way out"
 
 
-def test_hang_up_under_nohup_is_nothing(exe, tmp_path):
-    process = start_long_run(exe, tmp_path, ["nohup"])
-    process.send_signal(signal.SIGHUP)
+@pytest.mark.parametrize("asked, before", [
+    (signal.SIGHUP, ["nohup"]), (signal.SIGINT, ["sh", "-c", "trap '' INT; exec \"$@\"", "sh"])])
+def test_signal_that_was_ignored_is_nothing(exe, tmp_path, asked, before):
+    """Hang-up under nohup; an interrupt of a job that a script has put behind itself."""
+    process = start_long_run(exe, tmp_path, before)
+    process.send_signal(asked)
     time.sleep(1.0)
     assert process.poll() is None
     process.send_signal(signal.SIGTERM)
