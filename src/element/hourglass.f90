@@ -37,8 +37,11 @@ contains
     work = dt*work
   end subroutine resist_viscously
 
-  !> Stiffness form: the hourglass strain grows by dt gamma.v and turns with the element;
-  !> force (Q_h/4)(K + 4G/3)((B_x.B_x + B_y.B_y)/A) times that strain.
+  !> Stiffness form: force (Q_h/4)(K + 4G/3)((B_x.B_x + B_y.B_y)/A) times the hourglass strain e, which
+  !> turns with the element. With the rotation R of the step, e' = R e + (1 + R) dt g/2: gamma.v is of
+  !> the mid-step frame, half a rotation back, and (1 + R)/2 is that half rotation times its cosine,
+  !> by which gamma.v of a turning element is too large. So a pattern that grows while its element
+  !> turns is kept without error, whatever the step, and no step divides by zero.
   pure subroutine resist_elastically(factor, dt, stress, strain_x, strain_y, chunk, work)
     real(wp), intent(in) :: factor                  !! Q_h (K + 4G/3)/4
     real(wp), intent(in) :: dt
@@ -46,24 +49,28 @@ contains
     real(wp), intent(inout), dimension(chunk_size) :: strain_x, strain_y
     type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y out
     real(wp), intent(out) :: work                   !! work of the step
-    real(wp) :: stiffness, old_x, old_y
+    real(wp) :: stiffness, half_x, half_y, old_x, old_y, growth_x, growth_y
     integer :: i
 
     work = 0.0_wp
-    !$omp simd private(stiffness, old_x, old_y) reduction(+ : work)
+    !$omp simd private(stiffness, half_x, half_y, old_x, old_y, growth_x, growth_y) &
+    !$omp& reduction(+ : work)
     do i = 1, chunk_size
       stiffness = 0.5_wp*factor*(chunk%x31(i)**2 + chunk%y31(i)**2 + chunk%x42(i)**2 &
         + chunk%y42(i)**2)*chunk%inverse_area(i)
+      half_x = 0.5_wp*dt*chunk%gx(i)
+      half_y = 0.5_wp*dt*chunk%gy(i)
       old_x = stress%cosine(i)*strain_x(i) - stress%sine(i)*strain_y(i)
       old_y = stress%sine(i)*strain_x(i) + stress%cosine(i)*strain_y(i)
-      strain_x(i) = old_x + dt*chunk%gx(i)
-      strain_y(i) = old_y + dt*chunk%gy(i)
+      growth_x = half_x + (stress%cosine(i)*half_x - stress%sine(i)*half_y)
+      growth_y = half_y + (stress%sine(i)*half_x + stress%cosine(i)*half_y)
+      strain_x(i) = old_x + growth_x
+      strain_y(i) = old_y + growth_y
       chunk%qx(i) = stiffness*strain_x(i)
       chunk%qy(i) = stiffness*strain_y(i)
-      work = work + stiffness*((strain_x(i) + old_x)*chunk%gx(i) &
-        + (strain_y(i) + old_y)*chunk%gy(i))
+      work = work + stiffness*((strain_x(i) + old_x)*growth_x + (strain_y(i) + old_y)*growth_y)
     end do
-    work = 0.5_wp*dt*work
+    work = 0.5_wp*work
   end subroutine resist_elastically
 
   !> Smallest step that hourglass control of the chunk allows. With masses rho A0/4 and
