@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: MIT
+"""A free block that spins: hourglass control neither feeds it nor, with stiffness, eats it; plastic strain in it."""
+import pathlib
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+from meshes import Deck  # noqa: E402
+from scene import (FULL, N_X, OMEGA, POISSON, RHO, SOUND, TURN, YOUNG, HEIGHT, N_Y, Motion,  # noqa: E402
+                   block_mesh, spin, spin_deck)
+
+PLASTIC = (1.0e5, 1.0e6, 1.0)  # yield stress, tangent modulus, isotropic: the bending yields in its first quarter
+
+
+def check_stiffness(run):
+    """The stiffness form keeps the energy, by the program's account and by the motion alone."""
+    turns = 15.0
+    for form, coefficient, scale, distorted in ((4, 0.1, 0.9, False), (5, 0.3, 0.5, False),
+                                                (4, 0.3, 0.9, True)):
+        label = f"IHQ {form}, QM {coefficient:g}, TSSFAC {scale:g}, {'distorted' if distorted else 'regular'}"
+        result = run.program(spin_deck(form, coefficient, scale, turns, distorted, states=0.25))
+        energy, motion = result.table("glstat"), Motion(result, distorted)
+        run.check(f"{label}: energy ratio over {turns:g} turns", energy["energy_ratio"], 1.0, 1e-2, "abs",
+                  "nothing acts on the block")
+        stored = motion.pattern_energy(coefficient)
+        total = motion.kinetic() + motion.strain_energy() + stored
+        run.check(f"{label}: energy of the motion / at the start", total / energy["total"][0], 1.0, 2e-2, "abs",
+                  "same, from positions, velocities and stress; the rate form of the law keeps it to 2 %")
+        third = len(stored) // 3
+        run.check(f"{label}: energy in the pattern, last third / first third",
+                  stored[-third:].mean() / stored[:third].mean(), 3.0, 0.0, "max", "no growth")
+
+
+def check_held_step(run):
+    """With a step that does not change, the balance has no trend."""
+    own = run.program(spin_deck(4, 0.05, 0.7, 40.0))
+    held = run.program(spin_deck(4, 0.05, 0.7, 40.0, constant=own.table("glstat")["dt"][0]))
+    run.report("QM 0.05, TSSFAC 0.7, 40 turns: energy ratio, own steps", own.table("glstat")["energy_ratio"][-1],
+               "the step follows L/c, which beats with the body's vibrations")
+    ratio = held.table("glstat")["energy_ratio"]
+    run.check("the same with its first step held", ratio, 1.0, 3e-3, "abs", "leap-frog of a constant step")
+    run.check("the same, last ten turns - first ten", ratio[-500:].mean() - ratio[:500].mean(), 0.0, 1e-3,
+              "abs", "no trend")
+
+
+def pattern(motion):
+    """Amplitude of the pattern that alternates from node to node, weighted with the mass: no linear motion has one."""
+    nodes = np.arange(len(motion.start))
+    signs = (-1.0) ** (nodes % (N_X + 1) + nodes // (N_X + 1))
+    return np.linalg.norm(np.sum((signs * motion.mass)[:, None] * motion.position, axis=1), axis=1)
+
+
+def check_viscous(run):
+    """Without stiffness the pattern creeps outwards: the centrifugal force against the viscous one."""
+    coefficient = 0.05
+    rate = 4.0 * coefficient * SOUND / np.sqrt(HEIGHT / N_Y * 1.0 / N_X)
+    growth = 0.5 * (np.sqrt((rate + 2.0j * OMEGA) ** 2 + 4.0 * OMEGA ** 2) - (rate + 2.0j * OMEGA)).real
+    coordinates, quads = block_mesh(False)
+    deck = Deck("pattern in a spin").control(12.0 * TURN).hourglass(1, coefficient).part()
+    nodes = deck.elastic(RHO, YOUNG, POISSON).mesh(coordinates, quads)
+    signs = (-1.0) ** (np.arange(len(nodes)) % (N_X + 1) + np.arange(len(nodes)) // (N_X + 1))
+    spin(deck, nodes, coordinates, 1.0e-4 * signs, 0.0)
+    result = run.program(deck.output(plot=0.25 * TURN, glstat=TURN))
+    amplitude, times = pattern(Motion(result, False)), result.times
+    late = times > 2.0 * TURN
+    run.check("viscous form: growth rate of the pattern", np.polyfit(times[late], np.log(amplitude[late]), 1)[0],
+              growth, 2e-2, source="s^2 + (4 Q c/sqrt(A) + 2 i omega) s = omega^2")
+
+    result = run.program(spin_deck(1, coefficient, 0.9, 50.0, True, states=0.5))
+    energy, motion = result.table("glstat"), Motion(result, True)
+    start, momentum = energy["total"][0], motion.angular_momentum()
+    run.check("viscous form, distorted, 50 turns: energy ratio", energy["energy_ratio"], 1.0, 1e-2, "abs", "balance")
+    run.check("same: angular momentum", momentum, momentum[0], 1e-12, source="no force has a moment")
+    run.report("same: energy of the motion at the end / at the start",
+               (motion.kinetic() + motion.strain_energy())[-1] / start, "hourglass control has eaten the rest")
+    run.check("same: hourglass energy / what the motion has lost", energy["hourglass"][-1],
+              start - (motion.kinetic() + motion.strain_energy())[-1], 5e-3, source="glstat tells the loss")
+    run.check("same: kinetic energy at the end", motion.kinetic()[-1],
+              0.5 * momentum[-1] ** 2 / motion.inertia()[-1], 1e-2, source="H^2/(2 I): the block has grown")
+
+
+def check_plastic(run):
+    """Plastic strain goes on only while something vibrates, and as much at a quarter of the step."""
+    for form, name in ((FULL, "NIP 4"), (4, "one point")):
+        late = {}
+        for scale, viscosity in ((0.8, None), (0.2, None), (0.8, (0.0, 1.0))):
+            result = run.program(spin_deck(form, 0.05, scale, 20.0, states=0.25, plastic=PLASTIC,
+                                           bulk_viscosity=viscosity))
+            strain = result.cells("plastic_strain").mean(axis=1)
+            late[scale, viscosity] = strain[-1] - strain[4]
+            run.report(f"{name}, TSSFAC {scale:g}{', bulk viscosity' if viscosity else ''}: growth of the mean "
+                       "plastic strain from turn 1 to 20", strain[-1] / strain[4] - 1.0,
+                       "vibration goes on" if not viscosity else "")
+        run.check(f"{name}: growth after turn 1 where bulk viscosity has ended the vibration",
+                  late[0.8, (0.0, 1.0)], 0.0, 1e-12, "abs", "pure rotation yields nothing")
+        if form == FULL:
+            run.check(f"{name}: growth at TSSFAC 0.2 / at 0.8", late[0.2, None] / late[0.8, None], 0.4, 0.0, "min",
+                      "real vibration, no error of the step: 1/16 or less if it fell with its square")
+
+
+def check(run):
+    check_stiffness(run)
+    check_held_step(run)
+    check_viscous(run)
+    check_plastic(run)
