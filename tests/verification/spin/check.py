@@ -7,8 +7,8 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from meshes import Deck  # noqa: E402
-from scene import (FULL, N_X, OMEGA, POISSON, RHO, SOUND, TURN, YOUNG, HEIGHT, N_Y, Motion,  # noqa: E402
+from meshes import Deck, grid  # noqa: E402
+from scene import (FULL, N_X, OMEGA, POISSON, RHO, SHEAR, SOUND, TURN, YOUNG, HEIGHT, N_Y, Motion,  # noqa: E402
                    block_mesh, spin, spin_deck)
 
 PLASTIC = (1.0e5, 1.0e6, 1.0)  # yield stress, tangent modulus, isotropic: the bending yields in its first quarter
@@ -100,7 +100,30 @@ def check_plastic(run):
                       "real vibration, no error of the step: 1/16 or less if it fell with its square")
 
 
+def check_law(run):
+    """Work of the hypoelastic deviator around a closed cycle: strain gamma sin, volume 1 + a sin of twice the phase."""
+    gamma, volume, steps, dt = 0.05, 0.02, 1000, 1.0e-3
+    phase = 2.0 * np.pi * np.arange(steps + 1) / steps
+    root = np.sqrt(1.0 + volume * np.sin(2.0 * phase))
+    stretch = np.stack([root * np.exp(gamma * np.sin(phase)), root * np.exp(-gamma * np.sin(phase))], 1)
+    coordinates, quads = grid(1, 1)
+    deck = Deck("closed cycle").control(steps * dt, dt=dt).part().elastic(RHO, YOUNG, POISSON)
+    nodes = deck.mesh(coordinates, quads)
+    for dof in (0, 1):
+        deck.curve(10 + dof, list(zip((dt * np.arange(steps + 1)).tolist(), (stretch[:, dof] - 1.0).tolist())))
+    for node, place in zip(nodes, coordinates):
+        for dof in (0, 1):
+            if place[dof] > 0.5:
+                deck.prescribe(node, dof + 1, 2, 10 + dof)
+            else:
+                deck.fix([node], x=int(dof == 0), y=int(dof == 1))
+    work = run.program(deck.output(glstat=dt)).table("glstat")["internal"][-1]
+    run.check("work around a closed cycle of strain", work, 2.0 * np.pi * SHEAR * gamma ** 2 * volume, 1e-3,
+              source="integral of J s:D of a Cauchy rate, 2 pi G gamma^2 a per volume")
+
+
 def check(run):
+    check_law(run)
     check_stiffness(run)
     check_held_step(run)
     check_viscous(run)
