@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> The time step: TSSFAC times the smallest L/c of the elements (or what contact springs
 !> leave of it), capped by a curve; constant where the curve is constant and lies below the
-!> stable step. The limit of one cycle rules the step of the next, so that a cycle need not
-!> wait for its own elements.
+!> stable step. It falls at once and rises by a twentieth at least. The limit of one cycle rules
+!> the step of the next, so that a cycle need not wait for its own elements.
 module time_step_m
   use block_state_m, only : block_state_t
   use contact_step_limit_m, only : spring_bound_t, stable_step
@@ -14,6 +14,9 @@ module time_step_m
   implicit none
   private
   public :: step_plan_t, start_steps, first_step, next_step, plain_step, is_last, cycles_in
+
+  !> What a step must be allowed to rise by before it does.
+  real(wp), parameter :: least_rise = 0.05_wp
 
   !> How the steps go on.
   type :: step_plan_t
@@ -140,15 +143,28 @@ contains
     type(step_plan_t), intent(inout) :: steps
     real(wp), intent(inout) :: time           !! in: old, out: new
     real(wp), intent(inout) :: dt             !! in: step that led here, out: next one
+    real(wp) :: wanted
 
     if (steps%constant > 0.0_wp) then
       time = steps%start_time + (cycle - steps%start_cycle)*steps%constant
     else
       time = time + dt
     end if
-    dt = choose_step(model, stable_limit(element_limit, steps), time, log, steps)
+    wanted = choose_step(model, stable_limit(element_limit, steps), time, log, steps)
+    if (must_change(model, wanted, dt)) dt = wanted
     if (steps%warned) steps%constant = 0.0_wp
   end subroutine next_step
+
+  !> Whether a step gives way to the one that is wanted. Leap-frog keeps energy without a trend only
+  !> while its step is constant; L/c beats with the vibrations of a body, and a step that follows it
+  !> feeds them (doc/theory/time_integration.md). A curve has the word it is given.
+  pure function must_change(model, wanted, dt) result(must)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: wanted, dt !! s
+    logical :: must
+
+    must = wanted < dt .or. wanted > (1.0_wp + least_rise)*dt .or. model%controls%dt_curve > 0
+  end function must_change
 
   !> Whether the cycle at `time` is the last: nint(ENDTIM/dt) cycles of a constant step, otherwise
   !> the first cycle at or after the end time.
