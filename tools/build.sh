@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# usage: tools/build.sh [release|debug|package]
+# usage: tools/build.sh [release|debug|counted|package]
 # Installs what is missing and builds build/release/slideline or build/debug/slideline.
+# counted: build/counted/slideline, for x86-64-v3, whose instructions callgrind can count.
 # package: builds for x86-64-v2, v3 and v4 and a launcher that picks the fastest, as
 # build/package/slideline-VERSION and that as .tar.gz, for machines with the same distribution.
 set -uo pipefail
@@ -41,8 +42,8 @@ make_package() {
 
 type=${1:-release}
 case $type in
-  release | debug | package) ;;
-  *) complain "usage: tools/build.sh [release|debug|package]"; exit 1 ;;
+  release | debug | counted | package) ;;
+  *) complain "usage: tools/build.sh [release|debug|counted|package]"; exit 1 ;;
 esac
 lock
 install_packages

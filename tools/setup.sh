@@ -18,9 +18,18 @@ complain() {
 lock() {
   mkdir -p "$root/build" || exit 1
   if command -v flock >/dev/null; then
-    exec 9>"$root/build/lock"
-    flock 9
+    exec 9>>"$root/build/lock"
+    if ! flock -n 9; then
+      complain "waiting for another set-up or build in $root ($(holder))"
+      flock 9
+    fi
+    printf '%s since %s, process %s\n' "${0##*/}" "$(date +%H:%M:%S)" "$$" >"$root/build/lock.holder"
   fi
+}
+
+# holder: who holds the lock, as far as it is told.
+holder() {
+  cat "$root/build/lock.holder" 2>/dev/null || echo "it does not say which"
 }
 
 unlock() {
@@ -160,21 +169,23 @@ install_tools() {
   printf '%s\n' "$want" >"$stamp"
 }
 
-# build TYPE [TARGET]: release or debug; the program, or the target `all` for the tests too.
+# build TYPE [TARGET]: release, debug or counted; the program, or the target `all` for the tests too.
 build() {
   local type=$1 target=${2:-slideline} folder name log
+  local -a more=()
   folder="$root/build/$type"
   case $type in
     release) name=Release ;;
     debug) name=Debug ;;
-    *) complain "no such build: $type (release or debug)"; exit 1 ;;
+    counted) name=Release more=(-DSLIDELINE_ARCH=x86-64-v3 -DSLIDELINE_TESTS=OFF) ;;
+    *) complain "no such build: $type (release, debug or counted)"; exit 1 ;;
   esac
   mkdir -p "$root/build"
   log="$root/build/$type.log"
   if ! grep -qsF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
     say "configuring build/$type"
     rm -rf "$folder"
-    if ! cmake -S "$root" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=$name \
+    if ! cmake -S "$root" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=$name "${more[@]}" \
          -DPython3_EXECUTABLE="$venv/bin/python" >"$log" 2>&1; then
       cat "$log" >&2
       rm -f "$folder/CMakeCache.txt"

@@ -10,7 +10,7 @@ import re
 import signal
 import sys
 
-from slideline_tools import UserError
+from slideline_tools import UserError, counting
 from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.study import registry
 from slideline_tools.study.job import Options, file_digest, interleave, part_of
@@ -67,6 +67,18 @@ def planned(study, wanted):
     if not jobs:
         raise UserError("no runs")
     return jobs
+
+
+def with_counter(jobs, wanted):
+    """The jobs, and the program and its digest of those that are counted; without these where nobody can count."""
+    if not any(job.counted for job in jobs):
+        return jobs, None
+    try:
+        program = wanted.program or counting.counted_program(ROOT)
+        return jobs, (program, counting.method() + file_digest(program))
+    except UserError as problem:
+        print(f"study: instructions are not counted: {problem}", file=sys.stderr)
+        return [job for job in jobs if not job.counted], None
 
 
 def part_numbers(text):
@@ -129,8 +141,9 @@ def perform(wanted):
                            or ROOT / "build" / "release" / "slideline").resolve()
     if not program.is_file():
         raise UserError(f"no program {program}; build it with tools/build.sh release")
-    sweep = Sweep(folder, program, file_digest(program))
     jobs = planned(study, wanted)
+    jobs, counted = with_counter(jobs, wanted)
+    sweep = Sweep(folder, program, file_digest(program), counted)
     if wanted.part:
         chosen = part_of(jobs, *part_numbers(wanted.part))
     else:

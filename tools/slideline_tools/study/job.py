@@ -37,6 +37,8 @@ class Job:
     `turns`     how often it runs in each round of repeats
     `once`      it runs in the first round alone: a result that is not timed
     `cost`      expected seconds up to a common factor, for the guess of the time to go
+    `counted`   its instructions are counted, by another program where callgrind counts (`counting`); its seconds
+                mean nothing, and whatever runs beside it does not matter
     `limit`     seconds after which it is stopped and counts as failed
     `repeat`    its number among the runs of this name; set by `interleave`
     """
@@ -53,6 +55,7 @@ class Job:
     once: bool = False
     cost: float = 1.0
     limit: Optional[float] = None
+    counted: bool = False
     repeat: int = 1
 
     @property
@@ -70,7 +73,7 @@ class Job:
     def fingerprint(self, program):
         """Changes with the deck, the options, the environment and the program (its `file_digest`)."""
         parts = [self.deck_text, self.jobid, list(self.options), sorted(self.environment.items()),
-                 self.limit, program]
+                 self.limit, program] + ["counted"] * self.counted
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 

@@ -16,6 +16,7 @@ from slideline_tools.histories import read_csv
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, plt
 from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
 from slideline_tools.study.charts import save, styled
+from slideline_tools.study.counted import counted_job, instruction_section
 from slideline_tools.study.job import Job, Study
 from slideline_tools.study.table import finished
 from slideline_tools.study.times import LETTERS, STEPS, Times, phases
@@ -30,7 +31,7 @@ class Scene:
     `figure`, `table`  where the paper shows its times
     `deck`             text of the deck by level
     `turns`, `cost`    as in Job, at level 1; finer runs are longer and take fewer turns
-    `options`, `quick` of the program; `quick` shortens the run
+    `options`, `quick` of the program; `quick` shortens the run, `short` that whose instructions are counted
     `slave_nodes`      at level 1
     `paper`            its ratios to type 1 by type and level
     `told`             what its text says of a chart whose numbers it does not give
@@ -44,6 +45,7 @@ class Scene:
     cost: float = 1.0
     options: Sequence[str] = ()
     quick: Sequence[str] = ()
+    short: Sequence[str] = ()
     table: str = ""
     slave_nodes: int = 52
     paper: Mapping = dataclasses.field(default_factory=dict)
@@ -58,6 +60,7 @@ def by_level(*types_and_ratios):
 SCENES = {
     "block_implicit": Scene(
         "Block-to-block, implicit", "Fig. 23", lambda _: scenes.block(implicit=True), cost=6.0,
+        short=("endtim=0.02",),
         paper=by_level((3, 2.0), (4, 3.0)),
         told="its text: type 3 about twice, type 4 three times type 1, close to type 6"),
     "block": Scene(
@@ -66,7 +69,7 @@ SCENES = {
         told="its text: type 4 2.4 times type 1, type 5 the cheapest after type 1"),
     "sliding": Scene(
         "Sliding", "Fig. 29", scenes.sliding, levels=(1, 2, 3), cost=15.0,
-        options=(*NO_OUTPUT, "p:dtforc=2.0e-4"), quick=("endtim=2.0e-3",), table="Table 1", slave_nodes=19,
+        options=(*NO_OUTPUT, "p:dtforc=2.0e-4"), quick=("endtim=2.0e-3",), short=("endtim=2.0e-3",), table="Table 1", slave_nodes=19,
         paper=by_level((3, 2.25, 2.26, 2.26), (4, 2.09, 2.09, 2.20), (5, 1.22, 1.09, 1.12),
                        (6, 4.98, 5.49, 5.85))),
     "collision": Scene(
@@ -78,7 +81,7 @@ SCENES = {
 
 
 def jobs(options):
-    """Each scene, level and type once; type 1 always, since the others are compared with it."""
+    """Each scene, level and type once; type 1 always, since the others are compared with it. Level 1 is counted too."""
     listed = []
     for name, scene in SCENES.items():
         for level in (level for level in scene.levels if level in options.levels):
@@ -90,7 +93,8 @@ def jobs(options):
                     {"scene": name, "level": level, "type": ctype, "quick": int(options.quick)},
                     group=f"{name}_{level}",
                     alone=True, turns=max(1, scene.turns // level), cost=scene.cost * level ** 3))
-    return listed
+    return listed + [counted_job(job, SCENES[job.labels["scene"]].short) for job in listed
+                     if job.labels["level"] == 1]
 
 
 def measure(job, folder):
@@ -257,6 +261,8 @@ of the computation. Diamonds: the paper.
 
 {quick}{sections}
 
+{counts}
+
 {reading}
 """
 QUICK = """This was a quick run: level 1 alone, and the sliding ends after 2 ms of 6, in which the die is
@@ -326,6 +332,7 @@ def page(rows, doc):
     processors = sorted({row["processor"] for row in finished(rows)})
     quick = any(row["quick"] for row in rows)
     write_page(doc, "paper_tables", PAGE.format(
+        counts=instruction_section(rows, {name: scene.title for name, scene in SCENES.items()}),
         quick=QUICK if quick else "", processor="; ".join(processors),
         reading=reading(all_times.get("sliding"), all_times.get("collision")),
         sections="\n\n".join(section(times) for times in all_times.values())).rstrip() + "\n")

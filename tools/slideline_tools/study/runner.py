@@ -37,18 +37,31 @@ def read_record(run_folder, fingerprint):
 
 
 class Sweep:
-    """The runs of one study folder with one program."""
+    """The runs of one study folder with one program, and with the one whose instructions are counted."""
 
-    def __init__(self, folder, program, digest):
-        """`digest`: the `file_digest` of the program."""
+    def __init__(self, folder, program, digest, counted=None):
+        """`digest`: the `file_digest` of the program; `counted`: program and digest of the runs that are counted."""
         self.folder, self.program, self.digest = pathlib.Path(folder), program, digest
+        self.counted, self.counted_digest = counted or (program, digest)
 
     def run_folder(self, job):
         return self.folder / "runs" / job.folder_name
 
     def record(self, job):
         """The record of a finished job, or None."""
-        return read_record(self.run_folder(job), job.fingerprint(self.digest))
+        return read_record(self.run_folder(job), self.fingerprint(job))
+
+    def fingerprint(self, job):
+        """Of a job with the program that it takes."""
+        return job.fingerprint(self.counted_digest if job.counted else self.digest)
+
+    def command(self, job, deck):
+        """What runs a job."""
+        folder = str(self.run_folder(job))
+        words = [f"i={deck}", f"d={folder}", f"jobid={job.jobid}", *job.options]
+        if job.counted:
+            return [sys.executable, "-m", "slideline_tools.counting", folder, str(self.counted), *words]
+        return [str(self.program), *words]
 
     def run(self, jobs, parallel, progress, retry=False):
         """Run what has no record yet; `retry`: what has failed too. `progress`: see progress.py."""
@@ -84,13 +97,12 @@ class Run:
 
     def __init__(self, sweep, job):
         self.job, self.folder = job, sweep.run_folder(job)
-        self.fingerprint = job.fingerprint(sweep.digest)
+        self.fingerprint = sweep.fingerprint(job)
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True)
         deck = self.folder / f"{job.jobid}.k"
         deck.write_text(job.deck_text, encoding="utf-8")
-        self.command = [str(sweep.program), f"i={deck}", f"d={self.folder}", f"jobid={job.jobid}",
-                        *job.options]
+        self.command = sweep.command(job, deck)
         self.load, self.spent_before = os.getloadavg()[0], processor_seconds()
         with open(self.folder / PROGRESS, "wb") as out, open(self.folder / ERRORS, "wb") as err:
             self.begun = time.perf_counter()

@@ -5,10 +5,10 @@ import io
 
 import numpy as np
 
-from slideline_tools import UserError
+from slideline_tools import UserError, counting
 from slideline_tools.study.job import write_whole
 
-FINISHED, FAILED, MISSING = "finished", "failed", "missing"
+FINISHED, COUNTED, FAILED, MISSING = "finished", "counted", "failed", "missing"
 RECORDED = ("status", "message", "seconds", "processor", "load")
 
 
@@ -24,12 +24,15 @@ def rows_of(study, jobs, sweep):
         if record is None:
             rows.append({**row, "state": MISSING})
             continue
-        row["state"] = FINISHED if record["status"] == 0 else FAILED
+        row["state"] = FAILED if record["status"] else COUNTED if job.counted else FINISHED
         row.update({name: record[name] for name in RECORDED if name in record})
         try:
-            row.update(study.measure(job, sweep.run_folder(job)))
+            if row["state"] == COUNTED:
+                row.update(counting.columns(sweep.run_folder(job)))
+            elif not job.counted:
+                row.update(study.measure(job, sweep.run_folder(job)))
         except (UserError, OSError) as problem:
-            if row["state"] == FINISHED:
+            if row["state"] != FAILED:
                 row.update(state=FAILED, message=f"not measured: {problem}")
         rows.append(row)
     return rows
@@ -67,8 +70,13 @@ def parsed(text):
 
 
 def finished(rows):
-    """The rows of runs that ended normally and were measured."""
+    """The rows of runs that ended normally and were measured; not those that were counted."""
     return [row for row in rows if row["state"] == FINISHED]
+
+
+def counted(rows):
+    """The rows of runs whose instructions were counted."""
+    return [row for row in rows if row["state"] == COUNTED]
 
 
 def grouped(rows, *names):

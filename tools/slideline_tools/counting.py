@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: MIT
+"""Retired instructions of a run: a cost that a busy machine does not change.
+
+Where the kernel lends the processor's counters (perf_event_open) they count the program as it is. Elsewhere
+callgrind counts, on a program built for x86-64-v3 (`tools/build.sh counted`), since emulators lack AVX-512; it
+tells the parts of the program apart too. A run under callgrind takes some fifty times as long: shorten it.
+"""
+import contextlib
+import ctypes
+import dataclasses
+import functools
+import json
+import os
+import pathlib
+import platform
+import re
+import shutil
+import subprocess
+import sys
+
+from slideline_tools import UserError
+
+HARDWARE, CALLGRIND = "hardware counters", "callgrind, x86-64-v3"
+# Parts of the program by the modules of their procedures: inclusive of what those call elsewhere.
+PARTS = {"contact": re.compile(r"__(contact|points|tangent|element_finder)_?\w*_MOD_"),
+         "elements": re.compile(r"__(element(?!_finder)|quad|material)_?\w*_MOD_")}
+PROFILE = "callgrind.out"
+
+# <linux/perf_event.h>
+_SYSTEM_CALL = {"x86_64": 298, "aarch64": 241}
+_HARDWARE_TYPE, _INSTRUCTIONS = 0, 1
+_DISABLED, _INHERIT, _NO_KERNEL, _NO_HYPERVISOR, _ON_EXEC = 1 << 0, 1 << 1, 1 << 5, 1 << 6, 1 << 12
+
+
+@dataclasses.dataclass(frozen=True)
+class Counts:
+    """Instructions of a run: all of them, those of parts where they can be told, and who counted."""
+
+    total: int
+    parts: dict
+    by: str
+
+
+def open_counter(pid, kind=_HARDWARE_TYPE, event=_INSTRUCTIONS):
+    """A descriptor that counts an event in a process, its threads and what it starts, from its next exec on.
+
+    Raises OSError where the machine does not lend the counter.
+    """
+    attributes = (ctypes.c_uint64 * 8)()  # struct perf_event_attr, version 0: 64 bytes
+    attributes[0] = kind | 64 << 32
+    attributes[1] = event
+    attributes[5] = _DISABLED | _INHERIT | _NO_KERNEL | _NO_HYPERVISOR | _ON_EXEC
+    number = _SYSTEM_CALL.get(platform.machine())
+    if platform.system() != "Linux" or number is None:
+        raise OSError("no perf_event_open here")
+    library = ctypes.CDLL(None, use_errno=True)
+    found = library.syscall(ctypes.c_long(number), attributes, ctypes.c_int(pid), ctypes.c_int(-1),
+                            ctypes.c_int(-1), ctypes.c_ulong(0))
+    if found < 0:
+        raise OSError(ctypes.get_errno(), "perf_event_open")
+    return found
+
+
+@functools.lru_cache(maxsize=None)
+def hardware_is_there():
+    """Whether the machine lends its counter of instructions."""
+    try:
+        os.close(open_counter(0))
+    except OSError:
+        return False
+    return True
+
+
+def method():
+    """Who counts on this machine; UserError where nobody can."""
+    if hardware_is_there():
+        return HARDWARE
+    if shutil.which("valgrind"):
+        return CALLGRIND
+    raise UserError("no retired instructions: the machine lends no counters (perf_event_open) and "
+                    "valgrind is not installed")
+
+
+def counted_program(root):
+    """The program to be counted: $SLIDELINE_COUNTED, that of the release, or the one built for callgrind."""
+    if "SLIDELINE_COUNTED" in os.environ:
+        return pathlib.Path(os.environ["SLIDELINE_COUNTED"]).resolve()
+    if method() == HARDWARE:
+        return pathlib.Path(root) / "build" / "release" / "slideline"
+    done = subprocess.run([pathlib.Path(root) / "tools" / "build.sh", "counted"], check=False, stdout=sys.stderr)
+    if done.returncode:
+        raise UserError("the program to be counted could not be built")
+    return pathlib.Path(root) / "build" / "counted" / "slideline"
+
+
+def counting_command(command, folder):
+    """The command that runs `command` under callgrind; its profile goes to `folder`."""
+    return ["valgrind", "--tool=callgrind", "--error-exitcode=0", "--compress-strings=no", "--compress-pos=no",
+            f"--callgrind-out-file={pathlib.Path(folder) / PROFILE}", *map(str, command)]
+
+
+def count_instructions(command, folder, by=None, **options):
+    """`Counts` of a command, by the `method` of this machine or the one named; UserError where it fails.
+
+    `folder` takes the profile; `options` go to subprocess (env, cwd ...).
+    """
+    folder = pathlib.Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    if (by or method()) == HARDWARE:
+        status, trouble, total = run_counted(command, **options)
+        found = Counts(total, {}, HARDWARE)
+    else:
+        done = subprocess.run(counting_command(command, folder), stdin=subprocess.DEVNULL, capture_output=True,
+                              text=True, errors="replace", check=False, **options)
+        status, trouble = done.returncode, done.stderr
+        found = None if status else read_profile(folder / PROFILE)
+    if status:
+        raise UserError(f"{' '.join(map(str, command))}: exit status {status}\n{trouble[-1000:]}")
+    return found
+
+
+def run_counted(command, kind=_HARDWARE_TYPE, event=_INSTRUCTIONS, **options):
+    """Exit status, standard error and count of an event of a command, by perf_event_open.
+
+    The child waits for its counter before it becomes the command.
+    """
+    ready, go = os.pipe()
+    with contextlib.ExitStack() as stack:
+        stack.callback(os.close, go)
+        process = stack.enter_context(subprocess.Popen(
+            ["/bin/sh", "-c", f'read -r _ <&{ready}; exec "$@" {ready}<&-', "sh", *map(str, command)],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, pass_fds=(ready,), text=True,
+            errors="replace", **options))
+        os.close(ready)
+        counter = open_counter(process.pid, kind, event)
+        stack.callback(os.close, counter)
+        os.write(go, b"\n")
+        _, trouble = process.communicate()
+        return process.returncode, trouble, int.from_bytes(os.read(counter, 8), "little")
+
+
+def read_profile(path):
+    """`Counts` of a callgrind profile (written without compression of strings and places)."""
+    total, own, calls = 0, {}, {}
+    name = called = None
+    pending = False
+    with open(path, encoding="utf-8", errors="replace") as stream:
+        for line in stream:
+            if line.startswith("fn="):
+                name = line[3:].strip()
+            elif line.startswith("cfn="):
+                called = line[4:].strip()
+            elif line.startswith("calls="):
+                pending = True
+            elif line.startswith("totals:") or line.startswith("summary:"):
+                total = int(line.split()[1])
+            elif line[:1].isdigit() or line[:1] in "+-*":
+                cost = int(line.split()[1])
+                if pending:
+                    calls[name, called] = calls.get((name, called), 0) + cost
+                    pending = False
+                else:
+                    own[name] = own.get(name, 0) + cost
+    if not total:
+        raise UserError(f"{path}: not a profile of callgrind")
+    parts = {part: share_of(pattern, own, calls) for part, pattern in PARTS.items()}
+    return Counts(total, parts, CALLGRIND)
+
+
+def share_of(pattern, own, calls):
+    """Instructions of the procedures that match, with all that they call outside of them."""
+    inside = sum(cost for name, cost in own.items() if pattern.search(name))
+    return inside + sum(cost for (name, called), cost in calls.items()
+                        if pattern.search(name) and not pattern.search(called))
+
+
+# ---- a counted run of a study -------------------------------------------------------------------
+
+COUNTS = "counts.json"
+
+
+def main(arguments):
+    """`python -m slideline_tools.counting FOLDER COMMAND...`: runs it, counted; the figures go to FOLDER/counts.json.
+
+    Ends with 0, or with 1 and the reason.
+    """
+    folder, *command = arguments
+    try:
+        counts = count_instructions(command, folder)
+    except UserError as problem:
+        print(problem, file=sys.stderr)
+        return 1
+    profile = pathlib.Path(folder) / PROFILE
+    profile.unlink(missing_ok=True)  # megabytes
+    (pathlib.Path(folder) / COUNTS).write_text(json.dumps(dataclasses.asdict(counts)) + "\n", encoding="ascii")
+    return 0
+
+
+def columns(folder):
+    """The columns of a counted run's row."""
+    counts = json.loads((pathlib.Path(folder) / COUNTS).read_text(encoding="ascii"))
+    return {"instructions": counts["total"], "counted_by": counts["by"],
+            **{f"{part}_instructions": count for part, count in counts["parts"].items()}}
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
