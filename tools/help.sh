@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Sourced by the shell scripts, in any POSIX shell: what `--help` does.
+# Sourced by the shell scripts, in any POSIX shell: what `--help` does, and where results and pages go. `root` is the top
+# of the tree, where a script has set it.
 
 # help_or_go_on WORD...: where one of the words is -h or --help, print the comment at the head of the
 # running script and end it. The first line, the licence and lines for a scheduler are left out.
@@ -13,3 +14,9 @@ help_or_go_on() {
     esac
   done
 }
+
+# Results and pages: below the top of the tree, or where SLIDELINE_RESULTS says, which `study.sh all` sets so that one
+# program's results stay together.
+results=${SLIDELINE_RESULTS:-${root:-.}/results}
+# shellcheck disable=SC2034  # for the scripts that source this
+pages=${SLIDELINE_RESULTS:-${root:-.}}/doc

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""All benchmarks: interleaved rounds, one table with ratios to the kernel and the bandwidth.
+"""All benchmarks: interleaved rounds, one table with ratios to the yardstick and the bandwidth.
 
 usage: bench.py --build FOLDER --out FOLDER [--quick] [--rounds N] [--threads N] [--sizes ...] [--parts ...]
 
@@ -16,15 +16,17 @@ import subprocess
 from pathlib import Path
 
 from contact import time_contact
+import counts
 import elements
 import input_output
-from measuring import Disturbed, Samples, Variant, measure_units, write_summary
+from measuring import Disturbed, Samples, Units, Variant, measure_units, write_summary
 import search
 
 SIZES = (100, 300, 1000, 4000, 20000, 100000, 400000, 1000000, 4000000)
 CHAINS = (10, 20, 100, 1000, 10000, 100000)
 SEARCHES = (1000, 4000, 16000, 64000)
 LARGE = 1000000
+COUNTED = (300, 4000)
 
 
 def build_parser():
@@ -35,6 +37,7 @@ def build_parser():
     parser.add_argument("--rounds", type=int, default=5, help="0: the table of what is there")
     parser.add_argument("--threads", type=int, default=min(2, os.cpu_count()))
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="elements")
+    parser.add_argument("--counted", type=Path, help="the counted build with bench_kernel: instructions too")
     parser.add_argument("--parts", nargs="+", default=["step", "contact", "search", "files"],
                         choices=["step", "contact", "search", "files"])
     return parser
@@ -81,7 +84,8 @@ def run_round(options, work, samples):
     def units():
         now = measure_units(options.kernel, unit_deck, options.threads,
                             200000 if options.quick else 20000000)
-        samples.add(Variant("unit", "kernel", 64, 1, "ns/element"), now.kernel, now)
+        samples.add(Variant("unit", "yardstick", 96, 1, "ns/element"), now.yardstick, now)
+        samples.add(Variant("unit", "routine", 64, 1, "ns/element"), now.routine, now)
         for count, bandwidth in now.bandwidth.items():
             samples.add(Variant("unit", "bandwidth", 0, count, "GB/s"), bandwidth, now)
         return now
@@ -128,6 +132,10 @@ def main():
     options.contact = options.build.resolve() / "tests" / "bench" / "bench_contact"
     work = plan(options) if options.rounds else {}
     samples = Samples(options.out / "samples.csv", options.program)
+    if options.counted and options.rounds and not any(v.part == "count" for v in samples.of_program()):
+        for variant, value in counts.count_all(options.counted.resolve(), options.out / "decks" / "unit.k",
+                                               options.out / "counts", COUNTED[:1] if options.quick else COUNTED):
+            samples.add(variant, value, Units(1.0, {1: 1.0}))
     for number in range(1 if options.quick else options.rounds):
         print(f"round {number + 1}", flush=True)
         run_round(options, work, samples)
@@ -136,7 +144,7 @@ def main():
     (options.out / "machine.json").write_text(
         json.dumps(describe_machine(options.program), indent=1), encoding="utf-8")
     for row in rows:
-        ratio = f" = {row['over_kernel']:6.2f} K" if row["over_kernel"] is not None else ""
+        ratio = f" = {row['over_yardstick']:6.2f} K" if row["over_yardstick"] is not None else ""
         print("{part:8s}{case:28s}{size:>9d} {threads}  {median:10.4g} {unit}".format(**row) + ratio)
 
 

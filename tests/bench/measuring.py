@@ -15,7 +15,9 @@ import threading
 import time
 from pathlib import Path
 
+HERE = Path(__file__).resolve().parent
 BYTES = 320.0  # moved per element and step: state read and written, nodes, connectivity
+GOAL_BYTES, GOAL_YARDSTICKS = 220.0, 3.3  # of the goal for large models
 UNDISTURBED = 0.97  # share of the processors that a run had
 TURNS = 0.1  # s; some turns of the scheduler
 LONGEST = 120.0  # s; a run that takes longer waits for processors that others have: no sample
@@ -27,10 +29,12 @@ class Disturbed(Exception):
 
 @dataclasses.dataclass(frozen=True)
 class Units:
-    """K in ns and the memory's bandwidth in GB/s by number of threads, at one time."""
+    """The yardstick K in ns, the memory's bandwidth in GB/s by number of threads and the time of the program's own
+    element routine in ns, at one time."""
 
-    kernel: float
+    yardstick: float
     bandwidth: dict
+    routine: float = float("nan")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -44,7 +48,7 @@ class Variant:
     unit: str
 
 
-FIELDS = ("part", "case", "size", "threads", "unit", "value", "kernel_ns", "bandwidth_gb_s",
+FIELDS = ("part", "case", "size", "threads", "unit", "value", "yardstick_ns", "bandwidth_gb_s",
           "share", "program")
 
 
@@ -57,17 +61,19 @@ class Samples:
         if not path.exists():
             with path.open("w", newline="", encoding="ascii") as stream:
                 csv.writer(stream).writerow(FIELDS)
+        elif path.read_text(encoding="ascii").splitlines()[0] != ",".join(FIELDS):
+            raise SystemExit(f"{path} has other columns, perhaps times over an older unit: move it away")
 
     def add(self, variant, value, units, share=1.0):
         """Append one value; `share` of the processors that its run had."""
         bandwidth = units.bandwidth[min(variant.threads, max(units.bandwidth))]
         with self.path.open("a", newline="", encoding="ascii") as stream:
             csv.writer(stream).writerow((*dataclasses.astuple(variant), f"{value:.6g}",
-                                         f"{units.kernel:.4g}", f"{bandwidth:.4g}",
+                                         f"{units.yardstick:.4g}", f"{bandwidth:.4g}",
                                          f"{share:.3f}", self.program))
 
     def of_program(self):
-        """{variant: list of (value, kernel, bandwidth, share)} of this program."""
+        """{variant: list of (value, K, bandwidth, share)} of this program."""
         found = {}
         with self.path.open(newline="", encoding="ascii") as stream:
             for row in csv.DictReader(stream):
@@ -93,15 +99,15 @@ def summarise(variant, samples):
     low, middle, high = quartiles(values)
     row = {**dataclasses.asdict(variant), "repeats": len(samples), "kept": len(kept),
            "median": middle, "low": low, "high": high,
-           "kernel_ns": statistics.median(s[1] for s in kept),
+           "yardstick_ns": statistics.median(s[1] for s in kept),
            "bandwidth_gb_s": statistics.median(s[2] for s in kept),
-           "over_kernel": None, "over_bandwidth": None, "over_goal": None,
+           "over_yardstick": None, "over_bandwidth": None, "over_goal": None,
            "share": statistics.median(s[3] for s in kept)}
     if variant.unit.startswith("ns"):
-        row["over_kernel"] = statistics.median(s[0] / s[1] for s in kept)
+        row["over_yardstick"] = statistics.median(s[0] / s[1] for s in kept)
     if variant.part == "step":
         row["over_bandwidth"] = statistics.median(s[0] * s[2] / BYTES for s in kept)
-        row["over_goal"] = statistics.median(s[0] / (2.7 * s[1] + BYTES / s[2]) for s in kept)
+        row["over_goal"] = statistics.median(s[0] / (GOAL_YARDSTICKS * s[1] + GOAL_BYTES / s[2]) for s in kept)
     elif variant.unit == "MB/s":
         row["over_bandwidth"] = statistics.median(s[0] / 1.0e3 / s[2] for s in kept)
     return row
@@ -116,7 +122,7 @@ def quartiles(values):
 
 def write_summary(samples, path):
     """The table of all variants, smallest size first; returns its rows."""
-    order = {name: k for k, name in enumerate(("unit", "step", "contact", "search", "memory",
+    order = {name: k for k, name in enumerate(("unit", "count", "step", "contact", "search", "memory",
                                                "input", "output"))}
     found = sorted(samples.of_program().items(), key=lambda item: (
         order.get(item[0].part, len(order)), item[0].case, item[0].threads, item[0].size))
@@ -135,15 +141,22 @@ def is_fresh(path, script):
     return path.exists() and path.stat().st_mtime > Path(script).stat().st_mtime
 
 
+def measure_yardstick():
+    """K, ns: the fixed arithmetic of yardstick/, never a routine of the program."""
+    output = subprocess.run([HERE / "yardstick" / "run.sh"], check=True, capture_output=True, text=True).stdout
+    return float(output.split(",")[1])
+
+
 def measure_units(kernel, deck, threads, entries):
-    """K and the bandwidth of 1 thread and of `threads` on arrays of so many entries, now."""
+    """K, now; the element routine, and the bandwidth of 1 thread and of `threads` on arrays of so many entries."""
     found = {}
     for count in sorted({1, threads}):
         output = subprocess.run([kernel, deck, str(count), str(entries)], check=True, capture_output=True,
                                 text=True).stdout
         found[count] = dict(line.split(",") for line in output.split())
-    return Units(float(found[1]["kernel_ns"]),
-                 {count: float(values["bandwidth_gb_s"]) for count, values in found.items()})
+    return Units(measure_yardstick(),
+                 {count: float(values["bandwidth_gb_s"]) for count, values in found.items()},
+                 float(found[1]["routine_ns"]))
 
 
 def without_others(value, share, threads, seconds):

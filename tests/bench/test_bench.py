@@ -25,7 +25,8 @@ def folder(tmp_path_factory):
 
 def test_table_has_every_part(folder):
     bench = speed.Bench(folder / "bench.csv")
-    assert bench.value("unit", "kernel") > 0.0
+    assert bench.value("unit", "yardstick") > 0.0
+    assert bench.value("unit", "routine", name="over_yardstick") > 0.5
     assert bench.value("unit", "bandwidth", threads=2) > 0.0
     for material in ("elastic", "yielding"):
         for threads in (1, 2):

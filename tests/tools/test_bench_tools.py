@@ -38,10 +38,17 @@ def test_the_better_half_is_kept_where_all_are_disturbed():
 def test_ratios_are_those_of_the_same_minute():
     # The second round is twice as slow in everything: the ratio to K must not see it.
     row = measuring.summarise(STEP, [(10.0, 4.0, 8.0, 1.0), (20.0, 8.0, 4.0, 1.0)])
-    assert row["over_kernel"] == pytest.approx(2.5)
+    assert row["over_yardstick"] == pytest.approx(2.5)
     assert row["over_bandwidth"] == pytest.approx(10.0 * 8.0 / measuring.BYTES)
-    assert row["over_goal"] == pytest.approx(10.0 / (2.7 * 4.0 + measuring.BYTES / 8.0))
+    assert row["over_goal"] == pytest.approx(10.0 / (3.3 * 4.0 + 220.0 / 8.0))
     assert (row["low"], row["median"], row["high"]) == (12.5, 15.0, 17.5)
+
+
+def test_samples_over_an_older_unit_are_refused(tmp_path):
+    (tmp_path / "program").write_text("1")
+    (tmp_path / "s.csv").write_text("part,case,size,threads,unit,value,kernel_ns,bandwidth_gb_s,share,program\n")
+    with pytest.raises(SystemExit, match="older unit"):
+        measuring.Samples(tmp_path / "s.csv", tmp_path / "program")
 
 
 def test_samples_of_another_program_are_left_alone(tmp_path):
@@ -127,9 +134,12 @@ def bench_rows():
                 variant = measuring.Variant("search", f"{case} type 1 {kind}", size, 1,
                                             "ns/slave node")
                 rows.append(measuring.summarise(variant, [(ns, 4.0, 8.0, 1.0)]))
-    for case, unit, value in (("kernel", "ns/element", 4.0), ("bandwidth", "GB/s", 8.0)):
+    for case, unit, value in (("yardstick", "ns/element", 4.0), ("routine", "ns/element", 12.0), ("bandwidth", "GB/s", 8.0)):
         rows.append(measuring.summarise(measuring.Variant("unit", case, 64, 1, unit),
                                         [(value, 4.0, 8.0, 1.0)]))
+    for case, size, value in (("yardstick", 96, 45.64), ("element routine", 64, 91.28)):
+        rows.append(measuring.summarise(measuring.Variant("count", case, size, 1, "instructions/element"),
+                                        [(value, 1.0, 1.0, 1.0)]))
     return rows
 
 
@@ -145,10 +155,12 @@ def test_page_of_speed_judges_the_goals(tmp_path):
     assert "elastic, 4000 to 100 000 elements, step over K, the largest: **2.50**" in text
     kept = [line.endswith("kept") for line in text.splitlines() if "step over K" in line and "**" in line]
     assert kept == [True, False]
-    assert "type 1, 1000 slave nodes, K per slave node: **1.00**, goal at most 3.5: kept" in text
-    assert "type 3, 1000 slave nodes, K per contact point: **3.00**, goal at most 2: missed" in text
-    assert ("type 3, 20 slave nodes (20 points), microseconds a step: **0.24**, goal at most 0.4: kept; "
-            "60 K, of at most 151") in text
+    assert "type 1, 1000 slave nodes, K per slave node: **1.00**, goal at most 4.3: kept" in text
+    assert "type 3, 1000 slave nodes, K per contact point: **3.00**, goal at most 2.5: missed" in text
+    assert "type 3, 20 slave nodes (20 points), microseconds a step: **0.24**, goal at most 1: kept; 60 K\n" in text
+    assert "Here 4.00 ns." in text and "Here 12.00 ns = 3.00 K" in text
+    assert "element routine over K: **3.00**, goal at most 2: missed" in text
+    assert "| yardstick | 96 | 45.6 | 1.00 |\n| element routine | 64 | 91.3 | 2.00 |" in text
     assert "elastic, the same sizes, speed-up of two threads, the least: **1.95**, goal at least 1.9: kept" in text
     assert "yielding, the same sizes, two threads over one of two runs at once: 1.56 to 1.56\n" in text
     assert "| elements | elastic, 1 thread | elastic, 2 threads | elastic, 2 runs at once |" in text

@@ -9,8 +9,8 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
-out=$root/results/batch/advise
-doc=$root/doc
+out=$results/batch/advise
+doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release

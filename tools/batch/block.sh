@@ -10,8 +10,8 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 types=${1:-1 2 3 4 5 6 7}
-out=$root/results/batch/block
-doc=$root/doc
+out=$results/batch/block
+doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release

@@ -8,14 +8,14 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
-out=$root/results/batch/claims
+out=$results/batch/claims
 
 missing=
 for scene in block sliding; do
-  [ -d "$root/results/batch/$scene" ] || missing="$missing
+  [ -d "$results/batch/$scene" ] || missing="$missing
   tools/batch/$scene.sh"
 done
-[ -f "$root/results/study-paper-tables/paper-tables.csv" ] || missing="$missing
+[ -f "$results/study-paper-tables/paper-tables.csv" ] || missing="$missing
   tools/study.sh paper-tables"
 if [ -n "$missing" ]; then
   echo "claims.sh: results are missing; run these first (from the top of the tree):$missing" >&2
@@ -30,5 +30,5 @@ mkdir -p "$run"
 "$root/build/release/slideline" i="$run/sliding.k" d="$run" jobid=sliding ctype=5 \
   >"$run/progress.txt"
 
-"$root/build/venv/bin/python" -m slideline_tools.studies.claims "$root/results/batch" \
-  "$root/results/study-paper-tables/paper-tables.csv" "$root/doc"
+"$root/build/venv/bin/python" -m slideline_tools.studies.claims "$results/batch" \
+  "$results/study-paper-tables/paper-tables.csv" "$pages"

@@ -12,8 +12,8 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 help_or_go_on "$@"
 levels=${1:-1 2 3 4}
 types=${2:-1 2 3 4 5 6 7}
-out=$root/results/batch/collision
-doc=$root/doc
+out=$results/batch/collision
+doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release

@@ -17,8 +17,8 @@ if [ "${1:-}" = static ]; then
   shift
 fi
 types=${1:-1 2 3 4 5 6 7}
-out=$root/results/batch/$study
-doc=$root/doc
+out=$results/batch/$study
+doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release

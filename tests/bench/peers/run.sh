@@ -9,12 +9,12 @@ set -eu
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
-out=$root/results/peers
+out=$results/peers
 doc=$out/doc
 venv=$root/build/venv-peers
 case ${1:-} in
-  --quick) out=$root/results/peers-quick doc=$out/doc ;;
-  --publish) doc=$root/doc; shift ;;
+  --quick) out=$results/peers-quick doc=$out/doc ;;
+  --publish) doc=$pages; shift ;;
 esac
 
 "$root/tools/build.sh" release

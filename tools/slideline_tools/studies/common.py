@@ -12,6 +12,7 @@ from slideline_tools.contact_types import TYPES
 from slideline_tools.fields import scalar_field
 from slideline_tools.plots import (COLOURS, PAGE_WIDTH, STYLE, colour_bar, draw_field,
                                    panel_height, plt)
+from slideline_tools.study.pages import with_origin
 
 LARGEST_PICTURE = 100_000
 
@@ -141,10 +142,10 @@ def decks_and_page_main(text, write_decks, write, arguments=None):
 
 
 def write_page(doc, name, text):
-    """Write DOC/studies/NAME.md."""
+    """Write DOC/studies/NAME.md, with the source and the processor it was made from below its title."""
     path = doc / "studies" / f"{name}.md"
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
+    path.write_text(with_origin(name, text), encoding="utf-8")
     print(f"wrote {path}")
 
 

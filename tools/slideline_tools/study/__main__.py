@@ -12,13 +12,15 @@ import sys
 
 from slideline_tools import UserError, counting
 from slideline_tools.contact_types import ALL_TYPES
-from slideline_tools.study import registry
+from slideline_tools.study import everything, registry
 from slideline_tools.study.job import Options, file_digest, interleave, part_of
+from slideline_tools.study.pages import made_by, program_source
 from slideline_tools.study.progress import Progress
 from slideline_tools.study.runner import Sweep
 from slideline_tools.study.table import FAILED, MISSING, rows_of, write_rows
 
 DONE, UNUSABLE, STOPPED = 0, 2, 4
+EVERYTHING = "all"
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 
 
@@ -27,8 +29,9 @@ def build_parser():
         prog="tools/study.sh", description="Run a study: a sweep of runs, its table and charts.",
         epilog="A study that was stopped or killed goes on with the same command. Exit status: "
                "0 done (failed runs are results too), 2 unusable, 4 stopped on request.")
-    parser.add_argument("name", choices=registry.STUDIES, metavar="NAME",
-                        help=", ".join(registry.STUDIES))
+    parser.add_argument("name", choices=[*registry.STUDIES, EVERYTHING], metavar="NAME",
+                        help=", ".join(registry.STUDIES) + f"; {EVERYTHING}: every page of doc/studies, from one "
+                        "program on one machine (hours), into results/all")
     parser.add_argument("--levels", type=int, nargs="+", help="refinement levels")
     parser.add_argument("--types", type=int, nargs="+", choices=ALL_TYPES, help="contact types")
     parser.add_argument("--quick", action="store_true",
@@ -36,7 +39,8 @@ def build_parser():
     parser.add_argument("--repeats", type=int, help="rounds of timing runs")
     parser.add_argument("-j", dest="parallel", type=int, default=1, metavar="N",
                         help="runs side by side (1); timing runs stay alone")
-    parser.add_argument("--only", metavar="PATTERN", help="runs of these names, for example 'hertz*'")
+    parser.add_argument("--only", metavar="PATTERN", help="runs of these names, for example 'hertz*' "
+                        f"(of {EVERYTHING}: pages)")
     parser.add_argument("--retry", action="store_true", help="run anew what has failed before")
     parser.add_argument("--list", action="store_true", help="print the runs and do nothing")
     parser.add_argument("--part", metavar="I/N", help="run only part I (0 to N-1) of N, no table")
@@ -104,8 +108,8 @@ def held(folder, shared):
         yield
 
 
-def collect(study, jobs, sweep, doc):
-    """Table, charts and page."""
+def collect(study, jobs, sweep, doc, publish=False):
+    """Table, charts and page; UserError where runs of several processors are to be published."""
     folder = sweep.folder
     rows = rows_of(study, jobs, sweep)
     if study.derive:
@@ -116,7 +120,11 @@ def collect(study, jobs, sweep, doc):
           + "".join(f", {number} {state}" for state, number in count.items() if number))
     study.chart(rows, folder)
     if study.page:
-        study.page(rows, doc)
+        processors = sorted({row["processor"] for row in rows if "processor" in row})
+        if publish and len(processors) > 1:
+            raise UserError(f"runs of several processors are not published together: {'; '.join(processors)}")
+        with made_by(program_source(sweep.program), "; ".join(processors)):
+            study.page(rows, doc)
 
 
 def lead_links_home(folder, home):
@@ -133,9 +141,24 @@ def lead_links_home(folder, home):
         page.write_text(re.sub(r"\]\(([^):#]+)", target, text), encoding="utf-8")
 
 
+def perform_all(wanted):
+    """Every page."""
+    folder = (wanted.folder or ROOT / "results" / "all").resolve()
+    others = [name for name in ("levels", "types", "quick", "repeats", "retry", "list", "part", "collect", "program")
+              if getattr(wanted, name)]
+    if others:
+        raise UserError(f"{EVERYTHING} takes no {', '.join('--' + name for name in others)}")
+    with held(folder, shared=False):
+        everything.make_all(folder, wanted.publish, wanted.only)
+
+
 def perform(wanted):
+    if wanted.name == EVERYTHING:
+        perform_all(wanted)
+        return
     study = registry.load(wanted.name)
-    folder = wanted.folder or ROOT / "results" / f"study-{study.name}{'-quick' * wanted.quick}"
+    results = pathlib.Path(os.environ.get("SLIDELINE_RESULTS") or ROOT / "results")
+    folder = wanted.folder or results / f"study-{study.name}{'-quick' * wanted.quick}"
     folder = folder.resolve()
     program = pathlib.Path(wanted.program or os.environ.get("SLIDELINE")
                            or ROOT / "build" / "release" / "slideline").resolve()
@@ -158,7 +181,8 @@ def perform(wanted):
         if not wanted.collect:
             sweep.run(chosen, wanted.parallel, Progress(), wanted.retry)
         if not wanted.part:
-            collect(study, jobs, sweep, ROOT / "doc" if wanted.publish else folder / "doc")
+            published = pathlib.Path(os.environ.get("SLIDELINE_RESULTS") or ROOT) / "doc"
+            collect(study, jobs, sweep, published if wanted.publish else folder / "doc", wanted.publish)
             if not wanted.publish:
                 lead_links_home(folder / "doc" / "studies", ROOT / "doc" / "studies")
 

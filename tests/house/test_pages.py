@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""Published pages keep up with the code that they speak of, or doc/studies/README.md says until when they need not.
+
+A page names the digest of its sources (slideline_tools/study/pages.py); no history is asked, so that this judges a
+shallow clone and an unpacked archive as well.
+"""
+import pathlib
+import re
+import sys
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+
+from slideline_tools.study import pages  # noqa: E402
+
+STUDIES = ROOT / "doc" / "studies"
+ALLOWANCE = re.compile(r"^\| \[(\w+)\]\(\w+\.md\) \| release (\d+)\.(\d+) \| (\S.+?) \|$", re.MULTILINE)
+
+
+def allowances(text):
+    """{page: (major, minor) of the release with which it is published anew} of the table 'Behind the code'."""
+    _, _, table = text.partition("## Behind the code")
+    return {name: (int(major), int(minor)) for name, major, minor, _ in ALLOWANCE.findall(table)}
+
+
+def version():
+    """(major, minor) of the project."""
+    found = re.search(r"project\(slideline VERSION (\d+)\.(\d+)", (ROOT / "CMakeLists.txt").read_text())
+    return int(found[1]), int(found[2])
+
+
+def judge(texts, allowed, now):
+    """What is wrong: `texts` {page: text}, `allowed` as of `allowances`, `now` the version."""
+    trouble = []
+    for name, text in texts.items():
+        behind = pages.is_behind(name, text)
+        if behind and name not in allowed:
+            trouble.append(f"{name}.md is behind the code ({behind}): publish it anew "
+                           f"({' '.join(pages.PAGES[name].command)}), or allow it in doc/studies/README.md")
+        elif behind and now >= allowed[name]:
+            trouble.append(f"{name}.md was to be published with release {allowed[name][0]}.{allowed[name][1]}")
+        elif not behind and name in allowed:
+            trouble.append(f"{name}.md is up to date: take its line out of doc/studies/README.md")
+    return trouble + [f"{name}: no such page" for name in allowed if name not in texts]
+
+
+def published():
+    return {name: (STUDIES / f"{name}.md").read_text(encoding="utf-8") for name in pages.PAGES}
+
+
+def test_every_page_has_its_maker_and_every_maker_its_page():
+    assert {path.stem for path in STUDIES.glob("*.md")} - {"README"} == set(pages.PAGES)
+    readme = (STUDIES / "README.md").read_text(encoding="utf-8")
+    for name, page in pages.PAGES.items():
+        assert (ROOT / page.command[0]).exists()
+        assert f"[{name}]({name}.md)" in readme and f"`{' '.join(page.command)}`" in readme
+        assert set(page.sources) <= {path.name for path in (ROOT / "src").iterdir()}
+        order = list(pages.PAGES)
+        assert all(order.index(other) < order.index(name) for other in page.after)
+
+
+def test_pages_keep_up_with_the_code():
+    allowed = allowances((STUDIES / "README.md").read_text(encoding="utf-8"))
+    assert judge(published(), allowed, version()) == []
+
+
+@pytest.fixture
+def fresh():
+    """A page made from the sources as they are."""
+    with pages.made_by("0123456789ab", "a processor, 2 logical cores"):
+        return pages.with_origin("hertz", "# Hertz\n\nText.\n")
+
+
+def test_a_page_that_is_behind_is_noticed(fresh):
+    old = re.sub(r"speaks of `\w+`", "speaks of `000000000000`", fresh)
+    assert judge({"hertz": fresh}, {}, (0, 1)) == []
+    assert "changed since 0123456789ab" in judge({"hertz": old}, {}, (0, 1))[0]
+    assert "does not name" in judge({"hertz": "# Hertz\n\nText.\n"}, {}, (0, 1))[0]
+
+
+def test_an_allowance_ends_with_its_release_and_is_not_kept_for_nothing(fresh):
+    table = "## Behind the code\n\n| page | until | why |\n|---|---|---|\n| [hertz](hertz.md) | release 0.2 | words. |\n"
+    allowed = allowances(table)
+    assert allowed == {"hertz": (0, 2)} and allowances(table.replace(" words. ", " ")) == {}
+    assert judge({"hertz": "# Hertz\n"}, allowed, (0, 1)) == []
+    assert "release 0.2" in judge({"hertz": "# Hertz\n"}, allowed, (0, 2))[0]
+    assert "take its line out" in judge({"hertz": fresh}, allowed, (0, 1))[0]
+    assert judge({}, allowed, (0, 1)) == ["hertz: no such page"]
+
+
+def test_the_digest_is_that_of_the_code_and_not_of_its_comments(tmp_path):
+    folder = tmp_path / "src" / "base"
+    folder.mkdir(parents=True)
+    found = []
+    for text in ("x = 1\n", "! why\n\n  x = 1\n", "x = 2\n", "!$omp simd\nx = 1\n"):
+        (folder / "a.f90").write_text(text)
+        found.append(pages.digest(("base",), tmp_path))
+    assert found[0] == found[1] and len(set(found)) == 3
+    (folder / "b.f90").write_text("x = 1\n")
+    assert pages.digest(("base",), tmp_path) != found[3]
+
+
+def test_the_line_of_origin_is_replaced_and_not_repeated(fresh):
+    with pages.made_by("ba9876543210", "another"):
+        again = pages.with_origin("hertz", fresh)
+    assert again.count("Made from source") == 1 and "`ba9876543210` on another;" in again
+    assert again.endswith("\n\nText.\n") and again.startswith("# Hertz\n\nMade from")
