@@ -5,7 +5,6 @@ Where the kernel lends the processor's counters (perf_event_open) they count the
 callgrind counts, on a program built for x86-64-v3 (`tools/build.sh counted`), since emulators lack AVX-512; it
 tells the parts of the program apart too. A run under callgrind takes some fifty times as long: shorten it.
 """
-import contextlib
 import ctypes
 import dataclasses
 import functools
@@ -122,21 +121,21 @@ def count_instructions(command, folder, by=None, **options):
 def run_counted(command, kind=_HARDWARE_TYPE, event=_INSTRUCTIONS, **options):
     """Exit status, standard error and count of an event of a command, by perf_event_open.
 
-    The child waits for its counter before it becomes the command.
+    The child waits for a line, that its counter is there, before it becomes the command.
     """
-    ready, go = os.pipe()
-    with contextlib.ExitStack() as stack:
-        stack.callback(os.close, go)
-        process = stack.enter_context(subprocess.Popen(
-            ["/bin/sh", "-c", f'read -r _ <&{ready}; exec "$@" {ready}<&-', "sh", *map(str, command)],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, pass_fds=(ready,), text=True,
-            errors="replace", **options))
-        os.close(ready)
-        counter = open_counter(process.pid, kind, event)
-        stack.callback(os.close, counter)
-        os.write(go, b"\n")
-        _, trouble = process.communicate()
-        return process.returncode, trouble, int.from_bytes(os.read(counter, 8), "little")
+    with subprocess.Popen(["/bin/sh", "-c", 'read -r _; exec "$@" </dev/null', "sh", *map(str, command)],
+                          stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                          errors="replace", **options) as process:
+        try:
+            counter = open_counter(process.pid, kind, event)
+        except OSError:
+            process.kill()
+            raise
+        try:
+            _, trouble = process.communicate("\n")
+            return process.returncode, trouble, int.from_bytes(os.read(counter, 8), "little")
+        finally:
+            os.close(counter)
 
 
 def read_profile(path):
