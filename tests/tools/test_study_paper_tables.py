@@ -99,7 +99,8 @@ def test_the_paper_s_ratios_are_those_of_its_tables():
 def test_runs_are_alone_interleaved_and_include_type_1():
     options = Options(levels=(1, 2), types=(5,), repeats=2)
     jobs = interleave(paper_tables.jobs(options), 2)
-    assert all(job.alone for job in jobs)
+    assert all(job.alone != job.counted for job in jobs)
+    assert {job.labels["level"] for job in jobs if job.counted} == {1}
     assert [job.labels["type"] for job in jobs[:2]] == [1, 5]
     assert {(job.labels["scene"], job.labels["level"]) for job in jobs} == {
         ("block_implicit", 1), ("block", 1), ("sliding", 1), ("sliding", 2), ("collision", 1),
@@ -115,6 +116,7 @@ def test_quick_is_shorter():
     full, quick = (next(job for job in paper_tables.jobs(Options(quick=quick))
                         if job.name == "sliding_1_type_1") for quick in (False, True))
     assert [word for word in quick.options if word not in full.options] == ["endtim=2.0e-3"]
+    assert not any(job.counted for job in paper_tables.jobs(Options(quick=True)))
 
 
 def test_charts_and_page(tmp_path):

@@ -78,7 +78,10 @@ def with_counter(jobs, wanted):
     if not any(job.counted for job in jobs):
         return jobs, None
     try:
-        program = wanted.program or counting.counted_program(ROOT)
+        if (wanted.program or "SLIDELINE" in os.environ) and "SLIDELINE_COUNTED" not in os.environ:
+            raise UserError("with a program of one's own $SLIDELINE_COUNTED has to name the one to be counted, "
+                            "for callgrind one without AVX-512")
+        program = counting.counted_program(ROOT)
         return jobs, (program, counting.method() + file_digest(program))
     except UserError as problem:
         print(f"study: instructions are not counted: {problem}", file=sys.stderr)

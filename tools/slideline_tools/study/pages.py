@@ -33,9 +33,9 @@ class Page:
     after: tuple = ()
 
 
-def study(name, sources=CONTACT):
+def study(name, sources=CONTACT, after=()):
     """A page of tools/study.sh."""
-    return Page(("tools/study.sh", name, "--publish"), sources)
+    return Page(("tools/study.sh", name, "--publish"), sources, after)
 
 
 def batch(name, *words, after=(), sources=CONTACT):
@@ -55,10 +55,10 @@ PAGES = {  # quick ones first
     "advise": batch("advise", sources=ALL),
     "paper_tables": study("paper-tables"),
     "claims": batch("claims", after=("block_to_block", "sliding", "collision", "paper_tables")),
-    "simplify": study("simplify", ALL),
     "stability_shapes": study("stability-shapes"),
     "stability": study("stability"),
     "speed_accuracy": study("speed-accuracy"),
+    "simplify": study("simplify", ALL, after=("speed_accuracy",)),
     "peers": Page(("tests/bench/peers/run.sh", "--publish")),
     "speed": Page(("tests/bench/run.sh", "--publish"), ALL),
 }

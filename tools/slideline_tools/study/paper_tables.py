@@ -94,7 +94,7 @@ def jobs(options):
                     group=f"{name}_{level}",
                     alone=True, turns=max(1, scene.turns // level), cost=scene.cost * level ** 3))
     return listed + [counted_job(job, SCENES[job.labels["scene"]].short) for job in listed
-                     if job.labels["level"] == 1]
+                     if job.labels["level"] == 1 and not options.quick]
 
 
 def measure(job, folder):

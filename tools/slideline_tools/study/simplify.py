@@ -17,10 +17,11 @@ from slideline_tools import UserError, scenes
 from slideline_tools.histories import read_csv
 from slideline_tools.scenes.common import STEEL
 from slideline_tools.study import simplify_decks as decks
+from slideline_tools.study.counted import counted_job
 from slideline_tools.study.job import ALL_TYPES, Job, Study
 from slideline_tools.study.runner import RECORD
 from slideline_tools.study.simplify_compare import comparison, cycle_counts, memory
-from slideline_tools.study.simplify_page import chart, page
+from slideline_tools.study.simplify_page import STEPS, chart, page
 from slideline_tools.study.table import finished
 from slideline_tools.study.times import phases
 
@@ -102,7 +103,7 @@ def variants():
 
 
 def jobs(options):
-    """Every variant on every level; type 2 unless its options say another."""
+    """Every variant on every level; type 2 unless its options say another. Level 1 is counted too."""
     wanted = {f"_type_{ctype}" for ctype in options.types}
     listed = []
     for level in options.levels:
@@ -117,7 +118,9 @@ def jobs(options):
                 {"variant": name, "level": level, "quick": int(options.quick)},
                 group="all", alone=True, turns=variant.turns, once=variant.once,
                 cost=variant.cost * level ** 2.0))
-    return listed
+    compared = {name for step in STEPS for name in step[1:3]}
+    return listed + [counted_job(job) for job in listed if job.labels["variant"] in compared
+                     and job.labels["level"] == 1 and not options.quick]
 
 
 def measure(job, folder):

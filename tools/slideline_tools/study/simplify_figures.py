@@ -2,7 +2,7 @@
 """Medians over the runs of the study simplify, and how its figures are printed."""
 import numpy as np
 
-from slideline_tools.study.table import finished, grouped
+from slideline_tools.study.table import counted, finished, grouped
 from slideline_tools.study.times import quartile_distance
 
 
@@ -16,6 +16,7 @@ class Runs:
     def __init__(self, rows):
         done = finished(rows)
         self.groups = grouped(done, "variant", "level")
+        self.counts = {(row["variant"], row["level"]): row["instructions"] for row in counted(rows)}
         self.levels = sorted({row["level"] for row in done})
         timed = [group for group in self.groups.values() if len(group) > 1]
         self.rounds = min((len(group) for group in timed), default=1)
@@ -25,6 +26,11 @@ class Runs:
 
     def has(self, name, level):
         return (name, level) in self.groups
+
+    def instructions_saved(self, more, less, level):
+        """Per cent of the retired instructions that the run with less saves; '' where they were not counted."""
+        pair = [self.counts.get((name, level)) for name in (more, less)]
+        return "" if None in pair else f"{100.0 * (1.0 - pair[1] / pair[0]):.1f} %"
 
     def first(self, name, level):
         """The row of the first run, which has what was compared; {} if there is none."""

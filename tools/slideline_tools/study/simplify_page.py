@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Charts and page of the study simplify."""
+import os
 import pathlib
 
 from slideline_tools import UserError
@@ -7,6 +8,7 @@ from slideline_tools.plots import COLOURS, PAGE_WIDTH, plt
 from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
 from slideline_tools.study import simplify_texts as texts
 from slideline_tools.study.charts import save, styled
+from slideline_tools.study.counted import who_counted
 from slideline_tools.study.simplify_figures import Runs, duration, megabytes, percent, \
     small_share
 from slideline_tools.study.speed_accuracy_front import cheapest, points_of, times_of
@@ -81,13 +83,14 @@ def overview(runs, level):
         row = runs.first(compared, level)
         table.append([
             title, arrow(times, duration), percent(1.0 - times[1] / times[0]),
+            runs.instructions_saved(more, less, level),
             arrow([runs.seconds(name, level, "contact") for name in (more, less)], duration),
             arrow([runs.first(name, level).get("memory") for name in (more, less)], megabytes),
             arrow([runs.first(name, level)["bytes"] for name in (more, less)], megabytes),
             "same bits" if row.get("same_bits") else small_share(row.get("force_error")),
             "same bits" if row.get("same_bits") else small_share(row.get("displacement_error")),
             "same bits" if row.get("same_bits") else small_share(row.get("strain_shift"))])
-    return markdown_table(["left out", "processor time", "saved", "contact time", "memory, MB",
+    return markdown_table(["left out", "processor time", "saved", "instructions saved", "contact time", "memory, MB",
                            "results, MB", "force", "displacement", "plastic strain"], table)
 
 
@@ -151,7 +154,8 @@ def output_table(runs, level):
 def speed_accuracy_rows():
     """The table of the study speed-accuracy, full or quick; None if it has not been run here."""
     for suffix in ("", "-quick"):
-        path = ROOT / "results" / f"study-speed-accuracy{suffix}" / "speed-accuracy.csv"
+        results = pathlib.Path(os.environ.get("SLIDELINE_RESULTS") or ROOT / "results")
+        path = results / f"study-speed-accuracy{suffix}" / "speed-accuracy.csv"
         if path.is_file():
             return read_rows(path)
     return None
@@ -191,7 +195,7 @@ def page(rows, doc):
     write_page(doc, "simplify", texts.PAGE.format(
         quick=texts.QUICK if any(row["quick"] for row in rows) else "",
         processor="; ".join(sorted({row["processor"] for row in done})),
-        rounds=runs.rounds, spread=percent(runs.spread), load=f"{runs.load:.1f}",
+        counted=who_counted(rows), rounds=runs.rounds, spread=percent(runs.spread), load=f"{runs.load:.1f}",
         overviews="\n\n".join(f"N_r = {level}:\n\n{overview(runs, level)}" for level in levels),
         level=last, symmetry=texts.symmetry(runs, last),
         halves=symmetry_table(runs, last), rigid=texts.rigid(runs, levels),

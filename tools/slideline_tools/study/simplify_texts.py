@@ -15,6 +15,8 @@ less mean nothing. Contact time is the part of the processor time that its share
 clock has shown in a run if that is less. Load of the machine: {load} processes that want to run; where that is above the number of cores,
 contact times are less certain than the whole. Memory is the peak of the process, most of which is the program and its libraries.
 
+*Instructions saved*: of the retired instructions of the whole run, N_r = 1. {counted}
+
 ![Processor time with and without](../pictures/simplify.png)
 
 {quick}## What is saved, and what it costs

@@ -5,6 +5,7 @@ Every run is timed and judged; contact time and computing time are medians over 
 variants run in turn. See speed_accuracy_scenes.py for the scenes and their measures.
 """
 from slideline_tools.results import read
+from slideline_tools.study.counted import counted_job
 from slideline_tools.study.job import Job, Study
 from slideline_tools.study.speed_accuracy_charts import chart
 from slideline_tools.study.speed_accuracy_page import page
@@ -12,9 +13,11 @@ from slideline_tools.study.speed_accuracy_reference import REFERENCE_TYPE, add_e
 from slideline_tools.study.speed_accuracy_scenes import SCENES, node_penalty
 from slideline_tools.study.times import phases
 
+COUNTED_OPTIONS = {"sliding": ("endtim=2.0e-3",)}
+
 
 def jobs(options):
-    """Each scene, level and type; before them, once, the finer meshes of the references."""
+    """Each scene, level and type; before them, once, the finer meshes of the references. Level 1 is counted too."""
     references, listed = [], []
     for name, scene in SCENES.items():
         levels = [level for level in (scene.quick_levels if options.quick else scene.levels)
@@ -27,7 +30,9 @@ def jobs(options):
                        for ctype, level in sorted(extra)]
         listed += [job(name, decks[level], level, ctype, "sweep")
                    for level in levels for ctype in options.types]
-    return references + listed
+    counted = [counted_job(one, COUNTED_OPTIONS.get(one.labels["scene"], ())) for one in listed
+               if one.labels["level"] == 1 and not options.quick]
+    return references + listed + counted
 
 
 def job(name, deck, level, ctype, role):

@@ -8,6 +8,7 @@ from slideline_tools.plots import plt
 from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
 from slideline_tools.study import paper_tables
 from slideline_tools.study.charts import styled
+from slideline_tools.study.counted import instruction_section
 from slideline_tools.study.speed_accuracy_advice import (Overview, advice, overall_table,
                                                          target_table)
 from slideline_tools.study.speed_accuracy_charts import scene_figure
@@ -55,6 +56,8 @@ The cheapest type and mesh (type/N_r) by computing time that keeps an error at o
 {references}
 
 {scenes}
+
+{counts}
 
 {paper}
 """
@@ -249,5 +252,6 @@ def page(rows, doc):
         spread=100.0 * np.max([found.spread for found in times.values()]),
         short=short_text(times), load=load_text(swept), gain=100.0 * GAIN, tie=100.0 * TIE,
         references=reference_table(rows),
+        counts=instruction_section(rows, {name: scene.title for name, scene in SCENES.items()}),
         scenes="\n\n".join(scene_section(name, found) for name, found in points.items()),
         paper=paper_section(rows, times)).rstrip() + "\n")
