@@ -455,7 +455,9 @@ def test_page(runs):
     predicted = {topic: [0.1, 0.2, 0.3] for topic in study_decks.WASTE if topic != "long flight"}
     last, clean = advise(runs["all"])[:2], advise(runs["none"])[:2]
     text = study.page(predicted, totals, last, clean, {
-        "argument": "dt=2", "predicted": 7.0, "measured": 8.0, "rebound": [4.0, 4.1]})
-    assert "| symmetry | 20.0 | 40.0 |" in text and "| long flight | not found | 0.0 |" in text
+        "argument": "dt=2", "predicted": 7.0, "measured": 8.0, "rebound": [4.0, 4.1]},
+        ({study.ALL: 800, "symmetry": 700}, "counted by a test"))
+    assert "| symmetry | 20.0 | 40.0 | 12.5 |" in text and "| long flight | not found | 0.0 |  |" in text
+    assert "saved, counted by a test." in text
     assert "differed by 50%" in text and "dt=2: predicted 7.0 %, measured 8.0 %" in text
     assert str(runs["all"]) not in text

@@ -80,14 +80,14 @@ def method():
                     "valgrind is not installed")
 
 
-def counted_program(root):
-    """The program to be counted: $SLIDELINE_COUNTED, that of the release, or the one built for callgrind."""
+def counted_program(root, build=True):
+    """The program to be counted: $SLIDELINE_COUNTED, that of the release, or the one for callgrind, which is built."""
     if "SLIDELINE_COUNTED" in os.environ:
         return pathlib.Path(os.environ["SLIDELINE_COUNTED"]).resolve()
     if method() == HARDWARE:
         return pathlib.Path(root) / "build" / "release" / "slideline"
-    done = subprocess.run([pathlib.Path(root) / "tools" / "build.sh", "counted"], check=False, stdout=sys.stderr)
-    if done.returncode:
+    if build and subprocess.run([pathlib.Path(root) / "tools" / "build.sh", "counted"], check=False,
+                                stdout=sys.stderr).returncode:
         raise UserError("the program to be counted could not be built")
     return pathlib.Path(root) / "build" / "counted" / "slideline"
 
