@@ -62,7 +62,9 @@ def check_origin(path, origin):
 
 def make_pages(names, folder, origin, stamp, say=print):
     """Make the pages that are not done yet; returns {name: trouble}."""
-    environment = {**os.environ, "SLIDELINE_RESULTS": str(folder)}
+    # A program of the user's own is not the one that this tree builds.
+    environment = {name: value for name, value in os.environ.items() if name != "SLIDELINE"}
+    environment["SLIDELINE_RESULTS"] = str(folder)
     trouble = {}
     (folder / "logs").mkdir(parents=True, exist_ok=True)
     for number, name in enumerate(names, start=1):
