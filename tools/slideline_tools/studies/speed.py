@@ -266,7 +266,8 @@ def step_table(bench):
                  + f" ({column[size]['over_goal']:.2f})" * (size >= IN_MEMORY)
                  if size in column else "" for column in columns]
         lines.append([f"{size:,}".replace(",", " "), *cells])
-    return ("ns per element and step, over K, and from 20 000 elements on in brackets over the goal for large models:\n\n"
+    return ("ns per element and step, over K, and from 20 000 elements on in brackets "
+            f"over {GOAL_YARDSTICKS:g} K + R of {GOAL_BYTES:.0f} bytes:\n\n"
             + markdown_table(names, lines))
 
 
