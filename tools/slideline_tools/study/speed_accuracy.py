@@ -10,7 +10,7 @@ from slideline_tools.study.job import Job, Study
 from slideline_tools.study.speed_accuracy_charts import chart
 from slideline_tools.study.speed_accuracy_page import page
 from slideline_tools.study.speed_accuracy_reference import REFERENCE_TYPE, add_errors
-from slideline_tools.study.speed_accuracy_scenes import SCENES, node_penalty
+from slideline_tools.study.speed_accuracy_scenes import SCENES, net_moment, node_penalty
 from slideline_tools.study.times import phases
 
 COUNTED_OPTIONS = {"sliding": ("endtim=2.0e-3",)}
@@ -48,12 +48,15 @@ def job(name, deck, level, ctype, role):
 
 
 def measure(one, folder):
-    """Seconds by phase, errors that need no reference, and how the program was built."""
+    """Seconds by phase, errors that need no reference, the net moment of the contact forces, and how
+    the program was built."""
     level, ctype = one.labels["level"], one.labels["type"]
     scene = SCENES[one.labels["scene"]]
-    run = read(folder / f"{one.jobid}.vtkhdf").run
+    results = read(folder / f"{one.jobid}.vtkhdf")
+    run, moment = results.run, net_moment(results, scene.lengths[0] / level)
     return {**phases(folder / f"{one.jobid}.timing.csv"),
             **scene.judge(folder, level, ctype, node_penalty(scene, level, ctype)),
+            **({} if moment is None else {"moment": moment}),
             "build": f"slideline {run['version']}, {run['build']}"}
 
 

@@ -1,15 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""What the study speed-accuracy recommends: figures by type over all scenes, and sentences."""
+"""What the study speed-accuracy recommends: figures by type over all scenes, and sentences.
+
+Which types are named is decided by study/rules.py alone.
+"""
 from slideline_tools.studies.common import TYPES, label, markdown_table
-from slideline_tools.study.speed_accuracy_front import cheapest, front, geometric_mean, ratios
+from slideline_tools.study.rules import (COST_FACTOR, ERROR_FACTOR, RUN_FACTOR, between, least, names,
+                                         numbers)
+from slideline_tools.study.speed_accuracy_front import cheapest, geometric_mean, meeting, ratios
 from slideline_tools.study.speed_accuracy_scenes import SCENES
 
 PRESSURE_SCENES = ("patch", "block")
 GLOBAL = (("sliding", "force_error", "force history of the sliding"),
           ("collision", "plastic_error", "plastic work of the collision by columns"),
           ("collision", "total_work_error", "the same in total"))
+COMPARED = (("hertz", "profile_error", "Hertz profile"),
+            ("sliding", "force_error", "sliding force"),
+            ("sliding", "roughness", "sliding roughness"),
+            ("collision", "total_work_error", "plastic work"))
 TARGETS = (0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.0003)
-FROM_A_TO_B = "{:.2f} to {:.2f}"
+BALANCED = 1.0e-9  # a net moment that is round-off
 
 
 class Overview:
@@ -48,10 +57,11 @@ class Overview:
         points = [point for point in self.points.get(scene, ()) if key in point.error]
         return geometric_mean(ratios(points, ctype, lambda point: point.judged(key)))
 
-    def fronts(self, ctype, cost="computing"):
-        """On how many fronts the type has a point."""
-        return sum(any(point.type == ctype for point in front(self.points[name], cost, measure.key))
-                   for name, measure in self.panels())
+    def moment(self, ctype):
+        """Largest net moment of the contact forces, over force times slave segment; nan where no
+        run tells it."""
+        return max((point.moment for points in self.points.values() for point in points
+                    if point.type == ctype and point.moment == point.moment), default=float("nan"))
 
     def shares(self, scene):
         """Lowest and highest share of contact in the computing time."""
@@ -64,101 +74,161 @@ def number(value):
     return "" if value != value else f"{value:.2f}" if value >= 0.095 else f"{value:.1g}"
 
 
+def moment_text(value):
+    """A net moment; round-off by its bound."""
+    return "" if value != value else f"{value:.1g}" if value > BALANCED else f"< {BALANCED:.0e}"
+
+
 def overall_table(over):
-    """One row for each type: costs and errors over those of type 1."""
-    rows, panels = [], over.panels()
+    """One row for each type: costs and errors over those of type 1, and the net moment."""
+    rows = []
     for ctype in over.types:
         costs = over.cost_by_scene(ctype, "contact").values()
         passes = over.passes(ctype)
         rows.append([
             label(ctype), "" if passes is None else "yes" if passes else "no",
-            f"{over.cost(ctype, 'contact'):.2f} ({FROM_A_TO_B.format(min(costs), max(costs))})"
-            if costs else "", number(over.cost(ctype, "computing")),
-            *(number(over.error(ctype, scene, key)) for scene, key in COMPARED),
-            f"{over.fronts(ctype)} of {len(panels)}"])
+            f"{over.cost(ctype, 'contact'):.2f} ({between(costs)})" if costs else "",
+            number(over.cost(ctype, "computing")),
+            *(number(over.error(ctype, scene, key)) for scene, key, _ in COMPARED),
+            moment_text(over.moment(ctype))])
     return markdown_table(
         ["type", "exact pressure in patch and block", "contact time", "computing time",
-         "Hertz profile", "sliding force", "sliding roughness", "plastic work", "on the fronts"],
-        rows)
-
-
-COMPARED = (("hertz", "profile_error"), ("sliding", "force_error"), ("sliding", "roughness"),
-            ("collision", "total_work_error"))
+         *(title for *_, title in COMPARED), "net moment"], rows)
 
 
 def target_table(over):
-    """The cheapest type and mesh, by computing time, for each measure and target."""
+    """The cheapest types and mesh, by computing time, for each measure and target."""
     rows = []
     for name, measure in over.panels():
         points = over.points[name]
-        found = [cheapest(points, "computing", measure.key, target) for target in TARGETS]
         rows.append([f"{SCENES[name].title}: {measure.title}", *(
-            f"{point.name}, {point.cost['computing']:.2g} s" if point else "-" for point in found)])
+            target_cell(over, meeting(points, measure.key, target)) for target in TARGETS)])
     return markdown_table(["error at most", *(f"{100 * target:g} %" for target in TARGETS)], rows)
 
 
+def target_cell(over, points):
+    """'4 5 7/1, 0.017 s': all points whose computing time is alike, and the shortest time."""
+    costs = {point.name: point.cost["computing"] for point in points}
+    found = [point for point in points if point.name in least(costs, RUN_FACTOR)]
+    if not found:
+        return "-"
+    parts = []
+    for level in sorted({point.level for point in found}):
+        types = [point.type for point in found if point.level == level]
+        parts.append(("all" if types == over.types and len(types) > 1 else " ".join(map(str, types)))
+                     + f"/{level}")
+    return f"{', '.join(parts)}, {min(costs.values()):.2g} s"
+
+
 # ---- sentences ---------------------------------------------------------------------------------
-
-def names(types):
-    """'type 4', 'types 4, 5 and 7'."""
-    words = [str(ctype) for ctype in types]
-    if not words:
-        return "no type"
-    if len(words) == 1:
-        return f"type {words[0]}"
-    return f"types {', '.join(words[:-1])} and {words[-1]}"
-
 
 def capital(text):
     return text[:1].upper() + text[1:]
 
 
-def general_advice(over):
-    """The cheapest of the types that transmit a uniform pressure exactly."""
+def chosen_types(over):
+    """Of the types with exact pressure those whose contact costs the least, or nearly."""
     exact = [ctype for ctype in over.types if over.passes(ctype)]
     if not exact or 1 not in over.types:
-        return None, ""
-    best = min(exact, key=lambda ctype: over.cost(ctype, "contact"))
-    contact = over.cost_by_scene(best, "contact").values()
-    run = over.cost_by_scene(best, "computing").values()
-    others = [f"type {ctype} takes {over.cost(ctype, 'contact'):.1f} times" for ctype in exact
-              if ctype != best]
-    text = (f"**In general type {best} ({TYPES[best]}).** {capital(names(exact))} transmit a uniform "
-            "pressure exactly on both sides, on every mesh. "
-            f"Of them type {best} has the least contact time: {over.cost(best, 'contact'):.1f} times that of "
-            f"type 1 as the geometric mean of the scenes ({FROM_A_TO_B.format(min(contact), max(contact))}); "
-            f"the whole computation takes {FROM_A_TO_B.format(min(run), max(run))} times that of type 1."
-            + (f" For comparison, {', '.join(others)} the contact time of type 1." if others else ""))
-    return best, text
+        return []
+    return least({ctype: over.cost(ctype, "contact") for ctype in exact}, COST_FACTOR)
+
+
+def cost_text(over, ctype):
+    """'type 4 2.49 times that of type 1 (1.94 to 4.10 from scene to scene)'."""
+    return (f"type {ctype} {over.cost(ctype, 'contact'):.2f} "
+            f"({between(over.cost_by_scene(ctype, 'contact').values())})")
+
+
+def scene_text(over, chosen):
+    """Which of two types is the cheaper one, scene by scene; '' unless there are two."""
+    if len(chosen) != 2:
+        return ""
+    one, other = (over.cost_by_scene(ctype, "contact") for ctype in chosen)
+    parts = [f"{one[name] / other[name]:.2f} in {SCENES[name].title}" for name in one if name in other]
+    return f" Type {chosen[0]} over type {chosen[1]}: {', '.join(parts)}."
+
+
+def accuracy_text(over, chosen):
+    """Which of the chosen types has the smaller errors."""
+    if len(chosen) < 2:
+        return ""
+    better, alike = [], []
+    for scene, key, title in COMPARED:
+        errors = {ctype: over.error(ctype, scene, key) for ctype in chosen}
+        if any(value != value for value in errors.values()):
+            continue
+        best = least(errors, ERROR_FACTOR)
+        text = f"{title} ({', '.join(number(value) for value in errors.values())})"
+        if len(best) == len(chosen):
+            alike.append(text)
+        else:
+            better.append(f"{names(best)}: {text}")
+    if not better and not alike:
+        return ""
+    return (f" Errors over those of type 1, in the order {numbers(chosen)}: smaller by more than a factor of "
+            f"{ERROR_FACTOR:g} with {'; with '.join(better) or 'neither'}; alike: {', '.join(alike) or 'none'}.")
+
+
+def moment_advice(over, chosen):
+    """Of which of the chosen types the contact forces have a net moment."""
+    moments = {ctype: over.moment(ctype) for ctype in chosen}
+    if not chosen or any(value != value for value in moments.values()):
+        return ""
+    turning = [ctype for ctype, value in moments.items() if value > BALANCED]
+    rest = [ctype for ctype in chosen if ctype not in turning]
+    if not turning or not rest:
+        return ""
+    largest = max(moments[ctype] for ctype in turning)
+    return (f" On a bent master the contact forces of {names(turning)} have a net moment, here up to {largest:.1g} of "
+            f"the contact force times a slave segment; with {names(rest)} it is round-off ([contact](../theory/contact.md), "
+            "section 5.4).")
+
+
+def general_advice(over):
+    """The cheapest of the types that transmit a uniform pressure exactly, and what tells them apart."""
+    chosen = chosen_types(over)
+    if not chosen:
+        return [], ""
+    exact = [ctype for ctype in over.types if over.passes(ctype)]
+    rest = [ctype for ctype in exact if ctype not in chosen]
+    run = [value for ctype in chosen for value in over.cost_by_scene(ctype, "computing").values()]
+    named = ", ".join(TYPES[ctype] for ctype in chosen)
+    text = (f"**In general type {numbers(chosen, 'or')} ({named}).** {capital(names(exact))} "
+            f"transmit{'s' * (len(exact) == 1)} a uniform pressure exactly on both sides, on every mesh. "
+            "Contact time over that of type 1, geometric mean of the scenes (from scene to scene): "
+            + ", ".join(cost_text(over, ctype) for ctype in exact)
+            + f". Means that differ by less than a factor of {COST_FACTOR:g} count as alike"
+            + (f", so {names(rest)} {'is' if len(rest) == 1 else 'are'} dearer" if rest else "")
+            + (f" and {names(chosen)} are not told apart." if len(chosen) > 1 else ".")
+            + f" The whole computation takes {between(run)} times that of type 1.")
+    return chosen, (text + scene_text(over, chosen) + accuracy_text(over, chosen)
+                    + moment_advice(over, chosen) + " What each does when a corner hits: [exchange](exchange.md).")
 
 
 def smooth_advice(over, usual):
     """The type with the smoothest force."""
-    there = [(over.error(ctype, "sliding", "roughness"), ctype) for ctype in over.types
-             if over.error(ctype, "sliding", "roughness") > 0.0]
-    if not there or 1 not in over.types:
+    rough = {ctype: over.error(ctype, "sliding", "roughness") for ctype in over.types}
+    rough = {ctype: value for ctype, value in rough.items() if value > 0.0}
+    if not rough or 1 not in over.types:
         return ""
-    least, best = min(there)
-    more = over.cost_by_scene(best, "computing")["sliding"]
-    contact = over.cost_by_scene(best, "contact")["sliding"]
-    text = (f"**Where the force must be smooth type {best} ({TYPES[best]}).** In the sliding its roughness "
-            f"is {least:.2g} times that of type 1 on the same mesh; contact takes {contact:.1f} times, the "
-            f"computation {more:.2f} times as long. ")
+    smoothest = least(rough, ERROR_FACTOR)
+    costs = over.cost_by_scene
+    text = (f"**Where the force must be smooth type {numbers(smoothest, 'or')}.** Roughness in the sliding over that of type 1 on the "
+            "same mesh, and times of contact and computation: "
+            + "; ".join(f"type {ctype} {rough[ctype]:.2g}, {costs(ctype, 'contact')['sliding']:.1f} times, "
+                        f"{costs(ctype, 'computing')['sliding']:.2f} times"
+                        for ctype in dict.fromkeys([*smoothest, *usual])) + ". ")
+    best = min(smoothest, key=rough.get)
     points = [point for point in over.points["sliding"] if "roughness" in point.error]
     coarse = min((point for point in points if point.type == best), key=lambda point: point.level)
     equal = cheapest([point for point in points if point.type == 1], "computing", "roughness",
                      coarse.error["roughness"])
     if equal:
-        text += (f"Type 1 gets as smooth as {coarse.name} at N_r = {equal.level}, for "
-                 f"{equal.cost['computing'] / coarse.cost['computing']:.1f} times the computing time.")
-    else:
-        finest = max(point.level for point in points if point.type == 1)
-        text += f"Type 1 is at N_r = {finest} not yet as smooth as {coarse.name}."
-    if usual not in (None, best):
-        text += (f" Type {usual} stands between them: roughness "
-                 f"{over.error(usual, 'sliding', 'roughness'):.2g}, computation "
-                 f"{over.cost_by_scene(usual, 'computing')['sliding']:.2f} times.")
-    return text
+        return text + (f"Type 1 gets as smooth as {coarse.name} at N_r = {equal.level}, for "
+                       f"{equal.cost['computing'] / coarse.cost['computing']:.1f} times the computing time.")
+    finest = max(point.level for point in points if point.type == 1)
+    return text + f"Type 1 is at N_r = {finest} not yet as smooth as {coarse.name}."
 
 
 def mesh_advice(over):
@@ -183,9 +253,11 @@ def mesh_advice(over):
         return "**For global answers mesh and type both count.** " + capital("; ".join(lines)) + "."
     text = "**For global answers refine first.** " + capital("; ".join(lines)) + "."
     if 1 in over.types:
-        least = min(over.types, key=lambda ctype: over.cost(ctype, "contact"))
-        text += (f" On a coarse mesh the cheapest type ({least}) will do for them; pressures and local stresses "
-                 "of the types that fail the patch test remain wrong on any mesh.")
+        few = least({ctype: over.cost(ctype, "contact") for ctype in over.types}, COST_FACTOR)
+        text += f" On a coarse mesh the cheapest {names(few)} will do for them."
+    failing = [ctype for ctype in over.types if over.passes(ctype) is False]
+    if failing:
+        text += f" The pressures of {names(failing)} have an error on every mesh of the patch test (below)."
     return text
 
 
@@ -204,14 +276,29 @@ def share_advice(over):
             + "; ".join(parts) + ". Where it is small, take the type for its accuracy alone.")
 
 
+def outdone(over, ctype):
+    """The types that cost less than this one and err less or alike in every measure."""
+    found = []
+    for other in over.types:
+        pairs = [(over.error(other, scene, key), over.error(ctype, scene, key))
+                 for scene, key, _ in COMPARED]
+        if other != ctype and over.passes(other) >= over.passes(ctype) and all(
+                one <= ERROR_FACTOR * two for one, two in pairs) \
+                and over.cost(ctype, "contact") > COST_FACTOR * over.cost(other, "contact"):
+            found.append(other)
+    return found
+
+
 def idle_advice(over):
-    """Types that are on no front."""
-    idle = [ctype for ctype in over.types if not over.fronts(ctype)]
-    if not idle:
+    """Types that another one beats in cost without losing in accuracy anywhere."""
+    if any(over.passes(ctype) is None for ctype in over.types):
         return ""
-    return (f"**Nothing asks for {names(idle)}**: in no scene and measure is there a point of "
-            f"{'it' if len(idle) == 1 else 'them'} on the Pareto front of computing time; something else is "
-            "cheaper and no less accurate.")
+    lines = [f"type {ctype} ({names(found)})" for ctype in over.types
+             if (found := outdone(over, ctype))]
+    if not lines:
+        return ""
+    return ("**Outdone in these scenes**, by a type with cheaper contact and no larger error in any column of the table: "
+            + ", ".join(lines) + ".")
 
 
 def advice(over):

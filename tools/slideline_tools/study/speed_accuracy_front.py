@@ -4,12 +4,13 @@ import dataclasses
 
 import numpy as np
 
+from slideline_tools.study.rules import RUN_FACTOR
 from slideline_tools.study.speed_accuracy_scenes import SCENES
 from slideline_tools.study.table import finished
 from slideline_tools.study.times import Times
 
 COSTS = {"contact": "contact time", "computing": "computing time"}
-GAIN, TIE = 0.05, 0.03  # smaller differences of errors and of times tell nothing
+GAIN, TIE = 0.05, RUN_FACTOR - 1.0  # smaller differences of errors and of times tell nothing
 
 
 @dataclasses.dataclass(frozen=True)
@@ -18,6 +19,8 @@ class Point:
 
     `cost`   {"contact", "computing"}: seconds for the whole run
     `error`  by measure; `floor` what the exact answer or the reference is itself known to
+    `moment` net moment of the contact forces at the end, over force times slave segment; nan where
+             nothing touches
     """
 
     type: int
@@ -25,6 +28,7 @@ class Point:
     cost: dict
     error: dict
     floor: dict
+    moment: float = float("nan")
 
     @property
     def name(self):
@@ -65,10 +69,14 @@ def front(points, cost, key):
                                        for point in points], GAIN, TIE)]
 
 
+def meeting(points, key, target):
+    """The points whose error is at most `target`."""
+    return [point for point in points if key in point.error and point.judged(key) <= target]
+
+
 def cheapest(points, cost, key, target):
     """The cheapest point whose error is at most `target`; None if there is none."""
-    meeting = [point for point in points if key in point.error and point.judged(key) <= target]
-    return min(meeting, key=lambda point: point.cost[cost], default=None)
+    return min(meeting(points, key, target), key=lambda point: point.cost[cost], default=None)
 
 
 def swept_rows(rows):
@@ -102,7 +110,7 @@ def make_point(scene, row, times):
     return Point(row["type"], row["level"], {cost: seconds[cost] for cost in COSTS},
                  {measure.key: row[measure.key] for measure in there},
                  {measure.key: row.get(f"{measure.key}_floor", measure.known)
-                  for measure in there})
+                  for measure in there}, row.get("moment", float("nan")))
 
 
 def geometric_mean(values):

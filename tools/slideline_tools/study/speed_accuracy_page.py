@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The page doc/studies/speed_accuracy.md and its pictures: what to choose, scene by scene, and why
-the ratios differ from the paper's."""
+"""The page doc/studies/speed_accuracy.md and its pictures: what to choose, and scene by scene."""
 import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.plots import plt
 from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
-from slideline_tools.study import paper_tables
 from slideline_tools.study.charts import styled
 from slideline_tools.study.counted import instruction_section
 from slideline_tools.study.speed_accuracy_advice import (Overview, advice, overall_table,
@@ -14,10 +12,9 @@ from slideline_tools.study.speed_accuracy_advice import (Overview, advice, overa
 from slideline_tools.study.speed_accuracy_charts import scene_figure
 from slideline_tools.study.speed_accuracy_front import (COSTS, GAIN, TIE, front, points_of,
                                                         swept_rows, times_of)
-from slideline_tools.study.speed_accuracy_scenes import SCENES
+from slideline_tools.study.rules import COST_FACTOR, ERROR_FACTOR, RUN_FACTOR
+from slideline_tools.study.speed_accuracy_scenes import SCENES, TWO_PASS, node_penalty
 from slideline_tools.study.table import finished
-
-PAPER_SCENES = ("sliding", "collision")
 
 PAGE = """# Speed against accuracy: which contact type to choose
 
@@ -30,11 +27,13 @@ recommendation and its figures are computed from the runs.
 
 By type, over type 1 on the same mesh (geometric means over meshes; the times over all scenes, in brackets from
 scene to scene). Below 1 is cheaper, or more accurate; errors that can not be told from that of the reference or
-of the closed form count as that. The last column counts the fronts of computing time, below, that the type has a point on.
+of the closed form count as that. The last column is the largest net moment of the contact forces at the end of a run, over
+their sum on one side times a slave segment.
 
 {overall}
 
-The cheapest type and mesh (type/N_r) by computing time that keeps an error at or below a target:
+The cheapest types and mesh (types/N_r) by computing time that keep an error at or below a target: all that take less than
+{run_factor:g} times the shortest time, which stands behind them.
 
 {targets}
 
@@ -45,10 +44,13 @@ The cheapest type and mesh (type/N_r) by computing time that keeps an error at o
   runs, corrected by the pace of the element loop of the same run (as in [paper_tables](paper_tables.md)). Quartiles of
   the contact times lie at most {spread:.0f} % of the median apart, {short}{load}.
 - Contact time is search, pairing and force; computing time is the whole run without input and output.
-- The interface is as stiff for all types: in type 3 the springs of both passes add up, so each has half the penalty.
-  The penalty, N_r and what it divides are those of the decks.
+- The interface is as stiff for all types: in type 3 the springs of both passes lie side by side, e/l_sl + e/l_ms, so that
+  its penalty e is that of the others times l_ms/(l_sl + l_ms), l_sl and l_ms the mean segments of slave and master: {two_pass}. (The other
+  pages have the penalty of the paper's rule, the same e for all types.) The penalty, N_r and what it divides are those of the decks.
+- Which types are named above: means of contact times within a factor of {cost_factor:g} count as alike, and errors within a factor of
+  {error_factor:g}; several types can be named (`tools/slideline_tools/study/rules.py`). Repeats move these means by far less.
 - On the Pareto front are the types and meshes that nothing beats in cost and error at once. Errors within {gain:.0f} % of
-  each other count as equal, and so do times within {tie:.0f} %.
+  each other count as equal, and so do times within {tie:.0f} %. Single points of it may change when the runs are repeated.
 - Where there is no closed form, type 7 on a finer mesh is the reference. Its own error is extrapolated (Richardson) from
   the distances of its finest levels, with the order they show (0.5 to 2). A smaller error is drawn hollow, stands in
   brackets in the tables and counts as that error: the run is then as good as the reference, and not known better.
@@ -59,7 +61,7 @@ The cheapest type and mesh (type/N_r) by computing time that keeps an error at o
 
 {counts}
 
-{paper}
+What each step of the contact costs, and how that compares with the paper: [paper_tables](paper_tables.md).
 """
 
 TEXTS = {
@@ -164,59 +166,6 @@ def reference_table(rows):
                            "own error"], lines)
 
 
-# ---- beside the paper --------------------------------------------------------------------------
-
-PAPER = """## Where the ratios differ from the paper's
-
-Contact time over that of type 1, smallest to largest of the meshes; in the sliding also how many points carry pressure
-at a time (mean of the judged time, N_r = {level}), and contact time for each of them and each step.
-
-{table}
-
-The paper ranks its types by these ratios (its Tables 1 and 2): NTS-mAR next to the classical NTS, VTS-PPT and two passes
-about twice it, mortar farthest. What differs here is above all the type 1 that all are divided by: a slave node that
-touches keeps its segment from step to step, the nodes that touch are projected in blocks with vector instructions, and
-nodes that can not touch sleep. A point costs type 1 some {nanoseconds:.0f} ns a step. The paper's 62 s for 150 000 steps of 19
-slave nodes are 22 microseconds a node; beside that, whatever a type adds is small.
-
-Here the search does not prevail, and what the paper's ratios hide comes out: how many points a type places (the
-column *points*), and that types 4, 5 and 7 divide the surface anew in each step (pairing), which types 1 and 2 never do.
-[paper_tables](paper_tables.md) has the steps one by one. A ratio of contact times is no ratio of computations: see the
-shares above.
-"""
-
-
-def ratio_range(times, ctype):
-    """'1.20 to 1.30' of the meshes."""
-    found = [times.ratio(level, ctype) for level in times.levels if times.has(level, ctype)]
-    return f"{min(found):.2f} to {max(found):.2f}" if found else ""
-
-
-def paper_range(scene, ctype):
-    found = paper_tables.SCENES[scene].paper.get(ctype, {}).values()
-    return f"{min(found):.2f} to {max(found):.2f}" if found else "1" if ctype == 1 else ""
-
-
-def paper_section(rows, times):
-    """The comparison; '' without type 1 in both scenes."""
-    if not all(name in times and times[name].has(times[name].levels[0], 1)
-               for name in PAPER_SCENES):
-        return ""
-    slide, lines = times["sliding"], []
-    level = slide.levels[0]
-    points = {row["type"]: row["points"] for row in swept_rows(rows)
-              if row["scene"] == "sliding" and row["level"] == level}
-    cost = {ctype: 1e9 * seconds["contact"] / slide.steps[level] / points[ctype]
-            for ctype, seconds in slide.seconds[level].items()}
-    for ctype in sorted(cost):
-        lines.append([label(ctype), *(text for name in PAPER_SCENES for text in
-                                      (ratio_range(times[name], ctype), paper_range(name, ctype))),
-                      f"{points[ctype]:.0f}", f"{cost[ctype]:.0f} ns"])
-    table = markdown_table(["type", "sliding", "paper, Table 1", "collision", "paper, Table 2",
-                            "points", "contact time of a point and step"], lines)
-    return PAPER.format(level=level, table=table, nanoseconds=cost[1])
-
-
 # ---- the page ----------------------------------------------------------------------------------
 
 def short_text(times):
@@ -253,5 +202,7 @@ def page(rows, doc):
         short=short_text(times), load=load_text(swept), gain=100.0 * GAIN, tie=100.0 * TIE,
         references=reference_table(rows),
         counts=instruction_section(rows, {name: scene.title for name, scene in SCENES.items()}),
-        scenes="\n\n".join(scene_section(name, found) for name, found in points.items()),
-        paper=paper_section(rows, times)).rstrip() + "\n")
+        run_factor=RUN_FACTOR, cost_factor=COST_FACTOR, error_factor=ERROR_FACTOR,
+        two_pass=", ".join(f"{node_penalty(scene, 1, TWO_PASS) / scene.penalty(1):.2f} in {scene.title}"
+                           for scene in SCENES.values()),
+        scenes="\n\n".join(scene_section(name, found) for name, found in points.items())))

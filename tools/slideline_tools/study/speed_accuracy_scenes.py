@@ -18,11 +18,13 @@ import numpy as np
 from slideline_tools import UserError, scenes
 from slideline_tools.histories import read_csv
 from slideline_tools.results import read
+from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL
 from slideline_tools.scenes.hertz import PENALTY as HERTZ_PENALTY
 from slideline_tools.scenes.patch import patch, patch_grids
 from slideline_tools.studies import block as block_study
 from slideline_tools.studies import hertz as hertz_study
 from slideline_tools.studies import sliding as sliding_study
+from slideline_tools.studies.exchange import mean_lengths
 from slideline_tools.studies.patch import LAYOUTS
 
 CHAIN = pathlib.Path(__file__).resolve().parents[3] / "tests/verification/block_to_block/chain.py"
@@ -31,6 +33,7 @@ SLIDING_STEP = 40.0e-9  # s at level 1
 TWO_PASS = 3
 ROUND_OFF = 1.0e-9
 AT_REST = 1.0e-16  # kinetic over internal energy
+LENGTHS = mean_lengths()
 FINITE_STRAIN = 1.0e-3  # what Hertz's closed form leaves out here: doc/studies/hertz.md
 
 
@@ -54,6 +57,7 @@ class Scene:
 
     `deck`        text by level
     `penalty`     of a contact node by level, N/m
+    `lengths`     mean segments of slave and master at level 1, m
     `judge`       (folder, level, type, penalty) -> columns
     `levels`, `quick_levels` those that are swept
     `references`, `quick_references` levels of type 7 the reference is made of, the finest last
@@ -64,6 +68,7 @@ class Scene:
     title: str
     deck: Callable[[int], str]
     penalty: Callable[[int], float]
+    lengths: tuple[float, float]
     judge: Callable
     measures: Sequence[Measure]
     levels: Sequence[int]
@@ -77,9 +82,25 @@ class Scene:
 
 
 def node_penalty(scene, level, ctype):
-    """Penalty of a contact node: half in two passes, whose springs add up, so that every type
-    has an interface of the same stiffness."""
-    return scene.penalty(level) * (0.5 if ctype == TWO_PASS else 1.0)
+    """Penalty of a contact node, N/m, so that every type has an interface of the same stiffness.
+
+    The springs of the two passes of type 3 lie side by side: e/l_sl + e/l_ms is to be what one
+    pass of the others has, penalty/l_sl (doc/theory/contact.md, section 5).
+    """
+    slave, master = scene.lengths
+    return scene.penalty(level) * (master / (slave + master) if ctype == TWO_PASS else 1.0)
+
+
+def net_moment(results, segment):
+    """|sum x x f| of all contact forces at the last state, over the force on one side times the
+    length `segment` in m; None where nothing touches."""
+    place, force = results.points[-1][:, :2], results.point_field("contact_force")[-1][:, :2]
+    pressing = 0.5 * np.sum(np.hypot(force[:, 0], force[:, 1]))
+    if not pressing > 0.0:
+        return None
+    place = place - place.mean(axis=0)
+    moment = np.sum(place[:, 0] * force[:, 1] - place[:, 1] * force[:, 0])
+    return float(abs(moment) / (pressing * segment))
 
 
 # ---- patch -------------------------------------------------------------------------------------
@@ -198,27 +219,31 @@ def energy_error(path):
 
 SCENES = {
     "patch": Scene(
-        "Patch test", patch_deck, lambda level: 1.0e6 / level, judge_patch,
+        "Patch test", patch_deck, lambda level: 1.0e6 / level, (1.0 / 7.0, 1.0 / 5.0),
+        judge_patch,
         (Measure("pressure_error", "p/p0, largest deviation from 1", ROUND_OFF),),
         levels=(1, 2, 4), quick_levels=(1, 2), options=lambda _: (), turns=3, cost=0.05),
     "block": Scene(
-        "Block-to-block", block_deck, block_penalty, judge_block,
+        "Block-to-block", block_deck, block_penalty, LENGTHS["block"], judge_block,
         (Measure("pressure_error", "p/p1D, largest deviation from 1", ROUND_OFF),),
         levels=(1, 2, 4), quick_levels=(1, 2), turns=3, cost=0.2, power=1.0,
         options=lambda _: (f"p:dt={BLOCK_STEP}",)),
     "hertz": Scene(
-        "Hertz", scenes.hertz, lambda _: HERTZ_PENALTY, judge_hertz,
+        "Hertz", scenes.hertz, lambda _: HERTZ_PENALTY, (CYLINDER_CELL, BLOCK_CELL),
+        judge_hertz,
         (Measure("profile_error", "distance of p from the ellipse over p0", FINITE_STRAIN),
          Measure("half_width_error", "half width, deviation from Hertz", FINITE_STRAIN)),
         levels=(1, 2, 4), cost=0.2),
     "sliding": Scene(
-        "Sliding", scenes.sliding, lambda level: 10.0e9 / level, judge_sliding,
+        "Sliding", scenes.sliding, lambda level: 10.0e9 / level, LENGTHS["sliding"],
+        judge_sliding,
         (Measure("force_error", "force, rms difference over the mean", referenced=True),
          Measure("roughness", "roughness of the force over the mean")),
         levels=(1, 2, 3), options=sliding_options, references=(2, 3, 6), quick_references=(1, 2),
         cost=1.4, power=2.5),
     "collision": Scene(
-        "Collision", scenes.collision, lambda level: 1.0e9 / level, judge_collision,
+        "Collision", scenes.collision, lambda level: 1.0e9 / level, LENGTHS["collision"],
+        judge_collision,
         (Measure("plastic_error", "plastic work by column, difference", referenced=True),
          Measure("total_work_error", "plastic work in total, difference", referenced=True),
          Measure("rebound_error", "rebound, difference over the impact", referenced=True),

@@ -2,14 +2,17 @@
 """What breaks a contact that is stable by penalty and step: meshes, angles, overhangs, corners, speeds.
 
 A block flies onto a larger one whose lower face is fixed, with half of the largest stable penalty
-(PUNIT 3) and TSSFAC 0.8; one thing is varied at a time.
+(PUNIT 3) and TSSFAC 0.8; one thing is varied at a time.  Where meshes are compared the interface
+keeps one stiffness, and the run one step: PUNIT 3 would choose a stiffer one with every finer mesh.
 """
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import numpy as np
 
+from slideline_tools import UserError
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.histories import read_csv
 from slideline_tools.scenes.common import elastic, energies_on, part, plane_strain, slideline
@@ -25,6 +28,9 @@ FALL = 0.03 * WAVE                            # m/s
 END = 0.12                                    # s: there and back again
 GAP = 0.002                                   # m
 SHARE, STEP = 0.5, 0.8
+BLOCK = 2  # the part that flies
+STIFFNESS, FINEST = 1.4e6, 32  # N/m^2 and segments a metre: stable at every mesh ratio and type
+TWO_PASS = 3
 
 
 @dataclasses.dataclass(frozen=True)
@@ -37,6 +43,8 @@ class Case:
     `catch`   SRCH, deepest first contact that is caught, over its default; 0: the default
     `speed`   sideways, over the wave speed
     `refine`, `hourglass`, `form` of both meshes
+    `stiffness` of the interface, N/m^2, with the step of the finest mesh; 0: half of the largest
+                stable one, with the step of the mesh
     """
 
     ratio: float = 1.25
@@ -48,6 +56,19 @@ class Case:
     refine: int = 1
     hourglass: float = 0.1
     form: int = 4
+    stiffness: float = 0.0
+
+    def penalty(self, ctype):
+        """Arguments of the program; the springs of the two passes of type 3 lie side by side."""
+        if not self.stiffness:
+            return ("punit=3",)
+        passes = 2 if ctype == TWO_PASS else 1
+        return ("punit=1", f"pen={self.stiffness / passes!r}")
+
+    @property
+    def step(self):
+        """TSSFAC."""
+        return STEP * max(self.counts) / FINEST if self.stiffness else STEP
 
     @property
     def counts(self):
@@ -90,11 +111,12 @@ def deck_of(case, ctype):
     deck.keyword("CONTROL_TERMINATION")
     deck.card("endtim", END)
     deck.keyword("CONTROL_TIMESTEP")
-    deck.card("dtinit tssfac", 0.0, STEP)
+    deck.card("dtinit tssfac", 0.0, case.step)
     deck.keyword("CONTROL_HOURGLASS")
     deck.card("ihq qh", case.form, case.hourglass)
     energies_on(deck)
-    deck.database(glstat=END / SAMPLES, rcforc=END / SAMPLES, binary_d3plot=END / 24)
+    deck.database(glstat=END / SAMPLES, rcforc=END / SAMPLES, matsum=END / SAMPLES,
+                  binary_d3plot=END / 24)
     for number, name in ((1, "lower block"), (2, "upper block")):
         part(deck, number, name, 1, 1)
     plane_strain(deck, 1)
@@ -120,11 +142,14 @@ def deck_of(case, ctype):
     return deck.text()
 
 
+RATIOS = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 OVERHANGS = (-0.5, 0.0, 0.02, 0.1, 0.3, 0.4, 0.5, 0.8, 0.9, 1.1, 1.5, 2.5)
 
 SWEEPS = {  # name: (title, unit, {value: case})
-    "ratio": ("slave segments per master segment", {
-        value: Case(ratio=value) for value in (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)}),
+    "ratio": ("slave segments per master segment, one stiffness", {
+        value: Case(ratio=value, stiffness=STIFFNESS) for value in RATIOS}),
+    "ratio_punit3": ("slave segments per master segment, PUNIT 3", {
+        value: Case(ratio=value) for value in RATIOS}),
     "turn": ("angle of the interface, degrees", {
         value: Case(turn=value) for value in (0.0, 17.0, 45.0, 90.0, 163.0)}),
     "overhang": ("overhang of the slave, in its elements", {
@@ -154,21 +179,39 @@ class Limits:
 def jobs(options):
     """All sweeps and types."""
     return [Job(f"{name}_{value:g}_type_{ctype}", deck_of(case, ctype), "impact",
-                (f"ctype={ctype}", "punit=3", "ncpu=1"),
+                (f"ctype={ctype}", *case.penalty(ctype), "ncpu=1"),
                 {"sweep": name, "value": value, "type": ctype}, group=name,
                 cost=float(case.refine ** 3 * max(case.counts) / 5), limit=120.0)
             for name, (_, cases) in SWEEPS.items() if not options.quick or name in QUICK
             for value, case in cases.items() for ctype in options.types]
 
 
+def rebound(block):
+    """Impulse on the block, which is its change of momentum, N s/m, and how much of its kinetic
+    energy at the end is vibration, over that of its flight; rows of matsum."""
+    px, py, mass = (block[name] for name in ("momentum_x", "momentum_y", "mass"))
+    moving = (px ** 2 + py ** 2) / (2.0 * mass)
+    return {"impulse": float(np.hypot(px[-1] - px[0], py[-1] - py[0])),
+            "vibration": float((block["kinetic"][-1] - moving[-1]) / block["kinetic"][0])}
+
+
+def stiffness_of(log):
+    """Penalty of the slave pass, N/m^2, as the log tells it."""
+    found = re.search(r"penalty:? \S+ N/m per slave node = (\S+) N/m\^2", log.read_text(encoding="utf-8"))
+    if not found:
+        raise UserError(f"{log}: no penalty")
+    return float(found[1])
+
+
 def measure(job, folder):
-    """The verdict, the impulse, and the part of the energy that is in hourglasses."""
+    """The verdict, the impulse, the penalty, and the part of the energy that is in hourglasses."""
     case = SWEEPS[job.labels["sweep"]][1][job.labels["value"]]
     row = measure_run(folder, job.jobid, Limits(case))
     forces = read_csv(folder / f"{job.jobid}.rcforc.csv").where(side="slave")
     total = np.hypot(forces["fx"], forces["fy"])
     glstat = read_csv(folder / f"{job.jobid}.glstat.csv")
-    row["impulse"] = float(np.sum(0.5 * np.diff(forces["time"]) * (total[1:] + total[:-1])))
+    row["stiffness"] = stiffness_of(folder / f"{job.jobid}.log")
+    row.update(rebound(read_csv(folder / f"{job.jobid}.matsum.csv").where(part=BLOCK)))
     row["roughness"] = float(np.sum(np.abs(np.diff(total))) / (2.0 * max(total.max(), 1e-300)))
     row["hourglass"] = float(glstat["hourglass"][-1] / np.max(glstat["total"]))
     row["kinetic"] = float(glstat["kinetic"][-1] / glstat["kinetic"][0])
