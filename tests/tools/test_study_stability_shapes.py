@@ -8,6 +8,7 @@ import pytest
 from slideline_tools.study import stability_shapes as shapes
 from slideline_tools.study.job import Job, Options
 from slideline_tools.study.stability_shapes import Case, deck_of, grids_of
+from slideline_tools.study.stability_shapes_page import mesh_text
 
 
 @pytest.mark.parametrize("ratio, slave, master", [(0.125, 4, 32), (1.0, 4, 4), (8.0, 32, 4)])
@@ -40,18 +41,49 @@ def test_jobs():
     assert {job.labels["sweep"] for job in quick} == set(shapes.QUICK)
 
 
+def test_meshes_are_compared_at_one_stiffness_and_one_step():
+    """PUNIT 3 made the interface 28 times as stiff on one mesh as on another."""
+    cases = shapes.SWEEPS["ratio"][1].values()
+    assert {case.penalty(5) for case in cases} == {("punit=1", f"pen={shapes.STIFFNESS!r}")}
+    assert {case.penalty(3) for case in cases} == {("punit=1", f"pen={shapes.STIFFNESS / 2!r}")}
+    assert {case.step * 1.0 / max(case.counts) for case in cases} == {shapes.STEP / shapes.FINEST}
+    assert Case().penalty(5) == ("punit=3",) and Case().step == shapes.STEP
+
+
+def test_rebound_of_a_block_that_swings():
+    """2 kg come with 3 m/s and go with 2 m/s: 10 N s, 5 of 9 J do not fly back, 3 J of them swing."""
+    block = {"momentum_x": np.zeros(2), "momentum_y": np.array([-6.0, 4.0]), "mass": np.full(2, 2.0)}
+    glstat = {"kinetic": np.array([9.0, 6.0]), "internal": np.array([0.0, 1.0])}
+    found = shapes.rebound(block, glstat)
+    assert found == {"impulse": pytest.approx(10.0), "vibration": pytest.approx(3.0 / 9.0)}
+
+
+def run_case(slideline, folder, sweep, value, ctype):
+    """The measures of one run."""
+    case = shapes.SWEEPS[sweep][1][value]
+    folder.mkdir(parents=True)
+    (folder / "impact.k").write_text(deck_of(case, ctype))
+    subprocess.run([slideline, "i=impact.k", "d=.", *case.penalty(ctype)], cwd=folder, capture_output=True,
+                   check=False)
+    return shapes.measure(Job("one", "", "impact", (), {"sweep": sweep, "value": value, "type": ctype}),
+                          folder)
+
+
+def test_a_finer_slave_loses_no_impulse(slideline, tmp_path):
+    """It lost 6 % of it while PUNIT 3 chose another penalty for each mesh."""
+    rows = [{"sweep": "ratio", "value": value, "type": 2,
+             **run_case(slideline, tmp_path / f"{value}", "ratio", value, 2)} for value in (1.0, 8.0)]
+    assert rows[0]["stiffness"] == rows[1]["stiffness"] == shapes.STIFFNESS
+    assert rows[1]["impulse"] == pytest.approx(rows[0]["impulse"], rel=0.01)
+    assert "lie within 0.5 % of each other" in mesh_text(rows)
+
+
 @pytest.mark.parametrize("sweep, value, ctype, verdict", [
     ("tilt", 15.0, 5, "stable"), ("hourglass_2", 1.0, 5, "stable"), ("overhang", 1.1, 2, "blown up"),
     ("overhang_srch", 1.1, 2, "stable")])
 def test_runs_and_page(slideline, tmp_path, sweep, value, ctype, verdict):
-    case = shapes.SWEEPS[sweep][1][value]
-    folder = tmp_path / "runs" / "one"
-    folder.mkdir(parents=True)
-    (folder / "impact.k").write_text(deck_of(case, ctype))
-    subprocess.run([slideline, "i=impact.k", "d=.", "punit=3"], cwd=folder, capture_output=True,
-                   check=False)
-    labels = {"sweep": sweep, "value": value, "type": ctype}
-    row = {"run": "one", **labels, **shapes.measure(Job("one", "", "impact", (), labels), folder)}
+    row = {"run": "one", "sweep": sweep, "value": value, "type": ctype,
+           **run_case(slideline, tmp_path / "runs" / "one", sweep, value, ctype)}
     assert row["verdict"] == verdict
     shapes.chart([row], tmp_path)
     assert (tmp_path / "shapes.png").is_file()

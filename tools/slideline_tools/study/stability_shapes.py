@@ -186,13 +186,14 @@ def jobs(options):
             for value, case in cases.items() for ctype in options.types]
 
 
-def rebound(block):
-    """Impulse on the block, which is its change of momentum, N s/m, and how much of its kinetic
-    energy at the end is vibration, over that of its flight; rows of matsum."""
+def rebound(block, glstat):
+    """Impulse on the block, which is its change of momentum, N s/m, and how much of the energy of
+    its flight swings in both bodies at the end; rows of matsum of the block, and of glstat."""
     px, py, mass = (block[name] for name in ("momentum_x", "momentum_y", "mass"))
-    moving = (px ** 2 + py ** 2) / (2.0 * mass)
+    flight, back = ((px[k] ** 2 + py[k] ** 2) / (2.0 * mass[k]) for k in (0, -1))
+    left = glstat["kinetic"][-1] + glstat["internal"][-1] - back
     return {"impulse": float(np.hypot(px[-1] - px[0], py[-1] - py[0])),
-            "vibration": float((block["kinetic"][-1] - moving[-1]) / block["kinetic"][0])}
+            "vibration": float(left / flight)}
 
 
 def stiffness_of(log):
@@ -211,7 +212,7 @@ def measure(job, folder):
     total = np.hypot(forces["fx"], forces["fy"])
     glstat = read_csv(folder / f"{job.jobid}.glstat.csv")
     row["stiffness"] = stiffness_of(folder / f"{job.jobid}.log")
-    row.update(rebound(read_csv(folder / f"{job.jobid}.matsum.csv").where(part=BLOCK)))
+    row.update(rebound(read_csv(folder / f"{job.jobid}.matsum.csv").where(part=BLOCK), glstat))
     row["roughness"] = float(np.sum(np.abs(np.diff(total))) / (2.0 * max(total.max(), 1e-300)))
     row["hourglass"] = float(glstat["hourglass"][-1] / np.max(glstat["total"]))
     row["kinetic"] = float(glstat["kinetic"][-1] / glstat["kinetic"][0])
