@@ -235,7 +235,7 @@ def test_advice_follows_the_figures():
     assert chosen == [4, 5] and "**In general type 4 or 5 (VTS-PPT, NTS-mAR).**" in text
     assert "type 4 4.00 (4.00), type 5 5.00 (5.00), type 7 7.00 (7.00)" in text
     assert "so type 7 is dearer and types 4 and 5 are not told apart" in text
-    assert "0.80 in Hertz" in text
+    assert "0.80 in Hertz" in text and "of types 4 and 5: alike in Hertz profile (0.25, 0.20)" in text
     smooth = advice.smooth_advice(over, chosen)
     assert "Where the force must be smooth type 5 or 7" in smooth and "type 7 0.14, 7.0 times" in smooth
     assert over.error(5, "hertz", "profile_error") == pytest.approx(0.2)

@@ -146,28 +146,23 @@ def scene_text(over, chosen):
         return ""
     one, other = (over.cost_by_scene(ctype, "contact") for ctype in chosen)
     parts = [f"{one[name] / other[name]:.2f} in {SCENES[name].title}" for name in one if name in other]
-    return f" Type {chosen[0]} over type {chosen[1]}: {', '.join(parts)}."
+    return f" By scene type {chosen[0]} takes {', '.join(parts)} times as long as type {chosen[1]}."
 
 
 def accuracy_text(over, chosen):
     """Which of the chosen types has the smaller errors."""
-    if len(chosen) < 2:
-        return ""
-    better, alike = [], []
+    winners = {}
     for scene, key, title in COMPARED:
         errors = {ctype: over.error(ctype, scene, key) for ctype in chosen}
-        if any(value != value for value in errors.values()):
-            continue
-        best = least(errors, ERROR_FACTOR)
-        text = f"{title} ({', '.join(number(value) for value in errors.values())})"
-        if len(best) == len(chosen):
-            alike.append(text)
-        else:
-            better.append(f"{names(best)}: {text}")
-    if not better and not alike:
+        if len(chosen) > 1 and all(value == value for value in errors.values()):
+            text = f"{title} ({', '.join(number(value) for value in errors.values())})"
+            winners.setdefault(tuple(least(errors, ERROR_FACTOR)), []).append(text)
+    if not winners:
         return ""
-    return (f" Errors over those of type 1, in the order {numbers(chosen)}: smaller by more than a factor of "
-            f"{ERROR_FACTOR:g} with {'; with '.join(better) or 'neither'}; alike: {', '.join(alike) or 'none'}.")
+    parts = [("alike" if len(best) == len(chosen) else f"smaller with {names(best)}")
+             + f" in {', '.join(texts)}" for best, texts in winners.items()]
+    return (f"Errors over those of type 1, of {names(chosen)}: {'; '.join(parts)}. "
+            f"Less than a factor of {ERROR_FACTOR:g} counts as alike.")
 
 
 def moment_advice(over, chosen):
@@ -180,7 +175,7 @@ def moment_advice(over, chosen):
     if not turning or not rest:
         return ""
     largest = max(moments[ctype] for ctype in turning)
-    return (f" On a bent master the contact forces of {names(turning)} have a net moment, here up to {largest:.1g} of "
+    return (f"On a bent master the contact forces of {names(turning)} have a net moment, here up to {largest:.1g} of "
             f"the contact force times a slave segment; with {names(rest)} it is round-off ([contact](../theory/contact.md), "
             "section 5.4).")
 
@@ -195,15 +190,17 @@ def general_advice(over):
     run = [value for ctype in chosen for value in over.cost_by_scene(ctype, "computing").values()]
     named = ", ".join(TYPES[ctype] for ctype in chosen)
     text = (f"**In general type {numbers(chosen, 'or')} ({named}).** {capital(names(exact))} "
-            f"transmit{'s' * (len(exact) == 1)} a uniform pressure exactly on both sides, on every mesh. "
-            "Contact time over that of type 1, geometric mean of the scenes (from scene to scene): "
+            f"transmit{'s' * (len(exact) == 1)} a uniform pressure exactly on both sides, on every mesh. ")
+    cost = ("Contact time over that of type 1, geometric mean of the scenes (from scene to scene): "
             + ", ".join(cost_text(over, ctype) for ctype in exact)
             + f". Means that differ by less than a factor of {COST_FACTOR:g} count as alike"
             + (f", so {names(rest)} {'is' if len(rest) == 1 else 'are'} dearer" if rest else "")
             + (f" and {names(chosen)} are not told apart." if len(chosen) > 1 else ".")
+            + scene_text(over, chosen)
             + f" The whole computation takes {between(run)} times that of type 1.")
-    return chosen, (text + scene_text(over, chosen) + accuracy_text(over, chosen)
-                    + moment_advice(over, chosen) + " What each does when a corner hits: [exchange](exchange.md).")
+    parts = [cost, accuracy_text(over, chosen), moment_advice(over, chosen),
+             "What each type does when a corner hits: [exchange](exchange.md)."]
+    return chosen, "\n  - ".join([text.rstrip(), *(part for part in parts if part)])
 
 
 def smooth_advice(over, usual):
