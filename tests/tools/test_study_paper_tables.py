@@ -142,7 +142,8 @@ def test_time_of_a_slave_node_is_that_of_the_paper_s_seconds():
     assert paper_tables.slave_node_time(found, 1.0) == pytest.approx(1e9 / 9 / 19)
     text = paper_tables.reading(found, times.Times(all_rows(), "collision"))
     assert "costs 5.00 to 5.00 times type 1" in text and "make 22 and 12 microseconds" in text
-    assert "sliding N_r = 3 type 4" in text
+    assert "is 0.50 to 0.50 of the contact time of type 1" in text
+    assert "type 4 takes 0.80 times as long as type 5 in the sliding" in text
     assert paper_tables.reading(found, None) == ""
 
 
