@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Block-to-block study, implicit beside explicit: pressure, Newton iterations, contact time.
+"""Block-to-block study, implicit beside explicit: pressure, Newton iterations.
 
     python -m slideline_tools.studies.block_implicit RUNS DOC --types 1 2 3 ...
 
 RUNS holds folders implicit_<n> and explicit_<n> for each type (job `block`). Writes
 DOC/studies/block_to_block_implicit.md and DOC/pictures/block_implicit_pressure.png.
 """
-import csv
 import re
 import sys
 
@@ -32,16 +31,10 @@ when the ratio is at most 1e-20 or when the residual after the correction is rou
 after two iterations, before the ratio of a third is formed.
 """
 
-TIMES = """
-## Contact time
-
-Search, pairing and force of the contact (the implicit runs count all three and the tangent as force), one run each. Times on a busy machine
-vary and these runs take less than a second: only ratios are given, and small differences mean nothing. The implicit
-method evaluates the contact at each iteration and once more at the start of the step, and forms its part of the
-tangent; the solution of the linear systems is not contact. The calculation is the run without input and output, which take most of an explicit run of this size.
+COST = """
+What contact costs here, implicitly and explicitly: [paper_tables](paper_tables.md).
 """
 ITERATION = re.compile(r"^step to (\S+) iteration (\d+): energy ratio ([^,\s]+)", re.MULTILINE)
-CONTACT_PHASES = ("contact_search", "contact_pairing", "contact_force")
 
 HEAD = """# Block-to-block contact, implicit beside explicit
 
@@ -78,15 +71,6 @@ def read_history(folder):
     if not steps:
         raise UserError(f"{log}: no iterations of the implicit method")
     return steps
-
-
-def contact_time(folder):
-    """Seconds of the contact phases, of the whole run, and of the run without input and output."""
-    with open(folder / "block.timing.csv", encoding="utf-8", newline="") as stream:
-        seconds = {row["phase"]: float(row["seconds"]) for row in csv.DictReader(stream)}
-    total = seconds["total"]
-    return (sum(seconds[phase] for phase in CONTACT_PHASES), total,
-            total - seconds["input"] - seconds["output"])
 
 
 def deviation(x, pressure):
@@ -129,24 +113,6 @@ def ratio_table(steps):
     return markdown_table(["time (ms)", *names],
                           [[f"{1000.0 * time:g}", *(f"{ratio:.1e}" for ratio in ratios),
                             *[""] * (len(names) - len(ratios))] for time, ratios in first])
-
-
-def time_table(folder, types):
-    """Contact time over that of the first type, and its share of the run."""
-    first = {method: contact_time(folder / f"{method}_{types[0]}")[0] for method in METHODS}
-    rows = []
-    for ctype in types:
-        times = {method: contact_time(folder / f"{method}_{ctype}") for method in METHODS}
-        rows.append([label(ctype)]
-                    + [f"{times[method][0] / first[method]:.2f}" for method in METHODS]
-                    + [f"{100.0 * times[method][0] / times[method][k]:.1f} %"
-                       for k in (1, 2) for method in METHODS]
-                    + [f"{times['implicit'][0] / times['explicit'][0]:.1f}"])
-    return markdown_table(
-        ("type", *(f"contact time over type {types[0]}, {method}" for method in METHODS),
-         *(f"share of the {whole}, {method}" for whole in ("run", "calculation")
-           for method in METHODS),
-         "contact time, implicit over explicit"), rows)
 
 
 def answers(runs, histories):
@@ -216,8 +182,7 @@ def write(folder, doc, _levels, types):
         if ctype in types:
             parts += [f"\nEnergy ratios of the first steps, type {label(ctype)}:\n",
                       ratio_table(histories[ctype])]
-    parts += [TIMES, time_table(folder, types)]
-    write_page(doc, "block_to_block_implicit", "\n".join(parts) + "\n")
+    write_page(doc, "block_to_block_implicit", "\n".join([*parts, COST]))
     save_small(pressure_figure(runs), doc / "pictures" / "block_implicit_pressure.png", lines=True)
 
 

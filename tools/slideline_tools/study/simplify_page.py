@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Charts and page of the study simplify."""
-import os
-import pathlib
 
 from slideline_tools import UserError
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, plt
@@ -11,12 +9,8 @@ from slideline_tools.study.charts import save, styled
 from slideline_tools.study.counted import who_counted
 from slideline_tools.study.simplify_figures import Runs, duration, megabytes, percent, \
     small_share
-from slideline_tools.study.speed_accuracy_front import cheapest, points_of, times_of
-from slideline_tools.study.speed_accuracy_scenes import SCENES
-from slideline_tools.study.table import finished, read_rows
+from slideline_tools.study.table import finished
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
-TARGETS = (0.05, 0.02, 0.01)
 PHASES = ("elements", "nodes", "contact", "output", "input")
 # What is left out: (title, variant with more, variant with less, variant whose row compares both).
 STEPS = (
@@ -151,35 +145,6 @@ def output_table(runs, level):
         for title, name in OUTPUTS if runs.has(name, level)])
 
 
-def speed_accuracy_rows():
-    """The table of the study speed-accuracy, full or quick; None if it has not been run here."""
-    for suffix in ("", "-quick"):
-        results = pathlib.Path(os.environ.get("SLIDELINE_RESULTS") or ROOT / "results")
-        path = results / f"study-speed-accuracy{suffix}" / "speed-accuracy.csv"
-        if path.is_file():
-            return read_rows(path)
-    return None
-
-
-def target_table(rows):
-    """The cheapest type and mesh for each headline measure and target."""
-    points, table = points_of(rows, times_of(rows)), []
-    for name, found in points.items():
-        for measure in SCENES[name].measures:
-            known = [point for point in found if measure.key in point.error]
-            if not known:
-                continue
-            dearest = max(known, key=lambda point: point.cost["computing"])
-            row = [SCENES[name].title, measure.title]
-            for target in TARGETS:
-                point = cheapest(known, "computing", measure.key, target)
-                row.append("none" if point is None else
-                           f"{point.name}: {duration(point.cost['computing'])}")
-            table.append([*row, f"{dearest.name}: {duration(dearest.cost['computing'])}"])
-    return markdown_table(["scene", "error measure", *(f"{100 * t:g} %" for t in TARGETS),
-                           "dearest of the sweep"], table)
-
-
 # ---- page --------------------------------------------------------------------------------------
 
 def page(rows, doc):
@@ -191,7 +156,6 @@ def page(rows, doc):
     with styled():
         save_small(draw(runs, levels[-1]), doc / "pictures" / "simplify.png", lines=True)
     done, last = finished(rows), levels[-1]
-    swept = speed_accuracy_rows()
     write_page(doc, "simplify", texts.PAGE.format(
         quick=texts.QUICK if any(row["quick"] for row in rows) else "",
         processor="; ".join(sorted({row["processor"] for row in done})),
@@ -201,6 +165,5 @@ def page(rows, doc):
         halves=symmetry_table(runs, last), rigid=texts.rigid(runs, levels),
         sleep=sleep_table(runs, last), exception=texts.exception(runs, last),
         spans=span_table(runs, last), share=texts.share(runs, last), law=texts.law(runs, last),
-        targets=target_table(swept) if swept else texts.NO_TARGETS,
         outputs=output_table(runs, last), output=texts.output(runs, last),
         together=texts.together(runs, last)).rstrip() + "\n")
