@@ -393,7 +393,7 @@ def test_dear_type(runs):
     assert touching.dear_type(run) == []
     run.log.interfaces[1].ctype = 6
     found = touching.dear_type(run)
-    assert found[0].seconds == pytest.approx(0.34 * run.seconds_of("contact"))
+    assert found[0].seconds == pytest.approx(0.20 * run.seconds_of("contact"))
     run.seconds["contact_force"] = 0.0
     assert touching.dear_type(run) == []
 

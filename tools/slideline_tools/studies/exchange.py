@@ -23,6 +23,7 @@ from slideline_tools.studies.sliding import judged_interval
 from slideline_tools.summaries import SNAPSHOT_TIME
 
 UPPER, LOWER = 0, 1
+MADE = 0.01  # of the energy of the flight
 
 
 class Run:
@@ -220,8 +221,7 @@ NOTES = {
     "oblique": "Exchanged, the slave is the flat, coarser face and the corner that hits is on the master. Types 1 "
                "and 2 see the corner only through slave nodes. The mortar types average gaps over slave segments "
                "longer than the part of the corner that is in contact: contact begins late and deep, and points "
-               "that come and go carry force; a negative contact energy is energy created (the program "
-               "warns of it). A pointed surface should not be the master of a coarse one.",
+               "that come and go carry force. A negative contact energy is energy created. {made}",
     "collision": "Plastic strain is that of the clamped corner, far from the contact, and hardly depends on "
                  "it. The rebound velocity is a small difference of large impulses.",
 }
@@ -257,6 +257,20 @@ def scene_table(folder, scene, quantities, types):
     return markdown_table(names, rows), largest
 
 
+def made_text(folder, types):
+    """How much energy contact made or kept in the oblique impact, where that is above MADE."""
+    parts = []
+    for exchanged, when in ((False, "as it is"), (True, "exchanged")):
+        left = {ctype: Run(folder, "oblique", ctype, exchanged).contact_energy() for ctype in types}
+        for what, sign in (("made", -1.0), ("kept", 1.0)):
+            found = [f"type {ctype} {100.0 * abs(value):.1f} %" for ctype, value in left.items()
+                     if sign * value > MADE]
+            if found:
+                parts.append(f"{when} contact {what}: {', '.join(found)}")
+    return (f"Of the energy of the flight, where it is more than {100.0 * MADE:.0f} %: " + "; ".join(parts) + ".") \
+        if parts else ""
+
+
 def write(folder, doc, types):
     """Read the runs below `folder`, write the page below `doc`."""
     parts, largest = [], []
@@ -265,7 +279,8 @@ def write(folder, doc, types):
         largest.append([scene, *(significant(value, 2) for value in worst)])
         parts.append(f"## {TITLES[scene]}\n\n{table}\n")
         if scene in NOTES:
-            parts.append(NOTES[scene] + "\n")
+            parts.append(NOTES[scene].format(made=made_text(folder, types) if "{made}" in NOTES[scene] else "")
+                         + "\n")
     summary = markdown_table(["scene", *(label(ctype) for ctype in types)], largest)
     write_page(doc, "exchange", "\n".join([HEAD + summary + "\n", *parts]))
 

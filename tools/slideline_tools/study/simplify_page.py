@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Charts and page of the study simplify."""
-
 from slideline_tools import UserError
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, plt
 from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
