@@ -70,3 +70,22 @@ def test_list_of_runs(tmp_path, capsys):
         assert float(penalty_3) == exchange.PENALTIES[scene]
     # eps / l_sl stays: 1e6 / 0.2 = 1.25e6 / 0.25
     assert float(rows[1][2]) == pytest.approx(1.25e6)
+
+
+def test_energy_that_contact_made_is_named(monkeypatch):
+    """Type 4 keeps 6.3 % when exchanged, type 5 makes 3 and 9 %, type 1 neither by 1 %."""
+    left = {(1, False): 0.004, (1, True): -0.009, (4, False): 0.0, (4, True): 0.063, (5, False): -0.031,
+            (5, True): -0.094}
+
+    class Made:
+        def __init__(self, _folder, _scene, ctype, exchanged):
+            self.value = left[ctype, exchanged]
+
+        def contact_energy(self):
+            return self.value
+
+    monkeypatch.setattr(exchange, "Run", Made)
+    assert exchange.made_text(None, (1, 4, 5)) == (
+        "Of the energy of the flight, where it is more than 1 %: as it is contact made: type 5 3.1 %; "
+        "exchanged contact made: type 5 9.4 %; exchanged contact kept: type 4 6.3 %.")
+    assert exchange.made_text(None, ()) == ""

@@ -128,6 +128,17 @@ def test_median_and_share_of_processor_time():
     assert short.seconds("a", 1, "contact") == 0.1
 
 
+@pytest.mark.parametrize("seconds, expected", [
+    (0.97, "3 % (no more than times scatter)"), (0.90, "10 %")])
+def test_a_saving_within_the_scatter_says_so(seconds, expected):
+    """Quartiles 4 % apart."""
+    rows = [{"state": "finished", "variant": name, "level": 1, "processor_seconds": middle * factor}
+            for name, middle in (("more", 1.0), ("less", seconds)) for factor in (0.98, 1.0, 1.02, 0.98, 1.02)]
+    runs = Runs(rows)
+    assert runs.spread == pytest.approx(0.04)
+    assert simplify_texts.saving_text(runs, 1, "more", "less") == expected
+
+
 def test_differences_in_words():
     assert [small_share(value) for value in (None, 0.0, 0.0123, 2e-13)] \
         == ["", "the same", "1.2 %", "2e-13"]
