@@ -48,7 +48,7 @@ The cheapest types and mesh (types/N_r) by computing time that keep an error at 
   its penalty e is that of the others times l_ms/(l_sl + l_ms), l_sl and l_ms the mean segments of slave and master: {two_pass}. (The other
   pages have the penalty of the paper's rule, the same e for all types.) The penalty, N_r and what it divides are those of the decks.
 - Which types are named above: means of contact times within a factor of {cost_factor:g} count as alike, and errors within a factor of
-  {error_factor:g}; several types can be named (`tools/slideline_tools/study/rules.py`). Repeats move these means by far less.
+  {error_factor:g}; several types can be named (`tools/slideline_tools/study/rules.py`; its test repeats the comparison with the scatter of the times).
 - On the Pareto front are the types and meshes that nothing beats in cost and error at once. Errors within {gain:.0f} % of
   each other count as equal, and so do times within {tie:.0f} %. Single points of it may change when the runs are repeated.
 - Where there is no closed form, type 7 on a finer mesh is the reference. Its own error is extrapolated (Richardson) from
