@@ -58,7 +58,7 @@ PAGES = {  # quick ones first
     "stability_shapes": study("stability-shapes"),
     "stability": study("stability"),
     "speed_accuracy": study("speed-accuracy"),
-    "simplify": study("simplify", ALL, after=("speed_accuracy",)),
+    "simplify": study("simplify", ALL),
     "peers": Page(("tests/bench/peers/run.sh", "--publish")),
     "speed": Page(("tests/bench/run.sh", "--publish"), ALL),
 }
