@@ -10,7 +10,9 @@
 !> gives max_s K/m + max_m K/m = A + B, exact for two masses and one spring. Averaging the gaps of
 !> points over slave nodes only lowers omega: by convexity again the energy is no more than that of
 !> springs at the points.
-!> Squares of frequencies of elements and springs add up at most (doc/theory/contact.md, section 7).
+!> Squares of frequencies of elements and springs add up at most. That is the bound of springs that
+!> stay closed. One that only pushes may not turn its mass round in the step in which it closes
+!> (doc/theory/contact.md, section 7). Everything here obeys both bounds.
 module contact_step_limit_m
   use contact_spring_ratios_m, only : spring_ratios
   use contact_state_m, only : contact_state_t
@@ -18,7 +20,8 @@ module contact_step_limit_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: spring_bound_t, bound_springs, stable_step, fitting_scale
+  public :: spring_bound_t, bound_springs, stable_step, closed_step, opening_step, &
+    binding_bound, fitting_scale
 
   !> What is known of the springs at the nodes of one interface, those of other interfaces there
   !> included.
@@ -135,9 +138,18 @@ contains
     end do
   end function even_share
 
-  !> Largest dt with (dt/element_limit)^2 + dt^2 rate/4 + dt damping <= 1; without springs that of
-  !> the elements.
+  !> Largest stable step of elements and contact springs, s; without springs that of the elements.
   pure elemental function stable_step(element_limit, bound) result(limit)
+    real(wp), intent(in) :: element_limit !! s
+    type(spring_bound_t), intent(in) :: bound
+    real(wp) :: limit
+
+    limit = min(closed_step(element_limit, bound), opening_step(bound))
+  end function stable_step
+
+  !> Springs that stay closed: the largest dt with
+  !> (dt/element_limit)^2 + dt^2 rate/4 + dt damping <= 1, s.
+  pure elemental function closed_step(element_limit, bound) result(limit)
     real(wp), intent(in) :: element_limit !! s
     type(spring_bound_t), intent(in) :: bound
     real(wp) :: limit
@@ -147,10 +159,31 @@ contains
     if (.not. bound%rate > 0.0_wp) return
     square = (1.0_wp/element_limit)**2 + 0.25_wp*bound%rate
     limit = 2.0_wp/(bound%damping + sqrt(bound%damping**2 + 4.0_wp*square))
-  end function stable_step
+  end function closed_step
 
-  !> Factor on the penalties for which the step `dt` is just stable; 0 where the elements leave no
-  !> room.
+  !> Springs that open and close: the largest dt with dt^2 rate + 2 dt damping <= 1, s.
+  pure elemental function opening_step(bound) result(limit)
+    type(spring_bound_t), intent(in) :: bound
+    real(wp) :: limit
+
+    limit = huge(1.0_wp)
+    if (.not. bound%rate > 0.0_wp) return
+    limit = 1.0_wp/(bound%damping + sqrt(bound%damping**2 + bound%rate))
+  end function opening_step
+
+  !> Which of the two bounds is the smaller step, for messages.
+  pure function binding_bound(element_limit, bound) result(name)
+    real(wp), intent(in) :: element_limit !! s
+    type(spring_bound_t), intent(in) :: bound
+    character(:), allocatable :: name
+
+    name = 'springs that stay closed'
+    if (opening_step(bound) < closed_step(element_limit, bound)) &
+      name = 'springs that open and close'
+  end function binding_bound
+
+  !> Factor on the penalties for which the step `dt` is just stable by both bounds; 0 where the
+  !> elements leave no room.
   pure elemental function fitting_scale(dt, element_limit, bound) result(scale)
     real(wp), intent(in) :: dt, element_limit !! s
     type(spring_bound_t), intent(in) :: bound !! with a rate above 0
@@ -158,7 +191,8 @@ contains
     real(wp) :: room
 
     room = max(1.0_wp - (dt/element_limit)**2, 0.0_wp)
-    scale = (2.0_wp*room/(dt*(bound%damping + sqrt(bound%damping**2 + room*bound%rate))))**2
+    scale = min(2.0_wp*room/(dt*(bound%damping + sqrt(bound%damping**2 + room*bound%rate))), &
+      opening_step(bound)/dt)**2
   end function fitting_scale
 
 end module contact_step_limit_m

@@ -1,11 +1,13 @@
 ! SPDX-License-Identifier: MIT
 !> Penalties that the deck gives as a share of the largest one for which the step is stable (PUNIT
-!> 3). The step is the one that the elements alone would have (TSSFAC times the smallest L/c, or the
+!> 3), by the bound of springs that stay closed and by that of springs that open and close. The step
+!> is the one that the elements alone would have (TSSFAC times the smallest L/c, or the
 !> curve LCTM). Each such interface may take what that step leaves beside the elements; where
 !> interfaces share nodes, all automatic ones are lowered by the same factor until their sum fits.
 module automatic_penalty_m
   use contact_log_m, only : penalty_text
-  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, fitting_scale
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, binding_bound, &
+    fitting_scale
   use contacts_m, only : penalty_share
   use element_dispatch_m, only : add_tile_forces
   use errors_m, only : error_t, raise, status_input
@@ -31,6 +33,7 @@ contains
     type(log_t), intent(inout) :: log
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: factor(size(model%contacts)), limit, dt
+    type(spring_bound_t) :: bounds(size(model%contacts))
     integer :: i
 
     if (all(model%contacts%penalty_unit /= penalty_share)) return
@@ -52,13 +55,18 @@ contains
           //'step '//to_text(dt), status_input)
         return
       end if
+    end do
+    call bound_whole(model, state, factor, bounds)
+    do i = 1, size(factor)
+      if (model%contacts(i)%penalty_unit /= penalty_share) cycle
       associate (memory => state%contacts(i))
         memory%slave_penalty = factor(i)*memory%slave_penalty
         memory%master_penalty = factor(i)*memory%master_penalty
         memory%node_penalty = factor(i)*memory%node_penalty
         call write_log(log, 'interface '//to_text(model%contacts(i)%id)//': penalty ' &
           //penalty_text(model%contacts(i), model, memory)//', ' &
-          //to_text(model%contacts(i)%penalty)//' of the largest for a time step of '//to_text(dt))
+          //to_text(model%contacts(i)%penalty)//' of the largest for a time step of ' &
+          //to_text(dt)//' by the bound of '//binding_bound(limit, bounds(i)))
       end associate
     end do
   end subroutine set_automatic_penalties
@@ -109,6 +117,18 @@ contains
     where (model%contacts%penalty_unit == penalty_share) factor = low*factor
   end subroutine find_factors
 
+  !> Bounds with the whole of these penalties (share 1) for automatic interfaces, others as given.
+  pure subroutine bound_whole(model, state, factor, bounds)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: factor(:)
+    type(spring_bound_t), intent(out) :: bounds(:)
+
+    call bound_springs(model%contacts, state%contact_mass, state%contacts, &
+      merge(factor/model%contacts%penalty, 1.0_wp, &
+      model%contacts%penalty_unit == penalty_share), bounds)
+  end subroutine bound_whole
+
   !> Whether the step is stable for all automatic interfaces with the whole of these penalties
   !> (share 1), others as given.
   pure function fits(model, state, dt, limit, factor)
@@ -117,12 +137,10 @@ contains
     real(wp), intent(in) :: dt, limit, factor(:)
     logical :: fits
     type(spring_bound_t) :: bounds(size(factor))
-    logical :: is_share(size(factor))
 
-    is_share = model%contacts%penalty_unit == penalty_share
-    call bound_springs(model%contacts, state%contact_mass, state%contacts, &
-      merge(factor/model%contacts%penalty, 1.0_wp, is_share), bounds)
-    fits = all(stable_step(limit, bounds) >= dt*(1.0_wp - round_off) .or. .not. is_share)
+    call bound_whole(model, state, factor, bounds)
+    fits = all(stable_step(limit, bounds) >= dt*(1.0_wp - round_off) &
+      .or. model%contacts%penalty_unit /= penalty_share)
   end function fits
 
 end module automatic_penalty_m

@@ -3,7 +3,8 @@
 module contact_check_m
   use contact_log_m, only : report_initial_contact, report_released
   use contact_overhang_m, only : report_overhang
-  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, fitting_scale
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
+    opening_step, binding_bound, fitting_scale
   use controls_m, only : contact_step_free, contact_step_rules
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
@@ -43,7 +44,8 @@ contains
     end do
   end subroutine report_contact_start
 
-  !> The warning for one interface: the limits, the node and the penalty that would fit.
+  !> The warning for one interface: which bound asks for what, the node and the penalty that would
+  !> fit.
   subroutine warn_of_step(model, i, dt, element_limit, bound, log)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
@@ -53,9 +55,12 @@ contains
 
     if (dt < element_limit) then
       call warn(log, 'interface '//to_text(model%contacts(i)%id)//': its penalty demands a time ' &
-        //'step of at most '//to_text(stable_step(element_limit, bound))//' (elements alone ' &
-        //to_text(element_limit)//', springs of all contacts at its nodes alone ' &
-        //to_text(stable_step(huge(1.0_wp), bound))//' at node ' &
+        //'step of at most '//to_text(stable_step(element_limit, bound))//', the bound of ' &
+        //binding_bound(element_limit, bound)//' (while they stay closed ' &
+        //to_text(closed_step(element_limit, bound))//', where they open and close ' &
+        //to_text(opening_step(bound))//', elements alone '//to_text(element_limit) &
+        //', springs of all contacts at its nodes alone ' &
+        //to_text(closed_step(huge(1.0_wp), bound))//' at node ' &
         //to_text(model%mesh%node_id(bound%node))//'), the step is '//to_text(dt) &
         //'; a penalty of '//to_text(fitting_scale(dt, element_limit, bound)) &
         //' times the present one would fit')

@@ -67,8 +67,9 @@ def limits(run) -> tuple[float, float] | None:
 
 
 def combined(elements: float, springs: float) -> float:
-    """Step limit of elements and springs together, s."""
-    return 1.0 / np.sqrt(1.0 / elements ** 2 + 1.0 / springs ** 2)
+    """Step limit of elements and springs together, s: springs that stay closed, and springs that
+    open and close (half of 2/omega)."""
+    return min(1.0 / np.sqrt(1.0 / elements ** 2 + 1.0 / springs ** 2), 0.5 * springs)
 
 
 def how_to_step(run, step: float) -> str:
@@ -107,7 +108,7 @@ def ruling_penalty(run) -> list[Advice]:
     if elements < PENALTY_RULES * present:
         return []
     limit = elements / PENALTY_RULES ** 0.5
-    factor = springs ** 2 * (1.0 / limit ** 2 - 1.0 / elements ** 2)
+    factor = springs ** 2 * min(1.0 / limit ** 2 - 1.0 / elements ** 2, 0.25 / limit ** 2)
     shortest = min(min(one.slave_length, one.master_length) for one in run.log.interfaces.values())
     pressed = table["pressure"] != 0.0
     if not pressed.any():
