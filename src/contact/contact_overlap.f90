@@ -6,6 +6,7 @@
 !> section 3.5).
 module contact_overlap_m
   use contact_local_foot_m, only : free_foot
+  use contact_plain_foot_m, only : well_inside
   use contact_placing_m, only : tracked_foot
   use contact_projection_m, only : foot_t, see_segment, turns_gently, side_on
   use contact_state_m, only : contact_state_t, is_touching
@@ -84,19 +85,21 @@ contains
   end subroutine find_cover
 
   !> A foot on a master node belongs to two segments; it takes the outer one, so that the node lies
-  !> between the feet whatever round-off decided.
+  !> between the feet whatever round-off decided. Where ends of closed surfaces meet exactly, a hair
+  !> off the node would count otherwise: what stands over the end of a slave would gain or lose half
+  !> of the side of its body under the strict rule of type 5.
   pure subroutine take_nodes_in(contact, feet)
     type(contact_t), intent(in) :: contact
     type(foot_t), intent(inout) :: feet(2)
 
     associate (next => contact%master%next(feet(1)%segment))
-      if (.not. abs(feet(1)%xi - 1.0_wp) > 0.0_wp .and. next > 0) then
+      if (abs(feet(1)%xi - 1.0_wp) <= well_inside .and. next > 0) then
         feet(1)%segment = next
         feet(1)%xi = 0.0_wp
       end if
     end associate
     associate (previous => contact%master%previous(feet(2)%segment))
-      if (.not. abs(feet(2)%xi) > 0.0_wp .and. previous > 0) then
+      if (abs(feet(2)%xi) <= well_inside .and. previous > 0) then
         feet(2)%segment = previous
         feet(2)%xi = 1.0_wp
       end if

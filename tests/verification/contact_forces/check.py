@@ -18,6 +18,7 @@ POINTS = range(1, 11)
 TOLERANCE = 1.0e-10
 SEED = 20240607
 N_RANDOM, N_FAR, N_CLOSED = 40, 12, 12
+N_TURN = 16
 FAR = 1.0e6
 N_JUMP = 7  # slave segments
 APART = 1.0e-9  # on either side of a jump
@@ -82,6 +83,16 @@ def designed_pairs():
         Pair("closed, overhanging", line(np.linspace(-0.3, 1.4, 5), -0.002), line(seven, 0.0), -1.5,
              closed=True),
     ]
+
+
+def flush_pairs():
+    """Closed outlines whose ends meet exactly, at many angles: round-off must decide nothing."""
+    lower, seven = line(np.linspace(0.0, 1.0, 5), -0.002), line(np.linspace(0.0, 1.0, 8), 0.0)
+    layouts = {"both ends": (lower, seven), "same nodes": (lower, line(lower[:, 0], 0.0)),
+               "left end": (line(np.linspace(0.0, 0.8, 5), -0.002), seven)}
+    return [Pair(f"{name}, turned by {angle:.3g}", slave, master, angle, closed=True)
+            for name, (slave, master) in layouts.items()
+            for angle in np.linspace(0.0, 6.0, N_TURN)]
 
 
 class Verdicts:
@@ -200,6 +211,7 @@ def jumps(run):
 
 def check(run):
     one_interface_each(run, "designed", designed_pairs(), RULES, "designed")
+    one_interface_each(run, "flush", flush_pairs(), MAIN_RULES, "closed and flush, turned")
     rng = np.random.default_rng(SEED)
     pairs = [random_pair(rng, number) for number in range(N_RANDOM)]
     one_interface_each(run, "random", pairs, RULES, "random")

@@ -15,6 +15,7 @@ import numpy as np
 OVERSHOOT = 0.01      # of the end segment of an open chain: still projected, not clamped
 SIDE_ON, FACE_ON = -0.1, -0.5  # slave normal . master normal: no facing above, full facing below
 SHALLOW = 0.25        # of the segment: how deep a point may be to change sides at a sharp corner
+ON_NODE = 1.0e-9     # of the segment: a foot this close to a node stands on it
 SHARP = np.cos(np.radians(60.0))  # a projection does not walk across corners that turn more
 
 
@@ -65,16 +66,18 @@ class Foot:
     at: float
     gap: float
     normal: np.ndarray
-    other: int | None = None  # the other segment, where the foot is the node between two
 
-    @property
-    def before(self):
+    def before(self, chain):
         """The segment that the foot is on; at a node the one before the node."""
-        return self.other if self.other is not None and self.at == 0.0 else self.segment
+        return self.beside(chain, abs(self.at) <= ON_NODE, -1)
 
-    @property
-    def after(self):
-        return self.other if self.other is not None and self.at == 1.0 else self.segment
+    def after(self, chain):
+        """The same; at a node the one after the node."""
+        return self.beside(chain, abs(self.at - 1.0) <= ON_NODE, 1)
+
+    def beside(self, chain, is_on_node, step):
+        other = chain.next(self.segment, step) if is_on_node else None
+        return self.segment if other is None else other
 
 
 def project(points, chain, along):
@@ -131,7 +134,7 @@ def one_foot(point, chain, k, at, height):
     inside = height[k] < 0.0 and height[other] < 0.0
     gap = -distance if inside else distance
     normal = radius / gap if distance > 0.0 else chain.normal[k]
-    return Foot(k, 1.0 if step == 1 else 0.0, gap, normal, other)
+    return Foot(k, 1.0 if step == 1 else 0.0, gap, normal)
 
 
 class Forces:
@@ -250,8 +253,8 @@ def pieces(slave, master, k, feet, strict=False):
     if strict and not (first and second):
         return [(0.0, 1.0, None, None, None)]
     n = len(master.x)
-    high = first.after if first else n - 1
-    low = second.before if second else -1
+    high = first.after(master) if first else n - 1
+    low = second.before(master) if second else -1
     if master.closed and high - low < -0.5 * n:
         high += n
     if master.closed and high - low > 0.5 * n:

@@ -14,7 +14,7 @@ ESTIMATE = 0.1 * BULK * 0.1 / (0.1 * 0.095)     # K L/A of the plates, the harde
 STIFF = 300.0                                   # over the built-in penalty
 
 
-def scene(kind, rules=False):
+def scene(kind, rules=False, shift=0.0):
     """The deck; `rules`: a penalty of 300 times the built-in one, and the step follows (ECDT 2)."""
     deck = Deck(f"ping-pong, type {kind}")
     deck.control(0.3)
@@ -25,7 +25,7 @@ def scene(kind, rules=False):
     for part, (n_x, n_y, width, height), low in ((1, BLOCK, 0.0), (2, PLATE, -GAP - PLATE[3]),
                                                  (3, PLATE, BLOCK[3] + GAP)):
         deck.part(part).elastic(RHO, YOUNG, 0.0, part)
-        coordinates, quads = grid(n_x, n_y, width, height, (-0.5 * width, low))
+        coordinates, quads = grid(n_x, n_y, width, height, (-0.5 * width + shift * (part == 1), low))
         rows = deck.mesh(coordinates, quads, part=part).reshape(n_y + 1, n_x + 1)
         bodies.append(rows)
     block, below, above = bodies
