@@ -2,7 +2,7 @@
 !> Warning at the start of places of the slave that stand just beyond an end of the master. Such a
 !> place sinks beside the end without a spring; when the bodies spread it comes in over the end and
 !> is caught at that depth by a whole spring, which makes energy at any time step
-!> (doc/theory/contact.md, section 7.4).
+!> (doc/theory/contact.md, section 7.5).
 module contact_overhang_m
   use contact_dispatch_m, only : formulation_t, formulation_of, covering_names
   use contact_projection_m, only : see_segment, end_tolerance

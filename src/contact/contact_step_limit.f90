@@ -161,7 +161,8 @@ contains
     limit = 2.0_wp/(bound%damping + sqrt(bound%damping**2 + 4.0_wp*square))
   end function closed_step
 
-  !> Springs that open and close: the largest dt with dt^2 rate + 2 dt damping <= 1, s.
+  !> Springs that open and close: the largest dt with dt^2 rate + 2 dt damping <= 1, s; half of
+  !> what they would allow alone while closed.
   pure elemental function opening_step(bound) result(limit)
     type(spring_bound_t), intent(in) :: bound
     real(wp) :: limit

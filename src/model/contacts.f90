@@ -10,7 +10,7 @@ module contacts_m
     penalty_distributed, penalty_factor, penalty_share
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
-  !> share of the largest penalty for which the step is stable.
+  !> share of the largest stable penalty.
   integer, parameter :: penalty_per_node = 0, penalty_distributed = 1, penalty_factor = 2, &
     penalty_share = 3
 

@@ -199,3 +199,17 @@ def test_cells_with_the_program(slideline, tmp_path, pen, step, verdict):
                     f"tssfac={step}", f"endtim={scene.end}", *scene.options],
                    cwd=tmp_path, capture_output=True, check=False)
     assert measures.measure_run(tmp_path, "run", scene)["verdict"] == verdict
+
+
+def test_limits_of_springs_and_elements():
+    """Stiff springs rule alone, soft ones do not; half of 2/omega where they open and close."""
+    scene = SCENES["block"]
+    row = {"scene": "block", "type": 2, "kind": "limit", "penalty": 1.0e9, "element_limit": 0.5}
+    found, = stability.derive([row], None)
+    alone = scene.limit(2, 1.0e9, False) / 0.5
+    assert found["spring_limit"] == pytest.approx(alone)
+    assert found["both_limits"] == found["opening_limit"] == pytest.approx(0.5 * alone)
+    assert 0.9 * alone < found["true_limit"] < alone
+    soft, = stability.derive([{**row, "penalty": 1.0}], None)
+    assert soft["both_limits"] == soft["true_limit"] < 1e-2 * soft["opening_limit"]
+    assert scene.limit(2, 4.0e9, False) == pytest.approx(0.5 * scene.limit(2, 1.0e9, False))

@@ -72,12 +72,17 @@ def measure(job, folder):
 
 
 def derive(rows, folder):
-    """The limit by eigenvalue beside the program's."""
+    """The limits by eigenvalue beside the program's: of all that stays closed, 2/omega of the contact
+    springs alone, half of it for springs that open and close, and the smaller of the first and the last."""
     del folder
     for row in rows:
         if row["kind"] == "limit" and "penalty" in row:
             scene = SCENES[row["scene"]]
-            row["true_limit"] = scene.limit(row["type"], row["penalty"]) / row["element_limit"]
+            limits = [scene.limit(row["type"], row["penalty"], with_elements) / row["element_limit"]
+                      for with_elements in (True, False)]
+            row["true_limit"], row["spring_limit"] = limits
+            row["opening_limit"] = 0.5 * limits[1]
+            row["both_limits"] = min(row["true_limit"], row["opening_limit"])
     return rows
 
 

@@ -63,9 +63,9 @@ class Model:
         """u = 0, or prescribed, in x (0) or y (1)."""
         self.free[2 * self.rows(nodes) + direction] = False
 
-    def limit(self, springs):
-        """2/omega_max with springs (n, n) between displacements in y."""
-        stiffness = self.stiffness.copy()
+    def limit(self, springs, with_elements=True):
+        """2/omega_max with springs (n, n) between displacements in y; of the springs alone if asked."""
+        stiffness = self.stiffness * float(with_elements)
         stiffness[1::2, 1::2] += springs
         root = 1.0 / np.sqrt(np.repeat(self.mass, 2)[self.free])
         scaled = root[:, None] * stiffness[np.ix_(self.free, self.free)] * root

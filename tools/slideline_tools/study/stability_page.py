@@ -15,6 +15,12 @@ from slideline_tools.study.stability_scenes import FASTER, SCENES
 from slideline_tools.study.stability_texts import PAGE
 
 DEPTH_DECADES = (-0.5, 0.0, 0.5, 1.0)  # penalties of the table of depths
+LIMITS = {  # name of the column: text and line
+    "true_limit": ("limit by eigenvalue", dict(color="black")),
+    "program_limit": ("limit of the program", dict(color="black", linestyle="--")),
+    "spring_limit": ("contact springs: omega dt = 2", dict(color="black", linestyle=":")),
+    "opening_limit": ("contact springs: omega dt = 1", dict(color="black", linestyle="-.")),
+}
 FILLS = ("#d9ead3", "#9fc5e8", "#ffe599", "#b4a7d6", "#cc4125")
 
 
@@ -40,15 +46,14 @@ def limits_of(rows, ctype, name):
 
 
 def draw_panel(axes, rows, ctype):
-    """One map: cells by verdict; both limits."""
+    """One map: cells by verdict; the limits."""
     decades, steps, verdict = grid_of(of_type(rows, ctype, "map"))
     half = 0.5 * (decades[1] - decades[0]) if len(decades) > 1 else 0.5
     norm = BoundaryNorm(np.arange(len(VERDICTS) + 1) - 0.5, len(VERDICTS))
     axes.imshow(verdict, origin="lower", aspect="auto", cmap=ListedColormap(FILLS), norm=norm,
                 extent=(decades[0] - half, decades[-1] + half, -0.5, len(steps) - 0.5),
                 interpolation="nearest")
-    for name, style in (("true_limit", dict(color="black")),
-                        ("program_limit", dict(color="black", linestyle="--"))):
+    for name, (_, style) in LIMITS.items():
         points = limits_of(rows, ctype, name)
         if points:
             x, limit = map(np.array, zip(*points))
@@ -76,20 +81,19 @@ def draw_maps(by_scene):
         line[0].set_ylabel(f"{SCENES[name].title}: step over L/c", fontsize=7)
     figure.supxlabel("log10 of penalty over K L/A of the elements", fontsize=8)
     handles = [Patch(color=fill, label=name) for fill, name in zip(FILLS, VERDICTS)]
-    handles += [plt.Line2D([], [], color="black", label="limit by eigenvalue"),
-                plt.Line2D([], [], color="black", linestyle="--", label="limit of the program")]
-    figure.legend(handles=handles, loc="outside upper center", ncols=7, fontsize=7)
+    handles += [plt.Line2D([], [], label=text, **style) for text, style in LIMITS.values()]
+    figure.legend(handles=handles, loc="outside upper center", ncols=9, fontsize=6)
     return figure
 
 
 def limit_table(by_scene):
-    """Program's limit over that by eigenvalue, smallest to largest over all penalties."""
+    """Program's limit over that by eigenvalues, smallest to largest over all penalties."""
     lines = []
     for ctype in sorted({row["type"] for rows in by_scene.values() for row in rows}):
         cells = [label(ctype)]
         for rows in by_scene.values():
-            ratios = [row["program_limit"] / row["true_limit"]
-                      for row in of_type(rows, ctype, "limit") if "true_limit" in row]
+            ratios = [row["program_limit"] / row["both_limits"]
+                      for row in of_type(rows, ctype, "limit") if "both_limits" in row]
             cells.append(f"{min(ratios):.2f} to {max(ratios):.2f}" if ratios else "")
         lines.append(cells)
     return markdown_table(["type", *(SCENES[name].title for name in by_scene)], lines)

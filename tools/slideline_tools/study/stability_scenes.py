@@ -72,9 +72,10 @@ class Scene:
             found.append(full)
         return found
 
-    def limit(self, ctype, penalty):
-        """Largest stable step with contact everywhere; `penalty` in N/m^2."""
-        return min(self.model.limit(penalty * unit) for unit in self.unit_springs(ctype))
+    def limit(self, ctype, penalty, with_elements=True):
+        """2/omega with contact everywhere, of elements and springs or of the springs alone; `penalty`
+        in N/m^2."""
+        return min(self.model.limit(penalty * unit, with_elements) for unit in self.unit_springs(ctype))
 
 
 def with_output(deck, end):

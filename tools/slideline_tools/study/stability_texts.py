@@ -14,8 +14,9 @@ forces a step above `L/c`.
 
 ![Stability maps](../pictures/stability.png)
 
-Full line: largest stable step by the largest eigenvalue of `M^-1 K`, elements and the springs of the type with all of the surface in contact. Broken line: the limit that the program
-computes at the start (`doc/theory/contact.md`, section 7), about which it warns (`ECDT` 0) or which it keeps (`ECDT` 2).
+Full line: `dt = 2/omega` by the largest eigenvalue of `M^-1 K`, elements and the springs of the type with all of the surface in contact: what stays closed is stable below it. Dotted and dash-dotted
+lines: `omega dt` = 2 and 1 with the largest `omega` of the contact springs alone; springs that open and close make energy from `omega dt` = 1 on. Broken line: the limit that the program
+computes at the start by both bounds (`doc/theory/contact.md`, section 7), about which it warns (`ECDT` 0) or which it keeps (`ECDT` 2).
 
 ## Verdicts
 
@@ -31,7 +32,7 @@ The first that applies:
 
 ## Is the program's limit safe, and how sharp?
 
-Limit of the program over that by eigenvalue, smallest and largest over all penalties. Above 1 it would be unsafe; 1.00 is where the elements alone decide.
+Limit of the program over the smaller of the two by eigenvalues (full and dash-dotted line), smallest and largest over all penalties. Above 1 it would be unsafe; 1.00 is where the elements alone decide.
 
 {limits}
 
@@ -56,7 +57,8 @@ Smallest and largest penalty over `K L/A` for which all steps tried below the pr
 {depths}
 
 - *Too stiff* fails along one curve, `dt = 2/omega`, in all scenes and types. Past `K L/A` the limit falls with the root of the penalty: ten times the penalty costs three times the steps. Up to about `K L/A` a contact
-  costs next to nothing.
+  costs next to nothing. The program asks for half of that where springs may open and close: between `omega dt` 1 and 2 a contact that stays closed is stable, as most cells here, and one that bounces makes
+  energy at each bounce ([ping-pong](../verification.md#ping_pong)).
 - The types differ in where the curve lies, not in its shape. Type 1 gives every node the same spring: an end node has half of the mass and the whole spring. Type 3 adds its two passes. In both the curve
   lies about half a decade of penalty lower. Types 5 and 7 integrate along both chains, and their limits are predicted best; types 2, 4 and 6 stay stable a little above the program's limit, because no node gets
   the most that it could get.
