@@ -62,6 +62,27 @@ def test_automatic_penalties_without_room(slideline, tmp_path):
     assert done.returncode == 1 and "(PUNIT 3) finds no room" in done.stderr, done.stderr
 
 
+@pytest.mark.parametrize("scale, bound", [(0.5, "springs that open and close"), (0.95, "springs that stay closed")])
+def test_penalty_that_demands_a_smaller_step(slideline, scale, bound):
+    """The warning names a penalty that would fit. It does, and just above it the warning names the bound that rules;
+    with PUNIT 3 there is none."""
+    text = drop(end_time=0.001).text().replace("0.9,0,0.0,0.0,9001", f"{scale}")
+    assert f"*CONTROL_TIMESTEP\n0.0,{scale}\n" in text
+
+    def say(penalty, unit=0):
+        deck = text.replace("200000.0", repr(penalty)).replace("0.0,1e+20,0", f"0.0,1e+20,{unit}")
+        done = slideline("d=out", deck=deck)
+        assert done.returncode == 0, done.stderr
+        return done.stdout + done.stderr
+
+    warned = say(2.0e9)
+    assert "demands a time step of at most" in warned
+    fitting = 2.0e9 * float(re.search(r"a penalty of (\S+) times the present one would fit", warned).group(1))
+    assert "demands a time step" not in say(0.999999 * fitting)
+    assert f", the bound of {bound} (while they stay closed" in say(1.000001 * fitting)
+    assert "demands a time step" not in say(1.0, 3)
+
+
 def test_many_interfaces_changed_by_the_command_line(slideline, tmp_path):
     """Eighty interfaces, more changed lines than there is room for at first, against the deck that says so itself."""
     text = drop(end_time=0.002).text()
