@@ -36,7 +36,7 @@ SCENES = {
     "hertz": (lambda kind: scenes.hertz(1, kind), 60, ("pen", "damp")),
 }
 #: what tells of a run, not of its result
-PASSING = re.compile(r"said\.txt|run\.(status|inputs)|.*\.timing\.csv|.*\.log|(.*\.)?status\.out|.*\.h5")
+PASSING = re.compile(r"said\.txt|run\.(status|inputs|lock)|.*\.timing\.csv|.*\.log|(.*\.)?status\.out|.*\.h5")
 #: how a batch is begun, in turn
 MODES = ("-j 4", "-j 8", "array")
 ARRAY = 4

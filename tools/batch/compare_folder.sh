@@ -9,6 +9,7 @@ set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/../help.sh"
+. "$here/lists.sh"
 help_or_go_on "$@"
 tools=${TOOLS:-$here/../../build/venv/bin/slideline-tools}
 count=$#
@@ -28,6 +29,11 @@ for folder in "$results" "$references"; do
   [ -d "$folder" ] || { echo "$folder: no such folder" >&2 && exit 2; }
 done
 
+case $results in -*) results=./$results ;; esac
+case $references in -*) references=./$references ;; esac
+odd=$(find "$references" -type f -name '*.csv' | LC_ALL=C grep -v '\.csv$' || :)
+check_words "$results" "$references" ${odd:+"$odd
+"}
 compared=$results/compared
 mkdir -p "$compared"
 find "$references" -type f -name '*.csv' ! -name '*.timing.csv' ! -name summary.csv \
@@ -36,7 +42,8 @@ agreed=0 failed=0 unusable=0
 printf '%-9s  %s\n' verdict history
 while IFS= read -r path; do
   name=${path#"$references"/}
-  said=$compared/$(printf '%s' "$name" | tr / _).txt
+  said=$compared/$name.txt
+  mkdir -p "${said%/*}"
   status=0
   if [ -f "$results/$name" ]; then
     "$tools" compare "$results/$name" "$path" "$@" >"$said" 2>&1 </dev/null || status=$?

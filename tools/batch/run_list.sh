@@ -19,28 +19,9 @@ trap '' USR1 USR2
 
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/../help.sh"
+. "$here/lists.sh"
 help_or_go_on "$@"
 program=${SLIDELINE:-$here/../../build/release/slideline}
-
-# files_of DECK: the deck and what it includes, as far as it lies where it is named or beside the deck.
-files_of() {
-  awk 'function read(file, folder, line, on, name) {
-      if (file in seen || (getline line <file) < 0) return file in seen
-      seen[file] = 1
-      print file
-      do {
-        sub(/[ \r]+$/, "", line)
-        if (on && line !~ /^\$/) {
-          sub(/^ +/, "", line)
-          if (!read(line, folder)) read(folder line, folder)
-          on = 0
-        }
-        if (line ~ /^\*/) on = toupper(line) ~ /^\*INCLUDE *$/
-      } while ((getline line <file) > 0)
-      return 1
-    }
-    BEGIN { folder = ARGV[1]; sub(/[^\/]*$/, "", folder); read(ARGV[1], folder) }' "$1"
-}
 
 # run_line OUT LINE: one run.
 run_line() {
@@ -55,8 +36,16 @@ run_line() {
   name=$1 deck=$2
   shift 2
   folder=$out/$name
-  mkdir -p "$folder"
-  now=$({ files_of "$deck" | tr '\n' '\0' | xargs -0 cksum; printf '%s\n' "$@"; "$program" --version
+  mkdir -p "$folder" || return 1
+  # A batch that is called while another one is at this run leaves it alone.
+  if command -v flock >/dev/null; then
+    exec 9>"$folder/run.lock"
+    if ! flock -n 9; then
+      echo "== $name: another batch is running it"
+      return 0
+    fi
+  fi
+  now=$({ printf '%s\n' "$deck" | files_of | cut -c 2- | tr '\n' '\0' | xargs -0 cksum --; printf '%s\n' "$@"; "$program" --version
     cksum <"$(command -v "$program")"; } | cksum)
   if [ "$fresh" = no ] && [ "$(cat "$folder/run.status" 2>/dev/null)" = 0 ] \
     && [ "$(cat "$folder/run.inputs" 2>/dev/null)" = "$now" ]; then
@@ -71,52 +60,88 @@ run_line() {
   echo "$status" >"$folder/run.status"
 }
 
-# value FILE TEXT: what follows TEXT and an equals sign in a log, the last time.
-value() {
-  sed -n "s/^ *$2 *= *//p" "$1" 2>/dev/null | tail -n 1
-}
-
-# state FOLDER TEXT: what follows TEXT in the status file.
-state() {
-  cat "$1"/*status.out 2>/dev/null | sed -n "s/^ $2   *//p" | tail -n 1
-}
-
-# collect LIST OUT: the table of all runs, on the screen and in OUT/summary.csv; false when one has not ended well.
+# collect LIST OUT: the table of all runs, on the screen and in OUT/summary.csv; false when one has not ended well. Names
+# and reasons stand in quotes there where they hold a comma, a quote or a line feed (RFC 4180).
 collect() {
-  bad=0
-  echo 'run,status,meaning,time,cycles,seconds,warnings,energy_ratio' >"$2/summary.csv"
-  while IFS=$(printf '\t') read -r name rest; do
-    [ -n "$name" ] || continue
-    folder=$2/$name
-    status=$(cat "$folder/run.status" 2>/dev/null || echo -)
-    case $status in
-    0) meaning=normal ;;
-    1) meaning=refused ;;
-    2) meaning='error termination' ;;
-    3) meaning=files ;;
-    4) meaning='stopped on request' ;;
-    -) meaning='not run' ;;
-    *) meaning=crashed ;;
-    esac
-    [ "$status" = 0 ] || bad=$((bad + 1))
-    seconds=$(value "$folder/$name.log" 'Elapsed time')
-    printf '%s,%s,%s,%s,%s,%s,%s,%s\n' "$name" "$status" "$meaning" \
-      "$(state "$folder" time)" "$(state "$folder" 'cycle no\.')" "${seconds% seconds}" \
-      "$(value "$folder/$name.log" Warnings)" "$(state "$folder" 'energy ratio')" >>"$2/summary.csv"
-  done <"$1"
-  awk -F, '{ for (i = 1; i <= NF; i++) { cell[NR, i] = $i; if (length($i) > width[i]) width[i] = length($i) } n = NF }
-    END { for (r = 1; r <= NR; r++) { line = ""
-      for (i = 1; i <= n; i++) line = line sprintf("%-*s  ", width[i], cell[r, i])
-      sub(/ +$/, "", line); print line } }' "$2/summary.csv"
-  [ "$bad" = 0 ] || echo "$bad of the runs have not ended well: see said.txt in their folders" >&2
-  [ "$bad" = 0 ]
+  OUT=$2 awk -F '\t' '
+    # The last value behind TEXT and an equals sign of a log.
+    function logged(path, text,   line, at, value) {
+      while ((getline line <path) > 0) { at = index(line, "=")
+        if (at && line ~ "^ *" text " *=") { value = substr(line, at + 1); gsub(/^ +| +$/, "", value) } }
+      close(path); return value }
+    # What the status file says of a run.
+    function take_state(path,   line, name, found) {
+      split("", state)
+      while ((getline line <path) > 0) {
+        found = 1
+        sub(/^ /, "", line)
+        if (!match(line, /  +/)) continue
+        name = substr(line, 1, RSTART - 1)
+        line = substr(line, RSTART + RLENGTH); sub(/ +$/, "", line)
+        state[name] = line }
+      close(path); return found }
+    # The first line that the program wrote for an error: its other lines begin with a blank.
+    function first_error(path,   line, found) {
+      while ((getline line <path) > 0) {
+        sub(/\r$/, "", line)
+        if (line == "" || line ~ /^ / || line ~ /^warning: /) continue
+        found = line; break }
+      close(path); return found }
+    function quoted(text) {
+      if (text !~ /[",\r\n]/) return text
+      gsub(/"/, "\"\"", text); return "\"" text "\"" }
+    function add_row(row,   i, line) {
+      n_row++
+      for (i = 1; i <= n; i++) {
+        cell[n_row, i] = row[i]; line = line (i > 1 ? "," : "") quoted(row[i])
+        if (i < n && length(row[i]) > width[i]) width[i] = length(row[i]) }
+      print line >csv }
+    BEGIN {
+      out = ENVIRON["OUT"]; csv = out "/summary.csv.new"
+      n = split("run,status,meaning,time,cycles,seconds,warnings,energy_ratio,reason", row, ",")
+      split("refused,error termination,files,stopped on request", meaning, ",")
+      add_row(row) }
+    $1 == "" { next }
+    {
+      folder = out "/" $1
+      status = "-"; path = folder "/run.status"
+      if ((getline line <path) > 0 && line != "") status = line
+      close(path)
+      row[1] = $1; row[2] = status
+      row[3] = status == "-" ? "not run" : status == 0 ? "normal" : status in meaning ? meaning[status] : "crashed"
+      if (status "" != "0") bad++
+      if (!take_state(folder "/" $1 ".status.out")) take_state(folder "/status.out")
+      row[4] = state["time"]; row[5] = state["cycle no."]; row[8] = state["energy ratio"]
+      row[6] = logged(folder "/" $1 ".log", "Elapsed time"); sub(/ seconds$/, "", row[6])
+      row[7] = logged(folder "/" $1 ".log", "Warnings")
+      row[9] = status == "-" || status == 0 ? "" : first_error(folder "/said.txt")
+      add_row(row) }
+    END {
+      close(csv)
+      for (r = 1; r <= n_row; r++) {
+        line = ""
+        for (i = 1; i <= n; i++) line = line sprintf("%-*s  ", width[i], cell[r, i])
+        sub(/ +$/, "", line)
+        print line }
+      if (!bad) exit 0
+      print bad " of the runs have not ended well: see said.txt in their folders" | "cat 1>&2"; close("cat 1>&2")
+      exit 1 }' "$1" && status=0 || status=1
+  mv "$2/summary.csv.new" "$2/summary.csv" || return 1
+  return "$status"
 }
 
 if [ "${1:-}" = --one ]; then
+  [ $# -gt 3 ] || exit 0
   fresh=$2
   run_line "$3" "$4"
   exit 0
 fi
+
+# wrong TEXT: what is wrong with the call; the end.
+wrong() {
+  echo "run_list.sh: $1" >&2
+  exit 2
+}
 
 jobs=1 fresh=no part=0/1 runs=yes
 while [ $# -gt 0 ]; do
@@ -125,7 +150,7 @@ while [ $# -gt 0 ]; do
   --fresh) fresh=yes ;;
   --part) part=${2:-} && shift ;;
   --collect) runs=no ;;
-  -*) echo "run_list.sh: unknown option $1" >&2 && exit 2 ;;
+  -*) wrong "unknown option $1" ;;
   *) break ;;
   esac
   shift
@@ -134,14 +159,24 @@ if [ $# -ne 2 ] || [ ! -f "$1" ]; then
   echo "usage: run_list.sh [-j N] [--fresh] [--part K/N] [--collect] LIST OUT" >&2
   exit 2
 fi
+case $jobs in
+'' | *[!0-9]* | 0*) wrong "-j '$jobs': expected how many runs at a time, 1 or more" ;;
+esac
+k=${part%/*} n=${part#*/}
+case $k:$n in
+*[!0-9]*:* | :* | *:*[!0-9]* | *:) k=0 n=0 ;;
+esac
+[ "$k" -lt "$n" ] || wrong "--part '$part': expected K/N with K from 0 to N - 1 (number an array from 0 without gaps)"
+case $2 in -*) set -- "$1" "./$2" ;; esac
 if [ "$runs" = yes ]; then
   if ! command -v "$program" >/dev/null; then
     echo "$program: no such program; build it with tools/build.sh, or say SLIDELINE=..." >&2
     exit 2
   fi
-  # Lines become arguments by null bytes, so that blanks and quotes in them mean nothing.
-  awk -v k="${part%/*}" -v n="${part#*/}" '(NR - 1) % n == k && NF' "$1" | tr '\n' '\0' \
-    | xargs -0 -P "$jobs" -I'{}' "$here/run_list.sh" --one "$fresh" "$2" '{}'
+  # Lines become arguments by null bytes, so that blanks and quotes in them mean nothing. A run that can not even
+  # begin is no reason to leave the others out.
+  LC_ALL=C awk -v k="$k" -v n="$n" '(NR - 1) % n == k && NF' "$1" | tr '\n' '\0' \
+    | xargs -0 -n 1 -P "$jobs" "$here/run_list.sh" --one "$fresh" "$2" || :
   [ "$part" = 0/1 ] || exit 0
 fi
 collect "$1" "$2"
