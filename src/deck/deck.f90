@@ -13,7 +13,7 @@ module deck_m
   use deck_report_m, only : emit_warnings, emit_errors
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text
   use deck_reader_m, only : read_blocks, cut_deck
-  use deck_schema_m, only : find_keyword, known_honoured, known_ignored, known_refused
+  use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, known_refused
   use deck_parameter_table_m, only : parameters_t
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : overrides_t, read_overrides, override_text
@@ -149,15 +149,26 @@ contains
         case (known_ignored)
           call line_warning(deck, block%keyword, 'ignored'//block%given, 'has no effect here')
         case (known_refused)
-          call line_error(deck, block%keyword, reason//' not part of this version')
+          call line_error(deck, block%keyword, reason//' not part of this version' &
+            //meant(block%given))
           call note_lost(block%given, raw%lost)
         case default
-          call line_error(deck, block%keyword, 'is not a keyword that this version knows')
+          call line_error(deck, block%keyword, 'is not a keyword that this version knows' &
+            //meant(block%given))
           call note_lost(block%given, raw%lost)
         end select
       end associate
     end do
   end subroutine know_blocks
+
+  !> What a name that is not known may have been meant for, for a message.
+  function meant(given) result(text)
+    character(*), intent(in) :: given
+    character(:), allocatable :: text
+
+    text = trim(nearest_keyword(trim(given)))
+    if (len(text) > 0) text = '; did you mean *'//text//'?'
+  end function meant
 
   !> What a refused keyword would have defined.
   pure subroutine note_lost(name, lost)

@@ -16,7 +16,7 @@ module deck_cards_m
   implicit none
   private
   public :: cursor_t, open_cursor, skip_title, next_card, next_row, next_text, next_heading, &
-    check_rest, report_field, row_comes, reject_field
+    check_rest, report_field, row_comes, reject_field, warn_of_field
 
   !> A place in a block.
   type :: cursor_t
@@ -209,6 +209,27 @@ contains
         //field_text(deck, card, k)//'" has no effect here')
     end if
   end subroutine notice_field
+
+  !> A warning of a field that was given, on a card that was read some time ago; the same one of
+  !> fields of one name is told once.
+  subroutine warn_of_field(deck, place, message)
+    type(deck_t), intent(inout) :: deck
+    type(place_t), intent(in) :: place
+    character(*), intent(in) :: message
+    type(card_spec_t) :: specs(max_card)
+    type(card_t) :: card
+    integer :: n_card, i_block
+
+    i_block = block_of_line(deck, place%line)
+    call get_specs(deck, i_block, specs, n_card)
+    associate (spec => specs(place%card))
+      call cut_card(deck, spec, deck%blocks(i_block)%source, place%line, card)
+      call line_warning(deck, place%line, 'field '//trim(spec%names(place%field))//message, &
+        'card '//to_text(spec%number)//' field '//to_text(place%field)//' (' &
+        //trim(spec%names(place%field))//'): "'//field_text(deck, card, place%field)//'" ' &
+        //message)
+    end associate
+  end subroutine warn_of_field
 
   !> Lines that are left over once all cards have been read.
   subroutine check_rest(deck, cursor)

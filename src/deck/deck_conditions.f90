@@ -111,6 +111,7 @@ contains
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     integer, intent(in) :: kind
+    integer :: k
 
     if (kind /= row_damping .and. card%i(1) < 1) call report_field(deck, cursor, card, 1, &
       'is not a number of 1 or more')
@@ -136,7 +137,10 @@ contains
       if (card%r(4) < 0.0_wp) call report_field(deck, cursor, card, 4, 'is negative')
     case (row_damping)
       if (card%i(1) < 0) call report_field(deck, cursor, card, 1, 'is not a curve number')
-      if (card%r(2) < 0.0_wp) call report_field(deck, cursor, card, 2, 'is negative')
+      do k = 2, 4
+        if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, &
+          'is negative: forces that push along with the velocity would feed energy')
+      end do
     end select
   end subroutine check_row
 
@@ -185,6 +189,8 @@ contains
     if (.not. abs(card%r(7)) > 0.0_wp) card%r(7) = 1.0e28_wp
     if (card%r(7) <= card%r(8)) call report_field(deck, cursor, card, 7, &
       'is not after BIRTH "'//to_text(card%r(8))//'"')
+    if (card%r(7) <= 0.0_wp) call report_field(deck, cursor, card, 7, &
+      'is before the run begins (0 means never)')
   end subroutine check_motion
 
   !> N1 to N4 of *LOAD_SEGMENT.

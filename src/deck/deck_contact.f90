@@ -66,6 +66,8 @@ contains
         //to_text(entry%contact%contact_type)//', which this version does not have' &
         //kind_names(kinds))
     end if
+    if (entry%contact%search_interval > 0) raw%explicit_only = [raw%explicit_only, &
+      entry%search_place]
     raw%contacts = [raw%contacts, entry]
   end subroutine read_contact
 
@@ -129,8 +131,7 @@ contains
       if (cards(2)%i(6) < 0 .or. cards(2)%i(6) > 1) call report_field(deck, cursor, cards(2), 6, &
         'is not 0 or 1'//strict_names(kinds))
       contact%strict = cards(2)%i(6) == 1
-      if (cards(2)%i(7) < 0) call report_field(deck, cursor, cards(2), 7, 'is negative')
-      contact%search_interval = max(cards(2)%i(7), 0)
+      call take_search(deck, cursor, cards(2), 7, entry)
       if (cards(2)%r(8) < 0.0_wp) call report_field(deck, cursor, cards(2), 8, 'is negative')
       contact%search_depth = cards(2)%r(8)
     end associate
@@ -169,8 +170,7 @@ contains
         call report_field(deck, cursor, cards(1), 3, 'is negative')
       if (cards(1)%r(3) > 0.0_wp) contact%penalty = cards(1)%r(3)
       contact%master_penalty = contact%penalty
-      if (cards(1)%i(4) < 0) call report_field(deck, cursor, cards(1), 4, 'is negative')
-      contact%search_interval = max(cards(1)%i(4), 0)
+      call take_search(deck, cursor, cards(1), 4, entry)
       call take_times(deck, cursor, cards(2), 1, entry)
       entry%per_cent = cards(3)%r(2)
     end associate
@@ -205,6 +205,24 @@ contains
     end associate
   end subroutine take_penalty
 
+  !> FREQ in field `k`: cycles between two searches. Their sum with the cycle of a run must stay a
+  !> whole number.
+  subroutine take_search(deck, cursor, card, k, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    type(raw_contact_t), intent(inout) :: entry
+    integer, parameter :: most_cycles = 1000000000
+
+    if (card%i(k) < 0) call report_field(deck, cursor, card, k, 'is negative')
+    if (card%i(k) > most_cycles) call report_field(deck, cursor, card, k, &
+      'is not a number of cycles between two searches (at most 1000000000)')
+    if (card%bad(k)) return
+    entry%contact%search_interval = card%i(k)
+    entry%search_place = place_t(line=card%line, card=card%number, field=k)
+  end subroutine take_search
+
   !> TBIRTH in field `k` and TDEATH after it; a death time of 0 means never.
   subroutine take_times(deck, cursor, card, k, entry)
     type(deck_t), intent(inout) :: deck
@@ -216,8 +234,11 @@ contains
     entry%contact%birth = card%r(k)
     entry%contact%death = card%r(k + 1)
     if (.not. abs(card%r(k + 1)) > 0.0_wp) entry%contact%death = 1.0e20_wp
-    if (entry%contact%death <= entry%contact%birth) call report_field(deck, cursor, card, k + 1, &
-      'is not after TBIRTH "'//to_text(card%r(k))//'"')
+    if (entry%contact%death <= entry%contact%birth) then
+      call report_field(deck, cursor, card, k + 1, 'is not after TBIRTH "'//to_text(card%r(k))//'"')
+    else if (entry%contact%death <= 0.0_wp) then
+      call report_field(deck, cursor, card, k + 1, 'is before the run begins (0 means never)')
+    end if
   end subroutine take_times
 
 end module deck_contact_m

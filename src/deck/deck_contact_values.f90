@@ -5,11 +5,11 @@ module deck_contact_values_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use contacts_m, only : contact_kind_t, most_gauss, penalty_per_node, penalty_share
-  use deck_lines_m, only : deck_t, line_error
+  use deck_lines_m, only : deck_t, deck_error
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, report_field
-  use deck_overrides_m, only : overrides_t, contact_names, override_text, override_real, &
-    override_integer
+  use deck_overrides_m, only : overrides_t, contact_names, override_text, override_word, &
+    override_real, override_integer
   use deck_raw_m, only : raw_contact_t
   implicit none
   private
@@ -20,8 +20,9 @@ module deck_contact_values_m
   integer, parameter :: of_type = 1, of_gauss = 2, of_penalty = 3, of_unit = 4, &
     of_master_penalty = 5, of_damping = 6
 
-  !> Most damping, per cent of critical.
-  real(wp), parameter :: most_damping = 1.0e6_wp
+  !> Most damping, per cent of critical. The force goes with the velocity of half a step ago: with
+  !> ten times critical damping the scene block-to-block breaks up.
+  real(wp), parameter :: most_damping = 100.0_wp
 
   !> Where the values of an interface come from.
   type :: origins_t
@@ -89,7 +90,7 @@ contains
         //'2 factor on the built-in estimate, 3 share of the largest stable one)')
       if (entry%per_cent < 0.0_wp) call refuse(of_damping, 'is negative')
       if (entry%per_cent > most_damping) call refuse(of_damping, &
-        'is not a damping in per cent of critical (at most 1e6)')
+        'is not a damping in per cent of critical (0 to 100)')
       if (contact%penalty_unit == penalty_share .and. contact%penalty > 1.0_wp) call refuse_share()
     end associate
 
@@ -99,7 +100,7 @@ contains
     subroutine refuse_share()
 
       if (origins%commanded(of_penalty) .or. origins%commanded(of_unit)) then
-        call line_error(deck, 0, 'with the command line the penalty "' &
+        call deck_error(deck, 'with the command line the penalty "' &
           //to_text(entry%contact%penalty)//'" is not a share of the largest stable one ' &
           //'(punit=3: pen= above 0, at most 1)')
       else
@@ -114,8 +115,8 @@ contains
       character(*), intent(in) :: message
 
       if (origins%commanded(k)) then
-        call line_error(deck, 0, '"'//override_text(overrides, contact_names(k), &
-          entry%contact%id)//'" on the command line '//message)
+        call deck_error(deck, '"'//override_word(overrides, contact_names(k), entry%contact%id) &
+          //'" on the command line '//message)
       else if (origins%card(k) > 0) then
         call report_field(deck, cursor, cards(origins%card(k)), origins%field(k), message)
       end if

@@ -11,7 +11,7 @@ module deck_control_m
   use deck_implicit_m, only : take_implicit, take_dynamics, take_spectral_radius, take_solution, &
     take_automatic
   use deck_raw_m, only : raw_t
-  use deck_part_m, only : hourglass_form, hourglass_coefficient
+  use deck_part_m, only : hourglass_form, hourglass_coefficient, check_viscosity
   implicit none
   private
   public :: read_control, check_step
@@ -91,6 +91,8 @@ contains
       'is not an end time (more than 0)')
     if (card%i(2) < 0) call report_field(deck, cursor, card, 2, 'is negative')
     if (card%r(3) < 0.0_wp) call report_field(deck, cursor, card, 3, 'is negative')
+    if (card%r(3) > 1.0_wp) call report_field(deck, cursor, card, 3, &
+      'is not a share of the first step (at most 1): the run would end at once')
     if (card%r(4) < 0.0_wp) call report_field(deck, cursor, card, 4, 'is negative')
     if (card%i(6) < 0 .or. card%i(6) > 1) call report_field(deck, cursor, card, 6, &
       'is not 0 or 1 (stop after the initialisation)')
@@ -108,12 +110,19 @@ contains
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
+    logical :: given(6)
+    integer :: k
 
     if (card%r(1) < 0.0_wp) call report_field(deck, cursor, card, 1, 'is negative')
     if (card%r(2) < 0.0_wp .and. .not. raw%scale_given) call report_field(deck, cursor, card, 2, &
       'is negative: the scale of the step is more than 0 (blank and 0 mean 0.9)')
     if (card%i(3) < 0 .or. card%i(3) > 1) call report_field(deck, cursor, card, 3, &
       'is not an element length rule (0 area over longest side, 1 area over longest diagonal)')
+    given = [card%r(1) > 0.0_wp, card%r(2) > 0.0_wp, card%i(3) == 1, .false., .false., &
+      card%i(6) /= 0]
+    do k = 1, 6
+      if (given(k)) raw%explicit_only = [raw%explicit_only, place_t(card%line, 1, k)]
+    end do
     raw%controls%dt_initial = card%r(1)
     raw%controls%dt_scale = 0.9_wp
     if (card%r(2) > 0.0_wp) raw%controls%dt_scale = card%r(2)
@@ -129,7 +138,7 @@ contains
     type(raw_t), intent(in) :: raw
 
     if (raw%dt_curve < 0) call reject_field(deck, raw%dt_curve_place, 'is not a curve number')
-    if (raw%controls%dt_scale > 1.0_wp) call line_warning(deck, merge(0, raw%step_line, &
+    if (raw%controls%dt_scale > 1.0_wp .and. .not. raw%controls%implicit%is_on) call line_warning(deck, merge(0, raw%step_line, &
       raw%scale_given), 'tssfac', 'TSSFAC'//trim(merge(' on the command line', &
       '                    ', raw%scale_given))//' is above 1: the run may become unstable')
     if (raw%controls%dt_initial > 0.0_wp .and. raw%dt_curve > 0 .and. &
@@ -147,7 +156,7 @@ contains
     integer :: k
 
     do k = 1, 2
-      if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, 'is negative')
+      call check_viscosity(deck, cursor, card, k)
     end do
     if (card%i(3) < -1 .or. card%i(3) > 1) call report_field(deck, cursor, card, 3, &
       'is not a kind of bulk viscosity that this version has (1 standard)')
@@ -169,6 +178,7 @@ contains
       call report_field(deck, cursor, cards(2), 7, 'is not 0, 1 or 2 (a warning where contact ' &
       //'needs a smaller step, no warning, a step that is stable with contact)')
     raw%controls%contact_step = cards(2)%i(7)
+    if (cards(2)%i(7) /= 0) raw%explicit_only = [raw%explicit_only, place_t(cards(2)%line, 2, 7)]
   end subroutine take_contact
 
 end module deck_control_m

@@ -19,9 +19,24 @@ contains
     findings = ''
     if (allocated(report%errors)) &
       call list_notes(report%errors(:min(report%n_error, size(report%errors))), 'error', findings)
+    if (allocated(report%errors)) &
+      call add_rest('error', report%n_error - size(report%errors), findings)
     if (allocated(report%warnings)) &
       call list_notes(report%warnings(:report%n_warning), 'warning', findings)
+    call add_rest('warning', report%n_dropped, findings)
   end subroutine list_findings
+
+  !> How many messages of one kind there are beyond those that are kept.
+  pure subroutine add_rest(severity, n_more, findings)
+    character(*), intent(in) :: severity
+    integer, intent(in) :: n_more
+    character(:), allocatable, intent(inout) :: findings
+    type(spot_t) :: spot
+
+    if (n_more < 1) return
+    spot%message = 'and '//to_text(n_more)//' more '//severity//'s'
+    call add_finding(severity, spot, findings)
+  end subroutine add_rest
 
   !> Messages of one kind.
   pure subroutine list_notes(notes, severity, findings)

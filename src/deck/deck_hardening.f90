@@ -26,6 +26,7 @@ contains
     type(card_t) :: card, rate, strains, stresses
     type(material_t) :: material
     type(raw_hardening_t) :: hardening
+    integer :: k
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
@@ -37,6 +38,12 @@ contains
     call read_rates(deck, cursor, rate, hardening)
     call next_card(deck, parameters, cursor, 3, strains)
     call next_card(deck, parameters, cursor, 4, stresses)
+    if (hardening%curve > 0 .or. any(abs(strains%r(:8)) > 0.0_wp)) then
+      ! What is not used here must make sense all the same.
+      do k = 5, 6
+        if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, 'is negative')
+      end do
+    end if
     if (hardening%curve > 0) then
       if (any(abs(strains%r(:8)) > 0.0_wp) .or. any(abs(stresses%r(:8)) > 0.0_wp)) &
         call line_warning(deck, strains%line, 'points', &
@@ -65,6 +72,7 @@ contains
     if (card%r(1) > 0.0_wp .and. .not. card%r(2) > 0.0_wp) &
       call report_field(deck, cursor, card, 2, &
       'is not an exponent (more than 0) for the C beside it')
+    if (card%r(2) < 0.0_wp) call report_field(deck, cursor, card, 2, 'is negative')
     if (card%i(3) < 0) call report_field(deck, cursor, card, 3, 'is not a curve or table number')
     if (card%i(4) < 0) call report_field(deck, cursor, card, 4, 'is not a curve number')
     hardening%is_viscoplastic = abs(card%r(5) - 1.0_wp) <= 0.0_wp

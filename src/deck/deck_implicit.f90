@@ -40,12 +40,18 @@ contains
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
+    real(wp), parameter :: most = 10.0_wp
+    integer :: k
 
     if (card%i(1) < 0 .or. card%i(1) > 1) call report_field(deck, cursor, card, 1, &
       'is not 0 (static) or 1 (dynamic)')
     raw%controls%implicit%is_dynamic = card%i(1) == 1
     if (card%r(2) < 0.0_wp .or. (card%r(2) > 0.0_wp .and. card%r(2) < 0.5_wp)) call report_field( &
       deck, cursor, card, 2, 'is not a stable GAMMA of Newmark''s method (0.5 or more)')
+    do k = 2, 3
+      if (card%r(k) > most) call report_field(deck, cursor, card, k, &
+        'is not a parameter of Newmark''s method (at most 10)')
+    end do
     if (card%r(3) < 0.0_wp .or. (card%r(3) > 0.0_wp .and. card%r(3) < 0.25_wp)) call report_field( &
       deck, cursor, card, 3, 'is not a stable BETA of Newmark''s method (0.25 or more)')
     if (card%r(8) > 0.0_wp .or. card%r(8) < -1.0_wp/3.0_wp) call report_field(deck, cursor, card, &
@@ -98,6 +104,7 @@ contains
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
+    integer, parameter :: many = 1000000
 
     if (card%i(1) < 0 .or. card%i(1) > 1) call report_field(deck, cursor, card, 1, &
       'is not 0 (constant step) or 1 (automatic)')
@@ -110,8 +117,9 @@ contains
       'is below the smallest step DTMIN = '//to_text(card%r(4)))
     associate (implicit => raw%controls%implicit)
       implicit%is_automatic = card%i(1) == 1
-      implicit%best_iterations = card%i(2)
-      implicit%iteration_window = card%i(3)
+      ! Their sum must stay a whole number.
+      implicit%best_iterations = min(card%i(2), many)
+      implicit%iteration_window = min(card%i(3), many)
       implicit%dt_least = card%r(4)
       implicit%dt_most = card%r(5)
     end associate

@@ -6,12 +6,12 @@
 !> points there (its `first` is negative), so that what is parsed is what the effective deck shows.
 module deck_lines_m
   use, intrinsic :: iso_fortran_env, only : int8
-  use deck_report_m, only : report_t, spot_t, add_error, add_warning
+  use deck_report_m, only : report_t, spot_t, add_error, has_error, add_warning
   use log_m, only : to_text
   implicit none
   private
   public :: deck_t, source_t, block_t, place_t, line_text, block_of_line, where_text, line_error, &
-    line_warning, replace_line, written_text, line_spot, shown_text, marked_line, layout_mark, &
+    deck_error, line_warning, replace_line, written_text, line_spot, shown_text, marked_line, layout_mark, &
     format_standard, format_long, format_i10, flag_comma, flag_parameter, flag_blank, max_source
 
   !> Column layout of a block.
@@ -138,6 +138,15 @@ contains
         //'  | '//trim(shown_text(line_text(deck, line))), line_spot(deck, line, message))
     end if
   end subroutine line_error
+
+  !> An error of the deck as a whole, or of the command line; the same one is told once.
+  subroutine deck_error(deck, message)
+    type(deck_t), intent(inout) :: deck
+    character(*), intent(in) :: message
+
+    if (.not. has_error(deck%report, where_text(deck, 0)//': '//message)) &
+      call line_error(deck, 0, message)
+  end subroutine deck_error
 
   !> A warning of a line; the same `key` is told once.
   subroutine line_warning(deck, line, key, message)

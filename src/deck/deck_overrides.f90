@@ -8,8 +8,8 @@ module deck_overrides_m
   use deck_parameter_table_m, only : parameters_t, override_parameter
   implicit none
   private
-  public :: overrides_t, read_overrides, override_text, override_real, override_integer, &
-    contact_names
+  public :: overrides_t, read_overrides, override_text, override_word, override_real, &
+    override_integer, contact_names
 
   !> Overrides of interfaces; the others are those of the run.
   integer, parameter :: n_contact_name = 6
@@ -22,6 +22,7 @@ module deck_overrides_m
     character(:), allocatable :: name   !! upper case
     integer :: interface = 0            !! 0 = all
     character(:), allocatable :: text   !! value
+    character(:), allocatable :: word   !! as it was given
   end type override_t
 
   !> All of them, in the order of the command line.
@@ -47,6 +48,7 @@ contains
         call line_error(deck, 0, '"'//trim(texts(i))//'" on the command line is not NAME=VALUE')
         cycle
       end if
+      item%word = trim(adjustl(texts(i)))
       item%name = upper_case(trim(adjustl(texts(i)(:equals - 1))))
       item%text = trim(adjustl(texts(i)(equals + 1:)))
       item%interface = 0
@@ -116,16 +118,42 @@ contains
     integer :: i
 
     text = ''
+    i = find_override(overrides, name, interface)
+    if (i > 0) text = overrides%items(i)%text
+  end function override_text
+
+  !> The word of the command line that gives a value, as in `ctype.2=5`; empty when there is none.
+  pure function override_word(overrides, name, interface) result(text)
+    type(overrides_t), intent(in) :: overrides
+    character(*), intent(in) :: name
+    integer, intent(in) :: interface
+    character(:), allocatable :: text
+    integer :: i
+
+    text = ''
+    i = find_override(overrides, name, interface)
+    if (i > 0) text = overrides%items(i)%word
+  end function override_word
+
+  !> The override that counts for an interface (0: the run), the last one given; 0 when there is
+  !> none.
+  pure function find_override(overrides, name, interface) result(found)
+    type(overrides_t), intent(in) :: overrides
+    character(*), intent(in) :: name
+    integer, intent(in) :: interface
+    integer :: found
+    integer :: i
+
+    found = 0
     do i = 1, size(overrides%items)
-      if (overrides%items(i)%name /= name) cycle
-      if (overrides%items(i)%interface == 0) text = overrides%items(i)%text
+      if (overrides%items(i)%name == name .and. overrides%items(i)%interface == 0) found = i
     end do
     ! What is meant for one interface wins over what is meant for all.
     do i = 1, size(overrides%items)
       if (overrides%items(i)%name /= name .or. overrides%items(i)%interface == 0) cycle
-      if (overrides%items(i)%interface == interface) text = overrides%items(i)%text
+      if (overrides%items(i)%interface == interface) found = i
     end do
-  end function override_text
+  end function find_override
 
   !> Replace a real by its override, if there is one.
   pure subroutine override_real(overrides, name, interface, value, changed)

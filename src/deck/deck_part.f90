@@ -14,7 +14,11 @@ module deck_part_m
   use deck_raw_m, only : raw_t, raw_part_t
   implicit none
   private
-  public :: read_part, read_section, read_hourglass, hourglass_form, hourglass_coefficient
+  public :: read_part, read_section, read_hourglass, hourglass_form, hourglass_coefficient, &
+    check_viscosity
+
+  !> Largest coefficients: they have no unit, and the stable step falls with them to none.
+  real(wp), parameter :: most_hourglass = 10.0_wp, most_viscosity = 100.0_wp
 
 contains
 
@@ -147,7 +151,6 @@ contains
     type(card_t) :: card
     type(hourglass_t) :: hourglass
     logical :: found, given(2)
-    integer :: k
 
     call open_cursor(deck, i_block, cursor)
     do
@@ -158,9 +161,8 @@ contains
       hourglass%id = card%i(1)
       call hourglass_form(deck, cursor, card, 2, hourglass%form)
       call hourglass_coefficient(deck, cursor, card, 3, hourglass%coefficient)
-      do k = 5, 6
-        if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, 'is negative')
-      end do
+      call check_viscosity(deck, cursor, card, 5)
+      call check_viscosity(deck, cursor, card, 6)
       hourglass%quadratic = card%r(5)
       hourglass%linear = card%r(6)
       given = .not. card%blank(5:6)
@@ -195,6 +197,18 @@ contains
     end select
   end subroutine hourglass_form
 
+  !> A coefficient of bulk viscosity in field `k`.
+  subroutine check_viscosity(deck, cursor, card, k)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+
+    if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, 'is negative')
+    if (card%r(k) > most_viscosity) call report_field(deck, cursor, card, k, &
+      'is not a coefficient of bulk viscosity (at most 100; Q1 1.5 and Q2 0.06 are usual)')
+  end subroutine check_viscosity
+
   !> Hourglass coefficient in field `k`: 0 and blank are 0.1, as in LS-DYNA.
   subroutine hourglass_coefficient(deck, cursor, card, k, coefficient)
     type(deck_t), intent(inout) :: deck
@@ -206,6 +220,9 @@ contains
     coefficient = 0.1_wp
     if (card%r(k) < 0.0_wp) then
       call report_field(deck, cursor, card, k, 'is negative')
+    else if (card%r(k) > most_hourglass) then
+      call report_field(deck, cursor, card, k, &
+        'is not an hourglass coefficient (at most 10; 0.05 to 0.15 are usual)')
     else if (card%r(k) > 0.0_wp) then
       coefficient = card%r(k)
     else if (.not. card%blank(k) .and. .not. card%bad(k)) then

@@ -79,6 +79,7 @@ module deck_raw_m
     real(wp) :: per_cent = 0.0_wp       !! VDC as given
     integer :: sides(2) = 0             !! SURFA, SURFB as in the deck: > 0 part set, < 0 node set
     type(place_t) :: places(2)
+    type(place_t) :: search_place       !! FREQ, where it is given
     type(place_t) :: unit_place         !! PUNIT; line 0 where the command line gives it
     logical :: overridden = .false.     !! the command line changes values
   end type raw_contact_t
@@ -148,6 +149,7 @@ module deck_raw_m
     integer :: newmark_line = 0                !! card of *CONTROL_IMPLICIT_DYNAMICS, 0 = none
     integer :: dt_curve = 0                    !! LCTM, user id
     type(place_t) :: dt_curve_place
+    type(place_t), allocatable :: explicit_only(:) !! fields given that the implicit method leaves
     type(history_t) :: outputs(n_output)
     type(raw_set_t) :: history_nodes, history_node_sets
   end type raw_t
@@ -162,7 +164,7 @@ contains
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
       raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%tables(0), raw%contacts(0), &
       raw%walls(0), raw%rows(64), raw%node_velocities(0), raw%node_sets(16), raw%part_sets(16), &
-      raw%segment_sets(16))
+      raw%segment_sets(16), raw%explicit_only(0))
     call reserve_nodes(raw, 0)
     call reserve_elements(raw, 0)
   end subroutine start_raw

@@ -5,8 +5,8 @@ module deck_report_m
   use log_m, only : log_t, warn, to_text
   implicit none
   private
-  public :: report_t, note_t, spot_t, add_error, add_warning, is_full, emit_warnings, &
-    emit_errors, deck_order
+  public :: report_t, note_t, spot_t, add_error, has_error, add_warning, is_full, &
+    emit_warnings, emit_errors, deck_order
 
   !> Messages kept of each kind; what comes later is counted.
   integer, parameter :: max_kept = 1000
@@ -59,6 +59,21 @@ contains
     report%errors(report%n_error)%text = text
     report%errors(report%n_error)%spot = spot
   end subroutine add_error
+
+  !> Whether an error of this text, which belongs to no line, is kept.
+  pure function has_error(report, text) result(found)
+    type(report_t), intent(in) :: report
+    character(*), intent(in) :: text
+    logical :: found
+    integer :: i
+
+    found = .false.
+    do i = 1, min(report%n_error, max_kept)
+      if (report%errors(i)%line > 0) cycle
+      found = report%errors(i)%text == text
+      if (found) return
+    end do
+  end function has_error
 
   !> Whether further errors are only counted, so that their text need not be made.
   pure function is_full(report) result(full)

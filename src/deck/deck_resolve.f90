@@ -8,19 +8,19 @@ module deck_resolve_m
   use model_m, only : model_t
   use conditions_m, only : motion_acceleration
   use contacts_m, only : penalty_share
-  use deck_cards_m, only : reject_field
-  use deck_lines_m, only : deck_t, place_t, line_error, line_warning
+  use deck_cards_m, only : reject_field, warn_of_field
+  use deck_lines_m, only : deck_t, place_t, line_error, deck_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, &
-    row_motion_set, output_plot, output_glstat, output_matsum, output_rcforc, output_nodout, &
-    output_rwforc, output_sleout, output_spcforc
+    row_motion_set, row_velocity, row_velocity_generation, output_plot, output_glstat, &
+    output_matsum, output_rcforc, output_nodout, output_rwforc, output_sleout, output_spcforc
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
   use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
   use deck_resolve_rigids_m, only : resolve_rigids
   use deck_resolve_velocity_m, only : resolve_velocity
-  use deck_resolve_contacts_m, only : resolve_contacts
+  use deck_resolve_contacts_m, only : resolve_contacts, check_references
   use deck_wall_m, only : resolve_walls
   implicit none
   private
@@ -71,7 +71,30 @@ contains
         'contact damping (VDC) has no effect with the implicit method')
       call check_penalty_unit(deck, raw%contacts(i))
     end do
+    call warn_of_explicit(deck, raw)
   end subroutine check_implicit
+
+  !> What the deck and the command line give for an explicit run alone: one warning for each.
+  subroutine warn_of_explicit(deck, raw)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    character(*), parameter :: no_effect = 'has no effect with the implicit method'
+    integer :: i
+
+    do i = 1, size(raw%explicit_only)
+      call warn_of_field(deck, raw%explicit_only(i), no_effect)
+    end do
+    if (raw%scale_given) call line_warning(deck, 0, 'implicit tssfac', &
+      'tssfac= on the command line '//no_effect)
+    if (raw%controls%implicit%is_dynamic) return
+    do i = 1, raw%n_row
+      if (all(raw%rows(i)%kind /= [row_velocity, row_velocity_generation])) cycle
+      call line_warning(deck, raw%rows(i)%line, 'static velocity', &
+        'an initial velocity has no effect in statics')
+    end do
+    if (raw%n_node_velocity > 0) call line_warning(deck, raw%node_velocities(1)%line, &
+      'static velocity', 'an initial velocity has no effect in statics')
+  end subroutine warn_of_explicit
 
   !> An automatic penalty is made for an explicit step.
   subroutine check_penalty_unit(deck, entry)
@@ -84,7 +107,7 @@ contains
     if (entry%unit_place%line > 0) then
       call reject_field(deck, entry%unit_place, reason)
     else
-      call line_error(deck, 0, '"3" on the command line (punit=) '//reason)
+      call deck_error(deck, '"punit=3" on the command line '//reason)
     end if
   end subroutine check_penalty_unit
 
@@ -130,6 +153,7 @@ contains
     if (sound) then
       call resolve_contacts(deck, raw, maps, model)
     else
+      call check_references(deck, raw, maps)
       allocate (model%contacts(0))
     end if
   end subroutine resolve_model

@@ -282,6 +282,7 @@ contains
           if (.not. allocated(model%conditions%damping)) allocate (model%conditions%damping)
           if (row%i(1) > 0) call resolve_id(deck, maps%curves, row%i(1), 'curve', &
             place_t(row%line, 1, 1), model%conditions%damping%curve)
+          call check_damping(deck, row, model)
           model%conditions%damping%coefficient = row%r(2)
           ! All six factors zero mean one everywhere.
           if (any(abs(row%r(3:8)) > 0.0_wp)) model%conditions%damping%factor = row%r(3:4)
@@ -289,5 +290,18 @@ contains
       end associate
     end do
   end subroutine collect_global
+
+  !> A curve of damping must not fall below 0.
+  subroutine check_damping(deck, row, model)
+    type(deck_t), intent(inout) :: deck
+    type(row_t), intent(in) :: row
+    type(model_t), intent(in) :: model
+    integer :: k
+
+    k = model%conditions%damping%curve
+    if (k == 0) return
+    if (minval(model%curves(k)%ordinate) < 0.0_wp) call reject_field(deck, place_t(row%line, 1, 1), &
+      'is a curve with values below 0: forces that push along with the velocity would feed energy')
+  end subroutine check_damping
 
 end module deck_resolve_conditions_m

@@ -14,7 +14,7 @@ module deck_resolve_contacts_m
   use deck_raw_m, only : raw_t, row_t, raw_contact_t, row_pressure, row_pressure_set
   implicit none
   private
-  public :: resolve_contacts
+  public :: resolve_contacts, check_references
 
   !> Names of the two sides in messages.
   character(6), parameter :: side_names(2) = ['slave ', 'master']
@@ -48,6 +48,39 @@ contains
       call check_common_nodes(deck, raw%contacts(i), sides, model)
     end do
   end subroutine resolve_contacts
+
+  !> What `resolve_contacts` would find of wrong ids, for a mesh that it can not be called for.
+  subroutine check_references(deck, raw, maps)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    integer :: i, k, found
+
+    do i = 1, size(raw%contacts)
+      associate (sides => raw%contacts(i)%sides, places => raw%contacts(i)%places)
+        do k = 1, 2
+          if (sides(k) > 0) call resolve_id(deck, maps%part_sets, sides(k), 'part set', &
+            places(k), found)
+          if (sides(k) < 0) call resolve_id(deck, maps%node_sets, -sides(k), 'node set', &
+            places(k), found)
+        end do
+      end associate
+    end do
+    do i = 1, raw%n_row
+      associate (row => raw%rows(i))
+        if (row%kind == row_pressure) then
+          call resolve_id(deck, maps%curves, row%i(1), 'curve', place_t(row%line, 1, 1), found)
+          do k = 4, 5
+            call resolve_id(deck, maps%nodes, row%i(k), 'node', place_t(row%line, 1, k), found)
+          end do
+        else if (row%kind == row_pressure_set) then
+          call resolve_id(deck, maps%segment_sets, row%i(1), 'segment set', &
+            place_t(row%line, 1, 1), found)
+          call resolve_id(deck, maps%curves, row%i(2), 'curve', place_t(row%line, 1, 2), found)
+        end if
+      end associate
+    end do
+  end subroutine check_references
 
   !> Nodes of contact node sets and of pressure edges: only their edges are looked for.
   subroutine mark_nodes(raw, maps, model, among)

@@ -8,11 +8,12 @@
 !> Widths are 10 unless said. A field asks for something when it is neither 0 nor its default.
 module deck_schema_m
   use deck_schema_others_m, only : table_others
+  use deck_spelling_m, only : edit_distance
   use deck_schema_tables_m, only : table_control, table_mesh, table_conditions, table_contact, &
     table_database
   implicit none
   private
-  public :: keyword_cards, find_keyword, refusal_reason, max_card, &
+  public :: keyword_cards, find_keyword, nearest_keyword, refusal_reason, max_card, &
     known_honoured, known_ignored, known_refused, known_not
 
   !> Characters by which a canonical name is longer than a short one at most (MAT_024).
@@ -166,6 +167,61 @@ contains
     end subroutine search
 
   end subroutine look
+
+  !> The honoured keyword that a name is likely meant for: at most two letters away. Blank where
+  !> none is so near, or where the name is one that the table of others has for itself.
+  function nearest_keyword(given) result(nearest)
+    character(*), intent(in) :: given   !! upper case
+    character(40) :: nearest
+    integer, parameter :: near = 2, least_length = 6
+    integer :: least, i
+    character(len(given)) :: base
+
+    nearest = ''
+    if (len_trim(given) < least_length) return
+    do i = 1, size(table_others)
+      if (.not. matches(table_others(i)(:index(table_others(i), ' ') - 1), given)) cycle
+      if (.not. is_family(table_others(i))) return
+      exit
+    end do
+    least = near + 1
+    call take_option(given, base)
+    if (len_trim(base) == 0) base = given
+    call compare(table_control)
+    call compare(table_mesh)
+    call compare(table_conditions)
+    call compare(table_contact)
+    call compare(table_database)
+
+  contains
+
+    !> Look into one table of honoured keywords.
+    subroutine compare(table)
+      character(*), intent(in) :: table(:)
+      integer :: k, n, distance
+
+      do k = 1, size(table)
+        if (table(k)(1:1) == ' ') cycle
+        n = index(table(k), ' ') - 1
+        if (abs(n - len_trim(base)) >= least) cycle
+        distance = edit_distance(table(k)(:n), trim(base))
+        if (distance >= least) cycle
+        least = distance
+        nearest = table(k)(:n)
+      end do
+    end subroutine compare
+
+  end function nearest_keyword
+
+  !> Whether a row of the others stands for a family of names, as in `MAT_*`, or for unknown ones.
+  pure function is_family(row) result(yes)
+    character(*), intent(in) :: row
+    logical :: yes
+    integer :: n
+
+    n = index(row, ' ') - 1
+    yes = row(n + 2:) == 'unknown' .or. (index(row(:n), '*') > 0 .and. index(row(:n), '_') == n - 1)
+  end function is_family
 
   !> Treatment of a name that is not honoured.
   pure subroutine look_others(name, known, reason)

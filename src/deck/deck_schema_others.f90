@@ -21,6 +21,8 @@ module deck_schema_others_m
     'BOUNDARY_PRESCRIBED_MOTION_RIGID* axes of bodies are', &
     'BOUNDARY_* this condition is', &
     'INITIAL_* this initial condition is', &
+    'LOAD_BODY_Z loads out of the plane are', &
+    'LOAD_BODY_R* spinning frames are', &
     'LOAD_* this load is', &
     'DAMPING_* this damping is', &
     'RIGIDWALL_PLANAR_* this option of a planar rigid wall is', &

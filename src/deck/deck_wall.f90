@@ -46,6 +46,8 @@ contains
     if (.not. abs(card%r(6)) > 0.0_wp) card%r(6) = 1.0e20_wp
     if (card%r(6) <= card%r(5)) call report_field(deck, cursor, card, 6, &
       'is not after BIRTH "'//to_text(card%r(5))//'"')
+    if (card%r(6) <= 0.0_wp) call report_field(deck, cursor, card, 6, &
+      'is before the run begins (0 means never)')
     entry%sets = card%i(1:2)
     entry%card_line = card%line
     entry%reach = card%r(4)

@@ -131,8 +131,8 @@ def test_refusals_of_the_program_stand_in_the_table(place, slideline):
     reason = 'decks/a.k:55: *HOURGLASS card 1 field 3 (QM): "-0.1" is negative'
     assert [row["reason"] for row in summary(place / "decks" / "results").values()] == [reason]
     first, second = (row["reason"] for row in summary(place / "swept").values())
-    assert '"0" on the command line is not a contact type' in first
-    assert '"9" on the command line is not a contact type' in second
+    assert '"ctype=0" on the command line is not a contact type' in first
+    assert '"ctype=9" on the command line is not a contact type' in second
 
 
 def test_values_that_make_one_name(place):
