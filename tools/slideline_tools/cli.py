@@ -217,6 +217,11 @@ def build_parser():
     return parser
 
 
+def one_line(problem):
+    """The text of an exception in one line."""
+    return " ".join(str(problem).split())
+
+
 def main(arguments=None):
     """Entry point: returns 0 when done, 1 when a comparison failed, 2 when it could not be done,
     141 when whoever reads the output went away."""
@@ -229,7 +234,14 @@ def main(arguments=None):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left to flush
         return NO_READER
     except (UserError, OSError) as problem:
-        print(f"slideline-tools: {problem}", file=sys.stderr)
+        print(f"slideline-tools: {one_line(problem)}", file=sys.stderr)
+        return UNUSABLE
+    except Exception as problem:
+        # A damaged file that no reader has noticed must not end in a traceback, nor hide where it came from.
+        if os.environ.get("SLIDELINE_TRACEBACK"):
+            raise
+        print(f"slideline-tools: {type(problem).__name__}: {one_line(problem)} (a damaged file, or a fault of the tools: "
+              "SLIDELINE_TRACEBACK=1 shows where)", file=sys.stderr)
         return UNUSABLE
 
 

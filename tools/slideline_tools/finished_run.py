@@ -3,7 +3,6 @@
 import pathlib
 import re
 
-import h5py
 import numpy as np
 
 from slideline_tools import UserError
@@ -65,10 +64,12 @@ def whole_instants(table):
 
 def with_further(results, table):
     """A table with the columns of /dyna behind its own."""
-    with h5py.File(results.path, "r") as stream:
+    with results.reading(f"dyna/{table.name}") as stream:
         group = stream.get(f"dyna/{table.name}", {})
         further = {name: group[name][()] for name in group}
-    return History(table.name, table.columns | further)
+        if any(getattr(values, "ndim", 0) != 1 or len(values) < len(table) for values in further.values()):
+            raise ValueError("a column is no list of values as long as its table")
+    return History(table.name, table.columns | {name: values[:len(table)] for name, values in further.items()})
 
 
 def find_prefix(path):

@@ -158,10 +158,16 @@ def from_hdf5(name: str, group) -> History:
     columns = {}
     for column in column_order(group):
         values = group[column][()]
+        if getattr(values, "ndim", 0) != 1:
+            raise HistoryError(f"{name}: the column {column} is no list of values")
         if column == "side" and values.dtype.kind in "iu":
             values = np.array([SIDES.get(int(value), str(value)) for value in values], dtype=str)
         elif values.dtype.kind in "SO":
-            values = np.array([v.decode() if isinstance(v, bytes) else str(v) for v in values])
+            values = np.array([v.decode(errors="replace") if isinstance(v, bytes) else str(v) for v in values])
+        elif values.dtype.kind not in "iuf":
+            raise HistoryError(f"{name}: the column {column} holds no numbers")
+        if values.dtype.kind == "U" and column not in TEXT_COLUMNS:
+            raise HistoryError(f"{name}: the column {column} holds no numbers")
         columns[column] = values
     shortest = min((len(values) for values in columns.values()), default=0)
     # A killed run may have grown some columns by a row that others lack.

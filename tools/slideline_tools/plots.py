@@ -12,6 +12,7 @@ from matplotlib.collections import PolyCollection  # noqa: E402
 
 from slideline_tools.fields import default_field, scalar_field  # noqa: E402
 from slideline_tools.results import ResultsError  # noqa: E402
+from slideline_tools.walls import draw_walls, walls_of  # noqa: E402
 
 STYLE = {
     "figure.dpi": 150, "savefig.dpi": 150, "font.size": 9, "axes.titlesize": 9,
@@ -102,6 +103,7 @@ def panel_height(zoom, width):
 def field_panel(axes, results, field, state, scale, limits, zoom):
     """One state with title and axes; returns the artist that carries the colours."""
     artist = draw_field(axes, results, field, state, scale, limits)
+    draw_walls(axes, walls_of(results.run.get("effective_deck", "")), zoom)
     axes.set_xlim(zoom[0], zoom[1])
     axes.set_ylim(zoom[2], zoom[3])
     axes.set_title(state_title(results, state, scale), loc="left")

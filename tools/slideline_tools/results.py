@@ -13,6 +13,7 @@ arrays with the state as first index, points and cells in the order of the deck:
 """
 from __future__ import annotations
 
+import contextlib
 import os
 import pathlib
 import typing
@@ -29,6 +30,11 @@ if typing.TYPE_CHECKING:
 TRIANGLE, QUAD = 5, 9
 STRESS_COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
 VECTOR_COMPONENTS = ("x", "y", "z")
+#: components of the fields that are no scalars
+COMPONENTS = {"Points": 3, "displacement": 3, "velocity": 3, "contact_force": 3, "stress": 6}
+#: what h5py and numpy raise where a file is not what it should be
+DAMAGE = (OSError, KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError, RuntimeError,
+          MemoryError)
 
 
 class ResultsError(UserError):
@@ -71,12 +77,21 @@ class Results:
     def __init__(self, path: str | os.PathLike) -> None:
         self.path = pathlib.Path(path)
         self._arrays: dict = {}
+        with self.reading("") as stream:
+            self._read_structure(stream)
+
+    @contextlib.contextmanager
+    def reading(self, what: str) -> typing.Iterator[h5py.File]:
+        """The file, open; ResultsError where it, or what is read of it, is damaged."""
         try:
             with h5py.File(self.path, "r") as stream:
-                self._read_structure(stream)
-        except (OSError, KeyError, ValueError, AttributeError) as problem:
-            reason = "no such file" if not self.path.exists() else problem
-            raise ResultsError(f"cannot read {self.path}: {reason}") from problem
+                yield stream
+        except UserError:
+            raise
+        except DAMAGE as problem:
+            reason = " ".join(str(problem).split()) or type(problem).__name__
+            reason = "no such file" if not self.path.exists() else reason
+            raise ResultsError(f"cannot read {what + ' of ' if what else ''}{self.path}: {reason}") from problem
 
     def _read_structure(self, stream: h5py.File) -> None:
         root = stream["VTKHDF"]
@@ -88,7 +103,11 @@ class Results:
         self.version = tuple(int(number) for number in root.attrs["Version"])
         self.n_node = int(root["NumberOfPoints"][0])
         self.n_cell = int(root["NumberOfCells"][0])
+        if min(self.n_node, self.n_cell) < 0:
+            raise ValueError("a negative number of points or cells")
         self.times = steps["Values"][:int(steps.attrs["NSteps"])].astype(float)
+        if self.times.ndim != 1:
+            raise ValueError("the times of the states are no list of numbers")
         self.point_fields = list(root.get("PointData", ()))
         self.cell_fields = list(root.get("CellData", ()))
         self._in_file = list(stream.get("history", ()))
@@ -112,12 +131,15 @@ class Results:
     def _stacked(self, path: str, offsets: str, rows: int) -> np.ndarray:
         """All states of a stacked array: (n_state, rows[, components])."""
         if path not in self._arrays:
-            with h5py.File(self.path, "r") as stream:
+            with self.reading(path) as stream:
                 root = stream["VTKHDF"]
                 values = root[path][()]
                 starts = root[offsets][()].ravel()[:self.n_state].astype(int)
-            picked = [values[start:start + rows] for start in starts]
-            if any(len(state) != rows for state in picked):
+                width = COMPONENTS.get(path.rsplit("/", 1)[-1])
+                if values.dtype.kind not in "iuf" or values.shape[1:] != ((width,) if width else ()):
+                    raise ValueError(f"it should have {width or 1} numbers in a row")
+            picked = [values[start:start + rows] for start in starts if start >= 0]
+            if len(picked) != self.n_state or any(len(state) != rows for state in picked):
                 raise ResultsError(f"{self.path}: {path} is shorter than its states need")
             self._arrays[path] = np.array(picked).reshape((self.n_state, rows) + values.shape[1:])
         return self._arrays[path]
@@ -154,18 +176,21 @@ class Results:
     def cells(self) -> np.ndarray:
         """(n_cell, 4) indices of the nodes (from 0); a triangle repeats its last node."""
         if "cells" not in self._arrays:
-            with h5py.File(self.path, "r") as stream:
+            with self.reading("the cells") as stream:
                 root = stream["VTKHDF"]
                 connectivity = root["Connectivity"][()]
-                offsets = root["Offsets"][()]
-                types = root["Types"][()]
-            if not np.all(np.isin(types, (TRIANGLE, QUAD))):
-                raise ResultsError(f"{self.path}: a cell is neither a triangle nor a quad")
-            starts = offsets[:self.n_cell].astype(int)
-            corner = np.where(types[:self.n_cell] == TRIANGLE, 2, 3)
-            self._arrays["cells"] = np.stack(
-                [connectivity[starts + np.minimum(k, corner)] for k in range(4)],
-                axis=1).astype(int)
+                types = root["Types"][:self.n_cell]
+                starts = root["Offsets"][:self.n_cell].astype(int)
+                if len(types) != self.n_cell or len(starts) != self.n_cell:
+                    raise ValueError("fewer of them than their number says")
+                if not np.all(np.isin(types, (TRIANGLE, QUAD))):
+                    raise ValueError("one is neither a triangle nor a quad")
+                corner = np.where(types == TRIANGLE, 2, 3)
+                cells = np.stack([connectivity[starts + np.minimum(k, corner)] for k in range(4)],
+                                 axis=1).astype(int)
+                if cells.ndim != 2 or np.any(cells < 0) or np.any(cells >= self.n_node):
+                    raise ValueError("one has a node that is not there")
+            self._arrays["cells"] = cells
         return self._arrays["cells"]
 
     def _table_path(self, name: str) -> pathlib.Path:
@@ -183,7 +208,7 @@ class Results:
                                f"there are {', '.join(self.histories) or 'none'}")
         if name not in self._arrays:
             if name in self._in_file:
-                with h5py.File(self.path, "r") as stream:
+                with self.reading(f"the history {name}") as stream:
                     self._arrays[name] = from_hdf5(name, stream["history"][name])
             else:
                 self._arrays[name] = read_csv(self._table_path(name))

@@ -46,12 +46,23 @@ class Interface:
 
 
 @dataclasses.dataclass
+class Wall:
+    """A rigid wall: a point of it, its unit normal (towards the bodies), and how many nodes see it."""
+
+    id: int
+    point: tuple[float, float]
+    normal: tuple[float, float]
+    n_node: int | None = None
+
+
+@dataclasses.dataclass
 class RunLog:
     """Everything that is read from a log."""
 
     parts: dict[int, Part] = dataclasses.field(default_factory=dict)
     materials: dict[int, dict[str, float]] = dataclasses.field(default_factory=dict)
     interfaces: dict[int, Interface] = dataclasses.field(default_factory=dict)
+    walls: dict[int, Wall] = dataclasses.field(default_factory=dict)
     driven: bool = False         # loads or prescribed motion
     step_scale: float = 0.0      # TSSFAC
     capped: bool = False         # a curve caps the step
@@ -67,6 +78,7 @@ def read_log(text: str) -> RunLog:
     for line in text.splitlines():
         read_part(log, line)
         read_interface(log, line)
+        read_wall(log, line)
         if found := re.match(r"material (\d+): (.*)", line):
             log.materials[int(found[1])] = material_data(found[2])
         elif found := re.match(r"conditions: \d+ fixed and (\d+) moved degrees of freedom, "
@@ -107,6 +119,14 @@ def read_part(log: RunLog, line: str) -> None:
         if part := log.parts.get(int(found[1])):
             part.points = 4 if found[2].startswith("fully") else 1
             part.viscosity = (float(found[3]), float(found[4]))
+
+
+def read_wall(log: RunLog, line: str) -> None:
+    """The line of a rigid wall."""
+    pair = rf"\({NUMBER}, {NUMBER}\)"
+    if found := re.match(rf"wall (\d+): through {pair}, normal {pair}, seen by (\d+) nodes", line):
+        x, y, along_x, along_y = (float(number) for number in found.groups()[1:5])
+        log.walls[int(found[1])] = Wall(int(found[1]), (x, y), (along_x, along_y), int(found[6]))
 
 
 def read_interface(log: RunLog, line: str) -> None:

@@ -12,6 +12,7 @@ from slideline_tools import UserError, __version__
 from slideline_tools.report import sections
 from slideline_tools.report.gather import Gathered, gather
 from slideline_tools.report.html import Section, page, paragraph, text, tiles
+from slideline_tools.report.walls import walls
 
 
 def report_html(run: Gathered, fields=(), states=(), scale: float = 1.0) -> str:
@@ -21,7 +22,10 @@ def report_html(run: Gathered, fields=(), states=(), scale: float = 1.0) -> str:
     found = [sections.summary(run), sections.warnings(run),
              attempt("energies", "Energies", sections.energies, run),
              attempt("contact", "Contact", sections.contact, run, chosen),
-             sections.fields(run, list(fields), chosen, scale),
+             attempt("walls", "Rigid walls", walls, run),
+             # Fields that were asked for by name must be there.
+             sections.fields(run, list(fields), chosen, scale) if fields
+             else attempt("fields", "Fields", sections.fields, run, [], chosen, scale),
              attempt("nodes", "Nodes", sections.nodes, run),
              attempt("model", "Parts, materials, interfaces", sections.understood, run),
              attempt("timing", "Timing", sections.timing, run),

@@ -67,6 +67,12 @@ def forces(rcforc: History):
                  "contact force on the slave")
 
 
+def wall_forces(rwforc: History):
+    """Both components of the force of a rigid wall on the nodes."""
+    return lines([(name, rwforc["time"], rwforc[name]) for name in ("fx", "fy") if name in rwforc],
+                 "force of the wall on the nodes")
+
+
 def pressures(contact: History, times: list[float]):
     """Contact pressure over the arc length of the slave surface at some times."""
     series = []

@@ -13,7 +13,7 @@ from slideline_tools import UserError
 from slideline_tools.advise.finished import endings, find_job, put_back, read_text
 from slideline_tools.advise.run_log import RunLog, read_log
 from slideline_tools.draw.model import Model, read_model
-from slideline_tools.histories import TABLES, History, HistoryError, read_csv
+from slideline_tools.histories import TABLES, History, read_csv
 from slideline_tools.results import Results, ResultsError, read
 
 GOES_ON = "goes on from the restart file"
@@ -157,7 +157,7 @@ def read_table(prefix, name: str, results: Results | None, notes: list[str]) -> 
             return read_csv(path)
         if results is not None and name in results.histories:
             return results.history(name)
-    except HistoryError as problem:
+    except UserError as problem:
         notes.append(f"{problem}.")
     return None
 

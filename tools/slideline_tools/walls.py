@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""Rigid walls of a run in pictures of its states."""
+from __future__ import annotations
+
+import math
+
+from slideline_tools.advise.run_deck import read_blocks
+from slideline_tools.advise.run_log import Wall
+
+COLOUR = "#333333"
+
+
+def walls_of(deck: str) -> list[Wall]:
+    """The walls of a deck as run; none where a card can not be read."""
+    found = []
+    if "*RIGIDWALL_PLANAR" not in deck.upper():
+        return found
+    for block in read_blocks(deck):
+        if not block.keyword.startswith("RIGIDWALL_PLANAR"):
+            continue
+        titled = block.keyword.endswith(("_TITLE", "_ID"))
+        try:
+            row = [float(word or 0.0) for word in (block.fields(1 + titled) + [""] * 6)[:6]]
+            number = int(block.lines[0][:10]) if titled and block.lines[0][:10].strip().isdigit() else 0
+        except (ValueError, IndexError):
+            continue
+        arrow = (row[3] - row[0], row[4] - row[1])
+        size = math.hypot(*arrow)
+        if size > 0.0 and math.isfinite(size):
+            found.append(Wall(number or len(found) + 1, (row[0], row[1]), (arrow[0] / size, arrow[1] / size)))
+    return found
+
+
+def draw_walls(axes, walls: list[Wall], zoom) -> None:
+    """Each wall as a line across the window (x0, x1, y0, y1), with its number behind it."""
+    size = math.hypot(zoom[1] - zoom[0], zoom[3] - zoom[2])
+    middle = (0.5 * (zoom[0] + zoom[1]), 0.5 * (zoom[2] + zoom[3]))
+    for wall in walls:
+        along = (wall.normal[1], -wall.normal[0])
+        offset = sum((m - p) * a for m, p, a in zip(middle, wall.point, along))
+        foot = [p + offset * a for p, a in zip(wall.point, along)]
+        if math.dist(foot, middle) > size:
+            continue
+        axes.plot(*zip(*[[f + side * size * a for f, a in zip(foot, along)] for side in (-1.0, 1.0)]), color=COLOUR,
+                  linewidth=2.0, zorder=4, scalex=False, scaley=False)
+        axes.annotate(f"wall {wall.id}", foot, xytext=[-9.0 * part for part in wall.normal], textcoords="offset points",
+                      fontsize=6, color=COLOUR, ha="center", va="center", annotation_clip=True,
+                      rotation=math.degrees(math.atan2(along[1], along[0])) % 180.0)
