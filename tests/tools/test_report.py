@@ -3,6 +3,7 @@
 import base64
 import html.parser
 import os
+import pathlib
 import re
 import shutil
 import subprocess
@@ -315,3 +316,43 @@ def test_in_a_browser(written, tmp_path, browser, width):
     assert found, done.stdout[-2000:] + done.stderr[-2000:]
     images, decoded, beyond, fetched = (int(number) for number in found.groups())
     assert images == decoded > 5 and beyond <= 0 and fetched == 0
+
+
+def walled(folder, program, more=""):
+    """The bar of doc/examples that hits a wall, with states."""
+    text = (conftest.ROOT / "doc/examples/rigidwall_planar.k").read_text()
+    deck = folder / "bar.k"
+    deck.write_text(text.replace("*END", f"*DATABASE_BINARY_D3PLOT\n0.02,\n{more}*END"))
+    return run_program(program, deck, folder / "run")
+
+
+def test_rigid_walls(tmp_path, slideline):
+    """Where a wall stands, and its impulse: twice the momentum of the bar less what the end nodes lose."""
+    page = write_report(walled(tmp_path, slideline)).read_text(encoding="utf-8")
+    section = page[page.index("Rigid walls</h2>"):]
+    words = re.sub(r"<[^>]+>", " ", section[:section.index("</section>")] if "</section>" in section else section[:400000])
+    rows = re.findall(r"\b1\s+([-0-9.e+]+)\s+([-0-9.e+]+)\s+([-0-9.e+]+)\s+([-0-9.e+]+)\s+([-0-9.e+]+)", words)
+    assert ("1.001", "0", "-1", "0", "42") in rows
+    impulse = float(next(row for row in rows if row[0] != "1.001")[2])
+    assert abs(impulse - 2.0 * 1000.0 * 0.1 * 0.5) < 5.0
+    assert "Force of wall 1 on the nodes" in page
+
+
+def test_no_wall_no_section(written):
+    assert "Rigid walls" not in pathlib.Path(written).read_text(encoding="utf-8")
+
+
+def test_walls_without_forces_and_in_pictures(tmp_path, slideline):
+    """A wall with a number of its own, in the picture of a state; no rwforc."""
+    from matplotlib import pyplot
+    from slideline_tools import plots
+    from slideline_tools.results import open_run
+    run = walled(tmp_path, slideline, "*RIGIDWALL_PLANAR_ID\n        77\n,\n0.0,-0.001,,0.0,1.0\n")
+    (run / "bar.rwforc.csv").unlink()
+    results = open_run(run)
+    figure = plots.field_figure(results, "mises", ["-1"])
+    axes = figure.axes[0]
+    assert {word.get_text() for word in axes.texts} == {"wall 1", "wall 77"}
+    ends = sorted(tuple(np.round(line.get_xydata().mean(axis=0), 9)) for line in axes.lines)
+    assert len(ends) == 2 and any(abs(x - 1.001) < 1e-9 for x, _ in ends) and any(abs(y + 0.001) < 1e-9 for _, y in ends)
+    pyplot.close(figure)

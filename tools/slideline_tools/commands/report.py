@@ -8,7 +8,7 @@ def add(commands) -> None:
     parser = commands.add_parser(
         "report", help="write an HTML report of a run",
         description="Write one HTML file about a run: how it ended, energies and their balance, force "
-                    "and pressure of each interface, fields, warnings, parts, timing. It needs no "
+                    "and pressure of each interface, rigid walls, fields, warnings, parts, timing. It needs no "
                     "network and no other file. Killed and running runs are reported as far as "
                     "they got.")
     parser.add_argument("run_path", metavar="RUN", help="results folder, or a file of the run")
