@@ -186,7 +186,7 @@ def check_job(batch, name, alone):
     done = subprocess.run([batch.program, f"i={batch.decks / name}.k", f"d={single}", f"jobid={name}"],
                           capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{name}: {done.stderr}"
-    kept = {path.name for path in folder.iterdir()} - {"said.txt", "run.status", "run.inputs"}
+    kept = {path.name for path in folder.iterdir()} - {"said.txt", "run.status", "run.inputs", "run.lock"}
     assert kept == {path.name for path in single.iterdir()}, f"{name}: {kept}"
     assert "N o r m a l" in (folder / f"{name}.log").read_text(), f"{name}: no normal termination"
     mine, other = contents(folder), contents(single)
