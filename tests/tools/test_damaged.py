@@ -17,7 +17,7 @@ import damage_results as fuzz  # noqa: E402
 def readers(name):
     """The tools that read an array of the results file, the slow ones where they tell more."""
     if name.startswith(("history", "dyna")):
-        return "info", "binout"
+        return "info", "binout", "d3plot"
     return ("info", "plot", "d3plot", "advise") if "Cell" in name or name.endswith("Types") else ("info", "d3plot", "advise")
 
 
@@ -65,6 +65,7 @@ CASES = {
     "table is no group": ("history/contact", lambda _: TEXT),
     "column is a group": ("history/rwforc/wall", lambda _: dict),
     "column is a number": ("history/rwforc/fx", lambda _: 1.5),
+    "sums lack a column": ("history/matsum/momentum_x", lambda _: None),
     "column of pairs": ("history/glstat/viscous", lambda v: np.stack([v, v], axis=-1)),
     "entities of pairs": ("history/rcforc/interface", lambda v: np.stack([v, v], axis=-1)),
     "column of text": ("history/glstat/kinetic", lambda v: np.array([b"x"] * len(v))),

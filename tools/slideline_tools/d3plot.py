@@ -117,7 +117,7 @@ def global_values(run, parts):
             row = row_at(sums, time, part)
             if row is None:
                 continue
-            of = {name: sums[name][row] for name in sums.columns}
+            of = {name: sums[name][row] for name in ("kinetic", "internal", "hourglass", "momentum_x", "momentum_y", "mass")}
             speed = np.array([of["momentum_x"], of["momentum_y"]]) / (of["mass"] or 1.0)
             n = len(parts)
             values[[6 + k, 6 + n + k, 6 + 5 * n + k, 6 + 6 * n + k]] = [
