@@ -91,8 +91,8 @@ contains
     integer, parameter :: shown = 60
     character(12) :: found, limit
 
-    write (found, '(i0)') length
-    write (limit, '(i0)') argument_length
+    write (found, '(ss,i0)') length
+    write (limit, '(ss,i0)') argument_length
     mistakes = mistakes//'"'//word(:shown)//'..." has '//trim(found) &
       //' characters: an argument may have '//trim(limit)//new_line('a')
   end subroutine refuse_length
@@ -163,7 +163,7 @@ contains
     status = verify(word(equals + 1:), '0123456789')
     if (status == 0) read (word(equals + 1:), *, iostat=status) count
     if (status == 0 .and. count >= 1 .and. count <= most) return
-    write (limit, '(i0)') most
+    write (limit, '(ss,i0)') most
     mistakes = mistakes//word(:equals)//'"'//word(equals + 1:)//'": expected a number from 1 to ' &
       //trim(limit)//new_line('a')
   end subroutine read_count

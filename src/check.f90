@@ -2,19 +2,19 @@
 !> `slideline check`: all that is wrong or strange in a deck, and what a run would say at its start,
 !> without a run and without a file.
 module check_m
-  use, intrinsic :: iso_fortran_env, only : output_unit
   use arguments_m, only : arguments_t
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
   use deck_findings_m, only : add_finding, json_text
   use deck_report_m, only : spot_t
-  use errors_m, only : error_t
+  use errors_m, only : error_t, raise, status_files
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
   use log_m, only : log_t, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t
   use renumber_m, only : renumber_model
+  use screen_m, only : show
   use snapshot_filling_m, only : start_snapshot
   use start_m, only : start_state
   use state_m, only : state_t
@@ -31,8 +31,8 @@ contains
     type(deck_request_t) :: request
     type(model_t) :: model
     type(monitor_t) :: monitor
+    type(error_t), allocatable :: failure
     character(:), allocatable :: effective, findings
-    integer :: ignored
 
     request%path = arguments%deck
     request%overrides = arguments%overrides
@@ -48,12 +48,13 @@ contains
       if (allocated(error)) call add_message('error', error%message, findings)
     end if
     if (arguments%json) then
-      call show_json(arguments%deck, findings, allocated(error))
+      call show(findings_text(arguments%deck, findings, allocated(error)), failure)
+      ! Who asked for these lines has not got them: that counts more than what they would have said.
+      if (allocated(failure)) call raise(error, failure%message, status_files)
     else if (.not. allocated(error)) then
-      write (output_unit, '(a)', iostat=ignored) arguments%deck//': accepted, ' &
-        //to_text(model%mesh%n_element)//' elements, '//to_text(model%mesh%n_node)//' nodes, ' &
-        //to_text(size(model%contacts))//' interfaces, '//to_text(monitor%log%n_warning) &
-        //' warnings'
+      call show(arguments%deck//': accepted, '//to_text(model%mesh%n_element)//' elements, ' &
+        //to_text(model%mesh%n_node)//' nodes, '//to_text(size(model%contacts))//' interfaces, ' &
+        //to_text(monitor%log%n_warning)//' warnings')
     end if
   end subroutine check_deck
 
@@ -104,16 +105,17 @@ contains
     call add_finding(severity, spot, findings)
   end subroutine add_message
 
-  !> One JSON object on standard output.
-  subroutine show_json(deck, findings, refused)
+  !> One JSON object.
+  pure function findings_text(deck, findings, refused) result(text)
     character(*), intent(in) :: deck, findings
     logical, intent(in) :: refused
-    integer :: ignored
+    character(:), allocatable :: text
+    character(1), parameter :: n = new_line('a')
 
-    write (output_unit, '(a)', iostat=ignored) '{', '  "deck": '//json_text(deck)//',', &
-      '  "accepted": '//trim(merge('false', 'true ', refused))//',', '  "findings": ['
-    if (len(findings) > 0) write (output_unit, '(a)', iostat=ignored) findings
-    write (output_unit, '(a)', iostat=ignored) '  ]', '}'
-  end subroutine show_json
+    text = '{'//n//'  "deck": '//json_text(deck)//','//n//'  "accepted": ' &
+      //trim(merge('false', 'true ', refused))//','//n//'  "findings": ['//n
+    if (len(findings) > 0) text = text//findings//n
+    text = text//'  ]'//n//'}'
+  end function findings_text
 
 end module check_m

@@ -25,10 +25,11 @@ module run_m
   use restart_m, only : forget_files
   use restart_plan_m, only : restarts_t
   use restart_reading_m, only : take_up_state, take_up_results, take_up_outputs
+  use result_names_m, only : check_names
   use results_arrays_m, only : unfinished
   use results_file_m, only : run_info_t
   use sense_switch_m, only : forget_switch
-  use signals_m, only : catch_signals
+  use signals_m, only : catch_stops
   use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t
@@ -55,7 +56,7 @@ contains
     has_ended = .false.
     call start_clock(monitor%clock)
     monitor%clock%is_on = arguments%timing /= timing_off
-    call catch_signals()
+    call catch_stops()
     call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler &
       //', source '//source_version//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
@@ -75,6 +76,10 @@ contains
       if (allocated(error)) return
     end if
     call make_directory(arguments%directory, error)
+    monitor%restarts%directory = arguments%directory
+    monitor%restarts%job = arguments%job
+    monitor%restarts%prefix = prefix
+    if (.not. allocated(error)) call check_names(monitor%restarts, error)
     if (.not. allocated(error)) &
       call open_log(monitor%log, prefix//'.log', monitor%restarts%goes_on, error)
     if (allocated(error)) return
@@ -180,9 +185,6 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(checksum_t) :: checksum
 
-    restarts%directory = arguments%directory
-    restarts%job = arguments%job
-    restarts%prefix = prefix
     restarts%program = program_text()
     call start_checksum(checksum)
     call add_bytes(checksum, effective)

@@ -8,7 +8,7 @@ module c_files_m
   implicit none
   private
   public :: c_mkdir, c_rename, c_unlink, c_creat, c_write, c_close, c_fopen, c_fileno, c_fclose, &
-    c_fsync, system_reason
+    c_fsync, c_flock, c_ftruncate, system_reason, system_failure
 
   interface
     !> POSIX mkdir; 0 on success.
@@ -86,6 +86,22 @@ module c_files_m
       integer(c_int) :: status
     end function c_fsync
 
+    !> BSD flock; 0 on success.
+    function c_flock(descriptor, operation) bind(c, name='flock') result(status)
+      import :: c_int
+      integer(c_int), value :: descriptor   !! of the open file
+      integer(c_int), value :: operation
+      integer(c_int) :: status
+    end function c_flock
+
+    !> POSIX ftruncate; 0 on success. (The type of the length, off_t, has the width of size_t.)
+    function c_ftruncate(descriptor, length) bind(c, name='ftruncate') result(status)
+      import :: c_int, c_size_t
+      integer(c_int), value :: descriptor   !! of the open file
+      integer(c_size_t), value :: length    !! bytes that stay
+      integer(c_int) :: status
+    end function c_ftruncate
+
     !> Where the C library of Linux keeps `errno`.
     function c_errno() bind(c, name='__errno_location') result(place)
       import :: c_ptr
@@ -117,14 +133,20 @@ module c_files_m
 
 contains
 
+  !> Number of the C library's last failure (`errno`).
+  function system_failure() result(number)
+    integer(c_int), target :: number
+    type(c_ptr) :: ignored
+
+    ignored = c_memcpy(c_loc(number), c_errno(), c_sizeof(number))
+  end function system_failure
+
   !> What the C library says of its last failure.
   function system_reason() result(reason)
     character(:), allocatable, target :: reason
-    integer(c_int), target :: number
     type(c_ptr) :: text, ignored
 
-    ignored = c_memcpy(c_loc(number), c_errno(), c_sizeof(number))
-    text = c_strerror(number)
+    text = c_strerror(system_failure())
     allocate (character(c_strlen(text)) :: reason)
     ignored = c_memcpy(c_loc(reason), text, len(reason, c_size_t))
   end function system_reason

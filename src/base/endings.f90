@@ -8,7 +8,11 @@ module endings_m
   use errors_m, only : status_run
   implicit none
   private
-  public :: watch_end, announce_end
+  public :: watch_end, announce_end, normal_ending, error_ending
+
+  !> How a run says that it ended.
+  character(*), parameter :: normal_ending = ' N o r m a l    t e r m i n a t i o n', &
+    error_ending = ' E r r o r    t e r m i n a t i o n'
 
   !> Whether the program ends by itself.
   logical, save :: is_announced = .false.
@@ -30,7 +34,8 @@ module endings_m
 
 contains
 
-  !> From now on an end that is not announced has the status of an error in the run.
+  !> From now on an end that is not announced has the status of an error in the run, and its
+  !> line on standard output.
   subroutine watch_end()
     integer(c_int) :: ignored
 
@@ -47,11 +52,14 @@ contains
     character(*), parameter :: text = 'slideline could not go on, for the reason above' &
       //' (error termination)'//new_line('a')
     character(len(text)), target :: line
+    character(len(error_ending) + 2), target :: ending
     integer(c_size_t) :: ignored
 
     if (is_announced) return
     line = text
+    ending = new_line('a')//error_ending//new_line('a')
     ignored = c_write(2_c_int, c_loc(line), len(line, c_size_t))
+    ignored = c_write(1_c_int, c_loc(ending), len(ending, c_size_t))
     call c_exit_now(int(status_run, c_int))
   end subroutine judge_end
 

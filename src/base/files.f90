@@ -5,6 +5,7 @@ module files_m
   use c_files_m, only : c_mkdir, c_rename, c_unlink, c_fopen, c_fileno, c_fclose, c_fsync, &
     system_reason
   use errors_m, only : error_t, raise, status_files
+  use file_facts_m, only : what_hinders
   use kinds_m, only : long
   implicit none
   private
@@ -108,13 +109,15 @@ contains
       status_files)
   end subroutine remove_file
 
-  !> Give a file another name in the same directory, in one step; a file of that name is replaced.
+  !> Give a file another name in the same directory, in one step; a file of that name is replaced,
+  !> but nothing else.
   subroutine rename_file(old, new, error)
     character(*), intent(in) :: old, new
     type(error_t), allocatable, intent(out) :: error
     integer(c_int) :: status
 
-    status = c_rename(old//c_null_char, new//c_null_char)
+    status = -1
+    if (len(what_hinders(new)) == 0) status = c_rename(old//c_null_char, new//c_null_char)
     if (status /= 0) call raise(error, 'cannot rename '//old//' to '//new//': ' &
       //open_failure(new), status_files)
   end subroutine rename_file
@@ -125,7 +128,7 @@ contains
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
     type(c_ptr) :: stream
-    integer(c_int) :: status, ignored
+    integer(c_int) :: status, closing
     character(:), allocatable :: reason
 
     status = -1
@@ -133,8 +136,10 @@ contains
     stream = c_fopen(path//c_null_char, 'r'//c_null_char)
     if (c_associated(stream)) status = c_fsync(c_fileno(stream))
     reason = system_reason()
-    if (c_associated(stream)) ignored = c_fclose(stream)
-    if (status /= 0) call raise(error, 'cannot bring '//path//' onto the disk: '//reason, &
+    closing = 0
+    if (c_associated(stream)) closing = c_fclose(stream)
+    if (status == 0 .and. closing /= 0) reason = system_reason()
+    if (status /= 0 .or. closing /= 0) call raise(error, 'cannot bring '//path//' onto the disk: '//reason, &
       status_files)
   end subroutine force_to_disk
 
@@ -172,9 +177,9 @@ contains
     character(:), allocatable :: reason, from_system
 
     from_system = system_reason()
-    if (is_directory(path)) then
-      reason = 'it is a directory'
-    else if (.not. is_directory(parent_path(path))) then
+    reason = what_hinders(path)
+    if (len(reason) > 0) return
+    if (.not. is_directory(parent_path(path))) then
       reason = 'its directory does not exist'
     else
       reason = from_system

@@ -4,9 +4,9 @@
 !> is known only after the command line and nothing may be lost of a deck that is refused.
 !> A file that takes no more does not end the run: the first failure is kept in `trouble`.
 module log_m
-  use, intrinsic :: iso_fortran_env, only : error_unit
   use errors_m, only : error_t
-  use text_files_m, only : text_file_t, create_text_file, continue_text_file, append_text, &
+  use screen_m, only : complain
+  use text_files_m, only : text_file_t, continue_text_file, empty_text_file, append_text, &
     close_text_file
   implicit none
   private
@@ -30,18 +30,16 @@ module log_m
 contains
 
   !> Open the file, behind what it holds where a run goes on, and write what has been waiting. Fails
-  !> when the file cannot be made.
+  !> when the file cannot be made, or is that of a run that is going on: the log stands for all
+  !> files of a run, since it is the first to be opened and the last to be closed.
   subroutine open_log(log, path, goes_on, error)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: path
     logical, intent(in) :: goes_on
     type(error_t), allocatable, intent(out) :: error
 
-    if (goes_on) then
-      call continue_text_file(log%file, path, error)
-    else
-      call create_text_file(log%file, path, error)
-    end if
+    call continue_text_file(log%file, path, error)
+    if (.not. allocated(error) .and. .not. goes_on) call empty_text_file(log%file, error)
     if (allocated(error)) return
     log%is_open = .true.
     if (allocated(log%waiting)) then
@@ -71,11 +69,10 @@ contains
   subroutine warn(log, text)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
-    integer :: ignored
 
     log%n_warning = log%n_warning + 1
     call write_log(log, 'warning: '//text)
-    write (error_unit, '(a)', iostat=ignored) 'warning: '//text
+    call complain('warning: '//text)
   end subroutine warn
 
   !> Close the file; safe to call when none is open. What went wrong is in `trouble`.
@@ -94,7 +91,7 @@ contains
     character(:), allocatable :: text
     character(12) :: buffer
 
-    write (buffer, '(i0)') number
+    write (buffer, '(ss,i0)') number
     text = trim(buffer)
   end function integer_to_text
 
@@ -105,10 +102,10 @@ contains
     character(:), allocatable :: text
     character(24) :: buffer
 
-    write (buffer, '(es13.6)') number
+    write (buffer, '(ss,es13.6)') number
     ! Where the exponent takes three digits that form drops the letter.
     if (index(buffer, 'E') == 0 .and. scan(buffer, '0123456789') > 0) &
-      write (buffer, '(es14.6e3)') number
+      write (buffer, '(ss,es14.6e3)') number
     text = trim(adjustl(buffer))
   end function real_to_text
 

@@ -7,6 +7,9 @@ module memory_m
   private
   public :: available_bytes
 
+  !> Longest line that is read, whatever the environment says (GFORTRAN_DEFAULT_RECL).
+  integer, parameter :: line_length = 100000
+
 contains
 
   !> Bytes that can still be had, as far as the system says; otherwise the largest number.
@@ -39,7 +42,8 @@ contains
     integer :: unit, status
 
     number = -1
-    open (newunit=unit, file=file, status='old', action='read', iostat=status)
+    open (newunit=unit, file=file, status='old', action='read', &
+      recl=line_length, iostat=status)
     if (status /= 0) return
     do
       read (unit, '(a)', iostat=status) line

@@ -5,6 +5,9 @@ module processor_m
   private
   public :: processor_name
 
+  !> Longest line that is read, whatever the environment says (GFORTRAN_DEFAULT_RECL).
+  integer, parameter :: line_length = 100000
+
 contains
 
   !> The model name that Linux knows; `unknown` elsewhere.
@@ -14,7 +17,8 @@ contains
     integer :: unit, status
 
     name = 'unknown'
-    open (newunit=unit, file='/proc/cpuinfo', status='old', action='read', iostat=status)
+    open (newunit=unit, file='/proc/cpuinfo', status='old', action='read', &
+      recl=line_length, iostat=status)
     if (status /= 0) return
     do
       read (unit, '(a)', iostat=status) line

@@ -16,6 +16,8 @@ module sense_switch_m
   !> Words of the first six (`SWA.` too, as old manuals write it).
   character(4), parameter :: words(6) = [character(4) :: 'SW1', 'SW2', 'SW3', 'SW4', 'STOP', 'SWA']
   character(*), parameter :: file_name = 'd3kil'
+  !> Longest line that is read, whatever the environment says (GFORTRAN_DEFAULT_RECL).
+  integer, parameter :: line_length = 100000
 
 contains
 
@@ -32,7 +34,7 @@ contains
     if (.not. file_exists(join_path(directory, file_name))) return
     if (is_endless(join_path(directory, file_name))) return
     open (newunit=unit, file=join_path(directory, file_name), status='old', action='read', &
-      iostat=status)
+      recl=line_length, iostat=status)
     if (status /= 0) return
     read (unit, '(a)', iostat=status) line
     close (unit)

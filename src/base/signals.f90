@@ -6,7 +6,7 @@ module signals_m
   use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
   implicit none
   private
-  public :: ignore_closed_pipes, catch_signals, stop_requested, take_signals, output_is_terminal
+  public :: catch_requests, catch_stops, stop_requested, take_signals, output_is_terminal
 
   !> Numbers of the signals, as Linux has them.
   integer(c_int), parameter :: signal_hang_up = 1, signal_interrupt = 2, signal_user_1 = 10, &
@@ -36,27 +36,27 @@ module signals_m
 
 contains
 
-  !> A pipe whose reader has gone (SIGPIPE) is a failed write and no end of the process.
-  subroutine ignore_closed_pipes()
+  !> From now on no signal ends the process that is not meant to: SIGUSR1 and SIGUSR2 only ask for
+  !> something; a pipe whose reader has gone (SIGPIPE) and a file that reaches the largest size
+  !> allowed (SIGXFSZ) are failed writes.
+  subroutine catch_requests()
     type(c_funptr) :: previous
 
+    previous = c_signal(signal_user_1, c_funloc(note_signal))
+    previous = c_signal(signal_user_2, c_funloc(note_signal))
     previous = c_signal(signal_pipe, transfer(ignore, c_null_funptr))
-  end subroutine ignore_closed_pipes
+    previous = c_signal(signal_file_limit, transfer(ignore, c_null_funptr))
+  end subroutine catch_requests
 
-  !> From now on these signals only ask for something: SIGTERM, SIGINT, SIGHUP and a used up
-  !> processor time (SIGXCPU) for a stop; a file that reaches the largest size allowed (SIGXFSZ) is
-  !> a failed write and no end of the process.
-  subroutine catch_signals()
+  !> From now on SIGTERM, SIGINT, SIGHUP and a used up processor time (SIGXCPU) ask for a stop.
+  subroutine catch_stops()
     type(c_funptr) :: previous
 
     call catch_unless_ignored(signal_hang_up)
     call catch_unless_ignored(signal_interrupt)
     previous = c_signal(signal_terminate, c_funloc(note_signal))
-    previous = c_signal(signal_user_1, c_funloc(note_signal))
-    previous = c_signal(signal_user_2, c_funloc(note_signal))
     previous = c_signal(signal_cpu_limit, c_funloc(note_signal))
-    previous = c_signal(signal_file_limit, transfer(ignore, c_null_funptr))
-  end subroutine catch_signals
+  end subroutine catch_stops
 
   !> A signal that was ignored when the program started stays so: SIGHUP under nohup, SIGINT in a
   !> job that a script has put behind itself.

@@ -263,12 +263,12 @@ contains
     real(wp), intent(in) :: value
     character(:), allocatable :: text
     character(32) :: buffer
-    character(16) :: form
+    character(20) :: form
     real(wp) :: back
     integer :: n_digit, status
 
     do n_digit = 15, 17
-      write (form, '(a, i0, a)') '(es26.', n_digit - 1, 'e3)'
+      write (form, '(ss, a, i0, a)') '(ss, es26.', n_digit - 1, 'e3)'
       write (buffer, form) value
       call read_real(buffer, back, status)
       if (status == number_good .and. abs(back - value) <= 0.0_wp) exit

@@ -72,26 +72,63 @@ contains
     findings = findings//'    '//text
   end subroutine add_finding
 
-  !> A JSON string with its quotes. Bytes beyond ASCII pass (UTF-8).
+  !> A JSON string with its quotes, always UTF-8: characters of UTF-8 pass, and a byte that belongs
+  !> to none is taken for Latin-1, whose codes are the first of Unicode.
   pure function json_text(text) result(quoted)
     character(*), intent(in) :: text
     character(:), allocatable :: quoted
     character(6) :: code
-    integer :: i
+    integer :: i, n
 
     quoted = '"'
-    do i = 1, len(text)
-      select case (iachar(text(i:i)))
-      case (34, 92)
-        quoted = quoted//achar(92)//text(i:i)
-      case (0:31, 127)
+    i = 1
+    do while (i <= len(text))
+      n = utf8_length(text(i:))
+      if (n == 0 .or. iachar(text(i:i)) < 32 .or. text(i:i) == achar(127)) then
         write (code, '(a, z4.4)') achar(92)//'u', iachar(text(i:i))
         quoted = quoted//code
-      case default
-        quoted = quoted//text(i:i)
-      end select
+      else if (scan(text(i:i), '"'//achar(92)) > 0) then
+        quoted = quoted//achar(92)//text(i:i)
+      else
+        quoted = quoted//text(i:i + n - 1)
+      end if
+      i = i + max(n, 1)
     end do
     quoted = quoted//'"'
   end function json_text
+
+  !> Bytes of the character of UTF-8 (RFC 3629) that a text begins with; 0 when it begins with none:
+  !> overlong forms, halves of surrogate pairs and codes beyond 10FFFF are none.
+  pure function utf8_length(text) result(n)
+    character(*), intent(in) :: text !! not empty
+    integer :: n
+    integer :: low, high, i
+
+    n = 1
+    low = 128
+    high = 191
+    select case (iachar(text(1:1)))
+    case (0:127); return
+    case (194:223); n = 2
+    case (224:239); n = 3
+    case (240:244); n = 4
+    case default; n = 0
+    end select
+    select case (iachar(text(1:1))) ! bounds of the second byte
+    case (224); low = 160
+    case (237); high = 159
+    case (240); low = 144
+    case (244); high = 143
+    end select
+    if (n > len(text)) n = 0
+    do i = 2, n
+      if (iachar(text(i:i)) < low .or. iachar(text(i:i)) > high) then
+        n = 0
+        return
+      end if
+      low = 128
+      high = 191
+    end do
+  end function utf8_length
 
 end module deck_findings_m

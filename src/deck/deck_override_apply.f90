@@ -193,7 +193,7 @@ contains
     character(:), allocatable :: text
     character(10) :: id
 
-    write (id, '(i10)') entry%contact%id
+    write (id, '(ss,i10)') entry%contact%id
     associate (c => entry%contact)
       text = '*CONTACT_2D_SLIDELINE_TITLE'//new_line('a')//id//c%title//new_line('a') &
         //to_text(entry%sides(1))//','//to_text(entry%sides(2))//','//to_text(c%contact_type) &

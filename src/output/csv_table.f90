@@ -147,7 +147,7 @@ contains
     do i = 1, size(values)
       select case (kinds(i))
       case (kind_integer)
-        write (whole, '(i0)') nint(values(i))
+        write (whole, '(ss,i0)') nint(values(i))
         call append_word(buffer, n, trim(whole))
       case (kind_side)
         call append_word(buffer, n, trim(merge('slave ', 'master', nint(values(i)) == 1)))

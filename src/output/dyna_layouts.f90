@@ -104,7 +104,7 @@ contains
     values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), row(9), &
       row(10), 0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(13), row(14), 0.0_wp]
     do i = 1, n_label
-      write (line, '(a,es14.5)') labels(i), tidy(values(i))
+      write (line, '(ss,a,es14.5)') labels(i), tidy(values(i))
       call add_line(line, lines, n_line)
     end do
     call add_line(' time per zone cycle.(nanosec)..             0', lines, n_line)
@@ -119,7 +119,7 @@ contains
     integer :: i
 
     do i = 1, size(rows, 2)
-      write (line, '(2x,a,i11,a,es12.5,3(a,es12.5),a,es12.5)') merge('slave ', 'master', &
+      write (line, '(ss,2x,a,i11,a,es12.5,3(a,es12.5),a,es12.5)') merge('slave ', 'master', &
         nint(rows(3, i)) == 1), nint(rows(2, i)), ' time', tidy(rows(1, i)), '  x ', &
         tidy(rows(4, i)), '  y ', tidy(rows(5, i)), '  z ', 0.0_wp, ' mass ', 0.0_wp
       call add_line(line, lines, n_line)
@@ -138,7 +138,7 @@ contains
     do i = 1, 3
       call add_line('', lines, n_line)
     end do
-    write (line, '(2a,30x,a,es14.7,a)') &
+    write (line, '(ss,2a,30x,a,es14.7,a)') &
       ' n o d a l   p r i n t   o u t   f o r   t i m e  s t e p', &
       number(rows(11, 1), 8), '( at time', tidy(rows(1, 1)), ' )'
     call add_line(line, lines, n_line)
@@ -149,7 +149,7 @@ contains
     do i = 1, size(rows, 2)
       id = number(rows(2, i), 9)
       if (len(id) == 9) id = id//' '
-      write (line, '(a,12es12.4)') id, tidy([rows(5:6, i), 0.0_wp, rows(7:8, i), &
+      write (line, '(ss,a,12es12.4)') id, tidy([rows(5:6, i), 0.0_wp, rows(7:8, i), &
         0.0_wp, rows(9:10, i), 0.0_wp, rows(3:4, i), 0.0_wp])
       call add_line(line, lines, n_line)
     end do
@@ -160,19 +160,19 @@ contains
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(*), parameter :: vectors = '(3(a,es13.4))'
+    character(*), parameter :: vectors = '(ss,3(a,es13.4))'
     character(line_size) :: line
     real(wp) :: velocity(2)
     integer :: i
 
     call add_line('', lines, n_line)
     call add_line('', lines, n_line)
-    write (line, '(a,es13.4)') ' time =', tidy(rows(1, 1))
+    write (line, '(ss,a,es13.4)') ' time =', tidy(rows(1, 1))
     call add_line(line, lines, n_line)
     do i = 1, size(rows, 2)
       velocity = 0.0_wp
       if (rows(8, i) > 0.0_wp) velocity = rows(6:7, i)/rows(8, i)
-      write (line, '(a,a,4(a,es13.4))') ' mat.#=', part_field(rows(2, i)), &
+      write (line, '(ss,a,a,4(a,es13.4))') ' mat.#=', part_field(rows(2, i)), &
         '          inten=', tidy(rows(4, i)), '     kinen=', tidy(rows(3, i)), &
         '     eroded_ie=', 0.0_wp, '     eroded_ke=', 0.0_wp
       call add_line(line, lines, n_line)
@@ -182,7 +182,7 @@ contains
       write (line, vectors) ' x-rbv=', tidy(velocity(1)), '     y-rbv=', tidy(velocity(2)), &
         '     z-rbv=', 0.0_wp
       call add_line(line, lines, n_line)
-      write (line, '(25x,a,es13.4,5x,a,es13.4)') 'hgeng=', tidy(rows(5, i)), '+mass=', &
+      write (line, '(ss,25x,a,es13.4,5x,a,es13.4)') 'hgeng=', tidy(rows(5, i)), '+mass=', &
         tidy(rows(8, i))
       call add_line(line, lines, n_line)
     end do
@@ -204,7 +204,7 @@ contains
     character(:), allocatable :: text
     character(12) :: digits
 
-    write (digits, '(i12)') nint(value)
+    write (digits, '(ss,i12)') nint(value)
     text = digits(min(13 - width, verify(digits, ' ')):)
   end function number
 
@@ -220,21 +220,21 @@ contains
     do i = 1, 3
       call add_line('', lines, n_line)
     end do
-    write (line, '(a,es14.7)') ' contact interface energy file, time=', tidy(rows(1, 1))
+    write (line, '(ss,a,es14.7)') ' contact interface energy file, time=', tidy(rows(1, 1))
     call add_line(line, lines, n_line)
-    write (line, '(a,i14)') '    #            slave       master        cycle=', nint(rows(2, 1))
+    write (line, '(ss,a,i14)') '    #            slave       master        cycle=', nint(rows(2, 1))
     call add_line(line, lines, n_line)
     call add_line('', lines, n_line)
     do i = 1, size(rows, 2)
-      write (line, '(i10,es13.4)') nint(rows(3, i)), tidy(rows(4, i))
+      write (line, '(ss,i10,es13.4)') nint(rows(3, i)), tidy(rows(4, i))
       call add_line(line, lines, n_line)
     end do
     call add_line('', lines, n_line)
-    write (line, '(a,es14.7)') ' summary   total slave side=', tidy(sum(rows(4, :)))
+    write (line, '(ss,a,es14.7)') ' summary   total slave side=', tidy(sum(rows(4, :)))
     call add_line(line, lines, n_line)
-    write (line, '(a,es14.7)') '           total mastr side=', 0.0_wp
+    write (line, '(ss,a,es14.7)') '           total mastr side=', 0.0_wp
     call add_line(line, lines, n_line)
-    write (line, '(a,es14.7)') '           total energy    =', tidy(sum(rows(4, :)))
+    write (line, '(ss,a,es14.7)') '           total energy    =', tidy(sum(rows(4, :)))
     call add_line(line, lines, n_line)
   end subroutine form_sleout
 
@@ -246,14 +246,14 @@ contains
     character(line_size) :: line
     integer :: i
 
-    write (line, '(a,es14.5)') ' output at time =', tidy(rows(1, 1))
+    write (line, '(ss,a,es14.5)') ' output at time =', tidy(rows(1, 1))
     call add_line(line, lines, n_line)
     do i = 1, size(rows, 2)
-      write (line, '(3a,3es14.4)') ' node=', number(rows(2, i), 8), ' local x,y,z forces =', &
+      write (line, '(ss,3a,3es14.4)') ' node=', number(rows(2, i), 8), ' local x,y,z forces =', &
         tidy([rows(3:4, i), 0.0_wp])
       call add_line(line, lines, n_line)
     end do
-    write (line, '(a,3es14.4)') '             force resultants   =', tidy([sum(rows(3, :)), &
+    write (line, '(ss,a,3es14.4)') '             force resultants   =', tidy([sum(rows(3, :)), &
       sum(rows(4, :)), 0.0_wp])
     call add_line(line, lines, n_line)
   end subroutine form_spcforc

@@ -110,7 +110,7 @@ contains
       call put_line(text, ' Entity #        Title')
       has_legend = .true.
     end if
-    write (number, '(i9)') id
+    write (number, '(ss,i9)') id
     call put_line(text, number//'     '//title(:min(len(title), title_size)))
   end subroutine put_entity
 

@@ -15,11 +15,13 @@ module history_file_m
   private
   public :: histories_t, open_histories, check_histories, flush_histories, close_histories, &
     n_table, table_glstat, table_rcforc, table_nodout, table_contact, table_matsum, table_rwforc, &
-    table_sleout, table_spcforc
+    table_sleout, table_spcforc, table_names
 
   integer, parameter :: n_table = 8
   integer, parameter :: table_glstat = 1, table_rcforc = 2, table_nodout = 3, table_contact = 4, &
     table_matsum = 5, table_rwforc = 6, table_sleout = 7, table_spcforc = 8
+  character(8), parameter :: table_names(n_table) = [character(8) :: 'glstat', 'rcforc', &
+    'nodout', 'contact', 'matsum', 'rwforc', 'sleout', 'spcforc']
 
   !> Columns of the tables, as users' scripts know them.
   character(*), parameter :: glstat_columns = 'time,cycle,dt,kinetic,internal,hourglass,'// &
@@ -50,34 +52,36 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer, parameter :: r = kind_real, i = kind_integer
     logical :: wanted(n_table)
+    character(:), allocatable :: name
     integer :: k
 
     wanted = wanted_tables(model)
     do k = 1, n_table
       if (.not. wanted(k)) cycle
+      name = trim(table_names(k))
       associate (table => histories%tables(k))
         select case (k)
         case (table_glstat)
-          call open_table(table, prefix, 'glstat', glstat_columns, &
+          call open_table(table, prefix, name, glstat_columns, &
             [r, i, r, r, r, r, r, r, r, r, r, r, r, r, i, i], error, &
             'velocity_x,velocity_y,element,element_part')
         case (table_rcforc)
-          call open_table(table, prefix, 'rcforc', rcforc_columns, [r, i, kind_side, r, r, i], &
+          call open_table(table, prefix, name, rcforc_columns, [r, i, kind_side, r, r, i], &
             error)
         case (table_nodout)
-          call open_table(table, prefix, 'nodout', nodout_columns, &
+          call open_table(table, prefix, name, nodout_columns, &
             [r, i, r, r, r, r, r, r, r, r, i], error, 'cycle')
         case (table_contact)
-          call open_table(table, prefix, 'contact', contact_columns, &
+          call open_table(table, prefix, name, contact_columns, &
             [r, i, i, r, r, r, r, r, r, r, r], error)
         case (table_matsum)
-          call open_table(table, prefix, 'matsum', matsum_columns, [r, i, r, r, r, r, r, r], error)
+          call open_table(table, prefix, name, matsum_columns, [r, i, r, r, r, r, r, r], error)
         case (table_rwforc)
-          call open_table(table, prefix, 'rwforc', rwforc_columns, [r, i, r, r, r, r, r, i], error)
+          call open_table(table, prefix, name, rwforc_columns, [r, i, r, r, r, r, r, i], error)
         case (table_sleout)
-          call open_table(table, prefix, 'sleout', sleout_columns, [r, i, i, r], error)
+          call open_table(table, prefix, name, sleout_columns, [r, i, i, r], error)
         case (table_spcforc)
-          call open_table(table, prefix, 'spcforc', spcforc_columns, [r, i, r, r], error)
+          call open_table(table, prefix, name, spcforc_columns, [r, i, r, r], error)
         end select
         if (allocated(error)) return
       end associate

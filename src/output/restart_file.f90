@@ -16,10 +16,12 @@ module restart_file_m
   use archive_file_m, only : archive_t, fail_archive
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
   use errors_m, only : error_t, raise, status_files, status_input
+  use file_facts_m, only : what_hinders
   use files_m, only : rename_file, remove_file, force_to_disk, is_endless, parent_path
   use hdf5_library_m, only : open_library
   use kinds_m, only : long
   use log_m, only : to_text
+  use text_files_m, only : overwrite_start
   implicit none
   private
   public :: create_restart, finish_restart, open_restart, close_restart, file_checksum, unfinished
@@ -44,6 +46,11 @@ contains
 
     archive%path = path
     archive%folder = ''
+    if (len(what_hinders(path//unfinished)) > 0) then
+      call fail_archive(archive, 'cannot write '//path//unfinished//': ' &
+        //what_hinders(path//unfinished), status_files)
+      return
+    end if
     call open_library(status(1))
     call h5pcreate_f(H5P_FILE_CREATE_F, creation, status(2))
     call h5pset_userblock_f(creation, int(head_size, hsize_t), status(3))
@@ -99,19 +106,34 @@ contains
     character(head_size) :: head
     character(:), allocatable :: checksum, reason
     integer(long) :: length
-    integer :: unit, status
 
     call file_checksum(path, head_size, length, checksum, reason)
     if (.not. allocated(reason)) then
       head = head_text(length, checksum)
-      open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
-        action='readwrite', iostat=status)
-      if (status == 0) write (unit, pos=1, iostat=status) head
-      if (status == 0) close (unit, iostat=status)
-      if (status /= 0) reason = 'the file system refused its head'
+      call overwrite_start(path, head, error)
+      if (allocated(error)) return
+      call compare_start(path, head, length + head_size, reason)
     end if
     if (allocated(reason)) call raise(error, 'cannot write '//path//': '//reason, status_files)
   end subroutine write_head
+
+  !> What went wrong if a file does not begin with this head, or has another length.
+  subroutine compare_start(path, head, n_byte, reason)
+    character(*), intent(in) :: path
+    character(head_size), intent(in) :: head
+    integer(long), intent(in) :: n_byte              !! length that the file should have
+    character(:), allocatable, intent(out) :: reason
+    character(head_size) :: found
+    integer(long) :: length
+    integer :: unit, status
+
+    call open_bytes(path, unit, length, reason)
+    if (allocated(reason)) return
+    read (unit, iostat=status) found
+    if (status /= 0 .or. length /= n_byte .or. found /= head) &
+      reason = 'its head can not be read back'
+    close (unit, iostat=status)
+  end subroutine compare_start
 
   !> The head of a file.
   pure function head_text(length, checksum) result(head)
@@ -121,7 +143,7 @@ contains
     character(20) :: digits
     character(1), parameter :: n = new_line('a')
 
-    write (digits, '(i0)') length
+    write (digits, '(ss,i0)') length
     head = mark//to_text(format_version)//n//'length '//trim(digits)//n//'checksum '//checksum//n
   end function head_text
 

@@ -15,6 +15,7 @@ module results_arrays_m
     h5acreate_f, h5awrite_f
   use kinds_m, only : wp, long
   use errors_m, only : error_t, raise, status_files
+  use file_facts_m, only : file_facts_t, what_hinders
   use mesh_m, only : mesh_t
   use controls_m, only : controls_t
   use hdf5_library_m, only : open_library
@@ -59,6 +60,7 @@ module results_arrays_m
     character(:), allocatable :: path
     logical :: is_named = .false.               !! it has its own name
     logical :: is_broken = .false.              !! a write failed: left as it is, never closed
+    type(file_facts_t) :: facts                 !! as the last flush left it
     integer(hid_t) :: id = -1                   !! open file
     integer(hid_t) :: n_steps = -1              !! open attribute NSteps
     integer(long) :: n_state = 0                !! states in the file
@@ -107,6 +109,9 @@ contains
     integer(hid_t) :: creation, access
     integer :: status(8)
 
+    call refuse_name(file%path, error)
+    if (.not. allocated(error)) call refuse_name(file%path//unfinished, error)
+    if (allocated(error)) return
     call open_library(status(1))
     call h5pcreate_f(H5P_FILE_CREATE_F, creation, status(2))
     call h5pset_sym_k_f(creation, 4, 4, status(3))
@@ -123,6 +128,15 @@ contains
     call h5pclose_f(creation, status(1))
     call h5pclose_f(access, status(2))
   end subroutine create_file
+
+  !> Refuse a name under which something else than a file stands.
+  subroutine refuse_name(path, error)
+    character(*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+
+    if (len(what_hinders(path)) > 0) call raise(error, 'cannot write '//path//': ' &
+      //what_hinders(path), status_files)
+  end subroutine refuse_name
 
   !> Make the arrays of points and fields.
   subroutine create_fields(file, group, mesh, n_planned, error)

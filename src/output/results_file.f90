@@ -12,7 +12,8 @@ module results_file_m
   use hdf5, only : hid_t, H5F_SCOPE_LOCAL_F, H5_INTEGER_KIND, h5kind_to_type, h5gopen_f, &
     h5gclose_f, h5awrite_f, h5aclose_f, h5fflush_f, h5fclose_f, h5close_f
   use kinds_m, only : wp, long
-  use errors_m, only : error_t
+  use errors_m, only : error_t, raise, status_files
+  use file_facts_m, only : file_facts_t, facts_of_name, is_same_file
   use files_m, only : remove_file, rename_file
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t
@@ -75,6 +76,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (file%id < 0 .or. file%is_broken) return
+    call check_untouched(file, error)
     call append_point_fields(file, model, snapshot, error)
     call append_cell_fields(file, snapshot, error)
     call append_instant(file, model, snapshot%time, error)
@@ -225,15 +227,40 @@ contains
     call flush_file(file, error)
   end subroutine publish
 
+  !> Whether the file still stands under its name as the last flush has left it.
+  subroutine check_untouched(file, error)
+    type(results_file_t), intent(in) :: file
+    type(error_t), allocatable, intent(inout) :: error
+    type(file_facts_t) :: now
+
+    if (allocated(error) .or. .not. file%facts%is_there) return
+    now = facts_of_name(present_path(file))
+    if (.not. is_same_file(now, file%facts)) then
+      call raise(error, 'it has been removed or renamed during the run', status_files)
+    else if (now%n_byte /= file%facts%n_byte) then
+      call raise(error, 'somebody else has changed it during the run', status_files)
+    end if
+  end subroutine check_untouched
+
+  !> The name that the file has now.
+  pure function present_path(file) result(path)
+    type(results_file_t), intent(in) :: file
+    character(:), allocatable :: path
+
+    path = file%path
+    if (.not. file%is_named) path = path//unfinished
+  end function present_path
+
   !> Hand all that waits to the system.
   subroutine flush_file(file, error)
-    type(results_file_t), intent(in) :: file
+    type(results_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(inout) :: error
     integer :: status
 
     if (allocated(error)) return
     call h5fflush_f(file%id, H5F_SCOPE_LOCAL_F, status)
     call check_status(status, 'a state', error)
+    file%facts = facts_of_name(present_path(file))
   end subroutine flush_file
 
   !> After a failure: put the file's name before the message, and leave the file as the last flush
@@ -255,6 +282,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (file%id < 0 .or. file%is_broken) return
+    call check_untouched(file, error)
     call write_histories(file%id, histories, error)
     call flush_file(file, error)
     if (.not. allocated(error)) call close_file(file, error)

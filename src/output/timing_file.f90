@@ -94,7 +94,7 @@ contains
     character(:), allocatable :: row
     character(80) :: buffer
 
-    write (buffer, '(i0, ".", i9.9, ",", i0, ",", f8.6)') nanoseconds/1000000000_long, &
+    write (buffer, '(ss,i0, ".", i9.9, ",", i0, ",", f8.6)') nanoseconds/1000000000_long, &
       mod(nanoseconds, 1000000000_long), n_call, real(nanoseconds, wp)/real(max(total, 1_long), wp)
     row = trim(name)//','//trim(buffer)//new_line('a')
   end function timing_row

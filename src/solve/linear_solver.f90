@@ -157,7 +157,7 @@ contains
     character(:), allocatable :: text
     character(24) :: field
 
-    write (field, '(i0)') nint(number, long)
+    write (field, '(ss,i0)') nint(number, long)
     text = trim(field)
   end function in_words
 

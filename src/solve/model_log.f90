@@ -75,7 +75,7 @@ contains
     call write_log(log, 'smallest stable steps of elements (TSSFAC not applied):')
     call write_log(log, '   element      part   stable step')
     do i = 1, size(found)
-      write (line, '(2i10,es14.6)') model%mesh%element_id(found(i)), &
+      write (line, '(ss,2i10,es14.6)') model%mesh%element_id(found(i)), &
         model%parts(slot_part(model%layout, model%layout%element_slot(found(i))))%id, steps(i)
       call write_log(log, trim(line))
     end do

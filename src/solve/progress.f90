@@ -3,21 +3,17 @@
 !> lines in the DYNA manner in a pipe, and the summary at the end. A screen that takes no more (a
 !> closed window, a full disk behind `>`) does not end a run: the log has the same lines.
 module progress_m
-  use, intrinsic :: iso_fortran_env, only : output_unit
   use clock_m, only : clock_t, look_at_clock, elapsed_seconds, total_seconds, phase_seconds, &
     lap_seconds, phase_names, n_phase, phase_input, phase_output
+  use endings_m, only : normal_ending, error_ending
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log
+  use screen_m, only : show, show_part
   use signals_m, only : output_is_terminal
   use status_file_m, only : status_t, keep_status, write_status, seconds_to_go, duration
   implicit none
   private
-  public :: progress_t, start_progress, follow_progress, show_progress, show_note, show_end, &
-    error_ending
-
-  !> How a run says that it ended.
-  character(*), parameter :: normal_ending = ' N o r m a l    t e r m i n a t i o n', &
-    error_ending = ' E r r o r    t e r m i n a t i o n'
+  public :: progress_t, start_progress, follow_progress, show_progress, show_note, show_end
 
   !> Cycles between two looks at a clock that takes no laps.
   integer, parameter :: look_cycles = 64
@@ -93,7 +89,7 @@ contains
     character(*), intent(in) :: event
     real(wp) :: share, to_go
     integer(long) :: now
-    integer :: ignored
+    character(120) :: line
     character(8) :: date
     character(10) :: hour
 
@@ -103,17 +99,17 @@ contains
     if (progress%terminal) then
       share = min(1.0_wp, time/progress%end_time)
       to_go = max(0.0_wp, seconds_to_go(progress%status, elapsed_seconds(clock)))
-      write (output_unit, '(a,es11.4,a,f5.1,a,i0,a,es9.2,a,f8.5,a,a)', advance='no', &
-        iostat=ignored) achar(13)//' t', time, '  ', 100.0_wp*share, ' %  cycle ', cycle, '  dt', &
-        dt, '  energy ratio', ratio, '  to go ', duration(to_go)//'   '
+      write (line, '(ss,a,es11.4,a,f5.1,a,i0,a,es9.2,a,f8.5,a)') achar(13)//' t', time, '  ', &
+        100.0_wp*share, ' %  cycle ', cycle, '  dt', dt, '  energy ratio', ratio, '  to go '
+      call show_part(trim(line)//' '//duration(to_go)//'   ')
       progress%line_open = .true.
     else
       call date_and_time(date, hour)
-      write (output_unit, '(i10,a,es10.4,a,es8.2,1x,a22,10x,a)', iostat=ignored) cycle, ' t ', &
-        time, ' dt ', dt, event, date(5:6)//'/'//date(7:8)//'/'//date(3:4)//' '//hour(1:2)//':' &
-        //hour(3:4)//':'//hour(5:6)
+      write (line, '(ss,i10,a,es10.4,a,es8.2,1x,a22,10x,a)') cycle, ' t ', time, ' dt ', dt, &
+        event, date(5:6)//'/'//date(7:8)//'/'//date(3:4)//' '//hour(1:2)//':'//hour(3:4)//':' &
+        //hour(5:6)
+      call show(trim(line))
     end if
-    flush (output_unit, iostat=ignored)
   end subroutine show_progress
 
   !> A line of its own to the screen and to the log: a restart, a restart file.
@@ -121,12 +117,10 @@ contains
     type(progress_t), intent(inout) :: progress
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
-    integer :: ignored
 
-    if (progress%line_open) write (output_unit, '()', iostat=ignored)
+    if (progress%line_open) call show('')
     progress%line_open = .false.
     call say(log, text)
-    flush (output_unit, iostat=ignored)
   end subroutine show_note
 
   !> The end of the run: how it ended, problem time, cycles, cost and the timing table.
@@ -141,9 +135,8 @@ contains
     integer, intent(in) :: n_element
     real(wp) :: seconds(n_phase), elapsed, cost
     character(100) :: line
-    integer :: ignored
 
-    if (progress%line_open) write (output_unit, '()', iostat=ignored)
+    if (progress%line_open) call show('')
     progress%line_open = .false.
     progress%status%cycle = cycle
     progress%status%time = time
@@ -159,17 +152,16 @@ contains
     call say(log, ' *** '//reason//' ***')
     call say(log, trim(merge(normal_ending, error_ending//'  ', normal)))
     call say(log, '')
-    write (line, '(a,es16.8)') ' Problem time        = ', time
+    write (line, '(ss,a,es16.8)') ' Problem time        = ', time
     call say(log, trim(line))
-    write (line, '(a,i0)') ' Problem cycle       = ', cycle
+    write (line, '(ss,a,i0)') ' Problem cycle       = ', cycle
     call say(log, trim(line))
     call say(log, ' Elapsed time        = '//fixed(elapsed, 3)//' seconds')
     call say(log, ' Time per zone cycle = '//fixed(cost, 2)//' nanoseconds (output and input ' &
       //trim(merge('apart   ', 'included', clock%is_on))//')')
-    write (line, '(a,i0)') ' Warnings            = ', log%n_warning
+    write (line, '(ss,a,i0)') ' Warnings            = ', log%n_warning
     call say(log, trim(line))
     if (clock%is_on) call show_timing(log, clock, seconds)
-    flush (output_unit, iostat=ignored)
   end subroutine show_end
 
   !> The timing table, and what the timing itself took.
@@ -186,12 +178,12 @@ contains
     call say(log, ' T i m i n g   i n f o r m a t i o n      seconds   share %        calls')
     do i = 1, n_phase
       if (clock%calls(i) == 0) cycle
-      write (line, '(a,a24,f17.4,f10.2,i13)') '  ', phase_names(i), seconds(i), &
+      write (line, '(ss,a,a24,f17.4,f10.2,i13)') '  ', phase_names(i), seconds(i), &
         100.0_wp*seconds(i)/total, clock%calls(i)
       call say(log, trim(line))
     end do
     each = lap_seconds()
-    write (line, '(a,i0,a,f0.1,a,f0.2,a)') ' Clock               = ', sum(clock%calls), &
+    write (line, '(ss,a,i0,a,f0.1,a,f0.2,a)') ' Clock               = ', sum(clock%calls), &
       ' laps of ', 1.0e9_wp*each, ' nanoseconds, ', 100.0_wp*each*sum(clock%calls)/total, &
       ' % of the time'
     call say(log, trim(line))
@@ -201,9 +193,8 @@ contains
   subroutine say(log, text)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
-    integer :: ignored
 
-    write (output_unit, '(a)', iostat=ignored) text
+    call show(text)
     call write_log(log, text)
   end subroutine say
 
@@ -221,9 +212,9 @@ contains
     integer, intent(in) :: digits
     character(:), allocatable :: text
     character(40) :: buffer
-    character(8) :: layout
+    character(12) :: layout
 
-    write (layout, '(a,i0,a)') '(f0.', digits, ')'
+    write (layout, '(ss,a,i0,a)') '(ss,f0.', digits, ')'
     write (buffer, layout) number
     text = trim(buffer)
     if (text(1:1) == '.') text = '0'//text

@@ -56,7 +56,7 @@ contains
     character(:), allocatable :: path
     character(12) :: number
 
-    write (number, '(i0.2)') i
+    write (number, '(ss,i0.2)') i
     path = restarts%prefix//'.dump'//trim(number)//'.h5'
   end function dump_path
 

@@ -145,7 +145,8 @@ contains
     integer(long) :: whole
 
     whole = int(min(seconds, 1.0e9_wp), long)
-    write (buffer, '(i0,":",i2.2,":",i2.2)') whole/3600, mod(whole/60, 60_long), mod(whole, 60_long)
+    write (buffer, '(ss,i0,":",i2.2,":",i2.2)') whole/3600, mod(whole/60, 60_long), &
+      mod(whole, 60_long)
     text = trim(buffer)
   end function duration
 
