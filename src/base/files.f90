@@ -139,8 +139,8 @@ contains
     closing = 0
     if (c_associated(stream)) closing = c_fclose(stream)
     if (status == 0 .and. closing /= 0) reason = system_reason()
-    if (status /= 0 .or. closing /= 0) call raise(error, 'cannot bring '//path//' onto the disk: '//reason, &
-      status_files)
+    if (status /= 0 .or. closing /= 0) call raise(error, 'cannot bring '//path &
+      //' onto the disk: '//reason, status_files)
   end subroutine force_to_disk
 
   !> Whether `path` is there and is not a file of known size with something in it: a pipe, a device,

@@ -21,6 +21,7 @@ module log_m
   !> One log.
   type :: log_t
     logical :: is_open = .false.
+    logical :: is_mute = .false.          !! takes no lines: what they say has been said before
     type(text_file_t) :: file
     type(error_t), allocatable :: trouble !! first failure to write
     integer :: n_warning = 0              !! warnings so far
@@ -54,6 +55,7 @@ contains
     character(*), intent(in) :: text
     type(error_t), allocatable :: error
 
+    if (log%is_mute) return
     if (log%is_open) then
       if (allocated(log%trouble)) return
       call append_text(log%file, text//new_line('a'), error)
@@ -70,6 +72,7 @@ contains
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
 
+    if (log%is_mute) return
     log%n_warning = log%n_warning + 1
     call write_log(log, 'warning: '//text)
     call complain('warning: '//text)

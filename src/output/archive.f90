@@ -1,18 +1,25 @@
 ! SPDX-License-Identifier: MIT
 !> Components of an archive: `keep` puts one into an archive that is written and takes it from one
 !> that is read, so that no list of components exists twice.
+!>
+!> A component that is read must have the shape that the variable has before, and must be missing
+!> where that is not allocated: the reader starts from a state of the same model. Reals must be
+!> finite. After a failure nothing is read any more, and variables stay as they are.
 module archive_m
   use, intrinsic :: iso_c_binding, only : c_loc
   use hdf5, only : hid_t
-  use archive_file_m, only : archive_t, put_array, put_null, get_extents, get_values
+  use archive_file_m, only : archive_t, refuse, fail_archive, is_hard, put_array, put_null, &
+    open_array, get_values
+  use errors_m, only : status_input
   use hdf5_library_m, only : read_text
   use hdf5_writing_m, only : as_real, as_integer, as_index, write_text
   use kinds_m, only : wp, long
+  use log_m, only : to_text
   implicit none
   private
-  public :: keep, keep_fixed, keep_text
+  public :: keep, keep_fixed, keep_same, keep_growing, keep_text, expect
 
-  !> Write a component into the archive, or read it. Arrays take their shape from the file.
+  !> Write a component into the archive, or read it.
   interface keep
     module procedure keep_real
     module procedure keep_integer
@@ -25,6 +32,23 @@ module archive_m
     module procedure keep_logicals
   end interface keep
 
+  !> The same for integers that follow from the model: those of the file must be the same.
+  interface keep_same
+    module procedure keep_same_integer
+    module procedure keep_same_integers
+    module procedure keep_same_table
+    module procedure keep_same_logical
+  end interface keep_same
+
+  !> The same for arrays whose last extent comes from the file.
+  interface keep_growing
+    module procedure keep_growing_reals
+    module procedure keep_growing_table
+    module procedure keep_growing_integers
+  end interface keep_growing
+
+  character(*), parameter :: other_numbers = 'other numbers than follow from the deck'
+
 contains
 
   !> An array of reals.
@@ -33,17 +57,17 @@ contains
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout), target :: values(:)
     integer(hid_t) :: dataset
-    integer :: extents(1)
-    logical :: is_there
+    integer :: expected(1), extents(1)
 
+    expected = -1
+    if (allocated(values)) expected = shape(values)
     if (archive%is_read) then
-      if (allocated(values)) deallocate (values)
-      call get_extents(archive, name, extents, is_there, dataset)
-      if (.not. is_there) return
-      allocate (values(extents(1)))
-      call get_values(archive, as_real, dataset, size(values), c_loc(values))
+      call open_array(archive, name, as_real, expected, .false., extents, dataset)
+      if (dataset < 0) return
+      call get_values(archive, as_real, dataset, extents, c_loc(values))
+      call expect(archive, name, all(is_finite(values)), 'values that are no finite numbers')
     else if (allocated(values)) then
-      call put_array(archive, name, as_real, .true., shape(values), c_loc(values))
+      call put_array(archive, name, as_real, .true., expected, c_loc(values))
     else
       call put_null(archive, name, as_real)
     end if
@@ -55,17 +79,17 @@ contains
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout), target :: values(:, :)
     integer(hid_t) :: dataset
-    integer :: extents(2)
-    logical :: is_there
+    integer :: expected(2), extents(2)
 
+    expected = -1
+    if (allocated(values)) expected = shape(values)
     if (archive%is_read) then
-      if (allocated(values)) deallocate (values)
-      call get_extents(archive, name, extents, is_there, dataset)
-      if (.not. is_there) return
-      allocate (values(extents(1), extents(2)))
-      call get_values(archive, as_real, dataset, size(values), c_loc(values))
+      call open_array(archive, name, as_real, expected, .false., extents, dataset)
+      if (dataset < 0) return
+      call get_values(archive, as_real, dataset, extents, c_loc(values))
+      call expect(archive, name, all(is_finite(values)), 'values that are no finite numbers')
     else if (allocated(values)) then
-      call put_array(archive, name, as_real, .true., shape(values), c_loc(values))
+      call put_array(archive, name, as_real, .true., expected, c_loc(values))
     else
       call put_null(archive, name, as_real)
     end if
@@ -77,17 +101,16 @@ contains
     character(*), intent(in) :: name
     integer, allocatable, intent(inout), target :: values(:)
     integer(hid_t) :: dataset
-    integer :: extents(1)
-    logical :: is_there
+    integer :: expected(1), extents(1)
 
+    expected = -1
+    if (allocated(values)) expected = shape(values)
     if (archive%is_read) then
-      if (allocated(values)) deallocate (values)
-      call get_extents(archive, name, extents, is_there, dataset)
-      if (.not. is_there) return
-      allocate (values(extents(1)))
-      call get_values(archive, as_integer, dataset, size(values), c_loc(values))
+      call open_array(archive, name, as_integer, expected, .false., extents, dataset)
+      if (dataset < 0) return
+      call get_values(archive, as_integer, dataset, extents, c_loc(values))
     else if (allocated(values)) then
-      call put_array(archive, name, as_integer, .true., shape(values), c_loc(values))
+      call put_array(archive, name, as_integer, .true., expected, c_loc(values))
     else
       call put_null(archive, name, as_integer)
     end if
@@ -99,21 +122,106 @@ contains
     character(*), intent(in) :: name
     integer, allocatable, intent(inout), target :: values(:, :)
     integer(hid_t) :: dataset
-    integer :: extents(2)
-    logical :: is_there
+    integer :: expected(2), extents(2)
 
+    expected = -1
+    if (allocated(values)) expected = shape(values)
     if (archive%is_read) then
-      if (allocated(values)) deallocate (values)
-      call get_extents(archive, name, extents, is_there, dataset)
-      if (.not. is_there) return
-      allocate (values(extents(1), extents(2)))
-      call get_values(archive, as_integer, dataset, size(values), c_loc(values))
+      call open_array(archive, name, as_integer, expected, .false., extents, dataset)
+      if (dataset < 0) return
+      call get_values(archive, as_integer, dataset, extents, c_loc(values))
     else if (allocated(values)) then
-      call put_array(archive, name, as_integer, .true., shape(values), c_loc(values))
+      call put_array(archive, name, as_integer, .true., expected, c_loc(values))
     else
       call put_null(archive, name, as_integer)
     end if
   end subroutine keep_integer_table
+
+  !> An array of reals of any length.
+  subroutine keep_growing_reals(archive, name, values)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    real(wp), allocatable, intent(inout), target :: values(:)
+    integer(hid_t) :: dataset
+    integer :: expected(1), extents(1), status
+
+    expected = -1
+    if (allocated(values)) expected = shape(values)
+    if (archive%is_read) then
+      call open_array(archive, name, as_real, expected, .true., extents, dataset)
+      if (allocated(archive%error)) return
+      if (allocated(values)) deallocate (values)
+      if (dataset < 0) return
+      allocate (values(extents(1)), stat=status)
+      if (status /= 0) then
+        call refuse(archive, name, 'more values than there is memory for')
+        return
+      end if
+      call get_values(archive, as_real, dataset, extents, c_loc(values))
+      call expect(archive, name, all(is_finite(values)), 'values that are no finite numbers')
+    else if (allocated(values)) then
+      call put_array(archive, name, as_real, .true., expected, c_loc(values))
+    else
+      call put_null(archive, name, as_real)
+    end if
+  end subroutine keep_growing_reals
+
+  !> A table of reals with any number of columns.
+  subroutine keep_growing_table(archive, name, values)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    real(wp), allocatable, intent(inout), target :: values(:, :)
+    integer(hid_t) :: dataset
+    integer :: expected(2), extents(2), status
+
+    expected = -1
+    if (allocated(values)) expected = shape(values)
+    if (archive%is_read) then
+      call open_array(archive, name, as_real, expected, .true., extents, dataset)
+      if (allocated(archive%error)) return
+      if (allocated(values)) deallocate (values)
+      if (dataset < 0) return
+      allocate (values(extents(1), extents(2)), stat=status)
+      if (status /= 0) then
+        call refuse(archive, name, 'more values than there is memory for')
+        return
+      end if
+      call get_values(archive, as_real, dataset, extents, c_loc(values))
+      call expect(archive, name, all(is_finite(values)), 'values that are no finite numbers')
+    else if (allocated(values)) then
+      call put_array(archive, name, as_real, .true., expected, c_loc(values))
+    else
+      call put_null(archive, name, as_real)
+    end if
+  end subroutine keep_growing_table
+
+  !> A table of integers with any number of columns.
+  subroutine keep_growing_integers(archive, name, values)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    integer, allocatable, intent(inout), target :: values(:, :)
+    integer(hid_t) :: dataset
+    integer :: expected(2), extents(2), status
+
+    expected = -1
+    if (allocated(values)) expected = shape(values)
+    if (archive%is_read) then
+      call open_array(archive, name, as_integer, expected, .true., extents, dataset)
+      if (allocated(archive%error)) return
+      if (allocated(values)) deallocate (values)
+      if (dataset < 0) return
+      allocate (values(extents(1), extents(2)), stat=status)
+      if (status /= 0) then
+        call refuse(archive, name, 'more values than there is memory for')
+        return
+      end if
+      call get_values(archive, as_integer, dataset, extents, c_loc(values))
+    else if (allocated(values)) then
+      call put_array(archive, name, as_integer, .true., expected, c_loc(values))
+    else
+      call put_null(archive, name, as_integer)
+    end if
+  end subroutine keep_growing_integers
 
   !> An array of truths, as 0 and 1.
   subroutine keep_logicals(archive, name, values)
@@ -122,11 +230,11 @@ contains
     logical, allocatable, intent(inout) :: values(:)
     integer, allocatable :: numbers(:)
 
-    if (allocated(values)) numbers = merge(1, 0, values)
+    if (allocated(values)) allocate (numbers, source=merge(1, 0, values))
     call keep_integers(archive, name, numbers)
-    if (.not. archive%is_read) return
-    if (allocated(values)) deallocate (values)
-    if (allocated(numbers)) values = numbers == 1
+    if (.not. archive%is_read .or. allocated(archive%error) .or. .not. allocated(values)) return
+    call expect(archive, name, all(numbers == 0 .or. numbers == 1), 'truths other than 0 and 1')
+    values = numbers == 1
   end subroutine keep_logicals
 
   !> An array of fixed size.
@@ -138,10 +246,7 @@ contains
 
     copy = values
     call keep_reals(archive, name, copy)
-    if (.not. archive%is_read .or. allocated(archive%error)) return
-    if (allocated(copy)) then
-      if (size(copy) == size(values)) values = copy
-    end if
+    if (archive%is_read .and. .not. allocated(archive%error)) values = copy
   end subroutine keep_fixed
 
   !> A real.
@@ -165,8 +270,7 @@ contains
 
     values = [value]
     call keep_integers(archive, name, values)
-    if (allocated(archive%error) .or. .not. allocated(values)) return
-    if (size(values) == 1) value = values(1)
+    if (.not. allocated(archive%error)) value = values(1)
   end subroutine keep_integer
 
   !> A long integer.
@@ -177,13 +281,12 @@ contains
     integer(long), target :: copy
     integer(hid_t) :: dataset
     integer :: extents(1)
-    logical :: is_there
 
     copy = value
     if (archive%is_read) then
-      call get_extents(archive, name, extents, is_there, dataset)
-      call get_values(archive, as_index, dataset, extents(1), c_loc(copy))
-      value = copy
+      call open_array(archive, name, as_index, [1], .false., extents, dataset)
+      call get_values(archive, as_index, dataset, extents, c_loc(copy))
+      if (.not. allocated(archive%error)) value = copy
     else
       call put_array(archive, name, as_index, .true., [1], c_loc(copy))
     end if
@@ -198,21 +301,93 @@ contains
 
     number = merge(1, 0, value)
     call keep_integer(archive, name, number)
-    value = number == 1
+    call expect(archive, name, number == 0 .or. number == 1, 'a truth other than 0 and 1')
+    if (.not. allocated(archive%error)) value = number == 1
   end subroutine keep_logical
+
+  !> An integer that follows from the model.
+  subroutine keep_same_integer(archive, name, value)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    integer, intent(in) :: value
+    integer :: found
+
+    found = value
+    call keep_integer(archive, name, found)
+    call expect(archive, name, found == value, 'the number '//to_text(found)//', and '&
+      //to_text(value)//' is expected here')
+  end subroutine keep_same_integer
+
+  !> A truth that follows from the model.
+  subroutine keep_same_logical(archive, name, value)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    logical, intent(in) :: value
+
+    call keep_same_integer(archive, name, merge(1, 0, value))
+  end subroutine keep_same_logical
+
+  !> An array of integers that follow from the model.
+  subroutine keep_same_integers(archive, name, values)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    integer, allocatable, intent(in) :: values(:)
+    integer, allocatable :: found(:)
+
+    if (allocated(values)) allocate (found, source=values)
+    call keep_integers(archive, name, found)
+    if (allocated(archive%error) .or. .not. allocated(values)) return
+    call expect(archive, name, all(found == values), other_numbers)
+  end subroutine keep_same_integers
+
+  !> A table of integers that follow from the model.
+  subroutine keep_same_table(archive, name, values)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    integer, allocatable, intent(in) :: values(:, :)
+    integer, allocatable :: found(:, :)
+
+    if (allocated(values)) allocate (found, source=values)
+    call keep_integer_table(archive, name, found)
+    if (allocated(archive%error) .or. .not. allocated(values)) return
+    call expect(archive, name, all(found == values), other_numbers)
+  end subroutine keep_same_table
 
   !> A text; one that is not allocated comes back empty.
   subroutine keep_text(archive, name, text)
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
     character(:), allocatable, intent(inout) :: text
+    logical :: is_good
 
     if (allocated(archive%error)) return
     if (archive%is_read) then
-      call read_text(archive%id, archive%folder//name, text)
+      is_good = is_hard(archive, name)
+      if (is_good) call read_text(archive%id, archive%folder//name, text, is_good)
+      if (.not. is_good) call fail_archive(archive, 'the restart file '//archive%path &
+        //' is refused: its '//archive%folder//name//' is missing or no text', status_input)
     else if (allocated(text)) then
       call write_text(archive%id, archive%folder//name, text, archive%error)
     end if
   end subroutine keep_text
+
+  !> Refuse the file that is read unless a component of it is sound.
+  subroutine expect(archive, name, is_sound, what)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    logical, intent(in) :: is_sound
+    character(*), intent(in) :: what !! it has where it is not
+
+    if (archive%is_read .and. .not. is_sound) call refuse(archive, name, what)
+  end subroutine expect
+
+  !> Whether a real is a finite number, by its bits: a comparison could trap.
+  elemental function is_finite(value)
+    real(wp), intent(in) :: value
+    logical :: is_finite
+    integer(long), parameter :: exponent_bits = 2047
+
+    is_finite = ibits(transfer(value, 0_long), 52, 11) /= exponent_bits
+  end function is_finite
 
 end module archive_m

@@ -2,8 +2,10 @@
 !> HDF5 as a whole: how this program opens the library, and texts read back.
 module hdf5_library_m
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_ptr, c_null_char
-  use hdf5, only : hid_t, size_t, h5dont_atexit_f, h5open_f, h5eset_auto_f, h5dopen_f, h5dclose_f, &
-    h5dget_type_f, h5dread_f, h5lexists_f, h5tclose_f, h5tget_size_f
+  use hdf5, only : hid_t, hsize_t, size_t, H5S_SCALAR_F, H5T_STRING_F, H5T_STR_SPACEPAD_F, &
+    h5dont_atexit_f, h5open_f, h5eset_auto_f, h5dopen_f, h5dclose_f, h5dget_space_f, &
+    h5dget_storage_size_f, h5dget_type_f, h5dread_f, h5sclose_f, h5sget_simple_extent_type_f, &
+    h5tclose_f, h5tget_class_f, h5tget_size_f, h5tget_strpad_f, h5tis_variable_str_f
   implicit none
   private
   public :: open_library, read_text
@@ -41,30 +43,50 @@ contains
     status = c_setenv('HDF5_USE_FILE_LOCKING'//c_null_char, 'FALSE'//c_null_char, 0_c_int)
   end subroutine allow_reading
 
-  !> Read a text of any size from a scalar string dataset; empty when there is none.
-  subroutine read_text(parent, name, text)
+  !> Read a text of any size from a scalar string dataset, whose bytes must all be stored.
+  subroutine read_text(parent, name, text, is_good)
     integer(hid_t), intent(in) :: parent
     character(*), intent(in) :: name                   !! path below `parent`
     character(:), allocatable, intent(out), target :: text
-    integer(hid_t) :: dataset, type_id
+    logical, intent(out) :: is_good                    !! it is a text of that kind
+    integer(hid_t) :: dataset, type_id, space
     integer(size_t) :: length
+    integer(hsize_t) :: stored
     type(c_ptr) :: first
-    integer :: status
-    logical :: found
+    integer :: status(9), kind_of_space, class, padding, i
+    logical :: varies
 
-    call h5lexists_f(parent, name, found, status)
-    if (.not. found .or. status < 0) then
-      text = ''
-      return
+    text = ''
+    is_good = .false.
+    call h5dopen_f(parent, name, dataset, status(1))
+    if (status(1) < 0) return
+    call h5dget_type_f(dataset, type_id, status(1))
+    call h5tget_class_f(type_id, class, status(2))
+    call h5tget_size_f(type_id, length, status(3))
+    call h5dget_space_f(dataset, space, status(4))
+    call h5sget_simple_extent_type_f(space, kind_of_space, status(5))
+    call h5dget_storage_size_f(dataset, stored, status(6))
+    is_good = minval(status(:6)) >= 0 .and. class == H5T_STRING_F &
+      .and. kind_of_space == H5S_SCALAR_F
+    varies = .true.
+    if (is_good) call h5tis_variable_str_f(type_id, varies, status(7))
+    if (is_good) call h5tget_strpad_f(type_id, padding, status(8))
+    is_good = is_good .and. .not. varies
+    if (is_good) is_good = length > 0 .and. int(length, hsize_t) <= stored &
+      .and. padding == H5T_STR_SPACEPAD_F
+    if (is_good) then
+      deallocate (text)
+      allocate (character(length) :: text, stat=i)
+      is_good = i == 0
     end if
-    call h5dopen_f(parent, name, dataset, status)
-    call h5dget_type_f(dataset, type_id, status)
-    call h5tget_size_f(type_id, length, status)
-    allocate (character(length) :: text)
-    first = c_loc(text)
-    call h5dread_f(dataset, type_id, first, status)
-    call h5tclose_f(type_id, status)
-    call h5dclose_f(dataset, status)
+    if (is_good) then
+      first = c_loc(text)
+      call h5dread_f(dataset, type_id, first, status(9))
+      is_good = status(9) >= 0
+    end if
+    call h5tclose_f(type_id, i)
+    call h5sclose_f(space, i)
+    call h5dclose_f(dataset, i)
   end subroutine read_text
 
 end module hdf5_library_m

@@ -1,27 +1,27 @@
 ! SPDX-License-Identifier: MIT
 !> The memory of an interface in a restart file (see restart_state_m).
 module restart_contact_m
-  use archive_m, only : keep, keep_fixed
+  use archive_m, only : keep, keep_fixed, keep_same, keep_growing
   use archive_file_m, only : archive_t, enter, leave
   use contact_state_m, only : contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
     cover_memory_t
-  use kinds_m, only : wp
   implicit none
   private
   public :: keep_contact
 
 contains
 
-  !> The memory of one interface.
+  !> The memory of one interface. One that is read must have been started from the model; its
+  !> indices are looked at by `check_contact`.
   subroutine keep_contact(archive, name, contact)
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
     type(contact_state_t), intent(inout) :: contact
 
     call enter(archive, name)
-    call keep(archive, 'n_slave', contact%n_slave)
-    call keep(archive, 'n_master', contact%n_master)
-    call keep(archive, 'nodes', contact%nodes)
+    call keep_same(archive, 'n_slave', contact%n_slave)
+    call keep_same(archive, 'n_master', contact%n_master)
+    call keep_same(archive, 'nodes', contact%nodes)
     call keep(archive, 'places', contact%places)
     call keep(archive, 'travel', contact%travel)
     call keep(archive, 'is_stale', contact%is_stale)
@@ -33,15 +33,13 @@ contains
     call keep_tracking(archive, 'master_tracking', contact%master_tracking)
     call keep_cover(archive, 'cover', contact%cover)
     call keep_points(archive, 'points', contact%points)
-    call keep(archive, 'has_point_per_spot', contact%has_point_per_spot)
-    call keep(archive, 'laps_pairing', contact%laps_pairing)
-    call keep(archive, 'averages_pressure', contact%averages_pressure)
+    call keep_same(archive, 'has_point_per_spot', contact%has_point_per_spot)
+    call keep_same(archive, 'laps_pairing', contact%laps_pairing)
+    call keep_same(archive, 'averages_pressure', contact%averages_pressure)
     call keep(archive, 'nodal', contact%nodal)
     call keep(archive, 'mark', contact%mark)
     call keep(archive, 'closed_gap', contact%closed_gap)
     call keep(archive, 'force', contact%force)
-    if (allocated(contact%force) .and. .not. allocated(contact%former_force)) &
-      allocate (contact%former_force(2, size(contact%force, 2)), source=0.0_wp)
     call keep(archive, 'slave_penalty', contact%slave_penalty)
     call keep(archive, 'master_penalty', contact%master_penalty)
     call keep(archive, 'node_penalty', contact%node_penalty)
@@ -58,7 +56,7 @@ contains
     type(tracking_t), intent(inout) :: tracking
 
     call enter(archive, name)
-    call keep(archive, 'n', tracking%n)
+    call keep_same(archive, 'n', tracking%n)
     call keep(archive, 'n_touching', tracking%n_touching)
     call keep(archive, 'first_point', tracking%first_point)
     call keep(archive, 'has_feet', tracking%has_feet)
@@ -75,7 +73,7 @@ contains
     call keep(archive, 'recheck', tracking%recheck)
     call keep(archive, 'spot_depth', tracking%spot_depth)
     call keep(archive, 'segment_depth', tracking%segment_depth)
-    call keep(archive, 'chord', tracking%chord)
+    call keep_same(archive, 'chord', tracking%chord)
     call keep_grid(archive, 'grid', tracking%grid)
     call leave(archive)
   end subroutine keep_tracking
@@ -120,15 +118,15 @@ contains
     call enter(archive, name)
     call keep(archive, 'n', points%n)
     call keep(archive, 'n_former', points%n_former)
-    call keep(archive, 'slave_nodes', points%slave_nodes)
-    call keep(archive, 'slave_weights', points%slave_weights)
-    call keep(archive, 'master_nodes', points%master_nodes)
-    call keep(archive, 'master_weights', points%master_weights)
-    call keep(archive, 'normal', points%normal)
-    call keep(archive, 'gap', points%gap)
-    call keep(archive, 'area', points%area)
-    call keep(archive, 'stiffness', points%stiffness)
-    call keep(archive, 'pressure', points%pressure)
+    call keep_growing(archive, 'slave_nodes', points%slave_nodes)
+    call keep_growing(archive, 'slave_weights', points%slave_weights)
+    call keep_growing(archive, 'master_nodes', points%master_nodes)
+    call keep_growing(archive, 'master_weights', points%master_weights)
+    call keep_growing(archive, 'normal', points%normal)
+    call keep_growing(archive, 'gap', points%gap)
+    call keep_growing(archive, 'area', points%area)
+    call keep_growing(archive, 'stiffness', points%stiffness)
+    call keep_growing(archive, 'pressure', points%pressure)
     call leave(archive)
   end subroutine keep_points
 

@@ -2,18 +2,20 @@
 !> Schedules and histories in a restart file. Histories are kept whole: the run that goes on writes
 !> its tables again from the first row, so that they do not depend on what has become of the files.
 module restart_history_m
-  use archive_m, only : keep
-  use archive_file_m, only : archive_t, enter, leave, fail_archive
+  use archive_m, only : keep, keep_growing, expect
+  use archive_file_m, only : archive_t, enter, leave
   use csv_table_m, only : csv_table_t, add_row
-  use errors_m, only : status_input
   use history_file_m, only : histories_t, n_table
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   use log_m, only : to_text
   use output_schedule_m, only : schedule_t, mark_written
   use results_file_m, only : results_file_t
   implicit none
   private
   public :: keep_schedule, keep_histories, keep_times
+
+  !> Bound on the outputs of one kind: intervals are no shorter than 1e-9 of a run.
+  integer(long), parameter :: most_outputs = 2_long**53
 
 contains
 
@@ -32,10 +34,13 @@ contains
     call keep(archive, 'active', kept%active)
     call keep(archive, 'interval', kept%interval)
     call keep(archive, 'varies', kept%varies)
-    call keep(archive, 'curve_abscissa', kept%curve%abscissa)
-    call keep(archive, 'curve_ordinate', kept%curve%ordinate)
+    call keep_growing(archive, 'curve_abscissa', kept%curve%abscissa)
+    call keep_growing(archive, 'curve_ordinate', kept%curve%ordinate)
     call keep(archive, 'count', kept%count)
     call keep(archive, 'next', kept%next)
+    call expect(archive, 'count', kept%count >= 0 .and. kept%count <= most_outputs, &
+      'a count that no run can reach')
+    call expect(archive, 'next', kept%next >= 0.0_wp, 'a time below zero')
     call leave(archive)
     if (.not. archive%is_read .or. allocated(archive%error)) return
     if (is_same_plan(kept, schedule)) then
@@ -58,7 +63,9 @@ contains
       same = (kept%active .eqv. schedule%active) &
         .and. .not. abs(kept%interval - schedule%interval) > 0.0_wp
     else
-      same = size(kept%curve%ordinate) == size(schedule%curve%ordinate)
+      same = allocated(kept%curve%ordinate) .and. allocated(kept%curve%abscissa)
+      if (same) same = size(kept%curve%ordinate) == size(schedule%curve%ordinate) &
+        .and. size(kept%curve%abscissa) == size(schedule%curve%abscissa)
       if (same) same = all(.not. abs(kept%curve%ordinate - schedule%curve%ordinate) > 0.0_wp) &
         .and. all(.not. abs(kept%curve%abscissa - schedule%curve%abscissa) > 0.0_wp)
     end if
@@ -86,14 +93,13 @@ contains
     real(wp), allocatable :: rows(:, :)
     integer :: i
 
-    if (.not. archive%is_read .and. allocated(table%values)) rows = table%values(:, :table%n_row)
-    call keep(archive, name, rows)
-    if (.not. archive%is_read .or. .not. allocated(rows) .or. .not. table%is_open) return
-    if (size(rows, 1) /= size(table%kinds)) then
-      call fail_archive(archive, 'the restart file '//archive%path//' has other columns of ' &
-        //table%name//': it was written by another version of the program', status_input)
-      return
+    if (allocated(table%values)) then
+      allocate (rows(size(table%values, 1), table%n_row))
+      rows(:, :) = table%values(:, :table%n_row)
     end if
+    call keep_growing(archive, name, rows)
+    if (.not. archive%is_read .or. allocated(archive%error)) return
+    if (.not. allocated(rows) .or. .not. table%is_open) return
     do i = 1, size(rows, 2)
       call add_row(table, rows(:, i))
     end do
@@ -111,7 +117,7 @@ contains
     else
       allocate (times(0))
     end if
-    call keep(archive, name, times)
+    call keep_growing(archive, name, times)
     if (.not. allocated(times)) allocate (times(0))
   end subroutine keep_times
 

@@ -3,7 +3,7 @@
 !> declarations. A component that is missing here is noticed by
 !> tests/house/test_restart_components.py.
 module restart_state_m
-  use archive_m, only : keep, keep_fixed
+  use archive_m, only : keep, keep_fixed, keep_same
   use archive_file_m, only : archive_t, enter, leave
   use block_state_m, only : block_state_t
   use log_m, only : to_text
@@ -17,7 +17,8 @@ module restart_state_m
 
 contains
 
-  !> Write or read the state. One that is read replaces whatever there was.
+  !> Write or read the state. One that is read must have been started from the model, which gives
+  !> all arrays their shapes.
   subroutine keep_state(archive, state)
     type(archive_t), intent(inout) :: archive
     type(state_t), intent(inout) :: state
@@ -57,11 +58,11 @@ contains
     call enter(archive, name)
     call keep(archive, 'reference', elements%reference)
     call keep(archive, 'deviator', elements%deviator)
-    call keep(archive, 'point_start', elements%point_start)
+    call keep_same(archive, 'point_start', elements%point_start)
     call keep(archive, 'point_deviator', elements%point_deviator)
-    call keep(archive, 'history_start', elements%history_start)
+    call keep_same(archive, 'history_start', elements%history_start)
     call keep(archive, 'history', elements%history)
-    call keep(archive, 'hourglass_start', elements%hourglass_start)
+    call keep_same(archive, 'hourglass_start', elements%hourglass_start)
     call keep(archive, 'hourglass_strain', elements%hourglass_strain)
     call keep(archive, 'deviatoric_work', elements%deviatoric_work)
     call keep(archive, 'hourglass_work', elements%hourglass_work)
@@ -81,11 +82,7 @@ contains
     n = 0
     if (allocated(state%contacts)) n = size(state%contacts)
     call enter(archive, name)
-    call keep(archive, 'n', n)
-    if (archive%is_read) then
-      if (allocated(state%contacts)) deallocate (state%contacts)
-      allocate (state%contacts(n))
-    end if
+    call keep_same(archive, 'n', n)
     do i = 1, n
       call keep_contact(archive, to_text(i), state%contacts(i))
     end do
@@ -102,11 +99,7 @@ contains
     n = 0
     if (allocated(state%rigids)) n = size(state%rigids)
     call enter(archive, name)
-    call keep(archive, 'n', n)
-    if (archive%is_read) then
-      if (allocated(state%rigids)) deallocate (state%rigids)
-      allocate (state%rigids(n))
-    end if
+    call keep_same(archive, 'n', n)
     do i = 1, n
       call keep_rigid(archive, to_text(i), state%rigids(i))
     end do
@@ -142,11 +135,7 @@ contains
     n = 0
     if (allocated(state%walls)) n = size(state%walls)
     call enter(archive, name)
-    call keep(archive, 'n', n)
-    if (archive%is_read) then
-      if (allocated(state%walls)) deallocate (state%walls)
-      if (n > 0) allocate (state%walls(n))
-    end if
+    call keep_same(archive, 'n', n)
     do i = 1, n
       call keep_wall(archive, to_text(i), state%walls(i))
     end do

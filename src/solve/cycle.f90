@@ -73,8 +73,8 @@ contains
     allocate (cycle%checks(size(model%layout%tiles)))
     cycle%reason = 'termination time reached'
     cycle%steps = start_steps(model, state%time)
-    if (monitor%restarts%goes_on) call take_up_steps(model, monitor%restarts%source, cycle%steps, &
-      cycle%damping, cycle%ratio, cycle%error)
+    if (monitor%restarts%goes_on) call take_up_steps(model, state, monitor%restarts%source, &
+      cycle%steps, cycle%damping, cycle%ratio, cycle%error)
   end subroutine start_cycles
 
   !> Forces on the special nodes at u(n), and what this cycle has to write.

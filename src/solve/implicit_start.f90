@@ -43,7 +43,7 @@ contains
     call set_scheme(model, march%step)
     last = .false.
     if (monitor%restarts%goes_on) then
-      call take_up_march(monitor%restarts%source, march, error)
+      call take_up_march(model, state, monitor%restarts%source, march, error)
       if (allocated(error)) return
       last = has_ended(model, state, march%control)
     else

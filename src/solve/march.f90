@@ -2,12 +2,13 @@
 !> What the implicit driver hands from step to step besides the state, and
 !> its part of a restart file.
 module march_m
-  use archive_m, only : keep
+  use archive_m, only : keep, expect
   use archive_file_m, only : archive_t, enter, leave
   use clock_m, only : lap, phase_nodes, phase_output
   use errors_m, only : error_t
-  use forces_m, only : trial_t, net_force
+  use forces_m, only : trial_t, start_trial, net_force
   use kinds_m, only : wp
+  use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t
   use restart_file_m, only : close_restart
   use restart_m, only : begin_file, end_file
@@ -62,6 +63,7 @@ contains
     call enter(archive, 'steps')
     call keep(archive, 'dt', control%dt)
     call keep(archive, 'target', control%target)
+    call expect(archive, 'dt', control%dt > 0.0_wp, 'a step that is not positive')
     call keep(archive, 'searches', step%searches)
     call keep(archive, 'internal', trial%internal)
     call keep(archive, 'contact', trial%contact)
@@ -71,11 +73,14 @@ contains
   end subroutine keep_march
 
   !> Read it into a march that is set up from the deck, and close the file.
-  subroutine take_up_march(source, march, error)
+  subroutine take_up_march(model, state, source, march, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
     type(archive_t), intent(inout) :: source
     type(march_t), intent(inout) :: march
     type(error_t), allocatable, intent(out) :: error
 
+    call start_trial(model, state, march%trial)
     call keep_march(source, march%control, march%step, march%trial, march%ratio)
     call close_restart(source, error)
     if (allocated(error)) return

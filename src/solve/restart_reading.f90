@@ -5,11 +5,12 @@ module restart_reading_m
   use archive_file_m, only : archive_t, enter, leave
   use errors_m, only : error_t, raise, status_input
   use kinds_m, only : wp
-  use log_m, only : warn, to_text
+  use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t
   use output_schedule_m, only : output_reach
   use progress_m, only : show_note
+  use restart_bounds_m, only : check_state
   use restart_file_m, only : open_restart
   use restart_history_m, only : keep_times
   use restart_plan_m, only : restarts_t, place_text
@@ -17,6 +18,7 @@ module restart_reading_m
   use restart_state_m, only : keep_state
   use results_copy_m, only : check_old_results, copy_states
   use results_file_m, only : results_file_t
+  use start_m, only : start_state
   use state_m, only : state_t
   implicit none
   private
@@ -61,19 +63,23 @@ contains
     end if
   end subroutine take_up_results
 
-  !> Read the state.
+  !> Read the state into one that is started from the model: that tells what the file must hold.
   subroutine take_up_state(source, model, state, error)
     type(archive_t), intent(inout) :: source
     type(model_t), intent(in) :: model
     type(state_t), intent(out) :: state
     type(error_t), allocatable, intent(out) :: error
+    type(log_t) :: silence
 
+    silence%is_mute = .true.
+    call start_state(model, silence, state, error)
+    if (allocated(error)) return
+    if (model%controls%implicit%is_on) &
+      allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
     call keep_state(source, state)
+    if (.not. allocated(source%error)) call check_state(model, state, source)
     if (allocated(source%error)) then
       error = source%error
-    else if (size(state%motion, 2) /= model%mesh%n_node &
-      .or. size(state%contacts) /= size(model%contacts)) then
-      call raise(error, 'the restart file '//source%path//' is of another model', status_input)
     else if (state%time - model%controls%end_time > merge(round_off, 1.0_wp, &
       model%controls%implicit%is_on)*state%dt_before) then
       call raise(error, 'the restart file '//source%path//' is of time '//to_text(state%time) &

@@ -2,7 +2,7 @@
 !> What every restart file holds besides the state: what is known of the run,
 !> and how far its outputs are.
 module restart_run_m
-  use archive_m, only : keep, keep_text
+  use archive_m, only : keep, keep_text, expect
   use archive_file_m, only : archive_t, enter, leave
   use kinds_m, only : wp
   use monitor_m, only : monitor_t
@@ -11,6 +11,9 @@ module restart_run_m
   implicit none
   private
   public :: keep_run, keep_outputs
+
+  !> Bounds on numbered files and on the length of a job's name.
+  integer, parameter :: most_dumps = 1000000000, longest_name = 4096
 
 contains
 
@@ -27,8 +30,24 @@ contains
     call keep_text(archive, 'program', restarts%program)
     call keep(archive, 'n_dump', restarts%n_dump)
     call keep(archive, 'is_implicit', restarts%is_implicit)
+    call expect(archive, 'n_dump', restarts%n_dump >= 0 .and. restarts%n_dump < most_dumps, &
+      'a number that no run reaches')
+    if (.not. allocated(archive%error)) call expect(archive, 'job', is_stem(restarts%job), &
+      'a name that no file can have')
     call leave(archive)
   end subroutine keep_run
+
+  !> Whether a text may begin the names of files in the folder of the results.
+  pure function is_stem(text)
+    character(*), intent(in) :: text
+    logical :: is_stem
+    integer :: i
+
+    is_stem = len(text) > 0 .and. len(text) <= longest_name .and. index(text, '/') == 0
+    do i = 1, len(text)
+      is_stem = is_stem .and. iachar(text(i:i)) >= 32
+    end do
+  end function is_stem
 
   !> How far the outputs are.
   subroutine keep_outputs(archive, time, dt, monitor)

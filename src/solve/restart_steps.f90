@@ -1,10 +1,11 @@
 ! SPDX-License-Identifier: MIT
 !> What the explicit driver hands from cycle to cycle besides the state, in a restart file.
 module restart_steps_m
-  use archive_m, only : keep, keep_fixed
+  use archive_m, only : keep, keep_fixed, keep_same, expect
   use archive_file_m, only : archive_t, enter, leave
   use clock_m, only : lap, phase_nodes, phase_output
   use contact_step_limit_m, only : spring_bound_t
+  use controls_m, only : contact_step_rules
   use errors_m, only : error_t
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -37,15 +38,16 @@ contains
     do kind = 1, size(wanted)
       if (.not. wanted(kind) .or. allocated(error)) cycle
       call begin_file(kind, state, monitor, archive)
-      call keep_steps(archive, steps, damping, ratio)
+      call keep_steps(archive, size(state%motion, 2), steps, damping, ratio)
       call end_file(kind, state, monitor, archive, error)
     end do
     call lap(monitor%clock, phase_output)
   end subroutine write_restarts
 
   !> The plan of the steps, and what a cycle hands to the next besides the state.
-  subroutine keep_steps(archive, steps, damping, ratio)
+  subroutine keep_steps(archive, n_node, steps, damping, ratio)
     type(archive_t), intent(inout) :: archive
+    integer, intent(in) :: n_node
     type(step_plan_t), intent(inout) :: steps
     real(wp), intent(inout) :: damping(2)
     real(wp), intent(inout) :: ratio
@@ -59,47 +61,52 @@ contains
     call keep(archive, 'end_cycle', steps%end_cycle)
     call keep(archive, 'end_time', steps%end_time)
     call keep(archive, 'warned', steps%warned)
-    call keep_springs(archive, 'springs', steps%springs)
+    call keep_springs(archive, 'springs', n_node, steps%springs)
+    call expect(archive, 'first_dt', steps%first_dt > 0.0_wp, 'a step that is not positive')
+    call expect(archive, 'constant', steps%constant >= 0.0_wp, 'a step below zero')
+    call expect(archive, 'start_cycle', steps%start_cycle >= 0, 'a cycle below zero')
     call keep_fixed(archive, 'damping', damping)
     call keep(archive, 'ratio', ratio)
     call leave(archive)
   end subroutine keep_steps
 
   !> Bounds of the contact springs.
-  subroutine keep_springs(archive, name, springs)
+  subroutine keep_springs(archive, name, n_node, springs)
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
+    integer, intent(in) :: n_node   !! nodes of the mesh
     type(spring_bound_t), allocatable, intent(inout) :: springs(:)
     integer :: i, n
 
     n = -1
     if (allocated(springs)) n = size(springs)
     call enter(archive, name)
-    call keep(archive, 'n', n)
-    if (archive%is_read) then
-      if (allocated(springs)) deallocate (springs)
-      if (n >= 0) allocate (springs(n))
-    end if
+    call keep_same(archive, 'n', n)
     do i = 1, n
       call enter(archive, to_text(i))
       call keep(archive, 'rate', springs(i)%rate)
       call keep(archive, 'damping', springs(i)%damping)
       call keep(archive, 'node', springs(i)%node)
+      call expect(archive, 'node', springs(i)%node >= 0 .and. springs(i)%node <= n_node, &
+        'a number that no node has')
       call leave(archive)
     end do
     call leave(archive)
   end subroutine keep_springs
 
   !> Read the plan of the steps, with the end that the deck gives now, and close the file.
-  subroutine take_up_steps(model, source, steps, damping, ratio, error)
+  subroutine take_up_steps(model, state, source, steps, damping, ratio, error)
     type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
     type(archive_t), intent(inout) :: source
     type(step_plan_t), intent(inout) :: steps
     real(wp), intent(inout) :: damping(2)
     real(wp), intent(inout) :: ratio
     type(error_t), allocatable, intent(out) :: error
 
-    call keep_steps(source, steps, damping, ratio)
+    if (model%controls%contact_step == contact_step_rules) &
+      allocate (steps%springs(size(model%contacts)))
+    call keep_steps(source, size(state%motion, 2), steps, damping, ratio)
     steps%end_time = model%controls%end_time
     steps%end_cycle = model%controls%end_cycle
     if (steps%constant > 0.0_wp) steps%n_cycle = &
