@@ -91,20 +91,28 @@ contains
     type(cursor_t), intent(inout) :: cursor
     real(wp), allocatable, intent(out) :: rows(:, :)   !! (n_column, n_row)
     type(card_t) :: card
-    logical :: found
-    integer :: n
+    real(wp) :: last
+    logical :: found, is_sound
+    integer :: i, n
 
     allocate (rows(size(scale), max(cursor%last - cursor%line + 1, 0)))
     n = 0
+    last = -huge(1.0_wp)
+    is_sound = .true.
     do
       call next_row(deck, parameters, cursor, 2, card, found)
       if (.not. found) exit
       n = n + 1
       rows(:, n) = scale*(card%r(:size(scale)) + offset)
-      if (n == 1 .or. card%bad(1)) cycle
-      if (rows(1, n) <= rows(1, n - 1)) call report_field(deck, cursor, card, 1, not_beyond)
+      is_sound = is_sound .and. .not. card%bad(1)
+      if (card%bad(1)) cycle
+      if (rows(1, n) <= last) call report_field(deck, cursor, card, 1, not_beyond)
+      is_sound = is_sound .and. rows(1, n) > last
+      last = rows(1, n)
     end do
     rows = rows(:, :n)
+    ! What has been refused is looked at further, with values that at least increase.
+    if (.not. is_sound) rows(1, :) = [(real(i, wp), i=0, n - 1)]
   end subroutine read_rows
 
 end module deck_curves_m

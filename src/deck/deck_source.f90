@@ -38,10 +38,8 @@ contains
     if (n_byte > huge(unit) - 1024) then
       reason = 'the file is larger than 2 GB'
     else
-      allocate (character(max(n_byte, 0_long)) :: text, stat=status)
-      if (status /= 0) then
-        reason = 'not enough memory'
-      else if (n_byte > 0) then
+      allocate (character(max(n_byte, 0_long)) :: text)
+      if (n_byte > 0) then
         read (unit, iostat=status, iomsg=why) text
         if (status /= 0) reason = trim(why)
       end if

@@ -143,7 +143,7 @@ contains
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout), target :: values(:)
     integer(hid_t) :: dataset
-    integer :: expected(1), extents(1), status
+    integer :: expected(1), extents(1)
 
     expected = -1
     if (allocated(values)) expected = shape(values)
@@ -152,11 +152,7 @@ contains
       if (allocated(archive%error)) return
       if (allocated(values)) deallocate (values)
       if (dataset < 0) return
-      allocate (values(extents(1)), stat=status)
-      if (status /= 0) then
-        call refuse(archive, name, 'more values than there is memory for')
-        return
-      end if
+      allocate (values(extents(1)))
       call get_values(archive, as_real, dataset, extents, c_loc(values))
       call expect(archive, name, all(is_finite(values)), 'values that are no finite numbers')
     else if (allocated(values)) then
@@ -172,7 +168,7 @@ contains
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout), target :: values(:, :)
     integer(hid_t) :: dataset
-    integer :: expected(2), extents(2), status
+    integer :: expected(2), extents(2)
 
     expected = -1
     if (allocated(values)) expected = shape(values)
@@ -181,11 +177,7 @@ contains
       if (allocated(archive%error)) return
       if (allocated(values)) deallocate (values)
       if (dataset < 0) return
-      allocate (values(extents(1), extents(2)), stat=status)
-      if (status /= 0) then
-        call refuse(archive, name, 'more values than there is memory for')
-        return
-      end if
+      allocate (values(extents(1), extents(2)))
       call get_values(archive, as_real, dataset, extents, c_loc(values))
       call expect(archive, name, all(is_finite(values)), 'values that are no finite numbers')
     else if (allocated(values)) then
@@ -201,7 +193,7 @@ contains
     character(*), intent(in) :: name
     integer, allocatable, intent(inout), target :: values(:, :)
     integer(hid_t) :: dataset
-    integer :: expected(2), extents(2), status
+    integer :: expected(2), extents(2)
 
     expected = -1
     if (allocated(values)) expected = shape(values)
@@ -210,11 +202,7 @@ contains
       if (allocated(archive%error)) return
       if (allocated(values)) deallocate (values)
       if (dataset < 0) return
-      allocate (values(extents(1), extents(2)), stat=status)
-      if (status /= 0) then
-        call refuse(archive, name, 'more values than there is memory for')
-        return
-      end if
+      allocate (values(extents(1), extents(2)))
       call get_values(archive, as_integer, dataset, extents, c_loc(values))
     else if (allocated(values)) then
       call put_array(archive, name, as_integer, .true., expected, c_loc(values))

@@ -76,10 +76,7 @@ contains
       .and. padding == H5T_STR_SPACEPAD_F
     if (is_good) then
       deallocate (text)
-      allocate (character(length) :: text, stat=i)
-      is_good = i == 0
-    end if
-    if (is_good) then
+      allocate (character(length) :: text)
       first = c_loc(text)
       call h5dread_f(dataset, type_id, first, status(9))
       is_good = status(9) >= 0

@@ -5,6 +5,7 @@ module banded_lu_m
   use bandwidth_m, only : bandwidth, reverse_cuthill_mckee
   use kinds_m, only : long, wp
   use memory_m, only : available_bytes
+  use refused_memory_m, only : expect_refusal
   use sparse_m, only : sparse_t
   implicit none
   private
@@ -65,7 +66,9 @@ contains
     factored = .false.
     if (factor%bytes > available_bytes()) return
     w = factor%width
+    call expect_refusal(.true.)
     allocate (factor%band(3*w + 1, matrix%n), factor%exchange(matrix%n), stat=status)
+    call expect_refusal(.false.)
     if (status /= 0) return
     call fill_band(matrix, factor)
     call dgbtrf(matrix%n, matrix%n, w, w, factor%band, 3*w + 1, factor%exchange, status)

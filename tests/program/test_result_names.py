@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: MIT
+"""Names of results that are taken, shared or lost, faults of the disk at every call, and an environment full of traps."""
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from conftest import drop
+
+
+@pytest.fixture(scope="module")
+def deck(tmp_path_factory):
+    """A deck with all kinds of results, and the folder of an undisturbed run."""
+    folder = tmp_path_factory.mktemp("names")
+    text = drop().text().rsplit("*END", 1)[0] + "*DATABASE_BINARY_D3DUMP\n50,\n*DATABASE_BINARY_RUNRSF\n20,\n*END\n"
+    (folder / "job.k").write_text(text)
+    return folder
+
+
+def run(exe, folder, *words, **more):
+    return subprocess.run([exe, *words], cwd=folder, capture_output=True, text=True, timeout=60, check=False, **more)
+
+
+def snapshot(folder):
+    """What a folder holds: name -> (inode, length, time of the last change)."""
+    return {path.name: (entry.st_ino, entry.st_size, entry.st_mtime_ns) for path in Path(folder).iterdir()
+            for entry in [path.lstat()]}
+
+
+@pytest.fixture(scope="module")
+def whole(exe, deck):
+    assert run(exe, deck, "i=job.k", "d=whole").returncode == 0
+    return deck / "whole"
+
+
+@pytest.mark.parametrize("kind", ["pipe", "link", "dangling link"])
+def test_a_pipe_or_a_link_is_refused_before_anything_is_touched(exe, deck, whole, kind):
+    """One rule for all: the names of an undisturbed run are the names that must be looked at."""
+    names = {path.name for path in whole.iterdir()}
+    assert {"job.log", "job.vtkhdf", "job.glstat.csv", "job.runrsf.h5", "job.dump01.h5", "status.out",
+            "job.effective.k", "job.timing.csv"} <= names
+    for name in sorted(names):
+        folder = deck / "taken"
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(whole, folder)
+        (folder / name).unlink()
+        target = deck / "target"
+        target.write_text("mine\n")
+        if kind == "pipe":
+            os.mkfifo(folder / name)
+        else:
+            (folder / name).symlink_to(target if kind == "link" else deck / "nowhere")
+        before = snapshot(folder)
+        done = run(exe, deck, "i=job.k", "d=taken")
+        assert done.returncode == 3, (name, done.stderr)
+        assert f"taken/{name}" in done.stderr and ("pipe" in done.stderr or "link" in done.stderr), done.stderr
+        assert snapshot(folder) == before, name
+        assert target.read_text() == "mine\n" and not (deck / "nowhere").exists()
+
+
+def test_a_hard_link_or_a_folder_that_is_a_link_serves(exe, deck, whole):
+    (deck / "real").mkdir()
+    (deck / "linked").symlink_to(deck / "real")
+    assert run(exe, deck, "i=job.k", "d=linked").returncode == 0
+    assert (deck / "real" / "job.glstat.csv").read_bytes() == (whole / "job.glstat.csv").read_bytes()
+
+
+@pytest.fixture
+def slow(exe, deck):
+    """A run that goes on until it is ended."""
+    (deck / "slow.k").write_text(drop(end_time=1.0e4).text().replace("*DATABASE_BINARY_D3PLOT\n0.002",
+                                                                       "*DATABASE_BINARY_D3PLOT\n2.0"))
+    shutil.rmtree(deck / "slow", ignore_errors=True)
+    process = subprocess.Popen([exe, "i=slow.k", "d=slow"], cwd=deck, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               text=True)
+    for _ in range(400):
+        if (deck / "slow" / "status.out").exists():
+            break
+        time.sleep(0.02)
+    yield process
+    process.kill()
+    process.communicate()
+
+
+def test_two_runs_of_one_name_exclude_each_other(exe, deck, slow):
+    before = {name: facts[0] for name, facts in snapshot(deck / "slow").items() if "status" not in name}
+    done = run(exe, deck, "i=slow.k", "d=slow")
+    assert done.returncode == 3 and "another run" in done.stderr and "jobid=" in done.stderr, done.stderr
+    after = {name: facts[0] for name, facts in snapshot(deck / "slow").items() if "status" not in name}
+    assert before == after and (deck / "slow" / "slow.log").stat().st_size > 0
+    other = subprocess.run([exe, "i=job.k", "d=slow", "jobid=other"], cwd=deck, capture_output=True, timeout=60, check=False)
+    assert other.returncode == 0, "another name beside it is no matter"
+    slow.kill()
+    slow.wait()
+    assert run(exe, deck, "i=job.k", "d=slow", "jobid=slow").returncode == 0, "a killed run blocks none"
+
+
+@pytest.mark.parametrize("how", ["removed", "emptied", "renamed"])
+@pytest.mark.parametrize("name", ["slow.vtkhdf", "slow.glstat.csv", "slow.log"])
+def test_results_that_are_lost_during_a_run_are_noticed(deck, slow, name, how):
+    path = deck / "slow" / name
+    for _ in range(200):
+        if path.exists() and path.stat().st_size > 0:
+            break
+        time.sleep(0.02)
+    if how == "removed":
+        path.unlink()
+    elif how == "emptied":
+        os.truncate(path, 0)
+    else:
+        path.rename(deck / "slow" / "elsewhere")
+    (deck / "slow" / "d3kil").write_text("sw4\n")  # a plot state, so that something is written
+    time.sleep(1.2)
+    if slow.poll() is None:
+        slow.send_signal(signal.SIGTERM)
+    said, complaint = slow.communicate(timeout=20)
+    assert slow.returncode == 3, (slow.returncode, complaint)
+    assert f"slow/{name}" in complaint and ("removed or renamed" in complaint or "changed" in complaint), complaint
+    assert "N o r m a l" not in said or name == "slow.log"
+
+
+TRAPS = {"GFORTRAN_OPTIONAL_PLUS": "y", "GFORTRAN_DEFAULT_RECL": "20", "GFORTRAN_LIST_SEPARATOR": ";",
+         "GFORTRAN_CONVERT_UNIT": "big_endian", "GFORTRAN_UNBUFFERED_ALL": "y", "GFORTRAN_UNBUFFERED_PRECONNECTED": "y",
+         "GFORTRAN_STDOUT_UNIT": "17", "GFORTRAN_STDERR_UNIT": "18", "GFORTRAN_STDIN_UNIT": "19",
+         "GFORTRAN_FORMATTED_BUFFER_SIZE": "2", "GFORTRAN_UNFORMATTED_BUFFER_SIZE": "2", "GFORTRAN_SHOW_LOCUS": "n"}
+
+
+def test_variables_of_the_runtime_change_nothing(exe, deck, whole):
+    """Same names, same bytes, same lines on the screen but for times of day and durations."""
+    plain = run(exe, deck, "i=job.k", "d=whole2")
+    done = run(exe, deck, "i=job.k", "d=trapped", env={**os.environ, **TRAPS})
+    assert (done.returncode, done.stderr) == (0, plain.stderr)
+    names = sorted(path.name for path in whole.iterdir())
+    assert sorted(path.name for path in (deck / "trapped").iterdir()) == names
+    assert not list(deck.glob("fort.*"))
+    for name in names:
+        if name.endswith(".csv") and "timing" not in name or name.endswith("effective.k"):
+            assert (deck / "trapped" / name).read_bytes() == (whole / name).read_bytes(), name
+
+    def shape(text):
+        return re.sub(r"[\d.E+-]+", "0", re.sub(r"[+]\d", "PLUS", text.replace("E+", "E")).replace("trapped", "whole2")
+                      ).replace(" ", "")
+
+    assert shape(done.stdout) == shape(plain.stdout)
+    log = (deck / "trapped" / "job.log").read_text()
+    assert shape(log) == shape((deck / "whole2" / "job.log").read_text())
+    timing = (deck / "trapped" / "job.timing.csv").read_text()
+    assert "+" not in timing and timing.count("\n") == (whole / "job.timing.csv").read_text().count("\n")
+
+
+def test_a_first_signal_does_not_kill(exe, deck):
+    """SIGUSR1 and SIGUSR2 from the first instruction of the program on; before that the shell can have them ignored."""
+    (deck / "usr.k").write_text(drop(end_time=0.2).text())
+    for delay in (0.0, 0.005, 0.02):
+        process = subprocess.Popen(["sh", "-c", 'trap "" USR1 USR2; exec "$0" i=usr.k d=usr', exe], cwd=deck,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        time.sleep(0.05)  # of the shell
+        deadline = time.monotonic() + delay + 0.05
+        while time.monotonic() < deadline and process.poll() is None:
+            process.send_signal(signal.SIGUSR1)
+            process.send_signal(signal.SIGUSR2)
+            time.sleep(0.0005)
+        _, complaint = process.communicate(timeout=60)
+        assert process.returncode == 0, complaint
+
+
+def test_requests_while_a_deck_is_read_are_heeded(exe, deck):
+    """A deck that takes a while: SIGUSR1 before its run begins makes a restart file at the first chance."""
+    pipe_deck = drop(end_time=0.02).text()
+    lines = "\n".join(f"{1000 + i},{i * 1.0},99.0" for i in range(400000))
+    (deck / "long.k").write_text(pipe_deck.replace("*NODE\n", f"*NODE\n{lines}\n", 1))
+    process = subprocess.Popen([exe, "i=long.k", "d=long"], cwd=deck, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    for _ in range(2000):  # until the program itself runs
+        if "slideline" in Path(f"/proc/{process.pid}/exe").resolve().name and \
+                int(re.search(r"SigCgt:\s+([0-9a-f]+)", Path(f"/proc/{process.pid}/status").read_text())[1], 16) & (1 << 9):
+            break
+        time.sleep(0.001)
+    process.send_signal(signal.SIGUSR1)
+    _, complaint = process.communicate(timeout=120)
+    assert process.returncode == 0, complaint
+    assert (deck / "long" / "long.dump01.h5").exists()
+
+
+@pytest.mark.parametrize("word", ["job.k", "wrong.k"])
+def test_json_that_reaches_nobody_is_an_error_of_files(exe, deck, word):
+    (deck / "wrong.k").write_text("*KEYWORD\n*NODEX\n*END\n")
+    with open("/dev/full", "w", encoding="ascii") as full:
+        done = subprocess.run([exe, "check", word, "--json"], cwd=deck, stdout=full, stderr=subprocess.PIPE, text=True,
+                              timeout=60, check=False)
+    assert done.returncode == 3 and "standard output" in done.stderr, done.stderr
+
+
+BYTES = {b"Pr\xfcfung": "Pr\xfcfung", "Prüfung".encode(): "Prüfung", b"\xc0\xaf": "\xc0\xaf", b"\xed\xa0\x80": "\xed\xa0\x80",
+         b"\xf4\x90\x80\x80": "\xf4\x90\x80\x80", b"\xe2\x82": "\xe2\x82", "€𝄞".encode(): "€𝄞", b"\x01\x7f\"\\": "\x01\x7f\"\\",
+         b"\xff\xfe": "\xff\xfe"}
+
+
+@pytest.mark.parametrize("found", BYTES)
+def test_json_is_utf8_whatever_the_deck(exe, deck, found):
+    """Bytes that are no UTF-8 are read as Latin-1."""
+    (deck / "bytes.k").write_bytes(b"*KEYWORD\n*CONTROL_TERMINATION\n" + found + b"\n*END\n")
+    done = subprocess.run([exe, "check", "bytes.k", "--json"], cwd=deck, capture_output=True, timeout=60, check=False)
+    answer = json.loads(done.stdout.decode("utf-8", errors="strict"))
+    assert done.returncode == 1
+    assert any(BYTES[found] in entry.get("found", "") + entry["message"] for entry in answer["findings"]), answer
