@@ -141,7 +141,7 @@ contains
     integer :: i, i_real
 
     is_converted = kinds == kind_real .and. values /= 0.0_wp ! so NaN is
-    if (any(is_converted)) write (reals(:count(is_converted)), '(es24.16e3)') &
+    if (any(is_converted)) write (reals(:count(is_converted)), '(ss,es24.16e3)') &
       pack(values, is_converted)
     i_real = 0
     do i = 1, size(values)

@@ -84,3 +84,38 @@ def test_other_words(slideline, tmp_path):
     accepted, found = findings(done)
     assert done.returncode == 1 and not accepted and "absent.k" in found[0]["message"]
     assert slideline("check", "deck.k", "ctype=9").returncode == 1
+
+
+def test_an_unreadable_abscissa_is_no_slope(slideline, tmp_path):
+    """Of a hardening curve: where the value stood for zero a checked build divided by it."""
+    (tmp_path / "curve.k").write_text("""*KEYWORD
+*CONTROL_TERMINATION
+1.0
+*NODE
+1,0.0,0.0
+2,1.0,0.0
+3,1.0,1.0
+4,0.0,1.0
+*ELEMENT_SHELL
+1,1,1,2,3,4
+*PART
+block
+1,1,1
+*SECTION_SHELL
+1,13
+1.0
+*MAT_PIECEWISE_LINEAR_PLASTICITY
+1,7800.0,2.0e11,0.3
+0.0,0.0,7
+0.0
+0.0
+*DEFINE_CURVE
+7
+0.0,1.0e8
+abc,2.0e8
+*END
+""")
+    done = slideline("check", "curve.k", "--json")
+    assert done.returncode == 1, done.stderr
+    _, found = findings(done)
+    assert [entry["found"] for entry in found] == ["abc"]

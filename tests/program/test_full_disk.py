@@ -180,7 +180,7 @@ def test_a_reader_that_has_gone(job, both):
     kill_runs.check_end(job, job.folder / "unread")
     (job.folder / "wrong.k").write_text("*KEYWORD\n*NODEX\n*END\n")
     for words, status in ((["--help"], 0), (["--version"], 0), (["check", "job.k"], 0), (["check", "wrong.k"], 1),
-                          (["check", "job.k", "--json"], 0), (["check", "wrong.k", "--json"], 1), (["wrong.k"], 1)):
+                          (["check", "job.k", "--json"], 3), (["wrong.k"], 1)):
         found, said = run_unread(job, *words, both=both)
         assert found == status, (words, said)
         assert both or ("NODEX" in said) == (status == 1), (words, said)

@@ -18,6 +18,26 @@ ASSERTIONS = {
     "assertlessthanorequal": 2, "assertgreaterthan": 2, "assertgreaterthanorequal": 2,
     "assertrelativelyequal": 3, "assertisnan": 1, "assertisfinite": 1, "assertfail": 1,
 }
+#: names that `use funit` of pFUnit 4.14 brings along: no procedure or module of a test may have them
+TAKEN = set("""
+    abstractmatcher abstracttestparameter all_of allof any_of anyexceptions anyof
+    array_with_size assert_that assertall assertany assertequal assertexceptionraised assertfail
+    assertfalse assertgreaterthan assertgreaterthanorequal assertisfinite assertisnan
+    assertlessthan assertlessthanorequal assertnone assertnotall assertnotequal
+    assertrelativelyequal assertsameshape asserttrue basetestrunner catch catchnext
+    contains_string debuglistener disable empty_array ends_with equal_to every every_item
+    expectation false finalize generic_run get_context ignore_all ignore_differences initialize
+    is isarraywithsize isequal isnear isnot isrelativelynear istrueorfalse keep_all
+    listenerpointer loadtests_interface matchable matcherdescription namefilter near not
+    output_unit parallelcontext parameterizedtestcase predicate relatively_near remoterunner
+    resultprinter robustrunner run serialcontext set_command_line_options sourcelocation
+    starts_with stringcontains stringdescription stringendswith stringstartswith stub subject
+    taplistener test testannotation testcase testlistener testlistenervector testmethod
+    testresult testrunner testsuite throw timeoutannotation trim_all true wascalled
+    wascalledonce wasnotcalled whitespaceoptions xmlprinter
+""".split())
+DEFINED = re.compile(r"\s*(?:(?:pure|elemental|recursive|impure|module)\s+)*"
+                     r"(?:subroutine|(?:[a-z][\w() ,=*:]*\s)?function|interface|type\s*(?:,[^:]*)?::|module)\s+(\w+)", re.I)
 SUBROUTINE = re.compile(r"\s*subroutine\s+(\w+)\s*(?:\(([\w\s,]*)\))?\s*(?:!.*)?$", re.I)
 MODULE = re.compile(r"\s*module\s+(?!procedure\b)(\w+)(.*)$", re.I)
 DIRECTIVE = re.compile(r"\s*@(\w+)\s*(.*?)\s*$")
@@ -94,7 +114,14 @@ class Translator:
                 self.take_name(line)
             elif not self.module:
                 self.take_module(line)
+            self.check_names(line)
         self.lines.append(line)
+
+    def check_names(self, line):
+        """What the file defines must not have a name that pFUnit's own module has."""
+        found = DEFINED.match(line)
+        if found and not re.match(r"\s*end\b", line, re.I) and found.group(1).lower() in TAKEN:
+            raise Refused(f"{found.group(1)} is a name of pFUnit's own module funit: give it another")
 
     def take_module(self, line):
         """The first statement of the file names the module."""

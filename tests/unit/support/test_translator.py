@@ -57,6 +57,8 @@ def run(library, folder, text):
     (HEAD + "  @test\n  integer function f()\n  end function f\n" + TAIL, ":6:", "subroutine NAME()"),
     (HEAD + "  @test\n  subroutine s(this)\n  end subroutine s\n" + TAIL, ":6:", "no arguments"),
     (HEAD + "  @test\n  @test\n  subroutine s()\n  end subroutine s\n" + TAIL, ":6:", "@test"),
+    (one_test("x = 1", "contains", "subroutine keep_all()", "end subroutine keep_all"), ":9:", "keep_all is a name of pFUnit"),
+    (one_test("x = 1", "contains", "pure real function Near(a)", "end function near"), ":9:", "Near is a name of pFUnit"),
     (HEAD + TAIL, "test_it.pf:", "no @test"),
     ("@suite(name='x')\n" + one_test("@assertTrue(.true.)"), ":1:", "@suite"),
     (one_test("@assertTrue(.true.)").replace("test_it", "test_it_m"), ":1:", "must be named test_it"),
