@@ -77,8 +77,12 @@ def test_a_run_that_could_not_begin_leaves_nothing_of_the_run_before(slideline, 
 
 @pytest.mark.parametrize("name", ["job.effective.k", "job.vtkhdf.part", "job.glstat.csv", "job.dump01.h5"])
 def test_files_that_cannot_be_made_are_told(slideline, tmp_path, name):
+    """Names that are taken are looked at first: nothing is written, not even a log."""
     (tmp_path / "a" / name).mkdir(parents=True)
-    check_told_end(tmp_path / "a", slideline("d=a", deck=drop()), 3, name.removesuffix(".part"))
+    done = slideline("d=a", deck=drop())
+    assert done.returncode == 3 and f"a/{name}: it is a directory" in done.stderr, done.stderr
+    assert ERROR in done.stdout and NORMAL not in done.stdout
+    assert [path.name for path in (tmp_path / "a").iterdir()] == [name]
 
 
 def test_inverted_element_is_2(slideline, tmp_path):

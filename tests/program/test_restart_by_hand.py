@@ -46,7 +46,7 @@ LIES = {
     "state/contacts/1/slave_tracking/first_point": (lambda old: old * 0 - 5, "no point has"),
     "state/contacts/1/slave_tracking/grid/first": (lambda old: old[::-1].copy(), "list"),
     "state/contacts/1/slave_tracking/reach": (lambda old: old * 0 + 1.0e300, "distance"),
-    "state/contacts/1/points/n": (lambda old: old * 0 + 2**31 - 1, "list"),
+    "state/contacts/1/points/n": (lambda old: old * 0 + (2**31 - 1), "list"),
     "state/contacts/1/points/slave_nodes": (lambda old: old * 0 - 1, "no node"),
     "state/contacts/1/points/master_nodes": (lambda old: old * 0 + 99999, "no node"),
     "state/contacts/1/nodes": (lambda old: old[::-1].copy(), "follow from the deck"),
@@ -151,7 +151,7 @@ int fclose(FILE *s) {
   return bad ? -1 : status; }
 int rename(const char *a, const char *b) { return fails("rename", -1, b) ? -1 : NEXT(int, "rename", const char *, const char *)(a, b); }
 """
-CALLS = {"write": 60, "truncate": 4, "fsync": 3, "close": 8, "fclose": 8, "rename": 3}
+CALLS = {"write": 60, "fsync": 3, "close": 8, "fclose": 8, "rename": 3}
 
 
 def is_whole(path):
@@ -191,10 +191,11 @@ def test_a_fault_at_any_call_leaves_a_whole_file(exe, job, checked, kind):
                 continue
             tried += 1
             where = (kind, number, once, done.returncode, done.stderr[-500:])
-            assert done.returncode == 3 and "runrsf.h5" in done.stderr, where
+            # A file that has been read and can not be closed is no loss.
+            assert done.returncode == 3 and "runrsf.h5" in done.stderr or kind == "close" and number > 1, where
             path = folder / "job.runrsf.h5"
             log = (folder / "job.log").read_text()
             assert is_whole(path) if path.exists() else "restart file faulty/job.runrsf.h5" not in log, where
             assert not list(folder.glob("*.h5.part")), where
             assert not re.search(r"Backtrace|HDF5-DIAG", done.stderr), where
-    assert tried > 0 or kind == "close", kind
+    assert tried > 0, kind
