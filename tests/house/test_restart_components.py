@@ -76,7 +76,7 @@ def types_of(path):
 def kept_names(path, before):
     """The components that the `keep...` calls of a file hand over under their own names."""
     text = " ".join(statement for _, statement in read_source(path).statements)
-    pairs = re.findall(r"call keep\w*\(archive, '(\w+)', (?:time, dt, )?([^,]+?)\)(?= |$)", text)
+    pairs = re.findall(r"call keep\w*\(archive, '(\w+)', (?:time, dt, |n_node, )?([^,]+?)\)(?= |$)", text)
     return {name for name, handed in pairs if handed == before + name}
 
 
