@@ -82,7 +82,7 @@ contains
   end subroutine form_block
 
   !> Energies. DYNA counts the work of the bulk viscosity as internal energy; so the
-  !> lines add up to the total.
+  !> lines add up to the total but for what leap-frog adds (doc/results.md).
   pure subroutine form_glstat(row, control, lines, n_line)
     real(wp), intent(in) :: row(:)
     character(*), intent(in) :: control
@@ -94,15 +94,15 @@ contains
 
     call add_line('', lines, n_line)
     call add_line('', lines, n_line)
-    if (nint(row(15)) > 0) then
+    if (nint(row(16)) > 0) then
       call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by shell ' &
-        //number(row(15), 8)//' of part '//number(row(16), 8), lines, n_line)
+        //number(row(16), 8)//' of part '//number(row(17), 8), lines, n_line)
     else
       call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by '//control, lines, n_line)
     end if
     call add_line('', lines, n_line)
     values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), row(9), &
-      row(10), 0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(13), row(14), 0.0_wp]
+      row(10), 0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(14), row(15), 0.0_wp]
     do i = 1, n_label
       write (line, '(ss,a,es14.5)') labels(i), tidy(values(i))
       call add_line(line, lines, n_line)

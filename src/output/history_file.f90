@@ -25,7 +25,7 @@ module history_file_m
 
   !> Columns of the tables, as users' scripts know them.
   character(*), parameter :: glstat_columns = 'time,cycle,dt,kinetic,internal,hourglass,'// &
-    'viscous,damping,contact,external_work,total,energy_ratio'
+    'viscous,damping,contact,external_work,total,energy_ratio,leapfrog'
   character(*), parameter :: rcforc_columns = 'time,interface,side,fx,fy,n_active'
   character(*), parameter :: nodout_columns = 'time,node,x,y,ux,uy,vx,vy,ax,ay'
   character(*), parameter :: contact_columns = 'time,interface,node,s,x,y,gap,pressure,fx,fy,length'
@@ -63,7 +63,7 @@ contains
         select case (k)
         case (table_glstat)
           call open_table(table, prefix, name, glstat_columns, &
-            [r, i, r, r, r, r, r, r, r, r, r, r, r, r, i, i], error, &
+            [r, i, r, r, r, r, r, r, r, r, r, r, r, r, r, i, i], error, &
             'velocity_x,velocity_y,element,element_part')
         case (table_rcforc)
           call open_table(table, prefix, name, rcforc_columns, [r, i, kind_side, r, r, i], &

@@ -24,7 +24,7 @@ contains
     associate (e => snapshot%energies)
       call add_row(histories%tables(table_glstat), [snapshot%time, real(snapshot%cycle, wp), &
         snapshot%dt, e%kinetic, e%internal, e%hourglass, e%viscous, e%damping, e%contact, &
-        e%external_work, total_energy(e), energy_ratio(e), snapshot%mean_velocity, &
+        e%external_work, total_energy(e), energy_ratio(e), e%leapfrog, snapshot%mean_velocity, &
         real(snapshot%slowest, wp)])
     end associate
   end subroutine append_glstat

@@ -37,6 +37,8 @@ contains
     call keep(archive, 'force_slots', state%force_slots)
     call keep(archive, 'internal_force', state%internal_force)
     call keep(archive, 'prescribed_velocity', state%prescribed_velocity)
+    call keep(archive, 'former_velocity', state%former_velocity)
+    call keep(archive, 'former_dt', state%former_dt)
     call keep(archive, 'acceleration', state%acceleration)
     call keep_fixed(archive, 'body_acceleration', state%body_acceleration)
     call keep_elements(archive, 'elements', state%elements)

@@ -12,6 +12,7 @@ module cycle_m
   use health_m, only : tile_check_t, are_sound, check_elements, check_step, check_cycle, &
     check_energy
   use kinds_m, only : wp
+  use leapfrog_balance_m, only : complete_balance
   use model_log_m, only : log_smallest_steps
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
@@ -154,6 +155,8 @@ contains
     call fill_rigids(model, state, monitor%snapshot)
     if (cycle%due%glstat .or. cycle%due%matsum) call fill_energies(model, state, &
       cycle%damping, monitor%snapshot)
+    if (cycle%due%glstat) call complete_balance(model, state, cycle%damping, cycle%velocity, &
+      monitor%snapshot)
     if (state%cycle == 0) then
       state%initial_energy = total_energy(monitor%snapshot%energies)
       monitor%snapshot%energies%initial = state%initial_energy
@@ -234,6 +237,7 @@ contains
     if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
     if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
     state%cycle = state%cycle + 1
+    state%former_dt = state%dt_before
     state%dt_before = state%dt
     call follow_springs(model, state, cycle%steps%springs)
     call next_step(model, minval(cycle%checks%time_limit), monitor%log, state%cycle, cycle%steps, &

@@ -36,7 +36,7 @@ contains
       state%body_acceleration = body
     end if
     if (allocated(model%conditions%damping)) then
-      sums%share(3:4) = state%dt_before*damping
+      sums%share(3:4) = damping ! of the cycle before, to which the sums belong
       damping = damping_rate(model%conditions, model%curves, state%time)
     end if
   end subroutine apply_loads

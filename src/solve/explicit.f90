@@ -114,8 +114,8 @@ contains
         call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
         cycle%checks(i_tile) = check_tile(tile, state%elements)
         call share_tile_forces(tile, force, state%force_slots)
-        if (sums) cycle%sums%parts(:, i_tile) = sum_motion(tile%first_node, tile%last_node, &
-          state%mass, state%motion)
+        if (sums) call sum_motion(tile%first_node, tile%last_node, state, &
+          cycle%sums%parts(:, i_tile))
         if (cycle%writes) then
           call keep_tile_forces(tile, force, state%internal_force)
         else

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Work of what acts on every node: body loads and global damping. It needs sums of m v and
-!> m v^2 over all nodes; the team forms them tile by tile while a tile's nodes are in cache,
-!> before they move. Partial sums are added in their order, so that the bits do not depend
+!> Work of what acts on every node: body loads and global damping. It needs sums over all nodes;
+!> the team forms them tile by tile while a tile's nodes are in cache, before they move. Damping
+!> acts on the mean of two half-step velocities, so its work is told one cycle later, from the
+!> velocities of the step behind and those of the step before, which damped runs keep. Partial sums are added in their order, so that the bits do not depend
 !> on the number of threads.
 module motion_sums_m
   use kinds_m, only : wp
@@ -18,9 +19,9 @@ module motion_sums_m
   !> Partial sums of one cycle, and what they are for.
   type :: motion_sums_t
     integer, allocatable :: blocks(:, :) !! (2, blocks) first and last node
-    real(wp), allocatable :: parts(:, :) !! (4, tiles and then blocks) m v_x, m v_y, m v_x^2, m
-                                         !! v_y^2; allocated only where the deck has body loads or
-                                         !! damping
+    real(wp), allocatable :: parts(:, :) !! (4, tiles and then blocks) m v_x, m v_y, and what
+                                         !! `sum_drag` gives; allocated only where the deck has
+                                         !! body loads or damping
     real(wp) :: share(4) = 0.0_wp        !! what each counts: two in external work, two in that of
                                          !! damping
   end type motion_sums_t
@@ -61,40 +62,72 @@ contains
     n_block = (n_node + block_size - 1)/block_size
   end function blocks_of
 
-  !> Sums over the nodes first .. last. Two by two, so that an addition need
+  !> Sums over the nodes first .. last; those of damping where the state keeps former velocities,
+  !> which become the present ones.
+  subroutine sum_motion(first, last, state, sums)
+    integer, intent(in) :: first, last
+    type(state_t), intent(inout) :: state
+    real(wp), intent(out) :: sums(4) !! m v_x, m v_y, and those of `sum_drag`
+
+    sums(1:2) = sum_momentum(first, last, state%mass, state%motion)
+    sums(3:4) = 0.0_wp
+    if (allocated(state%former_velocity)) call sum_drag(first, last, state%mass, state%motion, &
+      [state%former_dt, state%dt_before], state%former_velocity, sums(3:4))
+  end subroutine sum_motion
+
+  !> Momentum of the nodes first .. last. Two by two, so that an addition need
   !> not wait for the one before.
-  pure function sum_motion(first, last, mass, motion) result(sums)
+  pure function sum_momentum(first, last, mass, motion) result(sums)
     integer, intent(in) :: first, last
     real(wp), intent(in) :: mass(*)      !! of all nodes
     real(wp), intent(in) :: motion(4, *) !! of all nodes
-    real(wp) :: sums(4)                  !! m v_x, m v_y, m v_x^2, m v_y^2
-    real(wp) :: odd(4), even(4), v(2)
+    real(wp) :: sums(2)                  !! m v_x, m v_y
+    real(wp) :: odd(2), even(2)
     integer :: i
 
     odd = 0.0_wp
     even = 0.0_wp
     do i = first, last - 1, 2
-      v = motion(3:4, i)
-      odd = odd + mass(i)*[v, v**2]
-      v = motion(3:4, i + 1)
-      even = even + mass(i + 1)*[v, v**2]
+      odd = odd + mass(i)*motion(3:4, i)
+      even = even + mass(i + 1)*motion(3:4, i + 1)
     end do
-    if (i == last) odd = odd + mass(i)*[motion(3:4, i), motion(3:4, i)**2]
+    if (i == last) odd = odd + mass(i)*motion(3:4, i)
     sums = odd + even
-  end function sum_motion
+  end function sum_momentum
+
+  !> What damping with D = 1 took in the cycle before from the nodes first .. last: forces m w with
+  !> the mean w of former and present velocity act over half of the step before and half of the step
+  !> behind.
+  pure subroutine sum_drag(first, last, mass, motion, steps, former, sums)
+    integer, intent(in) :: first, last
+    real(wp), intent(in) :: mass(*)         !! of all nodes
+    real(wp), intent(in) :: motion(4, *)    !! of all nodes
+    real(wp), intent(in) :: steps(2)        !! that before, that behind
+    real(wp), intent(inout) :: former(2, *) !! velocities of the step before; then the present ones
+    real(wp), intent(out) :: sums(2)        !! J/m over D, along x and y
+    real(wp) :: v(2)
+    integer :: i
+
+    sums = 0.0_wp
+    do i = first, last
+      v = motion(3:4, i)
+      sums = sums + 0.25_wp*mass(i)*((former(:, i) + v)*(steps(1)*former(:, i) + steps(2)*v))
+      former(:, i) = v
+    end do
+  end subroutine sum_drag
 
   !> The blocks, shared by the team, which does not wait: nothing moves these
   !> nodes while tiles advance.
   subroutine sum_blocks(layout, state, sums)
     type(layout_t), intent(in) :: layout
-    type(state_t), intent(in) :: state
+    type(state_t), intent(inout) :: state
     type(motion_sums_t), intent(inout) :: sums
     integer :: i
 
     !$omp do schedule(static)
     do i = 1, size(sums%blocks, 2)
-      sums%parts(:, size(layout%tiles) + i) = sum_motion(sums%blocks(1, i), sums%blocks(2, i), &
-        state%mass, state%motion)
+      call sum_motion(sums%blocks(1, i), sums%blocks(2, i), state, &
+        sums%parts(:, size(layout%tiles) + i))
     end do
     !$omp end do nowait
   end subroutine sum_blocks

@@ -56,6 +56,8 @@ contains
           cycle
         state%motion(2 + prescribed%direction, prescribed%node) = velocity(i)
         state%prescribed_velocity(i) = velocity(i)
+        if (allocated(state%former_velocity)) &
+          state%former_velocity(prescribed%direction, prescribed%node) = velocity(i)
       end associate
     end do
   end subroutine start_prescribed

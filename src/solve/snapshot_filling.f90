@@ -14,7 +14,8 @@ module snapshot_filling_m
   use support_forces_m, only : find_supports
   implicit none
   private
-  public :: start_snapshot, fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
+  public :: start_snapshot, fill_motion, find_motion, fill_energies, fill_parts, fill_interfaces, &
+    fill_plot
 
   !> Nodes whose motion is summed at a time.
   integer, parameter :: block_size = 512

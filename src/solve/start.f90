@@ -40,6 +40,8 @@ contains
     allocate (state%force_special(2, model%layout%n_special), source=0.0_wp)
     if (size(model%conditions%nodal_loads) + size(model%conditions%pressures) > 0) &
       allocate (state%external(2, model%layout%n_special), source=0.0_wp)
+    if (allocated(model%conditions%damping) .and. .not. model%controls%implicit%is_on) &
+      allocate (state%former_velocity(2, model%mesh%n_node), source=0.0_wp)
     allocate (state%force_slots(2, size(model%layout%special_node)), source=0.0_wp)
     allocate (state%internal_force(2, model%mesh%n_node), source=0.0_wp)
     allocate (state%prescribed_velocity(size(model%conditions%motions)), source=0.0_wp)

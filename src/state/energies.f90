@@ -15,18 +15,20 @@ module energies_m
     real(wp) :: damping = 0.0_wp       !! dissipated by global damping
     real(wp) :: contact = 0.0_wp       !! minus the work of the contact forces
     real(wp) :: external_work = 0.0_wp !! work of loads and prescribed motion
+    real(wp) :: leapfrog = 0.0_wp      !! v(n-1/2).M v(n+1/2)/2 minus the kinetic energy, in explicit
+                                       !! runs
     real(wp) :: initial = 0.0_wp       !! total at time zero
   end type energies_t
 
 contains
 
-  !> Sum of all that the body holds and has dissipated.
+  !> Sum of all that the body holds and has dissipated; in explicit runs what leap-frog keeps.
   pure function total_energy(energies) result(total)
     type(energies_t), intent(in) :: energies
     real(wp) :: total
 
     total = energies%kinetic + energies%internal + energies%hourglass + energies%viscous &
-      + energies%damping + energies%contact
+      + energies%damping + energies%contact + energies%leapfrog
   end function total_energy
 
   !> total / (initial + external work); 1 when both vanish.

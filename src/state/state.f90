@@ -35,6 +35,9 @@ module state_m
                                                   !! nodes only in cycles that write
     real(wp), allocatable :: prescribed_velocity(:) !! (n_motion) v(n-1/2), v(n+1/2) once the cycle
                                                     !! knows it
+    real(wp), allocatable :: former_velocity(:, :) !! (2, n_node) v(n-3/2), v(n-1/2) once the work of
+                                                   !! damping is summed; only in damped runs
+    real(wp) :: former_dt = 0.0_wp             !! step of v(n-3/2), s
     real(wp), allocatable :: acceleration(:, :) !! (2, n_node) of the implicit driver, whose v and a
                                                 !! belong to the instant of u
     real(wp) :: body_acceleration(2) = 0.0_wp  !! of *LOAD_BODY at `time`
