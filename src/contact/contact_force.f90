@@ -9,12 +9,12 @@ module contact_force_m
   use contact_initial_m, only : start_slave_tracking, start_master_tracking, start_cover
   use contact_lists_m, only : forget_list
   use contact_log_m, only : log_contact
-  use contact_motion_m, only : gather_places, take_force, keep_former, add_force
-  use contact_penalty_m, only : set_penalties, press_points, stored_energy, damp_points, &
-    average_gaps
+  use contact_motion_m, only : gather_places, take_force, keep_former, add_force, power_of
+  use contact_penalty_m, only : set_penalties, press_points, damp_points, average_gaps
   use contact_ranges_m, only : goes_in_ranges, press_ranges
   use contact_scatter_m, only : scatter_points, scatter_runs, scatter_averaged
   use contact_search_m, only : update_tracking, wake_all
+  use contact_springs_m, only : stored_energy, begin_look, add_springs, end_look
   use contact_spots_m, only : spots_at_quarters, start_spots, move_spots
   use contact_state_m, only : contact_state_t, tracking_t, allocate_points, is_free
   use contacts_m, only : contact_t
@@ -61,6 +61,8 @@ contains
     allocate (memory%mark(n_slave), source=0)
     if (memory%averages_pressure .or. contact%damping > 0.0_wp) &
       allocate (memory%nodal(2, n_slave + n_master), source=0.0_wp)
+    if (contact%damping > 0.0_wp) &
+      allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
     call log_contact(contact, model, formulation%kind, memory, log)
   end subroutine start_contact
 
@@ -76,7 +78,7 @@ contains
     type(clock_t), intent(inout) :: clock
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
-    real(wp) :: power
+    real(wp) :: power, damping_power
     logical :: had_force
 
     if (time < contact%birth .or. time > contact%death) then
@@ -96,14 +98,31 @@ contains
     call lap(clock, phase_contact_search)
     had_force = memory%n_active > 0
     memory%n_active = 0
+    call begin_look(had_force, memory%watch)
     if (had_force) call keep_former(memory)
+    damping_power = 0.0_wp
+    if (allocated(memory%damping_force)) &
+      call take_force(memory%nodes, motion, memory%damping_force, damping_power)
     call place_and_press(contact, motion, mass, cycle, clock, memory)
     if (memory%n_active > 0 .or. memory%points%n > 0 .or. had_force) then
       call add_force(memory%nodes, memory%former_force, memory%force, motion, force, power)
-      memory%energy = memory%energy - 0.5_wp*dt*power
+      if (allocated(memory%damping_force)) damping_power = damping_power &
+        + power_of(memory%nodes, motion, memory%damping_force)
+      call count_work(dt, power, damping_power, memory)
     end if
+    call end_look(had_force, memory%n_active > 0, memory%watch)
     call lap(clock, phase_contact_force)
   end subroutine apply_contact
+
+  !> Work of half a step, that of the damping forces apart.
+  pure subroutine count_work(dt, power, damping_power, memory)
+    real(wp), intent(in) :: dt
+    real(wp), intent(in) :: power, damping_power !! of all contact forces, and of those of damping
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%energy = memory%energy - 0.5_wp*dt*(power - damping_power)
+    memory%damping_work = memory%damping_work - 0.5_wp*dt*damping_power
+  end subroutine count_work
 
   !> Place the points and form their forces.
   subroutine place_and_press(contact, motion, mass, cycle, clock, memory)
@@ -135,10 +154,27 @@ contains
     if (.not. is_unpressed) call press_points(memory)
     ! Springs loaded at time zero hold energy that no force has put in.
     if (cycle == 0) memory%energy = stored_energy(memory%points)
-    if (contact%damping > 0.0_wp) &
-      call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
+    if (contact%damping > 0.0_wp) call damp_all(contact, motion, mass, memory)
     call scatter(is_unpressed, memory)
+    if (memory%watch%is_due) call add_springs(memory)
   end subroutine press_all
+
+  !> Add the damping to all pressures; its nodal forces are kept apart as well.
+  pure subroutine damp_all(contact, motion, mass, memory)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: motion(:, :), mass(:)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: spring(memory%points%n), damped(memory%points%n)
+    integer :: n, n_damped
+
+    n = memory%points%n
+    spring = memory%points%pressure(:n)
+    call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
+    damped = memory%points%pressure(:n)
+    memory%points%pressure(:n) = damped - spring
+    call scatter_points(memory%points, .false., memory%damping_force, n_damped)
+    memory%points%pressure(:n) = damped
+  end subroutine damp_all
 
   !> Contact forces of one interface at the given u, added to `force`; no damping, no energy, no
   !> clock. The memory is taken from the last converged step: give a copy of it to each trial, so
@@ -210,12 +246,17 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)
     real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: power
+    real(wp) :: power, damping_power
 
     memory%is_stale = .true.
+    memory%watch%has_looked = .false.
     if (memory%n_active == 0) return
     call take_force(memory%nodes, motion, memory%force, power)
-    memory%energy = memory%energy - 0.5_wp*dt*power
+    damping_power = 0.0_wp
+    if (allocated(memory%damping_force)) &
+      call take_force(memory%nodes, motion, memory%damping_force, damping_power)
+    call count_work(dt, power, damping_power, memory)
+    call end_look(.true., .false., memory%watch)
     memory%points%n = 0
     memory%n_active = 0
   end subroutine suspend_contact

@@ -7,7 +7,7 @@ module contact_motion_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: gather_places, take_force, keep_former, add_force
+  public :: gather_places, take_force, power_of, keep_former, add_force
 
   !> Chains of sums kept side by side.
   integer, parameter :: n_lane = 4
@@ -59,6 +59,20 @@ contains
     force(:, :size(nodes)) = 0.0_wp
     power = sum(lanes)
   end subroutine take_force
+
+  !> The same for forces that stay.
+  pure function power_of(nodes, motion, force) result(power)
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in) :: motion(4, *)
+    real(wp), intent(in) :: force(2, *)
+    real(wp) :: power
+    integer :: i
+
+    power = 0.0_wp
+    do i = 1, size(nodes)
+      power = power + (motion(3, nodes(i))*force(1, i) + motion(4, nodes(i))*force(2, i))
+    end do
+  end function power_of
 
   !> Copy u of the nodes; the diagonal of the box of their changes bounds the relative motion.
   pure subroutine take_places(nodes, motion, places, spread)

@@ -10,7 +10,7 @@ module contact_penalty_m
   implicit none
   private
   public :: set_penalties, built_in_penalty, mean_length, press_points, press_each, pressures_of, &
-    average_gaps, share_pressure, stored_energy, damp_points
+    average_gaps, share_pressure, damp_points
 
 contains
 
@@ -216,16 +216,6 @@ contains
       gap_1 = 0.0_wp; area_1 = 0.0_wp; gap_2 = 0.0_wp; area_2 = 0.0_wp
     end do
   end subroutine sum_gaps
-
-  !> Energy of the springs of all points as pressed, J/m; holds for both rules of pressure.
-  pure function stored_energy(points) result(energy)
-    type(contact_points_t), intent(in) :: points
-    real(wp) :: energy
-    integer :: n
-
-    n = points%n
-    energy = -0.5_wp*sum(points%area(:n)*points%pressure(:n)*points%gap(:n))
-  end function stored_energy
 
   !> Add the damping of points in contact, -2 fraction k/omega times the opening velocity, with
   !> omega^2 = sum of w K/m over the nodes of both sides, where K is the sum of all springs at a

@@ -7,6 +7,7 @@ module contact_ranges_m
   use clock_m, only : clock_t, lap, phase_contact_pairing, phase_contact_force
   use contact_dispatch_m, only : place_points, place_range, places_ranges
   use contact_penalty_m, only : press_points
+  use contact_springs_m, only : add_springs
   use contact_scatter_m, only : end_t, scatter_range, close_run
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
@@ -49,6 +50,7 @@ contains
         call lap(clock, phase_contact_pairing)
         call press_points(memory)
         call scatter_range(memory%points, run, memory%force, memory%n_active)
+        if (memory%watch%is_due) call add_springs(memory)
         call lap(clock, phase_contact_force)
       end do
     end associate

@@ -32,7 +32,7 @@ module history_file_m
   character(*), parameter :: matsum_columns = 'time,part,kinetic,internal,hourglass,'// &
     'momentum_x,momentum_y,mass'
   character(*), parameter :: rwforc_columns = 'time,wall,fx,fy,normal_force,impulse,work,n_active'
-  character(*), parameter :: sleout_columns = 'time,cycle,interface,energy'
+  character(*), parameter :: sleout_columns = 'time,cycle,interface,energy,damping,stored'
   character(*), parameter :: spcforc_columns = 'time,node,fx,fy'
 
   !> All tables of a run.
@@ -79,7 +79,7 @@ contains
         case (table_rwforc)
           call open_table(table, prefix, name, rwforc_columns, [r, i, r, r, r, r, r, i], error)
         case (table_sleout)
-          call open_table(table, prefix, name, sleout_columns, [r, i, i, r], error)
+          call open_table(table, prefix, name, sleout_columns, [r, i, i, r, r, r], error)
         case (table_spcforc)
           call open_table(table, prefix, name, spcforc_columns, [r, i, r, r], error)
         end select

@@ -92,7 +92,8 @@ contains
     if (.not. histories%tables(table_sleout)%is_open) return
     do i = 1, size(model%contacts)
       call add_row(histories%tables(table_sleout), [snapshot%time, real(snapshot%cycle, wp), &
-        real(model%contacts(i)%id, wp), snapshot%interfaces(i)%energy])
+        real(model%contacts(i)%id, wp), snapshot%interfaces(i)%energy, &
+        snapshot%interfaces(i)%damping, snapshot%interfaces(i)%stored])
     end do
   end subroutine append_sleout
 

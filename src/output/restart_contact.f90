@@ -5,6 +5,9 @@ module restart_contact_m
   use archive_file_m, only : archive_t, enter, leave
   use contact_state_m, only : contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
     cover_memory_t
+  use contact_watch_m, only : contact_watch_t
+  use kinds_m, only : wp
+  use log_m, only : to_text
   implicit none
   private
   public :: keep_contact
@@ -43,11 +46,40 @@ contains
     call keep(archive, 'slave_penalty', contact%slave_penalty)
     call keep(archive, 'master_penalty', contact%master_penalty)
     call keep(archive, 'node_penalty', contact%node_penalty)
+    call keep(archive, 'damping_force', contact%damping_force)
     call keep(archive, 'energy', contact%energy)
+    call keep(archive, 'damping_work', contact%damping_work)
+    call keep_watch(archive, 'watch', contact%watch)
     call keep(archive, 'n_active', contact%n_active)
     call keep(archive, 'n_released', contact%n_released)
     call leave(archive)
   end subroutine keep_contact
+
+  !> What is known of its energy.
+  subroutine keep_watch(archive, name, watch)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(contact_watch_t), intent(inout) :: watch
+    integer :: i
+
+    call enter(archive, name)
+    call keep(archive, 'is_due', watch%is_due)
+    call keep(archive, 'has_looked', watch%has_looked)
+    call keep(archive, 'stored', watch%stored)
+    call keep(archive, 'load', watch%load)
+    call keep(archive, 'node', watch%node)
+    call keep(archive, 'balance', watch%balance)
+    call keep_fixed(archive, 'change', watch%change)
+    do i = 1, size(watch%change_node)
+      call enter(archive, to_text(i))
+      call keep(archive, 'change_node', watch%change_node(i))
+      call keep_fixed(archive, 'change_place', watch%change_place(:, i))
+      call keep(archive, 'warned', watch%warned(i))
+      call leave(archive)
+    end do
+    call keep_fixed(archive, 'change_time', watch%change_time)
+    call leave(archive)
+  end subroutine keep_watch
 
   !> Spots followed over a chain.
   subroutine keep_tracking(archive, name, tracking)

@@ -48,6 +48,7 @@ contains
     call keep(archive, 'external_work', state%external_work)
     call keep(archive, 'damping_work', state%damping_work)
     call keep(archive, 'initial_energy', state%initial_energy)
+    call keep(archive, 'largest_energy', state%largest_energy)
     call leave(archive)
   end subroutine keep_state
 

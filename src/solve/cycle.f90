@@ -4,6 +4,7 @@
 module cycle_m
   use clock_m, only : lap, share_contact, phase_nodes
   use constraints_m, only : fix_nodes, update_activity
+  use contact_account_m, only : plan_looks, follow_contact
   use contact_check_m, only : report_contact_start, follow_springs
   use contact_force_m, only : apply_contact
   use cycle_loads_m, only : apply_loads
@@ -95,11 +96,13 @@ contains
     call apply_loads(model, state, cycle%damping, cycle%sums)
     ! What ended the cycle before is in this lap, or without contact in the one below.
     if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
+    call plan_looks(cycle%writes, state)
     do i = 1, size(model%contacts)
       call apply_contact(model%contacts(i), state%motion, state%contact_mass, &
         state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
         state%force_special)
       call share_contact(monitor%clock, i)
+      call follow_contact(model, i, state, monitor%log)
     end do
     if (state%cycle > 0) call prepare_leap(model, state, cycle)
     call lap(monitor%clock, phase_nodes)

@@ -7,6 +7,7 @@
 !> written belongs to one instant.
 module explicit_m
   use clock_m, only : lap, phase_elements, phase_nodes, phase_output
+  use contact_account_m, only : report_contact_energies
   use contact_check_m, only : report_contact_end
   use cycle_m, only : cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
   use element_dispatch_m, only : add_tile_forces
@@ -53,6 +54,7 @@ contains
     reason = cycle%reason
     if (allocated(cycle%error)) call move_alloc(cycle%error, error)
     call report_contact_end(model, state, monitor%log)
+    call report_contact_energies(model, state, monitor%log)
     if (.not. allocated(error)) call judge_energies(monitor%snapshot%energies, monitor%log)
   end subroutine advance_explicit
 

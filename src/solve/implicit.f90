@@ -5,6 +5,7 @@ module implicit_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_nodes
   use contact_check_m, only : report_contact_end
+  use contact_springs_m, only : stored_energy
   use energies_m, only : energy_ratio
   use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
@@ -182,6 +183,7 @@ contains
       associate (nodes => state%contacts(i)%nodes)
         attempt%contacts(i)%energy = state%contacts(i)%energy - 0.5_wp &
           *sum((state%contacts(i)%force + attempt%contacts(i)%force)*attempt%motion(3:4, nodes))
+        attempt%contacts(i)%watch%stored = stored_energy(attempt%contacts(i)%points)
       end associate
     end do
     if (step%is_dynamic) then

@@ -9,7 +9,7 @@ module implicit_report_m
   use equations_m, only : equations_t
   use errors_m, only : error_t
   use forces_m, only : trial_t
-  use health_m, only : check_energy, judge_energies
+  use health_m, only : check_energy, judge_energies, judge_contact
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use output_schedule_m, only : output_reach
@@ -53,6 +53,7 @@ contains
       shot%acceleration = state%acceleration
       call fill_energies(model, state, [0.0_wp, 0.0_wp], shot)
       shot%energies%kinetic = 0.5_wp*sum(shot%velocity*mass_times(model, shot%velocity))
+      shot%energies%made = max(0.0_wp, -shot%energies%contact)
       if (state%cycle == 0) then
         state%initial_energy = total_energy(shot%energies)
         shot%energies%initial = state%initial_energy
@@ -67,7 +68,10 @@ contains
         call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, &
         energy_ratio(shot%energies), 'write vtkhdf state')
       if (.not. allocated(error)) call check_energy(model%controls, shot%energies, error)
-      if (last .and. .not. allocated(error)) call judge_energies(shot%energies, monitor%log)
+      if (last .and. .not. allocated(error)) then
+        call judge_contact(shot%energies, monitor%log)
+        call judge_energies(shot%energies, monitor%log)
+      end if
     end associate
     call lap(monitor%clock, phase_output)
   end subroutine report_step

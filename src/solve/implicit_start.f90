@@ -4,7 +4,7 @@ module implicit_start_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_solver
   use contact_check_m, only : report_contact_start
-  use contact_penalty_m, only : stored_energy
+  use contact_springs_m, only : stored_energy
   use element_mass_m, only : add_mass, mass_times
   use equations_m, only : equations_t, number_equations, take_free
   use errors_m, only : error_t, raise, status_run
@@ -142,6 +142,7 @@ contains
     ! Springs loaded at time zero hold energy that no force has put in.
     do i = 1, size(state%contacts)
       state%contacts(i)%energy = stored_energy(state%contacts(i)%points)
+      state%contacts(i)%watch%stored = state%contacts(i)%energy
     end do
     march%step%old_force = net_force(march%trial)
     if (march%step%is_dynamic) call find_first_acceleration(model, monitor, march%step, state, &

@@ -156,7 +156,8 @@ contains
       end do
       snapshot%mean_velocity = snapshot%mean_velocity/sum(state%mass)
       energies%damping = state%damping_work
-      energies%contact = sum(state%contacts%energy)
+      energies%contact = sum(state%contacts%energy) + sum(state%contacts%damping_work)
+      energies%made = max(0.0_wp, -sum(state%contacts%watch%balance))
       energies%external_work = state%external_work
       energies%initial = state%initial_energy
     end associate
@@ -243,6 +244,8 @@ contains
     do i = 1, size(model%contacts)
       call interface_resultants(state%contacts(i), snapshot%interfaces(i))
       snapshot%interfaces(i)%energy = state%contacts(i)%energy
+      snapshot%interfaces(i)%damping = state%contacts(i)%damping_work
+      snapshot%interfaces(i)%stored = state%contacts(i)%watch%stored
     end do
   end subroutine fill_interfaces
 

@@ -16,6 +16,7 @@
 !> of the interface have moved relative to each other. A spot at distance d from everything cannot
 !> touch before the travel has grown by d: until then it sleeps.
 module contact_state_m
+  use contact_watch_m, only : contact_watch_t
   use kinds_m, only : wp
   implicit none
   private
@@ -129,7 +130,11 @@ module contact_state_m
     real(wp) :: slave_penalty = 0.0_wp      !! distributed penalty eps_hat of the slave pass, N/m^2
     real(wp) :: master_penalty = 0.0_wp     !! of the master pass
     real(wp) :: node_penalty = 0.0_wp       !! eps of type 1, N/m
-    real(wp) :: energy = 0.0_wp             !! minus the accumulated work of the contact forces
+    real(wp), allocatable :: damping_force(:, :) !! (2, n_slave + n_master) the part of `force` that
+                                                 !! damping has; only where there is damping
+    real(wp) :: energy = 0.0_wp             !! minus the accumulated work of the springs, J/m
+    real(wp) :: damping_work = 0.0_wp       !! minus that of the damping forces
+    type(contact_watch_t) :: watch          !! whether the springs give back what they take
     integer :: n_active = 0                 !! points that carry pressure
     integer :: n_released = 0               !! first contacts deeper than the limit that were let go
   end type contact_state_t

@@ -13,7 +13,9 @@ module snapshot_m
     real(wp) :: slave_force(2) = 0.0_wp
     real(wp) :: master_force(2) = 0.0_wp
     integer :: n_active = 0
-    real(wp) :: energy = 0.0_wp  !! minus the work of the contact forces
+    real(wp) :: energy = 0.0_wp  !! minus the work of the contact springs
+    real(wp) :: damping = 0.0_wp !! minus that of the damping of contact
+    real(wp) :: stored = 0.0_wp  !! potential of the springs
   end type interface_result_t
 
   !> Sums over one part.

@@ -48,6 +48,8 @@ module state_m
     real(wp) :: external_work = 0.0_wp
     real(wp) :: damping_work = 0.0_wp
     real(wp) :: initial_energy = 0.0_wp
+    real(wp) :: largest_energy = 0.0_wp !! largest |initial energy + external work| so far; only where
+                                        !! there is contact in an explicit run
   end type state_t
 
 end module state_m

@@ -1,0 +1,131 @@
+! SPDX-License-Identifier: MIT
+!> Tells of interfaces whose springs make or lose energy (doc/theory/contact.md, section 6).
+!> Explicit runs alone: there the trapezoidal rule is the work that the scheme itself does.
+module contact_account_m
+  use contact_watch_m, only : has_made, has_lost
+  use kinds_m, only : wp
+  use log_m, only : log_t, warn, write_log, to_text
+  use model_m, only : model_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: plan_looks, follow_contact, report_contact_energies, noticed_share
+
+  !> Cycles between two looks at springs; at more of them the sum over all points would show in the
+  !> time of a step.
+  integer, parameter :: look_interval = 20
+  !> Share of the largest energy so far from which on energy made or lost is told.
+  real(wp), parameter :: noticed_share = 0.01_wp
+
+contains
+
+  !> Before the contacts of a cycle: whether they look at their springs, and the largest energy so
+  !> far.
+  pure subroutine plan_looks(writes, state)
+    logical, intent(in) :: writes !! this cycle writes something
+    type(state_t), intent(inout) :: state
+
+    if (size(state%contacts) == 0) return
+    if (state%cycle > 0) state%largest_energy = max(state%largest_energy, &
+      abs(state%initial_energy + state%external_work))
+    if (writes .or. mod(state%cycle, look_interval) == 0) state%contacts%watch%is_due = .true.
+  end subroutine plan_looks
+
+  !> After the forces of an interface: what its springs have made or lost, and a warning the first
+  !> time that this is much.
+  subroutine follow_contact(model, i, state, log)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    type(state_t), intent(inout) :: state
+    type(log_t), intent(inout) :: log
+    real(wp) :: change
+    integer :: sign_of
+
+    associate (contact => state%contacts(i), watch => state%contacts(i)%watch)
+      if (.not. watch%has_looked) return
+      change = contact%energy - watch%stored - watch%balance
+      watch%balance = contact%energy - watch%stored
+      ! What is loaded at time zero is what it stores.
+      if (state%cycle == 0) return
+      sign_of = merge(has_made, has_lost, change < 0.0_wp)
+      if (abs(change) > watch%change(sign_of)) then
+        watch%change(sign_of) = abs(change)
+        watch%change_time(sign_of) = state%time
+        watch%change_node(sign_of) = watch%node
+        if (watch%node > 0) watch%change_place(:, sign_of) = &
+          model%mesh%coordinates(:, watch%node) + state%motion(1:2, watch%node)
+      end if
+      sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
+      if (watch%warned(sign_of) .or. abs(watch%balance) <= noticed_share*state%largest_energy) &
+        return
+      watch%warned(sign_of) = .true.
+      call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
+        //to_text(state%cycle)//', time '//to_text(state%time)//', the contact springs have ' &
+        //amount_text(model, i, sign_of, state)//hint(sign_of))
+    end associate
+  end subroutine follow_contact
+
+  !> At the end of a run: each interface whose springs have made or lost much, or had.
+  subroutine report_contact_energies(model, state, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(log_t), intent(inout) :: log
+    integer :: i, sign_of
+
+    do i = 1, size(state%contacts)
+      associate (watch => state%contacts(i)%watch, id => model%contacts(i)%id)
+        sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
+        if (abs(watch%balance) > noticed_share*state%largest_energy .and. state%cycle > 0) then
+          call warn(log, 'interface '//to_text(id)//': in the whole run the contact springs have ' &
+            //amount_text(model, i, sign_of, state))
+        else if (any(watch%warned)) then
+          call write_log(log, 'interface '//to_text(id)//': at the end the contact springs have ' &
+            //amount_text(model, i, sign_of, state))
+        end if
+      end associate
+    end do
+  end subroutine report_contact_energies
+
+  !> How much, of what, and where most of it.
+  function amount_text(model, i, sign_of, state) result(text)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i, sign_of
+    type(state_t), intent(in) :: state
+    character(:), allocatable :: text
+
+    associate (watch => state%contacts(i)%watch)
+      text = trim(merge('made', 'lost', sign_of == has_made))//' energy: ' &
+        //to_text(abs(watch%balance))//', '//percent(abs(watch%balance), state%largest_energy) &
+        //' of the largest energy so far '//to_text(state%largest_energy) &
+        //' (initial energy and external work)'
+      if (watch%change_node(sign_of) == 0) return
+      text = text//'; the largest step of it, '//to_text(watch%change(sign_of))//', near node ' &
+        //to_text(model%mesh%node_id(watch%change_node(sign_of)))//' at ('// &
+        to_text(watch%change_place(1, sign_of))//', '//to_text(watch%change_place(2, sign_of)) &
+        //') up to time '//to_text(watch%change_time(sign_of))
+    end associate
+  end function amount_text
+
+  !> A share in per cent.
+  function percent(part, whole) result(text)
+    real(wp), intent(in) :: part, whole
+    character(:), allocatable :: text
+    character(24) :: buffer
+
+    text = 'all'
+    if (.not. whole > 0.0_wp) return
+    write (buffer, '(es10.2)') 100.0_wp*part/whole
+    if (100.0_wp*part < 1.0e4_wp*whole) write (buffer, '(f8.2)') 100.0_wp*part/whole
+    text = trim(adjustl(buffer))//' %'
+  end function percent
+
+  !> What to look at.
+  pure function hint(sign_of)
+    integer, intent(in) :: sign_of
+    character(:), allocatable :: hint
+
+    hint = '; look at corners there, at the penalty and at the time step'
+    if (sign_of == has_lost) hint = hint//' (damping and friction are no part of it)'
+  end function hint
+
+end module contact_account_m

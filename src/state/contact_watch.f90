@@ -1,0 +1,28 @@
+! SPDX-License-Identifier: MIT
+!> What is known of the energy of one interface: whether its springs give back what they take.
+module contact_watch_m
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: contact_watch_t, has_made, has_lost
+
+  !> Signs of the balance, as places in arrays of two.
+  integer, parameter :: has_made = 1, has_lost = 2
+
+  !> Filled when the springs are looked at, now and then.
+  type :: contact_watch_t
+    logical :: is_due = .false.       !! the next call looks at the springs
+    logical :: has_looked = .false.   !! the last call did, or found that contact has opened
+    real(wp) :: stored = 0.0_wp       !! potential of the springs then, J/m
+    real(wp) :: load = 0.0_wp         !! largest force of a point then, N/m
+    integer :: node = 0               !! slave node next to it, by place in the mesh; 0: none yet
+    real(wp) :: balance = 0.0_wp      !! energy of the interface minus what its springs stored then:
+                                      !! below 0 made, above lost
+    real(wp) :: change(2) = 0.0_wp    !! largest changes of that between two looks, by sign, J/m
+    integer :: change_node(2) = 0     !! `node` then
+    real(wp) :: change_place(2, 2) = 0.0_wp !! (x and y, sign) where that node was, m
+    real(wp) :: change_time(2) = 0.0_wp !! of the second of the two looks, s
+    logical :: warned(2) = .false.    !! the log has told of it, by sign
+  end type contact_watch_t
+
+end module contact_watch_m
