@@ -9,10 +9,11 @@ from meshes import Deck, grid
 
 RHO, YOUNG, POISSON = 1000.0, 1.0e7, 0.3
 SOUND = np.sqrt(YOUNG / RHO)
-TOLD = re.compile(r"Warning: interface (\d+): at cycle (\d+), time (\S+), the contact springs have (made|lost) energy: "
-                  r"(\S+), (\S+) % of the largest energy so far (\S+) .*?(?:near node (\d+) at \((\S+), (\S+)\))?"
-                  r".*", re.I)
-IN_ALL = re.compile(r"interface (\d+): in the whole run the contact springs have (made|lost) energy: (\S+),", re.I)
+ANY = re.compile(r"contact springs have")
+FIRST = re.compile(r"warning: interface (\d+): at cycle (\d+), time (\S+), the contact springs have (made|lost) energy: "
+                   r"(\S+), (\S+) % of the largest energy so far (\S+) .{0,120}?near node (\d+) at \((\S+), (\S+)\)")
+IN_ALL = re.compile(r"warning: interface (\d+): in the whole run the contact springs have (made|lost) energy: (\S+), "
+                    r".*?up to time \S+")
 
 
 def polygon(rng, radius):
@@ -66,11 +67,8 @@ def polygons(seed, kind):
 
 
 def log_of(result):
-    return (result.folder / f"{result.job}.log").read_text()
-
-
-def unwrapped(text):
-    return re.sub(r"\n\s+", " ", text)
+    """The log without its line breaks."""
+    return " ".join((result.folder / f"{result.job}.log").read_text().split())
 
 
 def bodies(energy):
@@ -78,18 +76,114 @@ def bodies(energy):
     return energy["total"] - energy["contact"]
 
 
-def explore(run):
-    for kind in (5, 6, 7):
-        for seed in range(30):
-            result = run.program(polygons(seed, kind), name=f"p{kind}_{seed}")
-            energy = result.table("glstat")
-            sle = result.table("sleout")
-            print(kind, seed, bodies(energy)[-1] / bodies(energy)[0] - 1.0, energy["energy_ratio"][-1],
-                  (sle["energy"] - sle["stored"])[-1] / energy["total"][0], sle["stored"][-1])
-            for line in unwrapped(log_of(result)).split("\n"):
-                if "springs have" in line:
-                    print("   ", line)
+def told(result, pattern):
+    return list(pattern.finditer(log_of(result)))
+
+
+def bars(kind, damping=0.0, load=False):
+    """A bar of 20 elements flies onto another at rest; `load`: it is pressed on, and both are held."""
+    n = 20
+    deck = Deck(f"bars, type {kind}, damping {damping}, load {load}")
+    deck.control((20.0 if load else 4.0) / SOUND, scale=0.5)
+    for part in (1, 2):
+        deck.part(part).elastic(RHO, YOUNG, 0.0, part)
+    left = deck.mesh(*grid(n, 1, 1.0, 1.0 / n, (-1.0, 0.0)), part=1)
+    right = deck.mesh(*grid(n, 1, 1.0, 1.0 / n, (0.0, 0.0)), part=2)
+    if load:
+        deck.curve(1, [(0.0, 0.0), (10.0 / SOUND, 1.0), (1.0, 1.0)]).fix(right[n::n + 1], x=1)
+        deck.add("*LOAD_NODE_POINT", *[(int(node), 1, 1, 200.0) for node in left[::n + 1]])
+    else:
+        deck.node_set(1, left).add("*INITIAL_VELOCITY", (1,), (0.01 * SOUND, 0.0))
+    deck.node_set(2, left[n::n + 1]).node_set(3, right[::n + 1][::-1])
+    deck.add("*CONTACT_2D_SLIDELINE", (-2, -3, kind, 2, 0.05 * YOUNG), (0.0, 1.0e20, 0, 0.0, damping))
+    deck.add("*DATABASE_SLEOUT", (0.05 / SOUND,))
+    return deck.output(glstat=0.05 / SOUND)
+
+
+def check_corners(run):
+    """Made, lost and neither: the log tells what the bodies have gained, which no contact enters."""
+    for kind, seed, expected in ((7, 2, "made"), (7, 20, "made"), (5, 5, "made"), (6, 12, "lost"), (7, 12, "lost"),
+                                 (6, 1, None), (7, 29, None)):
+        name = f"{TYPES[kind]}, polygons {seed}"
+        result = run.program(polygons(seed, kind), name=f"corners_{kind}_{seed}")
+        energy, springs = result.table("glstat"), result.table("sleout")
+        gain = bodies(energy)[-1] - bodies(energy)[0]
+        run.check(f"{name}: what the springs gave is what the bodies got / E0",
+                  (springs["stored"] - springs["energy"])[-1] / energy["total"][0], gain / energy["total"][0],
+                  3e-3, "abs", "sum over the bodies alone")
+        first, in_all = told(result, FIRST), told(result, IN_ALL)
+        run.true(f"{name}: a warning in the cycle and one in the summary" if expected else f"{name}: no warning",
+                 bool(expected) == bool(first) == bool(in_all) and (expected in [m[4] for m in first]
+                                                                     or not expected))
+        if not expected:
+            continue
+        run.true(f"{name}: the summary tells the sign", in_all[-1][2] == expected)
+        run.check(f"{name}: amount of the summary / E0", float(in_all[-1][3]) / energy["total"][0],
+                  abs(gain) / energy["total"][0], 3e-3, "abs", "what the bodies gained or lost")
+        match = next(m for m in first if m[4] == expected)
+        run.check(f"{name}: first amount / largest energy", float(match[5]) / float(match[7]), 0.01, 0.0, "min",
+                  "told from 1 % on")
+        run.check(f"{name}: the place is where they touch, |x|", abs(float(match[9])), 0.6, 0.0, "max",
+                  "the bodies meet about x = 0")
+        run.check(f"{name}: each sign is told once at most", max(
+            [m[4] for m in first].count(sign) for sign in ("made", "lost")), 1, 0.0, "max")
+
+
+def check_sound(run):
+    """Bars that bounce return all; what damping takes is no loss; loaded springs hold theirs."""
+    for kind, name in TYPES.items():
+        result = run.program(bars(kind), name=f"bars_{kind}")
+        energy, springs = result.table("glstat"), result.table("sleout")
+        balance = (springs["energy"] - springs["stored"]) / energy["total"][0]
+        run.check(f"{name}: bars, made or lost at any time / E0", balance, 0.0, 2e-3, "abs", "one spring a node")
+        run.true(f"{name}: bars, the springs did take energy", np.max(springs["stored"]) > 0.05 * energy["total"][0])
+        run.true(f"{name}: bars, no warning", not told(result, ANY))
+        result = run.program(bars(kind, damping=50.0), name=f"damped_{kind}")
+        energy, springs = result.table("glstat"), result.table("sleout")
+        run.check(f"{name}: damped bars, taken by damping / E0", springs["damping"][-1] / energy["total"][0],
+                  0.01, 0.0, "min", "half of critical")
+        run.check(f"{name}: damped bars, the bodies lose what damping takes / E0",
+                  (bodies(energy)[-1] - bodies(energy)[0] + springs["damping"][-1]) / energy["total"][0], 0.0, 3e-3,
+                  "abs", "balance")
+        run.check(f"{name}: damped bars, glstat has both / E0",
+                  (springs["energy"] + springs["damping"] - energy["contact"]) / energy["total"][0], 0.0, 1e-14,
+                  "abs", "sum")
+        run.true(f"{name}: damped bars, no warning", not told(result, ANY))
+        result = run.program(bars(kind, load=True), name=f"pressed_{kind}")
+        energy, springs = result.table("glstat"), result.table("sleout")
+        run.check(f"{name}: pressed bars, held by the springs / all", springs["stored"][-1] / energy["total"][-1],
+                  0.05, 0.0, "min", "soft springs under load")
+        run.check(f"{name}: pressed bars, energy is what is stored / all",
+                  (springs["energy"] - springs["stored"])[-1] / energy["total"][-1], 0.0, 3e-3, "abs", "nothing lost")
+        run.true(f"{name}: pressed bars, no warning", not told(result, ANY))
+
+
+def check_restart(run):
+    """A run that goes on from a restart file tells the same and writes the same tables."""
+    deck = polygons(2, 7)
+    whole = run.program(deck, name="whole")
+    match = next(m for m in told(whole, FIRST) if m[4] == "made")
+    for label, cycle in (("before", int(match[2]) - 7), ("after", int(match[2]) + 9)):
+        deck = polygons(2, 7)
+        deck.add("*DATABASE_BINARY_D3DUMP", (cycle,))
+        run.program(deck, name=f"first_{label}")
+        dump = run.work / f"first_{label}" / f"first_{label}.dump01.h5"
+        again = run.program(deck, f"r={dump}", name=f"again_{label}")
+        for table in ("glstat", "sleout"):
+            run.true(f"restart {label} the warning: {table} has the same bytes",
+                     again.csv_path(table).read_bytes() == whole.csv_path(table).read_bytes())
+        run.true(f"restart {label} the warning: the summary is the same",
+                 [m[0] for m in told(again, IN_ALL)] == [m[0] for m in told(whole, IN_ALL)] != [])
+        run.true(f"restart {label} the warning: first warnings are those not told before",
+                 [m[0] for m in told(again, FIRST)]
+                 == [m[0] for m in told(whole, FIRST) if int(m[2]) >= cycle])
+    threads = run.program(polygons(2, 7), "ncpu=2", name="threads")
+    for table in ("glstat", "sleout"):
+        run.true(f"two threads: {table} has the same bytes",
+                 threads.csv_path(table).read_bytes() == whole.csv_path(table).read_bytes())
 
 
 def check(run):
-    explore(run)
+    check_corners(run)
+    check_sound(run)
+    check_restart(run)

@@ -74,7 +74,7 @@ def check_type(run, kind):
               "abs", "trapezoid over the output times")
     energy = result.table("glstat")
     run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0, 0.01, "abs", "balance")
-    columns = ("kinetic", "internal", "hourglass", "viscous", "damping", "contact")
+    columns = ("kinetic", "internal", "hourglass", "viscous", "damping", "contact", "leapfrog")
     run.check(f"{name}: columns add up to the total", sum(energy[c] for c in columns),
               energy["total"], 1e-12, source="definition")
     run.report(f"{name}: energy ratio furthest from 1",
