@@ -11,7 +11,7 @@ from meshes import Deck, grid
 
 HEADERS = {
     "glstat": "time,cycle,dt,kinetic,internal,hourglass,viscous,damping,contact,external_work,"
-              "total,energy_ratio",
+              "total,energy_ratio,leapfrog",
     "rcforc": "time,interface,side,fx,fy,n_active",
     "nodout": "time,node,x,y,ux,uy,vx,vy,ax,ay",
     "contact": "time,interface,node,s,x,y,gap,pressure,fx,fy,length",

@@ -149,6 +149,8 @@ def sleout_branch(table, _):
     """Energies of interfaces, one number each."""
     ids = entities(table, "interface")
     states = by_instant(table, len(ids), {"slave": "energy"})
+    if "damping" in table:
+        states["slave"] = states["slave"] + by_instant(table, len(ids), {"slave": "damping"})["slave"]
     states["cycle"] = table["cycle"].reshape(-1, len(ids))[:, 0]
     states["total_slave"] = states["total_energy"] = states["slave"].sum(axis=1)
     states["total_master"] = np.zeros(len(states["time"]))
