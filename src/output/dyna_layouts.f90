@@ -121,7 +121,7 @@ contains
     do i = 1, size(rows, 2)
       write (line, '(ss,2x,a,i11,a,es12.5,3(a,es12.5),a,es12.5)') merge('slave ', 'master', &
         nint(rows(3, i)) == 1), nint(rows(2, i)), ' time', tidy(rows(1, i)), '  x ', &
-        tidy(rows(4, i) + rows(5, i)), '  y ', tidy(rows(5, i)), '  z ', 0.0_wp, ' mass ', 0.0_wp
+        tidy(rows(4, i)), '  y ', tidy(rows(5, i)), '  z ', 0.0_wp, ' mass ', 0.0_wp
       call add_line(line, lines, n_line)
     end do
   end subroutine form_rcforc
@@ -173,7 +173,7 @@ contains
       velocity = 0.0_wp
       if (rows(8, i) > 0.0_wp) velocity = rows(6:7, i)/rows(8, i)
       write (line, '(ss,a,a,4(a,es13.4))') ' mat.#=', part_field(rows(2, i)), &
-        '          inten=', tidy(rows(4, i) + rows(5, i)), '     kinen=', tidy(rows(3, i)), &
+        '          inten=', tidy(rows(4, i)), '     kinen=', tidy(rows(3, i)), &
         '     eroded_ie=', 0.0_wp, '     eroded_ke=', 0.0_wp
       call add_line(line, lines, n_line)
       write (line, vectors) ' x-mom=', tidy(rows(6, i)), '     y-mom=', tidy(rows(7, i)), &

@@ -5,7 +5,7 @@ module restart_contact_m
   use archive_file_m, only : archive_t, enter, leave
   use contact_state_m, only : contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
     cover_memory_t
-  use contact_watch_m, only : contact_watch_t
+  use contact_watch_m, only : contact_watch_t, contact_change_t
   use kinds_m, only : wp
   use log_m, only : to_text
   implicit none
@@ -69,17 +69,26 @@ contains
     call keep(archive, 'load', watch%load)
     call keep(archive, 'node', watch%node)
     call keep(archive, 'balance', watch%balance)
-    call keep_fixed(archive, 'change', watch%change)
-    do i = 1, size(watch%change_node)
-      call enter(archive, to_text(i))
-      call keep(archive, 'change_node', watch%change_node(i))
-      call keep_fixed(archive, 'change_place', watch%change_place(:, i))
-      call keep(archive, 'warned', watch%warned(i))
-      call leave(archive)
+    do i = 1, size(watch%changes)
+      call keep_change(archive, to_text(i), watch%changes(i))
     end do
-    call keep_fixed(archive, 'change_time', watch%change_time)
     call leave(archive)
   end subroutine keep_watch
+
+  !> Its largest change of one sign.
+  subroutine keep_change(archive, name, change)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(contact_change_t), intent(inout) :: change
+
+    call enter(archive, name)
+    call keep(archive, 'amount', change%amount)
+    call keep(archive, 'node', change%node)
+    call keep_fixed(archive, 'place', change%place)
+    call keep(archive, 'time', change%time)
+    call keep(archive, 'warned', change%warned)
+    call leave(archive)
+  end subroutine keep_change
 
   !> Spots followed over a chain.
   subroutine keep_tracking(archive, name, tracking)

@@ -9,7 +9,7 @@ module contact_account_m
   use state_m, only : state_t
   implicit none
   private
-  public :: plan_looks, follow_contact, report_contact_energies, noticed_share
+  public :: plan_looks, follow_contact, report_contact_energies
 
   !> Cycles between two looks at springs; at more of them the sum over all points would show in the
   !> time of a step.
@@ -48,17 +48,17 @@ contains
       ! What is loaded at time zero is what it stores.
       if (state%cycle == 0) return
       sign_of = merge(has_made, has_lost, change < 0.0_wp)
-      if (abs(change) > watch%change(sign_of)) then
-        watch%change(sign_of) = abs(change)
-        watch%change_time(sign_of) = state%time
-        watch%change_node(sign_of) = watch%node
-        if (watch%node > 0) watch%change_place(:, sign_of) = &
+      if (abs(change) > watch%changes(sign_of)%amount) then
+        watch%changes(sign_of)%amount = abs(change)
+        watch%changes(sign_of)%time = state%time
+        watch%changes(sign_of)%node = watch%node
+        if (watch%node > 0) watch%changes(sign_of)%place = &
           model%mesh%coordinates(:, watch%node) + state%motion(1:2, watch%node)
       end if
       sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
-      if (watch%warned(sign_of) .or. abs(watch%balance) <= noticed_share*state%largest_energy) &
-        return
-      watch%warned(sign_of) = .true.
+      if (watch%changes(sign_of)%warned .or. &
+        abs(watch%balance) <= noticed_share*state%largest_energy) return
+      watch%changes(sign_of)%warned = .true.
       call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
         //to_text(state%cycle)//', time '//to_text(state%time)//', the contact springs have ' &
         //amount_text(model, i, sign_of, state)//hint(sign_of))
@@ -78,7 +78,7 @@ contains
         if (abs(watch%balance) > noticed_share*state%largest_energy .and. state%cycle > 0) then
           call warn(log, 'interface '//to_text(id)//': in the whole run the contact springs have ' &
             //amount_text(model, i, sign_of, state))
-        else if (any(watch%warned)) then
+        else if (any(watch%changes%warned)) then
           call write_log(log, 'interface '//to_text(id)//': at the end the contact springs have ' &
             //amount_text(model, i, sign_of, state))
         end if
@@ -93,16 +93,16 @@ contains
     type(state_t), intent(in) :: state
     character(:), allocatable :: text
 
-    associate (watch => state%contacts(i)%watch)
+    associate (watch => state%contacts(i)%watch, &
+      largest => state%contacts(i)%watch%changes(sign_of))
       text = trim(merge('made', 'lost', sign_of == has_made))//' energy: ' &
         //to_text(abs(watch%balance))//', '//percent(abs(watch%balance), state%largest_energy) &
         //' of the largest energy so far '//to_text(state%largest_energy) &
         //' (initial energy and external work)'
-      if (watch%change_node(sign_of) == 0) return
-      text = text//'; the largest step of it, '//to_text(watch%change(sign_of))//', near node ' &
-        //to_text(model%mesh%node_id(watch%change_node(sign_of)))//' at ('// &
-        to_text(watch%change_place(1, sign_of))//', '//to_text(watch%change_place(2, sign_of)) &
-        //') up to time '//to_text(watch%change_time(sign_of))
+      if (largest%node == 0) return
+      text = text//'; the largest step of it, '//to_text(largest%amount)//', near node ' &
+        //to_text(model%mesh%node_id(largest%node))//' at ('//to_text(largest%place(1))//', ' &
+        //to_text(largest%place(2))//') up to time '//to_text(largest%time)
     end associate
   end function amount_text
 

@@ -2,8 +2,8 @@
 !> Work of what acts on every node: body loads and global damping. It needs sums over all nodes;
 !> the team forms them tile by tile while a tile's nodes are in cache, before they move. Damping
 !> acts on the mean of two half-step velocities, so its work is told one cycle later, from the
-!> velocities of the step behind and those of the step before, which damped runs keep. Partial sums are added in their order, so that the bits do not depend
-!> on the number of threads.
+!> velocities of the step behind and of that before, which damped runs keep. Partial sums are added
+!> in their order, so that the bits do not depend on the number of threads.
 module motion_sums_m
   use kinds_m, only : wp
   use layout_m, only : layout_t

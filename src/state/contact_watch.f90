@@ -4,10 +4,20 @@ module contact_watch_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: contact_watch_t, has_made, has_lost
+  public :: contact_watch_t, contact_change_t, has_made, has_lost
 
   !> Signs of the balance, as places in arrays of two.
   integer, parameter :: has_made = 1, has_lost = 2
+
+  !> The largest change of the balance of one sign between two looks, and whether the log has told
+  !> of that sign.
+  type :: contact_change_t
+    real(wp) :: amount = 0.0_wp   !! J/m
+    integer :: node = 0           !! most loaded then, by place in the mesh; 0: none yet
+    real(wp) :: place(2) = 0.0_wp !! where that node was, m
+    real(wp) :: time = 0.0_wp     !! of the second of the two looks, s
+    logical :: warned = .false.
+  end type contact_change_t
 
   !> Filled when the springs are looked at, now and then.
   type :: contact_watch_t
@@ -18,11 +28,7 @@ module contact_watch_m
     integer :: node = 0               !! slave node next to it, by place in the mesh; 0: none yet
     real(wp) :: balance = 0.0_wp      !! energy of the interface minus what its springs stored then:
                                       !! below 0 made, above lost
-    real(wp) :: change(2) = 0.0_wp    !! largest changes of that between two looks, by sign, J/m
-    integer :: change_node(2) = 0     !! `node` then
-    real(wp) :: change_place(2, 2) = 0.0_wp !! (x and y, sign) where that node was, m
-    real(wp) :: change_time(2) = 0.0_wp !! of the second of the two looks, s
-    logical :: warned(2) = .false.    !! the log has told of it, by sign
+    type(contact_change_t) :: changes(2) !! by sign
   end type contact_watch_t
 
 end module contact_watch_m

@@ -16,7 +16,9 @@ KEPT = {
     "block_state_t": ("state/block_state.f90", "output/restart_state.f90", "elements%", {}),
     "contact_state_t": ("state/contact_state.f90", "output/restart_contact.f90", "contact%", {
         "former_force": "zero between calls"}),
-    "contact_watch_t": ("state/contact_watch.f90", "output/restart_contact.f90", "watch%", {}),
+    "contact_watch_t": ("state/contact_watch.f90", "output/restart_contact.f90", "watch%", {
+        "changes": "kept one by one"}),
+    "contact_change_t": ("state/contact_watch.f90", "output/restart_contact.f90", "change%", {}),
     "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {}),
     "bucket_grid_t": ("state/contact_state.f90", "output/restart_contact.f90", "grid%", {}),
     "cover_memory_t": ("state/contact_state.f90", "output/restart_contact.f90", "cover%", {}),
