@@ -24,7 +24,7 @@ The first that applies:
 
 | verdict | measure |
 |---|---|
-| blown up | the run ends early (a negative area, a value that is not finite), or {ENERGY_DRIFT:.0%} of the largest energy is not accounted for, or the contact forces have made {ENERGY_CREATED:.0%} of it |
+| blown up | the run ends early (a negative area, a value that is not finite), or {ENERGY_DRIFT:.0%} of the largest energy is not accounted for (by what leap-frog keeps, `total` of glstat, which a sound run keeps at any step), or the contact forces have made {ENERGY_CREATED:.0%} of it |
 | penetrating | a slave node is deeper than {DEPTH_SIDES:g} element side, or than {DEPTH_APPROACH:g} of the way that the bodies are driven together |
 | chattering | in the second half, the ups and downs of the contact force add up to more than {SWINGS:g} times its largest value (300 samples of the run, or all its cycles): two full losses of contact |
 | locked | patch and blocks: at the end the pressure along the surface scatters by more than {UNEVEN:.0%} of its mean ({ENDS} nodes at either end left out) |
