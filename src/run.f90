@@ -170,7 +170,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(text_file_t) :: file
 
-    call prepare_restarts(arguments, prefix, effective, monitor%restarts, error)
+    call prepare_restarts(arguments, effective, monitor%restarts, error)
     if (allocated(error)) return
     call create_text_file(file, prefix//'.effective.k', error)
     if (.not. allocated(error)) call append_text(file, effective, error)
@@ -178,9 +178,9 @@ contains
   end subroutine write_deck
 
   !> What restart files need to know; what an earlier run of this name has left of them is removed.
-  subroutine prepare_restarts(arguments, prefix, effective, restarts, error)
+  subroutine prepare_restarts(arguments, effective, restarts, error)
     type(arguments_t), intent(in) :: arguments
-    character(*), intent(in) :: prefix, effective
+    character(*), intent(in) :: effective
     type(restarts_t), intent(inout) :: restarts
     type(error_t), allocatable, intent(out) :: error
     type(checksum_t) :: checksum

@@ -6,7 +6,6 @@ module restart_contact_m
   use contact_state_m, only : contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
     cover_memory_t
   use contact_watch_m, only : contact_watch_t, contact_change_t
-  use kinds_m, only : wp
   use log_m, only : to_text
   implicit none
   private

@@ -114,8 +114,8 @@ contains
 
     text = 'all'
     if (.not. whole > 0.0_wp) return
-    write (buffer, '(es10.2)') 100.0_wp*part/whole
-    if (100.0_wp*part < 1.0e4_wp*whole) write (buffer, '(f8.2)') 100.0_wp*part/whole
+    write (buffer, '(ss,es10.2)') 100.0_wp*part/whole
+    if (100.0_wp*part < 1.0e4_wp*whole) write (buffer, '(ss,f8.2)') 100.0_wp*part/whole
     text = trim(adjustl(buffer))//' %'
   end function percent
 

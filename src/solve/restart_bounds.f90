@@ -34,14 +34,15 @@ contains
     call require(archive, 'state/dt_before', state%dt_before >= 0.0_wp, 'a step below zero')
     call require(archive, 'state/mass', all(state%mass >= 0.0_wp), 'masses below zero')
     do i = 1, size(state%contacts)
-      call check_contact(model%contacts(i), state%contacts(i), 'state/contacts/'//to_text(i)//'/', &
-        archive)
+      call check_contact(model%contacts(i), model%mesh%n_node, state%contacts(i), &
+        'state/contacts/'//to_text(i)//'/', archive)
     end do
   end subroutine check_state
 
   !> The memory of one interface.
-  subroutine check_contact(contact, memory, folder, archive)
+  subroutine check_contact(contact, n_node, memory, folder, archive)
     type(contact_t), intent(in) :: contact
+    integer, intent(in) :: n_node !! of the mesh
     type(contact_state_t), intent(in) :: memory
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
@@ -50,7 +51,10 @@ contains
     call require(archive, folder//'travel', memory%travel >= 0.0_wp, 'a way below zero')
     call require(archive, folder//'n_active', memory%n_active >= 0, 'a number below zero')
     call require(archive, folder//'n_released', memory%n_released >= 0 .and. &
-      memory%n_released <= huge(1)/2, 'a number that no run reaches')
+      memory%n_released <= 10**9, 'a number that no run reaches')
+    call require(archive, folder//'watch', min(memory%watch%node, &
+      minval(memory%watch%changes%node)) >= 0 .and. max(memory%watch%node, &
+      maxval(memory%watch%changes%node)) <= n_node, 'a number that no node has')
     call check_points(memory, folder//'points/', archive)
     if (allocated(archive%error)) return
     capacity = size(memory%points%gap)
