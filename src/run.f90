@@ -24,7 +24,8 @@ module run_m
   use renumber_m, only : renumber_model, forget_start
   use restart_m, only : forget_files
   use restart_plan_m, only : restarts_t
-  use restart_reading_m, only : take_up_state, take_up_results, take_up_outputs
+  use restart_reading_m, only : take_up_state, take_up_results, check_rest, &
+    take_up_outputs
   use result_names_m, only : check_names
   use results_arrays_m, only : unfinished
   use results_file_m, only : run_info_t
@@ -70,9 +71,7 @@ contains
     call renumber_model(model)
     prefix = join_path(arguments%directory, arguments%job)
     if (monitor%restarts%goes_on) then
-      call take_up_state(monitor%restarts%source, model, state, error)
-      if (.not. allocated(error)) &
-        call take_up_results(monitor%restarts, model, prefix//'.vtkhdf', error)
+      call take_up_run(model, prefix, state, monitor%restarts, error)
       if (allocated(error)) return
     end if
     call make_directory(arguments%directory, error)
@@ -95,6 +94,21 @@ contains
     if (.not. allocated(error) .and. allocated(monitor%log%trouble)) &
       call move_alloc(monitor%log%trouble, error)
   end subroutine run_deck
+
+  !> The state of the restart file, and whether all that is read later can be; before any file of an
+  !> earlier run is touched.
+  subroutine take_up_run(model, prefix, state, restarts, error)
+    type(model_t), intent(in) :: model
+    character(*), intent(in) :: prefix     !! directory and job name
+    type(state_t), intent(inout) :: state
+    type(restarts_t), intent(inout) :: restarts
+    type(error_t), allocatable, intent(out) :: error
+
+    call take_up_state(restarts%source, model, state, error)
+    if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
+    if (.not. allocated(error)) &
+      call take_up_results(restarts, model, prefix//'.vtkhdf', error)
+  end subroutine take_up_run
 
   !> What the deck layer has to know of the command line and of a restart file.
   subroutine make_request(arguments, monitor, request, error)

@@ -11,7 +11,7 @@ module csv_table_m
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   implicit none
   private
-  public :: csv_table_t, open_table, add_row, check_table, flush_table, close_table, column_name, &
+  public :: csv_table_t, plan_table, open_table, add_row, check_table, flush_table, close_table, column_name, &
     n_columns, row_text, kind_real, kind_integer, kind_side
 
   !> Kinds of columns: a real, an integer, a side of an interface (1 = slave, 2 = master).
@@ -42,29 +42,40 @@ module csv_table_m
 
 contains
 
-  !> Make the file `<prefix>.<name>.csv` and write its header.
-  subroutine open_table(table, prefix, name, header, kinds, error, further)
+  !> The columns of a table, which has no rows and no file yet.
+  subroutine plan_table(table, name, header, kinds, further)
     type(csv_table_t), intent(out) :: table
-    character(*), intent(in) :: prefix   !! directory and job name
     character(*), intent(in) :: name
     character(*), intent(in) :: header   !! column names with commas between
     integer, intent(in) :: kinds(:)      !! `kind_` of each column
-    type(error_t), allocatable, intent(out) :: error
     character(*), intent(in), optional :: further !! names of the columns that the CSV file leaves
                                                   !! out
     integer :: i
 
-    call create_text_file(table%file, prefix//'.'//name//'.csv', error)
-    if (allocated(error)) return
-    call append_text(table%file, header//new_line('a'), error)
-    if (allocated(error)) return
     table%name = name
     table%n_csv = count([(header(i:i) == ',', i=1, len(header))]) + 1
     table%header = header
     if (present(further)) table%header = header//','//further
     table%kinds = kinds
-    table%is_open = .true.
     allocate (table%values(size(kinds), 64))
+  end subroutine plan_table
+
+  !> Make the file `<prefix>.<name>.csv` of a planned table and write its header.
+  subroutine open_table(table, prefix, error)
+    type(csv_table_t), intent(inout) :: table
+    character(*), intent(in) :: prefix   !! directory and job name
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i, last
+
+    call create_text_file(table%file, prefix//'.'//table%name//'.csv', error)
+    if (allocated(error)) return
+    last = len(table%header)
+    do i = size(table%kinds), table%n_csv + 1, -1
+      last = index(table%header(:last), ',', back=.true.) - 1
+    end do
+    call append_text(table%file, table%header(:last)//new_line('a'), error)
+    if (allocated(error)) return
+    table%is_open = .true.
     allocate (character(buffer_size) :: table%buffer)
     call system_clock(table%flushed)
   end subroutine open_table

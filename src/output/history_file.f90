@@ -6,14 +6,14 @@ module history_file_m
   use model_m, only : model_t
   use controls_m, only : interval_t, is_asked
   use supports_m, only : mark_supports
-  use csv_table_m, only : csv_table_t, open_table, check_table, flush_table, close_table, &
+  use csv_table_m, only : csv_table_t, plan_table, open_table, check_table, flush_table, close_table, &
     n_columns, kind_real, kind_integer, kind_side
   use dyna_layouts_m, only : layout_glstat, layout_rcforc, layout_nodout, layout_matsum, &
     layout_sleout, layout_spcforc
   use dyna_text_m, only : open_dyna_text
   implicit none
   private
-  public :: histories_t, open_histories, check_histories, flush_histories, close_histories, &
+  public :: histories_t, plan_histories, open_histories, check_histories, flush_histories, close_histories, &
     n_table, table_glstat, table_rcforc, table_nodout, table_contact, table_matsum, table_rwforc, &
     table_sleout, table_spcforc, table_names
 
@@ -42,14 +42,12 @@ module history_file_m
 
 contains
 
-  !> Make the files that were asked for. glstat always; the others with an interval and something to
-  !> write: interfaces for rcforc, sleout and contact, history nodes for nodout, rigid walls for
-  !> rwforc, fixed nodes for spcforc.
-  subroutine open_histories(histories, prefix, model, error)
+  !> The tables that were asked for, without files. glstat always; the others with an interval and
+  !> something to write: interfaces for rcforc, sleout and contact, history nodes for nodout, rigid
+  !> walls for rwforc, fixed nodes for spcforc.
+  subroutine plan_histories(histories, model)
     type(histories_t), intent(out) :: histories
-    character(*), intent(in) :: prefix   !! directory and job name
     type(model_t), intent(in) :: model
-    type(error_t), allocatable, intent(out) :: error
     integer, parameter :: r = kind_real, i = kind_integer
     logical :: wanted(n_table)
     character(:), allocatable :: name
@@ -62,29 +60,41 @@ contains
       associate (table => histories%tables(k))
         select case (k)
         case (table_glstat)
-          call open_table(table, prefix, name, glstat_columns, &
-            [r, i, r, r, r, r, r, r, r, r, r, r, r, r, r, i, i], error, &
+          call plan_table(table, name, glstat_columns, &
+            [r, i, r, r, r, r, r, r, r, r, r, r, r, r, r, i, i], &
             'velocity_x,velocity_y,element,element_part')
         case (table_rcforc)
-          call open_table(table, prefix, name, rcforc_columns, [r, i, kind_side, r, r, i], &
-            error)
+          call plan_table(table, name, rcforc_columns, [r, i, kind_side, r, r, i])
         case (table_nodout)
-          call open_table(table, prefix, name, nodout_columns, &
-            [r, i, r, r, r, r, r, r, r, r, i], error, 'cycle')
+          call plan_table(table, name, nodout_columns, [r, i, r, r, r, r, r, r, r, r, i], 'cycle')
         case (table_contact)
-          call open_table(table, prefix, name, contact_columns, &
-            [r, i, i, r, r, r, r, r, r, r, r], error)
+          call plan_table(table, name, contact_columns, [r, i, i, r, r, r, r, r, r, r, r])
         case (table_matsum)
-          call open_table(table, prefix, name, matsum_columns, [r, i, r, r, r, r, r, r], error)
+          call plan_table(table, name, matsum_columns, [r, i, r, r, r, r, r, r])
         case (table_rwforc)
-          call open_table(table, prefix, name, rwforc_columns, [r, i, r, r, r, r, r, i], error)
+          call plan_table(table, name, rwforc_columns, [r, i, r, r, r, r, r, i])
         case (table_sleout)
-          call open_table(table, prefix, name, sleout_columns, [r, i, i, r, r, r], error)
+          call plan_table(table, name, sleout_columns, [r, i, i, r, r, r])
         case (table_spcforc)
-          call open_table(table, prefix, name, spcforc_columns, [r, i, r, r], error)
+          call plan_table(table, name, spcforc_columns, [r, i, r, r])
         end select
-        if (allocated(error)) return
       end associate
+    end do
+  end subroutine plan_histories
+
+  !> Plan the tables and make their files.
+  subroutine open_histories(histories, prefix, model, error)
+    type(histories_t), intent(out) :: histories
+    character(*), intent(in) :: prefix   !! directory and job name
+    type(model_t), intent(in) :: model
+    type(error_t), allocatable, intent(out) :: error
+    integer :: k
+
+    call plan_histories(histories, model)
+    do k = 1, n_table
+      if (.not. allocated(histories%tables(k)%values)) cycle
+      call open_table(histories%tables(k), prefix, error)
+      if (allocated(error)) return
     end do
     call open_texts(histories, prefix, model, error)
   end subroutine open_histories

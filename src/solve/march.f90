@@ -17,7 +17,7 @@ module march_m
   use tangent_m, only : step_t
   implicit none
   private
-  public :: march_t, write_restarts, take_up_march
+  public :: march_t, write_restarts, check_march, take_up_march
 
   !> The march through the steps.
   type :: march_t
@@ -71,6 +71,17 @@ contains
     call keep(archive, 'ratio', ratio)
     call leave(archive)
   end subroutine keep_march
+
+  !> Whether it can be taken up; the first thing that is wrong is told as an error of the archive.
+  subroutine check_march(model, state, source)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(archive_t), intent(inout) :: source
+    type(march_t) :: march
+
+    call start_trial(model, state, march%trial)
+    call keep_march(source, march%control, march%step, march%trial, march%ratio)
+  end subroutine check_march
 
   !> Read it into a march that is set up from the deck, and close the file.
   subroutine take_up_march(model, state, source, march, error)

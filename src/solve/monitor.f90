@@ -4,8 +4,8 @@ module monitor_m
   use clock_m, only : clock_t
   use controls_m, only : is_asked
   use errors_m, only : error_t
-  use history_file_m, only : histories_t, open_histories, check_histories, flush_histories, &
-    close_histories
+  use history_file_m, only : histories_t, plan_histories, open_histories, check_histories, &
+    flush_histories, close_histories
   use history_rows_m, only : append_glstat, append_rcforc, append_nodout, append_matsum, &
     append_contact, append_rwforc, append_sleout, append_spcforc
   use kinds_m, only : wp
@@ -20,7 +20,7 @@ module monitor_m
   use supports_m, only : mark_supports
   implicit none
   private
-  public :: monitor_t, open_files, start_monitor, find_due, any_due, write_due, finish_monitor, &
+  public :: monitor_t, open_files, start_monitor, plan_outputs, find_due, any_due, write_due, finish_monitor, &
     due_t
 
   !> What is due in one cycle.
@@ -61,11 +61,33 @@ contains
         monitor%restarts%goes_on, error)
   end subroutine open_files
 
-  !> Schedules, progress lines and the snapshot. Energies go with the plot states where the deck
-  !> gives them no interval of their own, since every run has an energy history.
+  !> Schedules, progress lines and the snapshot.
   subroutine start_monitor(model, has_history, monitor)
     type(model_t), intent(in) :: model
     logical, intent(in) :: has_history !! some part keeps a plastic strain
+    type(monitor_t), intent(inout) :: monitor
+
+    call start_schedules(model, monitor)
+    call start_progress(monitor%progress, model%controls%end_time, &
+      model%controls%output%status_interval)
+    call plan_restarts(monitor%restarts, model%controls)
+    call start_snapshot(model, has_history, monitor%snapshot)
+  end subroutine start_monitor
+
+  !> Tables and schedules of a run that opens no files: what a restart file says of them can be
+  !> read.
+  subroutine plan_outputs(model, monitor)
+    type(model_t), intent(in) :: model
+    type(monitor_t), intent(inout) :: monitor
+
+    call plan_histories(monitor%histories, model)
+    call start_schedules(model, monitor)
+  end subroutine plan_outputs
+
+  !> Energies go with the plot states where the deck gives them no interval of their own, since
+  !> every run has an energy history.
+  subroutine start_schedules(model, monitor)
+    type(model_t), intent(in) :: model
     type(monitor_t), intent(inout) :: monitor
 
     associate (plan => model%controls%output, end_time => model%controls%end_time)
@@ -87,11 +109,8 @@ contains
       call start_schedule(monitor%matsum, plan%matsum, model%curves, end_time)
       if (allocated(model%walls)) &
         call start_schedule(monitor%rwforc, plan%rwforc, model%curves, end_time)
-      call start_progress(monitor%progress, end_time, plan%status_interval)
     end associate
-    call plan_restarts(monitor%restarts, model%controls)
-    call start_snapshot(model, has_history, monitor%snapshot)
-  end subroutine start_monitor
+  end subroutine start_schedules
 
   !> What is due at `time`; `everything` for the first and the last state.
   pure function find_due(monitor, time, dt, everything) result(due)

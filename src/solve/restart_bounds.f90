@@ -46,15 +46,16 @@ contains
     type(contact_state_t), intent(in) :: memory
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
-    integer :: capacity
+    integer :: capacity, i
 
     call require(archive, folder//'travel', memory%travel >= 0.0_wp, 'a way below zero')
     call require(archive, folder//'n_active', memory%n_active >= 0, 'a number below zero')
     call require(archive, folder//'n_released', memory%n_released >= 0 .and. &
       memory%n_released <= 10**9, 'a number that no run reaches')
-    call require(archive, folder//'watch', min(memory%watch%node, &
-      minval(memory%watch%changes%node)) >= 0 .and. max(memory%watch%node, &
-      maxval(memory%watch%changes%node)) <= n_node, 'a number that no node has')
+    call check_node('watch/node', memory%watch%node)
+    do i = 1, size(memory%watch%changes)
+      call check_node('watch/'//to_text(i)//'/node', memory%watch%changes(i)%node)
+    end do
     call check_points(memory, folder//'points/', archive)
     if (allocated(archive%error)) return
     capacity = size(memory%points%gap)
@@ -74,6 +75,18 @@ contains
     if (allocated(memory%cover%status)) call require(archive, folder//'cover/status', &
       all(memory%cover%status >= is_free .and. memory%cover%status <= is_behind), &
       'numbers that mean nothing')
+
+  contains
+
+    !> A node of the mesh, or none.
+    subroutine check_node(name, node)
+      character(*), intent(in) :: name
+      integer, intent(in) :: node
+
+      call require(archive, folder//name, node >= 0 .and. node <= n_node, &
+        'a number that no node has')
+    end subroutine check_node
+
   end subroutine check_contact
 
   !> The list of points: as many in all its arrays, and nodes of the interface.

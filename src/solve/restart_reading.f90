@@ -6,8 +6,9 @@ module restart_reading_m
   use errors_m, only : error_t, raise, status_input
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
+  use march_m, only : check_march
   use model_m, only : model_t
-  use monitor_m, only : monitor_t
+  use monitor_m, only : monitor_t, plan_outputs
   use output_schedule_m, only : output_reach
   use progress_m, only : show_note
   use restart_bounds_m, only : check_state
@@ -15,6 +16,7 @@ module restart_reading_m
   use restart_history_m, only : keep_times
   use restart_plan_m, only : restarts_t, place_text
   use restart_run_m, only : keep_run, keep_outputs
+  use restart_steps_m, only : check_steps
   use restart_state_m, only : keep_state
   use results_copy_m, only : check_old_results, copy_states
   use results_file_m, only : results_file_t
@@ -22,7 +24,7 @@ module restart_reading_m
   use state_m, only : state_t
   implicit none
   private
-  public :: take_up_file, take_up_results, take_up_state, take_up_outputs
+  public :: take_up_file, take_up_results, take_up_state, check_rest, take_up_outputs
 
   !> Part of the last step by which an implicit run may pass its end; an
   !> explicit one may by all of it.
@@ -86,6 +88,26 @@ contains
         //', after the end time '//to_text(model%controls%end_time), status_input)
     end if
   end subroutine take_up_state
+
+  !> Look at what is read once the files are open, so that a file that is refused has emptied none:
+  !> how far the outputs are, and what the driver keeps.
+  subroutine check_rest(source, model, state, error)
+    type(archive_t), intent(inout) :: source
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state     !! that of the file
+    type(error_t), allocatable, intent(out) :: error
+    type(monitor_t) :: planned
+
+    call plan_outputs(model, planned)
+    call keep_outputs(source, state%time - state%dt_before, &
+      output_reach(model%controls, state%dt_before), planned)
+    if (model%controls%implicit%is_on) then
+      call check_march(model, state, source)
+    else
+      call check_steps(model, state, source)
+    end if
+    if (allocated(source%error)) error = source%error
+  end subroutine check_rest
 
   !> Read how far the outputs are; the rows and states before the restart go into the new files.
   subroutine take_up_outputs(model, state, monitor, error)

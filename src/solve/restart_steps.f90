@@ -17,7 +17,7 @@ module restart_steps_m
   use time_step_m, only : step_plan_t, cycles_in
   implicit none
   private
-  public :: write_restarts, take_up_steps
+  public :: write_restarts, check_steps, take_up_steps
 
 contains
 
@@ -94,6 +94,34 @@ contains
     call leave(archive)
   end subroutine keep_springs
 
+  !> Whether the plan of the steps can be taken up; the first thing that is wrong is told as an
+  !> error of the archive.
+  subroutine check_steps(model, state, source)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(archive_t), intent(inout) :: source
+    type(step_plan_t) :: steps
+    real(wp) :: damping(2), ratio
+
+    damping = 0.0_wp
+    ratio = 1.0_wp
+    call read_steps(model, state, source, steps, damping, ratio)
+  end subroutine check_steps
+
+  !> Read the plan of the steps into one that is set up from the deck.
+  subroutine read_steps(model, state, source, steps, damping, ratio)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(archive_t), intent(inout) :: source
+    type(step_plan_t), intent(inout) :: steps
+    real(wp), intent(inout) :: damping(2)
+    real(wp), intent(inout) :: ratio
+
+    if (model%controls%contact_step == contact_step_rules) &
+      allocate (steps%springs(size(model%contacts)))
+    call keep_steps(source, size(state%motion, 2), steps, damping, ratio)
+  end subroutine read_steps
+
   !> Read the plan of the steps, with the end that the deck gives now, and close the file.
   subroutine take_up_steps(model, state, source, steps, damping, ratio, error)
     type(model_t), intent(in) :: model
@@ -104,9 +132,7 @@ contains
     real(wp), intent(inout) :: ratio
     type(error_t), allocatable, intent(out) :: error
 
-    if (model%controls%contact_step == contact_step_rules) &
-      allocate (steps%springs(size(model%contacts)))
-    call keep_steps(source, size(state%motion, 2), steps, damping, ratio)
+    call read_steps(model, state, source, steps, damping, ratio)
     steps%end_time = model%controls%end_time
     steps%end_cycle = model%controls%end_cycle
     if (steps%constant > 0.0_wp) steps%n_cycle = &

@@ -20,14 +20,13 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "program"), str(HERE.parents[1] / "tools")]
 HEAD = 512
-VERSION = 5
-NAN_SAFE = {"nan", "inf"}
 
 
-def mend(path, version=VERSION):
-    """Head and checksum of what the file holds now."""
-    data = path.read_bytes()[HEAD:]
-    head = f"slideline restart {version}\nlength {len(data)}\nchecksum {zlib.crc32(data):08X}\n"
+def mend(path):
+    """Length and checksum of what the file holds now in its head, whose format stays."""
+    whole = path.read_bytes()
+    mark, data = whole[:HEAD].splitlines()[0].decode("ascii"), whole[HEAD:]
+    head = f"{mark}\nlength {len(data)}\nchecksum {zlib.crc32(data):08X}\n"
     path.write_bytes(head.encode().ljust(HEAD) + data)
 
 

@@ -29,6 +29,12 @@ def job(exe, tmp_path_factory):
     return kill_runs.Job(exe, "block_5", tmp_path_factory.mktemp("hand"))
 
 
+@pytest.fixture(scope="module")
+def implicit_job(exe, tmp_path_factory):
+    """An implicit run with restart files."""
+    return kill_runs.Job(exe, "block_implicit", tmp_path_factory.mktemp("hand"))
+
+
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 @pytest.mark.parametrize("scene", ["block_3", "block_5", "block_7", "rigid_die", "block_implicit"])
 def test_files_made_by_hand(exe, checked, tmp_path, scene):
@@ -59,8 +65,13 @@ LIES = {
     "state/time": (lambda old: np.float64(old[0]), "a single one"),
     "steps/first_dt": (lambda old: old * 0, "not positive"),
     "run/n_dump": (lambda old: old * 0 - 1, "no run reaches"),
+    "state/contacts/1/watch/node": (lambda old: old * 0 + 99999, "no node"),
+    "state/contacts/1/watch/2/node": (lambda old: old * 0 - 1, "no node"),
+    "steps/start_cycle": (lambda old: old * 0 - 1, "below zero"),
+    "steps/damping": (lambda old: old[:-1], "in all"),
     "outputs/plot/next": (lambda old: old * 0 - 1.0e300, "below zero"),
     "outputs/plot/count": (lambda old: old * 0 - 7, "no run can reach"),
+    "outputs/histories/1": (lambda old: old[:, :-1].copy(), "expected"),
 }
 
 
@@ -68,16 +79,34 @@ LIES = {
 def test_a_lie_is_named(exe, job, tmp_path, name):
     """Message with file, dataset and what is wrong with it; nothing is written."""
     change, word = LIES[name]
+    refuse_lie(exe, job, tmp_path, name, change, word)
+
+
+def refuse_lie(exe, job, tmp_path, name, change, word):
+    """Go on from a file of which one dataset is changed, among the results of the run that wrote it: refused by the name of the
+    dataset, and each file there stays as it was."""
     path = tmp_path / "lie.h5"
     shutil.copy(sorted(job.whole.glob("job.dump*.h5"))[1], path)
     with h5py.File(path, "r+") as stream:
         fuzz_restarts.replace(stream, name, change(stream[name][()]))
     fuzz_restarts.mend(path)
+    out = tmp_path / "out"
+    shutil.copytree(job.whole, out)
+    before = {file.name: file.read_bytes() for file in out.iterdir()}
+    assert len(before["job.glstat.csv"].splitlines()) > 2
     done = subprocess.run([exe, f"r={path}", "d=out"], cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 1, (done.returncode, done.stderr)
     assert "lie.h5" in done.stderr and name in done.stderr and word in done.stderr, done.stderr
-    # The parts of outputs and drivers are read when these are set up.
-    assert name.startswith(("steps/", "outputs/")) or not (tmp_path / "out").exists()
+    after = {file.name: file.read_bytes() for file in out.iterdir()}
+    assert before.keys() == after.keys() and not [file for file in before if before[file] != after[file]]
+
+
+@pytest.mark.parametrize("name", ["steps/dt", "steps/internal", "outputs/glstat/next"])
+def test_a_lie_of_an_implicit_run_is_named(exe, implicit_job, tmp_path, name):
+    refuse_lie(exe, implicit_job, tmp_path, name, *{
+        "steps/dt": (lambda old: old * 0, "not positive"),
+        "steps/internal": (lambda old: old * np.nan, "finite"),
+        "outputs/glstat/next": (lambda old: old * 0 - 1.0, "below zero")}[name])
 
 
 def test_a_job_name_does_not_lead_elsewhere(exe, job, tmp_path):
