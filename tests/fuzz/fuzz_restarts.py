@@ -3,6 +3,7 @@
 and the run that goes on must refuse the file with its reason (status 1) or go on as any run; never a signal, never for ever.
 
     SLIDELINE=build/release/slideline build/venv/bin/python tests/fuzz/fuzz_restarts.py [--scene NAME] [--share 0.1] [--seed 1]
+        [--only watch/]
 """
 import argparse
 import os
@@ -198,10 +199,10 @@ def must_be_refused(kind):
                     "a scalar", "a scalar integer"} or kind.startswith(("nan", "inf", "-inf"))
 
 
-def run(exe, scene, share, seed, folder, is_checked=False, tell=None):
+def run(exe, scene, share, seed, folder, is_checked=False, tell=None, only=""):
     """Try a share of the mutants of a scene; (how many, statuses, those that broke a rule)."""
     good = make_job(exe, scene, folder)
-    every = list(mutants(good, is_checked))
+    every = [mutant for mutant in mutants(good, is_checked) if only in mutant[0]]
     chosen = random.Random(seed).sample(every, max(1, int(share * len(every))))
     broken, statuses = [], {}
     path = folder / "mutant.h5"
@@ -225,13 +226,14 @@ def main():
     words.add_argument("--scene", action="append", help="of tests/program/kill_runs.py; default: all")
     words.add_argument("--share", type=float, default=0.1, help="part of all mutants")
     words.add_argument("--seed", type=int, default=1)
+    words.add_argument("--only", default="", help="datasets whose names have this text in them")
     words.add_argument("--checked", action="store_true", help="the program is a checked (Debug) build")
     args = words.parse_args()
     total = 0
     for scene in args.scene or kill_runs.SCENES:
         with tempfile.TemporaryDirectory() as folder:
             n, statuses, broken = run(os.path.abspath(os.environ["SLIDELINE"]), scene, args.share, args.seed, Path(folder),
-                                      args.checked, tell=lambda text: print(text, flush=True))
+                                      args.checked, tell=lambda text: print(text, flush=True), only=args.only)
         total += len(broken)
         print(f"{scene}: {n} files, statuses {statuses}, {len(broken)} broke a rule", flush=True)
     return min(total, 1)

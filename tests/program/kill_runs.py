@@ -23,6 +23,15 @@ HEAD = 512
 ARRAYS = ("Points", "PointData/displacement", "PointData/velocity", "PointData/contact_force",
           "CellData/stress", "CellData/plastic_strain")
 REPORTED = "write vtkhdf state"
+
+
+def everything():
+    """Damping, loads, prescribed motion, springs that limit the step."""
+    import test_restart
+
+    return test_restart.everything().text()
+
+
 #: scene -> (deck, cycles)
 SCENES = {
     "drop": (lambda: drop().text(), 200),
@@ -41,6 +50,7 @@ SCENES = {
     "oblique": (lambda: scenes.oblique(ctype=3), 280),
     "patch": (lambda: scenes.patch(ctype=4), 300),
     "patch_static": (lambda: scenes.patch(ctype=7, static=True), 0),
+    "everything": (everything, 300),
     "block_implicit": (lambda: scenes.block(ctype=2, implicit=True, n_slave=11, n_master=10), 40),
 }
 

@@ -15,6 +15,7 @@ import pytest
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "fuzz"))
 import fuzz_restarts  # noqa: E402
+from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -36,10 +37,11 @@ def implicit_job(exe, tmp_path_factory):
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
-@pytest.mark.parametrize("scene", ["block_3", "block_5", "block_7", "rigid_die", "block_implicit"])
+@pytest.mark.parametrize("scene", [f"block_{kind}" for kind in ALL_TYPES] +
+                         ["rigid_die", "everything", "block_implicit"])
 def test_files_made_by_hand(exe, checked, tmp_path, scene):
     """A share of all mutants: refused with the reason, or a run as any; the fuzzer takes more of them."""
-    count, statuses, broken = fuzz_restarts.run(exe, scene, 0.0008 if checked else 0.003, 11, tmp_path, checked)
+    count, statuses, broken = fuzz_restarts.run(exe, scene, 0.0006 if checked else 0.0015, 11, tmp_path, checked)
     assert not broken, broken
     assert count > 4 and statuses.get(1, 0) > 2, statuses
 
