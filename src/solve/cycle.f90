@@ -14,7 +14,7 @@ module cycle_m
     check_energy
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
-  use model_log_m, only : log_smallest_steps
+  use model_log_m, only : log_smallest_steps, judge_damping
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use motion_sums_m, only : motion_sums_t, plan_sums, count_sums
@@ -147,6 +147,7 @@ contains
     if (state%cycle == 0) then
       call report_contact_start(model, state, monitor%log)
       call log_smallest_steps(model, state, monitor%log)
+      call judge_damping(model, state%dt, monitor%log)
       call prepare_leap(model, state, cycle)
       call start_prescribed(model, cycle%velocity, state)
     end if

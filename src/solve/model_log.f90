@@ -1,15 +1,16 @@
 ! SPDX-License-Identifier: MIT
 !> What the log says of the model once its masses and first forces are there, as d3hsp does.
 module model_log_m
+  use curves_m, only : curve_value
   use kinds_m, only : wp
   use layout_m, only : slot_part
-  use log_m, only : log_t, write_log, to_text
+  use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   use smallest_steps_m, only : find_smallest_steps
   use state_m, only : state_t
   implicit none
   private
-  public :: log_masses, log_smallest_steps
+  public :: log_masses, log_smallest_steps, judge_damping
 
   !> Elements of the list of smallest steps.
   integer, parameter :: n_listed = 10
@@ -80,5 +81,37 @@ contains
       call write_log(log, trim(line))
     end do
   end subroutine log_smallest_steps
+
+  !> A warning where a step is too long for the global damping. A free node keeps (2 - D dt)/(2 + D
+  !> dt) of its velocity in a step (node_motion): that never grows, but is no longer exp(-D dt) where
+  !> D dt passes 1, and is below 0 where it passes 2.
+  subroutine judge_damping(model, dt, log)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: dt          !! first step, s
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
+    real(wp) :: largest, share
+
+    if (.not. allocated(model%conditions%damping)) return
+    associate (damping => model%conditions%damping)
+      text = 'VALDMP'
+      largest = damping%coefficient
+      if (damping%curve > 0) then
+        associate (curve => model%curves(damping%curve), end_time => model%controls%end_time)
+          text = 'the largest ordinate of curve '//to_text(curve%id)
+          largest = max(curve_value(curve, 0.0_wp), curve_value(curve, end_time), &
+            maxval(curve%ordinate, curve%abscissa >= 0.0_wp .and. curve%abscissa <= end_time))
+        end associate
+      end if
+      share = largest*maxval(damping%factor)*dt
+      if (.not. share > 1.0_wp) return
+      text = '*DAMPING_GLOBAL acts on all parts with D = '//to_text(largest*maxval(damping%factor)) &
+        //' ('//text//', times STX or STY); times the step '//to_text(dt)//' that is ' &
+        //to_text(share)//', above 1: a step leaves '//to_text((2.0_wp - share)/(2.0_wp + share)) &
+        //' of a velocity where exp(-D dt) = '//to_text(exp(-share))//' is meant'
+    end associate
+    if (share > 2.0_wp) text = text//', and above 2 velocities change sign in every step'
+    call warn(log, text//'; nothing grows, but a smaller D or a smaller step is needed to follow it')
+  end subroutine judge_damping
 
 end module model_log_m

@@ -6,6 +6,10 @@ module energies_m
   private
   public :: energies_t, total_energy, energy_ratio
 
+  !> What rounding leaves of a sum that vanishes, as a share of its largest term: terms are sums over
+  !> nodes, elements and thousands of cycles.
+  real(wp), parameter :: round_off = 1.0e-12_wp
+
   !> Energies at one instant, J per metre of thickness.
   type :: energies_t
     real(wp) :: kinetic = 0.0_wp
@@ -33,21 +37,32 @@ contains
       + energies%damping + energies%contact + energies%leapfrog
   end function total_energy
 
-  !> total / (initial + external work); 1 when both vanish.
+  !> total / (initial + external work); 1 when both vanish against the terms that they are sums of.
   pure function energy_ratio(energies) result(ratio)
     type(energies_t), intent(in) :: energies
     real(wp) :: ratio
-    real(wp) :: expected, total
+    real(wp) :: expected, total, noise
 
     expected = energies%initial + energies%external_work
     total = total_energy(energies)
-    if (abs(expected) > 0.0_wp) then
-      ratio = total/expected
-    else if (abs(total) > 0.0_wp) then
-      ratio = huge(1.0_wp)
-    else
+    noise = round_off*largest_term(energies)
+    if (abs(expected) <= noise .and. abs(total) <= noise) then
       ratio = 1.0_wp
+    else if (abs(expected) > 0.0_wp) then
+      ratio = total/expected
+    else
+      ratio = huge(1.0_wp)
     end if
   end function energy_ratio
+
+  !> The largest of all terms by size.
+  pure function largest_term(energies) result(largest)
+    type(energies_t), intent(in) :: energies
+    real(wp) :: largest
+
+    largest = maxval(abs([energies%kinetic, energies%internal, energies%hourglass, &
+      energies%viscous, energies%damping, energies%contact, energies%leapfrog, &
+      energies%external_work, energies%initial]))
+  end function largest_term
 
 end module energies_m
