@@ -8,7 +8,7 @@ module refused_memory_m
   use c_files_m, only : c_write
   implicit none
   private
-  public :: watch_memory, expect_refusal
+  public :: watch_memory, expect_refusal, need_memory
 
   !> Whether the caller looks at the answer himself. A procedure of the C library has no argument to
   !> carry it, so that it is saved here.
@@ -37,6 +37,12 @@ module refused_memory_m
       type(c_ptr) :: place
     end function c_realloc
 
+    !> C library: give memory back.
+    subroutine c_free(place) bind(c, name='free')
+      import :: c_ptr
+      type(c_ptr), value :: place
+    end subroutine c_free
+
     !> C library: end the process; handlers of exits are called.
     subroutine c_exit(status) bind(c, name='exit')
       import :: c_int
@@ -57,6 +63,17 @@ contains
 
     is_expected = yes
   end subroutine expect_refusal
+
+  !> End the program here unless so much memory is to be had: before calls of a library that does not
+  !> look at the answer.
+  subroutine need_memory(n_byte)
+    integer(c_size_t), intent(in) :: n_byte
+    type(c_ptr) :: place
+
+    place = c_malloc(n_byte)
+    if (.not. c_associated(place)) call give_up(n_byte)
+    call c_free(place)
+  end subroutine need_memory
 
   !> In the place of malloc.
   function ask_malloc(n_byte) bind(c, name='__wrap_malloc') result(place)

@@ -1,14 +1,20 @@
 ! SPDX-License-Identifier: MIT
 !> HDF5 as a whole: how this program opens the library, and texts read back.
 module hdf5_library_m
-  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_ptr, c_null_char
+  use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_ptr, c_size_t, &
+    c_null_char
   use hdf5, only : hid_t, hsize_t, size_t, H5S_SCALAR_F, H5T_STRING_F, H5T_STR_SPACEPAD_F, &
     h5dont_atexit_f, h5open_f, h5eset_auto_f, h5dopen_f, h5dclose_f, h5dget_space_f, &
     h5dget_storage_size_f, h5dget_type_f, h5dread_f, h5sclose_f, h5sget_simple_extent_type_f, &
     h5tclose_f, h5tget_class_f, h5tget_size_f, h5tget_strpad_f, h5tis_variable_str_f
+  use refused_memory_m, only : need_memory
   implicit none
   private
   public :: open_library, read_text
+
+  !> Bytes that HDF5 takes for itself and a small file. It crashes while it is opened, and while it
+  !> makes a file, where memory is refused (1.10.8).
+  integer(c_size_t), parameter :: own_memory = 4*1024**2
 
   interface
     !> POSIX setenv; 0 on success.
@@ -27,6 +33,7 @@ contains
     integer, intent(out) :: status !! < 0 on failure
     integer :: ignored, second
 
+    call need_memory(own_memory)
     call allow_reading()
     call h5dont_atexit_f(ignored) ! HDF5's own clean-up crashes after a full disk
     call h5open_f(status)
