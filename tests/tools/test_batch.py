@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The table of the batch jobs: deviations are found, missing things are refused."""
 import importlib.util
+import os
 import pathlib
 import subprocess
 
@@ -46,6 +47,7 @@ def test_run_without_reference(table, tmp_path):
 
 @pytest.mark.parametrize("script", sorted(BATCH.glob("*.sh")), ids=lambda path: path.name)
 def test_scripts_are_plain_shell(script):
-    assert script.read_text().startswith("#!/bin/sh\n")
-    assert "set -eu" in script.read_text()
+    if os.access(script, os.X_OK):  # the others are sourced
+        assert script.read_text().startswith("#!/bin/sh\n")
+        assert "set -eu" in script.read_text()
     assert subprocess.run(["sh", "-n", str(script)], check=False).returncode == 0

@@ -51,7 +51,7 @@ def polygons(seed, kind):
     """Two of them on each other, closed outlines."""
     rng = np.random.default_rng(seed)
     deck = Deck(f"polygons {seed}, type {kind}")
-    deck.control(60.0 / SOUND, scale=0.5)
+    deck.control(60.0 / SOUND, scale=0.25)
     for part, x, speed in ((1, -1.15, 0.025), (2, 1.15, -0.025)):
         deck.part(part).elastic(RHO, YOUNG, POISSON, part)
         coordinates, quads = quads_of(polygon(rng, 1.0), int(rng.integers(2, 5)))
@@ -100,10 +100,15 @@ def bars(kind, damping=0.0, load=False):
     return deck.output(glstat=0.05 / SOUND)
 
 
+def sign_of(gain):
+    """What the log must tell of bodies that gained this share of their energy; near 1 % anything."""
+    return "made" if gain > 0.015 else "lost" if gain < -0.015 else "neither" if abs(gain) < 0.005 else ""
+
+
 def check_corners(run):
     """Made, lost and neither: the log tells what the bodies have gained, which no contact enters."""
-    for kind, seed, expected in ((7, 2, "made"), (7, 20, "made"), (5, 5, "made"), (6, 12, "lost"), (7, 12, "lost"),
-                                 (6, 1, None), (7, 29, None)):
+    found = []
+    for kind, seed in ((7, 2), (7, 20), (5, 5), (5, 9), (6, 12), (7, 12), (6, 1), (7, 29)):
         name = f"{TYPES[kind]}, polygons {seed}"
         result = run.program(polygons(seed, kind), name=f"corners_{kind}_{seed}")
         energy, springs = result.table("glstat"), result.table("sleout")
@@ -112,11 +117,14 @@ def check_corners(run):
                   (springs["stored"] - springs["energy"])[-1] / energy["total"][0], gain / energy["total"][0],
                   3e-3, "abs", "sum over the bodies alone")
         first, in_all = told(result, FIRST), told(result, IN_ALL)
-        run.true(f"{name}: a warning in the cycle and one in the summary" if expected else f"{name}: no warning",
-                 bool(expected) == bool(first) == bool(in_all) and (expected in [m[4] for m in first]
-                                                                     or not expected))
-        if not expected:
+        found.append(sign_of(gain / energy["total"][0]))
+        if found[-1] == "neither":
+            run.true(f"{name}: nothing is said in the summary", not in_all)
+        if found[-1] not in ("made", "lost"):
             continue
+        expected = found[-1]
+        run.true(f"{name}: a warning in the cycle and one in the summary",
+                 bool(in_all) and expected in [m[4] for m in first])
         run.true(f"{name}: the summary tells the sign", in_all[-1][2] == expected)
         run.check(f"{name}: amount of the summary / E0", float(in_all[-1][3]) / energy["total"][0],
                   abs(gain) / energy["total"][0], 3e-3, "abs", "what the bodies gained or lost")
@@ -127,6 +135,8 @@ def check_corners(run):
                   "the bodies meet about x = 0")
         run.check(f"{name}: each sign is told once at most", max(
             [m[4] for m in first].count(sign) for sign in ("made", "lost")), 1, 0.0, "max")
+    for sign in ("made", "lost", "neither"):
+        run.true(f"polygons: some have {sign} energy", sign in found)
 
 
 def check_sound(run):

@@ -123,7 +123,7 @@ def write_parameters(deck, level, ctype, ngauss):
         ("pen", PENALTY, "penalty of a contact node in N/m"),
         ("down", APPROACH, "way of the cylinder's cut in m"),
         ("damp", 7.0e5, "mass damping in 1/s"),
-        ("dt", 8.0e-9 / level, "time step in s"),
+        ("dt", 6.25e-9 / level, "time step in s"),
         ("endtim", END, "end time in s"),
         ("ihq", 4, "hourglass control: 1 viscous form, 4 stiffness form"),
         ("qh", 0.05, "hourglass coefficient"),
