@@ -268,17 +268,23 @@ contains
 
     text = 'slideline: 2D explicit contact dynamics'//n//n// &
       'usage: slideline i=DECK [d=DIR] [jobid=NAME] [ncpu=N] [timing=...] [OVERRIDES]'//n// &
-      '       slideline r=FILE [i=CHANGES] [d=DIR] [ncpu=N] [endtim=T]   go on from a restart file'//n// &
+      '       slideline r=FILE [i=CHANGES] [d=DIR] [ncpu=N] [endtim=T]   go on from a '// &
+        'restart file'//n// &
       '       slideline DECK ...     the same'//n// &
-      '       slideline check DECK [--json] [OVERRIDES]   all errors and warnings, without a run'//n//n// &
+      '       slideline check DECK [--json] [OVERRIDES]   all errors and warnings, without '// &
+        'a run'//n//n// &
       '  i=DECK        LS-DYNA style keyword deck'//n// &
-      '  r=FILE        restart file (JOB.dump01.h5, JOB.runrsf.h5): the run goes on from there, in its'//n// &
-      '                folder unless d= says otherwise; i= then names a small deck of changes'//n// &
+      '  r=FILE        restart file (JOB.dump01.h5, JOB.runrsf.h5): the run goes on from '// &
+        'there, in its'//n// &
+      '                folder unless d= says otherwise; i= then names a small deck of '// &
+        'changes'//n// &
       '  d=DIR         folder of the results, made with its parents (default: .)'//n// &
       '  jobid=NAME    stem of the result files (default: the deck''s)'//n// &
-      '  ncpu=N        threads at most (default 1); the results have the same bits at any number'//n// &
+      '  ncpu=N        threads at most (default 1); the results have the same bits at any '// &
+        'number'//n// &
       '  perthread=N   elements for each of several threads, at least (default 300)'//n// &
-      '  timing=HOW    phase: wall clock by phase (default); interface: contact phases of each'//n// &
+      '  timing=HOW    phase: wall clock by phase (default); interface: contact phases of '// &
+        'each'//n// &
       '                interface too; off: the total alone'//n// &
       '  memory=...    and memory2=...: accepted and ignored'//n//n// &
       'overrides, for sweeps:'//n// &
@@ -287,11 +293,15 @@ contains
       '  endtim=T dt=DT tssfac=F     end time, constant step, safety factor'//n// &
       '  p:NAME=VALUE                a *PARAMETER of the deck'//n//n// &
       'results: JOB.vtkhdf (ParaView), JOB.*.csv, JOB.log, JOB.effective.k (the deck as run)'//n// &
-      'while it runs: status.out (JOB.status.out with jobid=) says how far it is and how long it may take;'//n// &
-      'a file DIR/d3kil with sw1 (restart file, stop), sw2 (status line), sw3 (restart file), sw4 (plot'//n// &
-      'state), swa (histories up to date) or stop; signals TERM, INT, HUP and XCPU (stop), USR1 (sw3),'//n// &
+      'while it runs: status.out (JOB.status.out with jobid=) says how far it is and how '// &
+        'long it may take;'//n// &
+      'a file DIR/d3kil with sw1 (restart file, stop), sw2 (status line), sw3 (restart '// &
+        'file), sw4 (plot'//n// &
+      'state), swa (histories up to date) or stop; signals TERM, INT, HUP and XCPU (stop), '// &
+        'USR1 (sw3),'//n// &
       'USR2 (sw4)'//n// &
-      'exit status: 0 normal, 1 refused input, 2 error termination, 3 files, 4 stopped on request'//n// &
+      'exit status: 0 normal, 1 refused input, 2 error termination, 3 files, 4 stopped on '// &
+        'request'//n// &
       '--version prints the version, compiler and options'
   end function help_text
 

@@ -8,7 +8,6 @@ program slideline
   use endings_m, only : watch_end, announce_end, error_ending
   use errors_m, only : error_t
   use files_m, only : fill_standard_streams
-  use refused_memory_m, only : watch_memory
   use run_m, only : run_deck
   use screen_m, only : show, complain
   use signals_m, only : catch_requests
@@ -30,7 +29,6 @@ program slideline
 
   call catch_requests()
   call watch_end()
-  call watch_memory()
   call fill_standard_streams()
   call read_arguments(arguments, error)
   if (.not. allocated(error)) then

@@ -11,7 +11,7 @@ module run_m
   use errors_m, only : error_t, raise, status_stopped
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
-  use files_m, only : make_directory, remove_file, join_path
+  use files_m, only : make_directory, remove_file, join_path, unfinished
   use history_file_m, only : close_histories
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use go_on_m, only : take_up_deck
@@ -27,7 +27,6 @@ module run_m
   use restart_reading_m, only : take_up_state, take_up_results, check_rest, &
     take_up_outputs
   use result_names_m, only : check_names
-  use results_arrays_m, only : unfinished
   use results_file_m, only : run_info_t
   use sense_switch_m, only : forget_switch
   use signals_m, only : catch_stops

@@ -8,7 +8,7 @@ module refused_memory_m
   use c_files_m, only : c_write
   implicit none
   private
-  public :: watch_memory, expect_refusal, need_memory
+  public :: expect_refusal, need_memory
 
   !> Whether the caller looks at the answer himself. A procedure of the C library has no argument to
   !> carry it, so that it is saved here.
@@ -52,11 +52,6 @@ module refused_memory_m
 
 contains
 
-  !> Nothing to be done: a call of it brings these procedures into the program.
-  subroutine watch_memory()
-    is_expected = .false.
-  end subroutine watch_memory
-
   !> From now on, until told otherwise, an `allocate` with a status gets it.
   subroutine expect_refusal(yes)
     logical, intent(in) :: yes
@@ -64,8 +59,8 @@ contains
     is_expected = yes
   end subroutine expect_refusal
 
-  !> End the program here unless so much memory is to be had: before calls of a library that does not
-  !> look at the answer.
+  !> End the program here unless so much memory is to be had: before calls of a library that does
+  !> not look at the answer.
   subroutine need_memory(n_byte)
     integer(c_size_t), intent(in) :: n_byte
     type(c_ptr) :: place

@@ -13,7 +13,8 @@ module deck_m
   use deck_report_m, only : emit_warnings, emit_errors
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text
   use deck_reader_m, only : read_blocks, cut_deck
-  use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, known_refused
+  use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
+    known_refused
   use deck_parameter_table_m, only : parameters_t
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : overrides_t, read_overrides, override_text

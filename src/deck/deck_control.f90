@@ -138,8 +138,9 @@ contains
     type(raw_t), intent(in) :: raw
 
     if (raw%dt_curve < 0) call reject_field(deck, raw%dt_curve_place, 'is not a curve number')
-    if (raw%controls%dt_scale > 1.0_wp .and. .not. raw%controls%implicit%is_on) call line_warning(deck, merge(0, raw%step_line, &
-      raw%scale_given), 'tssfac', 'TSSFAC'//trim(merge(' on the command line', &
+    if (raw%controls%dt_scale > 1.0_wp .and. .not. raw%controls%implicit%is_on) &
+      call line_warning(deck, merge(0, raw%step_line, raw%scale_given), 'tssfac', &
+      'TSSFAC'//trim(merge(' on the command line', &
       '                    ', raw%scale_given))//' is above 1: the run may become unstable')
     if (raw%controls%dt_initial > 0.0_wp .and. raw%dt_curve > 0 .and. &
       .not. raw%controls%implicit%is_on) call line_warning(deck, raw%step_line, 'dtinit', &

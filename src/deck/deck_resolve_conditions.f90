@@ -300,8 +300,9 @@ contains
 
     k = model%conditions%damping%curve
     if (k == 0) return
-    if (minval(model%curves(k)%ordinate) < 0.0_wp) call reject_field(deck, place_t(row%line, 1, 1), &
-      'is a curve with values below 0: forces that push along with the velocity would feed energy')
+    if (minval(model%curves(k)%ordinate) < 0.0_wp) &
+      call reject_field(deck, place_t(row%line, 1, 1), 'is a curve with ' &
+      //'values below 0: forces that push along with the velocity would feed energy')
   end subroutine check_damping
 
 end module deck_resolve_conditions_m

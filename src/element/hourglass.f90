@@ -37,11 +37,11 @@ contains
     work = dt*work
   end subroutine resist_viscously
 
-  !> Stiffness form: force (Q_h/4)(K + 4G/3)((B_x.B_x + B_y.B_y)/A) times the hourglass strain e, which
-  !> turns with the element. With the rotation R of the step, e' = R e + (1 + R) dt g/2: gamma.v is of
-  !> the mid-step frame, half a rotation back, and (1 + R)/2 is that half rotation times its cosine,
-  !> by which gamma.v of a turning element is too large. So a pattern that grows while its element
-  !> turns is kept without error, whatever the step, and no step divides by zero.
+  !> Stiffness form: force (Q_h/4)(K + 4G/3)((B_x.B_x + B_y.B_y)/A) times the hourglass strain e,
+  !> which turns with the element. With the rotation R of the step, e' = R e + (1 + R) dt g/2:
+  !> gamma.v is of the mid-step frame, half a rotation back, and (1 + R)/2 is that half rotation
+  !> times its cosine, by which gamma.v of a turning element is too large. So a pattern that grows
+  !> while its element turns is kept without error, whatever the step, and no step divides by zero.
   pure subroutine resist_elastically(factor, dt, stress, strain_x, strain_y, chunk, work)
     real(wp), intent(in) :: factor                  !! Q_h (K + 4G/3)/4
     real(wp), intent(in) :: dt

@@ -11,8 +11,8 @@ module csv_table_m
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   implicit none
   private
-  public :: csv_table_t, plan_table, open_table, add_row, check_table, flush_table, close_table, column_name, &
-    n_columns, row_text, kind_real, kind_integer, kind_side
+  public :: csv_table_t, plan_table, open_table, add_row, check_table, flush_table, close_table, &
+    column_name, n_columns, row_text, kind_real, kind_integer, kind_side
 
   !> Kinds of columns: a real, an integer, a side of an interface (1 = slave, 2 = master).
   integer, parameter :: kind_real = 1, kind_integer = 2, kind_side = 3

@@ -6,16 +6,16 @@ module history_file_m
   use model_m, only : model_t
   use controls_m, only : interval_t, is_asked
   use supports_m, only : mark_supports
-  use csv_table_m, only : csv_table_t, plan_table, open_table, check_table, flush_table, close_table, &
-    n_columns, kind_real, kind_integer, kind_side
+  use csv_table_m, only : csv_table_t, plan_table, open_table, check_table, flush_table, &
+    close_table, n_columns, kind_real, kind_integer, kind_side
   use dyna_layouts_m, only : layout_glstat, layout_rcforc, layout_nodout, layout_matsum, &
     layout_sleout, layout_spcforc
   use dyna_text_m, only : open_dyna_text
   implicit none
   private
-  public :: histories_t, plan_histories, open_histories, check_histories, flush_histories, close_histories, &
-    n_table, table_glstat, table_rcforc, table_nodout, table_contact, table_matsum, table_rwforc, &
-    table_sleout, table_spcforc, table_names
+  public :: histories_t, plan_histories, open_histories, check_histories, flush_histories, &
+    close_histories, n_table, table_glstat, table_rcforc, table_nodout, table_contact, &
+    table_matsum, table_rwforc, table_sleout, table_spcforc, table_names
 
   integer, parameter :: n_table = 8
   integer, parameter :: table_glstat = 1, table_rcforc = 2, table_nodout = 3, table_contact = 4, &

@@ -17,14 +17,15 @@ module restart_file_m
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
   use errors_m, only : error_t, raise, status_files, status_input
   use file_facts_m, only : what_hinders
-  use files_m, only : rename_file, remove_file, force_to_disk, is_endless, parent_path
+  use files_m, only : rename_file, remove_file, force_to_disk, is_endless, parent_path, &
+    unfinished
   use hdf5_library_m, only : open_library
   use kinds_m, only : long
   use log_m, only : to_text
   use text_files_m, only : overwrite_start
   implicit none
   private
-  public :: create_restart, finish_restart, open_restart, close_restart, file_checksum, unfinished
+  public :: create_restart, finish_restart, open_restart, close_restart, file_checksum
 
   !> Layout of the file. To be raised when a component of the state comes, goes or changes its
   !> meaning, and when nodes or elements get another order: arrays lie in that order.
@@ -32,8 +33,6 @@ module restart_file_m
   character(*), parameter :: mark = 'slideline restart '
   !> Bytes of the head, and of a block that is read.
   integer, parameter :: head_size = 512, block_size = 65536
-  !> Behind the name of a file that is not complete.
-  character(*), parameter :: unfinished = '.part'
 
 contains
 

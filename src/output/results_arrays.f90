@@ -16,6 +16,7 @@ module results_arrays_m
   use kinds_m, only : wp, long
   use errors_m, only : error_t, raise, status_files
   use file_facts_m, only : file_facts_t, what_hinders
+  use files_m, only : unfinished
   use mesh_m, only : mesh_t
   use controls_m, only : controls_t
   use hdf5_library_m, only : open_library
@@ -24,7 +25,7 @@ module results_arrays_m
   implicit none
   private
   public :: results_file_t, create_file, create_steps, create_fields, planned_states, &
-    states_per_chunk, block_rows, unfinished, n_point_field, n_cell_field, n_step_array, &
+    states_per_chunk, block_rows, n_point_field, n_cell_field, n_step_array, &
     point_names, point_columns, cell_names, cell_columns, step_values, step_points, step_ones
 
   !> Fields, in the order in which `append_state` writes them, and their numbers of columns.
@@ -52,8 +53,6 @@ module results_arrays_m
   integer, parameter :: block_rows = 16384
   !> Bound on the number of states that is planned for.
   integer, parameter :: most_planned = 4096
-  !> Behind the name of a file without a state.
-  character(*), parameter :: unfinished = '.part'
 
   !> An open results file.
   type :: results_file_t

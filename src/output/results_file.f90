@@ -14,14 +14,14 @@ module results_file_m
   use kinds_m, only : wp, long
   use errors_m, only : error_t, raise, status_files
   use file_facts_m, only : file_facts_t, facts_of_name, is_same_file
-  use files_m, only : remove_file, rename_file
+  use files_m, only : remove_file, rename_file, unfinished
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t
   use history_file_m, only : histories_t
   use results_tables_m, only : run_info_t, write_run, write_histories
   use results_mesh_m, only : write_mesh, deck_nodes
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
-    planned_states, block_rows, unfinished, n_point_field, n_cell_field, n_step_array, &
+    planned_states, block_rows, n_point_field, n_cell_field, n_step_array, &
     step_values, step_points, step_ones
   use hdf5_writing_m, only : append_rows, close_growing, make_group, write_string_attribute, &
     write_index_attribute, check_status

@@ -82,9 +82,9 @@ contains
     end do
   end subroutine log_smallest_steps
 
-  !> A warning where a step is too long for the global damping. A free node keeps (2 - D dt)/(2 + D
-  !> dt) of its velocity in a step (node_motion): that never grows, but is no longer exp(-D dt) where
-  !> D dt passes 1, and is below 0 where it passes 2.
+  !> A warning where a step is too long for the global damping. A free node keeps
+  !> (2 - D dt)/(2 + D dt) of its velocity in a step (node_motion): that never grows, but is no
+  !> longer exp(-D dt) where D dt passes 1, and is below 0 where it passes 2.
   subroutine judge_damping(model, dt, log)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: dt          !! first step, s
@@ -105,13 +105,15 @@ contains
       end if
       share = largest*maxval(damping%factor)*dt
       if (.not. share > 1.0_wp) return
-      text = '*DAMPING_GLOBAL acts on all parts with D = '//to_text(largest*maxval(damping%factor)) &
-        //' ('//text//', times STX or STY); times the step '//to_text(dt)//' that is ' &
+      text = '*DAMPING_GLOBAL acts on all parts with D = ' &
+        //to_text(largest*maxval(damping%factor))//' ('//text &
+        //', times STX or STY); times the step '//to_text(dt)//' that is ' &
         //to_text(share)//', above 1: a step leaves '//to_text((2.0_wp - share)/(2.0_wp + share)) &
         //' of a velocity where exp(-D dt) = '//to_text(exp(-share))//' is meant'
     end associate
     if (share > 2.0_wp) text = text//', and above 2 velocities change sign in every step'
-    call warn(log, text//'; nothing grows, but a smaller D or a smaller step is needed to follow it')
+    call warn(log, text//'; nothing grows, but a smaller D or a smaller step is needed ' &
+      //'to follow it')
   end subroutine judge_damping
 
 end module model_log_m

@@ -20,8 +20,8 @@ module monitor_m
   use supports_m, only : mark_supports
   implicit none
   private
-  public :: monitor_t, open_files, start_monitor, plan_outputs, find_due, any_due, write_due, finish_monitor, &
-    due_t
+  public :: monitor_t, open_files, start_monitor, plan_outputs, find_due, any_due, write_due, &
+    finish_monitor, due_t
 
   !> What is due in one cycle.
   type :: due_t

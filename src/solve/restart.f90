@@ -8,12 +8,12 @@
 module restart_m
   use archive_file_m, only : archive_t, fail_archive
   use errors_m, only : error_t, status_files
-  use files_m, only : file_exists, remove_file
+  use files_m, only : file_exists, remove_file, unfinished
   use kinds_m, only : long
   use log_m, only : write_log
   use monitor_m, only : monitor_t
   use progress_m, only : show_note
-  use restart_file_m, only : create_restart, finish_restart, file_checksum, unfinished
+  use restart_file_m, only : create_restart, finish_restart, file_checksum
   use restart_plan_m, only : restarts_t, dump_path, running_path, place_text, numbered_file
   use restart_run_m, only : keep_run, keep_outputs
   use restart_state_m, only : keep_state

@@ -3,20 +3,21 @@
 module result_names_m
   use errors_m, only : error_t, raise, status_files
   use file_facts_m, only : file_facts_t, facts_of_name, what_hinders
-  use files_m, only : join_path
+  use files_m, only : join_path, unfinished
   use history_file_m, only : table_names
   use restart_plan_m, only : restarts_t, dump_path, running_path
   implicit none
   private
   public :: check_names
 
-  !> Behind the name of a file that is not complete.
-  character(*), parameter :: unfinished = '.part'
+  !> Numbered restart files that are looked at in any case: those with two digits.
+  integer, parameter :: least_numbers = 99
 
 contains
 
   !> Refuse names of results under which something else stands than a file: a directory, a pipe, a
-  !> device, a symbolic link. Other files are replaced.
+  !> device, a symbolic link. Other files are replaced. Numbered restart files have no last number:
+  !> beyond the least they are looked at while they follow without a gap.
   subroutine check_names(restarts, error)
     type(restarts_t), intent(in) :: restarts !! its directory, job and prefix
     type(error_t), allocatable, intent(out) :: error
@@ -35,7 +36,10 @@ contains
     call check_name(join_path(restarts%directory, restarts%job//'.status.out'), error)
     call check_name(running_path(restarts), error)
     i = 1
-    do while (is_taken(dump_path(restarts, i)))
+    do
+      if (i > least_numbers) then
+        if (.not. is_taken(dump_path(restarts, i))) exit
+      end if
       call check_name(dump_path(restarts, i), error)
       i = i + 1
     end do

@@ -4,7 +4,7 @@
 module status_file_m
   use clock_m, only : clock_t, elapsed_seconds
   use errors_m, only : error_t
-  use files_m, only : join_path, rename_file
+  use files_m, only : join_path, rename_file, unfinished
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use kinds_m, only : wp, long
   use log_m, only : to_text
@@ -78,12 +78,12 @@ contains
     type(error_t), allocatable :: error, closing
 
     if (.not. allocated(status%path)) return
-    call create_text_file(file, status%path//'.part', error)
+    call create_text_file(file, status%path//unfinished, error)
     if (allocated(error)) return
     call append_text(file, status_text(status, clock, state), error)
     call close_text_file(file, closing)
     if (allocated(error) .or. allocated(closing)) return
-    call rename_file(status%path//'.part', status%path, error)
+    call rename_file(status%path//unfinished, status%path, error)
   end subroutine write_status
 
   !> The lines of the file.

@@ -6,8 +6,8 @@ module energies_m
   private
   public :: energies_t, total_energy, energy_ratio
 
-  !> What rounding leaves of a sum that vanishes, as a share of its largest term: terms are sums over
-  !> nodes, elements and thousands of cycles.
+  !> What rounding leaves of a sum that vanishes, as a share of its largest term: terms are sums
+  !> over nodes, elements and thousands of cycles.
   real(wp), parameter :: round_off = 1.0e-12_wp
 
   !> Energies at one instant, J per metre of thickness.
@@ -18,11 +18,11 @@ module energies_m
     real(wp) :: viscous = 0.0_wp       !! dissipated by the bulk viscosity
     real(wp) :: damping = 0.0_wp       !! dissipated by global damping
     real(wp) :: contact = 0.0_wp       !! minus the work of the contact forces
-    real(wp) :: made = 0.0_wp          !! what contact springs gave beyond what they took; no part of
-                                       !! the sum
+    real(wp) :: made = 0.0_wp          !! what contact springs gave beyond what they took; no part
+                                       !! of the sum
     real(wp) :: external_work = 0.0_wp !! work of loads and prescribed motion
-    real(wp) :: leapfrog = 0.0_wp      !! v(n-1/2).M v(n+1/2)/2 minus the kinetic energy, in explicit
-                                       !! runs
+    real(wp) :: leapfrog = 0.0_wp      !! v(n-1/2).M v(n+1/2)/2 minus the kinetic energy, in
+                                       !! explicit runs
     real(wp) :: initial = 0.0_wp       !! total at time zero
   end type energies_t
 

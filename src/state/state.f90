@@ -35,8 +35,8 @@ module state_m
                                                   !! nodes only in cycles that write
     real(wp), allocatable :: prescribed_velocity(:) !! (n_motion) v(n-1/2), v(n+1/2) once the cycle
                                                     !! knows it
-    real(wp), allocatable :: former_velocity(:, :) !! (2, n_node) v(n-3/2), v(n-1/2) once the work of
-                                                   !! damping is summed; only in damped runs
+    real(wp), allocatable :: former_velocity(:, :) !! (2, n_node) v(n-3/2), v(n-1/2) once the work
+                                                   !! of damping is summed; only in damped runs
     real(wp) :: former_dt = 0.0_wp             !! step of v(n-3/2), s
     real(wp), allocatable :: acceleration(:, :) !! (2, n_node) of the implicit driver, whose v and a
                                                 !! belong to the instant of u
@@ -48,8 +48,8 @@ module state_m
     real(wp) :: external_work = 0.0_wp
     real(wp) :: damping_work = 0.0_wp
     real(wp) :: initial_energy = 0.0_wp
-    real(wp) :: largest_energy = 0.0_wp !! largest |initial energy + external work| so far; only where
-                                        !! there is contact in an explicit run
+    real(wp) :: largest_energy = 0.0_wp !! largest |initial energy + external work| so far; only
+                                        !! where there is contact in an explicit run
   end type state_t
 
 end module state_m

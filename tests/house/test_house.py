@@ -29,7 +29,11 @@ DISPATCHERS = {
     "law": "material_dispatch.f90",
     "element_form": "element_dispatch.f90",
 }
-MOST_FILE_LINES, MOST_PROCEDURE_LINES, MOST_ARGUMENTS, MOST_COLUMNS = 450, 100, 10, 132
+MOST_FILE_LINES, MOST_PROCEDURE_LINES, MOST_ARGUMENTS, MOST_COLUMNS = 450, 80, 8, 100
+MOST_TEST_COLUMNS = 132
+#: procedures that have more arguments, and how many; none may be added
+MORE_ARGUMENTS = {"add_pressures": 9, "advance_one_point": 9, "grow_with_rate": 10, "find_way": 9}
+MORE_ARGUMENTS_IN_CONTACT = 10
 MOST_MEDIAN_LINES = 25
 AIM_FILE_LINES, AIM_PROCEDURE_LINES, AIM_ARGUMENTS = 300, 60, 8
 TOP_LEVEL = {"CMakeLists.txt", "README.md", "src", "input", "tests", "tools", "doc"}
@@ -124,6 +128,12 @@ def test_only_the_dispatcher_asks_for_the_kind(word, dispatcher):
     assert not wrong
 
 
+def most_arguments(procedure, source):
+    if layer_of(source) == "contact":
+        return MORE_ARGUMENTS_IN_CONTACT
+    return MORE_ARGUMENTS.get(procedure.name, MOST_ARGUMENTS)
+
+
 def test_sizes(capsys):
     procedures = [(procedure, source) for source in SOURCES for procedure in source.procedures]
     wrong = [f"{source.name}: {len(source.lines)} lines" for source in SOURCES
@@ -131,7 +141,8 @@ def test_sizes(capsys):
     wrong += [f"{source.name}: {procedure.name} has {procedure.lines} lines"
               for procedure, source in procedures if procedure.lines > MOST_PROCEDURE_LINES]
     wrong += [f"{source.name}: {procedure.name} has {procedure.arguments} arguments"
-              for procedure, source in procedures if procedure.arguments > MOST_ARGUMENTS]
+              for procedure, source in procedures
+              if procedure.arguments > most_arguments(procedure, source)]
     median = statistics.median(procedure.lines for procedure, _ in procedures)
     beyond = [source.name for source in SOURCES if len(source.lines) > AIM_FILE_LINES]
     beyond += [f"{source.name}:{procedure.name}" for procedure, source in procedures
@@ -148,7 +159,8 @@ def test_no_line_is_too_long():
              for path in sorted((ROOT / folder).rglob(pattern))]
     wrong = [f"{path.relative_to(ROOT)}:{number}" for path in files
              for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
-             if len(line) > MOST_COLUMNS]
+             if len(line) > (MOST_COLUMNS if path.is_relative_to(ROOT / "src")
+                             else MOST_TEST_COLUMNS)]
     assert not wrong
 
 
