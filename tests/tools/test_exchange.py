@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Slave and master exchanged: decks, penalties, differences."""
+import re
+
 import numpy as np
 import pytest
 
@@ -74,18 +76,32 @@ def test_list_of_runs(tmp_path, capsys):
 
 def test_energy_that_contact_made_is_named(monkeypatch):
     """Type 4 keeps 6.3 % when exchanged, type 5 makes 3 and 9 %, type 1 neither by 1 %."""
-    left = {(1, False): 0.004, (1, True): -0.009, (4, False): 0.0, (4, True): 0.063, (5, False): -0.031,
-            (5, True): -0.094}
+    made = {(1, False): 0.004, (1, True): 0.009, (4, False): 0.0, (4, True): 0.0, (5, False): 0.031,
+            (5, True): 0.094}
+    kept = {(1, False): 0.004, (1, True): -0.009, (4, False): 0.0, (4, True): 0.063, (5, False): -0.2,
+            (5, True): 0.0}
 
     class Made:
         def __init__(self, _folder, _scene, ctype, exchanged):
-            self.value = left[ctype, exchanged]
+            self.case = ctype, exchanged
 
-        def contact_energy(self):
-            return self.value
+        def made(self):
+            return made[self.case]
+
+        def kept(self):
+            return kept[self.case]
 
     monkeypatch.setattr(exchange, "Run", Made)
     assert exchange.made_text(None, (1, 4, 5)) == (
         "Of the energy of the flight, where it is more than 1 %: as it is contact made: type 5 3.1 %; "
         "exchanged contact made: type 5 9.4 %; exchanged contact kept: type 4 6.3 %.")
     assert exchange.made_text(None, ()) == ""
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_decks_ask_for_the_energies_of_interfaces(scene):
+    """At the times of glstat, whatever lines stand between keyword and card."""
+    plain = getattr(exchange.scenes, scene)()
+    deck = exchange.with_interface_energies(plain)
+    cards = {name: re.search(rf"\*DATABASE_{name}\n((?:[^*\n].*\n)+)", deck) for name in ("GLSTAT", "SLEOUT")}
+    assert cards["GLSTAT"].group(1) == cards["SLEOUT"].group(1) and "SLEOUT" not in plain

@@ -10,6 +10,7 @@ import pytest
 
 from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.decks import Grid
+from slideline_tools.histories import History, HistoryError, energy_made
 from slideline_tools.study import stability, stability_measures as measures, stability_page
 from slideline_tools.study.job import Options
 from slideline_tools.study.stability_eigen import Model, quad_stiffness
@@ -213,3 +214,19 @@ def test_limits_of_springs_and_elements():
     soft, = stability.derive([{**row, "penalty": 1.0}], None)
     assert soft["both_limits"] == soft["true_limit"] < 1e-2 * soft["opening_limit"]
     assert scene.limit(2, 4.0e9, False) == pytest.approx(0.5 * scene.limit(2, 1.0e9, False))
+
+
+def test_energy_made_is_seen_behind_what_springs_hold_and_damping_takes():
+    """Two interfaces at three times. In the second the first has made 3 J while it holds 5 and VDC has
+    taken 4 (its column `contact` says +6: nothing made); the other has lost 2, which hides nothing."""
+    sleout = History("sleout", {
+        "time": np.repeat([0.0, 1.0, 2.0], 2), "cycle": np.repeat([0, 10, 20], 2),
+        "interface": np.array([1, 2] * 3), "energy": np.array([0.0, 0.0, 2.0, 2.0, 1.0, 2.0]),
+        "damping": np.array([0.0, 0.0, 4.0, 0.0, 4.0, 0.0]), "stored": np.array([0.0, 0.0, 5.0, 0.0, 2.0, 0.0])})
+    assert energy_made(sleout) == pytest.approx([0.0, 3.0, 1.0])
+    whole = np.array([20.0, 20.0, 20.0])
+    glstat = History("glstat", {"total": whole, "external_work": 0.0 * whole,
+                                "contact": np.array([0.0, 8.0, 7.0])})
+    assert measures.energies(glstat, sleout) == pytest.approx((0.0, 0.15))
+    with pytest.raises(HistoryError, match="no rows"):
+        energy_made(sleout.rows(slice(0, 0)))

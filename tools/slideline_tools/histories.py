@@ -135,6 +135,19 @@ def read_csv(path: str | os.PathLike) -> History:
                                       for name, texts in zip(names, columns)})
 
 
+def energy_made(sleout: History) -> np.ndarray:
+    """What contact springs have made until each time of sleout, J per unit of depth: by interface, what
+    they hold and gave beyond what they took, where that is above 0, added up. Work of damping (VDC) is
+    no part of it, and energy that the springs still hold does not hide what they made.
+
+    One value per time in order of appearance; HistoryError if there are no rows.
+    """
+    if not len(sleout):
+        raise HistoryError("sleout has no rows")
+    _, place = np.unique(sleout["time"], return_inverse=True)
+    return np.bincount(place, np.maximum(0.0, sleout["stored"] - sleout["energy"]))
+
+
 def table_name(path: str | os.PathLike) -> str:
     """'glstat' for `job.glstat.csv`; the stem of any other CSV file."""
     return pathlib.Path(path).stem.rsplit(".", 1)[-1]

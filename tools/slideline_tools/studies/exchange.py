@@ -10,13 +10,14 @@ distributed penalty stays the same.
 `page` reads the runs FOLDER/<scene>[_exchanged]_type_<n>/<scene>.* and writes DOC/studies/exchange.md.
 """
 import dataclasses
+import re
 import sys
 import typing
 
 import numpy as np
 
 from slideline_tools import scenes
-from slideline_tools.histories import read_csv
+from slideline_tools.histories import energy_made, read_csv
 from slideline_tools.results import read
 from slideline_tools.studies.common import decks_and_page_main, label, markdown_table, write_page
 from slideline_tools.studies.sliding import judged_interval
@@ -55,8 +56,13 @@ class Run:
         length = np.append(half, 0.0) + np.append(0.0, half)
         return np.abs(self.results.point_field("contact_force")[-1][rows, 1]) / length
 
-    def contact_energy(self):
-        """Contact energy at the end over the largest kinetic energy: what contact lost."""
+    def made(self):
+        """What contact springs made at most until any time, over the largest kinetic energy."""
+        return np.max(energy_made(self.table("sleout"))) / self.table("glstat")["kinetic"].max()
+
+    def kept(self):
+        """What contact took and had not given back at the end, over the largest kinetic energy;
+        below 0: it gave more than it took."""
         energy = self.table("glstat")
         return energy["contact"][-1] / energy["kinetic"].max()
 
@@ -145,11 +151,13 @@ def scene_quantities():
             Quantity("plastic strain at 0.7 ms", largest_strain(SNAPSHOT_TIME)),
             Quantity("impulse, kN s/m", impulse, 1.0e-3),
             Quantity("rebound velocity, m/s", body_velocity, 1.0, 80.0),
-            Quantity("contact energy left, % of the initial", Run.contact_energy, **percent)],
+            Quantity("energy kept by contact, % of the initial", Run.kept, **percent),
+            Quantity("energy made by contact, % of the initial", Run.made, **percent)],
         "oblique": [
             Quantity("spin, rad/s", turned_spin),
             Quantity("velocity of the block in y, m/s", body_velocity, 1.0, 1.0),
-            Quantity("contact energy left, % of the initial", Run.contact_energy, **percent)],
+            Quantity("energy kept by contact, % of the initial", Run.kept, **percent),
+            Quantity("energy made by contact, % of the initial", Run.made, **percent)],
     }
 
 
@@ -173,13 +181,18 @@ PENALTIES = {"patch": 1.0e6, "block": 1.0e6, "sliding": 10.0e9, "collision": 1.0
              "oblique": 5.0e5}
 
 
+def with_interface_energies(deck):
+    """The deck with *DATABASE_SLEOUT at the times of *DATABASE_GLSTAT."""
+    return re.sub(r"\*DATABASE_GLSTAT\n((?:[^*\n].*\n)+)", r"\g<0>*DATABASE_SLEOUT\n\1", deck)
+
+
 def write_decks(folder):
     """All decks; prints `name scene penalty penalty_of_type_3` for each, for the script."""
     folder.mkdir(parents=True, exist_ok=True)
     for scene, (slave, master) in mean_lengths().items():
         for exchanged in (False, True):
             name = f"{scene}{'_exchanged' if exchanged else ''}"
-            text = getattr(scenes, scene)(exchanged=exchanged)
+            text = with_interface_energies(getattr(scenes, scene)(exchanged=exchanged))
             (folder / f"{name}.k").write_text(text, encoding="ascii")
             # eps_hat = eps / mean slave segment; each pass of type 3 has its own mean segment.
             penalty = PENALTIES[scene] * (master / slave if exchanged else 1.0)
@@ -221,7 +234,8 @@ NOTES = {
     "oblique": "Exchanged, the slave is the flat, coarser face and the corner that hits is on the master. Types 1 "
                "and 2 see the corner only through slave nodes. The mortar types average gaps over slave segments "
                "longer than the part of the corner that is in contact: contact begins late and deep, and points "
-               "that come and go carry force. A negative contact energy is energy created. {made}",
+               "that come and go carry force. Energy made is the most that contact springs had given beyond "
+               "what they took, at any time; kept is what they had not given back at the end. {made}",
     "collision": "Plastic strain is that of the clamped corner, far from the contact, and hardly depends on "
                  "it. The rebound velocity is a small difference of large impulses.",
 }
@@ -261,10 +275,11 @@ def made_text(folder, types):
     """How much energy contact made or kept in the oblique impact, where that is above MADE."""
     parts = []
     for exchanged, when in ((False, "as it is"), (True, "exchanged")):
-        left = {ctype: Run(folder, "oblique", ctype, exchanged).contact_energy() for ctype in types}
-        for what, sign in (("made", -1.0), ("kept", 1.0)):
-            found = [f"type {ctype} {100.0 * abs(value):.1f} %" for ctype, value in left.items()
-                     if sign * value > MADE]
+        runs = {ctype: Run(folder, "oblique", ctype, exchanged) for ctype in types}
+        for what, value in (("made", Run.made), ("kept", Run.kept)):
+            shares = {ctype: value(run) for ctype, run in runs.items()}
+            found = [f"type {ctype} {100.0 * share:.1f} %" for ctype, share in shares.items()
+                     if share > MADE]
             if found:
                 parts.append(f"{when} contact {what}: {', '.join(found)}")
     return (f"Of the energy of the flight, where it is more than {100.0 * MADE:.0f} %: " + "; ".join(parts) + ".") \

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from slideline_tools.histories import read_csv
+from slideline_tools.histories import energy_made, read_csv
 
 STABLE, LOCKED, CHATTERING, PENETRATING, BLOWN_UP = range(5)
 VERDICTS = ("stable", "locked", "chattering", "penetrating", "blown up")
@@ -18,12 +18,12 @@ UNEVEN = 0.30           # scatter of the pressure over its mean where it should 
 ENDS = 2                # nodes at each end of the surface that do not count for that
 
 
-def energies(glstat):
-    """(drift, created) over the largest energy of the run; infinite where not finite."""
+def energies(glstat, sleout):
+    """(drift, created by contact springs) over the largest energy of the run; infinite where not finite."""
     work = glstat["external_work"]
     scale = np.max([np.max(np.abs(glstat["total"])), np.max(np.abs(work)), 1e-300])
     drift = np.max(np.abs(glstat["total"] - glstat["total"][0] - (work - work[0]))) / scale
-    created = -np.min(glstat["contact"]) / scale
+    created = np.max(energy_made(sleout)) / scale
     return tuple(value if math.isfinite(value) else math.inf for value in (drift, created))
 
 
@@ -66,8 +66,8 @@ def judge(status, measures, side, approach, is_uniform):
 def measure_run(folder, jobid, scene):
     """All measures of one run and its verdict."""
     tables = {name: read_csv(folder / f"{jobid}.{name}.csv")
-              for name in ("glstat", "rcforc", "contact")}
-    drift, created = energies(tables["glstat"])
+              for name in ("glstat", "rcforc", "sleout", "contact")}
+    drift, created = energies(tables["glstat"], tables["sleout"])
     measures = {"drift": drift, "created": created, "depth": depth(tables["contact"]),
                 "swings": swings(tables["rcforc"]), "uneven": unevenness(tables["contact"])}
     reached = tables["glstat"]["time"][-1] >= 0.99 * scene.end

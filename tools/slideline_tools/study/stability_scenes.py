@@ -85,7 +85,7 @@ def with_output(deck, end):
         deck = deck.replace("*CONTROL_ENERGY", f"*CONTROL_HOURGLASS\n4,{HOURGLASS}\n*CONTROL_ENERGY")
     row, state = end / SAMPLES, end / STATES
     return deck.replace("*CONTROL_ENERGY", f"*DATABASE_GLSTAT\n{row!r},\n*DATABASE_RCFORC\n{row!r},\n"
-                        f"*DATABASE_BINARY_D3PLOT\n{state!r},\n*CONTROL_ENERGY")
+                        f"*DATABASE_SLEOUT\n{row!r},\n*DATABASE_BINARY_D3PLOT\n{state!r},\n*CONTROL_ENERGY")
 
 
 def scaled_curve(deck, number, abscissa, ordinate):

@@ -116,7 +116,7 @@ def deck_of(case, ctype):
     deck.card("ihq qh", case.form, case.hourglass)
     energies_on(deck)
     deck.database(glstat=END / SAMPLES, rcforc=END / SAMPLES, matsum=END / SAMPLES,
-                  binary_d3plot=END / 24)
+                  sleout=END / SAMPLES, binary_d3plot=END / 24)
     for number, name in ((1, "lower block"), (2, "upper block")):
         part(deck, number, name, 1, 1)
     plane_strain(deck, 1)
