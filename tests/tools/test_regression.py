@@ -85,6 +85,16 @@ def test_blessed_reference_agrees_and_keeps_the_reason(world, tool, capsys):
         'first "reference"', "second"]
 
 
+def test_entries_that_share_a_reference_are_all_renewed(world, tool, capsys):
+    """One file with the columns of both; the last entry alone was left before."""
+    path = world[1] / "case.toml"
+    path.write_text(path.read_text() + '\n[[table]]\nname = "matsum"\ncolumns = ["mass"]\nwhere = { part = 2 }\n'
+                                       'rtol = 0.1\n')
+    assert bless(world, tool, "--reason", "first").returncode == 0
+    assert (world[1] / "matsum.csv").read_text().splitlines()[0] == "time,part,kinetic,mass"
+    assert judge(world, capsys)[0] == 0
+
+
 def test_changed_result_fails_and_names_the_column(world, tool, capsys):
     bless(world, tool, "--reason", "first")
     write_case(world[1], 1.01)

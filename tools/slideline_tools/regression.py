@@ -98,10 +98,15 @@ class Case:
 
     def bless(self, work, reason, version=""):
         """Make the histories of a finished run the reference and note the reason."""
+        found = {}
         for entry in self.content["table"]:
             table = self.table(entry, work)
             names = ["time", *table.entity_columns, *judged_columns(table, entry["columns"])]
-            write_reference(self.reference_file(entry), table, names)
+            # Several entries may look at columns of one file, each with its own tolerance.
+            _, before = found.get(self.reference_file(entry), (None, []))
+            found[self.reference_file(entry)] = table, list(dict.fromkeys([*before, *names]))
+        for file, (table, names) in found.items():
+            write_reference(file, table, names)
         note = ["", "[[blessed]]", f'date = "{datetime.date.today().isoformat()}"',
                 f"reason = {json.dumps(reason)}"]
         if version:
