@@ -70,6 +70,7 @@ LIES = {
     "state/contacts/1/watch/node": (lambda old: old * 0 + 99999, "no node"),
     "state/contacts/1/watch/2/node": (lambda old: old * 0 - 1, "no node"),
     "steps/start_cycle": (lambda old: old * 0 - 1, "below zero"),
+    "steps/start_cycle, later": (lambda old: old * 0 + 10**8, "after the present one"),
     "steps/damping": (lambda old: old[:-1], "in all"),
     "outputs/plot/next": (lambda old: old * 0 - 1.0e300, "below zero"),
     "outputs/plot/count": (lambda old: old * 0 - 7, "no run can reach"),
@@ -81,7 +82,7 @@ LIES = {
 def test_a_lie_is_named(exe, job, tmp_path, name):
     """Message with file, dataset and what is wrong with it; nothing is written."""
     change, word = LIES[name]
-    refuse_lie(exe, job, tmp_path, name, change, word)
+    refuse_lie(exe, job, tmp_path, name.partition(",")[0], change, word)
 
 
 def refuse_lie(exe, job, tmp_path, name, change, word):
