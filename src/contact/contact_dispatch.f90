@@ -3,17 +3,16 @@
 !> Adding one is a row of `formulations`, and a `use` and a `case` for either
 !> (doc/add_a_formulation.md).
 module contact_dispatch_m
-  use contact_spots_m, only : spots_at_nodes, spots_at_quarters, spots_at_gauss_points
+  use contact_law_m, only : law_penalty, pressed_at_points, pressed_at_slave_nodes
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, contact_kind_t, kind_text
-  use points_mortar_m, only : place_mortar
-  use points_nts_m, only : place_nts
-  use points_nts_ar_m, only : place_nts_ar
-  use points_nts_mar_m, only : place_nts_mar
-  use points_segmented_mortar_m, only : place_segmented_mortar
-  use points_two_pass_ar_m, only : place_two_pass_ar
-  use points_vts_ppt_m, only : place_vts_ppt
+  use place_mortar_m, only : place_mortar
+  use place_nts_m, only : place_nts, place_nts_ar, place_two_pass_ar
+  use place_nts_mar_m, only : place_nts_mar
+  use place_segmented_mortar_m, only : place_segmented_mortar
+  use place_vts_ppt_m, only : place_vts_ppt
   use sparse_m, only : sparse_t
+  use spots_m, only : spots_at_nodes, spots_at_quarters, spots_at_gauss_points
   use tangent_mortar_m, only : add_mortar_tangent, add_segmented_mortar_tangent
   use tangent_nts_m, only : add_nts_tangent, add_nts_ar_tangent
   use tangent_nts_mar_m, only : add_nts_mar_tangent
@@ -21,7 +20,7 @@ module contact_dispatch_m
   implicit none
   private
   public :: contact_kinds, formulation_t, formulation_of, is_strict, covering_names, place_points, &
-    places_ranges, place_range, add_tangent
+    add_tangent
 
   !> What the frame must know of a formulation before it places points.
   type :: formulation_t
@@ -30,9 +29,8 @@ module contact_dispatch_m
     logical :: has_two_passes = .false.   !! master nodes are tracked over the slave chain too
     logical :: has_unit_area = .false.    !! the penalty is N/m per node
     logical :: covers_segments = .false.  !! goes along both chains, slave segment by slave segment
-    logical :: has_point_per_spot = .false. !! a point at each spot in contact, these come first
-    logical :: averages_pressure = .false. !! pressure of slave nodes, from averaged gaps
-    logical :: places_ranges = .false.    !! points of some spots can be placed without the others
+    integer :: where_pressed = pressed_at_points !! where pressure is formed and kept
+    integer :: contact_law = law_penalty  !! from the gap there to the pressure
     integer :: points_per_slave = 1       !! usual most of points for each spot, for the allocation
     integer :: points_per_master = 0      !! and for each master node
   end type formulation_t
@@ -42,19 +40,19 @@ module contact_dispatch_m
 
   !> All formulations.
   type(formulation_t), parameter :: formulations(*) = [ &
-    formulation_t(contact_kind_t(type_nts, 'classical NTS'), has_unit_area=.true., &
-      has_point_per_spot=.true.), &
-    formulation_t(contact_kind_t(type_nts_ar, 'NTS-AR'), has_point_per_spot=.true.), &
+    formulation_t(contact_kind_t(type_nts, 'classical NTS'), has_unit_area=.true.), &
+    formulation_t(contact_kind_t(type_nts_ar, 'NTS-AR')), &
     formulation_t(contact_kind_t(type_two_pass_ar, 'NTS-AR two-pass'), has_two_passes=.true., &
-      has_point_per_spot=.true., points_per_master=1), &
+      points_per_master=1), &
     formulation_t(contact_kind_t(type_vts_ppt, 'VTS-PPT'), spots=spots_at_quarters, &
-      places_ranges=.true., points_per_master=1), &
+      points_per_master=1), &
     formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR', has_strict_rule=.true.), &
-      covers_segments=.true., has_point_per_spot=.true., points_per_master=1), &
+      covers_segments=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_mortar, 'mortar', uses_gauss_points=.true.), &
-      spots=spots_at_gauss_points, averages_pressure=.true.), &
+      spots=spots_at_gauss_points, where_pressed=pressed_at_slave_nodes), &
     formulation_t(contact_kind_t(type_segmented_mortar, 'segmented mortar'), &
-      covers_segments=.true., averages_pressure=.true., points_per_slave=2, points_per_master=2)]
+      covers_segments=.true., where_pressed=pressed_at_slave_nodes, points_per_slave=2, &
+      points_per_master=2)]
 
   !> The same as the deck layer wants them.
   type(contact_kind_t), parameter :: contact_kinds(*) = formulations%kind
@@ -100,39 +98,17 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
-    memory%points%n_former = memory%points%n
     memory%points%n = 0
     select case (contact%contact_type)
     case (type_nts); call place_nts(contact, memory)
     case (type_nts_ar); call place_nts_ar(contact, memory)
     case (type_two_pass_ar); call place_two_pass_ar(contact, memory)
-    case (type_vts_ppt); call place_vts_ppt(contact, 1, memory%slave_tracking%n_touching, memory)
+    case (type_vts_ppt); call place_vts_ppt(contact, memory)
     case (type_nts_mar); call place_nts_mar(contact, memory)
     case (type_mortar); call place_mortar(contact, memory)
     case (type_segmented_mortar); call place_segmented_mortar(contact, memory)
     end select
   end subroutine place_points
-
-  !> Whether `place_range` serves this contact.
-  pure function places_ranges(contact)
-    type(contact_t), intent(in) :: contact
-    logical :: places_ranges
-
-    associate (formulation => formulation_of(contact))
-      places_ranges = formulation%places_ranges
-    end associate
-  end function places_ranges
-
-  !> Place the points of the spots `first` to `last` of those in contact, and no others.
-  pure subroutine place_range(contact, first, last, memory)
-    type(contact_t), intent(in) :: contact
-    integer, intent(in) :: first, last
-    type(contact_state_t), intent(inout) :: memory
-
-    memory%points%n_former = 0
-    memory%points%n = 0
-    if (contact%contact_type == type_vts_ppt) call place_vts_ppt(contact, first, last, memory)
-  end subroutine place_range
 
   !> Add the derivative of minus the forces of the points in the memory.
   pure subroutine add_tangent(contact, memory, equations, matrix)

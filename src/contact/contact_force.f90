@@ -3,24 +3,24 @@
 module contact_force_m
   use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_pairing, &
     phase_contact_force
-  use contact_closing_m, only : close_contacts, closed_gap_of
-  use contact_crossing_m, only : crossings_t, find_crossings, catch_crossings
+  use closing_m, only : close_contacts, closed_gap_of
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
-  use contact_initial_m, only : start_slave_tracking, start_master_tracking, start_cover
-  use contact_lists_m, only : forget_list
+  use contact_law_m, only : pressed_at_slave_nodes, press_places
   use contact_log_m, only : log_contact
-  use contact_motion_m, only : gather_places, take_force, keep_former, add_force, power_of
-  use contact_penalty_m, only : set_penalties, press_points, damp_points, average_gaps
-  use contact_ranges_m, only : goes_in_ranges, press_ranges
-  use contact_scatter_m, only : scatter_points, scatter_runs, scatter_averaged
-  use contact_search_m, only : update_tracking, wake_all
+  use contact_penalty_m, only : set_penalties
+  use contact_scatter_m, only : scatter_points
   use contact_springs_m, only : stored_energy, begin_look, add_springs, end_look
-  use contact_spots_m, only : spots_at_quarters, start_spots, move_spots
-  use contact_state_m, only : contact_state_t, tracking_t, allocate_points, is_free
+  use contact_state_m, only : contact_state_t, allocate_points, allocate_scratch, is_free
   use contacts_m, only : contact_t
+  use crossing_m, only : crossings_t, find_crossings, catch_crossings
+  use damping_m, only : damp_points
+  use first_search_m, only : start_slave_tracking, start_master_tracking, start_segments
+  use gather_m, only : gather_places, take_force, power_of, keep_former, add_force
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
+  use spots_m, only : start_spots, move_spots
+  use tracking_m, only : update_tracking, wake_all, forget_pairs
   implicit none
   private
   public :: start_contact, apply_contact, evaluate_contact
@@ -41,28 +41,26 @@ contains
     memory%n_slave = n_slave
     memory%n_master = n_master
     memory%nodes = [contact%slave%nodes, contact%master%nodes]
-    allocate (memory%force(2, n_slave + n_master), memory%former_force(2, n_slave + n_master), &
-      memory%places(4, n_slave + n_master), source=0.0_wp)
+    allocate (memory%force(2, n_slave + n_master), memory%places(4, n_slave + n_master), &
+      source=0.0_wp)
     do i = 1, size(memory%nodes)
       memory%places(1:2, i) = model%mesh%coordinates(:, memory%nodes(i)) &
         - model%mesh%coordinates(:, memory%nodes(1))
     end do
     formulation = formulation_of(contact)
+    memory%contact_law = formulation%contact_law
     call set_penalties(contact, model, memory)
     call start_spots(formulation%spots, contact%n_gauss, contact%slave, memory)
     call start_slave_tracking(contact, model, memory)
     if (formulation%has_two_passes) call start_master_tracking(contact, model, memory)
-    if (formulation%covers_segments) call start_cover(contact, model, memory)
+    if (formulation%covers_segments) call start_segments(contact, model, memory)
     call allocate_points(memory%points, formulation%points_per_slave*memory%slave_tracking%n &
       + formulation%points_per_master*n_master)
-    memory%averages_pressure = formulation%averages_pressure
-    memory%has_point_per_spot = formulation%has_point_per_spot
-    memory%laps_pairing = formulation%covers_segments .or. formulation%spots == spots_at_quarters
-    allocate (memory%mark(n_slave), source=0)
-    if (memory%averages_pressure .or. contact%damping > 0.0_wp) &
-      allocate (memory%nodal(2, n_slave + n_master), source=0.0_wp)
+    if (formulation%where_pressed == pressed_at_slave_nodes) &
+      allocate (memory%node_pressure(n_slave), source=0.0_wp)
     if (contact%damping > 0.0_wp) &
       allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
+    call allocate_scratch(memory)
     call log_contact(contact, model, formulation%kind, memory, log)
   end subroutine start_contact
 
@@ -78,6 +76,7 @@ contains
     type(clock_t), intent(inout) :: clock
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
+    type(formulation_t) :: formulation
     real(wp) :: power, damping_power
     logical :: had_force
 
@@ -85,16 +84,13 @@ contains
       call suspend_contact(motion, dt, memory)
       return
     end if
+    formulation = formulation_of(contact)
     if (memory%is_stale) call refresh_memory(motion, memory)
     call gather_places(motion, memory)
     if (allocated(memory%spots)) &
       call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
     call wake_at_interval(contact, cycle, memory)
-    if (memory%has_point_per_spot) then
-      call search_points(contact, memory)
-    else
-      call search_pairs(contact, memory)
-    end if
+    call search_pairs(contact, memory)
     call lap(clock, phase_contact_search)
     had_force = memory%n_active > 0
     memory%n_active = 0
@@ -103,9 +99,18 @@ contains
     damping_power = 0.0_wp
     if (allocated(memory%damping_force)) &
       call take_force(memory%nodes, motion, memory%damping_force, damping_power)
-    call place_and_press(contact, motion, mass, cycle, clock, memory)
-    if (memory%n_active > 0 .or. memory%points%n > 0 .or. had_force) then
-      call add_force(memory%nodes, memory%former_force, memory%force, motion, force, power)
+    call place_points(contact, memory)
+    call lap(clock, phase_contact_pairing)
+    if (memory%points%n > 0) then
+      call press_places(memory%contact_law, formulation%where_pressed, memory)
+      ! Springs loaded at time zero hold energy that no force has put in.
+      if (cycle == 0) memory%energy = stored_energy(memory%points)
+      if (memory%watch%is_due) call add_springs(memory)
+      if (contact%damping > 0.0_wp) call damp_all(contact, motion, mass, memory)
+      call scatter_points(memory%points, memory%force, memory%n_active)
+    end if
+    if (memory%points%n > 0 .or. had_force) then
+      call add_force(memory%nodes, memory%scratch%former_force, memory%force, motion, force, power)
       if (allocated(memory%damping_force)) damping_power = damping_power &
         + power_of(memory%nodes, motion, memory%damping_force)
       call count_work(dt, power, damping_power, memory)
@@ -124,41 +129,6 @@ contains
     memory%damping_work = memory%damping_work - 0.5_wp*dt*damping_power
   end subroutine count_work
 
-  !> Place the points and form their forces.
-  subroutine place_and_press(contact, motion, mass, cycle, clock, memory)
-    type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: motion(:, :), mass(:)
-    integer, intent(in) :: cycle
-    type(clock_t), intent(inout) :: clock
-    type(contact_state_t), intent(inout) :: memory
-
-    if (goes_in_ranges(contact, cycle, memory)) then
-      call press_ranges(contact, clock, memory)
-    else
-      call place_points(contact, memory)
-      if (memory%laps_pairing) call lap(clock, phase_contact_pairing)
-      if (memory%points%n > 0) call press_all(contact, motion, mass, cycle, memory)
-    end if
-  end subroutine place_and_press
-
-  !> Pressures and forces of the points on the list.
-  pure subroutine press_all(contact, motion, mass, cycle, memory)
-    type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: motion(:, :), mass(:)
-    integer, intent(in) :: cycle
-    type(contact_state_t), intent(inout) :: memory
-    logical :: is_unpressed
-
-    is_unpressed = (memory%averages_pressure .or. .not. sums_in_runs(memory)) &
-      .and. .not. (contact%damping > 0.0_wp .or. cycle == 0)
-    if (.not. is_unpressed) call press_points(memory)
-    ! Springs loaded at time zero hold energy that no force has put in.
-    if (cycle == 0) memory%energy = stored_energy(memory%points)
-    if (contact%damping > 0.0_wp) call damp_all(contact, motion, mass, memory)
-    call scatter(is_unpressed, memory)
-    if (memory%watch%is_due) call add_springs(memory)
-  end subroutine press_all
-
   !> Add the damping to all pressures; its nodal forces are kept apart as well.
   pure subroutine damp_all(contact, motion, mass, memory)
     type(contact_t), intent(in) :: contact
@@ -169,10 +139,11 @@ contains
 
     n = memory%points%n
     spring = memory%points%pressure(:n)
-    call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, memory%nodal)
+    call damp_points(memory%points, contact%damping, memory%nodes, motion, mass, &
+      memory%scratch%nodal)
     damped = memory%points%pressure(:n)
     memory%points%pressure(:n) = damped - spring
-    call scatter_points(memory%points, .false., memory%damping_force, n_damped)
+    call scatter_points(memory%points, memory%damping_force, n_damped)
     memory%points%pressure(:n) = damped
   end subroutine damp_all
 
@@ -187,6 +158,7 @@ contains
     logical, intent(in) :: is_first                    !! of a step: gaps of zero count as contact
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
+    type(formulation_t) :: formulation
     type(crossings_t) :: crossings
     integer :: i
 
@@ -207,38 +179,15 @@ contains
     if (is_first) call close_contacts(contact, closed_gap_of(contact, memory), memory)
     call place_points(contact, memory)
     if (memory%points%n == 0) return
-    call press_points(memory)
-    call scatter(.false., memory)
+    formulation = formulation_of(contact)
+    call press_places(memory%contact_law, formulation%where_pressed, memory)
+    call scatter_points(memory%points, memory%force, memory%n_active)
     do i = 1, size(memory%nodes)
       associate (node => memory%nodes(i))
         force(:, node) = force(:, node) + memory%force(:, i)
       end associate
     end do
   end subroutine evaluate_contact
-
-  !> Forces of all points. Those between slave nodes follow each other segment by segment.
-  pure subroutine scatter(is_unpressed, memory)
-    logical, intent(in) :: is_unpressed !! pressures are formed on the way
-    type(contact_state_t), intent(inout) :: memory
-
-    if (memory%averages_pressure .and. is_unpressed) then
-      call average_gaps(memory%points, memory%n_slave, memory%nodal)
-      call scatter_averaged(memory%points, memory%slave_penalty, memory%nodal, memory%force, &
-        memory%n_active)
-    else if (sums_in_runs(memory)) then
-      call scatter_runs(memory%points, memory%force, memory%n_active)
-    else
-      call scatter_points(memory%points, is_unpressed, memory%force, memory%n_active)
-    end if
-  end subroutine scatter
-
-  !> Whether several points in a row have the same slave nodes.
-  pure function sums_in_runs(memory)
-    type(contact_state_t), intent(in) :: memory
-    logical :: sums_in_runs
-
-    sums_in_runs = memory%averages_pressure .or. allocated(memory%spots)
-  end function sums_in_runs
 
   !> Outside birth .. death: no forces; those of the last call have done their last half step of
   !> work.
@@ -269,24 +218,13 @@ contains
     memory%places(3:4, :) = motion(1:2, memory%nodes)
     call forget_pairs(memory%slave_tracking)
     if (memory%master_tracking%n > 0) call forget_pairs(memory%master_tracking)
-    if (allocated(memory%cover%status)) then
-      memory%cover%status = is_free
-      memory%cover%wake = -huge(1.0_wp)
-      memory%cover%next_wake = -huge(1.0_wp)
+    if (allocated(memory%segments%status)) then
+      memory%segments%status = is_free
+      memory%segments%wake = -huge(1.0_wp)
+      memory%segments%next_wake = -huge(1.0_wp)
     end if
     memory%is_stale = .false.
   end subroutine refresh_memory
-
-  !> Start a tracking anew, knowing nothing.
-  pure subroutine forget_pairs(tracking)
-    type(tracking_t), intent(inout) :: tracking
-
-    tracking%segment = 0
-    call forget_list(tracking)
-    tracking%status = is_free
-    tracking%grid%cell = 0.0_wp
-    call wake_all(tracking)
-  end subroutine forget_pairs
 
   !> Have all searched for globally when FREQ asks for it.
   pure subroutine wake_at_interval(contact, cycle, memory)
@@ -318,22 +256,5 @@ contains
         contact%slave, slave, master, memory%travel, memory%n_released)
     end associate
   end subroutine search_pairs
-
-  !> The same where a point stands at each node in contact: points that stay are brought up to date
-  !> on the list. Those of the master pass stand behind those of the slave pass.
-  pure subroutine search_points(contact, memory)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-
-    associate (slave => memory%places(:, :memory%n_slave), &
-      master => memory%places(:, memory%n_slave + 1:))
-      call update_tracking(memory%slave_tracking, contact%master, master, slave, memory%travel, &
-        memory%n_released, memory%n_slave, memory%points)
-      if (memory%master_tracking%n == 0) return
-      if (memory%slave_tracking%first_point == 0) memory%master_tracking%first_point = 0
-      call update_tracking(memory%master_tracking, contact%slave, slave, master, memory%travel, &
-        memory%n_released, 0, memory%points)
-    end associate
-  end subroutine search_points
 
 end module contact_force_m

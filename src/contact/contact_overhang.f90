@@ -5,9 +5,9 @@
 !> (doc/theory/contact.md, section 7.5).
 module contact_overhang_m
   use contact_dispatch_m, only : formulation_t, formulation_of, covering_names
-  use contact_projection_m, only : see_segment, end_tolerance
   use contact_state_m, only : contact_state_t, tracking_t
   use contacts_m, only : contact_t
+  use foot_m, only : see_segment, end_tolerance
   use geometry_m, only : sight_t, sight_gap, separation
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text

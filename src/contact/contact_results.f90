@@ -1,19 +1,17 @@
 ! SPDX-License-Identifier: MIT
 !> What the writers want to know of an interface.
 module contact_results_m
-  use contact_competence_m, only : competence_length
-  use contact_penalty_m, only : pressures_of
-  use contact_projection_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
-  use contact_ranges_m, only : is_listed, list_again
-  use contact_state_m, only : contact_state_t, contact_points_t, is_touching, n_side
+  use contact_state_m, only : contact_state_t, is_touching, n_side
   use contacts_m, only : contact_t
+  use foot_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
   use geometry_m, only : segment_length
   use kinds_m, only : wp
+  use lengths_m, only : competence_length
   use snapshot_m, only : interface_result_t, slave_result_t
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: interface_resultants, slave_rows, touching_gaps
+  public :: interface_resultants, slave_rows
 
 contains
 
@@ -33,7 +31,7 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
-    real(wp), allocatable :: places(:, :), share(:), gaps(:)
+    real(wp), allocatable :: places(:, :), share(:)
     integer :: i, n
 
     n = memory%n_slave
@@ -46,16 +44,15 @@ contains
     places(3:4, :) = motion(1:2, memory%nodes)
     rows%force = memory%force(:, :n)
     call fill_arc_lengths(contact%slave, places(:, :n), rows%arc_length)
-    share = normal_forces(contact, memory)
+    share = normal_forces(memory)
     do i = 1, memory%n_master
       rows%master_pressure(i) = share(n + i)/max(tiny(1.0_wp), &
         competence_length(contact%master, places(:, n + 1:), i))
     end do
-    gaps = touching_gaps(memory)
     do i = 1, n
       rows%length(i) = competence_length(contact%slave, places(:, :n), i)
       rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
-      rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i, gaps)
+      rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
   end subroutine slave_rows
 
@@ -77,62 +74,34 @@ contains
   end subroutine fill_arc_lengths
 
   !> Normal force on each node of the interface from all points, N/m.
-  pure function normal_forces(contact, memory) result(share)
-    type(contact_t), intent(in) :: contact
+  pure function normal_forces(memory) result(share)
     type(contact_state_t), intent(in) :: memory
-    real(wp), allocatable :: share(:) !! (n_slave + n_master)
-    type(contact_state_t), allocatable :: listed
-
-    allocate (share(memory%n_slave + memory%n_master), source=0.0_wp)
-    if (is_listed(memory)) then
-      call sum_normal_forces(memory%points, pressures_of(contact, memory), share)
-    else
-      allocate (listed, source=memory)
-      call list_again(contact, listed)
-      call sum_normal_forces(listed%points, listed%points%pressure, share)
-    end if
-  end function normal_forces
-
-  !> Add those of the points on a list.
-  pure subroutine sum_normal_forces(points, pressures, share)
-    type(contact_points_t), intent(in) :: points
-    real(wp), intent(in), contiguous :: pressures(:)
-    real(wp), intent(inout) :: share(:)
+    real(wp) :: share(memory%n_slave + memory%n_master)
     real(wp) :: total
     integer :: p, k
 
-    do p = 1, points%n
-      total = pressures(p)*points%area(p)
-      do k = 1, n_side
-        share(points%slave_nodes(k, p)) = share(points%slave_nodes(k, p)) &
-          + points%slave_weights(k, p)*total
-        share(points%master_nodes(k, p)) = share(points%master_nodes(k, p)) &
-          + points%master_weights(k, p)*total
+    share = 0.0_wp
+    associate (points => memory%points)
+      do p = 1, points%n
+        total = points%pressure(p)*points%area(p)
+        do k = 1, n_side
+          share(points%slave_nodes(k, p)) = share(points%slave_nodes(k, p)) &
+            + points%slave_weights(k, p)*total
+          share(points%master_nodes(k, p)) = share(points%master_nodes(k, p)) &
+            + points%master_weights(k, p)*total
+        end do
       end do
-    end do
-  end subroutine sum_normal_forces
-
-  !> Gaps of all spots, m, up to date for those in contact: where the search has put them.
-  pure function touching_gaps(memory) result(gaps)
-    type(contact_state_t), intent(in) :: memory
-    real(wp), allocatable :: gaps(:)
-
-    gaps = memory%slave_tracking%gap
-    if (memory%slave_tracking%has_feet) return
-    associate (n => memory%slave_tracking%n_touching, first => memory%slave_tracking%first_point)
-      gaps(memory%slave_tracking%touching(:n)) = memory%points%gap(first:first + n - 1)
     end associate
-  end function touching_gaps
+  end function normal_forces
 
   !> Gap of a slave node at the present places; 0 when it is unpaired. A spot that sleeps keeps its
   !> segment although it may have gone out of reach since.
-  pure function present_gap(contact, chain, place, memory, i, touching_gap) result(gap)
+  pure function present_gap(contact, chain, place, memory, i) result(gap)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_master) present places
     real(wp), intent(in) :: place(4)                !! of the node
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: i                        !! node of the slave surface
-    real(wp), intent(in) :: touching_gap(:)         !! of the spots in contact
     real(wp) :: gap
     type(foot_t) :: foot, spot_foot
     integer :: spot
@@ -150,7 +119,7 @@ contains
       else if (allocated(memory%spots)) then
         foot = follow_contact(contact%master, chain, place, segment)
       else
-        gap = touching_gap(spot)
+        gap = tracking%gap(spot)
         return
       end if
       if (foot%is_on) gap = foot%gap

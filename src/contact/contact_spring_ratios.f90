@@ -4,11 +4,11 @@
 !> `most_on_nodes` (doc/theory/contact.md, section 7).
 module contact_spring_ratios_m
   use contact_dispatch_m, only : formulation_t, formulation_of, is_strict
-  use contact_competence_m, only : competence_length
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use geometry_m, only : segment_length
   use kinds_m, only : wp
+  use lengths_m, only : competence_length
   use surfaces_m, only : surface_t
   implicit none
   private

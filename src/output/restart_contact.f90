@@ -4,7 +4,7 @@ module restart_contact_m
   use archive_m, only : keep, keep_fixed, keep_same, keep_growing
   use archive_file_m, only : archive_t, enter, leave
   use contact_state_m, only : contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
-    cover_memory_t
+    segment_memory_t
   use contact_watch_m, only : contact_watch_t, contact_change_t
   use log_m, only : to_text
   implicit none
@@ -33,15 +33,12 @@ contains
     call keep(archive, 'spot_share', contact%spot_share)
     call keep_tracking(archive, 'slave_tracking', contact%slave_tracking)
     call keep_tracking(archive, 'master_tracking', contact%master_tracking)
-    call keep_cover(archive, 'cover', contact%cover)
+    call keep_segments(archive, 'segments', contact%segments)
     call keep_points(archive, 'points', contact%points)
-    call keep_same(archive, 'has_point_per_spot', contact%has_point_per_spot)
-    call keep_same(archive, 'laps_pairing', contact%laps_pairing)
-    call keep_same(archive, 'averages_pressure', contact%averages_pressure)
-    call keep(archive, 'nodal', contact%nodal)
-    call keep(archive, 'mark', contact%mark)
     call keep(archive, 'closed_gap', contact%closed_gap)
+    call keep(archive, 'node_pressure', contact%node_pressure)
     call keep(archive, 'force', contact%force)
+    call keep_same(archive, 'contact_law', contact%contact_law)
     call keep(archive, 'slave_penalty', contact%slave_penalty)
     call keep(archive, 'master_penalty', contact%master_penalty)
     call keep(archive, 'node_penalty', contact%node_penalty)
@@ -98,8 +95,6 @@ contains
     call enter(archive, name)
     call keep_same(archive, 'n', tracking%n)
     call keep(archive, 'n_touching', tracking%n_touching)
-    call keep(archive, 'first_point', tracking%first_point)
-    call keep(archive, 'has_feet', tracking%has_feet)
     call keep(archive, 'next_wake', tracking%next_wake)
     call keep(archive, 'reach', tracking%reach)
     call keep(archive, 'touching', tracking%touching)
@@ -136,18 +131,17 @@ contains
   end subroutine keep_grid
 
   !> The memory of slave segments.
-  subroutine keep_cover(archive, name, cover)
+  subroutine keep_segments(archive, name, segments)
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
-    type(cover_memory_t), intent(inout) :: cover
+    type(segment_memory_t), intent(inout) :: segments
 
     call enter(archive, name)
-    call keep(archive, 'status', cover%status)
-    call keep(archive, 'wake', cover%wake)
-    call keep(archive, 'is_placed', cover%is_placed)
-    call keep(archive, 'next_wake', cover%next_wake)
+    call keep(archive, 'status', segments%status)
+    call keep(archive, 'wake', segments%wake)
+    call keep(archive, 'next_wake', segments%next_wake)
     call leave(archive)
-  end subroutine keep_cover
+  end subroutine keep_segments
 
   !> Contact points.
   subroutine keep_points(archive, name, points)
@@ -157,7 +151,6 @@ contains
 
     call enter(archive, name)
     call keep(archive, 'n', points%n)
-    call keep(archive, 'n_former', points%n_former)
     call keep_growing(archive, 'slave_nodes', points%slave_nodes)
     call keep_growing(archive, 'slave_weights', points%slave_weights)
     call keep_growing(archive, 'master_nodes', points%master_nodes)

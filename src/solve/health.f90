@@ -21,6 +21,9 @@ module health_m
   !> checked build would stop at.
   real(wp), parameter :: most_work = 1.0e150_wp
 
+  !> How far the energy ratio may end from one without a word.
+  real(wp), parameter :: ratio_band = 0.05_wp
+
   !> What the elements of one tile have come to in a cycle. As long as a cache line:
   !> threads fill them side by side.
   type :: tile_check_t
@@ -246,6 +249,8 @@ contains
       call warn(log, &
       'the hourglass energy '//to_text(energies%hourglass)//' is more than 10 % of the internal ' &
       //'energy '//to_text(energies%internal))
+    if (abs(energy_ratio(energies) - 1.0_wp) > ratio_band) call warn(log, 'the energy ratio ends at ' &
+      //to_text(energy_ratio(energies))//': energy has come in or gone that no column accounts for')
   end subroutine judge_energies
 
 end module health_m

@@ -4,7 +4,7 @@
 !> file may come from elsewhere: its checksum says that it is whole, not that it is sound.
 module restart_bounds_m
   use archive_file_m, only : archive_t, refuse
-  use contact_state_m, only : contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
+  use contact_state_m, only : contact_state_t, tracking_t, bucket_grid_t, &
     is_free, is_touching, is_behind
   use contacts_m, only : contact_t
   use kinds_m, only : wp
@@ -46,7 +46,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
-    integer :: capacity, i
+    integer :: i
 
     call require(archive, folder//'travel', memory%travel >= 0.0_wp, 'a way below zero')
     call require(archive, folder//'n_active', memory%n_active >= 0, 'a number below zero')
@@ -58,22 +58,12 @@ contains
     end do
     call check_points(memory, folder//'points/', archive)
     if (allocated(archive%error)) return
-    capacity = size(memory%points%gap)
-    call require(archive, folder//'mark', all(memory%mark >= 0 .and. memory%mark <= capacity), &
-      'numbers that no point has')
-    call check_tracking(memory%slave_tracking, contact%master%n_segment, capacity, &
+    call check_tracking(memory%slave_tracking, contact%master%n_segment, &
       folder//'slave_tracking/', archive)
-    call check_tracking(memory%master_tracking, contact%slave%n_segment, capacity, &
+    call check_tracking(memory%master_tracking, contact%slave%n_segment, &
       folder//'master_tracking/', archive)
-    if (allocated(archive%error)) return
-    if (memory%has_point_per_spot) then
-      call check_sides(memory%slave_tracking, memory%points, memory%n_slave, .true., &
-        folder//'points/', archive)
-      call check_sides(memory%master_tracking, memory%points, memory%n_slave, .false., &
-        folder//'points/', archive)
-    end if
-    if (allocated(memory%cover%status)) call require(archive, folder//'cover/status', &
-      all(memory%cover%status >= is_free .and. memory%cover%status <= is_behind), &
+    if (allocated(memory%segments%status)) call require(archive, folder//'segments/status', &
+      all(memory%segments%status >= is_free .and. memory%segments%status <= is_behind), &
       'numbers that mean nothing')
 
   contains
@@ -109,8 +99,6 @@ contains
       if (allocated(archive%error)) return
       call require(archive, folder//'n', points%n >= 0 .and. points%n <= size(points%gap), &
         'a number beyond the length of the list')
-      call require(archive, folder//'n_former', points%n_former >= 0 &
-        .and. points%n_former <= size(points%gap), 'a number beyond the length of the list')
       n_local = memory%n_slave + memory%n_master
       call require(archive, folder//'slave_nodes', all(points%slave_nodes >= 1 &
         .and. points%slave_nodes <= n_local), 'numbers that no node of the interface has')
@@ -120,10 +108,9 @@ contains
   end subroutine check_points
 
   !> Spots followed over a chain.
-  subroutine check_tracking(tracking, n_segment, capacity, folder, archive)
+  subroutine check_tracking(tracking, n_segment, folder, archive)
     type(tracking_t), intent(in) :: tracking
     integer, intent(in) :: n_segment    !! of the chain
-    integer, intent(in) :: capacity     !! of the list of points
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
     integer :: n
@@ -154,9 +141,6 @@ contains
       tracking%touching(:tracking%n_touching)) == is_touching), 'spots that do not touch')
     call require(archive, folder//'n_touching', count(tracking%status == is_touching) &
       == tracking%n_touching, 'another number than there are spots in contact')
-    call require(archive, folder//'first_point', tracking%first_point >= 0 &
-      .and. tracking%first_point <= capacity - tracking%n_touching + 1, &
-      'a number that no point has')
     call require(archive, folder//'reach', tracking%reach >= 0.0_wp .and. tracking%reach &
       <= most_cells*tracking%grid%least_cell, 'a distance that does not fit its cells')
     call check_grid(tracking%grid, n_segment, folder//'grid/', archive)
@@ -201,26 +185,6 @@ contains
       .and. grid%items(grid%first(1) + 1:grid%first(n)) <= n_segment), &
       'numbers that no segment has')
   end subroutine check_grid
-
-  !> Points that stand for spots in contact have the spots' nodes on the spots' side and the
-  !> chain's on the other.
-  subroutine check_sides(tracking, points, n_slave, is_slave, folder, archive)
-    type(tracking_t), intent(in) :: tracking
-    type(contact_points_t), intent(in) :: points
-    integer, intent(in) :: n_slave
-    logical, intent(in) :: is_slave     !! the spots are slave nodes
-    character(*), intent(in) :: folder
-    type(archive_t), intent(inout) :: archive
-    integer :: first, last
-
-    if (tracking%first_point == 0 .or. tracking%n_touching == 0) return
-    first = tracking%first_point
-    last = first + tracking%n_touching - 1
-    call require(archive, folder//'slave_nodes', all((points%slave_nodes(:, first:last) &
-      <= n_slave) .eqv. is_slave), 'nodes of the other side')
-    call require(archive, folder//'master_nodes', all((points%master_nodes(:, first:last) &
-      > n_slave) .eqv. is_slave), 'nodes of the other side')
-  end subroutine check_sides
 
   !> Refuse the file unless something holds.
   subroutine require(archive, name, holds, what)

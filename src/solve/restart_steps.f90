@@ -38,16 +38,17 @@ contains
     do kind = 1, size(wanted)
       if (.not. wanted(kind) .or. allocated(error)) cycle
       call begin_file(kind, state, monitor, archive)
-      call keep_steps(archive, size(state%motion, 2), steps, damping, ratio)
+      call keep_steps(archive, size(state%motion, 2), state%cycle, steps, damping, ratio)
       call end_file(kind, state, monitor, archive, error)
     end do
     call lap(monitor%clock, phase_output)
   end subroutine write_restarts
 
   !> The plan of the steps, and what a cycle hands to the next besides the state.
-  subroutine keep_steps(archive, n_node, steps, damping, ratio)
+  subroutine keep_steps(archive, n_node, cycle, steps, damping, ratio)
     type(archive_t), intent(inout) :: archive
     integer, intent(in) :: n_node
+    integer, intent(in) :: cycle  !! of the state
     type(step_plan_t), intent(inout) :: steps
     real(wp), intent(inout) :: damping(2)
     real(wp), intent(inout) :: ratio
@@ -65,6 +66,7 @@ contains
     call expect(archive, 'first_dt', steps%first_dt > 0.0_wp, 'a step that is not positive')
     call expect(archive, 'constant', steps%constant >= 0.0_wp, 'a step below zero')
     call expect(archive, 'start_cycle', steps%start_cycle >= 0, 'a cycle below zero')
+    call expect(archive, 'start_cycle', steps%start_cycle <= cycle, 'a cycle after the present one')
     call keep_fixed(archive, 'damping', damping)
     call keep(archive, 'ratio', ratio)
     call leave(archive)
@@ -119,7 +121,7 @@ contains
 
     if (model%controls%contact_step == contact_step_rules) &
       allocate (steps%springs(size(model%contacts)))
-    call keep_steps(source, size(state%motion, 2), steps, damping, ratio)
+    call keep_steps(source, size(state%motion, 2), state%cycle, steps, damping, ratio)
   end subroutine read_steps
 
   !> Read the plan of the steps, with the end that the deck gives now, and close the file.

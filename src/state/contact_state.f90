@@ -18,11 +18,12 @@
 module contact_state_m
   use contact_watch_m, only : contact_watch_t
   use kinds_m, only : wp
+  use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
   implicit none
   private
   public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
-    cover_memory_t, allocate_points, make_room, allocate_tracking, n_side, is_free, is_in_front, &
-    is_touching, is_behind
+    segment_memory_t, contact_scratch_t, allocate_points, make_room, allocate_tracking, &
+    allocate_scratch, n_side, is_free, is_in_front, is_touching, is_behind
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
@@ -33,7 +34,6 @@ module contact_state_m
   !> The list, one column per point.
   type :: contact_points_t
     integer :: n = 0                           !! points in use
-    integer :: n_former = 0                    !! of the placement before, whose columns still stand
     integer, allocatable :: slave_nodes(:, :)  !! (n_side, capacity) local numbers
     real(wp), allocatable :: slave_weights(:, :)
     integer, allocatable :: master_nodes(:, :) !! (n_side, capacity) local numbers
@@ -42,8 +42,7 @@ module contact_state_m
     real(wp), allocatable :: gap(:)            !! m, negative = penetration
     real(wp), allocatable :: area(:)           !! m (1 for type 1)
     real(wp), allocatable :: stiffness(:)      !! N/m^2 (N/m for type 1)
-    real(wp), allocatable :: pressure(:)       !! N/m (N for type 1), >= 0; not always kept:
-                                               !! `pressures_of` tells it
+    real(wp), allocatable :: pressure(:)       !! N/m (N for type 1), >= 0: what acts
   end type contact_points_t
 
   !> Segments sorted into square cells by hashing; tells which segments are near a place.
@@ -62,10 +61,6 @@ module contact_state_m
   type :: tracking_t
     integer :: n = 0                         !! spots
     integer :: n_touching = 0
-    integer :: first_point = 0               !! of the spots in contact, which have one each; 0:
-                                             !! none stand
-    logical :: has_feet = .true.             !! xi, gap and normal of spots in contact are here;
-                                             !! else on the points
     real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot that is not in contact
                                              !! can change
     real(wp) :: reach = 0.0_wp               !! spots farther away than this are unpaired, m
@@ -87,13 +82,23 @@ module contact_state_m
   end type tracking_t
 
   !> What formulations that go along both chains remember of each slave segment; empty for others.
-  type :: cover_memory_t
+  type :: segment_memory_t
     integer, allocatable :: status(:)     !! (n_segment) is_free, is_touching (may be deep) or
                                           !! is_behind
     real(wp), allocatable :: wake(:)      !! (n_segment) travel before which it can not touch
-    logical, allocatable :: is_placed(:)  !! (n_segment) scratch of placements
     real(wp) :: next_wake = -huge(1.0_wp) !! travel before which none can touch
-  end type cover_memory_t
+  end type segment_memory_t
+
+  !> Room that procedures use within a step; nothing in it lasts to the next one.
+  type :: contact_scratch_t
+    real(wp), allocatable :: former_force(:, :) !! (2, n_slave + n_master) forces of the call
+                                            !! before, 0 between calls
+    real(wp), allocatable :: nodal(:, :)    !! (2, n_slave + n_master) averaged gaps, springs at
+                                            !! nodes
+    integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps
+    logical, allocatable :: is_placed(:)    !! (slave segments) have their points
+    type(piece_table_t), allocatable :: pieces !! lent to the placement while it works
+  end type contact_scratch_t
 
   !> Memory of one interface.
   type :: contact_state_t
@@ -110,23 +115,15 @@ module contact_state_m
                                             !! for
     type(tracking_t) :: slave_tracking      !! slave nodes, or `spots`, over the master chain
     type(tracking_t) :: master_tracking     !! master nodes over the slave chain; empty for one pass
-    type(cover_memory_t) :: cover
+    type(segment_memory_t) :: segments      !! of the slave surface
     type(contact_points_t) :: points
-    logical :: has_point_per_spot = .false. !! a point at each spot in contact, these first on the
-                                            !! list
-    logical :: laps_pairing = .false.       !! placing the points is work of its own for the clock
-    logical :: averages_pressure = .false.  !! pressure comes from slave nodes, not from each point
-    real(wp), allocatable :: nodal(:, :)    !! (2, n_slave + n_master) scratch of such a pressure
-                                            !! and of damping
-    integer, allocatable :: mark(:)         !! (n_slave) scratch of placements, 0 between steps:
-                                            !! marks of nodes; type 7: segments, of which there are
-                                            !! no more; type 5: point at each node, kept
     real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where
                                             !! a tangent of touching bodies is wanted
+    real(wp), allocatable :: node_pressure(:) !! (n_slave) where pressure is formed at slave nodes,
+                                            !! N/m
     real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last
                                             !! call
-    real(wp), allocatable :: former_force(:, :) !! scratch: those of the call before, 0 between
-                                                !! calls
+    integer :: contact_law = 0              !! from gap to pressure, a number of contact_law_m
     real(wp) :: slave_penalty = 0.0_wp      !! distributed penalty eps_hat of the slave pass, N/m^2
     real(wp) :: master_penalty = 0.0_wp     !! of the master pass
     real(wp) :: node_penalty = 0.0_wp       !! eps of type 1, N/m
@@ -137,6 +134,7 @@ module contact_state_m
     type(contact_watch_t) :: watch          !! whether the springs give back what they take
     integer :: n_active = 0                 !! points that carry pressure
     integer :: n_released = 0               !! first contacts deeper than the limit that were let go
+    type(contact_scratch_t) :: scratch
   end type contact_state_t
 
 contains
@@ -165,7 +163,6 @@ contains
     n = points%n
     call allocate_points(larger, 2*(n + n_more))
     larger%n = n
-    larger%n_former = min(n, points%n_former)
     larger%slave_nodes(:, :n) = points%slave_nodes(:, :n)
     larger%slave_weights(:, :n) = points%slave_weights(:, :n)
     larger%master_nodes(:, :n) = points%master_nodes(:, :n)
@@ -174,6 +171,7 @@ contains
     larger%gap(:n) = points%gap(:n)
     larger%area(:n) = points%area(:n)
     larger%stiffness(:n) = points%stiffness(:n)
+    larger%pressure(:n) = points%pressure(:n)
     points = larger
   end subroutine make_room
 
@@ -196,5 +194,19 @@ contains
     end do
     allocate (tracking%grid%first(n_bucket + 1), tracking%grid%items(8*n_segment + 8), source=0)
   end subroutine allocate_tracking
+
+  !> Allocate the room of an interface; after a restart too.
+  pure subroutine allocate_scratch(memory)
+    type(contact_state_t), intent(inout) :: memory
+
+    associate (scratch => memory%scratch, n => memory%n_slave + memory%n_master)
+      allocate (scratch%former_force(2, n), scratch%nodal(2, n), source=0.0_wp)
+      allocate (scratch%point_at(memory%n_slave), source=0)
+      if (.not. allocated(memory%segments%status)) return
+      allocate (scratch%is_placed(size(memory%segments%status)), source=.false.)
+      allocate (scratch%pieces)
+      call allocate_pieces(scratch%pieces, n_piece_block)
+    end associate
+  end subroutine allocate_scratch
 
 end module contact_state_m

@@ -8,7 +8,6 @@ program bench_contact
   use, intrinsic :: iso_fortran_env, only : output_unit
   use contact_factories_m, only : problem_t, make_problem, line
   use contact_force_m, only : start_contact, apply_contact
-  use contact_ranges_m, only : is_listed
   use kinds_m, only : wp
   implicit none
 
@@ -65,8 +64,7 @@ contains
       if (chosen(2) > 0 .and. chosen(2) /= i_type) cycle
       best = minval(times(:, i_type))
       associate (memory => problems(i_type)%memory)
-        ! Where the list is not kept, all points carry pressure.
-        n_point = merge(memory%points%n, memory%n_active, is_listed(memory))
+        n_point = memory%points%n
         write (output_unit, '(a, 4(",", i0), 4(",", f0.2), ",", f0.3)') trim(scene), n, i_type, n_point, &
           memory%n_active, best, median(times(:, i_type)), best/n, best/max(1, n_point), &
           best/minval(times(:, 1))

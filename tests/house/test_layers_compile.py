@@ -13,7 +13,7 @@ import subprocess
 import pytest
 
 from fortran_source import ROOT
-from test_house import LAYERS
+from test_house import LAYERS, folder_of
 
 GOOD = "module probe_{layer}_m\n{uses}  implicit none\n  integer :: {layer}_value = 1\nend module\n"
 USE = "  use probe_{layer}_m, only: {layer}_value\n"
@@ -25,7 +25,7 @@ def build_small_tree(tmp_path_factory):
     tree = tmp_path_factory.mktemp("layers")
     shutil.copy(ROOT / "CMakeLists.txt", tree)
     for layer, allowed in LAYERS.items():
-        folder = tree / "src" / layer
+        folder = tree / "src" / folder_of(layer)
         folder.mkdir(parents=True)
         uses = "".join(USE.format(layer=name) for name in sorted(allowed))
         (folder / f"probe_{layer}.f90").write_text(GOOD.format(layer=layer, uses=uses))
@@ -45,7 +45,7 @@ def read_commands(tree):
     commands = {}
     for entry in json.loads((tree / "build/compile_commands.json").read_text()):
         for layer in LAYERS:
-            if entry["file"].endswith(f"src/{layer}/probe_{layer}.f90"):
+            if entry["file"].endswith(f"src/{folder_of(layer)}/probe_{layer}.f90"):
                 words = shlex.split(entry["command"])
                 words = [word for word in words[:words.index("-c")] if word != "-fpreprocessed"]
                 commands[layer] = (words, entry["directory"])

@@ -15,13 +15,13 @@ KEPT = {
     "wall_state_t": ("state/wall_state.f90", "output/restart_state.f90", "wall%", {}),
     "block_state_t": ("state/block_state.f90", "output/restart_state.f90", "elements%", {}),
     "contact_state_t": ("state/contact_state.f90", "output/restart_contact.f90", "contact%", {
-        "former_force": "zero between calls"}),
+        "scratch": "nothing in it lasts to the next step"}),
     "contact_watch_t": ("state/contact_watch.f90", "output/restart_contact.f90", "watch%", {
         "changes": "kept one by one"}),
     "contact_change_t": ("state/contact_watch.f90", "output/restart_contact.f90", "change%", {}),
     "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {}),
     "bucket_grid_t": ("state/contact_state.f90", "output/restart_contact.f90", "grid%", {}),
-    "cover_memory_t": ("state/contact_state.f90", "output/restart_contact.f90", "cover%", {}),
+    "segment_memory_t": ("state/contact_state.f90", "output/restart_contact.f90", "segments%", {}),
     "contact_points_t": ("state/contact_state.f90", "output/restart_contact.f90", "points%", {}),
     "step_plan_t": ("solve/time_step.f90", "solve/restart_steps.f90", "steps%", {}),
     "spring_bound_t": ("contact/contact_step_limit.f90", "solve/restart_steps.f90", "springs(i)%", {}),
@@ -57,7 +57,7 @@ KEPT = {
         "slots": "formed with each force"}),
 }
 #: types of src/state that hold no memory
-WITHOUT_MEMORY = {"snapshot_t", "interface_result_t", "part_result_t", "slave_result_t",
+WITHOUT_MEMORY = {"contact_scratch_t", "piece_table_t", "snapshot_t", "interface_result_t", "part_result_t", "slave_result_t",
                   "wall_result_t", "energies_t"}
 
 

@@ -268,7 +268,7 @@ def test_bad_files_are_refused(slideline, tmp_path):
     flipped = bytearray(good)
     flipped[len(good) // 2] ^= 4
     for data, reason in ((good[:-1], "truncated"), (bytes(flipped), "damaged"),
-                         (good.replace(b"restart 6", b"restart 5", 1), "an older version")):
+                         (good.replace(b"restart 7", b"restart 6", 1), "an older version")):
         (tmp_path / "bad.h5").write_bytes(data)
         done = slideline("r=bad.h5", "d=b")
         assert done.returncode == 1 and reason in done.stderr and "bad.h5" in done.stderr

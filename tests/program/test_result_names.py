@@ -84,8 +84,8 @@ def slow(exe, deck):
     shutil.rmtree(deck / "slow", ignore_errors=True)
     process = subprocess.Popen([exe, "i=slow.k", "d=slow"], cwd=deck, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                text=True)
-    for _ in range(400):
-        if (deck / "slow" / "status.out").exists():
+    for _ in range(1500):
+        if all((deck / "slow" / name).exists() for name in ("status.out", "slow.vtkhdf")):
             break
         time.sleep(0.02)
     yield process

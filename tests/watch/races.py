@@ -42,7 +42,7 @@ PLANTS = (
     Plant("interfaces side by side add to the same nodes", "solve/cycle.f90",
           "    do i = 1, size(model%contacts)\n      call apply_contact",
           "    !$omp parallel do num_threads(2)\n    do i = 1, size(model%contacts)\n      call apply_contact",
-          "contact/contact_motion.f90"),
+          "contact/search/gather.f90"),
 )
 
 

@@ -1,0 +1,139 @@
+! SPDX-License-Identifier: MIT
+!> Competence lengths: what each node of a surface stands for (doc/theory/contact.md, section 5).
+module lengths_m
+  use geometry_m, only : segment_length
+  use kinds_m, only : wp
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: competence_length, put_lengths
+
+  !> Most nodes of a list.
+  integer, parameter :: n_room = 64
+
+contains
+
+  !> Half of the neighbouring segments of a node at their present length, m.
+  pure function competence_length(surface, places, i_node) result(length)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    integer, intent(in) :: i_node
+    real(wp) :: length
+
+    length = 0.0_wp
+    if (surface%incoming(i_node) > 0) length = length + 0.5_wp*segment_length( &
+      places(:, surface%segments(1, surface%incoming(i_node))), places(:, i_node))
+    if (surface%outgoing(i_node) > 0) length = length + 0.5_wp*segment_length( &
+      places(:, i_node), places(:, surface%segments(2, surface%outgoing(i_node))))
+  end function competence_length
+
+  !> The same for some nodes, one after the other. A segment between two of
+  !> them is measured once, and the roots of a list of segments are formed together: node by node it
+  !> took three times as long.
+  pure subroutine put_lengths(surface, places, n, nodes, areas)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    integer, intent(in) :: n
+    integer, intent(in) :: nodes(n)          !! of the surface, in order
+    real(wp), intent(inout) :: areas(n)      !! m
+    integer :: first, m
+
+    do first = 1, n, n_room
+      m = min(n_room, n - first + 1)
+      call put_block(m, nodes(first), surface%incoming, surface%outgoing, surface%segments, &
+        places, areas(first))
+    end do
+  end subroutine put_lengths
+
+  !> The same for a list of them, on arrays of known shape. Nodes that follow each other have the
+  !> segment between them in common, and nothing has to be looked up.
+  pure subroutine put_block(n, nodes, incoming, outgoing, segments, places, areas)
+    integer, intent(in) :: n, nodes(n)
+    integer, intent(in) :: incoming(*), outgoing(*), segments(2, *) !! of the surface
+    real(wp), intent(in) :: places(4, *)
+    real(wp), intent(inout) :: areas(n)
+    integer :: list(2*n_room)               !! segments
+    integer, dimension(n_room) :: before, after !! of each node, on that list
+    real(wp) :: halves(2*n_room)
+    integer :: p, k, i
+
+    i = nodes(1)
+    if (nodes(n) - nodes(1) == n - 1) then
+      if (is_run(n, incoming(i), outgoing(i))) then
+        list(1) = incoming(i)
+        do p = 1, n
+          list(p + 1) = outgoing(i + p - 1)
+        end do
+        call halve_segments(n + 1, list, segments, places, halves)
+        do p = 1, n
+          areas(p) = halves(p) + halves(p + 1)
+        end do
+        return
+      end if
+    end if
+    k = 0
+    do p = 1, n
+      i = nodes(p)
+      if (k > 0) then
+        if (list(k) /= incoming(i)) k = k + 1
+      else
+        k = k + 1
+      end if
+      list(k) = incoming(i)
+      before(p) = k
+      k = k + 1
+      list(k) = outgoing(i)
+      after(p) = k
+    end do
+    call halve_segments(k, list, segments, places, halves)
+    do p = 1, n
+      areas(p) = halves(before(p)) + halves(after(p))
+    end do
+  end subroutine put_block
+
+  !> Whether the segment after each of some nodes is the one before the next.
+  pure function is_run(n, incoming, outgoing)
+    integer, intent(in) :: n, incoming(n), outgoing(n)
+    logical :: is_run
+    integer :: p, n_odd
+
+    n_odd = 0
+    do p = 2, n
+      if (incoming(p) /= outgoing(p - 1)) n_odd = n_odd + 1
+    end do
+    is_run = n_odd == 0
+  end function is_run
+
+  !> Half of the present lengths of some segments, m: zero where there is none.
+  pure subroutine halve_segments(n, list, segments, places, halves)
+    integer, intent(in) :: n, list(n), segments(2, *)
+    real(wp), intent(in) :: places(4, *)
+    real(wp), intent(inout) :: halves(2*n_room)
+    real(wp) :: vectors(2, 2*n_room)
+    integer :: k
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      call take_vector(list(k), segments, places, vectors(1, k))
+    end do
+    do k = 1, n
+      halves(k) = 0.5_wp*sqrt(vectors(1, k)**2 + vectors(2, k)**2)
+    end do
+  end subroutine halve_segments
+
+  !> Vector of a segment at its present length, m: zero where there is none.
+  pure subroutine take_vector(s, segments, places, vector)
+    integer, intent(in) :: s, segments(2, *)
+    real(wp), intent(in) :: places(4, *)
+    real(wp), intent(inout) :: vector(2)
+    real(wp) :: along(4)
+
+    if (s > 0) then
+      along = places(:, segments(2, s)) - places(:, segments(1, s))
+      vector = along(1:2) + along(3:4)
+    else
+      vector = 0.0_wp
+    end if
+  end subroutine take_vector
+
+end module lengths_m

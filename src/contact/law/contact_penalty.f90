@@ -1,0 +1,114 @@
+! SPDX-License-Identifier: MIT
+!> From the penalty of the deck to the stiffness of the springs.
+module contact_penalty_m
+  use contact_state_m, only : contact_state_t
+  use contacts_m, only : contact_t, penalty_per_node, penalty_distributed, penalty_factor, &
+    penalty_share
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: set_penalties, built_in_penalty, mean_length
+
+contains
+
+  !> All equivalents of the penalty. The rule eps_hat = eps/l (Kang, Lee & Shin 2023) with the mean
+  !> segment length of the initial mesh converts; l is that of the slave surface for eps_hat of the
+  !> slave pass and for eps of type 1, that of the master surface for eps_hat of the master pass. A
+  !> share of the largest stable penalty stands as it is until the step is known.
+  pure subroutine set_penalties(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: master_value, estimate
+
+    master_value = contact%master_penalty
+    if (.not. master_value > 0.0_wp) master_value = contact%penalty
+    select case (contact%penalty_unit)
+    case (penalty_per_node)
+      memory%slave_penalty = contact%penalty/mean_length(contact%slave, model)
+      memory%master_penalty = master_value/mean_length(contact%master, model)
+    case (penalty_distributed, penalty_share)
+      memory%slave_penalty = contact%penalty
+      memory%master_penalty = master_value
+    case (penalty_factor)
+      estimate = built_in_penalty(contact, model)
+      memory%slave_penalty = contact%penalty*estimate
+      memory%master_penalty = master_value*estimate
+    end select
+    memory%node_penalty = memory%slave_penalty*mean_length(contact%slave, model)
+  end subroutine set_penalties
+
+  !> The built-in estimate of the distributed penalty, N/m^2: SLSFAC K L/A of the softer side.
+  pure function built_in_penalty(contact, model) result(estimate)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    real(wp) :: estimate
+
+    estimate = model%controls%penalty_scale*min(side_stiffness(contact%slave, model), &
+      side_stiffness(contact%master, model))
+  end function built_in_penalty
+
+  !> Mean length of the segments of a surface at time zero, m.
+  pure function mean_length(surface, model) result(length)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    real(wp) :: length
+    integer :: i
+
+    length = 0.0_wp
+    do i = 1, surface%n_segment
+      length = length + initial_length(surface, model, i)
+    end do
+    length = length/surface%n_segment
+  end function mean_length
+
+  !> Length of one segment at time zero, m.
+  pure function initial_length(surface, model, segment) result(length)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: segment
+    real(wp) :: length
+
+    associate (ends => surface%nodes(surface%segments(:, segment)))
+      length = norm2(model%mesh%coordinates(:, ends(2)) - model%mesh%coordinates(:, ends(1)))
+    end associate
+  end function initial_length
+
+  !> K L/A of one side, N/m^2: bulk modulus and area of the element behind each segment, mean over
+  !> the length of the surface.
+  pure function side_stiffness(surface, model) result(stiffness)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    real(wp) :: stiffness
+    real(wp) :: total, length
+    integer :: i, element
+
+    stiffness = 0.0_wp
+    total = 0.0_wp
+    do i = 1, surface%n_segment
+      element = surface%segment_element(i)
+      length = initial_length(surface, model, i)
+      associate (part => model%parts(model%mesh%element_part(element)))
+        stiffness = stiffness + length*model%materials(part%material)%bulk*length &
+          /element_area(model, element)
+      end associate
+      total = total + length
+    end do
+    stiffness = stiffness/total
+  end function side_stiffness
+
+  !> Area of an element at time zero, m^2.
+  pure function element_area(model, element) result(area)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: element
+    real(wp) :: area
+    real(wp) :: x(2, 4)
+
+    x = model%mesh%coordinates(:, model%mesh%element_nodes(:, element))
+    area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
+      - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+  end function element_area
+
+end module contact_penalty_m

@@ -1,0 +1,106 @@
+! SPDX-License-Identifier: MIT
+!> From points to nodal forces.
+module contact_scatter_m
+  use contact_state_m, only : contact_points_t, contact_state_t, n_side
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: scatter_points, add_gap_round_off
+
+contains
+
+  !> Add the force of each point to its nodes: pressure*area*normal by the weights, slave side with
+  !> plus and master side with minus. Counts the points that carry pressure.
+  pure subroutine scatter_points(points, force, n_active)
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(inout) :: force(2, *) !! by local node, N/m
+    integer, intent(out) :: n_active
+
+    n_active = count(points%pressure(:points%n) > 0.0_wp)
+    call scatter_each(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
+      points%master_weights, points%normal, points%pressure, points%area, force)
+  end subroutine scatter_points
+
+  !> On arrays of known shape: through the list each access costs a multiplication by its stride. A
+  !> point at a node has it at both ends of that side, and all of the force goes there. The forces
+  !> of points in a row with the same nodes on a side are summed before these get them: a sum in
+  !> memory has to be stored before it can be read again. Both components of a node are read before
+  !> one is written, so that pairs stay pairs in the registers.
+  pure subroutine scatter_each(n, slave_nodes, slave_weights, master_nodes, master_weights, &
+      normal, pressure, area, force)
+    integer, intent(in) :: n
+    integer, intent(in) :: slave_nodes(n_side, *), master_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
+    real(wp), intent(in) :: normal(2, *), pressure(*), area(*)
+    real(wp), intent(inout) :: force(2, *)
+    real(wp), dimension(2) :: point, to_a, to_b, to_c, to_d
+    integer :: p, a, b, c, d
+
+    if (n == 0) return
+    a = slave_nodes(1, 1); b = slave_nodes(2, 1)
+    c = master_nodes(1, 1); d = master_nodes(2, 1)
+    to_a = 0.0_wp; to_b = 0.0_wp; to_c = 0.0_wp; to_d = 0.0_wp
+    !GCC$ NOVECTOR
+    do p = 1, n
+      point = pressure(p)*area(p)*normal(:, p)
+      if (master_nodes(1, p) /= c .or. master_nodes(2, p) /= d) then
+        call give(to_c, force(1, c))
+        call give(to_d, force(1, d))
+        c = master_nodes(1, p); d = master_nodes(2, p)
+      end if
+      to_c = to_c - master_weights(1, p)*point
+      to_d = to_d - master_weights(2, p)*point
+      if (slave_nodes(1, p) == slave_nodes(2, p)) then
+        call give(point, force(1, slave_nodes(1, p)))
+      else
+        if (slave_nodes(1, p) /= a .or. slave_nodes(2, p) /= b) then
+          call give(to_a, force(1, a))
+          call give(to_b, force(1, b))
+          a = slave_nodes(1, p); b = slave_nodes(2, p)
+        end if
+        to_a = to_a + slave_weights(1, p)*point
+        to_b = to_b + slave_weights(2, p)*point
+      end if
+    end do
+    call give(to_a, force(1, a))
+    call give(to_b, force(1, b))
+    call give(to_c, force(1, c))
+    call give(to_d, force(1, d))
+  end subroutine scatter_each
+
+  !> Give a sum to a node; it is zero then.
+  pure subroutine give(part, force)
+    real(wp), intent(inout) :: part(2), force(2)
+    real(wp) :: total(2)
+
+    total = force + part
+    force = total
+    part = 0.0_wp
+  end subroutine give
+
+  !> What the rounding of places, one part in 1/epsilon of them, makes of the nodal forces of all
+  !> pressed points: a gap along n is known to n_x X and n_y Y. Times epsilon it is a force.
+  pure subroutine add_gap_round_off(memory, total)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(inout), contiguous :: total(:, :) !! (2, n_node of the mesh) N/m
+    real(wp) :: force, normal(2)
+    integer :: p, k, node
+
+    associate (points => memory%points)
+      do p = 1, points%n
+        if (.not. points%pressure(p) > 0.0_wp) cycle
+        normal = abs(points%normal(:, p))
+        node = points%master_nodes(1, p)
+        force = points%stiffness(p)*points%area(p) &
+          *dot_product(normal, abs(memory%places(1:2, node)))
+        do k = 1, n_side
+          node = memory%nodes(points%slave_nodes(k, p))
+          total(:, node) = total(:, node) + abs(points%slave_weights(k, p))*force*normal
+          node = memory%nodes(points%master_nodes(k, p))
+          total(:, node) = total(:, node) + abs(points%master_weights(k, p))*force*normal
+        end do
+      end do
+    end associate
+  end subroutine add_gap_round_off
+
+end module contact_scatter_m

@@ -1,0 +1,67 @@
+! SPDX-License-Identifier: MIT
+!> Damping of points in contact (doc/theory/contact.md, section 6).
+module damping_m
+  use contact_state_m, only : contact_points_t, n_side
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: damp_points
+
+contains
+
+  !> Add the damping of points in contact, -2 fraction k/omega times the opening velocity, with
+  !> omega^2 = sum of w K/m over the nodes of both sides, where K is the sum of all springs at a
+  !> node. For two masses and one spring it is the fraction of critical, and it does not depend on
+  !> how many points share a node's spring. The total never pulls.
+  pure subroutine damp_points(points, fraction, nodes, motion, mass, nodal)
+    type(contact_points_t), intent(inout) :: points
+    real(wp), intent(in) :: fraction
+    integer, intent(in), contiguous :: nodes(:)      !! mesh index of each local node
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u and v
+    real(wp), intent(in), contiguous :: mass(:)      !! (n_node) kg/m
+    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, local nodes) scratch
+    real(wp) :: rate, square, weight
+    integer :: p, k, local
+
+    call sum_springs(points, nodal)
+    do p = 1, points%n
+      if (.not. points%pressure(p)*points%area(p) > 0.0_wp) cycle
+      rate = 0.0_wp
+      square = 0.0_wp
+      do k = 1, n_side
+        local = points%slave_nodes(k, p)
+        weight = points%slave_weights(k, p)
+        rate = rate + weight*dot_product(points%normal(:, p), motion(3:4, nodes(local)))
+        square = square + weight*nodal(1, local)/mass(nodes(local))
+        local = points%master_nodes(k, p)
+        weight = points%master_weights(k, p)
+        rate = rate - weight*dot_product(points%normal(:, p), motion(3:4, nodes(local)))
+        square = square + weight*nodal(1, local)/mass(nodes(local))
+      end do
+      points%pressure(p) = max(0.0_wp, points%pressure(p) &
+        - 2.0_wp*fraction*rate*points%stiffness(p)/sqrt(square))
+    end do
+  end subroutine damp_points
+
+  !> Springs of all pressed points by node, N/m, into nodal(1, :): in two passes a node stands on
+  !> either side.
+  pure subroutine sum_springs(points, nodal)
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(inout), contiguous :: nodal(:, :)
+    real(wp) :: spring
+    integer :: p, k
+
+    nodal(1, :) = 0.0_wp
+    do p = 1, points%n
+      if (.not. points%pressure(p) > 0.0_wp) cycle
+      spring = points%stiffness(p)*points%area(p)
+      do k = 1, n_side
+        nodal(1, points%slave_nodes(k, p)) = nodal(1, points%slave_nodes(k, p)) &
+          + points%slave_weights(k, p)*spring
+        nodal(1, points%master_nodes(k, p)) = nodal(1, points%master_nodes(k, p)) &
+          + points%master_weights(k, p)*spring
+      end do
+    end do
+  end subroutine sum_springs
+
+end module damping_m

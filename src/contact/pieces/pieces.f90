@@ -1,0 +1,378 @@
+! SPDX-License-Identifier: MIT
+!> Which part of a slave segment faces which master segments. Both chains are ordered and run
+!> against each other: going back along the master chain from the foot of one end of a slave segment
+!> to that of the other meets every master node in between. Projected on the slave segment these
+!> nodes cut it into pieces, each facing one master segment; there is no search
+!> (doc/theory/contact.md, section 3.5). Some slave segments at a time are listed, then all are cut
+!> together. Where an end has no foot, or the feet are on two chains, piece_walk lists the pieces.
+module pieces_m
+  use contact_state_m, only : contact_state_t, is_touching
+  use contacts_m, only : contact_t
+  use foot_block_m, only : project
+  use foot_m, only : foot_t, nearest_foot, facing_share, face_on, round_off
+  use geometry_m, only : sight_t, sight_of_segment
+  use kinds_m, only : wp
+  use piece_table_m, only : piece_table_t, is_listed_piece, is_last_piece, is_walked_piece
+  use piece_walk_m, only : walk_pieces
+  use sleep_m, only : is_asleep
+  implicit none
+  private
+  public :: clear_pieces, list_awake, list_segment, cut_pieces, tracked_foot
+
+  !> Most pieces of a slave segment that are listed without a walk, and length of a closed master
+  !> chain up to which the way forwards may be the shorter one.
+  integer, parameter :: n_most = 6, short_chain = 2*n_most + 2
+  !> Part of a segment within which a foot is on its node where a walk starts or ends.
+  real(wp), parameter :: hair = 1.0e-9_wp
+
+contains
+
+  !> Start a table.
+  pure subroutine clear_pieces(table)
+    type(piece_table_t), intent(inout) :: table
+
+    table%n_segment = 0
+    table%n = 0
+    table%last(0) = 0
+    table%is_full = .false.
+  end subroutine clear_pieces
+
+  !> List the slave segments from s on that may touch, until the table is full; s is then the next.
+  pure subroutine list_awake(contact, memory, is_strict, s, table)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    logical, intent(in) :: is_strict !! a segment with an end beyond the master has no pieces
+    integer, intent(inout) :: s
+    type(piece_table_t), intent(inout) :: table
+
+    do while (s <= contact%slave%n_segment .and. .not. table%is_full)
+      associate (tracking => memory%slave_tracking)
+        if (contact%master%n_segment > short_chain) call list_touching(contact%slave%n_segment, &
+          contact%slave%segments, tracking%status, tracking%segment, tracking%xi, &
+          contact%master%previous, s, table)
+      end associate
+      if (s > contact%slave%n_segment .or. table%is_full) return
+      if (.not. is_asleep(memory, s, contact%slave%segments(:, s))) &
+        call list_segment(contact, memory, s, is_strict, table)
+      s = s + 1
+    end do
+  end subroutine list_awake
+
+  !> List the slave segments from s on with both ends in contact and feet between master nodes; s is
+  !> then the first of another kind. On arrays of known shape: half of the work.
+  pure subroutine list_touching(n_segment, ends, status, segment, xi, previous, s, table)
+    integer, intent(in) :: n_segment, ends(2, n_segment)   !! of the slave
+    integer, intent(in) :: status(*), segment(*)           !! of the slave nodes
+    real(wp), intent(in) :: xi(*)
+    integer, intent(in) :: previous(*)                     !! of the master
+    integer, intent(inout) :: s
+    type(piece_table_t), intent(inout) :: table
+    integer :: one, two
+    logical :: is_listed
+
+    do while (s <= n_segment .and. .not. table%is_full)
+      one = ends(1, s)
+      two = ends(2, s)
+      if (status(one) /= is_touching .or. status(two) /= is_touching) return
+      if (min(xi(one), 1.0_wp - xi(one), xi(two), 1.0_wp - xi(two)) <= round_off) return
+      call list_run(ends(1, s), segment(one), segment(two), previous, table, is_listed)
+      if (.not. is_listed) return
+      call end_segment(s, .true., table)
+      s = s + 1
+    end do
+  end subroutine list_touching
+
+  !> Note a slave segment whose pieces have been listed.
+  pure subroutine end_segment(s, touches, table)
+    integer, intent(in) :: s
+    logical, intent(in) :: touches !! both ends are in contact
+    type(piece_table_t), intent(inout) :: table
+
+    table%n_segment = table%n_segment + 1
+    table%slave(table%n_segment) = s
+    table%last(table%n_segment) = table%n
+    table%touches(table%n_segment) = touches
+    table%is_full = max(table%n + n_most, table%n_segment + 1) > size(table%master)
+  end subroutine end_segment
+
+  !> List a slave segment. Ends in contact are where the tracking has them; others are looked for
+  !> from the foot of the other end, so that both are on the same stretch of the chain.
+  pure subroutine list_segment(contact, memory, s, is_strict, table)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s !! slave segment
+    logical, intent(in) :: is_strict
+    type(piece_table_t), intent(inout) :: table
+    type(foot_t) :: feet(2)
+    integer :: ends(2), first, last
+    logical :: touches, is_listed
+
+    ends = contact%slave%segments(:, s)
+    associate (tracking => memory%slave_tracking)
+      touches = tracking%status(ends(1)) == is_touching .and. tracking%status(ends(2)) &
+        == is_touching
+      is_listed = .false.
+      if (touches) then
+        first = tracking%segment(ends(1))
+        last = tracking%segment(ends(2))
+        associate (xi => tracking%xi(ends(1)))
+          if (min(xi, 1.0_wp - xi) <= round_off) first = beside_node(contact, memory, ends, 1)
+        end associate
+        associate (xi => tracking%xi(ends(2)))
+          if (min(xi, 1.0_wp - xi) <= round_off) last = beside_node(contact, memory, ends, 2)
+        end associate
+      else
+        call find_feet(contact, memory, ends, feet)
+        first = merge(feet(1)%segment, 0, feet(1)%is_on)
+        last = merge(feet(2)%segment, 0, feet(2)%is_on)
+      end if
+      if (min(first, last) > 0 .and. contact%master%n_segment > short_chain) &
+        call list_run(ends, first, last, contact%master%previous, table, is_listed)
+      if (.not. is_listed) then
+        if (touches) call find_feet(contact, memory, ends, feet)
+        call walk_pieces(contact, memory, ends, feet, is_strict, table)
+      end if
+    end associate
+    call end_segment(s, touches, table)
+  end subroutine list_segment
+
+  !> Feet of both ends of a slave segment; segment 0 where no master segment is near. A foot on a
+  !> master node belongs to two segments: it takes the outer one, so that the node lies between the
+  !> feet whatever round-off decided. Where ends of closed surfaces meet exactly, a hair off the
+  !> node would count otherwise: what stands over the end of a slave would gain or lose half of the
+  !> side of its body under the strict rule of type 5.
+  pure subroutine find_feet(contact, memory, ends, feet)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)
+    type(foot_t), intent(out) :: feet(2)
+    integer :: k, start
+
+    associate (tracking => memory%slave_tracking)
+      start = tracking%segment(ends(1))
+      if (start == 0) start = tracking%segment(ends(2))
+      if (start == 0) return
+      do k = 1, 2
+        if (tracking%status(ends(k)) /= is_touching) cycle
+        feet(k) = tracked_foot(tracking%segment(ends(k)), tracking%xi(ends(k)), &
+          tracking%gap(ends(k)), tracking%normal(:, ends(k)))
+        start = feet(k)%segment
+      end do
+      do k = 1, 2
+        if (feet(k)%segment == 0) feet(k) = nearest_foot(contact%master, &
+          memory%places(:, memory%n_slave + 1:), memory%places(:, ends(k)), start)
+        start = feet(1)%segment
+      end do
+    end associate
+    associate (next => contact%master%next(feet(1)%segment))
+      if (abs(feet(1)%xi - 1.0_wp) <= hair .and. next > 0) then
+        feet(1)%segment = next
+        feet(1)%xi = 0.0_wp
+      end if
+    end associate
+    associate (previous => contact%master%previous(feet(2)%segment))
+      if (abs(feet(2)%xi) <= hair .and. previous > 0) then
+        feet(2)%segment = previous
+        feet(2)%xi = 1.0_wp
+      end if
+    end associate
+  end subroutine find_feet
+
+  !> Foot of a spot in contact.
+  pure function tracked_foot(segment, xi, gap, normal) result(foot)
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: xi, gap, normal(2)
+    type(foot_t) :: foot
+
+    foot%segment = segment
+    foot%is_on = .true.
+    foot%xi = xi
+    foot%gap = gap
+    foot%normal = normal
+  end function tracked_foot
+
+  !> Master segment of the first or the last piece of a slave segment where the foot of that end is
+  !> a master node, or within round-off of it. Of the two at that node the outer one has a piece
+  !> only where the node projects on the slave segment.
+  pure function beside_node(contact, memory, ends, k) result(segment)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)
+    integer, intent(in) :: k           !! which end
+    integer :: segment                 !! 0: a walk has to tell
+    integer :: before, behind, node    !! the two, on the way along the slave segment
+    type(sight_t) :: sight
+    logical :: is_inside
+
+    associate (tracking => memory%slave_tracking, master => contact%master)
+      segment = tracking%segment(ends(k))
+      if (tracking%xi(ends(k)) < 0.5_wp) then
+        before = segment
+        behind = master%previous(segment)
+        node = master%segments(1, segment)
+      else
+        before = master%next(segment)
+        behind = segment
+        node = master%segments(2, segment)
+      end if
+      sight = sight_of_segment(memory%places(:, memory%n_slave + node), memory%places(:, ends(1)), &
+        memory%places(:, ends(2)))
+      ! From a node that far off the walk sees no more of the master.
+      if (sight%along < -sight%square .or. sight%along > 2.0_wp*sight%square) then
+        segment = 0
+        return
+      end if
+      if (k == 1) then
+        is_inside = sight%along > round_off*sight%square
+      else
+        is_inside = sight%along < (1.0_wp - round_off)*sight%square
+      end if
+      segment = merge(before, behind, is_inside .eqv. k == 1)
+      if (segment == 0) segment = tracking%segment(ends(k))
+    end associate
+  end function beside_node
+
+  !> List the pieces of a slave segment from the master segment below its first end back to that
+  !> below the second one, if these are not too many.
+  pure subroutine list_run(ends, first, last, previous, table, is_listed)
+    integer, intent(in) :: ends(2), first, last
+    integer, intent(in) :: previous(*)  !! of the master
+    type(piece_table_t), intent(inout) :: table
+    logical, intent(out) :: is_listed
+    integer :: segment, n, k
+
+    is_listed = .false.
+    segment = first
+    k = table%n
+    do n = 1, n_most
+      k = k + 1
+      table%ends(1, k) = ends(1)
+      table%ends(2, k) = ends(2)
+      table%master(k) = segment
+      table%kind(k) = is_listed_piece
+      if (segment == last) exit
+      segment = previous(segment)
+      if (segment == 0) return
+    end do
+    if (n > n_most) return
+    is_listed = .true.
+    table%kind(k) = is_last_piece
+    table%n = k
+  end subroutine list_run
+
+  !> Cut all listed segments: where their pieces start and end, and how much of each counts.
+  pure subroutine cut_pieces(contact, memory, table)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(piece_table_t), intent(inout) :: table
+
+    call see_pieces(table%n, table%ends, table%master, contact%master%segments, memory%n_slave, &
+      memory%places, table%nodes, table%own, table%other, table%way)
+    call project_nodes(table%n, table%own, table%way, table%cut, table%node_gap, table%normal, &
+      table%length)
+    call order_pieces(table%n, contact%master%segments, table%master, table%kind, table%cut, &
+      table%low, table%high, table%first_cut, table%last_cut)
+    call find_shares(table%n, table%own, table%other, table%share)
+  end subroutine cut_pieces
+
+  !> Vectors of the pieces.
+  pure subroutine see_pieces(n, ends, master, segments, n_slave, places, nodes, own, other, way)
+    integer, intent(in) :: n, ends(2, *), master(*), segments(2, *)
+    integer, intent(in) :: n_slave !! local number before the first master node
+    real(wp), intent(in) :: places(4, *)
+    integer, intent(inout) :: nodes(2, *)
+    real(wp), intent(inout) :: own(2, *), other(2, *), way(2, *)
+    real(wp), dimension(4) :: along_slave, along_master, across
+    integer :: k, a, b
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      a = n_slave + segments(1, max(1, master(k)))
+      b = n_slave + segments(2, max(1, master(k)))
+      nodes(1, k) = a
+      nodes(2, k) = b
+      along_slave = places(:, ends(2, k)) - places(:, ends(1, k))
+      along_master = places(:, b) - places(:, a)
+      across = places(:, ends(1, k)) - places(:, a)
+      own(:, k) = along_slave(1:2) + along_slave(3:4)
+      other(:, k) = along_master(1:2) + along_master(3:4)
+      way(:, k) = across(1:2) + across(3:4)
+    end do
+  end subroutine see_pieces
+
+  !> Projections of the first nodes of the master segments on the slave segments.
+  pure subroutine project_nodes(n, own, way, cut, node_gap, normal, length)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: own(2, n), way(2, n)
+    real(wp), intent(inout) :: cut(n), node_gap(n), normal(2, n), length(n)
+    real(wp) :: odd(n), inverse(n), from_end(2, n)
+    integer :: n_odd
+
+    from_end = -way
+    call project(n, own, from_end, cut, node_gap, normal, inverse, odd, n_odd)
+    length = 1.0_wp/inverse
+  end subroutine project_nodes
+
+  !> Where the pieces start and end. A node that projects behind the last cut, or beyond the end of
+  !> the slave segment, cuts nothing: its piece is empty, or the last that is not.
+  pure subroutine order_pieces(n, segments, master, kind, cut, low, high, first_cut, last_cut)
+    integer, intent(in) :: n, segments(2, *) !! of the master
+    integer, intent(in) :: master(n), kind(n)
+    real(wp), intent(in) :: cut(n)
+    real(wp), intent(inout) :: low(n), high(n)
+    integer, intent(inout) :: first_cut(n), last_cut(n)
+    real(wp) :: at
+    integer :: k, node
+
+    at = 0.0_wp
+    node = 0
+    do k = 1, n
+      if (kind(k) == is_walked_piece) cycle
+      low(k) = at
+      first_cut(k) = node
+      if (kind(k) == is_last_piece) then
+        high(k) = 1.0_wp
+        last_cut(k) = 0
+        at = 0.0_wp
+        node = 0
+      else
+        if (cut(k) >= 1.0_wp) then
+          at = 1.0_wp
+          node = 0
+        else if (cut(k) > at) then
+          at = cut(k)
+          node = segments(1, master(k))
+        end if
+        high(k) = at
+        last_cut(k) = node
+      end if
+    end do
+  end subroutine order_pieces
+
+  !> How much of the pieces counts: all where the two segments face each other up to a certain
+  !> angle, none from a larger one on.
+  pure subroutine find_shares(n, own, other, share)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: own(2, n), other(2, n)
+    real(wp), intent(inout) :: share(n)
+    real(wp) :: product, squares, least
+    integer :: k
+
+    least = 1.0_wp
+    !$omp simd private(product, squares) reduction(min: least)
+    do k = 1, n
+      product = own(1, k)*other(1, k) + own(2, k)*other(2, k)
+      squares = (own(1, k)*own(1, k) + own(2, k)*own(2, k)) &
+        *(other(1, k)*other(1, k) + other(2, k)*other(2, k))
+      share(k) = merge(1.0_wp, 0.0_wp, product < 0.0_wp .and. product*product >= face_on**2*squares)
+      least = min(least, share(k))
+    end do
+    if (least > 0.0_wp) return
+    do k = 1, n
+      if (share(k) > 0.0_wp) cycle
+      share(k) = facing_share(dot_product(own(:, k), other(:, k)) &
+        /sqrt(max(sum(own(:, k)**2)*sum(other(:, k)**2), tiny(1.0_wp))))
+    end do
+  end subroutine find_shares
+
+end module pieces_m

@@ -1,0 +1,130 @@
+! SPDX-License-Identifier: MIT
+!> Where the followed spots of the slave side are: at its nodes, or at fixed places of every
+!> segment. Spots of segments move with the segment's nodes; spot number (segment - 1)*(spots per
+!> segment) + position.
+module spots_m
+  use contact_state_m, only : contact_state_t
+  use kinds_m, only : wp
+  use quadrature_m, only : gauss_rule
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: spots_at_nodes, spots_at_quarters, spots_at_gauss_points, start_spots, move_spots, &
+    list_owners, list_chords
+
+  !> Rules for the places of spots.
+  integer, parameter :: spots_at_nodes = 0, spots_at_quarters = 1, spots_at_gauss_points = 2
+
+contains
+
+  !> Places on each segment and the part of its length that each stands for; nothing is allocated
+  !> for spots at nodes, which are in `memory%places` already.
+  pure subroutine start_spots(rule, n_gauss, slave, memory)
+    integer, intent(in) :: rule    !! one of the constants above
+    integer, intent(in) :: n_gauss !! Gauss points of a segment
+    type(surface_t), intent(in) :: slave
+    type(contact_state_t), intent(inout) :: memory
+    integer :: s, q, n
+
+    if (rule == spots_at_nodes) return
+    n = merge(2, n_gauss, rule == spots_at_quarters)
+    allocate (memory%spot_xi(n), memory%spot_share(n), memory%spots(4, n*slave%n_segment))
+    memory%spot_xi = 0.25_wp
+    memory%spot_share = 1.0_wp/n
+    if (rule == spots_at_quarters) then
+      memory%spot_xi(2) = 0.75_wp
+    else
+      call gauss_rule(memory%spot_xi, memory%spot_share)
+    end if
+    do s = 1, slave%n_segment
+      associate (a => memory%places(:, slave%segments(1, s)), &
+        b => memory%places(:, slave%segments(2, s)))
+        do q = 1, n
+          memory%spots(:, (s - 1)*n + q) = (1.0_wp - memory%spot_xi(q))*a + memory%spot_xi(q)*b
+        end do
+      end associate
+    end do
+  end subroutine start_spots
+
+  !> Displacements of the spots from those of the nodes.
+  pure subroutine move_spots(slave, places, spot_xi, spots)
+    type(surface_t), intent(in) :: slave
+    real(wp), intent(in), contiguous :: places(:, :)   !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: spot_xi(:)
+    real(wp), intent(inout), contiguous :: spots(:, :) !! (4, n_spot)
+
+    call move_on_segments(slave%n_segment, slave%segments, size(spot_xi), spot_xi, places, &
+      spots)
+  end subroutine move_spots
+
+  !> The same on arrays of known shape. Both components of a spot are formed together: vectors over
+  !> the few spots of a segment take 2 to 4 % more of the contact of type 4.
+  pure subroutine move_on_segments(n, segments, n_xi, xi, places, spots)
+    integer, intent(in) :: n, segments(2, n), n_xi
+    real(wp), intent(in) :: xi(n_xi), places(4, *)
+    real(wp), intent(inout) :: spots(4, n_xi, n)
+    real(wp), dimension(2) :: one, two
+    real(wp) :: weights(n_xi)
+    integer :: s, q
+
+    weights = 1.0_wp - xi
+    !GCC$ NOVECTOR
+    do s = 1, n
+      one = places(3:4, segments(1, s))
+      two = places(3:4, segments(2, s))
+      !GCC$ NOVECTOR
+      !GCC$ UNROLL 1
+      do q = 1, n_xi
+        spots(3:4, q, s) = xi(q)*two + weights(q)*one
+      end do
+    end do
+  end subroutine move_on_segments
+
+  !> Segments of the own surface that each spot belongs to: one, or the two at a node (0: none
+  !> there).
+  pure function list_owners(surface, n_per_segment) result(owners)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: n_per_segment !! 0 for spots at nodes
+    integer, allocatable :: owners(:, :) !! (2, n_spot)
+    integer :: i
+
+    if (n_per_segment == 0) then
+      allocate (owners(2, surface%n_node))
+      owners(1, :) = surface%incoming
+      owners(2, :) = surface%outgoing
+    else
+      allocate (owners(2, n_per_segment*surface%n_segment))
+      do i = 1, size(owners, 2)
+        owners(:, i) = 1 + (i - 1)/n_per_segment
+      end do
+    end if
+  end function list_owners
+
+  !> Two spots of the own surface whose connection tells its direction at each spot: the first and
+  !> the last of a segment, or the neighbours of a node or of a lonely spot.
+  pure function list_chords(surface, n_per_segment) result(chords)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: n_per_segment
+    integer, allocatable :: chords(:, :) !! (2, n_spot)
+    integer :: i, s
+
+    if (n_per_segment == 0) then
+      allocate (chords(2, surface%n_node))
+      do i = 1, surface%n_node
+        chords(:, i) = i
+        if (surface%incoming(i) > 0) chords(1, i) = surface%segments(1, surface%incoming(i))
+        if (surface%outgoing(i) > 0) chords(2, i) = surface%segments(2, surface%outgoing(i))
+      end do
+      return
+    end if
+    allocate (chords(2, n_per_segment*surface%n_segment))
+    do i = 1, size(chords, 2)
+      s = 1 + (i - 1)/n_per_segment
+      chords(:, i) = [(s - 1)*n_per_segment + 1, s*n_per_segment]
+      if (n_per_segment > 1) cycle
+      if (surface%previous(s) > 0) chords(1, i) = surface%previous(s)
+      if (surface%next(s) > 0) chords(2, i) = surface%next(s)
+    end do
+  end function list_chords
+
+end module spots_m

@@ -1,0 +1,412 @@
+! SPDX-License-Identifier: MIT
+!> Which spot is on which segment: tracked from step to step, searched globally where tracking could
+!> miss something, asleep where nothing can touch (doc/theory/contact.md, section 4).
+module tracking_m
+  use contact_state_m, only : tracking_t, is_free, is_in_front, is_touching, is_behind
+  use foot_m, only : foot_t, see_segment, closest_foot, follow_contact, walk_to_closest, &
+    is_over_segment, turns_gently, end_tolerance, side_on
+  use foot_block_m, only : foot_block_t, n_block, project_block, settle_odd
+  use geometry_m, only : sight_t, separation
+  use grid_m, only : nearest_t, fill_grid, slip_limit, box_distance, find_nearest
+  use kinds_m, only : wp
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: update_tracking, wake_all, forget_pairs, list_touching, list_waking, most_facing, &
+    begin_contact
+
+  !> Spots passed at a time.
+  integer, parameter :: n_passed = 32
+
+contains
+
+  !> Bring the pairs of all spots up to date and list the spots in contact.
+  pure subroutine update_tracking(tracking, surface, chain, spots, travel, n_released)
+    type(tracking_t), intent(inout) :: tracking
+    type(surface_t), intent(in) :: surface            !! the chain tracked upon
+    real(wp), intent(in), contiguous :: chain(:, :)   !! (4, n_node) places of its nodes
+    real(wp), intent(in), contiguous :: spots(:, :)   !! (4, n) places of the spots
+    real(wp), intent(in) :: travel                    !! relative motion since the start, m
+    integer, intent(inout) :: n_released              !! deep first contacts let go
+    integer :: n_left, n_due, i, k
+    logical :: has_changed
+
+    n_left = 0
+    if (tracking%n_touching > 0) call keep_contacts(tracking, surface, chain, spots, n_left)
+    if (n_left == 0 .and. travel < tracking%next_wake) return
+    n_due = n_left
+    if (.not. travel < tracking%next_wake) call list_waking(tracking%n_touching, &
+      tracking%touching, tracking%n, tracking%wake, travel, tracking%next_wake, tracking%due, n_due)
+    has_changed = .false.
+    do k = 1, n_due
+      i = tracking%due(k)
+      call update_spot(tracking, surface, chain, spots, i, travel, n_released)
+      has_changed = has_changed .or. (tracking%status(i) == is_touching .neqv. k <= n_left)
+      if (tracking%status(i) /= is_touching) tracking%next_wake = &
+        min(tracking%next_wake, tracking%wake(i))
+    end do
+    if (has_changed) call list_touching(tracking)
+  end subroutine update_tracking
+
+  !> The common case of spots in contact: still over their segment, behind it, and no nearer to a
+  !> neighbour than to it, or behind the node between both. The others are listed in `due`.
+  pure subroutine keep_contacts(tracking, surface, chain, spots, n_left)
+    type(tracking_t), intent(inout) :: tracking
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
+    integer, intent(out) :: n_left    !! spots that were not kept
+    type(foot_block_t) :: block
+    logical :: has_odd
+    integer :: first, i, k
+
+    n_left = 0
+    do first = 1, tracking%n_touching, n_block
+      block%n = min(n_block, tracking%n_touching - first + 1)
+      call see_spots(block%n, tracking%touching(first), tracking%segment, surface%segments, chain, &
+        spots, block%segment, block%t, block%d)
+      call project_block(block)
+      has_odd = block%n_odd > 0
+      if (has_odd) then
+        call settle_odd(surface, chain, block)
+        do k = 1, block%n
+          tracking%segment(tracking%touching(first + k - 1)) = block%segment(k)
+        end do
+      end if
+      i = tracking%touching(first)
+      if (tracking%touching(first + block%n - 1) == i + block%n - 1) then
+        call store_run(block%n, block%xi, block%gap, block%normal, tracking%xi(i), &
+          tracking%gap(i), tracking%normal(1, i))
+      else
+        do k = 1, block%n
+          i = tracking%touching(first + k - 1)
+          tracking%xi(i) = block%xi(k)
+          tracking%gap(i) = block%gap(k)
+          tracking%normal(1, i) = block%normal(1, k)
+          tracking%normal(2, i) = block%normal(2, k)
+        end do
+      end if
+      if (.not. has_odd) cycle
+      do k = 1, block%n
+        if (block%gap(k) < 0.0_wp .and. .not. block%odd(k) > 0.0_wp) cycle
+        n_left = n_left + 1
+        tracking%due(n_left) = tracking%touching(first + k - 1)
+      end do
+    end do
+  end subroutine keep_contacts
+
+  !> Vectors of a block of spots.
+  pure subroutine see_spots(n, touching, segment, ends, chain, spots, on, t, d)
+    integer, intent(in) :: n, touching(n), segment(*), ends(2, *)
+    real(wp), intent(in) :: chain(4, *), spots(4, *)
+    integer, intent(inout) :: on(n)      !! their segments
+    real(wp), intent(inout) :: t(2, n)   !! these, m
+    real(wp), intent(inout) :: d(2, n)   !! from the segments' first nodes, m
+    real(wp), dimension(4) :: along, across
+    integer :: i, k, a, b
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      i = touching(k)
+      on(k) = segment(i)
+      a = ends(1, segment(i))
+      b = ends(2, segment(i))
+      along = chain(:, b) - chain(:, a)
+      across = spots(:, i) - chain(:, a)
+      t(:, k) = along(1:2) + along(3:4)
+      d(:, k) = across(1:2) + across(3:4)
+    end do
+  end subroutine see_spots
+
+  !> Keep the feet of spots that follow each other.
+  pure subroutine store_run(n, xi, gap, normal, kept_xi, kept_gap, kept_normal)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: xi(n), gap(n), normal(2, n)
+    real(wp), intent(inout) :: kept_xi(n), kept_gap(n), kept_normal(2, n)
+
+    kept_xi = xi
+    kept_gap = gap
+    kept_normal = normal
+  end subroutine store_run
+
+  !> Any other case, by what the spot was doing.
+  pure subroutine update_spot(tracking, surface, chain, spots, i, travel, n_released)
+    type(tracking_t), intent(inout) :: tracking
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
+    integer, intent(in) :: i
+    real(wp), intent(in) :: travel
+    integer, intent(inout) :: n_released
+    type(foot_t) :: foot
+    type(sight_t) :: sight
+
+    select case (tracking%status(i))
+    case (is_touching)
+      foot = follow_contact(surface, chain, spots(:, i), tracking%segment(i))
+      if (foot%is_on .and. foot%gap < 0.0_wp) then
+        call store_foot(tracking, i, foot)
+        return
+      end if
+    case (is_in_front)
+      sight = see_segment(surface, chain, spots(:, i), tracking%segment(i))
+      if (sight%across < 0.0_wp .and. is_over_segment(sight)) then
+        foot = follow_contact(surface, chain, spots(:, i), tracking%segment(i))
+        if (foot%is_on .and. foot%gap < 0.0_wp) then
+          call begin_contact(tracking, i, foot, n_released)
+          return
+        end if
+      end if
+    case (is_behind)
+      foot = closest_foot(surface, chain, spots(:, i), &
+        walk_to_closest(surface, chain, spots(:, i), tracking%segment(i)))
+      if (foot%is_on .and. foot%gap < 0.0_wp .and. foot%distance <= tracking%reach) then
+        call store_foot(tracking, i, foot)
+        return
+      end if
+    end select
+    call find_foot(tracking, surface, chain, spots(:, i), i, travel, foot)
+    call judge_foot(tracking, surface, chain, spots, i, foot, travel, n_released)
+  end subroutine update_spot
+
+  !> Closest foot of a spot that is not in contact: by walking where that is safe, else by the
+  !> global search. foot%segment = 0: none within reach.
+  pure subroutine find_foot(tracking, surface, chain, spot, i, travel, foot)
+    type(tracking_t), intent(inout) :: tracking
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :)
+    real(wp), intent(in) :: spot(4)
+    integer, intent(in) :: i
+    real(wp), intent(in) :: travel
+    type(foot_t), intent(out) :: foot
+    type(nearest_t) :: nearest
+    integer :: segment
+
+    segment = tracking%segment(i)
+    if (segment > 0 .and. travel < tracking%recheck(i) .and. tracking%status(i) /= is_touching) then
+      if (walk_to_closest(surface, chain, spot, segment) == segment) then
+        foot = closest_foot(surface, chain, spot, segment)
+        ! Beyond the reach the spot is let go: then other segments have to be known too.
+        if (foot%distance <= tracking%reach) return
+        foot = foot_t()
+      end if
+    end if
+    if (.not. tracking%grid%cell > 0.0_wp .or. &
+      travel - tracking%grid%filled_at > slip_limit(tracking%grid)) &
+      call fill_grid(tracking%grid, surface, chain, travel)
+    foot%distance = box_distance(tracking%grid, chain, spot, travel)
+    if (foot%distance > tracking%reach) return
+    call find_nearest(tracking%grid, surface, chain, spot, travel, tracking%reach, nearest)
+    foot%distance = nearest%distance
+    if (nearest%segment == 0) return
+    foot = closest_foot(surface, chain, spot, nearest%segment)
+    tracking%recheck(i) = travel + nearest%other
+  end subroutine find_foot
+
+  !> Decide what a spot is doing from its closest foot, and when it must be looked at again.
+  pure subroutine judge_foot(tracking, surface, chain, spots, i, foot, travel, n_released)
+    type(tracking_t), intent(inout) :: tracking
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
+    integer, intent(in) :: i
+    type(foot_t), intent(in) :: foot
+    real(wp), intent(in) :: travel
+    integer, intent(inout) :: n_released
+    integer :: face, n_deep
+    logical :: is_new
+
+    if (foot%segment == 0 .or. foot%distance > tracking%reach) then
+      tracking%status(i) = is_free
+      tracking%segment(i) = 0
+      tracking%wake(i) = travel + (foot%distance - tracking%reach)
+    else if (foot%is_on .and. foot%gap < 0.0_wp) then
+      n_deep = 0
+      is_new = tracking%segment(i) == 0
+      call begin_contact(tracking, i, foot, n_deep)
+      ! What is found behind at first sight is a deep contact only within the first row of elements;
+      ! beyond that it may as well be the far side of a body.
+      if (.not. is_new .or. -foot%gap < 2.0_wp*tracking%segment_depth(foot%segment)) &
+        n_released = n_released + n_deep
+    else
+      call store_foot(tracking, i, foot)
+      face = most_facing(tracking, surface, chain, spots, i, foot, .false.)
+      tracking%status(i) = merge(is_in_front, is_free, face > 0)
+      if (face > 0) tracking%segment(i) = face
+      tracking%wake(i) = min(travel + foot%distance, tracking%recheck(i))
+      if (.not. foot%is_on) tracking%wake(i) = -huge(1.0_wp)
+    end if
+  end subroutine judge_foot
+
+  !> A spot has come behind a face: contact, unless it is deeper than a first contact may be.
+  pure subroutine begin_contact(tracking, i, foot, n_released)
+    type(tracking_t), intent(inout) :: tracking
+    integer, intent(in) :: i
+    type(foot_t), intent(in) :: foot
+    integer, intent(inout) :: n_released
+
+    call store_foot(tracking, i, foot)
+    tracking%wake(i) = -huge(1.0_wp)
+    if (-foot%gap <= min(tracking%spot_depth(i), tracking%segment_depth(foot%segment))) then
+      tracking%status(i) = is_touching
+    else
+      tracking%status(i) = is_behind
+      n_released = n_released + 1
+    end if
+  end subroutine begin_contact
+
+  !> Keep a foot.
+  pure subroutine store_foot(tracking, i, foot)
+    type(tracking_t), intent(inout) :: tracking
+    integer, intent(in) :: i
+    type(foot_t), intent(in) :: foot
+
+    tracking%segment(i) = foot%segment
+    tracking%xi(i) = foot%xi
+    tracking%gap(i) = foot%gap
+    tracking%normal(:, i) = foot%normal
+  end subroutine store_foot
+
+  !> Face that a spot stands before: its own segment, but next to a sharp corner the one that the
+  !> spot's own surface faces most, among those it is over. 0 when it stands before none. Without
+  !> this a node at a flush edge belongs to the top or to the side of the other body by round-off.
+  !> At time zero (`is_start`) faces that the spot is behind count too, and any depth is next to the
+  !> corner where the spot's own surface faces the other face only.
+  pure function most_facing(tracking, surface, chain, spots, i, foot, is_start) result(face)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
+    integer, intent(in) :: i
+    type(foot_t), intent(in) :: foot
+    logical, intent(in) :: is_start
+    integer :: face
+    type(sight_t) :: sight, own
+    real(wp) :: t(2), facing, best
+    integer :: candidates(3), k
+    logical :: is_next_to_corner
+
+    candidates = [foot%segment, surface%previous(foot%segment), surface%next(foot%segment)]
+    is_next_to_corner = foot%xi <= end_tolerance .or. foot%xi >= 1.0_wp - end_tolerance
+    t = separation(spots(:, tracking%chord(2, i)), spots(:, tracking%chord(1, i)))
+    face = 0
+    best = huge(1.0_wp)
+    do k = 1, 3
+      if (k > 1 .and. .not. is_next_to_corner) exit
+      if (candidates(k) == 0) cycle
+      sight = see_segment(surface, chain, spots(:, i), candidates(k))
+      facing = dot_product(t, sight%t)/sqrt(sight%square)
+      if (k == 1) then
+        own = sight
+        if (is_start) is_next_to_corner = is_next_to_corner .or. facing >= 0.0_wp
+      else if (turns_gently(own, sight)) then
+        cycle
+      else if (is_start .and. facing > side_on*norm2(t)) then
+        cycle
+      end if
+      if (.not. is_over_segment(sight)) cycle
+      if (sight%across < 0.0_wp .and. .not. is_start) cycle
+      if (facing >= best) cycle
+      best = facing
+      face = candidates(k)
+    end do
+  end function most_facing
+
+  !> Have every spot that is not in contact searched for globally at the next update.
+  pure subroutine wake_all(tracking)
+    type(tracking_t), intent(inout) :: tracking
+
+    tracking%wake = -huge(1.0_wp)
+    tracking%recheck = -huge(1.0_wp)
+    tracking%next_wake = -huge(1.0_wp)
+  end subroutine wake_all
+
+  !> Start a tracking anew, knowing nothing.
+  pure subroutine forget_pairs(tracking)
+    type(tracking_t), intent(inout) :: tracking
+
+    tracking%segment = 0
+    tracking%n_touching = 0
+    tracking%status = is_free
+    tracking%grid%cell = 0.0_wp
+    call wake_all(tracking)
+  end subroutine forget_pairs
+
+  !> List the spots in contact anew.
+  pure subroutine list_touching(tracking)
+    type(tracking_t), intent(inout) :: tracking
+    integer :: i
+
+    tracking%n_touching = 0
+    do i = 1, tracking%n
+      if (tracking%status(i) /= is_touching) cycle
+      tracking%n_touching = tracking%n_touching + 1
+      tracking%touching(tracking%n_touching) = i
+    end do
+  end subroutine list_touching
+
+  !> List the spots that are not in contact and do not sleep any more: those before, between and
+  !> behind the runs of spots in contact.
+  pure subroutine list_waking(n_touching, touching, n, wake, travel, next_wake, due, n_due)
+    integer, intent(in) :: n_touching, touching(n_touching)
+    integer, intent(in) :: n                !! spots
+    real(wp), intent(in) :: wake(n), travel
+    real(wp), intent(out) :: next_wake      !! of those that sleep
+    integer, intent(inout) :: due(n), n_due
+    integer :: k, last
+
+    next_wake = huge(1.0_wp)
+    last = 0
+    k = 0
+    do while (k < n_touching)
+      call pass_sleeping(last + 1, touching(k + 1) - 1, wake, travel, next_wake, due, n_due)
+      k = end_of_run(n_touching, touching, k + 1)
+      last = touching(k)
+    end do
+    call pass_sleeping(last + 1, n, wake, travel, next_wake, due, n_due)
+  end subroutine list_waking
+
+  !> The same for spots none of which is in contact. Many that sleep are passed at a time.
+  pure subroutine pass_sleeping(first, last, wake, travel, next_wake, due, n_due)
+    integer, intent(in) :: first, last
+    real(wp), intent(in) :: wake(*), travel
+    real(wp), intent(inout) :: next_wake
+    integer, intent(inout) :: due(*), n_due
+    real(wp) :: least
+    integer :: from, to, i
+
+    do from = first, last, n_passed
+      to = min(last, from + n_passed - 1)
+      least = huge(1.0_wp)
+      !$omp simd reduction(min: least)
+      do i = from, to
+        least = min(least, wake(i))
+      end do
+      if (travel < least) then
+        next_wake = min(next_wake, least)
+        cycle
+      end if
+      do i = from, to
+        if (travel < wake(i)) then
+          next_wake = min(next_wake, wake(i))
+        else
+          n_due = n_due + 1
+          due(n_due) = i
+        end if
+      end do
+    end do
+  end subroutine pass_sleeping
+
+  !> Where a run of spots that follow each other ends on their list.
+  pure function end_of_run(n, list, start) result(k)
+    integer, intent(in) :: n, list(n), start
+    integer :: k
+
+    k = start
+    do while (k + n_passed <= n)
+      if (list(k + n_passed) /= list(k) + n_passed) exit
+      k = k + n_passed
+    end do
+    do while (k < n)
+      if (list(k + 1) /= list(k) + 1) exit
+      k = k + 1
+    end do
+  end function end_of_run
+
+end module tracking_m

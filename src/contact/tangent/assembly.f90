@@ -1,0 +1,159 @@
+! SPDX-License-Identifier: MIT
+!> From varied points to the tangent of an interface, K = -dF/du (doc/theory/contact.md, section 9).
+module assembly_m
+  use variation_m, only : varied_point_t, n_slot
+  use contact_law_m, only : vary_pressure
+  use dual_m, only : dual_t, n_partial, operator(-), operator(*)
+  use kinds_m, only : wp
+  use sparse_m, only : sparse_t, add_block
+  implicit none
+  private
+  public :: add_varied_point, add_pressed_point, pattern_t, start_pattern, &
+    add_to_row, add_to_column, add_product
+
+  !> Scratch for a product of two vectors over the nodes of an interface of which few entries are
+  !> not zero.
+  type :: pattern_t
+    integer :: n = 0                       !! nodes in use
+    integer, allocatable :: nodes(:)       !! (n_node) the first n: local numbers
+    logical, allocatable :: is_used(:)     !! (n_node)
+    real(wp), allocatable :: column(:, :)  !! (2, n_node) force
+    real(wp), allocatable :: row(:, :)     !! (2, n_node) gradient
+  end type pattern_t
+
+contains
+
+  !> Weights of slots 1 to 4 in the force, master side with minus.
+  pure function point_weights(point) result(weights)
+    type(varied_point_t), intent(in) :: point
+    type(dual_t) :: weights(4)
+
+    weights = [1.0_wp - point%slave_xi, point%slave_xi, point%master_xi, -point%master_xi]
+    weights(3)%value = weights(3)%value - 1.0_wp
+  end function point_weights
+
+  !> Add a point with the force load*normal; the load is pressure times area.
+  pure subroutine add_varied_point(point, load, equations, matrix)
+    type(varied_point_t), intent(in) :: point
+    type(dual_t), intent(in) :: load
+    integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
+    type(sparse_t), intent(inout) :: matrix
+    type(dual_t) :: weights(4), pull(2), force
+    real(wp) :: block(8, n_partial)
+    integer :: numbers(n_partial), rows(8), k, j
+
+    numbers = 0
+    do k = 1, n_slot
+      if (point%nodes(k) > 0) numbers(2*k - 1:2*k) = equations(:, point%nodes(k))
+    end do
+    rows = numbers(:8)
+    weights = point_weights(point)
+    pull = load*point%normal
+    do k = 1, 4
+      if (.not. (abs(weights(k)%value) > 0.0_wp .or. any(abs(weights(k)%slope) > 0.0_wp))) &
+        rows(2*k - 1:2*k) = 0
+      do j = 1, 2
+        force = weights(k)*pull(j)
+        block(2*k - 2 + j, :) = -force%slope
+      end do
+    end do
+    call add_block(matrix, rows, numbers, block)
+  end subroutine add_varied_point
+
+  !> Add a point that is pressed by its own gap.
+  pure subroutine add_pressed_point(point, contact_law, stiffness, equations, matrix)
+    type(varied_point_t), intent(in) :: point
+    integer, intent(in) :: contact_law
+    real(wp), intent(in) :: stiffness
+    integer, intent(in), contiguous :: equations(:, :)
+    type(sparse_t), intent(inout) :: matrix
+
+    call add_varied_point(point, vary_pressure(contact_law, stiffness, point%gap)*point%area, &
+      equations, matrix)
+  end subroutine add_pressed_point
+
+  !> Scratch for an interface of n nodes.
+  pure subroutine start_pattern(pattern, n)
+    type(pattern_t), intent(out) :: pattern
+    integer, intent(in) :: n
+
+    allocate (pattern%nodes(n), source=0)
+    allocate (pattern%is_used(n), source=.false.)
+    allocate (pattern%column(2, n), pattern%row(2, n), source=0.0_wp)
+  end subroutine start_pattern
+
+  !> Add the derivative of something to the row.
+  pure subroutine add_to_row(pattern, point, slope)
+    type(pattern_t), intent(inout) :: pattern
+    type(varied_point_t), intent(in) :: point !! whose slots the derivative is for
+    real(wp), intent(in) :: slope(n_partial)
+    integer :: k, node
+
+    do k = 1, n_slot
+      node = point%nodes(k)
+      if (node == 0) cycle
+      call use_node(pattern, node)
+      pattern%row(:, node) = pattern%row(:, node) + slope(2*k - 1:2*k)
+    end do
+  end subroutine add_to_row
+
+  !> Add the force of a point under the given load to the column.
+  pure subroutine add_to_column(pattern, point, load)
+    type(pattern_t), intent(inout) :: pattern
+    type(varied_point_t), intent(in) :: point
+    real(wp), intent(in) :: load
+    type(dual_t) :: weights(4)
+    integer :: k, node
+
+    weights = point_weights(point)
+    do k = 1, 4
+      node = point%nodes(k)
+      if (node == 0) cycle
+      call use_node(pattern, node)
+      pattern%column(:, node) = pattern%column(:, node) &
+        + load*weights(k)%value*point%normal%value
+    end do
+  end subroutine add_to_column
+
+  !> Note that a node takes part.
+  pure subroutine use_node(pattern, node)
+    type(pattern_t), intent(inout) :: pattern
+    integer, intent(in) :: node
+
+    if (pattern%is_used(node)) return
+    pattern%is_used(node) = .true.
+    pattern%n = pattern%n + 1
+    pattern%nodes(pattern%n) = node
+  end subroutine use_node
+
+  !> Add factor*column*row to the matrix and empty the scratch.
+  pure subroutine add_product(pattern, factor, equations, matrix)
+    type(pattern_t), intent(inout) :: pattern
+    real(wp), intent(in) :: factor
+    integer, intent(in), contiguous :: equations(:, :)
+    type(sparse_t), intent(inout) :: matrix
+    real(wp) :: block(2*pattern%n, 2)
+    integer :: rows(2*pattern%n), i, j
+
+    do i = 1, pattern%n
+      associate (node => pattern%nodes(i))
+        rows(2*i - 1:2*i) = equations(:, node)
+        if (.not. any(abs(pattern%column(:, node)) > 0.0_wp)) rows(2*i - 1:2*i) = 0
+      end associate
+    end do
+    do i = 1, pattern%n
+      associate (row => pattern%row(:, pattern%nodes(i)))
+        do j = 1, pattern%n
+          block(2*j - 1:2*j, 1) = factor*row(1)*pattern%column(:, pattern%nodes(j))
+          block(2*j - 1:2*j, 2) = factor*row(2)*pattern%column(:, pattern%nodes(j))
+        end do
+      end associate
+      call add_block(matrix, rows, equations(:, pattern%nodes(i)), block)
+    end do
+    pattern%is_used(pattern%nodes(:pattern%n)) = .false.
+    pattern%column(:, pattern%nodes(:pattern%n)) = 0.0_wp
+    pattern%row(:, pattern%nodes(:pattern%n)) = 0.0_wp
+    pattern%n = 0
+  end subroutine add_product
+
+end module assembly_m

@@ -1,0 +1,110 @@
+! SPDX-License-Identifier: MIT
+!> Tangents of types 6 and 7: their points; the rest is in nodal_tangent
+!> (doc/theory/contact.md, section 9.5).
+module tangent_mortar_m
+  use contact_state_m, only : contact_state_t
+  use contacts_m, only : contact_t
+  use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
+  use foot_m, only : foot_t, near_foot
+  use kinds_m, only : wp
+  use nodal_tangent_m, only : varied_list_t, start_list, append_point, add_nodal_tangent
+  use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
+  use pieces_m, only : clear_pieces, list_segment, cut_pieces
+  use place_segmented_mortar_m, only : gauss_xi
+  use sparse_m, only : sparse_t
+  use variation_m, only : varied_point_t, spot_foot, put_foot, length_between, take_piece, &
+    piece_ends, vary_share
+  implicit none
+  private
+  public :: add_mortar_tangent, add_segmented_mortar_tangent
+
+contains
+
+  !> Type 6: the points stand at fixed places of their segments.
+  pure subroutine add_mortar_tangent(contact, memory, equations, matrix)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
+    type(sparse_t), intent(inout) :: matrix
+    type(varied_list_t) :: list
+    type(varied_point_t) :: point
+    integer :: p
+
+    call start_list(list, contact%slave%n_segment, memory%points%n)
+    do p = 1, memory%points%n
+      associate (points => memory%points)
+        point%nodes(:4) = [points%slave_nodes(:, p), points%master_nodes(:, p)]
+        point%slave_xi = constant(points%slave_weights(2, p))
+        call put_foot(point, spot_foot(memory%places, point, 3, points%master_weights(2, p), &
+          points%gap(p), memory%closed_gap))
+        point%area = length_between(memory%places, point%nodes, 1, 2) &
+          *vary_share(memory%places, point%nodes, 1, point%normal)
+        point%area = (points%area(p)/point%area%value)*point%area
+        call append_point(list, contact%slave%outgoing(point%nodes(1)), point)
+      end associate
+    end do
+    call add_nodal_tangent(contact, memory, list, equations, matrix)
+  end subroutine add_mortar_tangent
+
+  !> Type 7: the points move with the cuts.
+  pure subroutine add_segmented_mortar_tangent(contact, memory, equations, matrix)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in), contiguous :: equations(:, :)
+    type(sparse_t), intent(inout) :: matrix
+    type(varied_list_t) :: list
+    type(piece_table_t) :: table
+    logical :: is_placed(contact%slave%n_segment)
+    integer :: s, k
+
+    is_placed = .false.
+    is_placed(contact%slave%outgoing(memory%points%slave_nodes(1, :memory%points%n))) = .true.
+    call start_list(list, contact%slave%n_segment, memory%points%n)
+    call allocate_pieces(table, n_piece_block)
+    do s = 1, contact%slave%n_segment
+      if (.not. is_placed(s)) cycle
+      call clear_pieces(table)
+      call list_segment(contact, memory, s, .false., table)
+      call cut_pieces(contact, memory, table)
+      do k = 1, table%n
+        if (table%high(k) > table%low(k) .and. table%share(k) > 0.0_wp) &
+          call vary_piece(contact, memory, table, s, k, list)
+      end do
+    end do
+    call add_nodal_tangent(contact, memory, list, equations, matrix)
+  end subroutine add_segmented_mortar_tangent
+
+  !> Append the points of one piece that counts (share above 0).
+  pure subroutine vary_piece(contact, memory, table, s, k, list)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(piece_table_t), intent(in) :: table
+    integer, intent(in) :: s, k !! slave segment, piece
+    type(varied_list_t), intent(inout) :: list
+    type(varied_point_t) :: point
+    type(dual_t) :: xi(2), share, length
+    type(foot_t) :: foot
+    integer :: q
+
+    call take_piece(memory, table, k, k == 1, point)
+    xi = piece_ends(memory%places, point%nodes, [table%low(k), table%high(k)])
+    length = (xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2)
+    do q = 1, size(gauss_xi)
+      associate (at => table%low(k) + gauss_xi(q)*(table%high(k) - table%low(k)))
+        foot = near_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
+          (1.0_wp - at)*memory%places(:, table%ends(1, k)) &
+          + at*memory%places(:, table%ends(2, k)), table%master(k))
+      end associate
+      if (.not. foot%is_on) cycle
+      point%nodes(3:4) = memory%n_slave + contact%master%segments(:, foot%segment)
+      point%slave_xi = xi(1) + gauss_xi(q)*(xi(2) - xi(1))
+      call put_foot(point, spot_foot(memory%places, point, 3, foot%xi, foot%gap, &
+        memory%closed_gap))
+      share = vary_share(memory%places, point%nodes, 1, point%normal)
+      if (.not. share%value > 0.0_wp) cycle
+      point%area = 0.5_wp*share*length
+      call append_point(list, s, point)
+    end do
+  end subroutine vary_piece
+
+end module tangent_mortar_m

@@ -1,0 +1,88 @@
+! SPDX-License-Identifier: MIT
+!> Tangents of types 1, 2 and 3, whose points are nodes of one surface over segments of the other
+!> (doc/theory/contact.md, section 9.2).
+module tangent_nts_m
+  use assembly_m, only : add_pressed_point
+  use contact_state_m, only : contact_state_t
+  use variation_m, only : varied_point_t, spot_foot, put_foot, length_between
+  use contacts_m, only : contact_t
+  use dual_m, only : constant, operator(+), operator(*)
+  use kinds_m, only : wp
+  use sparse_m, only : sparse_t
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: add_nts_tangent, add_nts_ar_tangent, vary_node, vary_competence
+
+contains
+
+  !> Type 1.
+  pure subroutine add_nts_tangent(memory, equations, matrix)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
+    type(sparse_t), intent(inout) :: matrix
+    integer :: p
+
+    do p = 1, memory%points%n
+      if (memory%points%gap(p) < memory%closed_gap) call &
+        add_pressed_point(vary_node(memory, p), memory%contact_law, memory%points%stiffness(p), &
+        equations, matrix)
+    end do
+  end subroutine add_nts_tangent
+
+  !> Types 2 and 3: the area changes with the segments beside the node.
+  pure subroutine add_nts_ar_tangent(contact, memory, equations, matrix)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in), contiguous :: equations(:, :)
+    type(sparse_t), intent(inout) :: matrix
+    type(varied_point_t) :: point
+    integer :: p
+
+    do p = 1, memory%points%n
+      if (.not. memory%points%gap(p) < memory%closed_gap) cycle
+      point = vary_node(memory, p)
+      if (point%nodes(1) <= memory%n_slave) then
+        call vary_competence(contact%slave, 0, memory, point)
+      else
+        call vary_competence(contact%master, memory%n_slave, memory, point)
+      end if
+      call add_pressed_point(point, memory%contact_law, memory%points%stiffness(p), &
+        equations, matrix)
+    end do
+  end subroutine add_nts_ar_tangent
+
+  !> The p-th point, which stands at a node, with a constant area of 1.
+  pure function vary_node(memory, p) result(point)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: p
+    type(varied_point_t) :: point
+
+    point%nodes(1) = memory%points%slave_nodes(1, p)
+    point%nodes(3:4) = memory%points%master_nodes(:, p)
+    point%slave_xi = constant(0.0_wp)
+    point%area = constant(1.0_wp)
+    call put_foot(point, spot_foot(memory%places, point, 3, memory%points%master_weights(2, p), &
+      memory%points%gap(p), memory%closed_gap))
+  end function vary_node
+
+  !> Let the area of a point at a node be the node's competence length; its neighbours go into slots
+  !> 5 and 6.
+  pure subroutine vary_competence(surface, offset, memory, point)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: offset !! local number before the first node of the surface
+    type(contact_state_t), intent(in) :: memory
+    type(varied_point_t), intent(inout) :: point
+    integer :: segments(2), k
+
+    segments = [surface%incoming(point%nodes(1) - offset), &
+      surface%outgoing(point%nodes(1) - offset)]
+    point%area = constant(0.0_wp)
+    do k = 1, 2
+      if (segments(k) == 0) cycle
+      point%nodes(4 + k) = offset + surface%segments(k, segments(k))
+      point%area = point%area + 0.5_wp*length_between(memory%places, point%nodes, 1, 4 + k)
+    end do
+  end subroutine vary_competence
+
+end module tangent_nts_m

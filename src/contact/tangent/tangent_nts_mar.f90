@@ -1,0 +1,157 @@
+! SPDX-License-Identifier: MIT
+!> Tangent of type 5: half of each piece of slave segment is the area of a point of its own at
+!> either of the piece's ends, so that each depends on few nodes (doc/theory/contact.md, section
+!> 9.4).
+module tangent_nts_mar_m
+  use assembly_m, only : add_pressed_point
+  use contact_state_m, only : contact_state_t, is_touching
+  use contacts_m, only : contact_t
+  use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
+  use kinds_m, only : wp
+  use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
+  use pieces_m, only : clear_pieces, list_segment, cut_pieces
+  use place_nts_mar_m, only : is_tip
+  use sparse_m, only : sparse_t
+  use tangent_nts_m, only : vary_node, vary_competence
+  use variation_m, only : varied_point_t, varied_foot_t, apart, length_between, project, &
+    spot_foot, put_foot, take_piece, piece_ends, vary_share
+  implicit none
+  private
+  public :: add_nts_mar_tangent
+
+contains
+
+  !> All pieces; then the nodes at a tip, which have none.
+  pure subroutine add_nts_mar_tangent(contact, memory, equations, matrix)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
+    type(sparse_t), intent(inout) :: matrix
+    type(piece_table_t) :: table
+    type(varied_point_t) :: point
+    logical :: has_area(memory%n_slave)
+    integer :: s, p
+
+    has_area = .false.
+    call allocate_pieces(table, n_piece_block)
+    do s = 1, contact%slave%n_segment
+      if (memory%segments%status(s) == is_touching .or. any(memory%slave_tracking%status( &
+        contact%slave%segments(:, s)) == is_touching)) &
+        call add_segment(contact, memory, s, table, equations, matrix, has_area)
+    end do
+    do p = 1, memory%slave_tracking%n_touching
+      if (has_area(memory%slave_tracking%touching(p))) cycle
+      if (.not. is_tip(contact%slave, memory, memory%slave_tracking%touching(p))) cycle
+      if (.not. memory%points%gap(p) < memory%closed_gap) cycle
+      point = vary_node(memory, p)
+      call vary_competence(contact%slave, 0, memory, point)
+      call add_pressed_point(point, memory%contact_law, memory%slave_penalty, &
+        equations, matrix)
+    end do
+  end subroutine add_nts_mar_tangent
+
+  !> The pieces of one slave segment, as the placement divides it.
+  pure subroutine add_segment(contact, memory, s, table, equations, matrix, has_area)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    type(piece_table_t), intent(inout) :: table
+    integer, intent(in), contiguous :: equations(:, :)
+    type(sparse_t), intent(inout) :: matrix
+    logical, intent(inout) :: has_area(:)
+    integer :: k
+
+    call clear_pieces(table)
+    call list_segment(contact, memory, s, contact%strict, table)
+    call cut_pieces(contact, memory, table)
+    do k = 1, table%n
+      if (.not. table%high(k) > table%low(k)) cycle
+      if (contact%strict .or. table%share(k) > 0.0_wp) call add_both_ends(contact, memory, table, &
+        k, vary_half(contact, memory, table, k), equations, matrix, has_area)
+    end do
+  end subroutine add_segment
+
+  !> Half of a piece as area: slave segment in slots 1, 2, cuts in slots 5, 6, and the master
+  !> segment in slots 7, 8 where the share that faces it is not all of the piece.
+  pure function vary_half(contact, memory, table, k) result(point)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(piece_table_t), intent(in) :: table
+    integer, intent(in) :: k
+    type(varied_point_t) :: point
+    type(dual_t) :: xi(2), t(2), length
+
+    call take_piece(memory, table, k, k == 1, point)
+    xi = piece_ends(memory%places, point%nodes, [table%low(k), table%high(k)])
+    point%area = 0.5_wp*((xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2))
+    if (contact%strict .or. table%share(k) >= 1.0_wp) return
+    point%nodes(7:8) = memory%n_slave + contact%master%segments(:, table%master(k))
+    t = apart(memory%places, point%nodes, 8, 7)
+    length = sqrt(t(1)*t(1) + t(2)*t(2))
+    point%area = point%area*vary_share(memory%places, point%nodes, 1, [t(2)/length, -(t(1)/length)])
+  end function vary_half
+
+  !> Give the area of `origin` to whatever stands at either end of a piece.
+  pure subroutine add_both_ends(contact, memory, table, k, origin, equations, matrix, has_area)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(piece_table_t), intent(in) :: table
+    integer, intent(in) :: k
+    type(varied_point_t), intent(in) :: origin
+    integer, intent(in), contiguous :: equations(:, :)
+    type(sparse_t), intent(inout) :: matrix
+    logical, intent(inout) :: has_area(:)
+    type(varied_point_t) :: point
+    integer :: i, cuts(2), ends(2)
+
+    cuts = [table%first_cut(k), table%last_cut(k)]
+    ends = table%ends(:, k)
+    point = origin
+    do i = 1, 2
+      if (cuts(i) > 0) then
+        if (memory%segments%status(table%slave(1)) /= is_touching) cycle
+        call stand_at_master_node(memory, memory%n_slave + cuts(i), point)
+      else
+        if (memory%slave_tracking%status(ends(i)) /= is_touching) cycle
+        has_area(ends(i)) = .true.
+        call stand_at_end(contact, memory, ends(i), i, point)
+      end if
+      if (point%gap%value < memory%closed_gap) &
+        call add_pressed_point(point, memory%contact_law, memory%slave_penalty, &
+        equations, matrix)
+    end do
+  end subroutine add_both_ends
+
+  !> Let the point stand at a master node behind the slave segment, with the normal of that.
+  pure subroutine stand_at_master_node(memory, node, point)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: node !! local number
+    type(varied_point_t), intent(inout) :: point
+    type(varied_foot_t) :: foot
+
+    point%nodes(3:4) = [node, 0]
+    foot = project(apart(memory%places, point%nodes, 3, 1), &
+      apart(memory%places, point%nodes, 2, 1))
+    point%slave_xi = foot%xi
+    point%master_xi = constant(0.0_wp)
+    point%gap = foot%gap
+    point%normal = -foot%normal
+  end subroutine stand_at_master_node
+
+  !> Let the point stand at a node that is in contact, the k-th end of the slave segment.
+  pure subroutine stand_at_end(contact, memory, node, k, point)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: node
+    integer, intent(in) :: k
+    type(varied_point_t), intent(inout) :: point
+
+    point%slave_xi = constant(k - 1.0_wp)
+    associate (tracking => memory%slave_tracking)
+      point%nodes(3:4) = memory%n_slave + contact%master%segments(:, tracking%segment(node))
+      call put_foot(point, spot_foot(memory%places, point, 3, tracking%xi(node), &
+        tracking%gap(node), memory%closed_gap))
+    end associate
+  end subroutine stand_at_end
+
+end module tangent_nts_mar_m

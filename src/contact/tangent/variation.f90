@@ -1,0 +1,204 @@
+! SPDX-License-Identifier: MIT
+!> Contact points with the derivatives of all that they consist of: the parts from which the
+!> tangents of the formulations are made (doc/theory/contact.md, section 9). The placements decide
+!> which segments and nodes a point depends on; here the same geometry is gone through once more in
+!> dual numbers.
+module variation_m
+  use contact_state_m, only : contact_state_t
+  use dual_m, only : dual_t, n_partial, constant, operator(+), operator(-), operator(*), &
+    operator(/), sqrt
+  use foot_m, only : side_on, face_on
+  use geometry_m, only : sight_t, sight_of_segment, separation
+  use kinds_m, only : wp
+  use piece_table_m, only : piece_table_t
+  implicit none
+  private
+  public :: varied_point_t, varied_foot_t, n_slot, round_off, apart, length_between, project, &
+    spot_foot, put_foot, see_from, take_piece, piece_ends, vary_share
+
+  !> Nodes that a point depends on, at most.
+  integer, parameter :: n_slot = n_partial/2
+  !> A place no farther beyond a segment than this part of it is over it: at a node round-off
+  !> decides.
+  real(wp), parameter :: round_off = 1.0e-12_wp
+
+  !> A point. Its forces act on the nodes in slots 1, 2 (slave side of the record) and 3, 4 (master
+  !> side); it may depend on those in the other slots too. A node may stand in several slots;
+  !> variable 2 i - 1 is u_x of slot i, 2 i its u_y.
+  type :: varied_point_t
+    integer :: nodes(n_slot) = 0   !! local numbers, 0 = slot not used
+    type(dual_t) :: slave_xi       !! weights of slots 1, 2 are (1 - xi, xi)
+    type(dual_t) :: master_xi      !! the same of slots 3, 4
+    type(dual_t) :: normal(2)
+    type(dual_t) :: gap
+    type(dual_t) :: area
+  end type varied_point_t
+
+  !> A foot on a segment.
+  type :: varied_foot_t
+    type(dual_t) :: xi
+    type(dual_t) :: gap
+    type(dual_t) :: normal(2)
+  end type varied_foot_t
+
+contains
+
+  !> Vector from the node in slot j to that in slot i.
+  pure function apart(places, nodes, i, j) result(d)
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node)
+    integer, intent(in) :: nodes(n_slot)
+    integer, intent(in) :: i, j
+    type(dual_t) :: d(2)
+
+    d = constant(separation(places(:, nodes(i)), places(:, nodes(j))))
+    d(1)%slope(2*i - 1) = 1.0_wp
+    d(2)%slope(2*i) = 1.0_wp
+    d(1)%slope(2*j - 1) = d(1)%slope(2*j - 1) - 1.0_wp
+    d(2)%slope(2*j) = d(2)%slope(2*j) - 1.0_wp
+  end function apart
+
+  !> Distance between the nodes in slots i and j.
+  pure function length_between(places, nodes, i, j) result(length)
+    real(wp), intent(in), contiguous :: places(:, :)
+    integer, intent(in) :: nodes(n_slot)
+    integer, intent(in) :: i, j
+    type(dual_t) :: length, d(2)
+
+    d = apart(places, nodes, i, j)
+    length = sqrt(d(1)*d(1) + d(2)*d(2))
+  end function length_between
+
+  !> Foot on the line of a segment t of a place at d from its first node.
+  pure function project(d, t) result(foot)
+    type(dual_t), intent(in) :: d(2), t(2)
+    type(varied_foot_t) :: foot
+    type(dual_t) :: square, length
+
+    square = t(1)*t(1) + t(2)*t(2)
+    length = sqrt(square)
+    foot%xi = (d(1)*t(1) + d(2)*t(2))/square
+    foot%gap = (d(1)*t(2) - d(2)*t(1))/length
+    foot%normal = [t(2)/length, -(t(1)/length)]
+  end function project
+
+  !> Foot like a known one: on the line of the segment, or at its node at a corner, where the normal
+  !> points along the connection. A corner foot so close that its normal means nothing stands on the
+  !> line.
+  pure function vary_foot(d, t, xi, gap, closed_gap) result(foot)
+    type(dual_t), intent(in) :: d(2)      !! from the segment's first node to the place
+    type(dual_t), intent(in) :: t(2)      !! the segment
+    real(wp), intent(in) :: xi, gap       !! of the known foot
+    real(wp), intent(in) :: closed_gap    !! gaps that count as none, m
+    type(varied_foot_t) :: foot
+    type(dual_t) :: from_node(2)
+    logical :: is_corner
+
+    foot = project(d, t)
+    is_corner = .not. (abs(xi) > 0.0_wp .and. abs(xi - 1.0_wp) > 0.0_wp)
+    if (is_corner) is_corner = abs(foot%xi%value - 0.5_wp) > 0.5_wp + round_off
+    if (.not. is_corner .or. abs(gap) <= max(closed_gap, tiny(1.0_wp))) return
+    foot%xi = constant(xi)
+    from_node = d - xi*t
+    foot%gap = sign(1.0_wp, gap)*sqrt(from_node(1)*from_node(1) + from_node(2)*from_node(2))
+    foot%normal = [from_node(1)/foot%gap, from_node(2)/foot%gap]
+  end function vary_foot
+
+  !> Foot of the point's spot, at slave_xi between slots 1 and 2 (at slot 1 where 2 is not used), on
+  !> the segment in slots i and i + 1, like a known one.
+  pure function spot_foot(places, point, i, xi, gap, closed_gap) result(foot)
+    real(wp), intent(in), contiguous :: places(:, :)
+    type(varied_point_t), intent(in) :: point
+    integer, intent(in) :: i
+    real(wp), intent(in) :: xi, gap    !! of the known foot
+    real(wp), intent(in) :: closed_gap
+    type(varied_foot_t) :: foot
+
+    foot = vary_foot(see_from(places, point, i), apart(places, point%nodes, i + 1, i), xi, gap, &
+      closed_gap)
+  end function spot_foot
+
+  !> Vector from the node in slot i to the point's spot.
+  pure function see_from(places, point, i) result(d)
+    real(wp), intent(in), contiguous :: places(:, :)
+    type(varied_point_t), intent(in) :: point
+    integer, intent(in) :: i
+    type(dual_t) :: d(2)
+
+    d = apart(places, point%nodes, 1, i)
+    if (point%nodes(2) > 0) d = d + point%slave_xi*apart(places, point%nodes, 2, 1)
+  end function see_from
+
+  !> Let a foot on slots 3, 4 be that of the point.
+  pure subroutine put_foot(point, foot)
+    type(varied_point_t), intent(inout) :: point
+    type(varied_foot_t), intent(in) :: foot
+
+    point%master_xi = foot%xi
+    point%gap = foot%gap
+    point%normal = foot%normal
+  end subroutine put_foot
+
+  !> Put a slave segment into slots 1, 2 and the nodes that cut off a piece of it into slots 5 and
+  !> 6. Where the walk has gone over to another chain that begins behind the last cut, this still is
+  !> where the piece starts.
+  pure subroutine take_piece(memory, table, k, is_first, point)
+    type(contact_state_t), intent(in) :: memory
+    type(piece_table_t), intent(in) :: table
+    integer, intent(in) :: k        !! piece
+    logical, intent(in) :: is_first !! of its slave segment
+    type(varied_point_t), intent(out) :: point
+    type(sight_t) :: sight
+    integer :: cuts(2), before
+
+    cuts = [table%first_cut(k), table%last_cut(k)]
+    before = 0
+    if (.not. is_first) before = table%last_cut(k - 1)
+    if (cuts(1) /= before) then
+      sight = sight_of_segment(memory%places(:, memory%n_slave + cuts(1)), &
+        memory%places(:, table%ends(1, k)), memory%places(:, table%ends(2, k)))
+      if (sight%along < (table%low(k) - round_off)*sight%square) cuts(1) = before
+    end if
+    point%nodes(1:2) = table%ends(:, k)
+    where (cuts > 0) point%nodes(5:6) = memory%n_slave + cuts
+  end subroutine take_piece
+
+  !> Where a piece of the slave segment in slots 1, 2 starts and ends on it; its cuts are the nodes
+  !> in slots 5 and 6, where there are any.
+  pure function piece_ends(places, nodes, range) result(xi)
+    real(wp), intent(in), contiguous :: places(:, :)
+    integer, intent(in) :: nodes(n_slot)
+    real(wp), intent(in) :: range(2) !! the same, without derivatives
+    type(dual_t) :: xi(2)
+    type(varied_foot_t) :: cut
+    integer :: k
+
+    xi = constant(range)
+    do k = 1, 2
+      if (nodes(4 + k) == 0) cycle
+      cut = project(apart(places, nodes, 4 + k, 1), apart(places, nodes, 2, 1))
+      xi(k) = cut%xi
+    end do
+  end function piece_ends
+
+  !> Share of the slave segment in slots i, i + 1 that counts as facing a foot with the given
+  !> normal.
+  pure function vary_share(places, nodes, i, normal) result(share)
+    real(wp), intent(in), contiguous :: places(:, :)
+    integer, intent(in) :: nodes(n_slot)
+    integer, intent(in) :: i
+    type(dual_t), intent(in) :: normal(2)
+    type(dual_t) :: share, t(2)
+
+    t = apart(places, nodes, i + 1, i)
+    share = (t(2)*normal(1) - t(1)*normal(2))/sqrt(t(1)*t(1) + t(2)*t(2))
+    share = (1.0_wp/(side_on - face_on))*(side_on - share)
+    if (share%value >= 1.0_wp) then
+      share = constant(1.0_wp)
+    else if (share%value <= 0.0_wp) then
+      share = constant(0.0_wp)
+    else
+      share = share*share*(3.0_wp - 2.0_wp*share)
+    end if
+  end function vary_share
+
+end module variation_m
