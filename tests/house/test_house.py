@@ -143,7 +143,7 @@ def test_only_the_dispatcher_asks_for_the_kind(word, dispatcher):
 
 
 def most_arguments(procedure, source):
-    if layer_of(source) == "contact":
+    if "contact" in source.path.relative_to(ROOT / "src").parts:
         return MORE_ARGUMENTS_IN_CONTACT
     return MORE_ARGUMENTS.get(procedure.name, MOST_ARGUMENTS)
 
