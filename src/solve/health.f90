@@ -250,7 +250,8 @@ contains
       'the hourglass energy '//to_text(energies%hourglass)//' is more than 10 % of the internal ' &
       //'energy '//to_text(energies%internal))
     if (abs(energy_ratio(energies) - 1.0_wp) > ratio_band) call warn(log, &
-      'the energy ratio ends at '//to_text(energy_ratio(energies))//': energy has come in or gone that no column accounts for')
+      'the energy ratio ends at '//to_text(energy_ratio(energies)) &
+      //': energy has come in or gone that no column accounts for')
   end subroutine judge_energies
 
 end module health_m
