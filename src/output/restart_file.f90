@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> A restart file: an HDF5 archive behind a head of 512 bytes of text, which HDF5 skips:
 !>
-!>     slideline restart 5
+!>     slideline restart <format>
 !>     length 123456
 !>     checksum 89ABCDEF
 !>

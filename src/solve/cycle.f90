@@ -11,7 +11,7 @@ module cycle_m
   use energies_m, only : energy_ratio, total_energy
   use errors_m, only : error_t
   use health_m, only : tile_check_t, are_sound, check_elements, check_step, check_cycle, &
-    check_energy
+    check_energy, made_by_springs
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
   use model_log_m, only : log_smallest_steps, judge_damping
@@ -175,7 +175,7 @@ contains
     if (cycle%due%plot .and. .not. allocated(cycle%error)) call show_progress(monitor%progress, &
       monitor%clock, state%cycle, state%time, state%dt, cycle%ratio, 'write vtkhdf state')
     if (.not. allocated(cycle%error) .and. cycle%due%glstat) call check_energy(model%controls, &
-      monitor%snapshot%energies, cycle%error)
+      monitor%snapshot%energies, made_by_springs, cycle%error)
     cycle%finished = cycle%last .or. allocated(cycle%error)
   end subroutine report_cycle
 

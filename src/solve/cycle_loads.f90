@@ -19,7 +19,7 @@ contains
     type(state_t), intent(inout) :: state
     real(wp), intent(inout) :: damping(2) !! D per direction: that before in, that of now out
     type(motion_sums_t), intent(inout) :: sums
-    real(wp) :: half, body(2)
+    real(wp) :: half, body(2), former(2)
 
     half = 0.5_wp*state%dt_before
     if (allocated(state%external)) then
@@ -36,8 +36,9 @@ contains
       state%body_acceleration = body
     end if
     if (allocated(model%conditions%damping)) then
-      sums%share(3:4) = damping ! of the cycle before, to which the sums belong
+      former = damping
       damping = damping_rate(model%conditions, model%curves, state%time)
+      sums%share(3:4) = former ! the sums belong to the cycle before
     end if
   end subroutine apply_loads
 

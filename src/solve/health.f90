@@ -15,7 +15,7 @@ module health_m
   implicit none
   private
   public :: tile_check_t, check_tile, are_sound, check_elements, check_step, check_cycle, &
-    check_energy, judge_energies, judge_contact
+    check_energy, judge_energies, judge_contact, made_by_springs, made_by_forces
 
   !> Work beyond this means nothing any more; it is found before numbers overflow, which a
   !> checked build would stop at.
@@ -23,6 +23,11 @@ module health_m
 
   !> How far the energy ratio may end from one without a word.
   real(wp), parameter :: ratio_band = 0.05_wp
+
+  !> What has made energy: in explicit runs the springs, by what they gave beyond what they took; in
+  !> implicit ones all that contact forces did, what is stored among it.
+  character(*), parameter :: made_by_springs = 'the contact springs have made energy: '
+  character(*), parameter :: made_by_forces = 'the contact forces created energy: '
 
   !> What the elements of one tile have come to in a cycle. As long as a cache line:
   !> threads fill them side by side.
@@ -198,10 +203,11 @@ contains
   end subroutine check_cycle
 
   !> Energies must be finite; where the deck sets ENDENG the energy ratio must stay within so many
-  !> per cent of one, and contact forces must not have created more than that of the largest energy.
-  subroutine check_energy(controls, energies, error)
+  !> per cent of one, and contact must not have made more than that of the largest energy.
+  subroutine check_energy(controls, energies, maker, error)
     type(controls_t), intent(in) :: controls
     type(energies_t), intent(in) :: energies
+    character(*), intent(in) :: maker !! `made_by_springs` or `made_by_forces`: what `made` measures
     type(error_t), allocatable, intent(out) :: error
 
     if (.not. abs(total_energy(energies)) <= huge(1.0_wp)) then
@@ -213,7 +219,7 @@ contains
         status_run)
     else if (controls%energy_limit > 0.0_wp .and. &
       energies%made > 0.01_wp*controls%energy_limit*largest_energy(energies)) then
-      call raise(error, 'the contact springs created energy: '//to_text(energies%made)//' of ' &
+      call raise(error, maker//to_text(energies%made)//' of ' &
         //to_text(largest_energy(energies))//', more than '//to_text(controls%energy_limit) &
         //' per cent (ENDENG); the penalty or the time step is too large', status_run)
     end if
@@ -234,10 +240,10 @@ contains
     type(energies_t), intent(in) :: energies
     type(log_t), intent(inout) :: log
 
-    if (energies%made > 0.05_wp*largest_energy(energies)) call warn(log, 'the contact forces ' &
-      //'created energy: '//to_text(energies%made)//' of '//to_text(largest_energy(energies)) &
-      //'; the penalty or the time step is too large, or places of the slave came in deep beside ' &
-      //'the end of a surface (SRCH limits that)')
+    if (energies%made > 0.05_wp*largest_energy(energies)) call warn(log, made_by_forces &
+      //to_text(energies%made)//' of '//to_text(largest_energy(energies))//'; the penalty or the ' &
+      //'time step is too large, or places of the slave came in deep beside the end of a surface ' &
+      //'(SRCH limits that)')
   end subroutine judge_contact
 
   !> Warnings at the end of a run whose figures deserve a second look.

@@ -9,7 +9,7 @@ module implicit_report_m
   use equations_m, only : equations_t
   use errors_m, only : error_t
   use forces_m, only : trial_t
-  use health_m, only : check_energy, judge_energies, judge_contact
+  use health_m, only : check_energy, judge_energies, judge_contact, made_by_forces
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use output_schedule_m, only : output_reach
@@ -67,7 +67,8 @@ contains
       if (due%plot .and. .not. allocated(error)) &
         call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, &
         energy_ratio(shot%energies), 'write vtkhdf state')
-      if (.not. allocated(error)) call check_energy(model%controls, shot%energies, error)
+      if (.not. allocated(error)) call check_energy(model%controls, shot%energies, made_by_forces, &
+        error)
       if (last .and. .not. allocated(error)) then
         call judge_contact(shot%energies, monitor%log)
         call judge_energies(shot%energies, monitor%log)

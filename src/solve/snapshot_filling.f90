@@ -157,7 +157,7 @@ contains
       snapshot%mean_velocity = snapshot%mean_velocity/sum(state%mass)
       energies%damping = state%damping_work
       energies%contact = sum(state%contacts%energy) + sum(state%contacts%damping_work)
-      energies%made = max(0.0_wp, -sum(state%contacts%watch%balance))
+      energies%made = sum(max(0.0_wp, -state%contacts%watch%balance))
       energies%external_work = state%external_work
       energies%initial = state%initial_energy
     end associate

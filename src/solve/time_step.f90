@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> The time step: TSSFAC times the smallest L/c of the elements (or what contact springs
 !> leave of it), capped by a curve; constant where the curve is constant and lies below the
-!> stable step. It falls at once and rises by a twentieth at least. The limit of one cycle rules
+!> stable step. Where the elements or springs rule it falls at once and rises by a twentieth at
+!> least; where the curve rules it follows the curve. The limit of one cycle rules
 !> the step of the next, so that a cycle need not wait for its own elements.
 module time_step_m
   use block_state_m, only : block_state_t
@@ -143,27 +144,32 @@ contains
     type(step_plan_t), intent(inout) :: steps
     real(wp), intent(inout) :: time           !! in: old, out: new
     real(wp), intent(inout) :: dt             !! in: step that led here, out: next one
-    real(wp) :: wanted
+    real(wp) :: wanted, before
 
+    before = time
     if (steps%constant > 0.0_wp) then
       time = steps%start_time + (cycle - steps%start_cycle)*steps%constant
     else
       time = time + dt
     end if
     wanted = choose_step(model, stable_limit(element_limit, steps), time, log, steps)
-    if (must_change(model, wanted, dt)) dt = wanted
+    if (must_change(model, before, wanted, dt)) dt = wanted
     if (steps%warned) steps%constant = 0.0_wp
   end subroutine next_step
 
   !> Whether a step gives way to the one that is wanted. Leap-frog keeps energy without a trend only
-  !> while its step is constant; L/c beats with the vibrations of a body, and a step that follows it
-  !> feeds them (doc/theory/time_integration.md). A curve has the word it is given.
-  pure function must_change(model, wanted, dt) result(must)
+  !> while its step is constant; the limits of elements and springs beat with the vibrations of a
+  !> body, and a step that follows them feeds those (doc/theory/time_integration.md). So a step that
+  !> a limit has set is held, whatever curve lies above; one that a curve has set follows it.
+  pure function must_change(model, before, wanted, dt) result(must)
     type(model_t), intent(in) :: model
+    real(wp), intent(in) :: before     !! time at which `dt` was chosen
     real(wp), intent(in) :: wanted, dt !! s
     logical :: must
 
-    must = wanted < dt .or. wanted > (1.0_wp + least_rise)*dt .or. model%controls%dt_curve > 0
+    must = wanted < dt .or. wanted > (1.0_wp + least_rise)*dt
+    if (must .or. model%controls%dt_curve == 0) return
+    must = dt >= curve_value(model%curves(model%controls%dt_curve), before)
   end function must_change
 
   !> Whether the cycle at `time` is the last: nint(ENDTIM/dt) cycles of a constant step, otherwise
