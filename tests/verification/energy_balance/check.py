@@ -109,6 +109,17 @@ def check_exact(run):
     deck.add("*LOAD_BODY_X", (1,))
     kick(deck, nodes, np.full(N + 1, 0.3))
     sums(run, "flight under gravity", run.program(deck).table("glstat"), 1e-11)
+    # a force that grows, damping of D dt = 0.5 that is there at time zero, and damping that grows
+    for name, loads, damping in (("a force that grows", (0.0, 1.0e3), None), ("damped, loaded at time zero", (1.0, 1.0), (0, 0.5)),
+                                 ("damping that grows", (1.0, 1.0e3), (2, 1.0))):
+        deck, nodes = bar(f"flight, {name}")
+        end = 400 * STEP
+        deck.curve(1, [(0.0, loads[0]), (end, loads[1])]).add("*LOAD_BODY_X", (1,))
+        if damping:
+            deck.curve(2, [(0.0, 0.05 / STEP), (end, 0.5 / STEP)])
+            deck.add("*DAMPING_GLOBAL", (damping[0], damping[1] / STEP if damping[0] == 0 else 1.0))
+        kick(deck, nodes, np.full(N + 1, 0.3))
+        sums(run, f"flight, {name}", run.program(deck).table("glstat"), 1e-11)
 
 
 def check_walls_and_rigid(run):
@@ -117,13 +128,63 @@ def check_walls_and_rigid(run):
     deck.add("*INITIAL_VELOCITY", (1,), (SPEED, 0.0)).node_set(1, nodes)
     deck.add("*RIGIDWALL_PLANAR", (1, 0, 0, 0.0), (1.0 + 1.0e-8, 0.0, 0.0, 0.0, 0.0, 0.0))
     sums(run, "bar against a rigid wall", run.program(deck).table("glstat"), 1e-3)
-    deck, nodes = bar("rigid mass", is_held=False)
+    # damped as strongly as here, what the mean of v(0) and v(1/2) says of the first cycle is a tenth of a node's energy
+    deck, nodes = bar("wall, damped")
+    deck.add("*INITIAL_VELOCITY", (1,), (SPEED, 0.0)).node_set(1, nodes).add("*DAMPING_GLOBAL", (0, 0.5 / STEP))
+    deck.add("*RIGIDWALL_PLANAR", (1, 0, 0, 0.0), (1.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    sums(run, "damped bar, at a rigid wall from time zero", run.program(deck).table("glstat"), 1e-5)
+    for name, loads in (("gravity", (1.0, 1.0)), ("gravity that grows", (0.0, 1.0e3))):
+        deck, nodes = rigid_bar(name)
+        deck.curve(1, [(0.0, loads[0]), (400 * STEP, loads[1])]).add("*LOAD_BODY_X", (1,))
+        kick(deck, nodes, np.full(N + 1, 0.3))
+        sums(run, f"rigid body under {name}", run.program(deck).table("glstat"), 1e-11)
+    check_pendulum(run)
+
+
+def rigid_bar(title):
+    deck, nodes = bar(title, is_held=False)
     place = deck.lines.index("*MAT_ELASTIC")
     deck.lines[place] = "*MAT_RIGID"
     deck.lines[place + 2:place + 2] = ["1,0,0", "0.0,"]
+    return deck, nodes
+
+
+def check_pendulum(run):
+    """A rigid bar that is pulled at both ends turns to and fro, with omega dt = 0.5."""
+    deck, nodes = rigid_bar("pendulum")
+    omega, angle, inertia = 0.5 / STEP, 0.05, RHO / N * (1.0 + 2.0 / N ** 2) / 12.0 + RHO / N * (0.5 / N) ** 2
     deck.curve(1, [(0.0, 1.0), (1.0, 1.0)])
-    deck.add("*LOAD_BODY_X", (1,))
-    sums(run, "rigid body under gravity", run.program(deck).table("glstat"), 1e-11)
+    for column, sign in ((0, -1.0), (N, 1.0)):
+        deck.add("*LOAD_NODE_POINT", *[(int(node), 1, 1, sign * 0.5 * omega ** 2 * inertia) for node in nodes[[column, column + N + 1]]])
+    places, _ = grid(N, 1, 1.0, 1.0 / N)
+    x, y = (places - (0.5, 0.5 / N)).T
+    deck.add("*INITIAL_VELOCITY_NODE", *zip(nodes.tolist(), (-omega * angle * y).tolist(), (omega * angle * x).tolist()))
+    energy = run.program(deck).table("glstat")
+    start = energy["total"][0]
+    run.check("rigid pendulum: kinetic energy at the start", energy["kinetic"][0], 0.5 * inertia * (omega * angle) ** 2, 1e-10,
+              source="I w^2/2")
+    run.check("rigid pendulum: largest part of leap-frog / energy", np.max(-energy["leapfrog"]) / start, 0.0625 / (1.0 - 0.0625), 1e-3,
+              "abs", "q/(1 - q) with q = (omega dt)^2/4")
+    run.check("rigid pendulum: (total - work of the forces) / energy", (energy["total"] - energy["external_work"]) / start, 1.0,
+              3e-4, "abs", "constant; a chord is shorter than its arc by (w dt)^2/24")
+
+
+def check_jumps(run):
+    """A step that halves and doubles: the balance jumps as leap-frog says, and the step is that of the curve."""
+    deck, nodes = bar("jumps of the step", cycles=20)
+    place = deck.lines.index("*DEFINE_CURVE")
+    points = [(0.0, 1.0), (9.4, 1.0), (9.6, 0.5), (14.6, 0.5), (14.9, 1.0), (100.0, 1.0)]
+    deck.lines[place + 2:place + 4] = [f"{float(time * STEP)!r},{float(step * STEP)!r}" for time, step in points]
+    gravity = 1.0e3
+    deck.curve(1, [(0.0, gravity), (1.0, gravity)]).add("*LOAD_BODY_X", (1,))
+    energy = run.program(kick(deck, nodes, np.full(N + 1, 0.3))).table("glstat")
+    steps = energy["dt"] / STEP
+    run.check("jumps: steps / the first", steps[:-1], np.array([1.0] * 10 + [0.5] * 10 + [1.0] * (len(steps) - 21)), 1e-12, "abs",
+              "the curve")
+    unit = RHO / N * (gravity * STEP) ** 2 / 8.0
+    found = (energy["total"] - energy["external_work"] - energy["total"][0]) / unit
+    run.check("jumps: change of the balance / (m a^2 dt^2/8)", found[1:], 1.0 - steps[:-1] ** 2, 1e-8, "abs",
+              "m a^2 (dt_before^2 - dt^2)/8 at each change of the step")
 
 
 def check_variable_steps(run):
@@ -140,3 +201,4 @@ def check(run):
     check_exact(run)
     check_walls_and_rigid(run)
     check_variable_steps(run)
+    check_jumps(run)
