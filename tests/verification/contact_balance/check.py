@@ -80,6 +80,30 @@ def told(result, pattern):
     return list(pattern.finditer(log_of(result)))
 
 
+def end_energy(deck, per_cent):
+    """ENDENG of a deck."""
+    place = deck.lines.index("*CONTROL_TERMINATION") + 1
+    deck.lines[place] = f"{deck.lines[place].rstrip(',')},0,0.0,{per_cent!r}"
+    return deck
+
+
+def flights(title, kind, *pairs):
+    """Pairs of bars as below, each with its gap and the times of birth and death of its interface."""
+    n, deck = 20, Deck(title)
+    deck.control(4.0 / SOUND, scale=0.5)
+    for k, (gap, birth, death) in enumerate(pairs):
+        sets = [10 * k + i for i in (1, 2, 3)]
+        for i in (1, 2):
+            deck.part(10 * k + i).elastic(RHO, YOUNG, 0.0, 10 * k + i)
+        left = deck.mesh(*grid(n, 1, 1.0, 1.0 / n, (-1.0 - gap, float(k))), part=10 * k + 1)
+        right = deck.mesh(*grid(n, 1, 1.0, 1.0 / n, (0.0, float(k))), part=10 * k + 2)
+        deck.node_set(sets[0], left).add("*INITIAL_VELOCITY", (sets[0],), (0.01 * SOUND, 0.0))
+        deck.node_set(sets[1], left[n::n + 1]).node_set(sets[2], right[::n + 1][::-1])
+        deck.add("*CONTACT_2D_SLIDELINE", (-sets[1], -sets[2], kind, 2, 0.05 * YOUNG), (birth, death, 0))
+    deck.add("*DATABASE_SLEOUT", (1.0e-4 / SOUND,))
+    return deck.output(glstat=1.0e-4 / SOUND)
+
+
 def bars(kind, damping=0.0, load=False):
     """A bar of 20 elements flies onto another at rest; `load`: it is pressed on, and both are held."""
     n = 20
@@ -100,15 +124,14 @@ def bars(kind, damping=0.0, load=False):
     return deck.output(glstat=0.05 / SOUND)
 
 
-def sign_of(gain):
-    """What the log must tell of bodies that gained this share of their energy; near 1 % anything."""
-    return "made" if gain > 0.015 else "lost" if gain < -0.015 else "neither" if abs(gain) < 0.005 else ""
+# Type and seed of polygons, and what their springs do; above 5 % or below 0.3 % of the energy.
+SIGNS = ((7, 2, "made"), (7, 20, "made"), (5, 5, "made"), (5, 9, "made"), (6, 12, "lost"), (7, 12, "lost"),
+         (6, 1, "neither"), (7, 29, "neither"))
 
 
 def check_corners(run):
     """Made, lost and neither: the log tells what the bodies have gained, which no contact enters."""
-    found = []
-    for kind, seed in ((7, 2), (7, 20), (5, 5), (5, 9), (6, 12), (7, 12), (6, 1), (7, 29)):
+    for kind, seed, expected in SIGNS:
         name = f"{TYPES[kind]}, polygons {seed}"
         result = run.program(polygons(seed, kind), name=f"corners_{kind}_{seed}")
         energy, springs = result.table("glstat"), result.table("sleout")
@@ -117,12 +140,12 @@ def check_corners(run):
                   (springs["stored"] - springs["energy"])[-1] / energy["total"][0], gain / energy["total"][0],
                   3e-3, "abs", "sum over the bodies alone")
         first, in_all = told(result, FIRST), told(result, IN_ALL)
-        found.append(sign_of(gain / energy["total"][0]))
-        if found[-1] == "neither":
-            run.true(f"{name}: nothing is said in the summary", not in_all)
-        if found[-1] not in ("made", "lost"):
+        if expected == "neither":
+            run.check(f"{name}: neither made nor lost / E0", gain / energy["total"][0], 0.0, 3e-3, "abs", "sum over the bodies")
+            run.true(f"{name}: nothing is said in the cycles nor in the summary", not told(result, ANY))
             continue
-        expected = found[-1]
+        run.check(f"{name}: {expected} / E0", gain / energy["total"][0] * (1.0 if expected == "made" else -1.0), 0.05, 0.0,
+                  "min", "sum over the bodies")
         run.true(f"{name}: a warning in the cycle and one in the summary",
                  bool(in_all) and expected in [m[4] for m in first])
         run.true(f"{name}: the summary tells the sign", in_all[-1][2] == expected)
@@ -135,8 +158,50 @@ def check_corners(run):
                   "the bodies meet about x = 0")
         run.check(f"{name}: each sign is told once at most", max(
             [m[4] for m in first].count(sign) for sign in ("made", "lost")), 1, 0.0, "max")
-    for sign in ("made", "lost", "neither"):
-        run.true(f"polygons: some have {sign} energy", sign in found)
+
+
+def check_lives(run):
+    """Springs that are born loaded make what they hold, springs that die loaded lose it; the log says so."""
+    for kind, name in TYPES.items():
+        birth = 0.49 / SOUND
+        result = run.program(flights("born loaded", kind, (0.0, birth, 1.0e20)), name=f"born_{kind}")
+        energy, springs = result.table("glstat"), result.table("sleout")
+        row = int(np.argmax(springs["stored"] > 0.0))
+        share = energy["dt"][row - 1] / springs["time"][row]
+        run.check(f"{name}: born at the time of birth / dt", (springs["time"][row] - birth) / energy["dt"][row], 1.0, 0.0, "max")
+        if kind == 1:
+            run.check(f"{name}: held at birth / J", springs["stored"][row],
+                      0.5 * 2.0 * 0.05 * YOUNG * (0.01 * SOUND * springs["time"][row]) ** 2, 1e-6, source="two springs, free flight")
+        run.check(f"{name}: born loaded, made / held at birth", -springs["energy"][-1] / springs["stored"][row], 1.0 - share,
+                  5e-3, "abs", "all but half a step of work")
+        run.true(f"{name}: born loaded, the log says made", [m[4] for m in told(result, FIRST)] == ["made"]
+                 and [m[2] for m in told(result, IN_ALL)] == ["made"])
+        death = 0.99 / SOUND
+        result = run.program(flights("dies loaded", kind, (0.0, 0.0, death)), name=f"dead_{kind}")
+        energy, springs = result.table("glstat"), result.table("sleout")
+        row = int(np.argmax(springs["time"] > death)) - 1
+        run.check(f"{name}: held at death / E0", springs["stored"][row] / energy["total"][0], 0.05, 0.0, "min", "soft springs")
+        run.check(f"{name}: dies loaded, lost / held at death", springs["energy"][-1] / springs["stored"][row], 1.0, 2e-2, "abs",
+                  "and half a step of work")
+        run.check(f"{name}: dies loaded, nothing is held", springs["stored"][-1], 0.0, 0.0, "abs")
+        run.true(f"{name}: dies loaded, the log says lost", [m[4] for m in told(result, FIRST)] == ["lost"]
+                 and [m[2] for m in told(result, IN_ALL)] == ["lost"])
+
+
+def check_endeng(run):
+    """Energy that springs make ends the run though the balance holds, and what another interface has lost is no excuse."""
+    dies, born = (0.0, 0.0, 1.0 / SOUND), (8.5e-3, 1.05 / SOUND, 1.0e20)
+    for name, deck, per_cent in (("polygons", polygons(2, 7), 5.0), ("one dies, then one is born", flights("two", 1, dies, born), 2.0)):
+        result = run.program(end_energy(deck, per_cent), name=f"endeng_{name.split()[0]}", expect_status=2)
+        said = " ".join(result.stderr.split())
+        run.true(f"ENDENG {per_cent:g}, {name}: ended by what the springs made",
+                 "the contact springs have made energy: " in said and "(ENDENG)" in said)
+        energy = result.table("glstat")
+        run.check(f"ENDENG {per_cent:g}, {name}: energy ratio", energy["energy_ratio"], 1.0, 5e-3, "abs", "the balance holds")
+        if name != "polygons":
+            balance = energy["contact"][-1] - np.sum(result.table("sleout")["stored"][-2:])
+            run.check(f"{name}: lost beyond what is made / E0", balance / energy["total"][0], 0.005, 0.0, "min",
+                      "the sum hides it")
 
 
 def check_sound(run):
@@ -187,6 +252,14 @@ def check_restart(run):
         run.true(f"restart {label} the warning: first warnings are those not told before",
                  [m[0] for m in told(again, FIRST)]
                  == [m[0] for m in told(whole, FIRST) if int(m[2]) >= cycle])
+    for kind, name in TYPES.items():
+        whole_damped = run.program(bars(kind, damping=50.0), name=f"whole_{kind}")
+        run.program(bars(kind, damping=50.0).add("*DATABASE_BINARY_D3DUMP", (41,)), name=f"first_{kind}")
+        dump = run.work / f"first_{kind}" / f"first_{kind}.dump01.h5"
+        again = run.program(bars(kind, damping=50.0).add("*DATABASE_BINARY_D3DUMP", (41,)), f"r={dump}", name=f"again_{kind}")
+        for table in ("glstat", "sleout"):
+            run.true(f"{name}: restart with VDC, pressed: {table} has the same bytes",
+                     again.csv_path(table).read_bytes() == whole_damped.csv_path(table).read_bytes())
     threads = run.program(polygons(2, 7), "ncpu=2", name="threads")
     for table in ("glstat", "sleout"):
         run.true(f"two threads: {table} has the same bytes",
@@ -196,4 +269,6 @@ def check_restart(run):
 def check(run):
     check_corners(run)
     check_sound(run)
+    check_lives(run)
+    check_endeng(run)
     check_restart(run)
