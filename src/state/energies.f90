@@ -18,8 +18,8 @@ module energies_m
     real(wp) :: viscous = 0.0_wp       !! dissipated by the bulk viscosity
     real(wp) :: damping = 0.0_wp       !! dissipated by global damping
     real(wp) :: contact = 0.0_wp       !! minus the work of the contact forces
-    real(wp) :: made = 0.0_wp          !! what contact springs gave beyond what they took; no part
-                                       !! of the sum
+    real(wp) :: made = 0.0_wp          !! what contact springs gave beyond what they took, over the
+                                       !! interfaces where they did; no part of the sum
     real(wp) :: external_work = 0.0_wp !! work of loads and prescribed motion
     real(wp) :: leapfrog = 0.0_wp      !! v(n-1/2).M v(n+1/2)/2 minus the kinetic energy, in
                                        !! explicit runs
