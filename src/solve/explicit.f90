@@ -12,7 +12,7 @@ module explicit_m
   use cycle_m, only : cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
   use element_dispatch_m, only : add_tile_forces
   use errors_m, only : error_t
-  use health_m, only : check_tile, judge_energies
+  use health_m, only : check_tile, judge_energies, judge_ratio
   use kinds_m, only : wp
   use model_m, only : model_t
   use motion_sums_m, only : sum_motion, sum_blocks
@@ -55,7 +55,9 @@ contains
     if (allocated(cycle%error)) call move_alloc(cycle%error, error)
     call report_contact_end(model, state, monitor%log)
     call report_contact_energies(model, state, monitor%log)
-    if (.not. allocated(error)) call judge_energies(monitor%snapshot%energies, monitor%log)
+    if (allocated(error)) return
+    call judge_energies(monitor%snapshot%energies, monitor%log)
+    call judge_ratio(monitor%snapshot%energies, monitor%log)
   end subroutine advance_explicit
 
   !> The cycles, run by every thread of the team. The end of a cycle and the beginning of the next

@@ -26,7 +26,7 @@ def build_small_tree(tmp_path_factory):
     shutil.copy(ROOT / "CMakeLists.txt", tree)
     for layer, allowed in LAYERS.items():
         folder = tree / "src" / folder_of(layer)
-        folder.mkdir(parents=True)
+        folder.mkdir(parents=True, exist_ok=True)
         uses = "".join(USE.format(layer=name) for name in sorted(allowed))
         (folder / f"probe_{layer}.f90").write_text(GOOD.format(layer=layer, uses=uses))
     shutil.copy(ROOT / "src/base/build_info.f90.in", tree / "src/base")

@@ -30,8 +30,8 @@ EQUIVALENT = Path(__file__).resolve().parent / "equivalent.csv"
 
 def draw(layers: list[str], number: int, seed: int, every: list[str] | None = None) -> list[Mutant]:
     """`number` mutants of the layers, drawn evenly, after all of the layers `every`; 0: all."""
-    mutants = [mutant for layer in layers for path in sorted((ROOT / "src" / layer).glob("*.f90"))
-               for mutant in make_mutants(f"{layer}/{path.name}", path.read_text(encoding="utf-8"))]
+    mutants = [mutant for layer in layers for path in sorted((ROOT / "src" / layer).rglob("*.f90"))
+               for mutant in make_mutants(path.relative_to(ROOT / "src").as_posix(), path.read_text(encoding="utf-8"))]
     random.Random(seed).shuffle(mutants)
     whole = [mutant for mutant in mutants if mutant.file.split("/")[0] in (every or [])]
     others = [mutant for mutant in mutants if mutant.file.split("/")[0] not in (every or [])]
