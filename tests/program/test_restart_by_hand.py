@@ -41,7 +41,7 @@ def implicit_job(exe, tmp_path_factory):
                          ["rigid_die", "everything", "block_implicit"])
 def test_files_made_by_hand(exe, checked, tmp_path, scene):
     """A share of all mutants: refused with the reason, or a run as any; the fuzzer takes more of them."""
-    count, statuses, broken = fuzz_restarts.run(exe, scene, 0.0006 if checked else 0.0015, 11, tmp_path, checked)
+    count, statuses, broken = fuzz_restarts.run(exe, scene, 0.0012 if checked else 0.0015, 11, tmp_path, checked)
     assert not broken, broken
     assert count > 4 and statuses.get(1, 0) > 2, statuses
 

@@ -49,8 +49,8 @@ contains
     real(wp) :: rotation(2, 2), turn
     integer :: n, j
 
-    slave = line([0.0_wp, 0.0_wp], [1.0_wp, 0.0_wp], merge(4, 7, k == 2))
-    master = line([1.0_wp, 0.0_wp], [0.0_wp, 0.0_wp], merge(9, 5, k == 2))
+    allocate (slave, source=line([0.0_wp, 0.0_wp], [1.0_wp, 0.0_wp], merge(4, 7, k == 2)))
+    allocate (master, source=line([1.0_wp, 0.0_wp], [0.0_wp, 0.0_wp], merge(9, 5, k == 2)))
     if (k == 6) master = line([1.5_wp, 0.0_wp], [0.35_wp, 0.0_wp], 6)
     if (k == 8) slave = line([0.0_wp, 0.0_wp], [1.0_wp, 0.0_wp], 2)
     if (k == 8) master = line([1.0_wp, 0.0_wp], [0.0_wp, 0.0_wp], 7)
