@@ -82,7 +82,7 @@ def draw_maps(by_scene):
     figure.supxlabel("log10 of penalty over K L/A of the elements", fontsize=8)
     handles = [Patch(color=fill, label=name) for fill, name in zip(FILLS, VERDICTS)]
     handles += [plt.Line2D([], [], label=text, **style) for text, style in LIMITS.values()]
-    figure.legend(handles=handles, loc="outside upper center", ncols=9, fontsize=6)
+    figure.legend(handles=handles, loc="outside upper center", ncols=5, fontsize=6)
     return figure
 
 
