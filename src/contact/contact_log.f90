@@ -8,6 +8,8 @@ module contact_log_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
+  use runs_m, only : count_runs
+  use surfaces_m, only : surface_t
   implicit none
   private
   public :: log_contact, penalty_text, report_initial_contact, report_released
@@ -48,9 +50,20 @@ contains
     if (kind%has_strict_rule) call write_log(log, '  '//overhang_text(contact%strict))
     if (contact%damping > 0.0_wp) call write_log(log, '  damping: ' &
       //to_text(contact%damping)//' of critical')
+    if (memory%facing%is_used) call write_log(log, '  whole outlines: at the start ' &
+      //runs_text(memory%facing%present%slave)//' of the slave and ' &
+      //runs_text(memory%facing%present%master)//' of the master face each other')
     call write_log(log, '  deepest first contact: '//to_text(minval( &
       memory%slave_tracking%spot_depth))//' m or less')
   end subroutine log_contact
+
+  !> `n runs with m segments`.
+  pure function runs_text(surface) result(text)
+    type(surface_t), intent(in) :: surface
+    character(:), allocatable :: text
+
+    text = to_text(count_runs(surface))//' runs with '//to_text(surface%n_segment)//' segments'
+  end function runs_text
 
   !> What counts of a slave segment that hangs over the end of the master.
   pure function overhang_text(is_strict) result(text)

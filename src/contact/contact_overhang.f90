@@ -46,12 +46,26 @@ contains
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
     type(formulation_t) :: formulation
+
+    formulation = formulation_of(contact)
+    if (formulation%covers_segments .or. contact%search_depth > 0.0_wp) return
+    if (memory%facing%is_used) then
+      call report_between(memory%facing%present, model, memory, log)
+    else
+      call report_between(contact, model, memory, log)
+    end if
+  end subroutine report_overhang
+
+  !> The same between two surfaces, or present runs of them.
+  subroutine report_between(contact, model, memory, log)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(in) :: memory
+    type(log_t), intent(inout) :: log
     type(overhang_t) :: found
     character(:), allocatable :: place
     real(wp) :: limit
 
-    formulation = formulation_of(contact)
-    if (formulation%covers_segments .or. contact%search_depth > 0.0_wp) return
     if (allocated(memory%spots)) then
       call find_overhang(contact%master, memory%places(:, memory%n_slave + 1:), memory%spots, &
         memory%slave_tracking, found)
@@ -70,7 +84,7 @@ contains
       //'; should it sink there and come in over the end, it is caught up to '//to_text(limit) &
       //' m deep, which makes energy at any time step: SRCH '//to_text(cautious*limit) &
       //' would prevent it, '//covering_names()//' do without')
-  end subroutine report_overhang
+  end subroutine report_between
 
   !> Words on further places.
   function others(n) result(text)
@@ -134,6 +148,7 @@ contains
     real(wp) :: length, beyond, along(2)
 
     distance = huge(1.0_wp)
+    if (.not. tracking%wake(i) < huge(1.0_wp)) return ! part of no run
     sight = see_segment(master, chain, spots(:, i), segment)
     length = sqrt(sight%square)
     beyond = merge(-sight%along, sight%along - sight%square, is_first)/length

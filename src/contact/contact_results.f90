@@ -25,8 +25,31 @@ contains
     resultants%n_active = memory%n_active
   end subroutine interface_resultants
 
-  !> Rows of all slave nodes in walking order.
+  !> Rows of all slave nodes in walking order. Where runs of a whole outline face each other,
+  !> lengths are those of the runs; a node in none has its length all the same, and no pressure.
   pure subroutine slave_rows(contact, motion, memory, rows)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
+    type(contact_state_t), intent(in) :: memory
+    type(slave_result_t), intent(inout) :: rows
+    integer :: i
+
+    if (.not. memory%facing%is_used) then
+      call rows_between(contact, motion, memory, rows)
+      return
+    end if
+    call rows_between(memory%facing%present, motion, memory, rows)
+    associate (places => memory%places(:, :memory%n_slave))
+      call fill_arc_lengths(contact%slave, places, rows%arc_length)
+      do i = 1, memory%n_slave
+        if (.not. rows%length(i) > 0.0_wp) &
+          rows%length(i) = competence_length(contact%slave, places, i)
+      end do
+    end associate
+  end subroutine slave_rows
+
+  !> The same between two surfaces.
+  pure subroutine rows_between(contact, motion, memory, rows)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
@@ -54,7 +77,7 @@ contains
       rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
       rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
-  end subroutine slave_rows
+  end subroutine rows_between
 
   !> Distance along each chain from its first node, in the present shape.
   pure subroutine fill_arc_lengths(surface, places, arc_length)
@@ -107,6 +130,7 @@ contains
     integer :: spot
 
     gap = 0.0_wp
+    if (contact%slave%incoming(i) == 0 .and. contact%slave%outgoing(i) == 0) return
     spot = spot_at_node(contact%slave, memory, i)
     associate (tracking => memory%slave_tracking, segment => memory%slave_tracking%segment(spot))
       if (memory%is_stale .or. segment == 0) return

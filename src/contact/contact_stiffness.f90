@@ -24,7 +24,11 @@ contains
 
     if (memory%points%n == 0) return
     equations = equation(:, memory%nodes)
-    call add_tangent(contact, memory, equations, matrix)
+    if (memory%facing%is_used) then
+      call add_tangent(memory%facing%present, memory, equations, matrix)
+    else
+      call add_tangent(contact, memory, equations, matrix)
+    end if
   end subroutine add_contact_stiffness
 
 end module contact_stiffness_m

@@ -31,6 +31,7 @@ module deck_m
   use deck_control_m, only : read_control, check_step
   use deck_output_m, only : read_database
   use deck_contact_m, only : read_contact
+  use deck_friction_m, only : settle_friction
   use deck_wall_m, only : read_wall
   use deck_resolve_m, only : resolve_model
   use deck_effective_m, only : forget_places, write_effective
@@ -111,6 +112,7 @@ contains
     do i = 1, deck%n_block
       if (known(i) == known_honoured) call read_block(deck, parameters, i, kinds, overrides, raw)
     end do
+    call settle_friction(deck, overrides, raw)
     call apply_overrides(deck, overrides, raw, tail)
     call check_step(deck, raw)
     if (.not. raw%terminated .and. .not. raw%end_given) call line_error(deck, 0, &

@@ -3,11 +3,12 @@
 !> every message.
 module deck_card_specs_m
   use kinds_m, only : wp
+  use, intrinsic :: iso_fortran_env, only : error_unit
   use text_m, only : read_real, read_integer
   use deck_lines_m, only : format_long, format_i10
   implicit none
   private
-  public :: card_spec_t, make_spec, max_field
+  public :: card_spec_t, make_spec, field_number, max_field
 
   !> Fields of one card at most.
   integer, parameter :: max_field = 16
@@ -67,5 +68,20 @@ contains
     if (layout == format_long) spec%widths = max(spec%widths, 20)
     if (layout == format_i10) spec%widths = max(spec%widths, 10)
   end subroutine make_spec
+
+  !> Position of a field by its name. Names are written in this program, never in a deck: one that
+  !> the card does not have is a fault of the program and ends it.
+  function field_number(names, name) result(k)
+    character(*), intent(in) :: names(:)   !! of the card, in order
+    character(*), intent(in) :: name
+    integer :: k
+
+    do k = 1, size(names)
+      if (names(k) == name) return
+    end do
+    write (error_unit, '(*(a))') 'slideline: fault of the program: no field ', name, &
+      ' on the card with ', (trim(names(k)), ' ', k=1, size(names))
+    error stop 'a field was asked for by a name that the table of keywords does not have'
+  end function field_number
 
 end module deck_card_specs_m

@@ -7,16 +7,17 @@ module deck_cards_m
   use text_m, only : read_integer, number_good
   use deck_report_m, only : is_full
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
-    flag_parameter, block_of_line, format_long
-  use deck_card_specs_m, only : card_spec_t, make_spec, max_field
-  use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error
+    flag_parameter, block_of_line, format_standard, format_long
+  use deck_card_specs_m, only : card_spec_t, make_spec, field_number, max_field
+  use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error, &
+    place_field
   use deck_schema_m, only : keyword_cards, refusal_reason, max_card
   use deck_parameter_table_m, only : parameters_t
   use deck_parameters_m, only : substitute
   implicit none
   private
   public :: cursor_t, open_cursor, skip_title, next_card, next_row, next_text, next_heading, &
-    check_rest, report_field, row_comes, reject_field, warn_of_field
+    check_rest, report_field, row_comes, reject_field, warn_of_field, find_field, find_keyword_field
 
   !> A place in a block.
   type :: cursor_t
@@ -27,6 +28,11 @@ module deck_cards_m
     integer :: n_card = 0         !! cards that the keyword has
     type(card_spec_t) :: specs(max_card)
   end type cursor_t
+
+  !> An error of a field of a card just read, by the field's name or its position.
+  interface report_field
+    module procedure report_named_field, report_numbered_field
+  end interface report_field
 
 contains
 
@@ -42,6 +48,31 @@ contains
     cursor%last = deck%blocks(i_block)%last
     call get_specs(deck, i_block, cursor%specs, cursor%n_card)
   end subroutine open_cursor
+
+  !> Position of a field of card `number`, for rows that are many: looked up once.
+  function find_field(cursor, number, name) result(k)
+    type(cursor_t), intent(in) :: cursor
+    integer, intent(in) :: number
+    character(*), intent(in) :: name
+    integer :: k
+
+    associate (spec => cursor%specs(number))
+      k = field_number(spec%names(:spec%n), name)
+    end associate
+  end function find_field
+
+  !> Position of a field on card 1 of a keyword, for decks that do not have the keyword.
+  function find_keyword_field(keyword, name) result(k)
+    character(*), intent(in) :: keyword, name
+    integer :: k
+    type(card_spec_t) :: spec
+    character(160) :: cards(max_card)
+    integer :: n_card
+
+    call keyword_cards(keyword, cards, n_card)
+    call make_spec(cards(1), 1, format_standard, spec)
+    k = field_number(spec%names(:spec%n), name)
+  end function find_keyword_field
 
   !> The cards of a block's keyword in its layout.
   subroutine get_specs(deck, i_block, specs, n_card)
@@ -69,6 +100,7 @@ contains
     if (cursor%line > cursor%last) then
       card%line = deck%blocks(cursor%block)%keyword
       card%number = number
+      call name_fields(cursor%specs(number), card)
       call read_numbers(deck, cursor%specs(number), cursor%source, card)
       return
     end if
@@ -152,6 +184,15 @@ contains
       cursor%line = cursor%line + 1
   end subroutine skip_title
 
+  !> Let a card know its fields.
+  pure subroutine name_fields(spec, card)
+    type(card_spec_t), intent(in) :: spec
+    type(card_t), intent(inout) :: card
+
+    card%names = spec%names
+    card%kinds = spec%kinds
+  end subroutine name_fields
+
   !> Read one line as card `number`.
   subroutine read_line(deck, parameters, cursor, number, card)
     type(deck_t), intent(inout) :: deck
@@ -164,6 +205,7 @@ contains
     integer :: k
 
     associate (spec => cursor%specs(number))
+      call name_fields(spec, card)
       call cut_card(deck, spec, cursor%source, cursor%line, card)
       if (iand(deck%flags(cursor%line), flag_parameter) /= 0) then
         call substitute(deck, parameters, spec, cursor%source, card, text)
@@ -202,7 +244,7 @@ contains
     if (.not. asks) return
     name = trim(deck%blocks(block_of_line(deck, card%line))%name)
     if (spec%treatments(k) == 'r') then
-      call field_error(deck, spec, card, k, refusal_reason(name, trim(spec%names(k))))
+      call field_error(deck, spec, card, k, refusal_reason(trim(spec%names(k))))
     else
       call line_warning(deck, card%line, 'field '//name//' '//spec%names(k)//to_text(spec%number), &
         'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &
@@ -218,16 +260,16 @@ contains
     character(*), intent(in) :: message
     type(card_spec_t) :: specs(max_card)
     type(card_t) :: card
-    integer :: n_card, i_block
+    integer :: n_card, i_block, k
 
     i_block = block_of_line(deck, place%line)
     call get_specs(deck, i_block, specs, n_card)
     associate (spec => specs(place%card))
+      k = place_field(spec, place)
       call cut_card(deck, spec, deck%blocks(i_block)%source, place%line, card)
-      call line_warning(deck, place%line, 'field '//trim(spec%names(place%field))//message, &
-        'card '//to_text(spec%number)//' field '//to_text(place%field)//' (' &
-        //trim(spec%names(place%field))//'): "'//field_text(deck, card, place%field)//'" ' &
-        //message)
+      call line_warning(deck, place%line, 'field '//trim(spec%names(k))//message, &
+        'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &
+        //field_text(deck, card, k)//'" '//message)
     end associate
   end subroutine warn_of_field
 
@@ -242,8 +284,19 @@ contains
       'from here to the next keyword ignored: more lines than the keyword has cards')
   end subroutine check_rest
 
+  !> An error of the field of a name, of a card just read.
+  subroutine report_named_field(deck, cursor, card, name, message)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    character(*), intent(in) :: name
+    character(*), intent(in) :: message
+
+    call report_field(deck, cursor, card, field_number(card%names, name), message)
+  end subroutine report_named_field
+
   !> An error of field `k` of a card just read.
-  subroutine report_field(deck, cursor, card, k, message)
+  subroutine report_numbered_field(deck, cursor, card, k, message)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
@@ -251,7 +304,7 @@ contains
     character(*), intent(in) :: message
 
     if (.not. card%bad(k)) call field_error(deck, cursor%specs(card%number), card, k, message)
-  end subroutine report_field
+  end subroutine report_numbered_field
 
   !> An error of a field that was given, on a card that was read some time ago.
   subroutine reject_field(deck, place, message)

@@ -7,14 +7,28 @@ module deck_conditions_m
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, check_rest, &
-    report_field
+    report_field, find_field
+  use deck_values_m, only : integer_of, real_of, reals_of
+  use deck_checks_m, only : refuse_outside
   use deck_raw_m, only : raw_t, row_t, reserve_rows, append_row, reserve_velocities, &
     append_velocity, row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, &
     row_velocity_node, row_velocity_generation, row_load_node, row_load_set, row_pressure, &
-    row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid
+    row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid, id_fields
   implicit none
   private
   public :: read_condition, read_initial_velocity
+
+  !> What to say of a negative set.
+  character(*), parameter :: no_set = 'is not a set number'
+
+  !> Positions of the fields of `row_t` on the card of a keyword; 0 where it has none.
+  type :: columns_t
+    integer :: id = 0, direction = 0, motion = 0, curve = 0, scale = 0, birth = 0, death = 0, &
+      arrival = 0
+    integer :: fixed(2) = 0, velocity(3) = 0
+    integer :: nodes(2) = 0      !! first and last of N1 to N4
+    integer :: factors(2) = 0    !! first and last of STX to SRZ
+  end type columns_t
 
 contains
 
@@ -27,13 +41,16 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     type(row_t) :: row
+    type(columns_t) :: at
     logical :: found
     integer :: n_row
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
     row%kind = row_kind(trim(deck%blocks(i_block)%name))
-    row%direction = merge(2, 1, deck%blocks(i_block)%name == 'LOAD_BODY_Y')
+    if (row%kind == row_body) row%direction = merge(2, 1, &
+      deck%blocks(i_block)%name == 'LOAD_BODY_Y')
+    call find_columns(cursor, row%kind, at)
     n_row = deck%blocks(i_block)%last - deck%blocks(i_block)%first + 1
     if (row%kind == row_velocity_node) then
       call reserve_velocities(raw, n_row)
@@ -45,7 +62,8 @@ contains
       call next_row(deck, parameters, cursor, 1, card, found)
       if (.not. found) exit
       n_row = n_row + 1
-      call check_row(deck, cursor, card, row%kind)
+      call fill_row(card, at, row)
+      call check_row(deck, cursor, at, card, row)
       call keep_row(raw, card, row)
       if (row%kind == row_body .or. row%kind == row_damping) exit
     end do
@@ -88,56 +106,122 @@ contains
     end select
   end function row_kind
 
-  !> Keep a card, unless a field that matters is bad.
+  !> Positions of the fields that a kind of row has: looked up once, since rows may be many.
+  subroutine find_columns(cursor, kind, at)
+    type(cursor_t), intent(in) :: cursor
+    integer, intent(in) :: kind
+    type(columns_t), intent(out) :: at
+
+    at%id = find_field(cursor, 1, trim(id_fields(kind)))
+    select case (kind)
+    case (row_spc_node, row_spc_set)
+      at%fixed = [find_field(cursor, 1, 'DOFX'), find_field(cursor, 1, 'DOFY')]
+    case (row_velocity_node)
+      at%velocity = [find_field(cursor, 1, 'VX'), find_field(cursor, 1, 'VY'), 0]
+    case (row_velocity_rigid)
+      at%velocity = [find_field(cursor, 1, 'VX'), find_field(cursor, 1, 'VY'), &
+        find_field(cursor, 1, 'VZR')]
+    case (row_damping)
+      at%curve = find_field(cursor, 1, 'LCID')
+      at%scale = find_field(cursor, 1, 'VALDMP')
+      at%factors = [find_field(cursor, 1, 'STX'), find_field(cursor, 1, 'SRZ')]
+    case default
+      at%curve = find_field(cursor, 1, 'LCID')
+      at%scale = find_field(cursor, 1, 'SF')
+    end select
+    select case (kind)
+    case (row_motion_node, row_motion_set, row_motion_rigid)
+      at%direction = find_field(cursor, 1, 'DOF')
+      at%motion = find_field(cursor, 1, 'VAD')
+      at%birth = find_field(cursor, 1, 'BIRTH')
+      at%death = find_field(cursor, 1, 'DEATH')
+    case (row_load_node, row_load_set)
+      at%direction = find_field(cursor, 1, 'DOF')
+    case (row_pressure, row_pressure_set)
+      at%arrival = find_field(cursor, 1, 'AT')
+      if (kind == row_pressure) at%nodes = [find_field(cursor, 1, 'N1'), &
+        find_field(cursor, 1, 'N4')]
+    end select
+  end subroutine find_columns
+
+  !> The values of a row.
+  subroutine fill_row(card, at, row)
+    type(card_t), intent(in) :: card
+    type(columns_t), intent(in) :: at
+    type(row_t), intent(inout) :: row
+    real(wp), parameter :: never = 1.0e28_wp
+
+    row%line = card%line
+    row%id = card%i(at%id)
+    if (at%fixed(1) > 0) row%fixed = card%i(at%fixed) == 1
+    if (at%velocity(1) > 0) row%velocity(:2) = card%r(at%velocity(:2))
+    if (at%velocity(3) > 0) row%velocity(3) = card%r(at%velocity(3))
+    if (at%curve > 0) row%curve = card%i(at%curve)
+    if (at%scale > 0) row%scale = card%r(at%scale)
+    if (at%direction > 0) row%direction = card%i(at%direction)
+    if (at%arrival > 0) row%arrival = card%r(at%arrival)
+    if (at%nodes(1) > 0) row%nodes = card%i(at%nodes(1):at%nodes(1) + 1)
+    if (at%motion > 0) then
+      row%motion = card%i(at%motion)
+      row%birth = card%r(at%birth)
+      row%death = card%r(at%death)
+      if (.not. abs(row%death) > 0.0_wp) row%death = never
+    end if
+    if (at%factors(1) > 0) then
+      ! All six factors zero mean one everywhere.
+      if (any(abs(card%r(at%factors(1):at%factors(2))) > 0.0_wp)) row%factor = &
+        card%r(at%factors(1):at%factors(1) + 1)
+    end if
+  end subroutine fill_row
+
+  !> Keep a row, unless a field that matters is bad.
   subroutine keep_row(raw, card, row)
     type(raw_t), intent(inout) :: raw
     type(card_t), intent(in) :: card
-    type(row_t), intent(inout) :: row
+    type(row_t), intent(in) :: row
 
     if (any(card%bad)) return
     if (row%kind == row_velocity_node) then
-      call append_velocity(raw, card%line, card%i(1), card%r(2:3))
-      return
+      call append_velocity(raw, row%line, row%id, row%velocity(:2))
+    else
+      call append_row(raw, row)
     end if
-    row%line = card%line
-    row%i = card%i(1:8)
-    row%r = card%r(1:8)
-    call append_row(raw, row)
   end subroutine keep_row
 
   !> Fields of one row.
-  subroutine check_row(deck, cursor, card, kind)
+  subroutine check_row(deck, cursor, at, card, row)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
+    type(columns_t), intent(in) :: at
     type(card_t), intent(inout) :: card
-    integer, intent(in) :: kind
+    type(row_t), intent(in) :: row
     integer :: k
 
-    if (kind /= row_damping .and. card%i(1) < 1) call report_field(deck, cursor, card, 1, &
+    if (row%kind /= row_damping .and. row%id < 1) call report_field(deck, cursor, card, at%id, &
       'is not a number of 1 or more')
-    select case (kind)
+    select case (row%kind)
     case (row_spc_node, row_spc_set)
-      call check_flag(deck, cursor, card, 3)
-      call check_flag(deck, cursor, card, 4)
+      call check_flag(deck, cursor, card, at%fixed(1))
+      call check_flag(deck, cursor, card, at%fixed(2))
     case (row_motion_node, row_motion_set)
-      call check_direction(deck, cursor, card, 2)
-      call check_motion(deck, cursor, card)
+      call check_direction(deck, cursor, card, at%direction)
+      call check_motion(deck, cursor, at, card, row)
     case (row_motion_rigid)
-      if (all(card%i(2) /= [1, 2, 7])) call report_field(deck, cursor, card, 2, &
+      if (all(row%direction /= [1, 2, 7])) call report_field(deck, cursor, card, at%direction, &
         'is not a motion that a rigid body has here (1 x, 2 y, 7 turn about z)')
-      call check_motion(deck, cursor, card)
+      call check_motion(deck, cursor, at, card, row)
     case (row_load_node, row_load_set)
-      call check_direction(deck, cursor, card, 2)
-      call check_curve(deck, cursor, card, 3)
+      call check_direction(deck, cursor, card, at%direction)
+      call check_curve(deck, cursor, card, at%curve)
     case (row_pressure)
-      call check_edge_nodes(deck, cursor, card)
-      if (card%r(3) < 0.0_wp) call report_field(deck, cursor, card, 3, 'is negative')
+      call check_edge_nodes(deck, cursor, card, at%nodes(1))
+      call check_arrival(deck, cursor, card, at%arrival)
     case (row_pressure_set)
-      call check_curve(deck, cursor, card, 2)
-      if (card%r(4) < 0.0_wp) call report_field(deck, cursor, card, 4, 'is negative')
+      call check_curve(deck, cursor, card, at%curve)
+      call check_arrival(deck, cursor, card, at%arrival)
     case (row_damping)
-      if (card%i(1) < 0) call report_field(deck, cursor, card, 1, 'is not a curve number')
-      do k = 2, 4
+      if (row%curve < 0) call report_field(deck, cursor, card, at%curve, 'is not a curve number')
+      do k = at%scale, at%factors(1) + 1
         if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, &
           'is negative: forces that push along with the velocity would feed energy')
       end do
@@ -166,6 +250,16 @@ contains
       'is not a direction that this version has (1 x, 2 y)')
   end subroutine check_direction
 
+  !> A time of arrival.
+  subroutine check_arrival(deck, cursor, card, k)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+
+    if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, 'is negative')
+  end subroutine check_arrival
+
   !> A curve that must be there.
   subroutine check_curve(deck, cursor, card, k)
     type(deck_t), intent(inout) :: deck
@@ -178,44 +272,43 @@ contains
   end subroutine check_curve
 
   !> *BOUNDARY_PRESCRIBED_MOTION_ but its direction.
-  subroutine check_motion(deck, cursor, card)
+  subroutine check_motion(deck, cursor, at, card, row)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
+    type(columns_t), intent(in) :: at
     type(card_t), intent(inout) :: card
+    type(row_t), intent(in) :: row
 
-    if (card%i(3) < 0 .or. card%i(3) > 2) call report_field(deck, cursor, card, 3, &
+    if (row%motion < 0 .or. row%motion > 2) call report_field(deck, cursor, card, at%motion, &
       'is not a kind of motion that this version has (0 velocity, 1 acceleration, 2 displacement)')
-    call check_curve(deck, cursor, card, 4)
-    if (.not. abs(card%r(7)) > 0.0_wp) card%r(7) = 1.0e28_wp
-    if (card%r(7) <= card%r(8)) call report_field(deck, cursor, card, 7, &
-      'is not after BIRTH "'//to_text(card%r(8))//'"')
-    if (card%r(7) <= 0.0_wp) call report_field(deck, cursor, card, 7, &
+    call check_curve(deck, cursor, card, at%curve)
+    if (row%death <= row%birth) call report_field(deck, cursor, card, at%death, &
+      'is not after BIRTH "'//to_text(row%birth)//'"')
+    if (row%death <= 0.0_wp) call report_field(deck, cursor, card, at%death, &
       'is before the run begins (0 means never)')
   end subroutine check_motion
 
   !> N1 to N4 of *LOAD_SEGMENT.
-  subroutine check_edge_nodes(deck, cursor, card)
+  subroutine check_edge_nodes(deck, cursor, card, first)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
+    integer, intent(in) :: first     !! field of N1
     integer :: k
 
-    do k = 4, 5
+    do k = first, first + 1
       if (card%i(k) < 1) call report_field(deck, cursor, card, k, &
         'is not a node number (1 or more)')
     end do
-    if (card%i(4) == card%i(5)) call report_field(deck, cursor, card, 5, &
+    if (card%i(first) == card%i(first + 1)) call report_field(deck, cursor, card, first + 1, &
       'is the first node again; an edge has two nodes')
-    do k = 6, 7
-      if (card%i(k) /= 0 .and. card%i(k) /= card%i(4) .and. card%i(k) /= card%i(5)) &
-        call report_field(deck, cursor, card, k, &
+    do k = first + 2, first + 3
+      if (all(card%i(k) /= [0, card%i(first:first + 1)])) call report_field(deck, cursor, card, k, &
         'is a further node; an edge in the plane has two (repeat N2 or leave it 0)')
     end do
   end subroutine check_edge_nodes
 
   !> *INITIAL_VELOCITY (two or three cards) and *INITIAL_VELOCITY_GENERATION (two cards).
-  !> Integers of the row: those of card 1. Reals: of _GENERATION OMEGA, VX, VY, XC, YC; of the other
-  !> VX, VY and, for the nodes left out, VXE, VYE.
   subroutine read_initial_velocity(deck, parameters, i_block, raw)
     type(deck_t), intent(inout) :: deck
     type(parameters_t), intent(in) :: parameters
@@ -224,28 +317,31 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: cards(3)
     type(row_t) :: row
-    integer :: k
 
     call open_cursor(deck, i_block, cursor)
-    do k = 1, cursor%n_card
-      if (k == 3 .and. cards(1)%i(2) == 0) exit
-      call next_card(deck, parameters, cursor, k, cards(k))
-    end do
+    call next_card(deck, parameters, cursor, 1, cards(1))
+    call next_card(deck, parameters, cursor, 2, cards(2))
     row%line = cards(1)%line
-    row%i = cards(1)%i(1:8)
     if (deck%blocks(i_block)%name == 'INITIAL_VELOCITY') then
       row%kind = row_velocity
-      do k = 1, 2
-        if (cards(1)%i(k) < 0) call report_field(deck, cursor, cards(1), k, 'is not a set number')
-      end do
-      row%r(1:2) = cards(2)%r(1:2)
-      row%r(3:4) = cards(3)%r(1:2)
+      row%id = integer_of(cards(1), 'NSID')
+      row%others = integer_of(cards(1), 'NSIDEX')
+      row%velocity(:2) = reals_of(cards(2), 'VX', 'VY')
+      if (row%others /= 0) then
+        call next_card(deck, parameters, cursor, 3, cards(3))
+        row%other_velocity = reals_of(cards(3), 'VXE', 'VYE')
+      end if
+      if (row%id < 0) call report_field(deck, cursor, cards(1), 'NSID', no_set)
+      if (row%others < 0) call report_field(deck, cursor, cards(1), 'NSIDEX', no_set)
     else
       row%kind = row_velocity_generation
       call check_generation(deck, cursor, cards)
-      row%r(1:3) = cards(1)%r(3:5)
-      if (cards(2)%r(6) < 0.0_wp) row%r(1) = -row%r(1)
-      row%r(4:5) = cards(2)%r(1:2)
+      row%id = integer_of(cards(1), 'ID')
+      row%set_kind = integer_of(cards(1), 'STYP')
+      row%velocity(:2) = reals_of(cards(1), 'VX', 'VY')
+      row%spin = real_of(cards(1), 'OMEGA')
+      if (real_of(cards(2), 'NZ') < 0.0_wp) row%spin = -row%spin
+      row%centre = reals_of(cards(2), 'XC', 'YC')
     end if
     call check_rest(deck, cursor)
     if (any(cards(1)%bad) .or. any(cards(2)%bad)) return
@@ -257,18 +353,20 @@ contains
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: cards(:)
-    integer :: k
+    character(*), parameter :: turned = &
+      'turns the axis out of z; in the plane bodies spin about z'
 
-    if (cards(1)%i(1) < 0) call report_field(deck, cursor, cards(1), 1, &
+    if (integer_of(cards(1), 'ID') < 0) call report_field(deck, cursor, cards(1), 'ID', &
       'is not a number of 0 or more')
-    if (cards(1)%i(2) < 1 .or. cards(1)%i(2) > 3) call report_field(deck, cursor, cards(1), 2, &
+    call refuse_outside(deck, cursor, cards(1), 'STYP', 1, 3, &
       'is not a kind of set (1 part set, 2 part, 3 node set)')
-    if (abs(cards(1)%r(3)) > 1.0e30_wp) call report_field(deck, cursor, cards(1), 3, 'is too large')
-    if (.not. abs(cards(1)%r(3)) > 0.0_wp) return
-    do k = 4, 5
-      if (abs(cards(2)%r(k)) > 0.0_wp) call report_field(deck, cursor, cards(2), k, &
-        'turns the axis out of z; in the plane bodies spin about z')
-    end do
+    if (abs(real_of(cards(1), 'OMEGA')) > 1.0e30_wp) call report_field(deck, cursor, cards(1), &
+      'OMEGA', 'is too large')
+    if (.not. abs(real_of(cards(1), 'OMEGA')) > 0.0_wp) return
+    if (abs(real_of(cards(2), 'NX')) > 0.0_wp) call report_field(deck, cursor, cards(2), 'NX', &
+      turned)
+    if (abs(real_of(cards(2), 'NY')) > 0.0_wp) call report_field(deck, cursor, cards(2), 'NY', &
+      turned)
   end subroutine check_generation
 
 end module deck_conditions_m

@@ -5,18 +5,26 @@ module deck_contact_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use contacts_m, only : contact_kind_t, kind_text, penalty_factor
-  use deck_lines_m, only : deck_t, place_t, line_error
+  use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
     report_field
-  use deck_contact_values_m, only : origins_t, find_commanded, take_overrides, check_values, &
-    kind_names, of_type, of_gauss, of_penalty, of_unit, of_master_penalty, of_damping
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of
+  use deck_checks_m, only : refuse_negative, refuse_outside, take_life
+  use deck_contact_values_m, only : find_commanded, take_overrides, check_values, kind_names, &
+    of_penalty, of_master_penalty
+  use deck_friction_m, only : take_friction, take_stock_friction, take_penalty_friction
   use deck_raw_m, only : raw_t, raw_contact_t
-  use deck_overrides_m, only : overrides_t
+  use deck_overrides_m, only : overrides_t, contact_names
   implicit none
   private
   public :: read_contact
+
+  !> Fields of the two sides.
+  character(5), parameter :: side_fields(2) = ['SURFA', 'SURFB']
+  !> Fields of the times between which an interface acts.
+  character(6), parameter :: life(2) = ['TBIRTH', 'TDEATH']
 
 contains
 
@@ -31,7 +39,7 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: cards(4)
     type(raw_contact_t) :: entry
-    type(origins_t) :: origins
+    logical :: commanded(size(contact_names))
     integer :: k
 
     call open_cursor(deck, i_block, cursor)
@@ -48,24 +56,31 @@ contains
     call check_rest(deck, cursor)
     call take_sides(deck, cursor, cards(1), entry)
     entry%block = i_block
-    origins%commanded = find_commanded(overrides, entry%contact%id)
+    commanded = find_commanded(overrides, entry%contact%id)
     entry%contact%contact_type = stock_type(trim(deck%blocks(i_block)%name))
     select case (deck%blocks(i_block)%name)
     case ('CONTACT_2D_SLIDELINE')
-      call take_slideline(deck, cursor, cards, kinds, origins, entry)
-    case ('CONTACT_2D_PENALTY')
-      call take_penalty(deck, cursor, cards, origins, entry)
+      call take_slideline(deck, cursor, cards, kinds, commanded, entry)
+      call take_friction(deck, cursor, cards, overrides, entry)
+    case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION')
+      call take_penalty(deck, cursor, cards, commanded, entry)
+      if (cursor%n_card > 2) call take_penalty_friction(deck, cursor, cards(3), overrides, entry)
     case default
-      call take_automatic(deck, cursor, cards, origins, entry)
+      call take_automatic(deck, cursor, cards, commanded, entry)
+      call take_stock_friction(deck, cursor, cards, overrides, entry)
     end select
     call take_overrides(overrides, entry)
-    call check_values(deck, cursor, cards, kinds, overrides, origins, entry)
+    call check_values(deck, cursor, cards, kinds, overrides, commanded, entry)
     if (entry%contact%chosen_by_keyword) then
       if (.not. any(kinds%number == entry%contact%contact_type)) call line_error(deck, &
         deck%blocks(i_block)%keyword, 'stands for contact type ' &
         //to_text(entry%contact%contact_type)//', which this version does not have' &
         //kind_names(kinds))
     end if
+    entry%kind = 'type '//to_text(entry%contact%contact_type)
+    do k = 1, size(kinds)
+      if (kinds(k)%number == entry%contact%contact_type) entry%kind = kind_text(kinds(k))
+    end do
     if (entry%contact%search_interval > 0) raw%explicit_only = [raw%explicit_only, &
       entry%search_place]
     raw%contacts = [raw%contacts, entry]
@@ -81,7 +96,8 @@ contains
       contact_type = 1
     case ('CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE')
       contact_type = 2
-    case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE', 'CONTACT_2D_PENALTY')
+    case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE', 'CONTACT_2D_PENALTY', &
+        'CONTACT_2D_PENALTY_FRICTION')
       contact_type = 3
     case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR')
       contact_type = 7
@@ -99,46 +115,43 @@ contains
     integer :: k
 
     do k = 1, 2
-      if (card%i(k) == 0) call report_field(deck, cursor, card, k, &
-        'is not a surface (more than 0: part set, less than 0: node set)')
-      entry%places(k) = place_t(line=card%line, card=1, field=k)
-      if (.not. card%bad(k)) entry%sides(k) = card%i(k)
+      if (integer_of(card, side_fields(k)) == 0) call report_field(deck, cursor, card, &
+        side_fields(k), 'is not a surface (more than 0: part set, less than 0: node set)')
+      entry%places(k) = place_of(card, side_fields(k))
+      if (.not. is_bad(card, side_fields(k))) entry%sides(k) = integer_of(card, side_fields(k))
     end do
   end subroutine take_sides
 
   !> *CONTACT_2D_SLIDELINE.
-  subroutine take_slideline(deck, cursor, cards, kinds, origins, entry)
+  subroutine take_slideline(deck, cursor, cards, kinds, commanded, entry)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: cards(:)
     type(contact_kind_t), intent(in) :: kinds(:)
-    type(origins_t), intent(inout) :: origins
+    logical, intent(in) :: commanded(:)
     type(raw_contact_t), intent(inout) :: entry
 
     associate (contact => entry%contact)
-      contact%contact_type = cards(1)%i(3)
-      contact%n_gauss = cards(1)%i(4)
-      if (cards(1)%blank(4) .or. cards(1)%i(4) == 0) contact%n_gauss = 2
-      contact%penalty = cards(1)%r(5)
-      contact%penalty_unit = cards(2)%i(3)
-      entry%unit_place = place_t(line=cards(2)%line, card=2, field=3)
+      contact%contact_type = integer_of(cards(1), 'CTYPE')
+      contact%n_gauss = integer_of(cards(1), 'NGAUSS')
+      if (is_blank(cards(1), 'NGAUSS') .or. contact%n_gauss == 0) contact%n_gauss = 2
+      contact%penalty = real_of(cards(1), 'PEN')
+      contact%penalty_unit = integer_of(cards(2), 'PUNIT')
+      entry%unit_place = place_of(cards(2), 'PUNIT')
       contact%master_penalty = contact%penalty
-      if (abs(cards(2)%r(4)) > 0.0_wp) contact%master_penalty = cards(2)%r(4)
-      if (cards(2)%r(4) < 0.0_wp .and. .not. origins%commanded(of_master_penalty)) &
-        call report_field(deck, cursor, cards(2), 4, 'is not a penalty (more than 0)')
-      call take_times(deck, cursor, cards(2), 1, entry)
-      entry%per_cent = cards(2)%r(5)
-      if (cards(2)%i(6) < 0 .or. cards(2)%i(6) > 1) call report_field(deck, cursor, cards(2), 6, &
+      if (abs(real_of(cards(2), 'PENT')) > 0.0_wp) &
+        contact%master_penalty = real_of(cards(2), 'PENT')
+      if (real_of(cards(2), 'PENT') < 0.0_wp .and. .not. commanded(of_master_penalty)) &
+        call report_field(deck, cursor, cards(2), 'PENT', 'is not a penalty (more than 0)')
+      call take_life(deck, cursor, cards(2), life, contact%birth, contact%death)
+      entry%per_cent = real_of(cards(2), 'VDC')
+      call refuse_outside(deck, cursor, cards(2), 'IPF', 0, 1, &
         'is not 0 or 1'//strict_names(kinds))
-      contact%strict = cards(2)%i(6) == 1
-      call take_search(deck, cursor, cards(2), 7, entry)
-      if (cards(2)%r(8) < 0.0_wp) call report_field(deck, cursor, cards(2), 8, 'is negative')
-      contact%search_depth = cards(2)%r(8)
+      contact%strict = integer_of(cards(2), 'IPF') == 1
+      call take_search(deck, cursor, cards(2), entry)
+      call refuse_negative(deck, cursor, cards(2), 'SRCH')
+      contact%search_depth = real_of(cards(2), 'SRCH')
     end associate
-    origins%card([of_type, of_gauss, of_penalty]) = 1
-    origins%field([of_type, of_gauss, of_penalty]) = [3, 4, 5]
-    origins%card([of_unit, of_damping]) = 2
-    origins%field([of_unit, of_damping]) = [3, 5]
   end subroutine take_slideline
 
   !> What IPF = 1 asks for: `: the strict rule of name (type n)`.
@@ -155,36 +168,34 @@ contains
   end function strict_names
 
   !> *CONTACT_2D_AUTOMATIC_: penalty as a factor on the built-in estimate.
-  subroutine take_automatic(deck, cursor, cards, origins, entry)
+  subroutine take_automatic(deck, cursor, cards, commanded, entry)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: cards(:)
-    type(origins_t), intent(inout) :: origins
+    logical, intent(in) :: commanded(:)
     type(raw_contact_t), intent(inout) :: entry
 
     associate (contact => entry%contact)
       contact%chosen_by_keyword = .true.
       contact%penalty_unit = penalty_factor
       contact%penalty = 1.0_wp
-      if (cards(1)%r(3) < 0.0_wp .and. .not. origins%commanded(of_penalty)) &
-        call report_field(deck, cursor, cards(1), 3, 'is negative')
-      if (cards(1)%r(3) > 0.0_wp) contact%penalty = cards(1)%r(3)
+      if (real_of(cards(1), 'SFACT') < 0.0_wp .and. .not. commanded(of_penalty)) &
+        call report_field(deck, cursor, cards(1), 'SFACT', 'is negative')
+      if (real_of(cards(1), 'SFACT') > 0.0_wp) contact%penalty = real_of(cards(1), 'SFACT')
       contact%master_penalty = contact%penalty
-      call take_search(deck, cursor, cards(1), 4, entry)
-      call take_times(deck, cursor, cards(2), 1, entry)
-      entry%per_cent = cards(3)%r(2)
+      call take_search(deck, cursor, cards(1), entry)
+      call take_life(deck, cursor, cards(2), life, contact%birth, contact%death)
+      entry%per_cent = real_of(cards(3), 'VDC')
     end associate
-    origins%card(of_damping) = 3
-    origins%field(of_damping) = 2
   end subroutine take_automatic
 
-  !> *CONTACT_2D_PENALTY: node sets, written with a positive number there; PEN is the factor on the
-  !> built-in estimate that the others multiply from SFACT and SLSFAC.
-  subroutine take_penalty(deck, cursor, cards, origins, entry)
+  !> *CONTACT_2D_PENALTY and its kin with friction: node sets, written with a positive number there;
+  !> PEN is the factor on the built-in estimate that the others multiply from SFACT and SLSFAC.
+  subroutine take_penalty(deck, cursor, cards, commanded, entry)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: cards(:)
-    type(origins_t), intent(in) :: origins
+    logical, intent(in) :: commanded(:)
     type(raw_contact_t), intent(inout) :: entry
     integer :: k
 
@@ -192,53 +203,33 @@ contains
       contact%chosen_by_keyword = .true.
       contact%penalty_unit = penalty_factor
       do k = 1, 2
-        if (entry%sides(k) < 0) call report_field(deck, cursor, cards(1), k, &
+        if (entry%sides(k) < 0) call report_field(deck, cursor, cards(1), side_fields(k), &
           'is not a node set number (1 or more)')
         entry%sides(k) = -abs(entry%sides(k))
       end do
-      if (cards(2)%r(5) < 0.0_wp .and. .not. origins%commanded(of_penalty)) &
-        call report_field(deck, cursor, cards(2), 5, 'is negative')
+      if (real_of(cards(2), 'PEN') < 0.0_wp .and. .not. commanded(of_penalty)) &
+        call report_field(deck, cursor, cards(2), 'PEN', 'is negative')
       contact%penalty = 1.0_wp
-      if (cards(2)%r(5) > 0.0_wp) contact%penalty = cards(2)%r(5)/0.1_wp
+      if (real_of(cards(2), 'PEN') > 0.0_wp) contact%penalty = real_of(cards(2), 'PEN')/0.1_wp
       contact%master_penalty = contact%penalty
-      call take_times(deck, cursor, cards(1), 3, entry)
+      call take_life(deck, cursor, cards(1), life, contact%birth, contact%death)
     end associate
   end subroutine take_penalty
 
-  !> FREQ in field `k`: cycles between two searches. Their sum with the cycle of a run must stay a
-  !> whole number.
-  subroutine take_search(deck, cursor, card, k, entry)
+  !> FREQ: cycles between two searches. Their sum with the cycle of a run must stay a whole number.
+  subroutine take_search(deck, cursor, card, entry)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
-    integer, intent(in) :: k
     type(raw_contact_t), intent(inout) :: entry
     integer, parameter :: most_cycles = 1000000000
 
-    if (card%i(k) < 0) call report_field(deck, cursor, card, k, 'is negative')
-    if (card%i(k) > most_cycles) call report_field(deck, cursor, card, k, &
+    call refuse_negative(deck, cursor, card, 'FREQ')
+    if (integer_of(card, 'FREQ') > most_cycles) call report_field(deck, cursor, card, 'FREQ', &
       'is not a number of cycles between two searches (at most 1000000000)')
-    if (card%bad(k)) return
-    entry%contact%search_interval = card%i(k)
-    entry%search_place = place_t(line=card%line, card=card%number, field=k)
+    if (is_bad(card, 'FREQ')) return
+    entry%contact%search_interval = integer_of(card, 'FREQ')
+    entry%search_place = place_of(card, 'FREQ')
   end subroutine take_search
-
-  !> TBIRTH in field `k` and TDEATH after it; a death time of 0 means never.
-  subroutine take_times(deck, cursor, card, k, entry)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    integer, intent(in) :: k
-    type(raw_contact_t), intent(inout) :: entry
-
-    entry%contact%birth = card%r(k)
-    entry%contact%death = card%r(k + 1)
-    if (.not. abs(card%r(k + 1)) > 0.0_wp) entry%contact%death = 1.0e20_wp
-    if (entry%contact%death <= entry%contact%birth) then
-      call report_field(deck, cursor, card, k + 1, 'is not after TBIRTH "'//to_text(card%r(k))//'"')
-    else if (entry%contact%death <= 0.0_wp) then
-      call report_field(deck, cursor, card, k + 1, 'is before the run begins (0 means never)')
-    end if
-  end subroutine take_times
 
 end module deck_contact_m

@@ -8,13 +8,13 @@ module deck_contact_values_m
   use deck_lines_m, only : deck_t, deck_error
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, report_field
+  use deck_values_m, only : has_field
   use deck_overrides_m, only : overrides_t, contact_names, override_text, override_word, &
     override_real, override_integer
   use deck_raw_m, only : raw_contact_t
   implicit none
   private
-  public :: origins_t, find_commanded, take_overrides, check_values, kind_names, of_type, &
-    of_gauss, of_penalty, of_unit, of_master_penalty, of_damping
+  public :: find_commanded, take_overrides, check_values, kind_names, of_penalty, of_master_penalty
 
   !> Values by their place in `contact_names`.
   integer, parameter :: of_type = 1, of_gauss = 2, of_penalty = 3, of_unit = 4, &
@@ -23,13 +23,6 @@ module deck_contact_values_m
   !> Most damping, per cent of critical. The force goes with the velocity of half a step ago: with
   !> ten times critical damping the scene block-to-block breaks up.
   real(wp), parameter :: most_damping = 100.0_wp
-
-  !> Where the values of an interface come from.
-  type :: origins_t
-    integer :: card(size(contact_names)) = 0       !! 0: the keyword has no field for the value
-    integer :: field(size(contact_names)) = 0
-    logical :: commanded(size(contact_names)) = .false. !! the command line gives the value
-  end type origins_t
 
 contains
 
@@ -70,13 +63,13 @@ contains
   end subroutine take_overrides
 
   !> The rules of all values, wherever they come from.
-  subroutine check_values(deck, cursor, cards, kinds, overrides, origins, entry)
+  subroutine check_values(deck, cursor, cards, kinds, overrides, commanded, entry)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: cards(:)
     type(contact_kind_t), intent(in) :: kinds(:)
     type(overrides_t), intent(in) :: overrides
-    type(origins_t), intent(in) :: origins
+    logical, intent(in) :: commanded(:)  !! values that the command line gives
     type(raw_contact_t), intent(in) :: entry
 
     associate (contact => entry%contact)
@@ -99,7 +92,7 @@ contains
     !> A penalty that is no share: PEN and PUNIT may come from different places.
     subroutine refuse_share()
 
-      if (origins%commanded(of_penalty) .or. origins%commanded(of_unit)) then
+      if (commanded(of_penalty) .or. commanded(of_unit)) then
         call deck_error(deck, 'with the command line the penalty "' &
           //to_text(entry%contact%penalty)//'" is not a share of the largest stable one ' &
           //'(punit=3: pen= above 0, at most 1)')
@@ -109,17 +102,22 @@ contains
       end if
     end subroutine refuse_share
 
-    !> An error of a value where it was given.
+    !> An error of a value where it was given: fields have the names of the command line. A keyword
+    !> without such a field gives the value itself.
     subroutine refuse(k, message)
       integer, intent(in) :: k
       character(*), intent(in) :: message
+      integer :: i
 
-      if (origins%commanded(k)) then
+      if (commanded(k)) then
         call deck_error(deck, '"'//override_word(overrides, contact_names(k), entry%contact%id) &
           //'" on the command line '//message)
-      else if (origins%card(k) > 0) then
-        call report_field(deck, cursor, cards(origins%card(k)), origins%field(k), message)
+        return
       end if
+      do i = 1, cursor%n_card
+        if (has_field(cards(i), contact_names(k))) call report_field(deck, cursor, cards(i), &
+          contact_names(k), message)
+      end do
     end subroutine refuse
 
   end subroutine check_values

@@ -4,13 +4,16 @@ module deck_control_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use controls_m, only : length_by_side, length_by_diagonal, contact_step_warns, contact_step_rules
-  use deck_lines_m, only : deck_t, place_t, line_warning
+  use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, reject_field
+  use deck_checks_m, only : refuse_negative, refuse_outside
+  use deck_values_m, only : integer_of, real_of, place_of
   use deck_implicit_m, only : take_implicit, take_dynamics, take_spectral_radius, take_solution, &
     take_automatic
   use deck_raw_m, only : raw_t
+  use deck_friction_m, only : take_default_friction
   use deck_part_m, only : hourglass_form, hourglass_coefficient, check_viscosity
   implicit none
   private
@@ -32,7 +35,7 @@ contains
     do k = 1, cursor%n_card
       if (k == 3 .and. deck%blocks(i_block)%name == 'CONTROL_IMPLICIT_SOLUTION') then
         ! The card of strict tolerances comes with a negative DNORM alone.
-        if (cards(2)%i(1) >= 0) cycle
+        if (integer_of(cards(2), 'DNORM') >= 0) cycle
       end if
       call next_card(deck, parameters, cursor, k, cards(k))
     end do
@@ -44,8 +47,9 @@ contains
     case ('CONTROL_TIMESTEP')
       call take_timestep(deck, cursor, cards(1), raw)
     case ('CONTROL_HOURGLASS')
-      call hourglass_form(deck, cursor, cards(1), 1, raw%hourglass_default%form)
-      call hourglass_coefficient(deck, cursor, cards(1), 2, raw%hourglass_default%coefficient)
+      call hourglass_form(deck, cursor, cards(1), 'IHQ', raw%hourglass_default%form)
+      call hourglass_coefficient(deck, cursor, cards(1), 'QH', &
+        raw%hourglass_default%coefficient)
     case ('CONTROL_BULK_VISCOSITY')
       call take_bulk_viscosity(deck, cursor, cards(1), raw)
     case ('CONTROL_CONTACT')
@@ -61,8 +65,8 @@ contains
     case ('CONTROL_IMPLICIT_AUTO')
       call take_automatic(deck, cursor, cards(1), raw)
     case ('CONTROL_OUTPUT')
-      if (cards(1)%i(7) < 0) call report_field(deck, cursor, cards(1), 7, 'is negative')
-      raw%controls%output%status_interval = cards(1)%i(7)
+      call refuse_negative(deck, cursor, cards(1), 'IKEDIT')
+      raw%controls%output%status_interval = integer_of(cards(1), 'IKEDIT')
     end select
   end subroutine read_control
 
@@ -87,21 +91,21 @@ contains
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
 
-    if (card%r(1) <= 0.0_wp .and. .not. raw%end_given) call report_field(deck, cursor, card, 1, &
-      'is not an end time (more than 0)')
-    if (card%i(2) < 0) call report_field(deck, cursor, card, 2, 'is negative')
-    if (card%r(3) < 0.0_wp) call report_field(deck, cursor, card, 3, 'is negative')
-    if (card%r(3) > 1.0_wp) call report_field(deck, cursor, card, 3, &
+    if (real_of(card, 'ENDTIM') <= 0.0_wp .and. .not. raw%end_given) call report_field(deck, &
+      cursor, card, 'ENDTIM', 'is not an end time (more than 0)')
+    call refuse_negative(deck, cursor, card, 'ENDCYC')
+    call refuse_negative(deck, cursor, card, 'DTMIN')
+    if (real_of(card, 'DTMIN') > 1.0_wp) call report_field(deck, cursor, card, 'DTMIN', &
       'is not a share of the first step (at most 1): the run would end at once')
-    if (card%r(4) < 0.0_wp) call report_field(deck, cursor, card, 4, 'is negative')
-    if (card%i(6) < 0 .or. card%i(6) > 1) call report_field(deck, cursor, card, 6, &
+    call refuse_negative(deck, cursor, card, 'ENDENG')
+    call refuse_outside(deck, cursor, card, 'NOSOL', 0, 1, &
       'is not 0 or 1 (stop after the initialisation)')
     raw%terminated = .true.
-    raw%controls%end_time = card%r(1)
-    raw%controls%end_cycle = card%i(2)
-    raw%controls%dt_floor = card%r(3)
-    raw%controls%energy_limit = card%r(4)
-    raw%controls%check_only = card%i(6) == 1
+    raw%controls%end_time = real_of(card, 'ENDTIM')
+    raw%controls%end_cycle = integer_of(card, 'ENDCYC')
+    raw%controls%dt_floor = real_of(card, 'DTMIN')
+    raw%controls%energy_limit = real_of(card, 'ENDENG')
+    raw%controls%check_only = integer_of(card, 'NOSOL') == 1
   end subroutine take_termination
 
   !> *CONTROL_TIMESTEP.
@@ -110,27 +114,35 @@ contains
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
-    logical :: given(6)
-    integer :: k
-
-    if (card%r(1) < 0.0_wp) call report_field(deck, cursor, card, 1, 'is negative')
-    if (card%r(2) < 0.0_wp .and. .not. raw%scale_given) call report_field(deck, cursor, card, 2, &
-      'is negative: the scale of the step is more than 0 (blank and 0 mean 0.9)')
-    if (card%i(3) < 0 .or. card%i(3) > 1) call report_field(deck, cursor, card, 3, &
+    call refuse_negative(deck, cursor, card, 'DTINIT')
+    if (real_of(card, 'TSSFAC') < 0.0_wp .and. .not. raw%scale_given) call report_field(deck, &
+      cursor, card, 'TSSFAC', 'is negative: the scale of the step is more than 0 (blank and 0 ' &
+      //'mean 0.9)')
+    call refuse_outside(deck, cursor, card, 'ISDO', 0, 1, &
       'is not an element length rule (0 area over longest side, 1 area over longest diagonal)')
-    given = [card%r(1) > 0.0_wp, card%r(2) > 0.0_wp, card%i(3) == 1, .false., .false., &
-      card%i(6) /= 0]
-    do k = 1, 6
-      if (given(k)) raw%explicit_only = [raw%explicit_only, place_t(card%line, 1, k)]
-    end do
-    raw%controls%dt_initial = card%r(1)
+    call note_explicit(raw, card, 'DTINIT', real_of(card, 'DTINIT') > 0.0_wp)
+    call note_explicit(raw, card, 'TSSFAC', real_of(card, 'TSSFAC') > 0.0_wp)
+    call note_explicit(raw, card, 'ISDO', integer_of(card, 'ISDO') == 1)
+    call note_explicit(raw, card, 'LCTM', integer_of(card, 'LCTM') /= 0)
+    raw%controls%dt_initial = real_of(card, 'DTINIT')
     raw%controls%dt_scale = 0.9_wp
-    if (card%r(2) > 0.0_wp) raw%controls%dt_scale = card%r(2)
-    raw%controls%length_rule = merge(length_by_diagonal, length_by_side, card%i(3) == 1)
+    if (real_of(card, 'TSSFAC') > 0.0_wp) raw%controls%dt_scale = real_of(card, 'TSSFAC')
+    raw%controls%length_rule = merge(length_by_diagonal, length_by_side, &
+      integer_of(card, 'ISDO') == 1)
     raw%step_line = card%line
-    raw%dt_curve = card%i(6)
-    raw%dt_curve_place = place_t(line=card%line, card=1, field=6)
+    raw%dt_curve = integer_of(card, 'LCTM')
+    raw%dt_curve_place = place_of(card, 'LCTM')
   end subroutine take_timestep
+
+  !> A field that is given and that the implicit method leaves.
+  subroutine note_explicit(raw, card, name, is_given)
+    type(raw_t), intent(inout) :: raw
+    type(card_t), intent(in) :: card
+    character(*), intent(in) :: name
+    logical, intent(in) :: is_given
+
+    if (is_given) raw%explicit_only = [raw%explicit_only, place_of(card, name)]
+  end subroutine note_explicit
 
   !> Rules of the step, from the card or from the command line.
   subroutine check_step(deck, raw)
@@ -154,15 +166,13 @@ contains
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
-    integer :: k
 
-    do k = 1, 2
-      call check_viscosity(deck, cursor, card, k)
-    end do
-    if (card%i(3) < -1 .or. card%i(3) > 1) call report_field(deck, cursor, card, 3, &
+    call check_viscosity(deck, cursor, card, 'Q1')
+    call check_viscosity(deck, cursor, card, 'Q2')
+    call refuse_outside(deck, cursor, card, 'TYPE', -1, 1, &
       'is not a kind of bulk viscosity that this version has (1 standard)')
-    raw%hourglass_default%quadratic = card%r(1)
-    raw%hourglass_default%linear = card%r(2)
+    raw%hourglass_default%quadratic = real_of(card, 'Q1')
+    raw%hourglass_default%linear = real_of(card, 'Q2')
   end subroutine take_bulk_viscosity
 
   !> *CONTROL_CONTACT.
@@ -172,14 +182,16 @@ contains
     type(card_t), intent(inout) :: cards(:)
     type(raw_t), intent(inout) :: raw
 
-    if (cards(1)%r(1) < 0.0_wp) call report_field(deck, cursor, cards(1), 1, 'is negative')
+    call refuse_negative(deck, cursor, cards(1), 'SLSFAC')
     raw%controls%penalty_scale = 0.1_wp
-    if (cards(1)%r(1) > 0.0_wp) raw%controls%penalty_scale = cards(1)%r(1)
-    if (cards(2)%i(7) < contact_step_warns .or. cards(2)%i(7) > contact_step_rules) &
-      call report_field(deck, cursor, cards(2), 7, 'is not 0, 1 or 2 (a warning where contact ' &
-      //'needs a smaller step, no warning, a step that is stable with contact)')
-    raw%controls%contact_step = cards(2)%i(7)
-    if (cards(2)%i(7) /= 0) raw%explicit_only = [raw%explicit_only, place_t(cards(2)%line, 2, 7)]
+    if (real_of(cards(1), 'SLSFAC') > 0.0_wp) &
+      raw%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
+    call refuse_outside(deck, cursor, cards(2), 'ECDT', contact_step_warns, &
+      contact_step_rules, 'is not 0, 1 or 2 (a warning where contact needs a smaller step, no ' &
+      //'warning, a step that is stable with contact)')
+    raw%controls%contact_step = integer_of(cards(2), 'ECDT')
+    call note_explicit(raw, cards(2), 'ECDT', raw%controls%contact_step /= 0)
+    call take_default_friction(deck, cursor, cards(3), raw)
   end subroutine take_contact
 
 end module deck_control_m

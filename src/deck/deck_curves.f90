@@ -6,7 +6,10 @@ module deck_curves_m
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field, &
+    find_field
+  use deck_values_m, only : integer_of, real_of, reals_of, is_bad
+  use deck_checks_m, only : require_id
   use deck_raw_m, only : raw_t, raw_table_t
   implicit none
   private
@@ -24,18 +27,20 @@ contains
     type(card_t) :: head
     type(curve_t) :: curve
     real(wp), allocatable :: points(:, :)
+    real(wp) :: scale(2)
 
-    call read_head(deck, parameters, i_block, 3, 'is negative: it would turn the curve round', &
-      cursor, head)
-    if (.not. head%r(3) > 0.0_wp) head%r(3) = 1.0_wp
-    if (.not. abs(head%r(4)) > 0.0_wp) head%r(4) = 1.0_wp
-    call read_rows(deck, parameters, head%r(3:4), head%r(5:6), &
+    call read_head(deck, parameters, i_block, ['LCID', 'SFA '], &
+      'is negative: it would turn the curve round', cursor, head)
+    scale = reals_of(head, 'SFA', 'SFO')
+    if (.not. scale(1) > 0.0_wp) scale(1) = 1.0_wp
+    if (.not. abs(scale(2)) > 0.0_wp) scale(2) = 1.0_wp
+    call read_rows(deck, parameters, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
       'is not beyond the point before it: abscissas must increase', cursor, points)
     if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
-    if (head%bad(1)) raw%lost%curves = .true.
-    if (head%bad(1)) return
+    if (is_bad(head, 'LCID')) raw%lost%curves = .true.
+    if (is_bad(head, 'LCID')) return
     if (size(points, 2) == 0) points = reshape([0.0_wp, 0.0_wp], [2, 1])
-    curve%id = head%i(1)
+    curve%id = integer_of(head, 'LCID')
     curve%abscissa = points(1, :)
     curve%ordinate = points(2, :)
     raw%curves = [raw%curves, curve]
@@ -52,25 +57,27 @@ contains
     type(card_t) :: head
     type(raw_table_t) :: table
     real(wp), allocatable :: values(:, :)
+    real(wp) :: scale
 
-    call read_head(deck, parameters, i_block, 2, 'is negative: it would turn the table round', &
-      cursor, head)
-    if (.not. abs(head%r(2)) > 0.0_wp) head%r(2) = 1.0_wp
-    call read_rows(deck, parameters, head%r(2:2), head%r(3:3), &
+    call read_head(deck, parameters, i_block, ['TBID', 'SFA '], &
+      'is negative: it would turn the table round', cursor, head)
+    scale = real_of(head, 'SFA')
+    if (.not. abs(scale) > 0.0_wp) scale = 1.0_wp
+    call read_rows(deck, parameters, ['VALUE'], [scale], [real_of(head, 'OFFA')], &
       'is not beyond the value before it: the values of a table must increase', cursor, values)
     if (size(values, 2) == 0) call line_error(deck, head%line, 'the table has no values')
-    if (head%bad(1)) raw%lost%tables = .true.
-    if (head%bad(1)) return
-    table = raw_table_t(head%i(1), head%line, i_block, values(1, :))
+    if (is_bad(head, 'TBID')) raw%lost%tables = .true.
+    if (is_bad(head, 'TBID')) return
+    table = raw_table_t(integer_of(head, 'TBID'), head%line, i_block, values(1, :))
     raw%tables = [raw%tables, table]
   end subroutine read_table
 
-  !> The first card: the number, and the scale factor of what must increase in field `k`.
-  subroutine read_head(deck, parameters, i_block, k, negative, cursor, head)
+  !> The first card: the number, and the scale factor of what must increase.
+  subroutine read_head(deck, parameters, i_block, names, negative, cursor, head)
     type(deck_t), intent(inout) :: deck
     type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
-    integer, intent(in) :: k
+    character(*), intent(in) :: names(2)    !! of the number and of the factor
     character(*), intent(in) :: negative    !! what to say of a factor below 0
     type(cursor_t), intent(out) :: cursor
     type(card_t), intent(out) :: head
@@ -78,14 +85,15 @@ contains
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
     call next_card(deck, parameters, cursor, 1, head)
-    if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a number of 1 or more')
-    if (head%r(k) < 0.0_wp) call report_field(deck, cursor, head, k, negative)
+    call require_id(deck, cursor, head, names(1))
+    if (real_of(head, names(2)) < 0.0_wp) call report_field(deck, cursor, head, names(2), negative)
   end subroutine read_head
 
   !> The rows behind it, scale*(value + offset) in each column; the first column must increase.
-  subroutine read_rows(deck, parameters, scale, offset, not_beyond, cursor, rows)
+  subroutine read_rows(deck, parameters, names, scale, offset, not_beyond, cursor, rows)
     type(deck_t), intent(inout) :: deck
     type(parameters_t), intent(in) :: parameters
+    character(*), intent(in) :: names(:)               !! (n_column) fields of a row
     real(wp), intent(in) :: scale(:), offset(:)        !! (n_column)
     character(*), intent(in) :: not_beyond             !! what to say where it does not
     type(cursor_t), intent(inout) :: cursor
@@ -93,8 +101,9 @@ contains
     type(card_t) :: card
     real(wp) :: last
     logical :: found, is_sound
-    integer :: i, n
+    integer :: i, n, columns(size(names))
 
+    columns = [(find_field(cursor, 2, names(i)), i=1, size(names))]
     allocate (rows(size(scale), max(cursor%last - cursor%line + 1, 0)))
     n = 0
     last = -huge(1.0_wp)
@@ -103,10 +112,10 @@ contains
       call next_row(deck, parameters, cursor, 2, card, found)
       if (.not. found) exit
       n = n + 1
-      rows(:, n) = scale*(card%r(:size(scale)) + offset)
-      is_sound = is_sound .and. .not. card%bad(1)
-      if (card%bad(1)) cycle
-      if (rows(1, n) <= last) call report_field(deck, cursor, card, 1, not_beyond)
+      rows(:, n) = scale*(card%r(columns) + offset)
+      is_sound = is_sound .and. .not. card%bad(columns(1))
+      if (card%bad(columns(1))) cycle
+      if (rows(1, n) <= last) call report_field(deck, cursor, card, columns(1), not_beyond)
       is_sound = is_sound .and. rows(1, n) > last
       last = rows(1, n)
     end do

@@ -6,7 +6,9 @@ module deck_echo_m
   use controls_m, only : interval_t, output_plan_t
   use curves_m, only : curve_is_constant
   use hardenings_m, only : hardening_t
+  use history_tables_m, only : history_tables, n_table
   use model_m, only : model_t
+  use walls_m, only : friction_sticks
   implicit none
   private
   public :: echo_model
@@ -38,13 +40,9 @@ contains
     if (model%controls%dt_curve > 0) call write_log(log, 'step capped by curve ' &
       //to_text(model%curves(model%controls%dt_curve)%id))
     call echo_interval('states', model%controls%output%plot)
-    call echo_interval('glstat', model%controls%output%glstat)
-    call echo_interval('matsum', model%controls%output%matsum)
-    call echo_interval('rcforc', model%controls%output%rcforc)
-    call echo_interval('nodout', model%controls%output%nodout)
-    call echo_interval('rwforc', model%controls%output%rwforc)
-    call echo_interval('sleout', model%controls%output%sleout)
-    call echo_interval('spcforc', model%controls%output%spcforc)
+    do i = 1, n_table
+      call echo_interval(trim(history_tables(i)%name), model%controls%output%histories(i))
+    end do
     call echo_binout(model, log)
     call echo_restarts(model%controls%output, log)
 
@@ -70,13 +68,10 @@ contains
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
 
-    associate (plan => model%controls%output)
-      if (any([plan%glstat%is_binout, plan%matsum%is_binout, plan%rcforc%is_binout, &
-        plan%nodout%is_binout, plan%sleout%is_binout, &
-        plan%spcforc%is_binout])) call write_log(log, 'BINARY asks for binout: ' &
-        //"'slideline-tools binout' writes it from the results")
-    end associate
+    if (any(model%controls%output%histories%is_binout)) call write_log(log, &
+      "BINARY asks for binout: 'slideline-tools binout' writes it from the results")
   end subroutine echo_binout
+
   !> How often restart files are written.
   subroutine echo_restarts(plan, log)
     type(output_plan_t), intent(in) :: plan
@@ -174,10 +169,24 @@ contains
         call write_log(log, 'wall '//to_text(wall%id)//': through ('//to_text(wall%foot(1))//', ' &
           //to_text(wall%foot(2))//'), normal ('//to_text(wall%normal(1))//', ' &
           //to_text(wall%normal(2))//'), seen by '//to_text(size(wall%nodes))//' nodes, plastic ' &
-          //'impact without friction')
+          //'impact '//friction_text(wall%friction))
       end associate
     end do
   end subroutine echo_walls
+
+  !> Friction of a wall.
+  pure function friction_text(friction) result(text)
+    real(wp), intent(in) :: friction
+    character(:), allocatable :: text
+
+    if (.not. friction > 0.0_wp) then
+      text = 'without friction'
+    else if (friction < friction_sticks) then
+      text = 'with friction '//to_text(friction)
+    else
+      text = 'without sliding'
+    end if
+  end function friction_text
 
   !> Counts of the conditions.
   subroutine echo_conditions(model, log)

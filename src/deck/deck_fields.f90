@@ -5,21 +5,21 @@ module deck_fields_m
   use kinds_m, only : wp
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
-  use deck_card_specs_m, only : card_spec_t, max_field
+  use deck_card_specs_m, only : card_spec_t, field_number, max_field
   use deck_report_m, only : spot_t, add_error, is_full
   use deck_lines_m, only : deck_t, place_t, line_text, where_text, line_warning, line_spot, &
     written_text, shown_text, marked_line, flag_comma
   implicit none
   private
-  public :: card_t, cut_card, read_numbers, field_text, field_error, place_error, largest_value, &
-    smallest_value
+  public :: card_t, cut_card, read_numbers, field_text, field_error, place_error, place_field, &
+    largest_value, smallest_value
 
   !> Numbers beyond the largest are refused, those below the smallest are zero, so that products of
   !> deck values and of what follows from them stay finite. Both lie beyond what single precision
   !> holds.
   real(wp), parameter :: largest_value = 1.0e40_wp, smallest_value = 1.0e-40_wp
 
-  !> One card as read. Blank fields hold their defaults.
+  !> One card as read. Blank fields hold their defaults. `deck_values_m` asks for fields by name.
   type :: card_t
     integer :: line = 0                     !! line in the deck
     integer :: number = 1                   !! card number
@@ -28,6 +28,8 @@ module deck_fields_m
     integer :: last(max_field) = 0          !! last < first: blank
     logical :: blank(max_field) = .true.
     logical :: bad(max_field) = .false.     !! an error has been reported for the field
+    character(12) :: names(max_field) = ''
+    character :: kinds(max_field) = 'x'     !! as those of `card_spec_t`
     integer :: i(max_field) = 0             !! values of the integer fields
     real(wp) :: r(max_field) = 0.0_wp       !! values of the real fields
   end type card_t
@@ -274,7 +276,17 @@ contains
     type(card_t) :: card
 
     call cut_card(deck, spec, source, place%line, card)
-    call field_error(deck, spec, card, place%field, message)
+    call field_error(deck, spec, card, place_field(spec, place), message)
   end subroutine place_error
+
+  !> Position of the field of a place.
+  function place_field(spec, place) result(k)
+    type(card_spec_t), intent(in) :: spec
+    type(place_t), intent(in) :: place
+    integer :: k
+
+    k = place%field
+    if (len_trim(place%name) > 0) k = field_number(spec%names(:spec%n), place%name)
+  end function place_field
 
 end module deck_fields_m

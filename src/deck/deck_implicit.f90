@@ -7,6 +7,8 @@ module deck_implicit_m
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, report_field
+  use deck_checks_m, only : refuse_negative, refuse_outside
+  use deck_values_m, only : integer_of, real_of, is_blank
   use deck_raw_m, only : raw_t
   implicit none
   private
@@ -25,12 +27,13 @@ contains
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
 
-    if (card%i(1) < 0 .or. card%i(1) > 1) call report_field(deck, cursor, card, 1, &
+    call refuse_outside(deck, cursor, card, 'IMFLAG', 0, 1, &
       'is not a method that this version has (0 explicit, 1 implicit; no switching)')
-    raw%controls%implicit%is_on = card%i(1) == 1
-    if (card%i(1) == 1 .and. card%r(2) <= 0.0_wp .and. .not. raw%step_given) &
-      call report_field(deck, cursor, card, 2, 'is not a step (more than 0)')
-    raw%controls%implicit%dt = card%r(2)
+    raw%controls%implicit%is_on = integer_of(card, 'IMFLAG') == 1
+    raw%controls%implicit%dt = real_of(card, 'DT0')
+    if (raw%controls%implicit%is_on .and. raw%controls%implicit%dt <= 0.0_wp .and. &
+      .not. raw%step_given) call report_field(deck, cursor, card, 'DT0', &
+      'is not a step (more than 0)')
   end subroutine take_implicit
 
   !> *CONTROL_IMPLICIT_DYNAMICS: GAMMA and BETA ask for Newmark's method, ALPHA below 0 for HHT;
@@ -41,24 +44,26 @@ contains
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
     real(wp), parameter :: most = 10.0_wp
-    integer :: k
+    character(*), parameter :: too_large = 'is not a parameter of Newmark''s method (at most 10)'
+    real(wp) :: gamma, beta, alpha
 
-    if (card%i(1) < 0 .or. card%i(1) > 1) call report_field(deck, cursor, card, 1, &
+    gamma = real_of(card, 'GAMMA')
+    beta = real_of(card, 'BETA')
+    alpha = real_of(card, 'ALPHA')
+    call refuse_outside(deck, cursor, card, 'IMASS', 0, 1, &
       'is not 0 (static) or 1 (dynamic)')
-    raw%controls%implicit%is_dynamic = card%i(1) == 1
-    if (card%r(2) < 0.0_wp .or. (card%r(2) > 0.0_wp .and. card%r(2) < 0.5_wp)) call report_field( &
-      deck, cursor, card, 2, 'is not a stable GAMMA of Newmark''s method (0.5 or more)')
-    do k = 2, 3
-      if (card%r(k) > most) call report_field(deck, cursor, card, k, &
-        'is not a parameter of Newmark''s method (at most 10)')
-    end do
-    if (card%r(3) < 0.0_wp .or. (card%r(3) > 0.0_wp .and. card%r(3) < 0.25_wp)) call report_field( &
-      deck, cursor, card, 3, 'is not a stable BETA of Newmark''s method (0.25 or more)')
-    if (card%r(8) > 0.0_wp .or. card%r(8) < -1.0_wp/3.0_wp) call report_field(deck, cursor, card, &
-      8, 'is not ALPHA of the HHT method (-1/3 to 0); Bathe''s method is not supported')
+    raw%controls%implicit%is_dynamic = integer_of(card, 'IMASS') == 1
+    if (gamma < 0.0_wp .or. (gamma > 0.0_wp .and. gamma < 0.5_wp)) call report_field(deck, &
+      cursor, card, 'GAMMA', 'is not a stable GAMMA of Newmark''s method (0.5 or more)')
+    if (gamma > most) call report_field(deck, cursor, card, 'GAMMA', too_large)
+    if (beta > most) call report_field(deck, cursor, card, 'BETA', too_large)
+    if (beta < 0.0_wp .or. (beta > 0.0_wp .and. beta < 0.25_wp)) call report_field(deck, cursor, &
+      card, 'BETA', 'is not a stable BETA of Newmark''s method (0.25 or more)')
+    if (alpha > 0.0_wp .or. alpha < -1.0_wp/3.0_wp) call report_field(deck, cursor, card, &
+      'ALPHA', 'is not ALPHA of the HHT method (-1/3 to 0); Bathe''s method is not supported')
     raw%newmark_line = card%line
-    raw%newmark = [card%r(2), card%r(3)]
-    raw%hht = -card%r(8)
+    raw%newmark = [gamma, beta]
+    raw%hht = -alpha
   end subroutine take_dynamics
 
   !> *CONTROL_IMPLICIT_SPECTRAL_RADIUS, our own keyword.
@@ -68,9 +73,9 @@ contains
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
 
-    if (card%blank(1) .or. card%r(1) < 0.0_wp .or. card%r(1) > 1.0_wp) call report_field(deck, &
-      cursor, card, 1, 'is not a spectral radius (0 to 1)')
-    raw%spectral_radius = card%r(1)
+    raw%spectral_radius = real_of(card, 'RHO')
+    if (is_blank(card, 'RHO') .or. raw%spectral_radius < 0.0_wp .or. raw%spectral_radius > 1.0_wp) &
+      call report_field(deck, cursor, card, 'RHO', 'is not a spectral radius (0 to 1)')
   end subroutine take_spectral_radius
 
   !> *CONTROL_IMPLICIT_SOLUTION. Every iteration forms the tangent anew (full
@@ -80,21 +85,22 @@ contains
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
-    integer :: k
 
-    if (card%i(1) /= 1 .and. card%i(1) /= 12 .and. card%i(1) /= 0) call report_field(deck, cursor, &
-      card, 1, 'is not a solution method that this version has (1 linear, 12 Newton)')
-    if (card%i(3) < 0) call report_field(deck, cursor, card, 3, 'is negative')
-    do k = 4, 7
-      if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, 'is negative')
-    end do
+    if (all(integer_of(card, 'NSOLVR') /= [0, 1, 12])) call report_field(deck, cursor, card, &
+      'NSOLVR', 'is not a solution method that this version has (1 linear, 12 Newton)')
+    call refuse_negative(deck, cursor, card, 'MAXREF')
+    call refuse_negative(deck, cursor, card, 'DCTOL')
+    call refuse_negative(deck, cursor, card, 'ECTOL')
+    call refuse_negative(deck, cursor, card, 'RCTOL')
+    call refuse_negative(deck, cursor, card, 'LSTOL')
     associate (implicit => raw%controls%implicit)
-      implicit%is_linear = card%i(1) == 1
-      if (card%i(3) > 0) implicit%max_iteration = card%i(3)
-      implicit%step_tolerance = card%r(4)
-      if (card%r(5) > 0.0_wp) implicit%energy_tolerance = card%r(5)
-      implicit%residual_tolerance = merge(0.0_wp, card%r(6), card%r(6) >= 1.0e10_wp)
-      if (card%r(7) > 0.0_wp) implicit%search_tolerance = card%r(7)
+      implicit%is_linear = integer_of(card, 'NSOLVR') == 1
+      if (integer_of(card, 'MAXREF') > 0) implicit%max_iteration = integer_of(card, 'MAXREF')
+      implicit%step_tolerance = real_of(card, 'DCTOL')
+      if (real_of(card, 'ECTOL') > 0.0_wp) implicit%energy_tolerance = real_of(card, 'ECTOL')
+      implicit%residual_tolerance = real_of(card, 'RCTOL')
+      if (implicit%residual_tolerance >= 1.0e10_wp) implicit%residual_tolerance = 0.0_wp
+      if (real_of(card, 'LSTOL') > 0.0_wp) implicit%search_tolerance = real_of(card, 'LSTOL')
     end associate
   end subroutine take_solution
 
@@ -106,22 +112,24 @@ contains
     type(raw_t), intent(inout) :: raw
     integer, parameter :: many = 1000000
 
-    if (card%i(1) < 0 .or. card%i(1) > 1) call report_field(deck, cursor, card, 1, &
+    call refuse_outside(deck, cursor, card, 'IAUTO', 0, 1, &
       'is not 0 (constant step) or 1 (automatic)')
-    if (card%i(2) < 1) call report_field(deck, cursor, card, 2, 'is not a number of iterations')
-    if (card%i(3) < 0) call report_field(deck, cursor, card, 3, 'is negative')
-    if (card%r(4) < 0.0_wp) call report_field(deck, cursor, card, 4, 'is negative')
-    if (card%r(5) < 0.0_wp) call report_field(deck, cursor, card, 5, &
+    if (integer_of(card, 'ITEOPT') < 1) call report_field(deck, cursor, card, 'ITEOPT', &
+      'is not a number of iterations')
+    call refuse_negative(deck, cursor, card, 'ITEWIN')
+    call refuse_negative(deck, cursor, card, 'DTMIN')
+    if (real_of(card, 'DTMAX') < 0.0_wp) call report_field(deck, cursor, card, 'DTMAX', &
       'is negative: a curve of largest steps is not supported')
-    if (card%r(5) > 0.0_wp .and. card%r(4) > card%r(5)) call report_field(deck, cursor, card, 5, &
-      'is below the smallest step DTMIN = '//to_text(card%r(4)))
+    if (real_of(card, 'DTMAX') > 0.0_wp .and. real_of(card, 'DTMIN') > real_of(card, 'DTMAX')) &
+      call report_field(deck, cursor, card, 'DTMAX', &
+      'is below the smallest step DTMIN = '//to_text(real_of(card, 'DTMIN')))
     associate (implicit => raw%controls%implicit)
-      implicit%is_automatic = card%i(1) == 1
+      implicit%is_automatic = integer_of(card, 'IAUTO') == 1
       ! Their sum must stay a whole number.
-      implicit%best_iterations = min(card%i(2), many)
-      implicit%iteration_window = min(card%i(3), many)
-      implicit%dt_least = card%r(4)
-      implicit%dt_most = card%r(5)
+      implicit%best_iterations = min(integer_of(card, 'ITEOPT'), many)
+      implicit%iteration_window = min(integer_of(card, 'ITEWIN'), many)
+      implicit%dt_least = real_of(card, 'DTMIN')
+      implicit%dt_most = real_of(card, 'DTMAX')
     end associate
   end subroutine take_automatic
 

@@ -50,7 +50,8 @@ module deck_lines_m
   type :: place_t
     integer :: line = 0
     integer :: card = 1
-    integer :: field = 0
+    character(12) :: name = ''  !! of the field
+    integer :: field = 0        !! its position, where there is no name: members of sets
   end type place_t
 
   !> The whole deck.

@@ -24,22 +24,23 @@ contains
     type(maps_t), intent(out) :: maps
     logical :: all_lost
 
-    call map_kind(deck, 'node', raw%node_id(:raw%n_node), raw%node_line(:raw%n_node), 1, maps%nodes)
+    call map_kind(deck, 'node', raw%node_id(:raw%n_node), raw%node_line(:raw%n_node), &
+      'NID', maps%nodes)
     call map_kind(deck, 'element', raw%element_id(:raw%n_element), &
-      raw%element_line(:raw%n_element), 1, maps%elements)
-    call map_kind(deck, 'part', [raw%parts%id], [raw%parts%line], 2, maps%parts)
-    call map_kind(deck, 'section', [raw%sections%id], raw%section_line, 1, maps%sections)
-    call map_kind(deck, 'material', [raw%materials%id], raw%material_line, 1, maps%materials)
-    call map_kind(deck, 'hourglass control', [raw%hourglasses%id], raw%hourglass_line, 1, &
+      raw%element_line(:raw%n_element), 'EID', maps%elements)
+    call map_kind(deck, 'part', [raw%parts%id], [raw%parts%line], 'PID', maps%parts)
+    call map_kind(deck, 'section', [raw%sections%id], raw%section_line, 'SECID', maps%sections)
+    call map_kind(deck, 'material', [raw%materials%id], raw%material_line, 'MID', maps%materials)
+    call map_kind(deck, 'hourglass control', [raw%hourglasses%id], raw%hourglass_line, 'HGID', &
       maps%hourglasses)
-    call map_kind(deck, 'curve', [raw%curves%id], raw%curve_line, 1, maps%curves)
-    call map_kind(deck, 'table', [raw%tables%id], [raw%tables%line], 1, maps%tables)
+    call map_kind(deck, 'curve', [raw%curves%id], raw%curve_line, 'LCID', maps%curves)
+    call map_kind(deck, 'table', [raw%tables%id], [raw%tables%line], 'TBID', maps%tables)
     call map_kind(deck, 'node set', [raw%node_sets(:raw%n_node_set)%id], &
-      [raw%node_sets(:raw%n_node_set)%line], 1, maps%node_sets)
+      [raw%node_sets(:raw%n_node_set)%line], 'SID', maps%node_sets)
     call map_kind(deck, 'part set', [raw%part_sets(:raw%n_part_set)%id], &
-      [raw%part_sets(:raw%n_part_set)%line], 1, maps%part_sets)
+      [raw%part_sets(:raw%n_part_set)%line], 'SID', maps%part_sets)
     call map_kind(deck, 'segment set', [raw%segment_sets(:raw%n_segment_set)%id], &
-      [raw%segment_sets(:raw%n_segment_set)%line], 1, maps%segment_sets)
+      [raw%segment_sets(:raw%n_segment_set)%line], 'SID', maps%segment_sets)
     all_lost = deck%incomplete
     maps%nodes%incomplete = raw%lost%nodes .or. raw%n_node == 0 .or. all_lost
     maps%parts%incomplete = raw%lost%parts .or. all_lost
@@ -54,12 +55,12 @@ contains
   end subroutine make_maps
 
   !> One map, with an error for each id that comes again.
-  subroutine map_kind(deck, what, ids, lines, card, map)
+  subroutine map_kind(deck, what, ids, lines, field, map)
     type(deck_t), intent(inout) :: deck
     character(*), intent(in) :: what
     integer, intent(in) :: ids(:)
-    integer, intent(in) :: lines(:) !! where each stands: its first field
-    integer, intent(in) :: card     !! on this card of its keyword
+    integer, intent(in) :: lines(:) !! where each stands
+    character(*), intent(in) :: field
     type(id_map_t), intent(out) :: map
     integer, allocatable :: twice(:)
     integer :: i, first
@@ -67,7 +68,7 @@ contains
     call map_ids(ids, map, twice)
     do i = 1, size(twice)
       first = index_of(map, ids(twice(i)))
-      call reject_field(deck, place_t(line=lines(twice(i)), card=card, field=1), &
+      call reject_field(deck, place_t(lines(twice(i)), merge(2, 1, what == 'part'), field), &
         'is the number of another '//what//' ('//where_text(deck, lines(first))//')')
     end do
   end subroutine map_kind

@@ -6,7 +6,9 @@ module deck_mesh_m
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field, &
+    find_field
+  use deck_values_m, only : integer_of, is_bad
   use deck_raw_m, only : raw_t, reserve_nodes, reserve_elements
   use deck_raw_sets_m, only : raw_set_t, append_set, append_member
   implicit none
@@ -24,28 +26,33 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     logical :: found
-    integer :: n
+    integer :: n, id, x, y, z, code
 
     call open_cursor(deck, i_block, cursor)
+    id = find_field(cursor, 1, 'NID')
+    x = find_field(cursor, 1, 'X')
+    y = find_field(cursor, 1, 'Y')
+    z = find_field(cursor, 1, 'Z')
+    code = find_field(cursor, 1, 'TC')
     call reserve_nodes(raw, max(cursor%last - cursor%line + 1, 0))
     do
       call next_row(deck, parameters, cursor, 1, card, found)
       if (.not. found) exit
-      if (card%i(1) < 1) call report_field(deck, cursor, card, 1, &
+      if (card%i(id) < 1) call report_field(deck, cursor, card, id, &
         'is not a node number (1 or more)')
-      if (card%i(5) < 0 .or. card%i(5) > 7) call report_field(deck, cursor, card, 5, &
+      if (card%i(code) < 0 .or. card%i(code) > 7) call report_field(deck, cursor, card, code, &
         'is not a boundary code (0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)')
-      if (card%bad(1)) raw%lost%nodes = .true.
-      if (card%bad(1)) cycle
+      if (card%bad(id)) raw%lost%nodes = .true.
+      if (card%bad(id)) cycle
       n = raw%n_node + 1
       raw%n_node = n
-      raw%node_id(n) = card%i(1)
+      raw%node_id(n) = card%i(id)
       raw%node_line(n) = card%line
-      raw%node_code(n) = card%i(5)
-      raw%coordinates(1, n) = card%r(2)
-      raw%coordinates(2, n) = card%r(3)
-      if (n == 1) raw%z_first = card%r(4)
-      if (raw%z_line == 0 .and. abs(card%r(4) - raw%z_first) > 0.0_wp) raw%z_line = card%line
+      raw%node_code(n) = card%i(code)
+      raw%coordinates(1, n) = card%r(x)
+      raw%coordinates(2, n) = card%r(y)
+      if (n == 1) raw%z_first = card%r(z)
+      if (raw%z_line == 0 .and. abs(card%r(z) - raw%z_first) > 0.0_wp) raw%z_line = card%line
     end do
   end subroutine read_nodes
 
@@ -58,31 +65,35 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     logical :: found
-    integer :: n, k
+    integer :: n, k, id, part, first, last
 
     call open_cursor(deck, i_block, cursor)
+    id = find_field(cursor, 1, 'EID')
+    part = find_field(cursor, 1, 'PID')
+    first = find_field(cursor, 1, 'N1')
+    last = find_field(cursor, 1, 'N4')
     call reserve_elements(raw, max(cursor%last - cursor%line + 1, 0))
     do
       call next_row(deck, parameters, cursor, 1, card, found)
       if (.not. found) exit
-      if (card%i(1) < 1) call report_field(deck, cursor, card, 1, &
+      if (card%i(id) < 1) call report_field(deck, cursor, card, id, &
         'is not an element number (1 or more)')
-      if (card%i(2) < 1) call report_field(deck, cursor, card, 2, &
+      if (card%i(part) < 1) call report_field(deck, cursor, card, part, &
         'is not a part number (1 or more)')
-      do k = 3, 5
+      do k = first, last - 1
         if (card%i(k) < 1) call report_field(deck, cursor, card, k, &
           'is not a node number (1 or more)')
       end do
-      if (card%i(6) < 0) call report_field(deck, cursor, card, 6, &
+      if (card%i(last) < 0) call report_field(deck, cursor, card, last, &
         'is not a node number (1 or more)')
       if (any(card%bad)) raw%lost%elements = .true.
       if (any(card%bad)) cycle
-      if (card%i(6) == 0) card%i(6) = card%i(5)
+      if (card%i(last) == 0) card%i(last) = card%i(last - 1)
       n = raw%n_element + 1
       raw%n_element = n
-      raw%element_id(n) = card%i(1)
-      raw%element_part(n) = card%i(2)
-      raw%element_nodes(:, n) = card%i(3:6)
+      raw%element_id(n) = card%i(id)
+      raw%element_part(n) = card%i(part)
+      raw%element_nodes(:, n) = card%i(first:first + 3)
       raw%element_line(n) = card%line
     end do
   end subroutine read_elements
@@ -96,27 +107,30 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: head, card
     type(raw_set_t) :: set
-    logical :: found
+    logical :: found, is_segment
+    integer :: first
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
     call next_card(deck, parameters, cursor, 1, head)
-    if (head%i(1) < 1) call report_field(deck, cursor, head, 1, 'is not a set number (1 or more)')
-    set%id = head%i(1)
+    set%id = integer_of(head, 'SID')
+    if (set%id < 1) call report_field(deck, cursor, head, 'SID', 'is not a set number (1 or more)')
     set%line = head%line
     set%generate = index(deck%blocks(i_block)%name, '_GENERATE') > 0
+    is_segment = deck%blocks(i_block)%name == 'SET_SEGMENT'
+    if (is_segment) first = find_field(cursor, 2, 'N1')
     do
       call next_row(deck, parameters, cursor, 2, card, found)
       if (.not. found) exit
-      if (deck%blocks(i_block)%name == 'SET_SEGMENT') then
-        call take_segment(deck, cursor, card, set)
+      if (is_segment) then
+        call take_segment(deck, cursor, card, first, set)
       else
         call take_members(deck, cursor, card, set)
       end if
       set%damaged = set%damaged .or. any(card%bad)
     end do
-    if (head%bad(1)) raw%lost%sets = .true.
-    if (head%bad(1)) return
+    if (is_bad(head, 'SID')) raw%lost%sets = .true.
+    if (is_bad(head, 'SID')) return
     select case (deck%blocks(i_block)%name)
     case ('SET_SEGMENT')
       call append_set(raw%segment_sets, raw%n_segment_set, set)
@@ -127,19 +141,21 @@ contains
     end select
   end subroutine read_set
 
-  !> Up to eight ids of a line; zeros are padding. Generated sets take them in pairs.
+  !> The ids of a line, one in each of its fields; zeros are padding. Generated sets take them in
+  !> pairs.
   subroutine take_members(deck, cursor, card, set)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(raw_set_t), intent(inout) :: set
-    integer :: k
+    integer :: k, n
 
-    do k = 1, 8
+    n = cursor%specs(card%number)%n
+    do k = 1, n
       if (card%i(k) < 0) call report_field(deck, cursor, card, k, 'is not a number of 1 or more')
     end do
     if (set%generate) then
-      do k = 1, 7, 2
+      do k = 1, n - 1, 2
         if (card%i(k) == 0 .and. card%i(k + 1) == 0) cycle
         if (card%i(k) == 0 .or. card%i(k + 1) < card%i(k)) call report_field(deck, cursor, card, &
           k + 1, 'is not the end of a block that begins with "'//to_text(card%i(k))//'"')
@@ -149,22 +165,23 @@ contains
       end do
       return
     end if
-    do k = 1, 8
+    do k = 1, n
       if (card%i(k) > 0) call append_member(set, card%i(k), card%line, k)
     end do
   end subroutine take_members
 
   !> One edge: N3 and N4 may repeat N2 or be zero.
-  subroutine take_segment(deck, cursor, card, set)
+  subroutine take_segment(deck, cursor, card, first, set)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
+    integer, intent(in) :: first     !! field of N1
     type(raw_set_t), intent(inout) :: set
 
-    call check_edge(deck, cursor, card, 1)
-    if (any(card%bad(1:4))) return
-    call append_member(set, card%i(1), card%line, 1)
-    call append_member(set, card%i(2), card%line, 2)
+    call check_edge(deck, cursor, card, first)
+    if (any(card%bad(first:first + 3))) return
+    call append_member(set, card%i(first), card%line, first)
+    call append_member(set, card%i(first + 1), card%line, first + 1)
   end subroutine take_segment
 
   !> Four node fields from `k` on must describe an edge.

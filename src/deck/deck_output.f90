@@ -2,12 +2,14 @@
 !> *DATABASE_ cards: what is written and how often.
 module deck_output_m
   use kinds_m, only : wp
-  use deck_lines_m, only : deck_t, place_t
+  use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field
-  use deck_raw_m, only : raw_t, history_t, output_plot, output_glstat, output_matsum, &
-    output_rcforc, output_nodout, output_rwforc, output_sleout, output_spcforc
+  use deck_values_m, only : integer_of, real_of, place_of
+  use deck_checks_m, only : refuse_negative, refuse_outside
+  use deck_raw_m, only : raw_t, history_t, output_plot
+  use history_tables_m, only : history_tables, table_of_keyword, text_none
   implicit none
   private
   public :: read_database
@@ -26,7 +28,8 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card, rest
     type(history_t) :: history
-    integer :: k_curve, file, k
+    character(4) :: curve
+    integer :: file, k
 
     call open_cursor(deck, i_block, cursor)
     call next_card(deck, parameters, cursor, 1, card)
@@ -43,35 +46,24 @@ contains
     case ('DATABASE_BINARY_RUNRSF')
       call take_cycles(deck, cursor, card, raw%controls%output%running_cycles)
       return
-    case ('DATABASE_GLSTAT')
-      file = output_glstat
-    case ('DATABASE_MATSUM')
-      file = output_matsum
-    case ('DATABASE_RCFORC')
-      file = output_rcforc
-    case ('DATABASE_RWFORC')
-      file = output_rwforc
-    case ('DATABASE_SLEOUT')
-      file = output_sleout
-    case ('DATABASE_SPCFORC')
-      file = output_spcforc
     case default
-      file = output_nodout
+      file = table_of_keyword(deck%blocks(i_block)%name)
     end select
-    k_curve = merge(2, 3, file == output_plot)
-    if (card%r(1) < 0.0_wp) call report_field(deck, cursor, card, 1, 'is negative')
-    if (card%i(k_curve) < 0) call report_field(deck, cursor, card, k_curve, 'is not a curve number')
-    history%dt = card%r(1)
-    history%curve = card%i(k_curve)
-    history%place = place_t(line=card%line, card=1, field=k_curve)
+    curve = merge('LCDT', 'LCUR', file == output_plot)
+    call refuse_negative(deck, cursor, card, 'DT')
+    if (integer_of(card, curve) < 0) call report_field(deck, cursor, card, curve, &
+      'is not a curve number')
+    history%dt = real_of(card, 'DT')
+    history%curve = integer_of(card, curve)
+    history%place = place_of(card, curve)
     if (file == output_plot) then
-      if (card%i(4) < 0) call report_field(deck, cursor, card, 4, 'is negative')
-      history%n_state = max(card%i(4), 0)
-    else if (file /= output_rwforc) then
-      if (card%i(2) < 0 .or. card%i(2) > 3) call report_field(deck, cursor, card, 2, &
+      call refuse_negative(deck, cursor, card, 'NPLTC')
+      history%n_state = max(integer_of(card, 'NPLTC'), 0)
+    else if (history_tables(file)%text /= text_none) then
+      call refuse_outside(deck, cursor, card, 'BINARY', 0, 3, &
         'is none of 0, 1 (text file), 2 (binout) and 3 (both)')
-      history%is_text = card%i(2) /= 2
-      history%is_binout = card%i(2) >= 2
+      history%is_text = integer_of(card, 'BINARY') /= 2
+      history%is_binout = integer_of(card, 'BINARY') >= 2
     end if
     raw%outputs(file) = history
   end subroutine read_database
@@ -83,13 +75,16 @@ contains
     type(card_t), intent(inout) :: card
     integer, intent(out) :: cycles
 
+    real(wp) :: given
+
     cycles = 0
-    if (.not. (card%r(1) >= 0.0_wp .and. card%r(1) <= most_cycles)) then
-      call report_field(deck, cursor, card, 1, 'is not a number of cycles')
-    else if (abs(card%r(1) - anint(card%r(1))) > 0.0_wp) then
-      call report_field(deck, cursor, card, 1, 'is not a whole number of cycles')
+    given = real_of(card, 'CYCL')
+    if (.not. (given >= 0.0_wp .and. given <= most_cycles)) then
+      call report_field(deck, cursor, card, 'CYCL', 'is not a number of cycles')
+    else if (abs(given - anint(given)) > 0.0_wp) then
+      call report_field(deck, cursor, card, 'CYCL', 'is not a whole number of cycles')
     else
-      cycles = nint(card%r(1))
+      cycles = nint(given)
     end if
   end subroutine take_cycles
 

@@ -5,9 +5,10 @@ module deck_override_apply_m
   use text_m, only : exact_text
   use log_m, only : to_text
   use curves_m, only : curve_t
+  use contacts_m, only : friction_rule_t
   use deck_lines_m, only : deck_t, place_t, line_text, line_error, line_warning, layout_mark
   use deck_fields_m, only : card_t, cut_card, field_text
-  use deck_cards_m, only : cursor_t, open_cursor
+  use deck_cards_m, only : cursor_t, open_cursor, find_keyword_field
   use deck_overrides_m, only : overrides_t, contact_names, override_text, override_real
   use deck_raw_m, only : raw_t, raw_contact_t
   implicit none
@@ -29,11 +30,11 @@ contains
     tail = ''
     changed = .false.
     call override_real(overrides, 'ENDTIM', 0, raw%controls%end_time, changed)
-    if (changed) call replace_field(deck, 'CONTROL_TERMINATION', 1, &
+    if (changed) call replace_field(deck, 'CONTROL_TERMINATION', 'ENDTIM', &
       override_text(overrides, 'ENDTIM', 0), tail)
     changed = .false.
     call override_real(overrides, 'TSSFAC', 0, raw%controls%dt_scale, changed)
-    if (changed) call replace_field(deck, 'CONTROL_TIMESTEP', 2, &
+    if (changed) call replace_field(deck, 'CONTROL_TIMESTEP', 'TSSFAC', &
       override_text(overrides, 'TSSFAC', 0), tail)
     call override_step(deck, overrides, raw, tail)
     do i = 1, size(raw%contacts)
@@ -84,7 +85,7 @@ contains
     text = override_text(overrides, 'DT', 0)
     if (raw%controls%implicit%is_on) then
       raw%controls%implicit%dt = dt
-      call replace_field(deck, 'CONTROL_IMPLICIT_GENERAL', 2, text, tail)
+      call replace_field(deck, 'CONTROL_IMPLICIT_GENERAL', 'DT0', text, tail)
       return
     end if
     curve%id = unused_number(raw)
@@ -94,8 +95,8 @@ contains
     raw%curves = [raw%curves, curve]
     raw%curve_line = [raw%curve_line, 0]
     raw%dt_curve = curve%id
-    raw%dt_curve_place = place_t(line=0, card=1, field=6)
-    call replace_field(deck, 'CONTROL_TIMESTEP', 6, to_text(curve%id), tail)
+    raw%dt_curve_place = place_t(line=0, card=1, name='LCTM')
+    call replace_field(deck, 'CONTROL_TIMESTEP', 'LCTM', to_text(curve%id), tail)
     tail = tail//'*DEFINE_CURVE'//new_line('a')//to_text(curve%id)//','//new_line('a') &
       //'0.0,'//text//new_line('a')//'1.0e20,'//text//new_line('a')
   end subroutine override_step
@@ -108,29 +109,28 @@ contains
     integer :: number
     integer, parameter :: high = 90000000
     integer, allocatable :: used(:)
-    integer :: i
 
     used = [raw%curves%id, raw%tables%id, raw%outputs%curve, raw%hardenings%curve, &
-      raw%hardenings%rate_curve, (maxval(raw%rows(i)%i), i=1, raw%n_row)]
+      raw%hardenings%rate_curve, raw%rows(:raw%n_row)%curve]
     number = min(max(high, maxval(used)), huge(number) - 1) + 1
     do while (any(used == number))
       number = number - 1
     end do
   end function unused_number
 
-  !> Give field `field` of card 1 of the last keyword of a name a new text; a new keyword goes to
-  !> the tail when there is none.
-  subroutine replace_field(deck, name, field, text, tail)
+  !> Give a field of card 1 of the last keyword of a name a new text; a new keyword goes to the tail
+  !> when there is none.
+  subroutine replace_field(deck, name, field_name, text, tail)
     type(deck_t), intent(inout) :: deck
-    character(*), intent(in) :: name
-    integer, intent(in) :: field
+    character(*), intent(in) :: name, field_name
     character(*), intent(in) :: text
     character(:), allocatable, intent(inout) :: tail
     character(:), allocatable :: line
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer :: i, k, at, i_block
+    integer :: i, k, at, i_block, field
 
+    field = find_keyword_field(name, field_name)
     i_block = 0
     do i = 1, deck%n_block
       if (deck%blocks(i)%name == name .and. .not. deck%blocks(i)%dropped) i_block = i
@@ -197,12 +197,32 @@ contains
     associate (c => entry%contact)
       text = '*CONTACT_2D_SLIDELINE_TITLE'//new_line('a')//id//c%title//new_line('a') &
         //to_text(entry%sides(1))//','//to_text(entry%sides(2))//','//to_text(c%contact_type) &
-        //','//to_text(c%n_gauss)//','//exact_text(c%penalty)//new_line('a') &
+        //','//to_text(c%n_gauss)//','//exact_text(c%penalty)//friction(1)//new_line('a') &
         //exact_text(c%birth)//','//exact_text(c%death)//','//to_text(c%penalty_unit)//',' &
         //exact_text(c%master_penalty)//','//exact_text(entry%per_cent)//',' &
         //to_text(merge(1, 0, c%strict))//','//to_text(c%search_interval)//',' &
-        //exact_text(c%search_depth)//new_line('a')
+        //exact_text(c%search_depth)//new_line('a')//friction(2)
     end associate
+
+  contains
+
+    !> What card 1 ends with (1), and card 3 (2); nothing where all is as without them.
+    function friction(k) result(text)
+      integer, intent(in) :: k
+      character(:), allocatable :: text
+      type(friction_rule_t) :: default
+
+      text = ''
+      associate (rule => entry%contact%friction)
+        if (k == 1) then
+          if (max(rule%at_rest, rule%sliding, rule%decay) > 0.0_wp) text = ',' &
+            //exact_text(rule%at_rest)//','//exact_text(rule%sliding)//','//exact_text(rule%decay)
+        else if (rule%most > 0.0_wp .or. abs(rule%stiffness - default%stiffness) > 0.0_wp) then
+          text = exact_text(rule%most)//','//exact_text(rule%stiffness)//new_line('a')
+        end if
+      end associate
+    end function friction
+
   end function contact_text
 
 end module deck_override_apply_m

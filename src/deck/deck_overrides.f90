@@ -12,9 +12,11 @@ module deck_overrides_m
     override_integer, contact_names
 
   !> Overrides of interfaces; the others are those of the run.
-  integer, parameter :: n_contact_name = 6
+  integer, parameter :: n_contact_name = 11
   character(6), parameter :: contact_names(n_contact_name) = [character(6) :: 'CTYPE', 'NGAUSS', &
-    'PEN', 'PUNIT', 'PENT', 'VDC']
+    'PEN', 'PUNIT', 'PENT', 'VDC', 'FS', 'FD', 'DC', 'VC', 'TFAC']
+  !> Those that may be 0.
+  character(6), parameter :: zero_names(5) = [character(6) :: 'VDC', 'FS', 'FD', 'DC', 'VC']
   character(6), parameter :: run_names(3) = [character(6) :: 'ENDTIM', 'DT', 'TSSFAC']
 
   !> One override.
@@ -64,8 +66,9 @@ contains
       end if
       if (.not. known_name(item, dot > 0) .or. status /= number_good) then
         call line_error(deck, 0, '"'//trim(texts(i))//'" on the command line is not known: ' &
-          //'endtim=, dt=, tssfac=; ctype=, ngauss=, pen=, punit=, pent=, vdc= for all ' &
-          //'interfaces or, as in ctype.2=, for one; p:NAME= for a parameter')
+          //'endtim=, dt=, tssfac=; ctype=, ngauss=, pen=, punit=, pent=, vdc=, fs=, ' &
+          //'fd=, dc=, vc=, tfac= for all interfaces or, as in ctype.2=, for one; ' &
+          //'p:NAME= for a parameter')
         cycle
       end if
       call check_number(deck, item, trim(texts(i)))
@@ -101,10 +104,11 @@ contains
       call read_real(item%text, value, status)
       if (status == number_good) then
         if (value >= smallest_value .and. value <= largest_value) return
-        if (item%name == 'VDC' .and. .not. abs(value) > 0.0_wp) return
+        if (any(zero_names == item%name) .and. .not. abs(value) > 0.0_wp) return
       end if
       call line_error(deck, 0, '"'//text//'" on the command line: the value is not a number ' &
-        //'above 0 (numbers reach 1e40)')
+        //trim(merge('of 0 or more', 'above 0     ', any(zero_names == item%name))) &
+        //' (numbers reach 1e40)')
       item%text = ''
     end select
   end subroutine check_number

@@ -10,7 +10,9 @@ module deck_part_m
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
-    row_comes, report_field
+    row_comes, report_field, find_field
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad
+  use deck_checks_m, only : require_id, refuse_negative
   use deck_raw_m, only : raw_t, raw_part_t
   implicit none
   private
@@ -32,7 +34,6 @@ contains
     type(card_t) :: card
     type(raw_part_t) :: part
     logical :: found
-    integer :: k
 
     call open_cursor(deck, i_block, cursor)
     do
@@ -45,16 +46,17 @@ contains
         call line_error(deck, cursor%line - 1, 'a heading without the card of its part after it')
         exit
       end if
-      do k = 1, 3
-        if (card%i(k) < 1) call report_field(deck, cursor, card, k, 'is not a number of 1 or more')
-      end do
-      if (card%i(5) < 0) call report_field(deck, cursor, card, 5, 'is not a number of 0 or more')
-      part%id = card%i(1)
-      part%section = card%i(2)
-      part%material = card%i(3)
-      part%hourglass = card%i(5)
+      call require_id(deck, cursor, card, 'PID')
+      call require_id(deck, cursor, card, 'SECID')
+      call require_id(deck, cursor, card, 'MID')
+      if (integer_of(card, 'HGID') < 0) call report_field(deck, cursor, card, 'HGID', &
+        'is not a number of 0 or more')
+      part%id = integer_of(card, 'PID')
+      part%section = integer_of(card, 'SECID')
+      part%material = integer_of(card, 'MID')
+      part%hourglass = integer_of(card, 'HGID')
       part%line = card%line
-      if (card%bad(1)) then
+      if (is_bad(card, 'PID')) then
         raw%lost%parts = .true.
       else
         raw%parts = [raw%parts, part]
@@ -67,14 +69,15 @@ contains
     type(deck_t), intent(in) :: deck
     type(cursor_t), intent(inout) :: cursor
     character(:), allocatable :: text
-    integer :: number, status
+    integer :: number, status, width
 
+    width = cursor%specs(2)%widths(find_field(cursor, 2, 'PID'))
     do while (cursor%line <= cursor%last)
       if (iand(deck%flags(cursor%line), flag_blank) == 0) return
       if (cursor%line < cursor%last) then
         text = line_text(deck, cursor%line + 1)
         if (index(text, ',') > 0) text = text(:index(text, ',') - 1)
-        call read_integer(text(:min(cursor%specs(2)%widths(1), len(text))), number, status)
+        call read_integer(text(:min(width, len(text))), number, status)
         if (status == number_good) return
       end if
       cursor%line = cursor%line + 1
@@ -97,10 +100,10 @@ contains
       call skip_title(deck, cursor)
       call next_card(deck, parameters, cursor, 1, card)
       call check_section(deck, cursor, card)
-      section%id = card%i(1)
-      section%is_full = card%i(4) == 4
+      section%id = integer_of(card, 'SECID')
+      section%is_full = integer_of(card, 'NIP') == 4
       section%element_form = merge(form_full, form_one_point, section%is_full)
-      if (card%bad(1)) then
+      if (is_bad(card, 'SECID')) then
         raw%lost%sections = .true.
       else
         raw%sections = [raw%sections, section]
@@ -118,26 +121,26 @@ contains
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
 
-    if (card%i(1) < 1) call report_field(deck, cursor, card, 1, 'is not a number of 1 or more')
-    select case (card%i(2))
+    call require_id(deck, cursor, card, 'SECID')
+    select case (integer_of(card, 'ELFORM'))
     case (13)
       continue
     case (12)
-      call report_field(deck, cursor, card, 2, 'is plane stress, which this version does not ' &
-        //'have; 13 (plane strain) is what it has')
+      call report_field(deck, cursor, card, 'ELFORM', 'is plane stress, which this version does ' &
+        //'not have; 13 (plane strain) is what it has')
     case (14, 15)
-      call report_field(deck, cursor, card, 2, 'is axisymmetric, which this version does not ' &
-        //'have; 13 (plane strain) is what it has')
+      call report_field(deck, cursor, card, 'ELFORM', 'is axisymmetric, which this version does ' &
+        //'not have; 13 (plane strain) is what it has')
     case default
-      call report_field(deck, cursor, card, 2, &
+      call report_field(deck, cursor, card, 'ELFORM', &
         'is not an element form for the plane; 13 (plane strain) is what this version has')
     end select
-    select case (card%i(4))
+    select case (integer_of(card, 'NIP'))
     case (0:2, 4)
       continue
     case default
-      call report_field(deck, cursor, card, 4, 'is not a number of points (0, 1, 2 or blank: one ' &
-        //'point; 4: two by two, full integration)')
+      call report_field(deck, cursor, card, 'NIP', 'is not a number of points (0, 1, 2 or blank: ' &
+        //'one point; 4: two by two, full integration)')
     end select
   end subroutine check_section
 
@@ -157,75 +160,77 @@ contains
       call skip_title(deck, cursor)
       call next_row(deck, parameters, cursor, 1, card, found)
       if (.not. found) exit
-      if (card%i(1) < 1) call report_field(deck, cursor, card, 1, 'is not a number of 1 or more')
-      hourglass%id = card%i(1)
-      call hourglass_form(deck, cursor, card, 2, hourglass%form)
-      call hourglass_coefficient(deck, cursor, card, 3, hourglass%coefficient)
-      call check_viscosity(deck, cursor, card, 5)
-      call check_viscosity(deck, cursor, card, 6)
-      hourglass%quadratic = card%r(5)
-      hourglass%linear = card%r(6)
-      given = .not. card%blank(5:6)
-      if (card%bad(1)) raw%lost%hourglasses = .true.
-      if (card%bad(1)) cycle
+      call require_id(deck, cursor, card, 'HGID')
+      hourglass%id = integer_of(card, 'HGID')
+      call hourglass_form(deck, cursor, card, 'IHQ', hourglass%form)
+      call hourglass_coefficient(deck, cursor, card, 'QM', hourglass%coefficient)
+      call check_viscosity(deck, cursor, card, 'Q1')
+      call check_viscosity(deck, cursor, card, 'Q2')
+      hourglass%quadratic = real_of(card, 'Q1')
+      hourglass%linear = real_of(card, 'Q2')
+      given = .not. [is_blank(card, 'Q1'), is_blank(card, 'Q2')]
+      if (is_bad(card, 'HGID')) raw%lost%hourglasses = .true.
+      if (is_bad(card, 'HGID')) cycle
       raw%hourglasses = [raw%hourglasses, hourglass]
       raw%hourglass_line = [raw%hourglass_line, card%line]
       raw%bulk_given = reshape([raw%bulk_given, given], [2, size(raw%hourglasses)])
     end do
   end subroutine read_hourglass
 
-  !> IHQ in field `k`.
-  subroutine hourglass_form(deck, cursor, card, k, form)
+  !> The form in the field of a name.
+  subroutine hourglass_form(deck, cursor, card, name, form)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
-    integer, intent(in) :: k
+    character(*), intent(in) :: name
     integer, intent(out) :: form
 
     form = hourglass_viscous
-    select case (card%i(k))
+    select case (integer_of(card, name))
     case (0:3)
       continue
     case (4, 5)
       form = hourglass_stiffness
     case (6, 7)
-      call report_field(deck, cursor, card, k, 'is an assumed strain form, which this version ' &
-        //'does not have (1 to 3 viscous, 4 and 5 stiffness)')
+      call report_field(deck, cursor, card, name, 'is an assumed strain form, which this ' &
+        //'version does not have (1 to 3 viscous, 4 and 5 stiffness)')
     case default
-      call report_field(deck, cursor, card, k, &
+      call report_field(deck, cursor, card, name, &
         'is not an hourglass form (1 to 3 viscous, 4 and 5 stiffness)')
     end select
   end subroutine hourglass_form
 
-  !> A coefficient of bulk viscosity in field `k`.
-  subroutine check_viscosity(deck, cursor, card, k)
+  !> A coefficient of bulk viscosity in the field of a name.
+  subroutine check_viscosity(deck, cursor, card, name)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
-    integer, intent(in) :: k
+    character(*), intent(in) :: name
 
-    if (card%r(k) < 0.0_wp) call report_field(deck, cursor, card, k, 'is negative')
-    if (card%r(k) > most_viscosity) call report_field(deck, cursor, card, k, &
+    call refuse_negative(deck, cursor, card, name)
+    if (real_of(card, name) > most_viscosity) call report_field(deck, cursor, card, name, &
       'is not a coefficient of bulk viscosity (at most 100; Q1 1.5 and Q2 0.06 are usual)')
   end subroutine check_viscosity
 
-  !> Hourglass coefficient in field `k`: 0 and blank are 0.1, as in LS-DYNA.
-  subroutine hourglass_coefficient(deck, cursor, card, k, coefficient)
+  !> Hourglass coefficient in the field of a name: 0 and blank are 0.1, as in LS-DYNA.
+  subroutine hourglass_coefficient(deck, cursor, card, name, coefficient)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
-    integer, intent(in) :: k
+    character(*), intent(in) :: name
     real(wp), intent(out) :: coefficient
+    real(wp) :: given
 
     coefficient = 0.1_wp
-    if (card%r(k) < 0.0_wp) then
-      call report_field(deck, cursor, card, k, 'is negative')
-    else if (card%r(k) > most_hourglass) then
-      call report_field(deck, cursor, card, k, &
+    given = real_of(card, name)
+    if (given < 0.0_wp) then
+      call report_field(deck, cursor, card, name, 'is negative')
+    else if (given > most_hourglass) then
+      call report_field(deck, cursor, card, name, &
         'is not an hourglass coefficient (at most 10; 0.05 to 0.15 are usual)')
-    else if (card%r(k) > 0.0_wp) then
-      coefficient = card%r(k)
-    else if (.not. card%blank(k) .and. .not. card%bad(k)) then
+    else if (given > 0.0_wp) then
+      coefficient = given
+    else if (.not. is_blank(card, name) .and. .not. is_bad(card, name)) then
       call line_warning(deck, card%line, 'qh'//to_text(card%line), &
         'an hourglass coefficient of 0 means the default 0.1; give a very small one for almost ' &
         //'none')

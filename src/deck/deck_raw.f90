@@ -5,8 +5,9 @@ module deck_raw_m
   use kinds_m, only : wp
   use curves_m, only : curve_t
   use parts_m, only : section_t, material_t, hourglass_t
-  use contacts_m, only : contact_t
+  use contacts_m, only : contact_t, friction_rule_t
   use controls_m, only : controls_t
+  use history_tables_m, only : n_table
   use walls_m, only : wall_t
   use deck_lines_m, only : place_t
   use deck_raw_sets_m, only : raw_set_t, lengthen
@@ -17,26 +18,39 @@ module deck_raw_m
     reserve_nodes, reserve_elements, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
     row_velocity, row_velocity_node, row_velocity_generation, row_load_node, row_load_set, &
     row_pressure, row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid, &
-    output_plot, output_glstat, output_matsum, output_rcforc, output_nodout, output_rwforc, &
-    output_sleout, output_spcforc
+    output_plot, id_fields, id_place
 
   !> Kinds of `row_t`.
   integer, parameter :: row_spc_node = 1, row_spc_set = 2, row_motion_node = 3, &
     row_motion_set = 4, row_velocity = 5, row_velocity_node = 6, row_velocity_generation = 7, &
     row_load_node = 8, row_load_set = 9, row_pressure = 10, row_pressure_set = 11, &
     row_body = 12, row_damping = 13, row_motion_rigid = 14, row_velocity_rigid = 15
-  !> Files of the output plan.
-  integer, parameter :: output_plot = 1, output_glstat = 2, output_matsum = 3, output_rcforc = 4, &
-    output_nodout = 5, output_rwforc = 6, output_sleout = 7, output_spcforc = 8, n_output = 8
+  !> Files of the output plan: states, and histories by their `table_` constants.
+  integer, parameter :: output_plot = 0
 
-  !> One card of a condition: its fields by position.
+  !> One card of a condition. What its keyword does not have is left as it is.
   type :: row_t
     integer :: kind = 0
     integer :: line = 0
-    integer :: direction = 0     !! of a body load
-    integer :: i(8) = 0
-    real(wp) :: r(8) = 0.0_wp
+    integer :: id = 0            !! the field named by `id_fields`
+    integer :: direction = 0     !! DOF; of a body load 1 x, 2 y
+    integer :: motion = 0        !! VAD
+    integer :: curve = 0         !! LCID
+    integer :: others = 0        !! NSIDEX
+    integer :: set_kind = 0      !! STYP
+    integer :: nodes(2) = 0      !! N1, N2
+    logical :: fixed(2) = .false.            !! DOFX, DOFY
+    real(wp) :: scale = 0.0_wp               !! SF; of damping VALDMP
+    real(wp) :: birth = 0.0_wp, death = 0.0_wp, arrival = 0.0_wp
+    real(wp) :: velocity(3) = 0.0_wp         !! VX, VY, VZR
+    real(wp) :: other_velocity(2) = 0.0_wp   !! VXE, VYE
+    real(wp) :: spin = 0.0_wp, centre(2) = 0.0_wp !! OMEGA about +z, XC and YC
+    real(wp) :: factor(2) = 1.0_wp           !! STX, STY; 1 where all six are 0
   end type row_t
+
+  !> Field of what a row is about, by its kind; LCID where there is nothing but a curve.
+  character(4), parameter :: id_fields(15) = [character(4) :: 'NID', 'NSID', 'NID', 'NSID', &
+    'NSID', 'NID', 'ID', 'NID', 'NSID', 'LCID', 'SSID', 'LCID', 'LCID', 'PID', 'PID']
 
   !> One card of *INITIAL_VELOCITY_NODE: a large deck may have one for each node.
   type :: node_velocity_t
@@ -81,6 +95,9 @@ module deck_raw_m
     type(place_t) :: places(2)
     type(place_t) :: search_place       !! FREQ, where it is given
     type(place_t) :: unit_place         !! PUNIT; line 0 where the command line gives it
+    type(place_t) :: friction_place     !! FS, or what stands for it; line 0 as before
+    logical :: takes_default = .false.  !! friction of *CONTROL_CONTACT acts where it has none
+    character(80) :: kind = ''          !! name of the type
     logical :: overridden = .false.     !! the command line changes values
   end type raw_contact_t
 
@@ -139,6 +156,8 @@ module deck_raw_m
     type(raw_contact_t), allocatable :: contacts(:)
     type(raw_wall_t), allocatable :: walls(:)
     type(controls_t) :: controls
+    type(friction_rule_t) :: friction          !! of *CONTROL_CONTACT
+    type(place_t) :: friction_place            !! SFRIC, line 0 without the keyword
     logical :: end_given = .false., step_given = .false., scale_given = .false. !! ENDTIM, the step,
                                                !! TSSFAC come from the command line
     logical :: terminated = .false.            !! the deck has *CONTROL_TERMINATION
@@ -150,7 +169,7 @@ module deck_raw_m
     integer :: dt_curve = 0                    !! LCTM, user id
     type(place_t) :: dt_curve_place
     type(place_t), allocatable :: explicit_only(:) !! fields given that the implicit method leaves
-    type(history_t) :: outputs(n_output)
+    type(history_t) :: outputs(output_plot:n_table)
     type(raw_set_t) :: history_nodes, history_node_sets
   end type raw_t
 
@@ -168,6 +187,14 @@ contains
     call reserve_nodes(raw, 0)
     call reserve_elements(raw, 0)
   end subroutine start_raw
+
+  !> Where the id of a row stands.
+  pure function id_place(row) result(place)
+    type(row_t), intent(in) :: row
+    type(place_t) :: place
+
+    place = place_t(line=row%line, card=1, name=id_fields(row%kind))
+  end function id_place
 
   !> Room for `n_more` rows.
   subroutine reserve_rows(raw, n_more)

@@ -5,15 +5,16 @@ module deck_resolve_m
   use log_m, only : to_text
   use controls_m, only : interval_t
   use deck_implicit_m, only : settle_scheme, check_scheme
+  use history_tables_m, only : n_table
   use model_m, only : model_t
   use conditions_m, only : motion_acceleration
   use contacts_m, only : penalty_share
   use deck_cards_m, only : reject_field, warn_of_field
   use deck_lines_m, only : deck_t, place_t, line_error, deck_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
+  use deck_friction_m, only : refuse_friction
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, &
-    row_motion_set, row_velocity, row_velocity_generation, output_plot, output_glstat, &
-    output_matsum, output_rcforc, output_nodout, output_rwforc, output_sleout, output_spcforc
+    row_motion_set, row_velocity, row_velocity_generation, output_plot
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
   use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
@@ -53,8 +54,8 @@ contains
         if (row%kind == row_damping) call line_error(deck, row%line, &
           '*DAMPING_GLOBAL is damping that the implicit method does not have')
         if ((row%kind == row_motion_node .or. row%kind == row_motion_set) &
-          .and. row%i(3) == motion_acceleration .and. .not. model%controls%implicit%is_dynamic) &
-          call reject_field(deck, place_t(row%line, 1, 3), &
+          .and. row%motion == motion_acceleration .and. .not. model%controls%implicit%is_dynamic) &
+          call reject_field(deck, place_t(row%line, 1, 'VAD'), &
           'is an acceleration, which has no meaning in statics ' &
           //'(0 velocity or 2 displacement, or IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
       end associate
@@ -135,14 +136,12 @@ contains
     call check_step_curve(deck, raw, model)
     associate (output => model%controls%output)
       call take_interval(deck, maps, raw%outputs(output_plot), model, output%plot)
-      call take_interval(deck, maps, raw%outputs(output_glstat), model, output%glstat)
-      call take_interval(deck, maps, raw%outputs(output_matsum), model, output%matsum)
-      call take_interval(deck, maps, raw%outputs(output_rcforc), model, output%rcforc)
-      call take_interval(deck, maps, raw%outputs(output_nodout), model, output%nodout)
-      call take_interval(deck, maps, raw%outputs(output_rwforc), model, output%rwforc)
-      call take_interval(deck, maps, raw%outputs(output_sleout), model, output%sleout)
-      call take_interval(deck, maps, raw%outputs(output_spcforc), model, output%spcforc)
+      do i = 1, n_table
+        call take_interval(deck, maps, raw%outputs(i), model, output%histories(i))
+      end do
     end associate
+    ! Until explicit runs have the law of friction, no run has.
+    call refuse_friction(deck, raw, 'this version')
     if (model%controls%implicit%is_on) call check_implicit(deck, raw, model)
     call resolve_conditions(deck, raw, maps, model)
     call resolve_rigids(deck, raw, maps, model)

@@ -10,7 +10,7 @@ module deck_resolve_conditions_m
   use deck_cards_m, only : reject_field
   use deck_maps_m, only : maps_t, resolve_id
   use deck_raw_m, only : raw_t, row_t, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
-    row_load_node, row_load_set, row_body, row_damping
+    row_load_node, row_load_set, row_body, row_damping, id_place
   implicit none
   private
   public :: resolve_conditions
@@ -24,14 +24,14 @@ contains
     type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     logical, allocatable :: fixed(:, :), meshed(:)
-    integer, allocatable :: motion_lines(:)
+    integer, allocatable :: motion_rows(:)
 
     allocate (fixed(2, model%mesh%n_node), source=.false.)
     meshed = mark_meshed_nodes(model)
     if (raw%lost%elements .or. deck%incomplete) meshed = .true.
     call collect_fixed(deck, raw, maps, model, meshed, fixed)
-    call collect_motions(deck, raw, maps, model, motion_lines)
-    call check_motions(deck, model, motion_lines, fixed, meshed)
+    call collect_motions(deck, raw, maps, model, motion_rows)
+    call check_motions(deck, raw, model, motion_rows, fixed, meshed)
     call collect_loads(deck, raw, maps, model, meshed)
     call collect_global(deck, raw, maps, model)
     call list_fixed(fixed, model%conditions)
@@ -48,11 +48,11 @@ contains
     integer :: found
 
     if (.not. is_set) then
-      call resolve_id(deck, maps%nodes, row%i(1), 'node', place_t(row%line, 1, 1), found)
+      call resolve_id(deck, maps%nodes, row%id, 'node', id_place(row), found)
       nodes = pack([found], [found > 0])
       return
     end if
-    call resolve_id(deck, maps%node_sets, row%i(1), 'node set', place_t(row%line, 1, 1), found)
+    call resolve_id(deck, maps%node_sets, row%id, 'node set', id_place(row), found)
     allocate (nodes(0))
     if (found > 0) call unique_nodes(model%node_sets(found)%nodes, model%mesh%n_node, nodes)
   end subroutine row_nodes
@@ -110,8 +110,8 @@ contains
     do i = 1, raw%n_row
       if (raw%rows(i)%kind /= row_spc_node .and. raw%rows(i)%kind /= row_spc_set) cycle
       call row_nodes(deck, maps, model, raw%rows(i), raw%rows(i)%kind == row_spc_set, nodes)
-      if (raw%rows(i)%i(3) == 1) fixed(1, nodes) = .true.
-      if (raw%rows(i)%i(4) == 1) fixed(2, nodes) = .true.
+      if (raw%rows(i)%fixed(1)) fixed(1, nodes) = .true.
+      if (raw%rows(i)%fixed(2)) fixed(2, nodes) = .true.
     end do
   end subroutine collect_fixed
 
@@ -135,73 +135,74 @@ contains
   end subroutine list_fixed
 
   !> Prescribed motions, node by node.
-  subroutine collect_motions(deck, raw, maps, model, lines)
+  subroutine collect_motions(deck, raw, maps, model, rows)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
-    integer, allocatable, intent(out) :: lines(:)  !! deck line of each motion
+    integer, allocatable, intent(out) :: rows(:)  !! of each motion, in `raw%rows`
     type(prescribed_motion_t), allocatable :: motions(:)
     type(prescribed_motion_t) :: motion
-    integer, allocatable :: nodes(:), all_lines(:)
+    integer, allocatable :: nodes(:), all_rows(:)
     integer :: i, k, n
 
-    allocate (motions(64), all_lines(64))
+    allocate (motions(64), all_rows(64))
     n = 0
     do i = 1, raw%n_row
       if (raw%rows(i)%kind /= row_motion_node .and. raw%rows(i)%kind /= row_motion_set) cycle
       call row_nodes(deck, maps, model, raw%rows(i), raw%rows(i)%kind == row_motion_set, nodes)
-      call resolve_id(deck, maps%curves, raw%rows(i)%i(4), 'curve', &
-        place_t(raw%rows(i)%line, 1, 4), motion%curve)
+      call resolve_id(deck, maps%curves, raw%rows(i)%curve, 'curve', &
+        place_t(raw%rows(i)%line, 1, 'LCID'), motion%curve)
       if (motion%curve == 0) cycle
-      motion%direction = raw%rows(i)%i(2)
-      motion%kind = raw%rows(i)%i(3)
-      motion%scale = raw%rows(i)%r(5)
-      motion%death = raw%rows(i)%r(7)
-      motion%birth = raw%rows(i)%r(8)
+      motion%direction = raw%rows(i)%direction
+      motion%kind = raw%rows(i)%motion
+      motion%scale = raw%rows(i)%scale
+      motion%death = raw%rows(i)%death
+      motion%birth = raw%rows(i)%birth
       do k = 1, size(nodes)
         if (n == size(motions)) then
           motions = [motions, motions]
-          all_lines = [all_lines, all_lines]
+          all_rows = [all_rows, all_rows]
         end if
         n = n + 1
         motion%node = nodes(k)
         motions(n) = motion
-        all_lines(n) = raw%rows(i)%line
+        all_rows(n) = i
       end do
     end do
     model%conditions%motions = motions(:n)
-    lines = all_lines(:n)
+    rows = all_rows(:n)
   end subroutine collect_motions
 
   !> A moved degree of freedom may not be fixed, nor moved twice at one time, nor without mass.
-  subroutine check_motions(deck, model, lines, fixed, meshed)
+  subroutine check_motions(deck, raw, model, rows, fixed, meshed)
     type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
     type(model_t), intent(in) :: model
-    integer, intent(in) :: lines(:)
+    integer, intent(in) :: rows(:)       !! of each motion, in `raw%rows`
     logical, intent(in) :: fixed(:, :), meshed(:)
     integer, allocatable :: last(:, :), before(:)
     integer :: i, j, told
 
-    allocate (last(2, model%mesh%n_node), before(size(lines)), source=0)
+    allocate (last(2, model%mesh%n_node), before(size(rows)), source=0)
     told = 0
-    do i = 1, size(lines)
+    do i = 1, size(rows)
       associate (motion => model%conditions%motions(i))
         ! Motions of one degree of freedom are chained backwards through `before`.
         before(i) = last(motion%direction, motion%node)
         last(motion%direction, motion%node) = i
-        if (lines(i) == told) cycle
+        if (rows(i) == told) cycle
         if (.not. meshed(motion%node)) then
           call complain(i, 'belongs to no element, so it has no mass to be moved')
         else if (fixed(motion%direction, motion%node)) then
           call complain(i, 'is fixed in this direction and cannot be moved by this card too')
         end if
         j = before(i)
-        do while (j > 0 .and. lines(i) /= told)
+        do while (j > 0 .and. rows(i) /= told)
           if (min(model%conditions%motions(j)%death, motion%death) &
             > max(model%conditions%motions(j)%birth, motion%birth)) call complain(i, &
             'is moved in this direction by another card at the same time (line ' &
-            //to_text(deck%number(lines(j)))//')')
+            //to_text(deck%number(raw%rows(rows(j))%line))//')')
           j = before(j)
         end do
       end associate
@@ -214,8 +215,8 @@ contains
       integer, intent(in) :: k
       character(*), intent(in) :: message
 
-      told = lines(k)
-      call reject_field(deck, place_t(lines(k), 1, 1), &
+      told = rows(k)
+      call reject_field(deck, id_place(raw%rows(rows(k))), &
         ': node '//to_text(model%mesh%node_id(model%conditions%motions(k)%node))//' '//message)
     end subroutine complain
 
@@ -238,17 +239,17 @@ contains
     do i = 1, raw%n_row
       if (raw%rows(i)%kind /= row_load_node .and. raw%rows(i)%kind /= row_load_set) cycle
       call row_nodes(deck, maps, model, raw%rows(i), raw%rows(i)%kind == row_load_set, nodes)
-      call resolve_id(deck, maps%curves, raw%rows(i)%i(3), 'curve', &
-        place_t(raw%rows(i)%line, 1, 3), load%curve)
+      call resolve_id(deck, maps%curves, raw%rows(i)%curve, 'curve', &
+        place_t(raw%rows(i)%line, 1, 'LCID'), load%curve)
       do k = 1, size(nodes)
         if (meshed(nodes(k))) cycle
-        call reject_field(deck, place_t(raw%rows(i)%line, 1, 1), ': node ' &
+        call reject_field(deck, id_place(raw%rows(i)), ': node ' &
           //to_text(model%mesh%node_id(nodes(k)))//' belongs to no element and cannot be loaded')
         exit
       end do
       if (load%curve == 0) cycle
-      load%direction = raw%rows(i)%i(2)
-      load%scale = raw%rows(i)%r(4)
+      load%direction = raw%rows(i)%direction
+      load%scale = raw%rows(i)%scale
       do k = 1, size(nodes)
         if (n == size(loads)) loads = [loads, loads]
         n = n + 1
@@ -272,20 +273,19 @@ contains
     do i = 1, raw%n_row
       associate (row => raw%rows(i))
         if (row%kind == row_body) then
-          call resolve_id(deck, maps%curves, row%i(1), 'curve', place_t(row%line, 1, 1), load%curve)
+          call resolve_id(deck, maps%curves, row%curve, 'curve', id_place(row), load%curve)
           load%direction = row%direction
-          load%scale = row%r(2)
+          load%scale = row%scale
           if (load%curve > 0) model%conditions%body_loads = [model%conditions%body_loads, load]
         else if (row%kind == row_damping) then
           if (allocated(model%conditions%damping)) call line_error(deck, row%line, &
             'is given a second time')
           if (.not. allocated(model%conditions%damping)) allocate (model%conditions%damping)
-          if (row%i(1) > 0) call resolve_id(deck, maps%curves, row%i(1), 'curve', &
-            place_t(row%line, 1, 1), model%conditions%damping%curve)
+          if (row%curve > 0) call resolve_id(deck, maps%curves, row%curve, 'curve', &
+            id_place(row), model%conditions%damping%curve)
           call check_damping(deck, row, model)
-          model%conditions%damping%coefficient = row%r(2)
-          ! All six factors zero mean one everywhere.
-          if (any(abs(row%r(3:8)) > 0.0_wp)) model%conditions%damping%factor = row%r(3:4)
+          model%conditions%damping%coefficient = row%scale
+          model%conditions%damping%factor = row%factor
         end if
       end associate
     end do
@@ -301,7 +301,7 @@ contains
     k = model%conditions%damping%curve
     if (k == 0) return
     if (minval(model%curves(k)%ordinate) < 0.0_wp) &
-      call reject_field(deck, place_t(row%line, 1, 1), 'is a curve with ' &
+      call reject_field(deck, id_place(row), 'is a curve with ' &
       //'values below 0: forces that push along with the velocity would feed energy')
   end subroutine check_damping
 

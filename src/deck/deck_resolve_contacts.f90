@@ -11,13 +11,16 @@ module deck_resolve_contacts_m
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
   use deck_maps_m, only : maps_t, resolve_id
-  use deck_raw_m, only : raw_t, row_t, raw_contact_t, row_pressure, row_pressure_set
+  use deck_raw_m, only : raw_t, row_t, raw_contact_t, row_pressure, row_pressure_set, &
+    id_fields, id_place
   implicit none
   private
   public :: resolve_contacts, check_references
 
   !> Names of the two sides in messages.
   character(6), parameter :: side_names(2) = ['slave ', 'master']
+  !> Fields of the ends of an edge.
+  character(2), parameter :: node_fields(2) = ['N1', 'N2']
 
 contains
 
@@ -69,14 +72,15 @@ contains
     do i = 1, raw%n_row
       associate (row => raw%rows(i))
         if (row%kind == row_pressure) then
-          call resolve_id(deck, maps%curves, row%i(1), 'curve', place_t(row%line, 1, 1), found)
-          do k = 4, 5
-            call resolve_id(deck, maps%nodes, row%i(k), 'node', place_t(row%line, 1, k), found)
+          call resolve_id(deck, maps%curves, row%curve, 'curve', id_place(row), found)
+          do k = 1, 2
+            call resolve_id(deck, maps%nodes, row%nodes(k), 'node', &
+              place_t(row%line, 1, node_fields(k)), found)
           end do
         else if (row%kind == row_pressure_set) then
-          call resolve_id(deck, maps%segment_sets, row%i(1), 'segment set', &
-            place_t(row%line, 1, 1), found)
-          call resolve_id(deck, maps%curves, row%i(2), 'curve', place_t(row%line, 1, 2), found)
+          call resolve_id(deck, maps%segment_sets, row%id, 'segment set', id_place(row), found)
+          call resolve_id(deck, maps%curves, row%curve, 'curve', place_t(row%line, 1, 'LCID'), &
+            found)
         end if
       end associate
     end do
@@ -100,12 +104,12 @@ contains
     end do
     do i = 1, raw%n_row
       if (raw%rows(i)%kind == row_pressure) then
-        do k = 4, 5
-          found = index_of(maps%nodes, raw%rows(i)%i(k))
+        do k = 1, 2
+          found = index_of(maps%nodes, raw%rows(i)%nodes(k))
           if (found > 0) among(found) = .true.
         end do
       else if (raw%rows(i)%kind == row_pressure_set) then
-        found = index_of(maps%segment_sets, raw%rows(i)%i(1))
+        found = index_of(maps%segment_sets, raw%rows(i)%id)
         if (found == 0) cycle
         do k = 1, 2
           among(model%segment_sets(found)%nodes(k, :)) = .true.
@@ -129,15 +133,15 @@ contains
     do i = 1, raw%n_row
       if (raw%rows(i)%kind == row_pressure) then
         do k = 1, 2
-          call resolve_id(deck, maps%nodes, raw%rows(i)%i(k + 3), 'node', &
-            place_t(raw%rows(i)%line, 1, k + 3), nodes(k))
+          call resolve_id(deck, maps%nodes, raw%rows(i)%nodes(k), 'node', &
+            place_t(raw%rows(i)%line, 1, node_fields(k)), nodes(k))
         end do
-        if (all(nodes > 0)) call add_pressures(deck, maps, raw%rows(i), 1, &
+        if (all(nodes > 0)) call add_pressures(deck, maps, raw%rows(i), &
           reshape(nodes, [2, 1]), outside, model, loads, n)
       else if (raw%rows(i)%kind == row_pressure_set) then
-        call resolve_id(deck, maps%segment_sets, raw%rows(i)%i(1), 'segment set', &
-          place_t(raw%rows(i)%line, 1, 1), found)
-        if (found > 0) call add_pressures(deck, maps, raw%rows(i), 2, &
+        call resolve_id(deck, maps%segment_sets, raw%rows(i)%id, 'segment set', &
+          id_place(raw%rows(i)), found)
+        if (found > 0) call add_pressures(deck, maps, raw%rows(i), &
           model%segment_sets(found)%nodes, outside, model, loads, n)
       end if
     end do
@@ -145,11 +149,10 @@ contains
   end subroutine resolve_pressures
 
   !> Pressure of one card on its edges.
-  subroutine add_pressures(deck, maps, row, k_curve, edges, outside, model, loads, n)
+  subroutine add_pressures(deck, maps, row, edges, outside, model, loads, n)
     type(deck_t), intent(inout) :: deck
     type(maps_t), intent(in) :: maps
     type(row_t), intent(in) :: row
-    integer, intent(in) :: k_curve       !! field of the curve; factor and arrival follow
     integer, intent(in) :: edges(:, :)
     type(boundary_t), intent(in) :: outside
     type(model_t), intent(in) :: model
@@ -158,18 +161,18 @@ contains
     type(pressure_load_t) :: load
     integer :: i
 
-    call resolve_id(deck, maps%curves, row%i(k_curve), 'curve', place_t(row%line, 1, k_curve), &
-      load%curve)
+    call resolve_id(deck, maps%curves, row%curve, 'curve', place_t(row%line, 1, 'LCID'), load%curve)
     if (load%curve == 0) return
-    load%scale = row%r(k_curve + 1)
-    load%arrival = row%r(k_curve + 2)
+    load%scale = row%scale
+    load%arrival = row%arrival
     do i = 1, size(edges, 2)
       if (find_edge(outside, edges(1, i), edges(2, i)) > 0) then
         load%nodes = edges(:, i)
       else if (find_edge(outside, edges(2, i), edges(1, i)) > 0) then
         load%nodes = edges([2, 1], i)
       else
-        call reject_field(deck, place_t(row%line, 1, merge(4, 1, k_curve == 1)), ': nodes ' &
+        call reject_field(deck, place_t(row%line, 1, merge('N1  ', &
+          id_fields(row%kind), row%kind == row_pressure)), ': nodes ' &
           //to_text(model%mesh%node_id(edges(1, i)))//' and ' &
           //to_text(model%mesh%node_id(edges(2, i)))//' are not the ends of an outer edge of ' &
           //'the mesh')

@@ -58,7 +58,7 @@ contains
 
     do i = 1, size(raw%tables)
       if (index_of(maps%curves, raw%tables(i)%id) > 0) call reject_field(deck, &
-        place_t(raw%tables(i)%line, 1, 1), 'is the number of a curve too')
+        place_t(raw%tables(i)%line, 1, 'TBID'), 'is the number of a curve too')
     end do
   end subroutine check_table_numbers
 

@@ -14,6 +14,10 @@ module deck_resolve_mesh_m
   private
   public :: resolve_parts, resolve_mesh
 
+  !> Fields of the coordinates and of the first three nodes.
+  character(1), parameter :: axes(2) = ['X', 'Y']
+  character(2), parameter :: node_fields(3) = ['N1', 'N2', 'N3']
+
 contains
 
   !> Parts with their section, material and hourglass control.
@@ -35,13 +39,13 @@ contains
       model%parts(i)%title = raw%parts(i)%title
       ! A bad field has been reported; its number is then not looked for.
       if (raw%parts(i)%section > 0) call resolve_id(deck, maps%sections, &
-        raw%parts(i)%section, 'section', place_t(line, 2, 2), model%parts(i)%section)
+        raw%parts(i)%section, 'section', place_t(line, 2, 'SECID'), model%parts(i)%section)
       if (raw%parts(i)%material > 0) call resolve_id(deck, maps%materials, &
-        raw%parts(i)%material, 'material', place_t(line, 2, 3), model%parts(i)%material)
+        raw%parts(i)%material, 'material', place_t(line, 2, 'MID'), model%parts(i)%material)
       hourglass = raw%hourglass_default
       if (raw%parts(i)%hourglass > 0) then
         call resolve_id(deck, maps%hourglasses, raw%parts(i)%hourglass, '*HOURGLASS', &
-          place_t(line, 2, 5), k)
+          place_t(line, 2, 'HGID'), k)
         if (k > 0) then
           hourglass = raw%hourglasses(k)
           if (.not. raw%bulk_given(1, k)) hourglass%quadratic = raw%hourglass_default%quadratic
@@ -90,11 +94,11 @@ contains
     do i = 1, raw%n_node
       do k = 1, 2
         if (abs(raw%coordinates(k, i)) > 1.0e30_wp) call reject_field(deck, &
-          place_t(raw%node_line(i), 1, k + 1), 'is out of reach (1e30)')
+          place_t(raw%node_line(i), 1, axes(k)), 'is out of reach (1e30)')
       end do
     end do
     if (raw%z_line > 0) then
-      call reject_field(deck, place_t(raw%z_line, 1, 4), &
+      call reject_field(deck, place_t(raw%z_line, 1, 'Z'), &
         'is not the z of the first node: the mesh must lie in one plane z = constant')
     else if (raw%n_node > 0 .and. abs(raw%z_first) > 0.0_wp) then
       call line_warning(deck, raw%node_line(1), 'z', 'z is the same for all nodes and is ignored')
@@ -120,16 +124,16 @@ contains
     end if
     do i = 1, n
       line = raw%element_line(i)
-      call resolve_id(deck, maps%parts, mesh%element_part(i), 'part', place_t(line, 1, 2), k)
+      call resolve_id(deck, maps%parts, mesh%element_part(i), 'part', place_t(line, 1, 'PID'), k)
       mesh%element_part(i) = k
       ids = mesh%element_nodes(:, i)
       do k = 1, 3
-        call resolve_id(deck, maps%nodes, ids(k), 'node', place_t(line, 1, k + 2), &
+        call resolve_id(deck, maps%nodes, ids(k), 'node', place_t(line, 1, node_fields(k)), &
           mesh%element_nodes(k, i))
       end do
       mesh%element_nodes(4, i) = mesh%element_nodes(3, i)
       if (ids(4) /= ids(3)) call resolve_id(deck, maps%nodes, ids(4), 'node', &
-        place_t(line, 1, 6), mesh%element_nodes(4, i))
+        place_t(line, 1, 'N4'), mesh%element_nodes(4, i))
     end do
   end subroutine resolve_elements
 
@@ -152,13 +156,13 @@ contains
       end if
       tolerance = 1.0e-10_wp*maxval(abs(corners))
       if (repeated(mesh%element_nodes(:, i))) then
-        call reject_field(deck, place_t(raw%element_line(i), 1, 1), 'uses a node twice ' &
+        call reject_field(deck, place_t(raw%element_line(i), 1, 'EID'), 'uses a node twice ' &
           //'(a triangle repeats its third node, and no other)')
       else if (minval(corners) < -tolerance .and. maxval(corners) > tolerance) then
-        call reject_field(deck, place_t(raw%element_line(i), 1, 1), &
+        call reject_field(deck, place_t(raw%element_line(i), 1, 'EID'), &
           'is not convex: its edges cross or a corner points inwards')
       else if (.not. abs(area) > 2.0_wp*tolerance) then
-        call reject_field(deck, place_t(raw%element_line(i), 1, 1), 'has no area')
+        call reject_field(deck, place_t(raw%element_line(i), 1, 'EID'), 'has no area')
       else if (area < 0.0_wp) then
         mesh%element_nodes(:, i) = mesh%element_nodes([1, 4, 3, 2], i)
         if (mesh%element_nodes(2, i) == mesh%element_nodes(3, i)) &

@@ -12,7 +12,7 @@ module deck_resolve_rigids_m
   use deck_lines_m, only : deck_t, place_t, line_error
   use deck_maps_m, only : maps_t, resolve_id
   use deck_raw_m, only : raw_t, row_t, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
-    row_motion_rigid, row_velocity_rigid
+    row_motion_rigid, row_velocity_rigid, id_place
   implicit none
   private
   public :: resolve_rigids
@@ -86,11 +86,12 @@ contains
     do i = 1, size(model%rigids)
       associate (body => model%rigids(i))
         if (size(body%nodes) == 0 .and. .not. raw%lost%elements) call reject_field(deck, &
-          place_t(raw%parts(body%part)%line, 2, 1), ': this rigid part has no elements, so no mass')
+          place_t(raw%parts(body%part)%line, 2, 'PID'), &
+          ': this rigid part has no elements, so no mass')
         do k = 1, size(body%nodes)
           node = body%nodes(k)
           if (owner(node) == 0) cycle
-          call reject_field(deck, place_t(raw%parts(body%part)%line, 2, 1), ': node ' &
+          call reject_field(deck, place_t(raw%parts(body%part)%line, 2, 'PID'), ': node ' &
             //to_text(model%mesh%node_id(node))//' belongs to this rigid part and to rigid part ' &
             //to_text(model%parts(model%rigids(owner(node))%part)%id) &
             //'; bodies that share nodes must be one part')
@@ -114,18 +115,18 @@ contains
     if (size(model%rigids) == 0) return
     do i = 1, model%mesh%n_node
       if (owner(i) > 0 .and. holds_in_plane(raw%node_code(i))) call complain(place_t( &
-        raw%node_line(i), 1, 5), i, 'CON1 and CON2 of *MAT_RIGID hold the body')
+        raw%node_line(i), 1, 'TC'), i, 'CON1 and CON2 of *MAT_RIGID hold the body')
     end do
     do i = 1, raw%n_row
       select case (raw%rows(i)%kind)
       case (row_spc_node, row_spc_set)
-        if (all(raw%rows(i)%i(3:4) == 0)) cycle
+        if (.not. any(raw%rows(i)%fixed)) cycle
         node = first_rigid(raw%rows(i), raw%rows(i)%kind == row_spc_set)
-        if (node > 0) call complain(place_t(raw%rows(i)%line, 1, 1), node, &
+        if (node > 0) call complain(id_place(raw%rows(i)), node, &
           'CON1 and CON2 of *MAT_RIGID hold the body')
       case (row_motion_node, row_motion_set)
         node = first_rigid(raw%rows(i), raw%rows(i)%kind == row_motion_set)
-        if (node > 0) call complain(place_t(raw%rows(i)%line, 1, 1), node, &
+        if (node > 0) call complain(id_place(raw%rows(i)), node, &
           '*BOUNDARY_PRESCRIBED_MOTION_RIGID moves the body')
       end select
     end do
@@ -140,7 +141,7 @@ contains
       integer :: found
 
       first_rigid = 0
-      found = merge(index_of(maps%node_sets, row%i(1)), index_of(maps%nodes, row%i(1)), is_set)
+      found = merge(index_of(maps%node_sets, row%id), index_of(maps%nodes, row%id), is_set)
       if (found == 0) return
       nodes = [found]
       if (is_set) nodes = model%node_sets(found)%nodes
@@ -183,21 +184,22 @@ contains
     do i = 1, raw%n_row
       associate (row => raw%rows(i))
         if (row%kind /= row_motion_rigid) cycle
-        call resolve_id(deck, maps%parts, row%i(1), 'part', place_t(row%line, 1, 1), part)
-        call resolve_id(deck, maps%curves, row%i(4), 'curve', place_t(row%line, 1, 4), motion%curve)
+        call resolve_id(deck, maps%parts, row%id, 'part', id_place(row), part)
+        call resolve_id(deck, maps%curves, row%curve, 'curve', place_t(row%line, 1, 'LCID'), &
+          motion%curve)
         if (part == 0 .or. motion%curve == 0) cycle
         if (model%parts(part)%material == 0) cycle
         motion%node = body_of_part(model%rigids, part)
         if (motion%node == 0) then
-          call reject_field(deck, place_t(row%line, 1, 1), 'is not a rigid part (*MAT_RIGID); ' &
+          call reject_field(deck, id_place(row), 'is not a rigid part (*MAT_RIGID); ' &
             //'*BOUNDARY_PRESCRIBED_MOTION_SET moves nodes')
           cycle
         end if
-        motion%direction = merge(3, row%i(2), row%i(2) == 7)
-        motion%kind = row%i(3)
-        motion%scale = row%r(5)
-        motion%death = row%r(7)
-        motion%birth = row%r(8)
+        motion%direction = merge(3, row%direction, row%direction == 7)
+        motion%kind = row%motion
+        motion%scale = row%scale
+        motion%death = row%death
+        motion%birth = row%birth
         call check_rigid_motion(deck, model, lines, row%line, motion)
         model%conditions%rigid_motions = [model%conditions%rigid_motions, motion]
         lines = [lines, row%line]
@@ -216,18 +218,18 @@ contains
     do i = 1, raw%n_row
       associate (row => raw%rows(i))
         if (row%kind /= row_velocity_rigid) cycle
-        call resolve_id(deck, maps%parts, row%i(1), 'part', place_t(row%line, 1, 1), part)
+        call resolve_id(deck, maps%parts, row%id, 'part', id_place(row), part)
         if (part == 0) cycle
         if (model%parts(part)%material == 0) cycle
         body = body_of_part(model%rigids, part)
         if (body == 0) then
-          call reject_field(deck, place_t(row%line, 1, 1), 'is not a rigid part (*MAT_RIGID); ' &
+          call reject_field(deck, id_place(row), 'is not a rigid part (*MAT_RIGID); ' &
             //'*INITIAL_VELOCITY_GENERATION gives a part its velocity')
         else if (model%rigids(body)%has_velocity) then
-          call reject_field(deck, place_t(row%line, 1, 1), 'has a velocity by another card')
+          call reject_field(deck, id_place(row), 'has a velocity by another card')
         else
           model%rigids(body)%has_velocity = .true.
-          model%rigids(body)%velocity = [row%r(2), row%r(3), row%r(7)]
+          model%rigids(body)%velocity = row%velocity
         end if
       end associate
     end do
@@ -255,14 +257,14 @@ contains
     integer :: i
 
     if (model%rigids(motion%node)%is_fixed(motion%direction)) call reject_field(deck, &
-      place_t(line, 1, 2), 'is fixed by CON1 or CON2 of the part''s *MAT_RIGID and cannot be ' &
+      place_t(line, 1, 'DOF'), 'is fixed by CON1 or CON2 of the part''s *MAT_RIGID and cannot be ' &
       //'moved by this card too')
     do i = 1, size(lines)
       associate (other => model%conditions%rigid_motions(i))
         if (other%node /= motion%node .or. other%direction /= motion%direction) cycle
         if (min(other%death, motion%death) <= max(other%birth, motion%birth)) cycle
-        call reject_field(deck, place_t(line, 1, 2), 'is moved by another card at the same time ' &
-          //'(line '//to_text(deck%number(lines(i)))//')')
+        call reject_field(deck, place_t(line, 1, 'DOF'), 'is moved by another card at the same ' &
+          //'time (line '//to_text(deck%number(lines(i)))//')')
         return
       end associate
     end do

@@ -60,7 +60,7 @@ contains
       do i = 1, set%n, 2
         call ids_between(map, set%members(i), set%members(i + 1), block)
         if (size(block) == 0 .and. .not. map%incomplete) call reject_field(deck, &
-          place_t(set%lines(i), card, set%fields(i)), 'to "' &
+          place_t(set%lines(i), card, field=set%fields(i)), 'to "' &
           //to_text(set%members(i + 1))//'": there is no '//what//' in this block')
         members = [members, block]
       end do
@@ -69,7 +69,7 @@ contains
       n = 0
       do i = 1, set%n
         call resolve_id(deck, map, set%members(i), what, &
-          place_t(set%lines(i), card, set%fields(i)), found)
+          place_t(set%lines(i), card, field=set%fields(i)), found)
         if (found == 0) cycle
         n = n + 1
         members(n) = found

@@ -5,7 +5,7 @@ module deck_resolve_velocity_m
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t
   use deck_maps_m, only : maps_t, resolve_id
-  use deck_raw_m, only : raw_t, row_t, row_velocity, row_velocity_generation
+  use deck_raw_m, only : raw_t, row_t, row_velocity, row_velocity_generation, id_place
   implicit none
   private
   public :: resolve_velocity
@@ -59,7 +59,7 @@ contains
     do while (next <= raw%n_node_velocity)
       associate (card => raw%node_velocities(next))
         if (card%n_row > n_row) return
-        call resolve_id(deck, maps%nodes, card%node, 'node', place_t(card%line, 1, 1), found)
+        call resolve_id(deck, maps%nodes, card%node, 'node', place_t(card%line, 1, 'NID'), found)
         if (found > 0) velocity(:, found) = card%velocity
       end associate
       next = next + 1
@@ -77,22 +77,23 @@ contains
     logical, allocatable :: chosen(:)
     integer :: found, i
 
-    allocate (chosen(model%mesh%n_node), source=row%i(1) == 0)
-    if (row%i(1) > 0) then
-      call resolve_id(deck, maps%node_sets, row%i(1), 'node set', place_t(row%line, 1, 1), found)
+    allocate (chosen(model%mesh%n_node), source=row%id == 0)
+    if (row%id > 0) then
+      call resolve_id(deck, maps%node_sets, row%id, 'node set', id_place(row), found)
       if (found > 0) chosen(model%node_sets(found)%nodes) = .true.
     end if
-    if (row%i(2) > 0) then
-      call resolve_id(deck, maps%node_sets, row%i(2), 'node set', place_t(row%line, 1, 2), found)
+    if (row%others > 0) then
+      call resolve_id(deck, maps%node_sets, row%others, 'node set', &
+        place_t(row%line, 1, 'NSIDEX'), found)
       if (found > 0) then
         chosen(model%node_sets(found)%nodes) = .false.
         do i = 1, size(model%node_sets(found)%nodes)
-          velocity(:, model%node_sets(found)%nodes(i)) = row%r(3:4)
+          velocity(:, model%node_sets(found)%nodes(i)) = row%other_velocity
         end do
       end if
     end if
     do i = 1, model%mesh%n_node
-      if (chosen(i)) velocity(:, i) = row%r(1:2)
+      if (chosen(i)) velocity(:, i) = row%velocity(:2)
     end do
   end subroutine set_velocity
 
@@ -106,18 +107,18 @@ contains
     logical, allocatable :: chosen(:), chosen_part(:)
     integer :: found, i, k
 
-    allocate (chosen(model%mesh%n_node), source=row%i(1) == 0)
+    allocate (chosen(model%mesh%n_node), source=row%id == 0)
     allocate (chosen_part(0:size(model%parts)), source=.false.)
-    if (row%i(1) > 0) then
-      select case (row%i(2))
+    if (row%id > 0) then
+      select case (row%set_kind)
       case (1)
-        call resolve_id(deck, maps%part_sets, row%i(1), 'part set', place_t(row%line, 1, 1), found)
+        call resolve_id(deck, maps%part_sets, row%id, 'part set', id_place(row), found)
         if (found > 0) chosen_part(model%part_sets(found)%parts) = .true.
       case (2)
-        call resolve_id(deck, maps%parts, row%i(1), 'part', place_t(row%line, 1, 1), found)
+        call resolve_id(deck, maps%parts, row%id, 'part', id_place(row), found)
         if (found > 0) chosen_part(found) = .true.
       case default
-        call resolve_id(deck, maps%node_sets, row%i(1), 'node set', place_t(row%line, 1, 1), found)
+        call resolve_id(deck, maps%node_sets, row%id, 'node set', id_place(row), found)
         if (found > 0) chosen(model%node_sets(found)%nodes) = .true.
       end select
     end if
@@ -129,8 +130,8 @@ contains
     end do
     do i = 1, model%mesh%n_node
       if (.not. chosen(i)) cycle
-      velocity(1, i) = row%r(2) - row%r(1)*(model%mesh%coordinates(2, i) - row%r(5))
-      velocity(2, i) = row%r(3) + row%r(1)*(model%mesh%coordinates(1, i) - row%r(4))
+      velocity(1, i) = row%velocity(1) - row%spin*(model%mesh%coordinates(2, i) - row%centre(2))
+      velocity(2, i) = row%velocity(2) + row%spin*(model%mesh%coordinates(1, i) - row%centre(1))
     end do
   end subroutine generate_velocity
 

@@ -6,6 +6,8 @@ module deck_rigid_m
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
+  use deck_values_m, only : integer_of, is_bad
+  use deck_checks_m, only : refuse_outside
   use deck_material_m, only : elastic_constants, append_material
   use deck_raw_m, only : raw_t
   implicit none
@@ -50,25 +52,25 @@ contains
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(material_t), intent(inout) :: material
-    integer :: k
+    character(*), parameter :: no_code = 'is not a code of constraints (0 to 7)'
+    integer :: codes(2)
 
-    if (card%i(1) == -1) then
-      call report_field(deck, cursor, card, 1, 'asks for constraints in local axes, which this ' &
-        //'version does not have; 1 takes the global ones')
+    if (integer_of(card, 'CMO') == -1) then
+      call report_field(deck, cursor, card, 'CMO', 'asks for constraints in local axes, which ' &
+        //'this version does not have; 1 takes the global ones')
       return
-    else if (card%i(1) /= 0 .and. card%i(1) /= 1) then
-      call report_field(deck, cursor, card, 1, &
+    else if (integer_of(card, 'CMO') /= 0 .and. integer_of(card, 'CMO') /= 1) then
+      call report_field(deck, cursor, card, 'CMO', &
         'is not 0 (no constraints) or 1 (constraints in global axes)')
       return
     end if
-    do k = 2, 3
-      if (card%i(k) < 0 .or. card%i(k) > 7) call report_field(deck, cursor, card, k, &
-        'is not a code of constraints (0 to 7)')
-    end do
-    if (any(card%bad(2:3))) return
-    if (card%i(1) == 1) then
-      material%is_fixed = [has_x(card%i(2)), has_y(card%i(2)), has_z(card%i(3))]
-    else if (any(card%i(2:3) > 0)) then
+    call refuse_outside(deck, cursor, card, 'CON1', 0, 7, no_code)
+    call refuse_outside(deck, cursor, card, 'CON2', 0, 7, no_code)
+    if (is_bad(card, 'CON1') .or. is_bad(card, 'CON2')) return
+    codes = [integer_of(card, 'CON1'), integer_of(card, 'CON2')]
+    if (integer_of(card, 'CMO') == 1) then
+      material%is_fixed = [has_x(codes(1)), has_y(codes(1)), has_z(codes(2))]
+    else if (any(codes > 0)) then
       call line_warning(deck, card%line, 'CMO 0', &
         'CON1 and CON2 have no effect while CMO is 0; 1 makes them constraints')
     end if

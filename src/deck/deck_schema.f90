@@ -257,15 +257,24 @@ contains
   end function matches
 
   !> Why a field with treatment r may not be used.
-  pure function refusal_reason(keyword, field) result(text)
-    character(*), intent(in) :: keyword, field
+  pure function refusal_reason(field) result(text)
+    character(*), intent(in) :: field
     character(:), allocatable :: text
 
     select case (field)
-    case ('FS', 'FD', 'DC', 'FRIC', 'FRIC_L', 'FRIC_H', 'FRIC_S', 'VC')
-      text = 'asks for friction, which this version does not have; leave it 0'
-      if (index(keyword, 'MAT_') == 1) text = &
-        'asks for failure at a plastic strain, which this version does not have; leave it 0'
+    case ('FS')
+      text = 'asks for failure at a plastic strain, which this version does not have; leave it 0'
+    case ('FRIC_S')
+      text = 'is a shear factor of friction, which this version does not have; leave it 0'
+    case ('WVEL')
+      text = 'asks for welding of nodes to the wall, which this version does not have; leave it 0'
+    case ('TIE')
+      text = 'asks for tied surfaces, which this version does not have; leave it 0'
+    case ('NFLS', 'SFLS')
+      text = 'is a strength of tied surfaces, which this version does not have; leave it 0'
+    case ('LCINT')
+      text = 'asks for interference that a curve removes, which this version does not have; ' &
+        //'leave it 0'
     case ('CID', 'ICID', 'VID')
       text = 'is a local coordinate system, which this version does not have; leave it 0'
     case ('SRC', 'SRP')

@@ -39,7 +39,7 @@ module deck_schema_tables_m
     'CONTROL_CONTACT', &
     ' SLSFAC:f RWPNAL:fs ISLCHK:is SHLTHK:is PENOPT:iw=1 THKCHG:is ORIEN:is ENMASS:iw', &
     ' USRSTR:iw USRFRC:iw NSBCS:is INTERM:is XPENE:fs SSTHK:is ECDT:i TIEDPRJ:is', &
-    ' SFRIC:fr DFRIC:fr EDC:fw VFC:fw TH:fs TH_SF:fs PEN_SF:fs', &
+    ' SFRIC:f DFRIC:f EDC:f VFC:f TH:fs TH_SF:fs PEN_SF:fs', &
     ' IGNORE:iw FRCENG:is SKIPRWG:is OUTSEG:is SPOTSTP:is SPOTDEL:is SPOTHIN:fs', &
     ' ISYM:is NSEROD:is RWGAPS:is RWGDTH:fs RWKSF:fs ICOV:is SWRADF:fs ITHOFF:is', &
     ' SHLEDG:is PSTIFF:is ITHCNT:is TDCNOF:is FTALL:is -:x SHLTRW:fs IGACTC:is', &
@@ -155,38 +155,44 @@ module deck_schema_tables_m
     ' LCID:i SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
     'RIGIDWALL_PLANAR t', &
     ' NSID:i NSIDEX:i BOXID:ir OFFSET:f BIRTH:f DEATH:f=1e20 RWKSF:fs=1', &
-    ' XT:f YT:f ZT:f XH:f YH:f ZH:f FRIC:fr WVEL:fr', &
+    ' XT:f YT:f ZT:f XH:f YH:f ZH:f FRIC:f WVEL:fr', &
     'DAMPING_GLOBAL', &
     ' LCID:i VALDMP:f STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs']
 
   !> Contact interfaces.
   character(95), parameter :: table_contact(*) = [character(95) :: &
     'CONTACT_2D_SLIDELINE t', &
-    ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2 PEN:f FS:fr FD:fr DC:fr', &
+    ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2 PEN:f FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 PUNIT:i PENT:f VDC:f IPF:i FREQ:i SRCH:f', &
+    ' VC:f TFAC:f=1 TIE:ir NFLS:fr SFLS:fr LCINT:ir', &
     'CONTACT_2D_PENALTY t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
     ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
     //' FRCSCL:fw=0.1 ONEWAY:fr', &
+    'CONTACT_2D_PENALTY_FRICTION t', &
+    ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
+    //' FRCSCL:fw=0.1 ONEWAY:fr', &
+    ' FRIC:f FRIC_L:f FRIC_H:f FRIC_S:fr', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fr FD:fr DC:fr', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:fr VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fr FD:fr DC:fr', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:fr VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fr FD:fr DC:fr', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:fr VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fr FD:fr DC:fr', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:fr VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw']
 
   !> Output.

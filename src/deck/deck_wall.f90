@@ -6,9 +6,11 @@ module deck_wall_m
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
   use supports_m, only : mark_meshed_nodes
-  use walls_m, only : wall_t, wall_distance
+  use walls_m, only : wall_t, wall_distance, friction_sticks
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
     report_field
+  use deck_values_m, only : integer_of, real_of, reals_of
+  use deck_checks_m, only : refuse_negative, take_life
   use deck_fields_m, only : card_t
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_maps_m, only : maps_t, resolve_id
@@ -39,21 +41,17 @@ contains
     call next_card(deck, parameters, cursor, 1, card)
     call next_card(deck, parameters, cursor, 2, place)
     call check_rest(deck, cursor)
-    if (card%i(1) < 0) call report_field(deck, cursor, card, 1, &
+    if (integer_of(card, 'NSID') < 0) call report_field(deck, cursor, card, 'NSID', &
       'is not a node set, nor 0 (all nodes)')
-    if (card%i(2) < 0) call report_field(deck, cursor, card, 2, 'is not a node set')
-    if (card%r(4) < 0.0_wp) call report_field(deck, cursor, card, 4, 'is negative')
-    if (.not. abs(card%r(6)) > 0.0_wp) card%r(6) = 1.0e20_wp
-    if (card%r(6) <= card%r(5)) call report_field(deck, cursor, card, 6, &
-      'is not after BIRTH "'//to_text(card%r(5))//'"')
-    if (card%r(6) <= 0.0_wp) call report_field(deck, cursor, card, 6, &
-      'is before the run begins (0 means never)')
-    entry%sets = card%i(1:2)
+    if (integer_of(card, 'NSIDEX') < 0) call report_field(deck, cursor, card, 'NSIDEX', &
+      'is not a node set')
+    call refuse_negative(deck, cursor, card, 'OFFSET')
+    call take_life(deck, cursor, card, ['BIRTH', 'DEATH'], entry%wall%birth, entry%wall%death)
+    entry%sets = [integer_of(card, 'NSID'), integer_of(card, 'NSIDEX')]
     entry%card_line = card%line
-    entry%reach = card%r(4)
-    entry%wall%birth = card%r(5)
-    entry%wall%death = card%r(6)
+    entry%reach = real_of(card, 'OFFSET')
     call take_plane(deck, cursor, place, entry%wall)
+    call take_friction(deck, cursor, place, entry%wall)
     raw%walls = [raw%walls, entry]
   end subroutine read_wall
 
@@ -65,19 +63,38 @@ contains
     type(wall_t), intent(inout) :: wall
     real(wp) :: arrow(2)
 
-    wall%foot = card%r(1:2)
-    arrow = card%r(4:5) - card%r(1:2)
-    if (abs(card%r(6) - card%r(3)) > 0.0_wp) then
-      call report_field(deck, cursor, card, 6, &
+    wall%foot = reals_of(card, 'XT', 'YT')
+    arrow = reals_of(card, 'XH', 'YH') - wall%foot
+    if (abs(real_of(card, 'ZH') - real_of(card, 'ZT')) > 0.0_wp) then
+      call report_field(deck, cursor, card, 'ZH', &
         'is not ZT: the normal of the wall must lie in the plane of the mesh')
     else if (.not. maxval(abs(arrow)) > 0.0_wp) then
-      call report_field(deck, cursor, card, 4, &
+      call report_field(deck, cursor, card, 'XH', &
         'with YH gives the tail again: the normal points from tail (XT, YT) to head (XH, YH)')
     else
       arrow = arrow/maxval(abs(arrow))
       wall%normal = arrow/norm2(arrow)
     end if
   end subroutine take_plane
+
+  !> FRIC: 2 and 3 weld nodes that hit the wall fast enough.
+  subroutine take_friction(deck, cursor, card, wall)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(wall_t), intent(inout) :: wall
+    real(wp), parameter :: welds(2) = [2.0_wp, 3.0_wp]
+
+    wall%friction = real_of(card, 'FRIC')
+    if (any(.not. abs(wall%friction - welds) > 0.0_wp)) then
+      call report_field(deck, cursor, card, 'FRIC', &
+        'asks for welding of nodes to the wall, which this version does not have ' &
+        //'(0 none, 1 sticks, between: coefficient of friction)')
+    else if (wall%friction < 0.0_wp .or. wall%friction > friction_sticks) then
+      call report_field(deck, cursor, card, 'FRIC', &
+        'is not the friction of a wall (0 none, 1 sticks, between: coefficient of friction)')
+    end if
+  end subroutine take_friction
 
   !> Nodes of all walls, such that an element has. Conditions and rigid bodies have been resolved.
   subroutine resolve_walls(deck, raw, maps, model)
@@ -135,12 +152,12 @@ contains
     sees = entry%sets(1) == 0
     if (entry%sets(1) > 0) then
       call resolve_id(deck, maps%node_sets, entry%sets(1), 'node set', &
-        place_t(entry%card_line, 1, 1), k)
+        place_t(entry%card_line, 1, 'NSID'), k)
       if (k > 0) sees(known(model%node_sets(k)%nodes)) = .true.
     end if
     if (entry%sets(2) > 0) then
       call resolve_id(deck, maps%node_sets, entry%sets(2), 'node set', &
-        place_t(entry%card_line, 1, 2), k)
+        place_t(entry%card_line, 1, 'NSIDEX'), k)
       if (k > 0) sees(known(model%node_sets(k)%nodes)) = .false.
     end if
     if (any(sees .and. mark_rigid_nodes(model%rigids, size(sees)))) then

@@ -25,7 +25,7 @@ contains
   end subroutine fix_nodes
 
   !> Whether a prescribed motion holds at `time`.
-  pure function is_active(prescribed, time) result(active)
+  elemental function is_active(prescribed, time) result(active)
     type(prescribed_motion_t), intent(in) :: prescribed
     real(wp), intent(in) :: time
     logical :: active

@@ -6,8 +6,8 @@ module contacts_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: contact_t, contact_kind_t, kind_text, most_gauss, penalty_per_node, &
-    penalty_distributed, penalty_factor, penalty_share
+  public :: contact_t, contact_kind_t, friction_rule_t, has_friction, kind_text, most_gauss, &
+    penalty_per_node, penalty_distributed, penalty_factor, penalty_share
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
   !> share of the largest stable penalty.
@@ -25,6 +25,15 @@ module contacts_m
     logical :: uses_gauss_points = .false. !! whether NGAUSS has a meaning
     logical :: has_strict_rule = .false.   !! whether IPF has a meaning
   end type contact_kind_t
+
+  !> Regularised Coulomb friction: mu = FD + (FS - FD) exp(-DC speed).
+  type :: friction_rule_t
+    real(wp) :: at_rest = 0.0_wp  !! FS
+    real(wp) :: sliding = 0.0_wp  !! FD
+    real(wp) :: decay = 0.0_wp    !! DC, s/m
+    real(wp) :: most = 0.0_wp     !! VC: largest traction, N/m^2; 0 = none
+    real(wp) :: stiffness = 1.0_wp !! TFAC: tangential over normal penalty
+  end type friction_rule_t
 
   !> One interface.
   type :: contact_t
@@ -45,9 +54,18 @@ module contacts_m
                                            !! program's choice
     real(wp) :: search_depth = 0.0_wp      !! SRCH: deepest first contact that is caught; 0 =
                                            !! automatic
+    type(friction_rule_t) :: friction
   end type contact_t
 
 contains
+
+  !> Whether an interface has friction.
+  pure function has_friction(contact) result(has)
+    type(contact_t), intent(in) :: contact
+    logical :: has
+
+    has = max(contact%friction%at_rest, contact%friction%sliding) > 0.0_wp
+  end function has_friction
 
   !> `name (type n)`.
   pure function kind_text(kind) result(text)

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Controls of the run: end, time step and output plan.
 module controls_m
+  use history_tables_m, only : n_table
   use kinds_m, only : wp
   implicit none
   private
@@ -25,13 +26,8 @@ module controls_m
   !> What is written, and how often.
   type :: output_plan_t
     type(interval_t) :: plot    !! VTKHDF states and contact rows (*DATABASE_BINARY_D3PLOT)
-    type(interval_t) :: glstat
-    type(interval_t) :: matsum
-    type(interval_t) :: rcforc
-    type(interval_t) :: nodout
-    type(interval_t) :: rwforc
-    type(interval_t) :: sleout
-    type(interval_t) :: spcforc
+    type(interval_t) :: histories(n_table)   !! by the `table_` constants; that of contact is
+                                             !! unused
     integer, allocatable :: history_nodes(:) !! node indices of *DATABASE_HISTORY_NODE
     integer :: dump_cycles = -1    !! cycles between restart files that stay
                                    !! (*DATABASE_BINARY_D3DUMP), 0 = at the end alone, -1 = none

@@ -5,7 +5,7 @@
 module surfaces_m
   implicit none
   private
-  public :: surface_t, link_segments
+  public :: surface_t, link_segments, number_chains
 
   !> One surface. "Local" node numbers count the nodes of this surface in walking order.
   type :: surface_t

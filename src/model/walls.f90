@@ -4,13 +4,17 @@ module walls_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: wall_t, wall_distance
+  public :: wall_t, wall_distance, wall_tangent, friction_sticks
+
+  !> Coefficient of a wall that lets no node slide.
+  real(wp), parameter :: friction_sticks = 1.0_wp
 
   !> One *RIGIDWALL_PLANAR.
   type :: wall_t
     integer :: id = 0                        !! user id, or one that the deck layer gives
     real(wp) :: foot(2) = 0.0_wp             !! a point of the wall (tail)
     real(wp) :: normal(2) = [0.0_wp, 1.0_wp] !! of length 1, into the free side (tail to head)
+    real(wp) :: friction = 0.0_wp            !! 0 none, `friction_sticks`, between: of Coulomb
     real(wp) :: birth = 0.0_wp               !! the wall is there from this time
     real(wp) :: death = 1.0e20_wp            !! until this time
     integer, allocatable :: nodes(:)         !! indices of the nodes that see it
@@ -30,5 +34,13 @@ contains
     distance = dot_product(wall%normal, coordinates - wall%foot) &
       + dot_product(wall%normal, displacement)
   end function wall_distance
+
+  !> Direction along the wall: its normal turned by 90 degrees, counter-clockwise.
+  pure function wall_tangent(wall) result(tangent)
+    type(wall_t), intent(in) :: wall
+    real(wp) :: tangent(2)
+
+    tangent = [-wall%normal(2), wall%normal(1)]
+  end function wall_tangent
 
 end module walls_m

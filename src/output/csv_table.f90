@@ -12,7 +12,7 @@ module csv_table_m
   implicit none
   private
   public :: csv_table_t, plan_table, open_table, add_row, check_table, flush_table, close_table, &
-    column_name, n_columns, row_text, kind_real, kind_integer, kind_side
+    column_name, column_names, n_columns, row_text, kind_real, kind_integer, kind_side
 
   !> Kinds of columns: a real, an integer, a side of an interface (1 = slave, 2 = master).
   integer, parameter :: kind_real = 1, kind_integer = 2, kind_side = 3
@@ -87,6 +87,14 @@ contains
 
     n = size(table%kinds)
   end function n_columns
+
+  !> Names of all columns, with commas between.
+  pure function column_names(table) result(names)
+    type(csv_table_t), intent(in) :: table
+    character(:), allocatable :: names
+
+    names = table%header
+  end function column_names
 
   !> Name of a column.
   pure function column_name(table, i_column) result(name)

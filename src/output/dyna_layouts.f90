@@ -1,18 +1,16 @@
 ! SPDX-License-Identifier: MIT
 !> The layouts of DYNA's text files, byte for byte as scripts read them: one block of lines
-!> for all rows of one instant. Rows are those of the history tables (`history_file_m`),
-!> forces and energies per unit depth.
+!> for all rows of one instant. Rows are those of the history tables (`history_rows_m`), with the
+!> columns that a layout names, in its order; forces and energies per unit depth.
 module dyna_layouts_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+  use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_matsum, &
+    table_sleout, table_spcforc
   use kinds_m, only : wp
   implicit none
   private
-  public :: layout_glstat, layout_rcforc, layout_nodout, layout_matsum, layout_sleout, &
-    layout_spcforc, line_size, n_line_of, form_block
+  public :: line_size, columns_of, n_line_of, form_block
 
-  !> The files.
-  integer, parameter :: layout_glstat = 1, layout_rcforc = 2, layout_nodout = 3, &
-    layout_matsum = 4, layout_sleout = 5, layout_spcforc = 6
   !> Bytes of the longest line.
   integer, parameter :: line_size = 160
   !> Labels of glstat, each with its dots.
@@ -40,16 +38,39 @@ module dyna_layouts_m
 
 contains
 
+  !> The columns that a layout takes, with commas between.
+  pure function columns_of(i_table) result(names)
+    integer, intent(in) :: i_table   !! one of `table_`
+    character(:), allocatable :: names
+
+    names = ''
+    select case (i_table)
+    case (table_glstat)
+      names = 'time,cycle,dt,kinetic,internal,hourglass,viscous,damping,contact,external_work,'// &
+        'total,energy_ratio,leapfrog,velocity_x,velocity_y,element,element_part'
+    case (table_rcforc)
+      names = 'time,interface,side,fx,fy'
+    case (table_nodout)
+      names = 'time,node,x,y,ux,uy,vx,vy,ax,ay,cycle'
+    case (table_matsum)
+      names = 'time,part,kinetic,internal,hourglass,momentum_x,momentum_y,mass'
+    case (table_sleout)
+      names = 'time,cycle,interface,energy,damping'
+    case (table_spcforc)
+      names = 'time,node,fx,fy'
+    end select
+  end function columns_of
+
   !> Lines of a block of `n_row` rows, at most.
-  pure function n_line_of(layout, n_row) result(n)
-    integer, intent(in) :: layout   !! one of `layout_`
+  pure function n_line_of(i_table, n_row) result(n)
+    integer, intent(in) :: i_table   !! one of `table_`
     integer, intent(in) :: n_row
     integer :: n
 
-    select case (layout)
-    case (layout_glstat)
+    select case (i_table)
+    case (table_glstat)
       n = n_label + 5
-    case (layout_matsum)
+    case (table_matsum)
       n = 4*n_row + 3
     case default
       n = n_row + 12
@@ -57,26 +78,26 @@ contains
   end function n_line_of
 
   !> The lines of one instant.
-  pure subroutine form_block(layout, control, rows, lines, n_line)
-    integer, intent(in) :: layout                       !! one of `layout_`
+  pure subroutine form_block(i_table, control, rows, lines, n_line)
+    integer, intent(in) :: i_table                      !! one of `table_`
     character(*), intent(in) :: control                 !! what rules the step where no element does
-    real(wp), intent(in) :: rows(:, :)                  !! (n_column, n_row)
+    real(wp), intent(in) :: rows(:, :)                  !! (n_column, n_row) of `columns_of`
     character(line_size), intent(inout) :: lines(:)     !! `n_line_of` or more
     integer, intent(out) :: n_line
 
     n_line = 0
-    select case (layout)
-    case (layout_glstat)
+    select case (i_table)
+    case (table_glstat)
       call form_glstat(rows(:, 1), control, lines, n_line)
-    case (layout_rcforc)
+    case (table_rcforc)
       call form_rcforc(rows, lines, n_line)
-    case (layout_nodout)
+    case (table_nodout)
       call form_nodout(rows, lines, n_line)
-    case (layout_matsum)
+    case (table_matsum)
       call form_matsum(rows, lines, n_line)
-    case (layout_sleout)
+    case (table_sleout)
       call form_sleout(rows, lines, n_line)
-    case (layout_spcforc)
+    case (table_spcforc)
       call form_spcforc(rows, lines, n_line)
     end select
   end subroutine form_block

@@ -4,9 +4,9 @@
 !> buffer of whole lines and reach the file like those of the table.
 module dyna_text_m
   use build_info_m, only : version
-  use dyna_layouts_m, only : layout_rcforc, layout_nodout, layout_matsum, layout_spcforc, &
-    line_size, n_line_of, form_block
+  use dyna_layouts_m, only : line_size, columns_of, n_line_of, form_block
   use errors_m, only : error_t
+  use history_tables_m, only : table_rcforc, table_nodout, table_matsum, table_spcforc
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use kinds_m, only : wp, long
   use model_m, only : model_t
@@ -23,10 +23,11 @@ module dyna_text_m
   !> One file.
   type :: dyna_text_t
     logical :: is_open = .false.             !! rows are taken only while open
-    integer :: layout = 0                    !! one of `layout_`
+    integer :: i_table = 0                   !! one of `table_`
+    integer, allocatable :: columns(:)       !! those of the table that the layout takes
     character(:), allocatable :: control     !! what rules the step where no element does
     integer :: n_row = 0                     !! rows of the present instant so far
-    real(wp), allocatable :: rows(:, :)      !! (n_column, rows of an instant)
+    real(wp), allocatable :: rows(:, :)      !! (columns, rows of an instant)
     character(line_size), allocatable :: lines(:) !! of one instant
     type(text_file_t) :: file
     character(:), allocatable :: buffer      !! lines that wait
@@ -38,31 +39,58 @@ module dyna_text_m
 contains
 
   !> Make the file `<path>` and write its head.
-  subroutine open_dyna_text(text, path, layout, model, size_of_instant, error)
+  subroutine open_dyna_text(text, path, i_table, model, names, n_row, error)
     type(dyna_text_t), intent(out) :: text
     character(*), intent(in) :: path
-    integer, intent(in) :: layout                !! one of `layout_`
+    integer, intent(in) :: i_table               !! one of `table_`
     type(model_t), intent(in) :: model
-    integer, intent(in) :: size_of_instant(2)    !! columns, rows
+    character(*), intent(in) :: names            !! of the table's columns, with commas between
+    integer, intent(in) :: n_row                 !! rows of an instant
     type(error_t), allocatable, intent(out) :: error
 
     call create_text_file(text%file, path, error)
     if (allocated(error)) return
-    text%layout = layout
+    text%i_table = i_table
+    call find_columns(columns_of(i_table), names, text%columns)
     text%control = 'load curve'
     if (model%controls%implicit%is_on) text%control = 'implicit'
-    allocate (text%rows(size_of_instant(1), size_of_instant(2)))
-    allocate (text%lines(n_line_of(layout, size_of_instant(2))))
+    allocate (text%rows(size(text%columns), n_row))
+    allocate (text%lines(n_line_of(i_table, n_row)))
     allocate (character(buffer_size) :: text%buffer)
     text%is_open = .true.
     call system_clock(text%flushed)
     call write_head(text, model)
-    if (layout == layout_spcforc) then
+    if (i_table == table_spcforc) then
       call put_line(text, ' single point constraint forces')
       call put_line(text, '')
     end if
     call flush_dyna_text(text, error)
   end subroutine open_dyna_text
+
+  !> Places of names in a list, both with commas between; 0 of one that is not there.
+  pure subroutine find_columns(wanted, names, columns)
+    character(*), intent(in) :: wanted, names
+    integer, allocatable, intent(out) :: columns(:)
+    character(:), allocatable :: left
+    integer :: k, comma, place
+
+    allocate (columns(n_comma(wanted) + 1))
+    left = wanted//','
+    do k = 1, size(columns)
+      comma = index(left, ',')
+      place = index(','//names//',', ','//left(:comma))
+      columns(k) = merge(n_comma(names(:place - 1)) + 1, 0, place > 0)
+      left = left(comma + 1:)
+    end do
+  end subroutine find_columns
+
+  !> Number of commas in a text.
+  pure function n_comma(text) result(n)
+    character(*), intent(in) :: text
+    integer :: n, i
+
+    n = count([(text(i:i) == ',', i=1, len(text))])
+  end function n_comma
 
   !> Title, program and the legend of entities, where they have titles.
   subroutine write_head(text, model)
@@ -75,16 +103,16 @@ contains
     call put_line(text, '                         slideline (version '//version &
       //')     plane strain, per unit depth')
     has_legend = .false.
-    select case (text%layout)
-    case (layout_matsum)
+    select case (text%i_table)
+    case (table_matsum)
       do i = 1, size(model%parts)
         call put_entity(text, has_legend, model%parts(i)%id, text_of(model%parts(i)%title))
       end do
-    case (layout_rcforc)
+    case (table_rcforc)
       do i = 1, size(model%contacts)
         call put_entity(text, has_legend, model%contacts(i)%id, text_of(model%contacts(i)%title))
       end do
-    case (layout_nodout)
+    case (table_nodout)
       do i = 1, size(model%controls%output%history_nodes)
         call put_entity(text, has_legend, &
           model%mesh%node_id(model%controls%output%history_nodes(i)), 'node')
@@ -117,16 +145,16 @@ contains
   !> Take one row of the table; nothing happens to a file that is not open.
   subroutine add_dyna_row(text, values)
     type(dyna_text_t), intent(inout) :: text
-    real(wp), intent(in) :: values(:)   !! (n_column)
+    real(wp), intent(in) :: values(:)   !! (n_column) of the table
     integer(long) :: now, rate
     integer :: i, n_line
 
     if (.not. text%is_open) return
     text%n_row = text%n_row + 1
-    text%rows(:, text%n_row) = values
+    text%rows(:, text%n_row) = values(text%columns)
     if (text%n_row < size(text%rows, 2)) return
     text%n_row = 0
-    call form_block(text%layout, text%control, text%rows, text%lines, n_line)
+    call form_block(text%i_table, text%control, text%rows, text%lines, n_line)
     do i = 1, n_line
       call put_line(text, trim(text%lines(i)))
     end do

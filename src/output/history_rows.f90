@@ -1,152 +1,300 @@
 ! SPDX-License-Identifier: MIT
-!> Rows of the histories from a snapshot. Rows for a table that is not open are ignored, so that a
-!> driver may hand every snapshot to every table that is due.
+!> Columns and rows of the history files: a column is one line here, with its name and its value.
+!> Rows for a table that is not open are ignored, so that a driver may hand every snapshot to every
+!> table that is due.
 module history_rows_m
-  use csv_table_m, only : add_row
+  use csv_table_m, only : csv_table_t, add_row
   use energies_m, only : total_energy, energy_ratio
-  use history_file_m, only : histories_t, table_glstat, table_rcforc, table_nodout, table_contact, &
+  use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_contact, &
     table_matsum, table_rwforc, table_sleout, table_spcforc
   use kinds_m, only : wp
   use model_m, only : model_t
-  use snapshot_m, only : snapshot_t
+  use snapshot_m, only : snapshot_t, interface_result_t, part_result_t, slave_result_t, &
+    wall_result_t
+  use table_row_m, only : row_t, put, put_side, end_csv
   implicit none
   private
-  public :: append_glstat, append_rcforc, append_nodout, append_matsum, append_contact, &
-    append_rwforc, append_sleout, append_spcforc
+  public :: name_columns, append_rows
+
+  !> Sides of an interface.
+  integer, parameter :: side_slave = 1, side_master = 2
 
 contains
 
-  !> The energy account: one row.
-  subroutine append_glstat(histories, snapshot)
-    type(histories_t), intent(inout) :: histories
-    type(snapshot_t), intent(in) :: snapshot
+  !> Names and kinds of the columns of a table, by a row of nothing.
+  subroutine name_columns(i_table, row)
+    integer, intent(in) :: i_table   !! one of `table_`
+    type(row_t), intent(out) :: row
+    type(snapshot_t) :: nothing
+    type(interface_result_t) :: result
+    type(slave_result_t) :: slave
+    type(part_result_t) :: sums
+    type(wall_result_t) :: wall
+    real(wp), parameter :: nowhere(2) = 0.0_wp
 
-    associate (e => snapshot%energies)
-      call add_row(histories%tables(table_glstat), [snapshot%time, real(snapshot%cycle, wp), &
-        snapshot%dt, e%kinetic, e%internal, e%hourglass, e%viscous, e%damping, e%contact, &
-        e%external_work, total_energy(e), energy_ratio(e), e%leapfrog, snapshot%mean_velocity, &
-        real(snapshot%slowest, wp)])
-    end associate
-  end subroutine append_glstat
+    row%is_named = .true.
+    select case (i_table)
+    case (table_glstat)
+      call put_glstat(row, nothing)
+    case (table_rcforc)
+      call put_rcforc(row, nothing%time, 0, side_slave, result)
+    case (table_nodout)
+      call put_nodout(row, nothing, 0, nowhere, 0)
+    case (table_contact)
+      call put_contact(row, nothing%time, [0, 0], nowhere, slave, 0)
+    case (table_matsum)
+      call put_matsum(row, nothing%time, 0, sums)
+    case (table_rwforc)
+      call put_rwforc(row, nothing%time, 0, wall)
+    case (table_sleout)
+      call put_sleout(row, nothing, 0, result)
+    case (table_spcforc)
+      call put_spcforc(row, nothing, 0, 0)
+    end select
+  end subroutine name_columns
 
-  !> Resultants: for each interface a row of the slave side and a row of the master side.
-  subroutine append_rcforc(histories, model, snapshot)
-    type(histories_t), intent(inout) :: histories
+  !> Append the rows of an instant to a table.
+  subroutine append_rows(table, i_table, model, snapshot)
+    type(csv_table_t), intent(inout) :: table
+    integer, intent(in) :: i_table   !! which it is, one of `table_`
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in) :: snapshot
-    real(wp) :: start(2)
-    integer :: i_contact
-
-    if (.not. histories%tables(table_rcforc)%is_open) return
-    do i_contact = 1, size(model%contacts)
-      start = [snapshot%time, real(model%contacts(i_contact)%id, wp)]
-      associate (result => snapshot%interfaces(i_contact), table => histories%tables(table_rcforc))
-        call add_row(table, [start, 1.0_wp, result%slave_force, real(result%n_active, wp)])
-        call add_row(table, [start, 2.0_wp, result%master_force, real(result%n_active, wp)])
-      end associate
-    end do
-  end subroutine append_rcforc
-
-  !> Motion of the history nodes, in the order of the deck's list.
-  subroutine append_nodout(histories, model, snapshot)
-    type(histories_t), intent(inout) :: histories
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: snapshot
+    type(row_t) :: row
     integer :: i, i_node
 
-    if (.not. histories%tables(table_nodout)%is_open) return
-    do i = 1, size(model%controls%output%history_nodes)
-      i_node = model%controls%output%history_nodes(i)
-      call add_row(histories%tables(table_nodout), [snapshot%time, &
-        real(model%mesh%node_id(i_node), wp), &
-        model%mesh%coordinates(:, i_node) + snapshot%displacement(:, i_node), &
-        snapshot%displacement(:, i_node), snapshot%velocity(:, i_node), &
-        snapshot%acceleration(:, i_node), real(snapshot%cycle, wp)])
-    end do
-  end subroutine append_nodout
+    if (.not. table%is_open) return
+    select case (i_table)
+    case (table_glstat)
+      call put_glstat(row, snapshot)
+      call take(table, row)
+    case (table_nodout)
+      do i = 1, size(model%controls%output%history_nodes)
+        i_node = model%controls%output%history_nodes(i)
+        call put_nodout(row, snapshot, model%mesh%node_id(i_node), &
+          model%mesh%coordinates(:, i_node), i_node)
+        call take(table, row)
+      end do
+    case (table_matsum)
+      do i = 1, size(model%parts)
+        call put_matsum(row, snapshot%time, model%parts(i)%id, snapshot%parts(i))
+        call take(table, row)
+      end do
+    case (table_rwforc)
+      do i = 1, size(snapshot%walls)
+        call put_rwforc(row, snapshot%time, model%walls(i)%id, snapshot%walls(i))
+        call take(table, row)
+      end do
+    case (table_spcforc)
+      do i = 1, size(snapshot%supports)
+        call put_spcforc(row, snapshot, model%mesh%node_id(snapshot%supports(i)), i)
+        call take(table, row)
+      end do
+    case default
+      call append_interfaces(table, i_table, model, snapshot)
+    end select
+  end subroutine append_rows
 
-  !> Sums over each part.
-  subroutine append_matsum(histories, model, snapshot)
-    type(histories_t), intent(inout) :: histories
+  !> Append the rows of all interfaces to a table.
+  subroutine append_interfaces(table, i_table, model, snapshot)
+    type(csv_table_t), intent(inout) :: table
+    integer, intent(in) :: i_table
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in) :: snapshot
-    integer :: i_part
+    type(row_t) :: row
+    integer :: i, k, i_node
 
-    if (.not. histories%tables(table_matsum)%is_open) return
-    do i_part = 1, size(model%parts)
-      associate (sums => snapshot%parts(i_part))
-        call add_row(histories%tables(table_matsum), [snapshot%time, &
-          real(model%parts(i_part)%id, wp), sums%kinetic, sums%internal, sums%hourglass, &
-          sums%momentum, sums%mass])
-      end associate
-    end do
-  end subroutine append_matsum
-
-  !> Energies of interfaces.
-  subroutine append_sleout(histories, model, snapshot)
-    type(histories_t), intent(inout) :: histories
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: snapshot
-    integer :: i
-
-    if (.not. histories%tables(table_sleout)%is_open) return
     do i = 1, size(model%contacts)
-      call add_row(histories%tables(table_sleout), [snapshot%time, real(snapshot%cycle, wp), &
-        real(model%contacts(i)%id, wp), snapshot%interfaces(i)%energy, &
-        snapshot%interfaces(i)%damping, snapshot%interfaces(i)%stored])
-    end do
-  end subroutine append_sleout
-
-  !> Forces of the constraints on fixed nodes.
-  subroutine append_spcforc(histories, model, snapshot)
-    type(histories_t), intent(inout) :: histories
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: snapshot
-    integer :: i
-
-    if (.not. histories%tables(table_spcforc)%is_open) return
-    do i = 1, size(snapshot%supports)
-      call add_row(histories%tables(table_spcforc), [snapshot%time, &
-        real(model%mesh%node_id(snapshot%supports(i)), wp), snapshot%reaction(:, i)])
-    end do
-  end subroutine append_spcforc
-
-  !> Slave nodes of every interface, in walking order.
-  subroutine append_contact(histories, model, snapshot)
-    type(histories_t), intent(inout) :: histories
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: snapshot
-    integer :: i_contact, i, i_node
-
-    if (.not. histories%tables(table_contact)%is_open) return
-    do i_contact = 1, size(model%contacts)
-      associate (slave => snapshot%slaves(i_contact))
-        do i = 1, size(slave%node)
-          i_node = slave%node(i)
-          call add_row(histories%tables(table_contact), [snapshot%time, &
-            real(model%contacts(i_contact)%id, wp), real(model%mesh%node_id(i_node), wp), &
-            slave%arc_length(i), &
-            model%mesh%coordinates(:, i_node) + snapshot%displacement(:, i_node), &
-            slave%gap(i), slave%pressure(i), slave%force(:, i), slave%length(i)])
-        end do
+      associate (id => model%contacts(i)%id, result => snapshot%interfaces(i), &
+        slave => snapshot%slaves(i))
+        select case (i_table)
+        case (table_rcforc)
+          call put_rcforc(row, snapshot%time, id, side_slave, result)
+          call take(table, row)
+          call put_rcforc(row, snapshot%time, id, side_master, result)
+          call take(table, row)
+        case (table_sleout)
+          call put_sleout(row, snapshot, id, result)
+          call take(table, row)
+        case (table_contact)
+          do k = 1, size(slave%node)
+            i_node = slave%node(k)
+            call put_contact(row, snapshot%time, [id, model%mesh%node_id(i_node)], &
+              model%mesh%coordinates(:, i_node) + snapshot%displacement(:, i_node), slave, k)
+            call take(table, row)
+          end do
+        end select
       end associate
     end do
-  end subroutine append_contact
+  end subroutine append_interfaces
 
-  !> Resultants of the rigid walls.
-  subroutine append_rwforc(histories, model, snapshot)
-    type(histories_t), intent(inout) :: histories
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: snapshot
-    integer :: i
+  !> Hand a row to its table and begin the next.
+  subroutine take(table, row)
+    type(csv_table_t), intent(inout) :: table
+    type(row_t), intent(inout) :: row
 
-    if (.not. histories%tables(table_rwforc)%is_open) return
-    do i = 1, size(snapshot%walls)
-      associate (wall => snapshot%walls(i))
-        call add_row(histories%tables(table_rwforc), [snapshot%time, real(model%walls(i)%id, wp), &
-          wall%force, wall%normal_force, wall%impulse, wall%work, real(wall%n_active, wp)])
-      end associate
-    end do
-  end subroutine append_rwforc
+    call add_row(table, row%values(:row%n))
+    row%n = 0
+  end subroutine take
+
+  ! ---- the columns of each table -----------------------------------------------------------------
+
+  !> The energy account.
+  pure subroutine put_glstat(row, shot)
+    type(row_t), intent(inout) :: row
+    type(snapshot_t), intent(in) :: shot
+
+    associate (e => shot%energies)
+      call put(row, 'time', shot%time)
+      call put(row, 'cycle', shot%cycle)
+      call put(row, 'dt', shot%dt)
+      call put(row, 'kinetic', e%kinetic)
+      call put(row, 'internal', e%internal)
+      call put(row, 'hourglass', e%hourglass)
+      call put(row, 'viscous', e%viscous)
+      call put(row, 'damping', e%damping)
+      call put(row, 'contact', e%contact)
+      call put(row, 'external_work', e%external_work)
+      call put(row, 'total', total_energy(e))
+      call put(row, 'energy_ratio', energy_ratio(e))
+      call put(row, 'leapfrog', e%leapfrog)
+      call end_csv(row)
+      call put(row, 'velocity_x,velocity_y', shot%mean_velocity)
+      call put(row, 'element', shot%slowest(1))
+      call put(row, 'element_part', shot%slowest(2))
+    end associate
+  end subroutine put_glstat
+
+  !> Resultant of one side of an interface.
+  pure subroutine put_rcforc(row, time, id, side, result)
+    type(row_t), intent(inout) :: row
+    real(wp), intent(in) :: time
+    integer, intent(in) :: id, side
+    type(interface_result_t), intent(in) :: result
+
+    call put(row, 'time', time)
+    call put(row, 'interface', id)
+    call put_side(row, 'side', side)
+    call put(row, 'fx,fy', merge(result%slave_force, result%master_force, side == side_slave))
+    call put(row, 'n_active', result%n_active)
+  end subroutine put_rcforc
+
+  !> Motion of a history node.
+  pure subroutine put_nodout(row, shot, id, first_place, i)
+    type(row_t), intent(inout) :: row
+    type(snapshot_t), intent(in) :: shot
+    integer, intent(in) :: id
+    real(wp), intent(in) :: first_place(2)
+    integer, intent(in) :: i              !! index of the node
+
+    call put(row, 'time', shot%time)
+    call put(row, 'node', id)
+    call put(row, 'x,y', first_place + vector_of(shot%displacement, i))
+    call put(row, 'ux,uy', vector_of(shot%displacement, i))
+    call put(row, 'vx,vy', vector_of(shot%velocity, i))
+    call put(row, 'ax,ay', vector_of(shot%acceleration, i))
+    call end_csv(row)
+    call put(row, 'cycle', shot%cycle)
+  end subroutine put_nodout
+
+  !> A slave node.
+  pure subroutine put_contact(row, time, ids, place, slave, i)
+    type(row_t), intent(inout) :: row
+    real(wp), intent(in) :: time
+    integer, intent(in) :: ids(2)         !! of interface and node
+    real(wp), intent(in) :: place(2)      !! of the node, now
+    type(slave_result_t), intent(in) :: slave
+    integer, intent(in) :: i              !! its index there
+
+    call put(row, 'time', time)
+    call put(row, 'interface', ids(1))
+    call put(row, 'node', ids(2))
+    call put(row, 's', value_of(slave%arc_length, i))
+    call put(row, 'x,y', place)
+    call put(row, 'gap', value_of(slave%gap, i))
+    call put(row, 'pressure', value_of(slave%pressure, i))
+    call put(row, 'fx,fy', vector_of(slave%force, i))
+    call put(row, 'length', value_of(slave%length, i))
+  end subroutine put_contact
+
+  !> Sums over a part.
+  pure subroutine put_matsum(row, time, id, sums)
+    type(row_t), intent(inout) :: row
+    real(wp), intent(in) :: time
+    integer, intent(in) :: id
+    type(part_result_t), intent(in) :: sums
+
+    call put(row, 'time', time)
+    call put(row, 'part', id)
+    call put(row, 'kinetic', sums%kinetic)
+    call put(row, 'internal', sums%internal)
+    call put(row, 'hourglass', sums%hourglass)
+    call put(row, 'momentum_x,momentum_y', sums%momentum)
+    call put(row, 'mass', sums%mass)
+  end subroutine put_matsum
+
+  !> Resultant of a rigid wall.
+  pure subroutine put_rwforc(row, time, id, wall)
+    type(row_t), intent(inout) :: row
+    real(wp), intent(in) :: time
+    integer, intent(in) :: id
+    type(wall_result_t), intent(in) :: wall
+
+    call put(row, 'time', time)
+    call put(row, 'wall', id)
+    call put(row, 'fx,fy', wall%force)
+    call put(row, 'normal_force', wall%normal_force)
+    call put(row, 'impulse', wall%impulse)
+    call put(row, 'work', wall%work)
+    call put(row, 'n_active', wall%n_active)
+    call put(row, 'tangential_force', wall%tangential_force)
+    call put(row, 'friction', wall%dissipated)
+  end subroutine put_rwforc
+
+  !> Energies of an interface.
+  pure subroutine put_sleout(row, shot, id, result)
+    type(row_t), intent(inout) :: row
+    type(snapshot_t), intent(in) :: shot
+    integer, intent(in) :: id
+    type(interface_result_t), intent(in) :: result
+
+    call put(row, 'time', shot%time)
+    call put(row, 'cycle', shot%cycle)
+    call put(row, 'interface', id)
+    call put(row, 'energy', result%energy)
+    call put(row, 'damping', result%damping)
+    call put(row, 'stored', result%stored)
+  end subroutine put_sleout
+
+  !> Force of the constraint on a fixed node.
+  pure subroutine put_spcforc(row, shot, id, i)
+    type(row_t), intent(inout) :: row
+    type(snapshot_t), intent(in) :: shot
+    integer, intent(in) :: id
+    integer, intent(in) :: i              !! index of the support
+
+    call put(row, 'time', shot%time)
+    call put(row, 'node', id)
+    call put(row, 'fx,fy', vector_of(shot%reaction, i))
+  end subroutine put_spcforc
+
+  !> One value; 0 of an array that is not there, in the row of nothing.
+  pure function value_of(values, i) result(value)
+    real(wp), allocatable, intent(in) :: values(:)
+    integer, intent(in) :: i
+    real(wp) :: value
+
+    value = 0.0_wp
+    if (allocated(values)) value = values(i)
+  end function value_of
+
+  !> One vector; 0 of an array that is not there, in the row of nothing.
+  pure function vector_of(values, i) result(value)
+    real(wp), allocatable, intent(in) :: values(:, :)
+    integer, intent(in) :: i
+    real(wp) :: value(2)
+
+    value = 0.0_wp
+    if (allocated(values)) value = values(:, i)
+  end function vector_of
 
 end module history_rows_m

@@ -5,7 +5,9 @@ module restart_contact_m
   use archive_file_m, only : archive_t, enter, leave
   use contact_state_m, only : contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
     segment_memory_t
+  use facing_state_m, only : facing_t, facing_side_t
   use contact_watch_m, only : contact_watch_t, contact_change_t
+  use energy_limit_state_m, only : energy_limit_t
   use log_m, only : to_text
   implicit none
   private
@@ -34,6 +36,7 @@ contains
     call keep_tracking(archive, 'slave_tracking', contact%slave_tracking)
     call keep_tracking(archive, 'master_tracking', contact%master_tracking)
     call keep_segments(archive, 'segments', contact%segments)
+    call keep_facing(archive, 'facing', contact%facing)
     call keep_points(archive, 'points', contact%points)
     call keep(archive, 'closed_gap', contact%closed_gap)
     call keep(archive, 'node_pressure', contact%node_pressure)
@@ -46,6 +49,7 @@ contains
     call keep(archive, 'energy', contact%energy)
     call keep(archive, 'damping_work', contact%damping_work)
     call keep_watch(archive, 'watch', contact%watch)
+    call keep_limit(archive, 'limit', contact%limit)
     call keep(archive, 'n_active', contact%n_active)
     call keep(archive, 'n_released', contact%n_released)
     call leave(archive)
@@ -86,6 +90,30 @@ contains
     call leave(archive)
   end subroutine keep_change
 
+  !> What the energy law remembers.
+  subroutine keep_limit(archive, name, limit)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(energy_limit_t), intent(inout) :: limit
+
+    call enter(archive, name)
+    call keep(archive, 'coming_step', limit%coming_step)
+    call keep(archive, 'inverse_mass', limit%inverse_mass)
+    call keep(archive, 'velocity', limit%velocity)
+    call keep(archive, 'recoil', limit%recoil)
+    call keep(archive, 'credit', limit%credit)
+    call keep(archive, 'lent', limit%lent)
+    call keep(archive, 'loan', limit%loan)
+    call keep(archive, 'largest', limit%largest)
+    call keep(archive, 'n_loaded', limit%n_loaded)
+    call keep(archive, 'n_limited', limit%n_limited)
+    call keep(archive, 'least_factor', limit%least_factor)
+    call keep(archive, 'least_time', limit%least_time)
+    call keep(archive, 'recent', limit%recent)
+    call keep(archive, 'warned', limit%warned)
+    call leave(archive)
+  end subroutine keep_limit
+
   !> Spots followed over a chain.
   subroutine keep_tracking(archive, name, tracking)
     type(archive_t), intent(inout) :: archive
@@ -93,7 +121,7 @@ contains
     type(tracking_t), intent(inout) :: tracking
 
     call enter(archive, name)
-    call keep_same(archive, 'n', tracking%n)
+    call keep(archive, 'n', tracking%n)
     call keep(archive, 'n_touching', tracking%n_touching)
     call keep(archive, 'next_wake', tracking%next_wake)
     call keep(archive, 'reach', tracking%reach)
@@ -108,7 +136,7 @@ contains
     call keep(archive, 'recheck', tracking%recheck)
     call keep(archive, 'spot_depth', tracking%spot_depth)
     call keep(archive, 'segment_depth', tracking%segment_depth)
-    call keep_same(archive, 'chord', tracking%chord)
+    call keep(archive, 'chord', tracking%chord)
     call keep_grid(archive, 'grid', tracking%grid)
     call leave(archive)
   end subroutine keep_tracking
@@ -143,6 +171,35 @@ contains
     call leave(archive)
   end subroutine keep_segments
 
+  !> Runs of facing segments. The present interface is made of them again.
+  subroutine keep_facing(archive, name, facing)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(facing_t), intent(inout) :: facing
+
+    call enter(archive, name)
+    call keep_same(archive, 'is_used', facing%is_used)
+    call keep(archive, 'next_look', facing%next_look)
+    call keep(archive, 'n_look', facing%n_look)
+    call keep(archive, 'n_change', facing%n_change)
+    call keep_side(archive, 'slave', facing%slave)
+    call keep_side(archive, 'master', facing%master)
+    call leave(archive)
+  end subroutine keep_facing
+
+  !> The runs of one surface.
+  subroutine keep_side(archive, name, side)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(facing_side_t), intent(inout) :: side
+
+    call enter(archive, name)
+    call keep(archive, 'n', side%n)
+    call keep(archive, 'segments', side%segments)
+    call keep(archive, 'is_cut', side%is_cut)
+    call leave(archive)
+  end subroutine keep_side
+
   !> Contact points.
   subroutine keep_points(archive, name, points)
     type(archive_t), intent(inout) :: archive
@@ -160,6 +217,7 @@ contains
     call keep_growing(archive, 'area', points%area)
     call keep_growing(archive, 'stiffness', points%stiffness)
     call keep_growing(archive, 'pressure', points%pressure)
+    call keep_growing(archive, 'load', points%load)
     call leave(archive)
   end subroutine keep_points
 

@@ -5,7 +5,8 @@ module restart_history_m
   use archive_m, only : keep, keep_growing, expect
   use archive_file_m, only : archive_t, enter, leave
   use csv_table_m, only : csv_table_t, add_row
-  use history_file_m, only : histories_t, n_table
+  use history_file_m, only : histories_t
+  use history_tables_m, only : n_table
   use kinds_m, only : wp, long
   use log_m, only : to_text
   use output_schedule_m, only : schedule_t, mark_written

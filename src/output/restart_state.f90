@@ -156,6 +156,9 @@ contains
     call keep(archive, 'speed', wall%speed)
     call keep(archive, 'impulse', wall%impulse)
     call keep(archive, 'work', wall%work)
+    call keep(archive, 'friction', wall%friction)
+    call keep(archive, 'slip_speed', wall%slip_speed)
+    call keep(archive, 'dissipated', wall%dissipated)
     call leave(archive)
   end subroutine keep_wall
 

@@ -5,7 +5,8 @@ module results_tables_m
   use hdf5, only : hid_t, h5gopen_f, h5gclose_f
   use kinds_m, only : wp
   use errors_m, only : error_t
-  use history_file_m, only : histories_t, n_table
+  use history_file_m, only : histories_t
+  use history_tables_m, only : n_table
   use csv_table_m, only : csv_table_t, column_name, n_columns, kind_real
   use hdf5_writing_m, only : as_real, as_integer, make_group, write_rows, &
     write_string_attribute, write_text

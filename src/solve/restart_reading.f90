@@ -4,9 +4,10 @@
 module restart_reading_m
   use archive_file_m, only : archive_t, enter, leave
   use errors_m, only : error_t, raise, status_input
+  use explicit_memory_m, only : check_steps
+  use implicit_memory_m, only : check_memory
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
-  use march_m, only : check_march
   use model_m, only : model_t
   use monitor_m, only : monitor_t, plan_outputs
   use output_schedule_m, only : output_reach
@@ -16,11 +17,10 @@ module restart_reading_m
   use restart_history_m, only : keep_times
   use restart_plan_m, only : restarts_t, place_text
   use restart_run_m, only : keep_run, keep_outputs
-  use restart_steps_m, only : check_steps
   use restart_state_m, only : keep_state
   use results_copy_m, only : check_old_results, copy_states
   use results_file_m, only : results_file_t
-  use start_m, only : start_state
+  use start_m, only : start_state, resume_contacts
   use state_m, only : state_t
   implicit none
   private
@@ -80,6 +80,9 @@ contains
       allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
     call keep_state(source, state)
     if (.not. allocated(source%error)) call check_state(model, state, source)
+    if (.not. allocated(source%error)) then
+      call resume_contacts(model, state)
+    end if
     if (allocated(source%error)) then
       error = source%error
     else if (state%time - model%controls%end_time > merge(round_off, 1.0_wp, &
@@ -102,7 +105,7 @@ contains
     call keep_outputs(source, state%time - state%dt_before, &
       output_reach(model%controls, state%dt_before), planned)
     if (model%controls%implicit%is_on) then
-      call check_march(model, state, source)
+      call check_memory(model, state, source)
     else
       call check_steps(model, state, source)
     end if

@@ -17,16 +17,21 @@
 !> touch before the travel has grown by d: until then it sleeps.
 module contact_state_m
   use contact_watch_m, only : contact_watch_t
+  use energy_limit_state_m, only : energy_limit_t
+  use facing_state_m, only : facing_t
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
   implicit none
   private
   public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
-    segment_memory_t, contact_scratch_t, allocate_points, make_room, allocate_tracking, &
-    allocate_scratch, n_side, is_free, is_in_front, is_touching, is_behind
+    segment_memory_t, contact_scratch_t, allocate_points, allocate_loads, make_room, &
+    allocate_tracking, allocate_grid, allocate_scratch, n_side, n_load, is_free, is_in_front, &
+    is_touching, is_behind
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
+  !> What a point loads its nodes with: force, and the part of it that nodes have apart as well.
+  integer, parameter :: n_load = 4
   !> What a tracked spot is doing: free (no face is known that it stands before), in front of its
   !> segment, touching it, or behind it without contact because it was never caught.
   integer, parameter :: is_free = 0, is_in_front = 1, is_touching = 2, is_behind = 3
@@ -43,6 +48,9 @@ module contact_state_m
     real(wp), allocatable :: area(:)           !! m (1 for type 1)
     real(wp), allocatable :: stiffness(:)      !! N/m^2 (N/m for type 1)
     real(wp), allocatable :: pressure(:)       !! N/m (N for type 1), >= 0: what acts
+    real(wp), allocatable :: load(:, :)        !! (n_load, capacity) force on the slave side, and
+                                               !! the part of it that damping has, N/m; only where
+                                               !! there is damping
   end type contact_points_t
 
   !> Segments sorted into square cells by hashing; tells which segments are near a place.
@@ -67,7 +75,9 @@ module contact_state_m
     integer, allocatable :: touching(:)      !! (n) the first n_touching: spots in contact, in order
     integer, allocatable :: due(:)           !! (n) scratch: what is to be looked at, first the
                                              !! spots of that list by their place on it, then others
-                                             !! by number
+                                             !! by number; after an update the first n_aside:
+                                             !! spots caught from beside
+    integer :: n_aside = 0                   !! set by each update
     integer, allocatable :: segment(:)       !! (n) segment of the chain, 0 = unpaired
     integer, allocatable :: status(:)        !! (n) one of the constants above
     real(wp), allocatable :: xi(:)           !! (n) 0 to 1 along the segment (a little more at ends)
@@ -95,6 +105,11 @@ module contact_state_m
                                             !! before, 0 between calls
     real(wp), allocatable :: nodal(:, :)    !! (2, n_slave + n_master) averaged gaps, springs at
                                             !! nodes
+    real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) of this call; only where
+                                            !! forces are limited
+    real(wp), allocatable :: spring(:, :)   !! (2, n_slave + n_master) forces without damping; only
+                                            !! where there is any
+    real(wp), allocatable :: former_spring(:, :) !! the same of the call before
     integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps
     logical, allocatable :: is_placed(:)    !! (slave segments) have their points
     type(piece_table_t), allocatable :: pieces !! lent to the placement while it works
@@ -116,6 +131,7 @@ module contact_state_m
     type(tracking_t) :: slave_tracking      !! slave nodes, or `spots`, over the master chain
     type(tracking_t) :: master_tracking     !! master nodes over the slave chain; empty for one pass
     type(segment_memory_t) :: segments      !! of the slave surface
+    type(facing_t) :: facing                !! runs of facing segments, where there is an outline
     type(contact_points_t) :: points
     real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where
                                             !! a tangent of touching bodies is wanted
@@ -132,6 +148,7 @@ module contact_state_m
     real(wp) :: energy = 0.0_wp             !! minus the accumulated work of the springs, J/m
     real(wp) :: damping_work = 0.0_wp       !! minus that of the damping forces
     type(contact_watch_t) :: watch          !! whether the springs give back what they take
+    type(energy_limit_t) :: limit           !! that they give back no more
     integer :: n_active = 0                 !! points that carry pressure
     integer :: n_released = 0               !! first contacts deeper than the limit that were let go
     type(contact_scratch_t) :: scratch
@@ -150,6 +167,13 @@ contains
     allocate (points%gap(capacity), points%area(capacity), points%stiffness(capacity), &
       points%pressure(capacity), source=0.0_wp)
   end subroutine allocate_points
+
+  !> The column of loads, for a list that is allocated.
+  pure subroutine allocate_loads(points)
+    type(contact_points_t), intent(inout) :: points
+
+    allocate (points%load(n_load, size(points%gap)), source=0.0_wp)
+  end subroutine allocate_loads
 
   !> Make room for `n_more` points. The capacity of the start serves chains that face each other
   !> once; only where slave segments lie upon each other is more needed, and the list then doubles.
@@ -172,6 +196,10 @@ contains
     larger%area(:n) = points%area(:n)
     larger%stiffness(:n) = points%stiffness(:n)
     larger%pressure(:n) = points%pressure(:n)
+    if (allocated(points%load)) then
+      call allocate_loads(larger)
+      larger%load(:, :n) = points%load(:, :n)
+    end if
     points = larger
   end subroutine make_room
 
@@ -180,7 +208,6 @@ contains
   pure subroutine allocate_tracking(tracking, n, n_segment)
     type(tracking_t), intent(inout) :: tracking
     integer, intent(in) :: n, n_segment
-    integer :: n_bucket
 
     tracking%n = n
     allocate (tracking%touching(n), tracking%due(n), tracking%segment(n), tracking%status(n), &
@@ -188,12 +215,21 @@ contains
     allocate (tracking%xi(n), tracking%gap(n), tracking%normal(2, n), tracking%spot_depth(n), &
       tracking%segment_depth(n_segment), source=0.0_wp)
     allocate (tracking%wake(n), tracking%recheck(n), source=-huge(1.0_wp))
+    call allocate_grid(tracking%grid, n_segment)
+  end subroutine allocate_tracking
+
+  !> Allocate a grid for so many segments.
+  pure subroutine allocate_grid(grid, n_segment)
+    type(bucket_grid_t), intent(inout) :: grid
+    integer, intent(in) :: n_segment
+    integer :: n_bucket
+
     n_bucket = 16
     do while (n_bucket < 2*n_segment)
       n_bucket = 2*n_bucket
     end do
-    allocate (tracking%grid%first(n_bucket + 1), tracking%grid%items(8*n_segment + 8), source=0)
-  end subroutine allocate_tracking
+    allocate (grid%first(n_bucket + 1), grid%items(8*n_segment + 8), source=0)
+  end subroutine allocate_grid
 
   !> Allocate the room of an interface; after a restart too.
   pure subroutine allocate_scratch(memory)
@@ -202,6 +238,9 @@ contains
     associate (scratch => memory%scratch, n => memory%n_slave + memory%n_master)
       allocate (scratch%former_force(2, n), scratch%nodal(2, n), source=0.0_wp)
       allocate (scratch%point_at(memory%n_slave), source=0)
+      if (allocated(memory%limit%velocity)) allocate (scratch%velocity(2, n), source=0.0_wp)
+      if (allocated(memory%limit%velocity) .and. allocated(memory%damping_force)) &
+        allocate (scratch%spring(2, n), scratch%former_spring(2, n), source=0.0_wp)
       if (.not. allocated(memory%segments%status)) return
       allocate (scratch%is_placed(size(memory%segments%status)), source=.false.)
       allocate (scratch%pieces)

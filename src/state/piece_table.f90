@@ -20,6 +20,8 @@ module piece_table_m
     integer :: n_segment = 0              !! slave segments in use
     integer :: n = 0                      !! pieces in use
     logical :: is_full = .false.          !! no other segment may fit
+    real(wp) :: least_cut = 0.0_wp        !! part of a slave segment next to its ends where master
+                                          !! nodes need not cut it
     integer, allocatable :: slave(:)      !! (segments) of the slave
     integer, allocatable :: last(:)       !! (0:segments) last piece of each
     logical, allocatable :: touches(:)    !! (segments) both ends are in contact

@@ -34,6 +34,8 @@ module snapshot_m
     real(wp) :: impulse = 0.0_wp
     real(wp) :: work = 0.0_wp
     integer :: n_active = 0
+    real(wp) :: tangential_force = 0.0_wp
+    real(wp) :: dissipated = 0.0_wp
   end type wall_result_t
 
   !> Slave nodes of one interface in walking order; all arrays (n_slave) but the last.

@@ -12,8 +12,14 @@ module wall_state_m
                                       !! now, N/m
     real(wp), allocatable :: speed(:) !! (nodes of the wall) velocity along its normal before that,
                                       !! m/s
+    real(wp), allocatable :: friction(:)   !! (nodes of the wall, none without friction) what it
+                                           !! holds back with along its tangent now, N/m
+    real(wp), allocatable :: slip_speed(:) !! (as `friction`) velocity along the tangent before
+                                           !! that, m/s
     real(wp) :: impulse = 0.0_wp      !! of all its nodes so far, N s/m
     real(wp) :: work = 0.0_wp         !! on all its nodes so far, J/m; negative: lost in impacts
+                                      !! and in friction
+    real(wp) :: dissipated = 0.0_wp   !! by friction so far, J/m
   end type wall_state_t
 
 end module wall_state_m

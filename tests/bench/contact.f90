@@ -2,21 +2,25 @@
 !> Time of contact alone, whole (search, points, pressure, scatter, energy; the clock takes no laps): two chains
 !> that face each other, the slave sliding over the master by 1e-4 of a segment a step. `flat`: all slave nodes
 !> touch; `crown`: the slave is part of a circle that dips into a flat master, a third of its nodes touch.
-!> usage: bench_contact [SLAVE_NODES [TYPE]]. Prints a row per scene, size and type: the best and the median of interleaved
-!> rounds, ns per step, slave node and point.
+!> `match` and `shift`: two meshes of the same size that move by 1e-6 of a segment, their nodes 1e-7 off their places:
+!> nodes opposite nodes, and opposite a place between two.
+!> usage: bench_contact [SLAVE_NODES [TYPE, 0 for all [STEPS]]]. Prints a row per scene, size and
+!> type: the best and the median of interleaved rounds, ns per step, slave node and point.
 program bench_contact
   use, intrinsic :: iso_fortran_env, only : output_unit
   use contact_factories_m, only : problem_t, make_problem, line
-  use contact_force_m, only : start_contact, apply_contact
+  use interface_m, only : start_contact, apply_contact
   use kinds_m, only : wp
   implicit none
 
   integer, parameter :: n_type = 7, n_round = 5, sizes(3) = [20, 1000, 100000]
-  character(5), parameter :: scenes(2) = [character(5) :: 'flat', 'crown']
+  character(5), parameter :: scenes(4) = [character(5) :: 'flat', 'crown', 'match', 'shift']
   !> Steps times slave nodes of a round.
   integer, parameter :: n_work = 200000
   real(wp), parameter :: slip = 1.0e-4_wp
-  integer :: i_scene, i_size, chosen(2) !! slave nodes and type asked for, 0: all
+  !> Part of it in the scenes of meshes of the same size, and how far their nodes are off their places.
+  real(wp), parameter :: creep = 1.0e-6_wp, off_place = 1.0e-7_wp
+  integer :: i_scene, i_size, chosen(3) !! slave nodes, type and steps of a round asked for, 0: all
   character(20) :: argument
 
   chosen = 0
@@ -51,13 +55,14 @@ contains
     do i_type = 1, n_type
       if (chosen(2) > 0 .and. chosen(2) /= i_type) cycle
       call start_problem(problems(i_type), scene, n, i_type)
-      call take_steps(problems(i_type), 3, best)
+      call take_steps(scene, problems(i_type), 3, best)
     end do
     n_step = max(20, n_work/n)
+    if (chosen(3) > 0) n_step = chosen(3)
     do i_round = 1, n_round
       do i_type = 1, n_type
         if (chosen(2) > 0 .and. chosen(2) /= i_type) cycle
-        call take_steps(problems(i_type), n_step, times(i_round, i_type))
+        call take_steps(scene, problems(i_type), n_step, times(i_round, i_type))
       end do
     end do
     do i_type = 1, n_type
@@ -72,7 +77,7 @@ contains
     end do
   end subroutine time_types
 
-  !> Chains of unit segments, the master's a little longer.
+  !> Chains of unit segments; where the slave slides, the master's are a little longer.
   subroutine start_problem(problem, scene, n, i_type)
     type(problem_t), intent(out) :: problem
     character(*), intent(in) :: scene
@@ -81,8 +86,10 @@ contains
     integer :: n_master
 
     slave = line([0.0_wp, 0.0_wp], [real(n - 1, wp), 0.0_wp], n - 1)
-    n_master = nint((n + 9)/1.02_wp)
+    n_master = n + 9
+    if (scene == 'flat' .or. scene == 'crown') n_master = nint((n + 9)/1.02_wp)
     master = line([n + 4.0_wp, 0.0_wp], [-5.0_wp, 0.0_wp], n_master)
+    if (scene == 'match' .or. scene == 'shift') call move_nodes(merge(0.4_wp, 0.0_wp, scene == 'shift'), master)
     slave(2, :) = -1.0e-3_wp*(1.0_wp + 0.1_wp*sin(real(slave(1, :), wp)))
     ! Depth at the middle such that a third of the chord is below zero.
     if (scene == 'crown') slave(2, :) = 0.3_wp/n*((slave(1, :) - 0.5_wp*(n - 1))**2/n - n/36.0_wp)
@@ -93,8 +100,20 @@ contains
     call start_contact(problem%contact, problem%model, problem%log, problem%memory)
   end subroutine start_problem
 
+  !> Bring nodes off their places along the chain: all by a shift, each by a little.
+  subroutine move_nodes(shift, nodes)
+    real(wp), intent(in) :: shift
+    real(wp), intent(inout) :: nodes(:, :)
+    integer :: i
+
+    do i = 1, size(nodes, 2)
+      nodes(1, i) = nodes(1, i) + (shift + off_place*sin(1.7_wp*i))
+    end do
+  end subroutine move_nodes
+
   !> Mean time of a step, ns of this process (the machine may be shared). Moving the slave is not counted.
-  subroutine take_steps(problem, n_step, time)
+  subroutine take_steps(scene, problem, n_step, time)
+    character(*), intent(in) :: scene
     type(problem_t), intent(inout) :: problem
     integer, intent(in) :: n_step
     real(wp), intent(out) :: time
@@ -103,13 +122,13 @@ contains
 
     call cpu_time(start)
     do i = 1, n_step
-      call move_slave(problem)
+      call move_slave(scene, problem)
       call apply_contact(problem%contact, problem%motion, problem%mass, 1.0e-9_wp*problem%cycle, 1.0e-9_wp, &
         problem%cycle, problem%clock, problem%memory, problem%force)
     end do
     call cpu_time(middle)
     do i = 1, n_step
-      call move_slave(problem)
+      call move_slave(scene, problem)
     end do
     call cpu_time(finish)
     problem%cycle = problem%cycle - n_step
@@ -117,13 +136,15 @@ contains
   end subroutine take_steps
 
   !> To and fro over two segments.
-  subroutine move_slave(problem)
+  subroutine move_slave(scene, problem)
+    character(*), intent(in) :: scene
     type(problem_t), intent(inout) :: problem
     integer :: i
     real(wp) :: shift
 
     problem%cycle = problem%cycle + 1
     shift = 2.0_wp*abs(1.0_wp - modulo(0.5_wp*slip*problem%cycle, 2.0_wp))
+    if (scene == 'match' .or. scene == 'shift') shift = creep*(shift - 2.0_wp)
     do i = 1, problem%contact%slave%n_node
       problem%motion(1, i) = shift
     end do

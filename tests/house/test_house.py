@@ -11,25 +11,31 @@ from fortran_source import ROOT, read_source, without_strings
 #: layer -> layers it may use
 LAYERS = {
     "base": set(),
+    "linear": {"base"},
     "model": {"base"},
     "deck": {"base", "model"},
     "state": {"base", "model"},
     "material": {"base", "model"},
-    "element": {"base", "model", "state", "material"},
+    "element": {"base", "linear", "model", "state", "material"},
     "contact_chain": {"base", "model", "state"},
     "contact_search": {"base", "model", "state", "contact_chain"},
     "contact_pieces": {"base", "model", "state", "contact_chain", "contact_search"},
     "contact_place": {"base", "model", "state", "contact_chain", "contact_search", "contact_pieces"},
     "contact_law": {"base", "model", "state"},
-    "contact_tangent": {"base", "model", "state", "contact_chain", "contact_pieces", "contact_place", "contact_law"},
-    "contact": {"base", "model", "state", "contact_chain", "contact_search", "contact_pieces", "contact_place",
-                "contact_law", "contact_tangent"},
+    "contact_tangent": {"base", "linear", "model", "state", "contact_chain", "contact_pieces", "contact_place", "contact_law"},
+    "contact": {"base", "linear", "model", "state", "contact_chain", "contact_search", "contact_pieces",
+                "contact_place", "contact_law", "contact_tangent"},
     "loads": {"base", "model"},
     "output": {"base", "model", "state"},
-    "solve": {"base", "model", "state", "element", "contact", "contact_law", "loads", "output"},
+    "run": {"base", "model", "state", "element", "contact", "loads", "output"},
+    "solve_start": {"base", "model", "state", "element", "contact", "loads"},
+    "solve_explicit": {"base", "model", "state", "element", "contact", "loads", "output", "run", "solve_start"},
+    "solve_implicit": {"base", "linear", "model", "state", "element", "contact", "contact_law", "loads", "output",
+                       "run"},
+    "solve": {"base", "model", "state", "output", "run", "solve_start", "solve_explicit", "solve_implicit"},
 }
 #: modules from outside -> layers that may use them
-OUTSIDE = {"hdf5": {"output"}, "omp_lib": {"state", "element", "contact", "solve", ""}}
+OUTSIDE = {"hdf5": {"output"}, "omp_lib": {"state", "element", "contact", "solve_explicit", ""}}
 #: what decides between kinds -> the one file that may ask for it
 DISPATCHERS = {
     "contact_type": "contact_dispatch.f90",
@@ -40,7 +46,7 @@ DISPATCHERS = {
 MOST_FILE_LINES, MOST_PROCEDURE_LINES, MOST_ARGUMENTS, MOST_COLUMNS = 450, 80, 8, 100
 MOST_TEST_COLUMNS = 132
 #: procedures that have more arguments, and how many; none may be added
-MORE_ARGUMENTS = {"add_pressures": 9, "advance_one_point": 9, "grow_with_rate": 10, "find_way": 9}
+MORE_ARGUMENTS = {"advance_one_point": 9, "grow_with_rate": 10}
 MORE_ARGUMENTS_IN_CONTACT = 10
 MOST_MEDIAN_LINES = 25
 AIM_FILE_LINES, AIM_PROCEDURE_LINES, AIM_ARGUMENTS = 300, 60, 8

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from fortran_source import ROOT
+from fortran_source import ROOT, read_source
 
 SOURCE = "".join((ROOT / "src/deck" / name).read_text(encoding="utf-8")
                  for name in ("deck_schema_tables.f90", "deck_schema_others.f90"))
@@ -69,3 +69,18 @@ def test_page_names_what_is_ignored_and_refused():
     for line in table_lines("table_others"):
         keyword, reason = line.split(maxsplit=1)
         assert f"`*{keyword}`" in (ignored if reason.strip() == "ignored" else refused)
+
+
+#: a field asked for by name, as in `real_of(card, 'FS')`, `find_field(cursor, 1, 'NID')`, `place_t(line, 1, 'LCID')`
+ASKED = re.compile(r"\b(?:integer_of|real_of|reals_of|is_blank|is_bad|has_field|place_of|place_t|report_field|refuse_negative|"
+                   r"refuse_outside|require_id|check_\w+|hourglass_\w+|note_explicit|find_field|find_keyword_field)"
+                   r"\((?:deck, )?\w+(?:%\w+)*(?:\([^()]*\))?(?:, (?:cursor|card|cards\(\d\)|\d))*, '(\w+)'(?:, '(\w+)')?")
+
+
+def test_fields_asked_for_are_in_the_table():
+    fields = {name for rows in READER.values() for _, name, *_ in rows}
+    asked = [(source.name, line, name) for source in map(read_source, sorted((ROOT / "src/deck").rglob("*.f90")))
+             for line, statement in source.statements for match in ASKED.finditer(statement)
+             for name in match.groups() if name and re.fullmatch(r"[A-Z]\w*", name)]
+    assert len(asked) > 150
+    assert not [place for place in asked if place[2] not in fields]

@@ -19,40 +19,47 @@ KEPT = {
     "contact_watch_t": ("state/contact_watch.f90", "output/restart_contact.f90", "watch%", {
         "changes": "kept one by one"}),
     "contact_change_t": ("state/contact_watch.f90", "output/restart_contact.f90", "change%", {}),
-    "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {}),
+    "energy_limit_t": ("state/energy_limit_state.f90", "output/restart_contact.f90", "limit%", {}),
+    "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {
+        "n_aside": "set by each update"}),
     "bucket_grid_t": ("state/contact_state.f90", "output/restart_contact.f90", "grid%", {}),
+    "facing_t": ("state/facing_state.f90", "output/restart_contact.f90", "facing%", {
+        "present": "made of the lists and the deck"}),
+    "facing_side_t": ("state/facing_state.f90", "output/restart_contact.f90", "side%", {
+        "depth": "of the initial mesh", "caught": "of the initial mesh", "reached": "of the initial mesh"}),
     "segment_memory_t": ("state/contact_state.f90", "output/restart_contact.f90", "segments%", {}),
     "contact_points_t": ("state/contact_state.f90", "output/restart_contact.f90", "points%", {}),
-    "step_plan_t": ("solve/time_step.f90", "solve/restart_steps.f90", "steps%", {}),
-    "spring_bound_t": ("contact/contact_step_limit.f90", "solve/restart_steps.f90", "springs(i)%", {}),
+    "step_plan_t": ("solve/explicit/time_step.f90", "solve/explicit/explicit_memory.f90", "steps%", {}),
+    "spring_bound_t": ("contact/contact_step_limit.f90", "solve/explicit/explicit_memory.f90", "springs(i)%", {}),
     "schedule_t": ("output/output_schedule.f90", "output/restart_history.f90", "kept%", {
         "end_time": "from the deck, which may change it", "curve": "kept as two arrays"}),
     "histories_t": ("output/history_file.f90", "output/restart_history.f90", "histories%", {
         "tables": "kept one by one"}),
-    "monitor_t": ("solve/monitor.f90", "solve/restart_run.f90", "monitor%", {
+    "monitor_t": ("run/monitor.f90", "run/restart_run.f90", "monitor%", {
         "results": "times of its states are kept", "snapshot": "filled anew before it is written",
         "log": "of each run", "clock": "of each run", "progress": "of each run",
-        "restarts": "n_dump is kept", "has_plot": "from the deck", "only_checks": "of a check"}),
-    "cycle_t": ("solve/cycle.f90", "solve/restart_steps.f90", "", {
+        "restarts": "n_dump is kept", "has_plot": "from the deck", "only_checks": "of a check",
+        "tables": "kept one by one"}),
+    "explicit_cycle_t": ("solve/explicit/explicit_cycle.f90", "solve/explicit/explicit_memory.f90", "", {
         "writes": "set in each cycle", "finished": "not when a file is written",
         "last": "found again", "plots": "of the run that was asked", "due": "set in each cycle",
         "leap": "made in each cycle", "sums": "formed in each cycle",
         "checks": "filled in each cycle", "steps": "kept as step_plan_t",
-        "timed_motions": "from the deck", "velocity": "made in each cycle",
+        "timed_motions": "from the deck", "active": "asked anew in the first cycle", "velocity": "made in each cycle",
         "displacement": "made in each cycle", "reason": "of each run", "error": "of each run"}),
-    "march_t": ("solve/march.f90", "solve/march.f90", "", {
+    "implicit_memory_t": ("solve/implicit/implicit_memory.f90", "solve/implicit/implicit_memory.f90", "", {
         "control": "kept as step_control_t", "step": "kept as step_t", "trial": "kept as trial_t",
         "written": "of another state"}),
-    "step_control_t": ("solve/step_control.f90", "solve/march.f90", "control%", {
+    "step_control_t": ("solve/implicit/step_control.f90", "solve/implicit/implicit_memory.f90", "control%", {
         "next": "planned anew", "is_last": "planned anew", "end_time": "from the deck, which may change it",
         "is_automatic": "from the deck", "least": "from the deck", "most": "from the deck", "few": "from the deck",
         "many": "from the deck", "changes": "from the deck"}),
-    "step_t": ("solve/tangent.f90", "solve/march.f90", "step%", {
+    "step_t": ("solve/implicit/implicit_tangent.f90", "solve/implicit/implicit_memory.f90", "step%", {
         "time": "set in each step", "dt": "set in each step", "is_dynamic": "from the deck",
         "alpha_m": "from the deck", "alpha_f": "from the deck", "gamma": "from the deck", "beta": "from the deck",
         "old_force": "formed from those of trial_t", "equations": "numbered in each step",
         "prescribed": "found in each step"}),
-    "trial_t": ("solve/forces.f90", "solve/march.f90", "trial%", {
+    "trial_t": ("solve/implicit/implicit_forces.f90", "solve/implicit/implicit_memory.f90", "trial%", {
         "motion": "of the step that is over", "elements": "those of the state", "contacts": "those of the state",
         "slots": "formed with each force"}),
 }
@@ -99,9 +106,9 @@ def test_every_type_of_the_state_is_looked_at():
 
 #: driver -> (procedure with the loop over cycles or steps, what lives there and need not be kept, and why)
 DRIVERS = {
-    "solve/explicit.f90": ("advance_explicit", {"cycle": "kept as cycle_t"}),
-    "solve/implicit.f90": ("advance_implicit", {
-        "march": "kept as march_t", "asked": "of the present step", "second": "of the end of a run that fails",
+    "solve/explicit/explicit.f90": ("advance_explicit", {"cycle": "kept as explicit_cycle_t"}),
+    "solve/implicit/implicit.f90": ("advance_implicit", {
+        "memory": "kept as implicit_memory_t", "asked": "of the present step", "second": "of the end of a run that fails",
         "last": "found again"}),
 }
 

@@ -23,8 +23,8 @@ from replay import does_the_same, finish_recording, start_recording
 
 ROOT = Path(__file__).resolve().parents[2]
 #: layer -> unit tests that run it
-UNIT_TESTS = {"contact": ("contact/test_*", "solve/test_forces"),
-              "material": ("material/test_*", "element/test_*", "solve/test_forces")}
+UNIT_TESTS = {"contact": ("contact/test_*", "solve/test_implicit_forces"),
+              "material": ("material/test_*", "element/test_*", "solve/test_implicit_forces")}
 #: layer -> cases of tests/verification and tests/regression that run it
 CASES = {"contact": ("contact_forces", "collision_*", "closed_chains", "deep_first_contact", "chain_end",
                      "block_to_block", "contact_patch_static", "momentum_and_third_law", "stable_step"),

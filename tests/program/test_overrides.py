@@ -91,6 +91,10 @@ def slide(card_1, card_2=None):
     (slide("2,,2.0e5,", ",,7"), ("punit=1",)),
     (slide("2,,2.0e5,", ",,0,-1.0"), ("pent=1.0e5",)),
     (slide("2,,2.0e5,", ",,0,,-5.0"), ("vdc=10",)),
+    (slide("2,,2.0e5,-0.3"), ("fs=0",)),
+    (slide("2,,2.0e5,0.0,-0.3"), ("fd=0",)),
+    (slide("2,,2.0e5,0.0,0.0,-2.0"), ("dc=2",)),
+    (slide("2,,2.0e5,", ",,\n-1.0,2.0"), ("vc=1.0e5", "tfac=0.5")),
     (slide("2,,2.0e5,").replace("_SLIDELINE\n-2,-3,2,,2.0e5", "_AUTOMATIC_SURFACE_TO_SURFACE\n-2,-3,-1.0"), ("pen=1.5",)),
     (slide("2,,2.0e5,").replace("0.0,0.9,0,0.0,0.0,9001", "0.0,-0.9"), ("tssfac=0.5",)),
     (slide("2,,2.0e5,").replace("0.0,0.9,0,0.0,0.0,9001", "0.0,0.9,0,0.0,0.0,-1"), ("dt=1.0e-4",)),
@@ -109,6 +113,7 @@ def test_blank_or_bad_field_that_the_command_line_gives(slideline, said, tmp_pat
 
 @pytest.mark.parametrize("card_1, card_2, word, message", [
     ("2,,2.0e5,", ",,0,0.0,101.0", "vdc=101.0", '"{0}101.0" {1}is not a damping in per cent of critical (0 to 100)'),
+    ("2,,2.0e5,", ",,\n0.0,1.5", "tfac=1.5", '"{0}1.5" {1}is not a tangential over the normal penalty (above 0, at most 1)'),
     ("9,,2.0e5,", None, "ctype=9", '"{0}9" {1}is not a contact type (1 classical NTS, 2 NTS-AR'),
     ("2,11,2.0e5,", None, "ngauss=11", '"{0}11" {1}is not a number of Gauss points from 1 to 10'),
     ("2,,2.0e5,", ",,4", "punit=4", '"{0}4" {1}is not a unit of the penalty (0 N/m per contact node, 1 N/m^2'),

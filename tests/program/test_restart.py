@@ -237,7 +237,7 @@ def test_head_is_that_of_an_independent_program(slideline, tmp_path):
     assert slideline("d=a", deck=with_files(drop(), dump=100)).returncode == 0
     data = (tmp_path / "a" / "job.dump01.h5").read_bytes()
     lines = data[:HEAD].decode().splitlines()
-    assert lines[:3] == ["slideline restart 7", f"length {len(data) - HEAD}",
+    assert lines[:3] == ["slideline restart 11", f"length {len(data) - HEAD}",
                          f"checksum {zlib.crc32(data[HEAD:]):08X}"]
     with h5py.File(tmp_path / "a" / "job.dump01.h5") as stream:
         assert stream["state/cycle"][0] == 100
@@ -254,8 +254,8 @@ def test_bad_files_are_refused_with_the_reason(slideline, tmp_path):
         flipped[at] ^= 1 << int(random.integers(8))
         cases.append((bytes(flipped), "damaged"))
     cases += [(good + b" ", "damaged"), (good[:300], "truncated"), (b"", "empty"),
-              (good.replace(b"restart 7", b"restart 6", 1), "an older version"),
-              (good.replace(b"restart 7", b"restart 8", 1), "a newer version"),
+              (good.replace(b"restart 11", b"restart 10", 1), "an older version"),
+              (good.replace(b"restart 11", b"restart 12", 1), "a newer version"),
               (good.replace(b"checksum ", b"checksun ", 1), "damaged"),
               (good[HEAD:], "another HDF5 file"), (b"*KEYWORD\n*END\n", "not a restart file"),
               ((tmp_path / "a" / "job.vtkhdf").read_bytes(), "another HDF5 file")]

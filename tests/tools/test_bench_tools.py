@@ -14,11 +14,14 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "bench"), str(ROOT / "tests" / "bench" / "peers")]
 
 import calculix  # noqa: E402
+import counted  # noqa: E402
 import elements  # noqa: E402
 import measuring  # noqa: E402
 import search  # noqa: E402
 import wave  # noqa: E402
+from slideline_tools import UserError  # noqa: E402
 from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
+from slideline_tools.counting import Counts  # noqa: E402
 from slideline_tools.studies import peers, speed  # noqa: E402
 
 STEP = measuring.Variant("step", "elastic", 4000, 1, "ns/element")
@@ -223,7 +226,10 @@ def test_page_of_peers(tmp_path):
                    ("slideline", "type 5", 1.0, 1e-15, 0.1, ""),
                    ("CalculiX", "node to surface", 1.02, 0.03, 0.25, ""),
                    ("CalculiX", "mortar", "nan", "nan", 0.1, "*ERROR: node 17 is tied"))]
-    for name, rows in (("elements", waves), ("contact", contact)):
+    counts = [{"round": 1, "scene": scene, "elements": elements, "program": program, "what": what, "instructions": count,
+               "counted_by": "callgrind, x86-64-v3"} for scene, elements, program, what, count in (
+                   ("step", 100, "Other", "2x2 points", 1234.4), ("patch", 41, "CalculiX", "node to surface", 2.5e8))]
+    for name, rows in (("elements", waves), ("contact", contact), ("counts", counts)):
         with open(tmp_path / f"{name}.csv", "w", newline="", encoding="ascii") as stream:
             writer = csv.DictWriter(stream, rows[0].keys())
             writer.writeheader()
@@ -234,6 +240,24 @@ def test_page_of_peers(tmp_path):
     assert "| akantu | 1.2.3 | PyPI, wheel |" in text
     assert "Other (2x2 points) takes 3.0 to 3.0 times as long as slideline's element with 2x2 points and 9.0 to 9.0" in text
     assert "within 1e-03 of each other" in text
-    assert "| patch | 41 | CalculiX | node to surface | 1.02 | 2.0e-02 | 3.0e-02 |" in text
+    assert "| patch | 41 | CalculiX | node to surface | 1.02 | 2.0e-02 | 3.0e-02 | 0.375 (0.312 to 0.438) | 250 |" in text
+    assert "| 1234 | 0.50200000 |" in text and "Counted by callgrind, x86-64-v3" in text
     assert "takes 2.50 times the processor time" in text
     assert text.count("refused (`*ERROR: node is tied`)") == 1
+    (tmp_path / "counts.csv").unlink()
+    assert peers.main([str(tmp_path), str(tmp_path / "doc")]) == 0
+    assert "No instructions were counted" in (tmp_path / "doc" / "studies" / "peers.md").read_text(encoding="utf-8")
+
+
+def test_counted_steps_of_peers_are_the_difference_of_two_runs(tmp_path, monkeypatch):
+    commands = {"few": 5000, "many": 9000}
+    def count(command, folder):
+        if command not in commands:
+            raise UserError("no such program")
+        return Counts(commands[command], {}, "somebody")
+    monkeypatch.setattr(counted, "count_instructions", count)
+    labels = {"elements": 20, "program": "Other", "element": "2x2 points", "steps": 10}
+    assert counted.step_row(labels, ("few", "many"), tmp_path) == [
+        {"scene": "step", "elements": 20, "program": "Other", "what": "2x2 points", "instructions": 20.0,
+         "counted_by": "somebody"}]
+    assert counted.step_row(labels, ("few", "none"), tmp_path) == []

@@ -7,7 +7,7 @@ import conftest
 import numpy as np
 import pytest
 
-from slideline_tools import UserError, scenes
+from slideline_tools import UserError, counting, scenes
 from slideline_tools.histories import History
 from slideline_tools.studies import block, block_implicit
 from slideline_tools.studies.common import study_main
@@ -89,6 +89,12 @@ def test_answers_follow_the_pressures():
     assert verdicts({1: few, 5: many})[-1] == "no"
 
 
+def test_the_counted_run_is_cut_short_as_the_page_says():
+    script = (conftest.ROOT / "tools" / "batch" / "block_implicit.sh").read_text(encoding="utf-8")
+    assert f" {block_implicit.COUNTED_OPTION}\n" in script
+    assert "No instructions were counted" in block_implicit.count_section(conftest.ROOT, [1, 5])
+
+
 def test_implicit_page_of_runs(tool, slideline, tmp_path):
     for method, flags in (("implicit", ["--implicit"]), ("explicit", [])):
         deck = tmp_path / f"{method}.k"
@@ -97,10 +103,15 @@ def test_implicit_page_of_runs(tool, slideline, tmp_path):
         finished = subprocess.run([slideline, f"i={deck}", f"d={tmp_path / method}_5", "jobid=block",
                                    "ctype=5"], capture_output=True, text=True, check=False)
         assert finished.returncode == 0, finished.stdout + finished.stderr
+    (tmp_path / "implicit_5" / "counted").mkdir()
+    (tmp_path / "implicit_5" / "counted" / counting.COUNTS).write_text(
+        '{"total": 9000000, "parts": {"contact": 900000}, "by": "callgrind, x86-64-v3"}', encoding="ascii")
     wanted = [str(tmp_path), str(tmp_path / "doc"), "--types", "5"]
     assert study_main("block", block_implicit.write, wanted) == 0
     page = (tmp_path / "doc" / "studies" / "block_to_block_implicit.md").read_text()
     assert "| NTS-mAR: perfectly uniform (to 1e-08) | yes |" in page
+    assert "Counted by callgrind, x86-64-v3" in page and "Cut short: implicit (endtim=0.02)" in page
+    assert "Implicit, N_r = 1:" in page and "Explicit, N_r = 1:" not in page and "| 5 NTS-mAR | 9.0 |" in page
     assert (tmp_path / "doc" / "pictures" / "block_implicit_pressure.png").exists()
     (tmp_path / "implicit_5" / "block.log").write_text("nothing", encoding="ascii")
     assert study_main("block", block_implicit.write, wanted) == 2

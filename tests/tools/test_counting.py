@@ -23,14 +23,14 @@ events: Ir
 
 fn=__run_m_MOD_run_deck
 10 100
-cfn=__contact_force_m_MOD_apply_contact.isra.0
+cfn=__interface_m_MOD_apply_contact.isra.0
 calls=2 0
 10 1700
 cfn=memcpy
 calls=1 0
 11 50
 
-fn=__contact_force_m_MOD_apply_contact.isra.0
+fn=__interface_m_MOD_apply_contact.isra.0
 20 1000
 cfn=__points_nts_m_MOD_place
 calls=1 0

@@ -138,6 +138,37 @@ def distorted_patch():
     return coordinates, grid_quads(2, 2)
 
 
+def polygon(rng, radius):
+    """Corners of a convex polygon about the origin, counter-clockwise."""
+    n = int(rng.integers(3, 9))
+    angles = np.sort(2.0 * np.pi * (np.arange(n) + 0.6 * rng.random(n)) / n)
+    return radius * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def polygon_quads(corners, n):
+    """Each corner with the halves of its sides and the centre is a quad of n x n elements."""
+    centre, points, quads, known = corners.mean(axis=0), [], [], {}
+
+    def place(point):
+        key = tuple(np.round(point, 12))
+        if key not in known:
+            known[key] = len(points)
+            points.append(point)
+        return known[key]
+
+    for k, corner in enumerate(corners):
+        before, after = 0.5 * (corners[k - 1] + corner), 0.5 * (corner + corners[(k + 1) % len(corners)])
+        block = np.empty((n + 1, n + 1), dtype=int)
+        for i in range(n + 1):
+            for j in range(n + 1):
+                a, b = i / n, j / n
+                block[i, j] = place((1 - a) * (1 - b) * centre + a * (1 - b) * before + a * b * corner
+                                    + (1 - a) * b * after)
+        quads += [(block[i, j], block[i + 1, j], block[i + 1, j + 1], block[i, j + 1])
+                  for i in range(n) for j in range(n)]
+    return np.array(points), quads
+
+
 def rotate(coordinates, angle, centre=(0.0, 0.0)):
     """Turn coordinates counter-clockwise."""
     c, s = np.cos(angle), np.sin(angle)

@@ -3,6 +3,8 @@
 """Run one verification case: `run_case.py CASE --program EXE --work DIR`.
 
 The case is the folder CASE beside this file; its check.py holds `check(run)`.
+With `--seed N --count M` a case of random scenes goes through M new ones
+instead, `sweep(run, seed, count)` of its check.py.
 Each check is printed as one line and kept in DIR/<case>.json, from which
 make_table.py writes the table of doc/verification.md. The exit status is 0
 only if at least one check ran and all passed.
@@ -117,7 +119,9 @@ class Run:
         self.work.mkdir(parents=True)
 
     def program(self, deck, *args, name=None, expect_status=0):
-        """Run a deck (a path, a text or an object with text()) and return its Result."""
+        """Run a deck (a path, a text or an object with text()) and return its Result.
+
+        expect_status: None takes any."""
         self._n_run += 1
         name = name or f"run{self._n_run:02d}"
         folder = self.work / name
@@ -131,7 +135,7 @@ class Run:
         finished = subprocess.run(command, capture_output=True, text=True, timeout=600)
         (folder / "stdout.txt").write_text(finished.stdout)
         (folder / "stderr.txt").write_text(finished.stderr)
-        if finished.returncode != expect_status:
+        if expect_status is not None and finished.returncode != expect_status:
             raise RuntimeError(f"{name}: exit status {finished.returncode}, expected "
                                f"{expect_status}\n{finished.stderr}{finished.stdout[-2000:]}")
         return Result(folder, name, finished)
@@ -192,26 +196,34 @@ class Run:
         return float(np.log(errors[-2] / errors[-1]) / np.log(sizes[-2] / sizes[-1]))
 
 
-def load_check(case):
+def load_case(case):
     sys.path.insert(0, str(HERE))
     spec = importlib.util.spec_from_file_location(f"check_{case}", HERE / case / "check.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module.check
+    return module
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("case")
-    parser.add_argument("--program", required=True, type=pathlib.Path)
-    parser.add_argument("--work", required=True, type=pathlib.Path)
+    parser.add_argument("--program", type=pathlib.Path,
+                        default=HERE.parents[1] / "build" / "release" / "slideline")
+    parser.add_argument("--work", type=pathlib.Path,
+                        default=HERE.parents[1] / "build" / "verification")
+    parser.add_argument("--seed", type=int, help="go through new random scenes")
+    parser.add_argument("--count", type=int, default=60, help="so many of each family")
     options = parser.parse_args()
     work = options.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
     run = Run(options.case, options.program.resolve(), work)
     problem = None
     try:
-        load_check(options.case)(run)
+        case = load_case(options.case)
+        if options.seed is None:
+            case.check(run)
+        else:
+            case.sweep(run, options.seed, options.count)
     except Exception:  # the case fails, with the reason on record
         problem = traceback.format_exc()
         print(problem, flush=True)

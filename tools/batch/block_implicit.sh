@@ -3,7 +3,8 @@
 # usage: tools/batch/block_implicit.sh [TYPES]
 # Runs the block-to-block scene implicitly and explicitly for every contact type (default
 # "1 2 3 4 5 6 7") into results/batch/block_implicit and writes doc/studies/block_to_block_implicit.md
-# with its picture; with arguments, the page goes to results/batch/block_implicit/doc instead. Some seconds.
+# with its picture; with arguments, the page goes to results/batch/block_implicit/doc instead. Some seconds, and some
+# minutes for the retired instructions, which are counted where the machine can (tools/slideline_tools/counting.py).
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -16,6 +17,8 @@ doc=$pages
 
 "$root/tools/build.sh" release
 tools=$root/build/venv/bin/slideline-tools
+python=$root/build/venv/bin/python
+counted=$("$python" -m slideline_tools.counting) || echo "instructions are not counted" >&2
 mkdir -p "$out"
 "$tools" make-deck block --output "$out/explicit.k"
 "$tools" make-deck block --implicit --output "$out/implicit.k"
@@ -26,8 +29,12 @@ for type in $types; do
     mkdir -p "$run"
     "$root/build/release/slideline" i="$out/$method.k" d="$run" jobid=block ctype="$type" \
       >"$run/progress.txt"
+    rm -rf "$run/counted"
+    # The option stands on the page too (studies/block_implicit.py).
+    [ -z "$counted" ] || "$python" -m slideline_tools.counting "$run/counted" "$counted" i="$out/$method.k" \
+      d="$run/counted" jobid=block ctype="$type" ncpu=1 endtim=0.02
   done
 done
 
 # shellcheck disable=SC2086  # the types are words
-"$root/build/venv/bin/python" -m slideline_tools.studies.block_implicit "$out" "$doc" --types $types
+"$python" -m slideline_tools.studies.block_implicit "$out" "$doc" --types $types

@@ -114,7 +114,7 @@ def navigation(folder, keywords):
         {"Verification": [{"Table of all checks": "verification.md"},
                           {"Cases": pages("verification/*.md")}]},
         {"Studies": pages("studies/*.md", ["studies/index.md"])},
-        {"Extend": ["architecture.md", "add_a_formulation.md", "add_a_material.md",
+        {"Extend": ["architecture.md", "add_a_formulation.md", "add_a_material.md", "add_a_history.md",
                     {"Fortran interface": "fortran_interface.md"}]},
     ]
 

@@ -21,7 +21,7 @@ from slideline_tools import UserError
 
 HARDWARE, CALLGRIND = "hardware counters", "callgrind, x86-64-v3"
 # Parts of the program by the modules of their procedures: inclusive of what those call elsewhere.
-PARTS = {"contact": re.compile(r"__(contact|points|tangent|element_finder)_?\w*_MOD_"),
+PARTS = {"contact": re.compile(r"__(interface|contact|points|tangent|element_finder)_?\w*_MOD_"),
          "elements": re.compile(r"__(element(?!_finder)|quad|material)_?\w*_MOD_")}
 PROFILE = "callgrind.out"
 
@@ -181,10 +181,13 @@ COUNTS = "counts.json"
 def main(arguments):
     """`python -m slideline_tools.counting FOLDER COMMAND...`: runs it, counted; the figures go to FOLDER/counts.json.
 
-    Ends with 0, or with 1 and the reason.
+    Without arguments it says which program is to be counted, and builds it. Ends with 0, or with 1 and the reason.
     """
-    folder, *command = arguments
     try:
+        if not arguments:
+            print(counted_program(pathlib.Path(__file__).resolve().parents[2]))
+            return 0
+        folder, *command = arguments
         counts = count_instructions(command, folder)
     except UserError as problem:
         print(problem, file=sys.stderr)

@@ -14,11 +14,14 @@ module foot_block_m
 
   !> Places of a block.
   integer, parameter :: n_block = 128
+  !> Odd places up to which it is cheaper to settle them one by one.
+  integer, parameter :: n_alone = 12
 
   !> Without default values, which would be written before each use.
   type :: foot_block_t
     integer :: n
     integer :: n_odd                !! places that need a decision yet
+    integer :: n_moved              !! places that have been settled one by one
     integer :: segment(n_block)     !! of the chain
     real(wp) :: t(2, n_block)       !! vector of that segment, m
     real(wp) :: d(2, n_block)       !! from its first node to the place, m
@@ -26,7 +29,7 @@ module foot_block_m
     real(wp) :: gap(n_block)        !! m
     real(wp) :: normal(2, n_block)
     real(wp) :: inverse(n_block)    !! 1/length of the segment, 1/m
-    real(wp) :: odd(n_block)        !! 1: needs a decision; -1: has been settled; else 0
+    real(wp) :: odd(n_block)        !! 1: needs a decision; -1: has its foot elsewhere; else 0
   end type foot_block_t
 
 contains
@@ -36,6 +39,7 @@ contains
   pure subroutine project_block(block)
     type(foot_block_t), intent(inout) :: block
 
+    block%n_moved = 0
     call project(block%n, block%t, block%d, block%xi, block%gap, block%normal, block%inverse, &
       block%odd, block%n_odd)
   end subroutine project_block
@@ -69,21 +73,91 @@ contains
     n_odd = nint(total)
   end subroutine project
 
-  !> Settle the odd places of a block by a look at the neighbours of their segments. Some may have
-  !> their feet on a neighbour then.
+  !> Settle the odd places of a block by a look at the neighbours of their segments: first together
+  !> those that stay, then one by one. Some may have their feet on a neighbour then.
   pure subroutine settle_odd(surface, chain, block)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node) places
     type(foot_block_t), intent(inout) :: block
+    real(wp) :: beside(2, n_block)
     integer :: k
 
+    if (block%n_odd > n_alone) then
+      call see_neighbours(block%n, block%segment, block%xi, surface%previous, surface%next, &
+        surface%segments, chain, beside)
+      call keep_near_nodes(block%n, block%t, block%d, block%xi, beside, block%odd, block%n_odd)
+      if (block%n_odd == 0) return
+    end if
     do k = 1, block%n
       if (.not. block%odd(k) > 0.0_wp) cycle
+      block%n_moved = block%n_moved + 1
       call settle(surface%segments, surface%previous(block%segment(k)), &
         surface%next(block%segment(k)), chain, k, block)
       if (.not. block%odd(k) > 0.0_wp) block%n_odd = block%n_odd - 1
     end do
   end subroutine settle_odd
+
+  !> The neighbour of each segment at the end next to the foot.
+  pure subroutine see_neighbours(n, segment, xi, previous, next, ends, chain, beside)
+    integer, intent(in) :: n, segment(n)
+    real(wp), intent(in) :: xi(n)
+    integer, intent(in) :: previous(*), next(*), ends(2, *)
+    real(wp), intent(in) :: chain(4, *)
+    real(wp), intent(inout) :: beside(2, n) !! its vector, m; 0 where there is none
+    real(wp) :: vector(4)
+    integer :: k, other
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      other = previous(segment(k))
+      if (xi(k) > 0.5_wp) other = next(segment(k))
+      beside(:, k) = 0.0_wp
+      if (other == 0) cycle
+      vector = chain(:, ends(2, other)) - chain(:, ends(1, other))
+      beside(:, k) = vector(1:2) + vector(3:4)
+    end do
+  end subroutine see_neighbours
+
+  !> Odd places behind their segments that stay: over them, and no nearer to the neighbour at the
+  !> one end that is nearer than the place is deep. Most feet on nodes of a chain that turns
+  !> gently are such. The same decision as that of `settle`, as a number: with `.and.` and `.or.` of
+  !> all its parts the loop would not be vectorised.
+  pure subroutine keep_near_nodes(n, t, d, xi, beside, odd, n_odd)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: t(2, n), d(2, n), xi(n), beside(2, n)
+    real(wp), intent(inout) :: odd(n)
+    integer, intent(out) :: n_odd
+    real(wp) :: square, along, across, at, way, to_end, from_x, from_y, other_square, &
+      other_along, other_across, small, stays, total
+    integer :: k
+
+    total = 0.0_wp
+    !$omp simd private(square, along, across, at, way, to_end, from_x, from_y, &
+    !$omp   other_square, other_along, other_across, small, stays) reduction(+: total)
+    do k = 1, n
+      square = t(1, k)*t(1, k) + t(2, k)*t(2, k)
+      along = d(1, k)*t(1, k) + d(2, k)*t(2, k)
+      across = d(1, k)*t(2, k) - d(2, k)*t(1, k)
+      at = merge(1.0_wp, 0.0_wp, xi(k) > 0.5_wp)
+      way = 1.0_wp - 2.0_wp*at
+      to_end = at*square + way*along
+      from_x = d(1, k) - at*t(1, k)
+      from_y = d(2, k) - at*t(2, k)
+      other_square = beside(1, k)*beside(1, k) + beside(2, k)*beside(2, k)
+      other_along = way*(from_x*beside(1, k) + from_y*beside(2, k))
+      other_across = from_x*beside(2, k) - from_y*beside(1, k)
+      small = round_off*(from_x*from_x + from_y*from_y + other_square)
+      stays = merge(1.0_wp, 0.0_wp, other_along >= -small)
+      stays = merge(1.0_wp, stays, other_across*other_across*square &
+        >= across*across*other_square)
+      stays = merge(stays, 0.0_wp, other_square > 0.0_wp)
+      stays = merge(stays, 0.0_wp, across < 0.0_wp)
+      odd(k) = merge(0.0_wp, odd(k), min(to_end + round_off*square, across + (square - to_end), &
+        stays - 0.5_wp) >= 0.0_wp)
+      total = total + odd(k)
+    end do
+    n_odd = nint(total)
+  end subroutine keep_near_nodes
 
   !> One place. It has its foot here where it is over the segment and no nearer to a neighbour; on
   !> the neighbour at a gentle corner where it is behind that and not far from the corner; and at
@@ -115,7 +189,7 @@ contains
         if (is_over .and. next > 0 .and. (own%across >= 0.0_wp .or. own%across + own%square &
           < own%along)) is_over = stays(own, chain(:, ends(2, next)) - chain(:, ends(2, s)), &
           own%d - own%t, -1.0_wp)
-        if (is_over) block%odd(k) = -1.0_wp
+        if (is_over) block%odd(k) = 0.0_wp
       else if (before < 0.0_wp .and. previous > 0) then
         call go_over(own, chain(:, ends(1, s)) - chain(:, ends(1, previous)), own%d, 1.0_wp, &
           previous, k, block)

@@ -11,7 +11,7 @@ module grid_m
   implicit none
   private
   public :: nearest_t, fill_grid, slip_limit, box_distance, find_nearest, &
-    distance_to_others
+    distance_to_others, cell_of, bucket_of
 
   !> Segments kept by a search: the nearest, its two neighbours and the next one after these.
   integer, parameter :: n_kept = 4

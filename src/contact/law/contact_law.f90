@@ -2,17 +2,17 @@
 !> The one place that knows the contact laws: from the gap of a place to the pressure there. Where
 !> these places are, at the points or at the slave nodes, the row of the formulation says; the
 !> pressure of every point is kept on the list. Adding a law is a row of `laws`, a file law_*.f90,
-!> and a `case` for its pressure and its derivative (doc/add_a_law.md).
+!> and a `case` for its pressure, its derivative and its energy (doc/add_a_law.md).
 module contact_law_m
   use contact_state_m, only : contact_state_t
   use dual_m, only : dual_t
   use kinds_m, only : wp
-  use law_penalty_m, only : press_penalty, vary_penalty
+  use law_penalty_m, only : press_penalty, vary_penalty, energy_penalty
   use nodal_average_m, only : average_gaps, share_out
   implicit none
   private
   public :: law_t, laws, law_penalty, pressed_at_points, pressed_at_slave_nodes, press_places, &
-    vary_pressure
+    vary_pressure, density_of
 
   !> Where pressure is formed and kept.
   integer, parameter :: pressed_at_points = 1, pressed_at_slave_nodes = 2
@@ -91,5 +91,16 @@ contains
     case (law_penalty); pressure = vary_penalty(stiffness, gap)
     end select
   end function vary_pressure
+
+  !> Energy that a place stores per unit of its area.
+  pure function density_of(contact_law, stiffness, gap) result(density)
+    integer, intent(in) :: contact_law
+    real(wp), intent(in) :: stiffness, gap
+    real(wp) :: density !! J/m^2
+
+    select case (contact_law)
+    case (law_penalty); density = energy_penalty(stiffness, gap)
+    end select
+  end function density_of
 
 end module contact_law_m

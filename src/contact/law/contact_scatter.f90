@@ -1,13 +1,25 @@
 ! SPDX-License-Identifier: MIT
 !> From points to nodal forces.
 module contact_scatter_m
-  use contact_state_m, only : contact_points_t, contact_state_t, n_side
+  use contact_state_m, only : contact_points_t, contact_state_t, n_side, n_load
   use kinds_m, only : wp
   implicit none
   private
-  public :: scatter_points, add_gap_round_off
+  public :: scatter_forces, scatter_points, scatter_damped, add_gap_round_off
 
 contains
+
+  !> Add the forces of all points on the list to those of the interface's nodes, those of damping to
+  !> their own too.
+  pure subroutine scatter_forces(memory)
+    type(contact_state_t), intent(inout) :: memory
+
+    if (allocated(memory%damping_force)) then
+      call scatter_damped(memory%points, memory%force, memory%damping_force, memory%n_active)
+    else
+      call scatter_points(memory%points, memory%force, memory%n_active)
+    end if
+  end subroutine scatter_forces
 
   !> Add the force of each point to its nodes: pressure*area*normal by the weights, slave side with
   !> plus and master side with minus. Counts the points that carry pressure.
@@ -20,6 +32,21 @@ contains
     call scatter_each(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
       points%master_weights, points%normal, points%pressure, points%area, force)
   end subroutine scatter_points
+
+  !> The same, and in the same pass that of damping to nodal forces of its own.
+  pure subroutine scatter_damped(points, force, damping_force, n_active)
+    type(contact_points_t), intent(inout) :: points !! with loads, those of damping known
+    real(wp), intent(inout) :: force(2, *), damping_force(2, *) !! by local node, N/m
+    integer, intent(out) :: n_active
+    integer :: p
+
+    n_active = count(points%pressure(:points%n) > 0.0_wp)
+    do p = 1, points%n
+      points%load(1:2, p) = points%pressure(p)*points%area(p)*points%normal(:, p)
+    end do
+    call scatter_loads(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
+      points%master_weights, points%load, force, damping_force)
+  end subroutine scatter_damped
 
   !> On arrays of known shape: through the list each access costs a multiplication by its stride. A
   !> point at a node has it at both ends of that side, and all of the force goes there. The forces
@@ -67,6 +94,56 @@ contains
     call give(to_c, force(1, c))
     call give(to_d, force(1, d))
   end subroutine scatter_each
+
+  !> The same of loads that are known: forces, and a part of them that nodes have apart as well.
+  pure subroutine scatter_loads(n, slave_nodes, slave_weights, master_nodes, master_weights, load, &
+      force, part_force)
+    integer, intent(in) :: n
+    integer, intent(in) :: slave_nodes(n_side, *), master_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
+    real(wp), intent(in) :: load(n_load, *)
+    real(wp), intent(inout) :: force(2, *), part_force(2, *)
+    real(wp), dimension(n_load) :: point, to_a, to_b, to_c, to_d
+    integer :: p, a, b, c, d
+
+    if (n == 0) return
+    a = slave_nodes(1, 1); b = slave_nodes(2, 1)
+    c = master_nodes(1, 1); d = master_nodes(2, 1)
+    to_a = 0.0_wp; to_b = 0.0_wp; to_c = 0.0_wp; to_d = 0.0_wp
+    do p = 1, n
+      point = load(:, p)
+      if (master_nodes(1, p) /= c .or. master_nodes(2, p) /= d) then
+        call give_parts(to_c, force(1, c), part_force(1, c))
+        call give_parts(to_d, force(1, d), part_force(1, d))
+        c = master_nodes(1, p); d = master_nodes(2, p)
+      end if
+      to_c = to_c - master_weights(1, p)*point
+      to_d = to_d - master_weights(2, p)*point
+      if (slave_nodes(1, p) == slave_nodes(2, p)) then
+        call give_parts(point, force(1, slave_nodes(1, p)), part_force(1, slave_nodes(1, p)))
+      else
+        if (slave_nodes(1, p) /= a .or. slave_nodes(2, p) /= b) then
+          call give_parts(to_a, force(1, a), part_force(1, a))
+          call give_parts(to_b, force(1, b), part_force(1, b))
+          a = slave_nodes(1, p); b = slave_nodes(2, p)
+        end if
+        to_a = to_a + slave_weights(1, p)*point
+        to_b = to_b + slave_weights(2, p)*point
+      end if
+    end do
+    call give_parts(to_a, force(1, a), part_force(1, a))
+    call give_parts(to_b, force(1, b), part_force(1, b))
+    call give_parts(to_c, force(1, c), part_force(1, c))
+    call give_parts(to_d, force(1, d), part_force(1, d))
+  end subroutine scatter_loads
+
+  !> Give both parts of a sum to a node; they are zero then.
+  pure subroutine give_parts(parts, force, part_force)
+    real(wp), intent(inout) :: parts(n_load), force(2), part_force(2)
+
+    call give(parts(1:2), force)
+    call give(parts(3:4), part_force)
+  end subroutine give_parts
 
   !> Give a sum to a node; it is zero then.
   pure subroutine give(part, force)

@@ -12,7 +12,7 @@ contains
   !> Add the damping of points in contact, -2 fraction k/omega times the opening velocity, with
   !> omega^2 = sum of w K/m over the nodes of both sides, where K is the sum of all springs at a
   !> node. For two masses and one spring it is the fraction of critical, and it does not depend on
-  !> how many points share a node's spring. The total never pulls.
+  !> how many points share a node's spring. The total never pulls. What is added is kept as well.
   pure subroutine damp_points(points, fraction, nodes, motion, mass, nodal)
     type(contact_points_t), intent(inout) :: points
     real(wp), intent(in) :: fraction
@@ -20,10 +20,11 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u and v
     real(wp), intent(in), contiguous :: mass(:)      !! (n_node) kg/m
     real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, local nodes) scratch
-    real(wp) :: rate, square, weight
+    real(wp) :: rate, square, weight, damped
     integer :: p, k, local
 
     call sum_springs(points, nodal)
+    points%load(:, :points%n) = 0.0_wp
     do p = 1, points%n
       if (.not. points%pressure(p)*points%area(p) > 0.0_wp) cycle
       rate = 0.0_wp
@@ -38,8 +39,10 @@ contains
         rate = rate - weight*dot_product(points%normal(:, p), motion(3:4, nodes(local)))
         square = square + weight*nodal(1, local)/mass(nodes(local))
       end do
-      points%pressure(p) = max(0.0_wp, points%pressure(p) &
+      damped = max(0.0_wp, points%pressure(p) &
         - 2.0_wp*fraction*rate*points%stiffness(p)/sqrt(square))
+      points%load(3:4, p) = (damped - points%pressure(p))*points%area(p)*points%normal(:, p)
+      points%pressure(p) = damped
     end do
   end subroutine damp_points
 

@@ -5,7 +5,7 @@ module law_penalty_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: press_penalty, vary_penalty
+  public :: press_penalty, vary_penalty, energy_penalty
 
 contains
 
@@ -30,5 +30,14 @@ contains
 
     pressure = (-stiffness)*gap
   end function vary_penalty
+
+  !> What a place stores: the integral of the pressure over the way from its closing.
+  pure function energy_penalty(stiffness, gap) result(density)
+    real(wp), intent(in) :: stiffness !! N/m^2
+    real(wp), intent(in) :: gap       !! m
+    real(wp) :: density               !! J/m^2
+
+    density = 0.5_wp*stiffness*max(0.0_wp, -gap)**2
+  end function energy_penalty
 
 end module law_penalty_m

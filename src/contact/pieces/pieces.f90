@@ -22,15 +22,19 @@ module pieces_m
   !> Most pieces of a slave segment that are listed without a walk, and length of a closed master
   !> chain up to which the way forwards may be the shorter one.
   integer, parameter :: n_most = 6, short_chain = 2*n_most + 2
-  !> Part of a segment within which a foot is on its node where a walk starts or ends.
+  !> Part of a segment within which a foot is on its node where a list or a walk starts or ends.
   real(wp), parameter :: hair = 1.0e-9_wp
 
 contains
 
   !> Start a table.
-  pure subroutine clear_pieces(table)
+  pure subroutine clear_pieces(table, least_cut)
     type(piece_table_t), intent(inout) :: table
+    real(wp), intent(in), optional :: least_cut !! part of a slave segment next to its ends where
+                                                !! master nodes need not cut it
 
+    table%least_cut = round_off
+    if (present(least_cut)) table%least_cut = least_cut
     table%n_segment = 0
     table%n = 0
     table%last(0) = 0
@@ -74,7 +78,8 @@ contains
       one = ends(1, s)
       two = ends(2, s)
       if (status(one) /= is_touching .or. status(two) /= is_touching) return
-      if (min(xi(one), 1.0_wp - xi(one), xi(two), 1.0_wp - xi(two)) <= round_off) return
+      if (min(xi(one), 1.0_wp - xi(one), xi(two), 1.0_wp - xi(two)) <= max(hair, &
+        table%least_cut)) return
       call list_run(ends(1, s), segment(one), segment(two), previous, table, is_listed)
       if (.not. is_listed) return
       call end_segment(s, .true., table)
@@ -115,11 +120,11 @@ contains
       if (touches) then
         first = tracking%segment(ends(1))
         last = tracking%segment(ends(2))
-        associate (xi => tracking%xi(ends(1)))
-          if (min(xi, 1.0_wp - xi) <= round_off) first = beside_node(contact, memory, ends, 1)
-        end associate
-        associate (xi => tracking%xi(ends(2)))
-          if (min(xi, 1.0_wp - xi) <= round_off) last = beside_node(contact, memory, ends, 2)
+        associate (xi => tracking%xi(ends), near_node => max(hair, table%least_cut))
+          if (min(xi(1), 1.0_wp - xi(1)) <= near_node) &
+            first = beside_node(contact, memory, ends, 1, table%least_cut)
+          if (min(xi(2), 1.0_wp - xi(2)) <= near_node) &
+            last = beside_node(contact, memory, ends, 2, table%least_cut)
         end associate
       else
         call find_feet(contact, memory, ends, feet)
@@ -192,13 +197,14 @@ contains
   end function tracked_foot
 
   !> Master segment of the first or the last piece of a slave segment where the foot of that end is
-  !> a master node, or within round-off of it. Of the two at that node the outer one has a piece
-  !> only where the node projects on the slave segment.
-  pure function beside_node(contact, memory, ends, k) result(segment)
+  !> a master node, or next to it. Of the two at that node the outer one has a piece only where the
+  !> node projects on the slave segment.
+  pure function beside_node(contact, memory, ends, k, least_cut) result(segment)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)
     integer, intent(in) :: k           !! which end
+    real(wp), intent(in) :: least_cut  !! of the table
     integer :: segment                 !! 0: a walk has to tell
     integer :: before, behind, node    !! the two, on the way along the slave segment
     type(sight_t) :: sight
@@ -223,9 +229,9 @@ contains
         return
       end if
       if (k == 1) then
-        is_inside = sight%along > round_off*sight%square
+        is_inside = sight%along > least_cut*sight%square
       else
-        is_inside = sight%along < (1.0_wp - round_off)*sight%square
+        is_inside = sight%along < (1.0_wp - least_cut)*sight%square
       end if
       segment = merge(before, behind, is_inside .eqv. k == 1)
       if (segment == 0) segment = tracking%segment(ends(k))

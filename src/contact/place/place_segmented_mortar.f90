@@ -13,7 +13,7 @@ module place_segmented_mortar_m
   use sleep_m, only : all_asleep, keep_segment, judge_segment, note_next_wake
   implicit none
   private
-  public :: place_segmented_mortar, n_gauss, gauss_xi
+  public :: place_segmented_mortar, n_gauss, gauss_xi, least_cut
 
   !> Gauss points of a piece.
   integer, parameter :: n_gauss = 2
@@ -21,6 +21,9 @@ module place_segmented_mortar_m
   !> functions and a linear gap exactly up to the curvature of the chain.
   real(wp), parameter :: gauss_xi(n_gauss) = [0.5_wp - sqrt(1.0_wp/12.0_wp), &
     0.5_wp + sqrt(1.0_wp/12.0_wp)]
+  !> Part of a slave segment next to its ends where master nodes do not cut it: the points of a
+  !> piece integrate a kink this close to its end to the square of this part, round-off.
+  real(wp), parameter :: least_cut = 1.0e-6_wp
 
 contains
 
@@ -37,7 +40,7 @@ contains
     memory%scratch%is_placed = .false.
     s = 1
     do while (s <= contact%slave%n_segment)
-      call clear_pieces(table)
+      call clear_pieces(table, least_cut)
       call list_awake(contact, memory, .false., s, table)
       call place_pieces(contact, table, .true., memory)
     end do
@@ -57,7 +60,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     integer :: neighbours(2), s, k
 
-    call clear_pieces(table)
+    call clear_pieces(table, least_cut)
     do s = 1, contact%slave%n_segment
       if (memory%segments%status(s) /= is_touching) cycle
       neighbours = [contact%slave%previous(s), contact%slave%next(s)]
@@ -68,7 +71,7 @@ contains
         call list_segment(contact, memory, neighbours(k), .false., table)
         if (.not. table%is_full) cycle
         call place_pieces(contact, table, .false., memory)
-        call clear_pieces(table)
+        call clear_pieces(table, least_cut)
       end do
     end do
     call place_pieces(contact, table, .false., memory)

@@ -228,6 +228,8 @@ contains
             end associate
           end if
           segment = contact%master%next(segment)
+          ! Marks of displacements beyond all bounds need not lie on one chain.
+          if (segment == 0) exit
         end do
         if (total > 0.0_wp) cycle
         call put_portion(memory, halves, k, halves%nodes(:, k), memory%slave_tracking%xi(spot), &

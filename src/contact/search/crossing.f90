@@ -46,10 +46,10 @@ contains
     associate (n => memory%n_slave, slave => memory%slave_tracking, &
       master => memory%master_tracking)
       if (allocated(memory%spots)) then
-        spots = memory%spots
+        spots = memory%spots(:, :slave%n)
         call move_spots(contact%slave, places, memory%spot_xi, spots)
         crossings%slave = cross_chain(contact%master, places(:, n + 1:), memory%places(:, n + 1:), &
-          spots, memory%spots, is_outside(slave), slave%chord)
+          spots, memory%spots(:, :slave%n), is_outside(slave), slave%chord)
       else
         crossings%slave = cross_chain(contact%master, places(:, n + 1:), memory%places(:, n + 1:), &
           places(:, :n), memory%places(:, :n), is_outside(slave), slave%chord)
@@ -141,12 +141,14 @@ contains
 
   end subroutine catch_spots
 
-  !> Which spots have not been caught, nor let go, before the step.
+  !> Which spots have not been caught, nor let go, before the step; those that rest for ever, being
+  !> part of no surface, take no part.
   pure function is_outside(tracking)
     type(tracking_t), intent(in) :: tracking
     logical :: is_outside(tracking%n)
 
-    is_outside = tracking%status == is_free .or. tracking%status == is_in_front
+    is_outside = (tracking%status(:tracking%n) == is_free .or. tracking%status(:tracking%n) &
+      == is_in_front) .and. tracking%wake(:tracking%n) < huge(1.0_wp)
   end function is_outside
 
   !> Bound on how far any two nodes have moved relative to each other, m.

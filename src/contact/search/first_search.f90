@@ -18,7 +18,8 @@ module first_search_m
   use tracking_m, only : update_tracking, list_touching, most_facing, begin_contact
   implicit none
   private
-  public :: start_slave_tracking, start_master_tracking, start_segments, nearest_segment
+  public :: allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
+    start_slave_tracking, start_master_tracking, start_segments, nearest_segment
 
   !> Smallest cell of the grid, as a part of the search reach.
   real(wp), parameter :: least_cell = 0.01_wp
@@ -27,21 +28,45 @@ module first_search_m
 
 contains
 
-  !> Follow the slave nodes, or the spots of slave segments, over the master chain.
-  subroutine start_slave_tracking(contact, model, memory)
+  !> What the search knows of the slave nodes, or of the spots of slave segments, before it looks.
+  subroutine allocate_slave_tracking(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
     integer :: n
 
+    n = 0
+    if (allocated(memory%spot_xi)) n = size(memory%spot_xi)
+    memory%slave_tracking%chord = list_chords(contact%slave, n)
+    associate (owners => list_owners(contact%slave, n))
+      call allocate_tracking(memory%slave_tracking, size(owners, 2), contact%master%n_segment)
+      call set_depths(memory%slave_tracking, contact, model, contact%slave, contact%master, owners)
+    end associate
+  end subroutine allocate_slave_tracking
+
+  !> The same for master nodes.
+  subroutine allocate_master_tracking(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%master_tracking%chord = list_chords(contact%master, 0)
+    call allocate_tracking(memory%master_tracking, contact%master%n_node, contact%slave%n_segment)
+    call set_depths(memory%master_tracking, contact, model, contact%master, contact%slave, &
+      list_owners(contact%master, 0))
+  end subroutine allocate_master_tracking
+
+  !> Follow the slave nodes, or the spots of slave segments, over the master chain.
+  subroutine start_slave_tracking(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+
     associate (tracking => memory%slave_tracking, chain => memory%places(:, memory%n_slave + 1:))
       if (allocated(memory%spots)) then
-        n = size(memory%spot_xi)
-        tracking%chord = list_chords(contact%slave, n)
         call start_tracking(tracking, contact, model, contact%slave, contact%master, memory%spots, &
-          chain, list_owners(contact%slave, n))
+          chain, list_owners(contact%slave, size(memory%spot_xi)))
       else
-        tracking%chord = list_chords(contact%slave, 0)
         call start_tracking(tracking, contact, model, contact%slave, contact%master, &
           memory%places(:, :memory%n_slave), chain, list_owners(contact%slave, 0))
       end if
@@ -54,14 +79,22 @@ contains
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
 
-    memory%master_tracking%chord = list_chords(contact%master, 0)
     call start_tracking(memory%master_tracking, contact, model, contact%master, contact%slave, &
       memory%places(:, memory%n_slave + 1:), memory%places(:, :memory%n_slave), &
       list_owners(contact%master, 0))
   end subroutine start_master_tracking
 
-  !> Memory of slave segments. Those with a master node deep inside the body behind them are in
-  !> contact from the start.
+  !> Memory of slave segments.
+  pure subroutine allocate_segments(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+
+    allocate (memory%segments%status(contact%slave%n_segment), source=is_free)
+    allocate (memory%segments%wake(contact%slave%n_segment), source=-huge(1.0_wp))
+  end subroutine allocate_segments
+
+  !> Slave segments with a master node deep inside the body behind them are in contact from the
+  !> start.
   subroutine start_segments(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -70,8 +103,6 @@ contains
     type(tracking_t) :: scratch !! for its grid
     integer :: i, segment
 
-    allocate (memory%segments%status(contact%slave%n_segment), source=is_free)
-    allocate (memory%segments%wake(contact%slave%n_segment), source=-huge(1.0_wp))
     if (contact%birth > 0.0_wp) return
     call start_finder(model, contact%slave%segment_element, finder)
     call allocate_tracking(scratch, 0, contact%slave%n_segment)
@@ -97,8 +128,6 @@ contains
     integer, intent(in) :: owners(:, :)             !! (2, n_spot) segments of `own` at a spot
     integer :: n_ignored
 
-    call allocate_tracking(tracking, size(spots, 2), surface%n_segment)
-    call set_depths(tracking, contact, model, own, surface, owners)
     if (contact%birth > 0.0_wp) return
     n_ignored = 0
     call update_tracking(tracking, surface, chain, spots, 0.0_wp, n_ignored)
@@ -198,7 +227,7 @@ contains
     call start_finder(model, surface%segment_element, finder)
     call fill_grid(tracking%grid, surface, chain, 0.0_wp)
     do i = 1, tracking%n
-      if (tracking%status(i) == is_touching) cycle
+      if (tracking%status(i) == is_touching .or. maxval(owners(:, i)) == 0) cycle
       if (.not. is_inside_body(finder, model, model%mesh%coordinates(:, surface%nodes(1)) &
         + (spots(1:2, i) - chain(1:2, 1)), own%nodes(own_nodes(own, owners(:, i))))) cycle
       foot = closest_foot(surface, chain, spots(:, i), &

@@ -29,9 +29,10 @@ contains
     real(wp), intent(in) :: travel                    !! relative motion since the start, m
     integer, intent(inout) :: n_released              !! deep first contacts let go
     integer :: n_left, n_due, i, k
-    logical :: has_changed
+    logical :: has_changed, was_free
 
     n_left = 0
+    tracking%n_aside = 0
     if (tracking%n_touching > 0) call keep_contacts(tracking, surface, chain, spots, n_left)
     if (n_left == 0 .and. travel < tracking%next_wake) return
     n_due = n_left
@@ -40,10 +41,15 @@ contains
     has_changed = .false.
     do k = 1, n_due
       i = tracking%due(k)
+      was_free = tracking%status(i) == is_free
       call update_spot(tracking, surface, chain, spots, i, travel, n_released)
       has_changed = has_changed .or. (tracking%status(i) == is_touching .neqv. k <= n_left)
       if (tracking%status(i) /= is_touching) tracking%next_wake = &
         min(tracking%next_wake, tracking%wake(i))
+      if (.not. (was_free .and. tracking%status(i) == is_touching)) cycle
+      ! It has not stood before the face. The places of the list up to k are free.
+      tracking%n_aside = tracking%n_aside + 1
+      tracking%due(tracking%n_aside) = i
     end do
     if (has_changed) call list_touching(tracking)
   end subroutine update_tracking
@@ -68,6 +74,9 @@ contains
       has_odd = block%n_odd > 0
       if (has_odd) then
         call settle_odd(surface, chain, block)
+        has_odd = block%n_moved > 0
+      end if
+      if (has_odd) then
         do k = 1, block%n
           tracking%segment(tracking%touching(first + k - 1)) = block%segment(k)
         end do

@@ -10,7 +10,7 @@ module tangent_mortar_m
   use nodal_tangent_m, only : varied_list_t, start_list, append_point, add_nodal_tangent
   use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
   use pieces_m, only : clear_pieces, list_segment, cut_pieces
-  use place_segmented_mortar_m, only : gauss_xi
+  use place_segmented_mortar_m, only : gauss_xi, least_cut
   use sparse_m, only : sparse_t
   use variation_m, only : varied_point_t, spot_foot, put_foot, length_between, take_piece, &
     piece_ends, vary_share
@@ -63,7 +63,7 @@ contains
     call allocate_pieces(table, n_piece_block)
     do s = 1, contact%slave%n_segment
       if (.not. is_placed(s)) cycle
-      call clear_pieces(table)
+      call clear_pieces(table, least_cut)
       call list_segment(contact, memory, s, .false., table)
       call cut_pieces(contact, memory, table)
       do k = 1, table%n

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: MIT
 """slideline beside other programs: the same problems, in the same run.
 
-usage: run.py --program SLIDELINE --peers PYTHON --out FOLDER [--rounds 5] [--quick]
+usage: run.py --program SLIDELINE --peers PYTHON --out FOLDER [--counted SLIDELINE] [--rounds 5] [--quick]
 
 PYTHON is that of an environment with akantu, KratosMultiphysics and KratosStructuralMechanicsApplication; ccx is
-CalculiX. All programs run in turn, one thread each, in each round: elements.csv and contact.csv hold every run.
+CalculiX. All programs run in turn, one thread each, in each round: elements.csv and contact.csv hold every run. With a
+program to be counted, retired instructions of all programs are counted once, into counts.csv.
 """
 import argparse
 import csv
@@ -20,6 +21,7 @@ from pathlib import Path
 import numpy as np
 
 import calculix
+import counted
 from slideline_tools.decks import Deck
 from slideline_tools.results import read
 from slideline_tools.scenes.block import block, block_grids
@@ -28,6 +30,7 @@ from slideline_tools.scenes.patch import even_lines, patch, patch_grids
 HERE = Path(__file__).resolve().parent
 WAVES = ((32, 200), (100, 100), (316, 15))  # columns, steps
 PATCHES = (5, 40)                           # columns of the upper block
+QUICK_WAVE = (8, 20)
 TYPES = (2, 5, 7)
 PUSH = 1.0e-4                               # of the upper face of the block, m
 ONE = {**os.environ, "OMP_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
@@ -47,7 +50,7 @@ def wave_commands(options, columns, steps):
 def run_waves(options):
     """One row for each program and size."""
     rows = []
-    for columns, steps in ((8, 20),) if options.quick else WAVES:
+    for columns, steps in (QUICK_WAVE,) if options.quick else WAVES:
         for command in wave_commands(options, columns, steps):
             done = subprocess.run(command, capture_output=True, text=True, env=ONE, check=False)
             lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
@@ -100,6 +103,11 @@ def pinned(grids):
     return [int(lower.lower[len(lower.lower) // 2]), int(upper.upper[len(upper.upper) // 2])]
 
 
+def calculix_name(scene, elements, contact):
+    """Stem of the files of a run of CalculiX."""
+    return f"ccx_{scene}_{elements}_{contact.split()[0].lower()}"
+
+
 def scene_rows(options, scene, grids, text, step, words=()):
     """All programs on one scene; `words`: further arguments of slideline."""
     lower, upper = grids
@@ -111,7 +119,7 @@ def scene_rows(options, scene, grids, text, step, words=()):
         rows.append(contact_row(scene, elements, "slideline", f"type {ctype}", found, used,
                                 clock))
     for contact in calculix.CONTACTS:
-        name = f"ccx_{scene}_{elements}_{contact.split()[0].lower()}"
+        name = calculix_name(scene, elements, contact)
         (found, trouble), used, clock = processor_seconds(
             calculix.run, options.runs, name,
             calculix.deck(contact, lower, upper, pinned(grids), step))
@@ -132,19 +140,46 @@ def static_block(grids):
     return "\n".join(lines[:-1] + more.lines + lines[-1:]) + "\n"
 
 
-def run_contact(options):
-    """Contact patches of all sizes and the block."""
-    rows = []
+def contact_scenes(options):
+    """Arguments of `scene_rows`: contact patches of all sizes and the block."""
     for columns in PATCHES[:1] if options.quick else PATCHES:
         grids = patch_grids(even_lines(columns), even_lines(columns * 4 // 5))
-        rows += scene_rows(options, "patch", grids, patch(grids=grids, static=True,
-                                                          penalty=calculix.PENALTY),
-                           calculix.STATIC)
+        yield ("patch", grids, patch(grids=grids, static=True, penalty=calculix.PENALTY), calculix.STATIC, ())
     grids = block_grids()
-    words = ("p:dt=1.0", "p:endtim=1.0", f"p:v0=-{PUSH}")
-    rows += scene_rows(options, "block", grids, static_block(grids),
-                       calculix.PUSH.format(push=PUSH), words)
-    return rows
+    yield ("block", grids, static_block(grids), calculix.PUSH.format(push=PUSH),
+           ("p:dt=1.0", "p:endtim=1.0", f"p:v0=-{PUSH}"))
+
+
+def run_contact(options):
+    """One row for each scene, program and contact."""
+    return [row for scene in contact_scenes(options) for row in scene_rows(options, *scene)]
+
+
+def count_waves(options, rows):
+    """Instructions per element and step of the smallest size; `rows`: what `run_waves` gave."""
+    columns, steps = QUICK_WAVE if options.quick else WAVES[0]
+    few, many = (wave_commands(options, columns, number) for number in (steps, counted.MORE * steps))
+    for number, points in enumerate((1, 4)):
+        few[number], many[number] = (counted.slideline_step(options.counted, options.runs, points, columns, count)
+                                     for count in (steps, counted.MORE * steps))
+    return [row for labels, *commands in zip(rows, few, many)
+            for row in counted.step_row(labels, commands, options.runs, env=ONE)]
+
+
+def count_contact(options, rows):
+    """Instructions of each process that gave an answer; `rows`: what `run_contact` gave, whose files are still there."""
+    words = {(scene, lower.element.size + upper.element.size): words
+             for scene, (lower, upper), _, _, words in contact_scenes(options)}
+    found = []
+    for row in (row for row in rows if not row["message"]):
+        scene, elements, contact = row["scene"], row["elements"], row["contact"]
+        name = calculix_name(scene, elements, contact)
+        command = ["ccx", name] if row["program"] == "CalculiX" else [
+            options.counted, f"i={options.runs / f'{scene}_{elements}.k'}", f"d={options.runs}", "jobid=counted",
+            "ncpu=1", f"ctype={contact.split()[-1]}", *words[scene, elements]]
+        found += counted.row(scene, elements, row["program"], contact,
+                             counted.count(command, options.runs, env=ONE, cwd=options.runs))
+    return found
 
 
 def append(path, rows, number):
@@ -162,6 +197,7 @@ def main():
     parser.add_argument("--program", type=Path, required=True)
     parser.add_argument("--peers", required=True, help="Python with the other programs")
     parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--counted", type=Path, help="the program whose instructions are counted")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--quick", action="store_true", help="smallest sizes, one round")
     options = parser.parse_args()
@@ -170,8 +206,16 @@ def main():
     options.runs.mkdir(parents=True, exist_ok=True)
     for number in range(1, 2 if options.quick else options.rounds + 1):
         print(f"round {number}", flush=True)
-        append(options.out / "elements.csv", run_waves(options), number)
-        append(options.out / "contact.csv", run_contact(options), number)
+        waves, contact = run_waves(options), run_contact(options)
+        append(options.out / "elements.csv", waves, number)
+        append(options.out / "contact.csv", contact, number)
+    (options.out / "counts.csv").unlink(missing_ok=True)
+    if options.counted:
+        print("instructions", flush=True)
+        options.counted = options.counted.resolve()
+        rows = count_waves(options, waves) + count_contact(options, contact)
+        if rows:
+            append(options.out / "counts.csv", rows, 1)
 
 
 if __name__ == "__main__":

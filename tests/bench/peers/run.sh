@@ -3,7 +3,8 @@
 # usage: tests/bench/peers/run.sh [--quick | --publish] [--rounds N]
 # slideline beside Akantu and Kratos (wheels from PyPI, into build/venv-peers, about 200 MB) and CalculiX
 # (the Debian package calculix-ccx, which has to be installed: apt-get install calculix-ccx), all on this machine and in one run: tables in
-# results/peers and the page in results/peers/doc (--publish: doc/studies/peers.md). About ten minutes.
+# results/peers and the page in results/peers/doc (--publish: doc/studies/peers.md). About ten minutes, and as long again
+# where callgrind counts the retired instructions (tools/slideline_tools/counting.py).
 set -eu
 
 root=$(cd "$(dirname "$0")/../../.." && pwd)
@@ -24,6 +25,8 @@ command -v ccx >/dev/null || { echo "ccx is missing: apt-get install calculix-cc
 mkdir -p "$out"
 "$venv/bin/pip" list --format=freeze >"$out/versions.txt"
 ccx -v >>"$out/versions.txt" || true  # its exit status is 201
-"$root/build/venv/bin/python" "$root/tests/bench/peers/run.py" --program "$root/build/release/slideline" \
+python=$root/build/venv/bin/python
+counted=$("$python" -m slideline_tools.counting) || echo "instructions are not counted" >&2
+"$python" "$root/tests/bench/peers/run.py" ${counted:+--counted "$counted"} --program "$root/build/release/slideline" \
   --peers "$venv/bin/python" --out "$out" "$@"
-"$root/build/venv/bin/python" -m slideline_tools.studies.peers "$out" "$doc"
+"$python" -m slideline_tools.studies.peers "$out" "$doc"

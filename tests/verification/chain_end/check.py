@@ -156,12 +156,12 @@ def check_guided(run, kind):
             peak = force["fy"][again].max() / (on * depth)
             run.check(f"{name}: largest force after it has come back / rigid press", peak, 1.3, 0.0,
                       "max", "caught; k L g")
-            run.check(f"{name}: the same, at least", peak, 0.5, 0.0, "min", "it is caught")
+            run.check(f"{name}: points after it has come back", force["n_active"][again].max(), 1, 0, "min", "it is caught")
             run.check(f"{name}: released by the log", n_released(result), 0, 0, "abs")
             created = -result.table("glstat")["contact"][-1]
             bound = 0.5 * on * depth ** 2
-            run.check(f"{name}: energy created / (k L g^2/2)", created / bound, 1.1, 0.0, "max",
-                      "caught with no work done; a tenth more for vibrations")
+            run.check(f"{name}: energy created / (k L g^2/2)", created / bound, 1.0, 0.0, "max",
+                      "caught with no work done: contact returns no more than it took")
             run.report(f"{name}: energy created / (k L g^2/2)", created / bound)
         run.check(f"{name}: contact has ended", force["n_active"][-1], 0, 0, "abs", "lifted off")
         check_balance(run, name, result)
@@ -285,9 +285,8 @@ def check_overhang(run, kind):
                       "a hundredth" if catch else "what is beyond the end weighs nothing")
             run.true(f"{name}: no warning at the start", not warned)
             continue
-        run.report(f"{name}: energy created / kinetic energy", created)
-        run.check(f"{name}: energy created / kinetic energy", created, 0.02, 0.0, "min",
-                  "caught deep, which is what the warning says")
+        run.check(f"{name}: energy created / kinetic energy", created, 0.05, 0.0, "max",
+                  "caught deep: the slack of the energy law and what it foretold badly")
         run.true(f"{name}: one warning at the start", len(warned) == 1)
         place = overhang % 1.0 if kind < 4 else {4: overhang - 0.25, 6: overhang - 0.330009}[kind]
         run.check(f"{name}: distance in it", float(warned[0][1]), place * side, 1e-4,

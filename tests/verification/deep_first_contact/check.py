@@ -76,13 +76,13 @@ def check_fast(run, kind):
 
 # --- a body that slides under the surface beside the end of the chain -------------------------------
 
-PENALTY, FLIGHT, LENGTH = 1.0e6, 5.0, 0.6
+PENALTY, FLIGHT = 1.0e6, 5.0
 CELL = 0.1
 
 
 def sliding_under(kind, depth, search):
     """A block flies along a rail with its lower face below the rail's upper face."""
-    deck, top, bottom = bodies(f"sliding under, type {kind}", (6, 3, LENGTH, 0.3, (-0.65, -depth)),
+    deck, top, bottom = bodies(f"sliding under, type {kind}", (6, 3, 0.6, 0.3, (-0.65, -depth)),
                                (20, 3, 2.0, 0.3, (0.0, -0.3)), (1000.0, 1.0e7, 0.3))
     deck.control(0.6, scale=0.4).node_set(3, top).fix(bottom[:21], x=1, y=1)
     deck.add("*INITIAL_VELOCITY", (3,), (FLIGHT, 0.0))
@@ -106,15 +106,14 @@ def check_sliding_under(run, kind):
             run.check(f"{label}: released by the log", n_released(result), 1, 0, "min", "counted")
             run.check(f"{label}: energy created / kinetic energy", created / start, 0.0, 1e-14, "abs")
             continue
-        # Each length is caught once, at most as deep as the limit: k limit^2/2.
-        bound = 0.5 * PENALTY * LENGTH * limit ** 2
-        bound *= {1: 7.0 / 6.0, 3: 2.0 + CELL / LENGTH}.get(kind, 1.0)
-        run.check(f"{label}: force on the block", force["fy"].max(), 1000.0, 0.0, "min", "caught")
+        # Nobody has put any energy into the springs: what they return is lent, half a per cent of the kinetic energy,
+        # and a hundredth of that as slack (theory, 6.1).
+        run.check(f"{label}: points that are caught", force["n_active"].max(), 1, 0, "min", "caught")
         run.check(f"{label}: contact has ended", force["n_active"][-1], 0, 0, "abs")
-        run.check(f"{label}: energy created / bound", created / bound, 1.0, 0.0, "max",
-                  "k limit^2/2 of the whole length")
-        run.report(f"{label}: energy created / kinetic energy at the start", created / start,
-                   f"{n_released(result)} released")
+        run.check(f"{label}: energy created / kinetic energy", created / start, 0.005 * 1.01, 1e-5, "max",
+                  "contact returns no more than it took")
+        run.true(f"{label}: the log warns of forces that are limited again and again", "again and again: contact forces limited"
+                 in " ".join((result.folder / f"{result.job}.log").read_text().split()))
 
 
 # --- overlap at the birth of an interface -----------------------------------------------------------

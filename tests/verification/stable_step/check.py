@@ -24,6 +24,8 @@ YOUNG, RHO, HOURGLASS = 1.0e6, 1000.0, 0.1
 DEPTH, NUDGE = 1.0e-4, 1.0e-6      # m
 GAUSS = 4
 SLOW = ("p:v0=-1e-3",)                 # m/s: shapes hardly change
+#: The energy law of contact holds growth back: a thousand times what a stable run shows.
+GROWTH = 0.002
 INSIDE, OUTSIDE = 1.03, 0.97       # limit by eigenvalue over the step
 BOUND, SHARP = 0.05, 1.5         # of |energy ratio - 1|; of limit by eigenvalue over step
 DIGITS = 1.0e-7      # of the log
@@ -133,7 +135,8 @@ def check_one(run, kind, meshes):
                 raise
             away = np.inf
         run.check(f"{name}: energy ratio, limit by eigenvalue {factor:g} times the step",
-                  min(away, 1.0e6), BOUND, 0.0, "max" if factor > 1.0 else "min", "stability")
+                  min(away, 1.0e6), BOUND if factor > 1.0 else GROWTH, 0.0,
+                  "max" if factor > 1.0 else "min", "stability")
     stiff = 1.0e3 * auto.penalty
     ruled = said(go("ruled", "punit=1", f"pen={stiff!r}", "dt=1", "tssfac=1.0", "endtim=0.05",
                     deck=deck_of(kind, meshes, True)))

@@ -3,7 +3,8 @@
 
     python -m slideline_tools.studies.block_implicit RUNS DOC --types 1 2 3 ...
 
-RUNS holds folders implicit_<n> and explicit_<n> for each type (job `block`). Writes
+RUNS holds folders implicit_<n> and explicit_<n> for each type (job `block`), in each of them the folder `counted` of the
+same run, shortened, where instructions could be counted. Writes
 DOC/studies/block_to_block_implicit.md and DOC/pictures/block_implicit_pressure.png.
 """
 import re
@@ -18,6 +19,7 @@ from slideline_tools.studies.block import (N_MASTER, N_SLAVE, UNIFORM, half_segm
                                            read_pressures)
 from slideline_tools.studies.common import (label, markdown_table, save_small, study_main,
                                             write_page)
+from slideline_tools.study.counted import counted_row, instruction_section
 
 METHODS = ("implicit", "explicit")
 FIRST_STEPS, MOST_ITERATIONS = 5, 3
@@ -31,8 +33,9 @@ when the ratio is at most 1e-20 or when the residual after the correction is rou
 after two iterations, before the ratio of a third is formed.
 """
 
+COUNTED_OPTION = "endtim=0.02"  # as in tools/batch/block_implicit.sh
 COST = """
-What contact costs here, implicitly and explicitly: [paper_tables](paper_tables.md).
+What contact costs here in seconds, implicitly and explicitly: [paper_tables](paper_tables.md).
 """
 ITERATION = re.compile(r"^step to (\S+) iteration (\d+): energy ratio ([^,\s]+)", re.MULTILINE)
 
@@ -170,6 +173,14 @@ def pressure_figure(runs):
         return figure
 
 
+def count_section(folder, types):
+    """Retired instructions of both methods."""
+    rows = [row for method in METHODS for ctype in types
+            for row in counted_row(folder / f"{method}_{ctype}" / "counted", scene=method, level=1, type=ctype,
+                                   shortened=COUNTED_OPTION)]
+    return "\n" + instruction_section(rows, {method: method.capitalize() for method in METHODS})
+
+
 def write(folder, doc, _levels, types):
     """Read the runs; write the page and its picture."""
     grids = block_grids(N_SLAVE, N_MASTER)
@@ -182,7 +193,7 @@ def write(folder, doc, _levels, types):
         if ctype in types:
             parts += [f"\nEnergy ratios of the first steps, type {label(ctype)}:\n",
                       ratio_table(histories[ctype])]
-    write_page(doc, "block_to_block_implicit", "\n".join([*parts, COST]))
+    write_page(doc, "block_to_block_implicit", "\n".join([*parts, COST, count_section(folder, types)]))
     save_small(pressure_figure(runs), doc / "pictures" / "block_implicit_pressure.png", lines=True)
 
 

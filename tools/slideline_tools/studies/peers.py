@@ -3,7 +3,7 @@
 
     python -m slideline_tools.studies.peers FOLDER DOC
 
-FOLDER holds elements.csv, contact.csv and versions.txt.
+FOLDER holds elements.csv, contact.csv and versions.txt, and counts.csv where instructions could be counted.
 """
 import csv
 import math
@@ -13,7 +13,9 @@ import sys
 
 from slideline_tools import UserError
 from slideline_tools.studies.common import markdown_table, page_main, write_page
+from slideline_tools.study.counted import who_counted
 from slideline_tools.study.runner import processor
+from slideline_tools.study.table import COUNTED
 
 PEERS = ("akantu", "KratosMultiphysics", "KratosStructuralMechanicsApplication", "CalculiX")
 
@@ -28,6 +30,8 @@ one thread each; times are medians of {rounds}, with the quartiles in brackets. 
 
 {processor}, 1 thread. The times of Akantu and Kratos are those of their released wheels, built for any x86-64 processor;
 slideline is built for this one, as its README says. Akantu and Kratos are driven from Python. The ratios are those of these builds and elements.
+
+*Instructions* are retired ones, of one run: per element and step of the smallest size, and of the whole process with contact. {counted}
 
 ## The element step
 
@@ -91,7 +95,15 @@ def ratio(rows, others, name):
     return statistics.median(float(row[name]) / base[row["round"]] for row in rows)
 
 
-def element_table(rows):
+def read_counts(path):
+    """{(scene, elements, program, element or contact): instructions} and who counted them; {} where nobody could."""
+    rows = read_table(path) if path.exists() else []
+    counts = {(row["scene"], row["elements"], row["program"], row["what"]): float(row["instructions"]) for row in rows}
+    words = who_counted([{**row, "state": COUNTED} for row in rows])
+    return counts, words + " The other programs are counted as they came." * bool(rows)
+
+
+def element_table(rows, counts):
     """One row per program and size; ratios are to slideline's element with 2x2 points."""
     lines = []
     for (elements,), same in grouped(rows, "elements").items():
@@ -100,11 +112,12 @@ def element_table(rows):
         for (program, element), runs in programs.items():
             centre, low, high = middle(runs, "ns")
             error = float(runs[0]["free_side"]) - float(runs[0]["exact"])
+            count = counts.get(("step", elements, program, element))
             lines.append([elements, program, element, f"{centre:.3g} ({low:.3g} to {high:.3g})",
-                          f"{ratio(runs, ours, 'ns'):.2f}", f"{float(runs[0]['free_side']):.8f}",
+                          f"{ratio(runs, ours, 'ns'):.2f}", "" if count is None else f"{count:.0f}", f"{float(runs[0]['free_side']):.8f}",
                           f"{error:+.1e}"])
     return markdown_table(["elements", "program", "element", "ns per element and step",
-                           "over slideline, 2x2", "free side", "error"], lines)
+                           "over slideline, 2x2", "instructions", "free side", "error"], lines)
 
 
 def element_words(rows):
@@ -135,7 +148,7 @@ def spanned(values):
                        for value in (min(values), max(values)))
 
 
-def contact_table(rows):
+def contact_table(rows, counts):
     """One row per scene, size, program and contact."""
     lines = []
     for (scene, elements, program, contact), runs in grouped(
@@ -145,10 +158,11 @@ def contact_table(rows):
         exact = float(runs[0]["exact"])
         answer = ["refused", "", ""] if math.isnan(mean) else [
             f"{mean:.6g}", size(mean / exact - 1.0), size(deviation)]
+        count = counts.get((scene, elements, program, contact))
         lines.append([scene, elements, program, contact, *answer,
-                      f"{used[0]:.3g} ({used[1]:.3g} to {used[2]:.3g})"])
+                      f"{used[0]:.3g} ({used[1]:.3g} to {used[2]:.3g})", "" if count is None else f"{1e-6 * count:.0f}"])
     return markdown_table(["scene", "elements", "program", "contact", "-s_yy, mean, Pa", "error",
-                           "deviation", "processor time, s"], lines)
+                           "deviation", "processor time, s", "instructions, millions"], lines)
 
 
 def size(value):
@@ -196,10 +210,12 @@ def version_rows(path):
 def write(folder, doc):
     """The page."""
     elements, contact = (read_table(folder / f"{name}.csv") for name in ("elements", "contact"))
+    counts, counted = read_counts(folder / "counts.csv")
     write_page(doc, "peers", PAGE.format(
+        counted=counted,
         rounds=rounds_in_words(max(int(row["round"]) for row in elements)), processor=processor(),
-        versions=version_rows(folder / "versions.txt"), elements=element_table(elements),
-        words=element_words(elements), contact=contact_table(contact),
+        versions=version_rows(folder / "versions.txt"), elements=element_table(elements, counts),
+        words=element_words(elements), contact=contact_table(contact, counts),
         contact_words=contact_words(contact)))
 
 

@@ -2,9 +2,10 @@
 """What pages say of counted instructions: jobs, tables and the words beside them."""
 import dataclasses
 
+from slideline_tools import counting
 from slideline_tools.counting import HARDWARE
 from slideline_tools.studies.common import label, markdown_table
-from slideline_tools.study.table import counted, grouped
+from slideline_tools.study.table import COUNTED, counted, grouped
 
 
 def counted_job(job, options=()):
@@ -12,6 +13,13 @@ def counted_job(job, options=()):
     return dataclasses.replace(job, name=f"{job.name}_counted", options=(*job.options, *options),
                                labels={**job.labels, "shortened": " ".join(options)}, alone=False, turns=1,
                                once=True, counted=True, limit=None, cost=50.0 * job.cost)
+
+
+def counted_row(folder, **labels):
+    """The row of a run that a script had counted into `folder` (`python -m slideline_tools.counting`); [] if it was not."""
+    if not (folder / counting.COUNTS).exists():
+        return []
+    return [{**labels, **counting.columns(folder), "state": COUNTED}]
 
 
 def whole(number):

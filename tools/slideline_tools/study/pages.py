@@ -19,7 +19,7 @@ import subprocess
 from slideline_tools.study.runner import processor
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-STEP = ("base", "model", "state", "material", "element", "loads", "solve")  # folders of src: an explicit step
+STEP = ("base", "linear", "model", "state", "material", "element", "loads", "run", "solve")  # folders of src: an explicit step
 CONTACT = (*STEP, "contact")
 ALL = (*CONTACT, "deck", "output")
 

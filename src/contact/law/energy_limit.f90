@@ -1,0 +1,241 @@
+! SPDX-License-Identifier: MIT
+!> Contact never returns more than it took: one account and one factor per interface and explicit
+!> cycle (doc/theory/contact.md, section 6.1). Springs whose areas and shares change with the angle
+!> have no potential; where they would hand out more than they were given, all forces of the
+!> interface are scaled down by one factor, so that momentum and moments stay in balance.
+module energy_limit_m
+  use contact_state_m, only : contact_state_t
+  use energy_limit_state_m, only : energy_limit_t
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: keep_former_springs, limit_forces, follow_largest, lend, energy_factor, returned_t
+
+  !> Work of forces with the factor one, J/m.
+  type :: returned_t
+    real(wp) :: behind = 0.0_wp !! in the half step behind
+    real(wp) :: ahead = 0.0_wp  !! in the half step to come, at the present velocity
+    real(wp) :: pushed = 0.0_wp !! there, by what else accelerates the nodes
+    real(wp) :: recoil = 0.0_wp !! there, by the acceleration that the forces make themselves
+  end type returned_t
+
+  !> Sums over the nodes of an interface.
+  type :: power_sums_t
+    real(wp) :: present = 0.0_wp !! F.v, W/m
+    real(wp) :: former = 0.0_wp  !! F-.v, of the forces of the cycle before
+    real(wp) :: recoil = 0.0_wp  !! F.F/m, N^2/kg
+  end type power_sums_t
+
+  !> Share of the largest energy so far that may be returned beyond what is stored: bodies that
+  !> slide on each other exchange that much without harm.
+  real(wp), parameter :: slack = 0.01_wp
+  !> Share of what holds the nodes back that is counted on in the half step to come: it is foretold
+  !> from the step before, and falls off where contact opens.
+  real(wp), parameter :: relied_on = 0.5_wp
+  !> How far one limited cycle makes `recent` rise; any other with force lowers it by one.
+  integer, parameter :: rise = 20
+
+contains
+
+  !> Before the points are placed, and before damping has been counted: the forces of the springs
+  !> alone that acted in the cycle before. Only where there is damping: elsewhere they are all
+  !> forces.
+  pure subroutine keep_former_springs(had_force, memory)
+    logical, intent(in) :: had_force
+    type(contact_state_t), intent(inout) :: memory
+
+    if (.not. allocated(memory%scratch%former_spring)) return
+    memory%scratch%former_spring = 0.0_wp
+    if (had_force) memory%scratch%former_spring = memory%scratch%former_force - memory%damping_force
+  end subroutine keep_former_springs
+
+  !> Scale the forces of the interface, with the pressures and the part of damping, by what the
+  !> springs may return; before they are added to those of the mesh and their work is counted.
+  pure subroutine limit_forces(motion, time, dt, memory)
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u(n), v(n-1/2)
+    real(wp), intent(in) :: time                     !! of u, s
+    real(wp), intent(in) :: dt                       !! step that led to u, s
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), allocatable :: spare(:, :)
+    real(wp) :: factor
+
+    associate (limit => memory%limit, scratch => memory%scratch)
+      if (.not. allocated(limit%velocity)) return
+      if (allocated(scratch%former_spring)) then
+        scratch%spring = memory%force - memory%damping_force
+        call find_factor(memory%energy, memory%nodes, motion, dt, scratch%former_spring, &
+          scratch%spring, scratch%velocity, limit, factor)
+      else
+        call find_factor(memory%energy, memory%nodes, motion, dt, scratch%former_force, &
+          memory%force, scratch%velocity, limit, factor)
+      end if
+      call move_alloc(limit%velocity, spare)
+      call move_alloc(scratch%velocity, limit%velocity)
+      call move_alloc(spare, scratch%velocity)
+      call count_cycle(factor, time, limit)
+    end associate
+    if (factor < 1.0_wp) call scale_forces(factor, memory)
+  end subroutine limit_forces
+
+  !> The factor of this cycle. The sums that are formed in each cycle bound what may be returned;
+  !> only where that is too much, most often just before contact opens, all is looked at.
+  pure subroutine find_factor(energy, nodes, motion, dt, former, present, velocity, limit, factor)
+    real(wp), intent(in) :: energy       !! of the springs up to the cycle before, J/m
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node of the mesh)
+    real(wp), intent(in) :: dt
+    real(wp), intent(in), contiguous :: former(:, :)   !! (2, n) forces of the cycle before, N/m
+    real(wp), intent(in), contiguous :: present(:, :)  !! (2, n) forces of this cycle, N/m
+    real(wp), intent(inout), contiguous :: velocity(:, :) !! (2, n) v(n-1/2) on return
+    type(energy_limit_t), intent(inout) :: limit       !! has that of the cycle before
+    real(wp), intent(out) :: factor
+    type(power_sums_t) :: sums
+    type(returned_t) :: returned
+    real(wp) :: leap, bound, former_recoil
+
+    factor = 1.0_wp
+    call sum_powers(size(nodes), nodes, motion, former, present, limit%inverse_mass, velocity, sums)
+    former_recoil = limit%recoil
+    limit%recoil = sums%recoil
+    if (.not. limit%coming_step > 0.0_wp) return
+    leap = 0.25_wp*limit%coming_step*(dt + limit%coming_step)
+    bound = energy + limit%credit - 0.5_wp*dt*sums%former + slack*limit%largest
+    ! |F.q| <= (F.F + F-.F-)/2
+    if (.not. 0.5_wp*(dt + limit%coming_step)*sums%present + leap*(1.5_wp*sums%recoil &
+      + 0.5_wp*former_recoil) > bound) return
+    returned%behind = 0.5_wp*dt*sums%present
+    returned%ahead = 0.5_wp*limit%coming_step*sums%present
+    returned%recoil = leap*sums%recoil
+    returned%pushed = pushed_work(dt, leap, former, present, limit%inverse_mass, velocity &
+      - limit%velocity)
+    if (returned%pushed < 0.0_wp) returned%pushed = relied_on*returned%pushed
+    factor = energy_factor(returned, bound)
+    limit%recoil = factor**2*limit%recoil
+  end subroutine find_factor
+
+  !> The velocities, the powers of former and present forces, and what these do to the nodes. One
+  !> loop gathers, the other goes through lists that lie in one piece: that is vectorised.
+  pure subroutine sum_powers(n, nodes, motion, former, present, inverse_mass, velocity, sums)
+    integer, intent(in) :: n
+    integer, intent(in) :: nodes(n)
+    real(wp), intent(in) :: motion(4, *)
+    real(wp), intent(in), dimension(2*n) :: former, present, inverse_mass !! x and y of each node
+    real(wp), intent(inout) :: velocity(2*n)
+    type(power_sums_t), intent(out) :: sums
+    real(wp) :: power, former_power, recoil
+    integer :: i
+
+    do i = 1, n
+      velocity(2*i - 1:2*i) = motion(3:4, nodes(i))
+    end do
+    power = 0.0_wp
+    former_power = 0.0_wp
+    recoil = 0.0_wp
+    !$omp simd reduction(+:power, former_power, recoil)
+    do i = 1, 2*n
+      power = power + velocity(i)*present(i)
+      former_power = former_power + velocity(i)*former(i)
+      recoil = recoil + inverse_mass(i)*(present(i)*present(i))
+    end do
+    sums = power_sums_t(power, former_power, recoil)
+  end subroutine sum_powers
+
+  !> Work that all else does on the nodes in the half step to come: forces as in the cycle before,
+  !> in the free directions of each node no larger than the contact force there was.
+  pure function pushed_work(dt, leap, former, present, inverse_mass, change) result(work)
+    real(wp), intent(in) :: dt
+    real(wp), intent(in) :: leap !! half the coming step times the mean of both steps, s^2
+    real(wp), intent(in), contiguous :: former(:, :), present(:, :), inverse_mass(:, :)
+    real(wp), intent(in), contiguous :: change(:, :) !! (2, n) v(n-1/2) - v(n-3/2)
+    real(wp) :: work
+    real(wp) :: other(2), square, former_square
+    integer :: i
+
+    work = 0.0_wp
+    do i = 1, size(present, 2)
+      associate (is_free => inverse_mass(:, i) > 0.0_wp)
+        former_square = sum(former(:, i)**2, mask=is_free)
+        if (.not. former_square > 0.0_wp) cycle
+        other = 0.0_wp
+        where (is_free) other = change(:, i)/(inverse_mass(:, i)*dt) - former(:, i)
+        square = sum(other**2)
+        if (square > former_square) other = other*sqrt(former_square/square)
+        work = work + leap*sum(present(:, i)*other*inverse_mass(:, i))
+      end associate
+    end do
+  end function pushed_work
+
+  !> The largest factor s, from 0 to 1, with which the half step behind, s behind, and both half
+  !> steps, s (behind + ahead + pushed) + s^2 recoil, return no more than `bound`; where no s does,
+  !> that with the least return.
+  pure function energy_factor(returned, bound) result(factor)
+    type(returned_t), intent(in) :: returned
+    real(wp), intent(in) :: bound !! J/m
+    real(wp) :: factor
+    real(wp) :: linear, square, discriminant
+
+    factor = 1.0_wp
+    if (returned%behind > 0.0_wp) factor = min(1.0_wp, max(0.0_wp, bound)/returned%behind)
+    linear = returned%behind + returned%ahead + returned%pushed
+    square = returned%recoil
+    if (.not. (linear + square > bound .and. linear + square > 0.0_wp)) return
+    discriminant = linear**2 + 4.0_wp*square*bound
+    if (linear > 0.0_wp) then
+      ! The root without a difference of like numbers; 0 where even the least would be too much.
+      factor = min(factor, max(0.0_wp, 2.0_wp*bound/(linear + sqrt(max(0.0_wp, discriminant)))))
+    else
+      factor = min(factor, (-linear + sqrt(max(0.0_wp, discriminant)))/(2.0_wp*square))
+    end if
+  end function energy_factor
+
+  !> Scale all that acts in this cycle.
+  pure subroutine scale_forces(factor, memory)
+    real(wp), intent(in) :: factor
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%force = factor*memory%force
+    associate (points => memory%points)
+      points%pressure(:points%n) = factor*points%pressure(:points%n)
+      if (allocated(points%load)) points%load(:, :points%n) = factor*points%load(:, :points%n)
+    end associate
+    if (allocated(memory%node_pressure)) memory%node_pressure = factor*memory%node_pressure
+    if (allocated(memory%damping_force)) memory%damping_force = factor*memory%damping_force
+  end subroutine scale_forces
+
+  !> Count a cycle with force. Cycle zero has no step to come and is not limited.
+  pure subroutine count_cycle(factor, time, limit)
+    real(wp), intent(in) :: factor, time
+    type(energy_limit_t), intent(inout) :: limit
+
+    limit%n_loaded = limit%n_loaded + 1
+    if (.not. factor < 1.0_wp) then
+      limit%recent = max(0, limit%recent - 1)
+      return
+    end if
+    limit%recent = limit%recent + rise
+    limit%n_limited = limit%n_limited + 1
+    if (.not. factor < limit%least_factor) return
+    limit%least_factor = factor
+    limit%least_time = time
+  end subroutine count_cycle
+
+  !> Grant springs that were caught loaded what they hold, as far as the loan goes.
+  pure subroutine lend(energy, limit)
+    real(wp), intent(in) :: energy !! J/m
+    type(energy_limit_t), intent(inout) :: limit
+    real(wp) :: granted
+
+    granted = min(energy, max(0.0_wp, limit%loan - limit%lent))
+    limit%lent = limit%lent + granted
+    limit%credit = limit%credit + granted
+  end subroutine lend
+
+  !> After the work of a cycle has been counted: the largest energy so far.
+  pure subroutine follow_largest(energy, limit)
+    real(wp), intent(in) :: energy !! of the springs, J/m
+    type(energy_limit_t), intent(inout) :: limit
+
+    limit%largest = max(limit%largest, energy + limit%credit)
+  end subroutine follow_largest
+
+end module energy_limit_m

@@ -1,0 +1,180 @@
+! SPDX-License-Identifier: MIT
+!> Which segments of two surfaces face each other (doc/theory/contact.md, section 3.7). A place of a
+!> segment faces a segment of the other surface where the outward normals are against each other
+!> within 60 degrees and the place stands over that segment, within `capture` before it and its
+!> depth behind it. Who faces a whole outline from outside is found so, whichever way it came.
+module facing_m
+  use contact_state_m, only : bucket_grid_t
+  use foot_m, only : face_on, is_over_segment
+  use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal, separation
+  use grid_m, only : cell_of, bucket_of
+  use kinds_m, only : wp
+  use runs_m, only : turn_t, turn_at
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: side_view_t, find_facing
+
+  !> Sine of the angle by which a direction lies between two others (10 degrees).
+  real(wp), parameter :: well_between = 0.17_wp
+  !> Places of a segment that are looked at.
+  real(wp), parameter :: looked_at(3) = [0.1_wp, 0.5_wp, 0.9_wp]
+
+  !> What is known of a surface at a look.
+  type :: side_view_t
+    real(wp), allocatable :: places(:, :) !! (4, n_node)
+    real(wp), allocatable :: depth(:)     !! (n_segment) m
+    type(bucket_grid_t) :: grid           !! of its segments, filled now
+  end type side_view_t
+
+contains
+
+  !> Note all segments of one surface that face the other, and those that they face: of each place
+  !> the nearest one. A sharp corner faces by its node where no side of it does.
+  pure subroutine find_facing(own, own_view, target, view, capture, is_same, faces, faced)
+    type(surface_t), intent(in) :: own, target
+    type(side_view_t), intent(in) :: own_view, view
+    real(wp), intent(in) :: capture      !! m
+    logical, intent(in) :: is_same       !! both are one surface: neighbours never face
+    logical, intent(inout) :: faces(:)   !! (segments of `own`)
+    logical, intent(inout) :: faced(:)   !! (segments of `target`)
+    real(wp) :: place(4), normal(2)
+    integer :: s, k, found
+
+    do s = 1, own%n_segment
+      associate (a => own_view%places(:, own%segments(1, s)), &
+        b => own_view%places(:, own%segments(2, s)))
+        if (.not. is_near(view, a, b, capture)) cycle
+        normal = normal_of(own, own_view%places, s)
+        do k = 1, size(looked_at)
+          place = (1.0_wp - looked_at(k))*a + looked_at(k)*b
+          found = nearest_faced(target, view, place, normal, normal, capture, &
+            own%segments(:, s), is_same)
+          if (found == 0) cycle
+          faces(s) = .true.
+          faced(found) = .true.
+        end do
+      end associate
+    end do
+    call find_facing_corners(own, own_view, target, view, capture, is_same, faces, faced)
+  end subroutine find_facing
+
+  !> Sharp convex corners neither side of which faces by its places: by the normals between those of
+  !> the sides. Of these count those within 60 degrees of the target, or both where none is.
+  pure subroutine find_facing_corners(own, own_view, target, view, capture, is_same, faces, faced)
+    type(surface_t), intent(in) :: own, target
+    type(side_view_t), intent(in) :: own_view, view
+    real(wp), intent(in) :: capture
+    logical, intent(in) :: is_same
+    logical, intent(inout) :: faces(:), faced(:)
+    logical, allocatable :: was_facing(:)
+    type(turn_t) :: turn
+    real(wp) :: cosines(2)
+    integer :: s, next, node, found
+
+    allocate (was_facing, source=faces)
+    do s = 1, own%n_segment
+      next = own%next(s)
+      if (next == 0 .or. was_facing(s)) cycle
+      if (was_facing(next)) cycle
+      turn = turn_at(own, own_view%places, s, next)
+      if (.not. (turn%is_sharp .and. turn%is_convex)) cycle
+      node = own%segments(2, s)
+      associate (place => own_view%places(:, node), one => normal_of(own, own_view%places, s), &
+        two => normal_of(own, own_view%places, next))
+        if (.not. is_near(view, place, place, capture)) cycle
+        found = nearest_faced(target, view, place, one, two, capture, [node, node], is_same)
+      end associate
+      if (found == 0) cycle
+      faced(found) = .true.
+      cosines = [dot_product(normal_of(own, own_view%places, s), normal_of(target, view%places, &
+        found)), dot_product(normal_of(own, own_view%places, next), normal_of(target, view%places, &
+        found))]
+      if (minval(cosines) >= face_on) cosines = -1.0_wp
+      faces(s) = faces(s) .or. cosines(1) < face_on
+      faces(next) = faces(next) .or. cosines(2) < face_on
+    end do
+  end subroutine find_facing_corners
+
+  !> Outward normal of a segment.
+  pure function normal_of(surface, places, segment) result(normal)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node)
+    integer, intent(in) :: segment
+    real(wp) :: normal(2), t(2)
+
+    t = separation(places(:, surface%segments(2, segment)), places(:, surface%segments(1, segment)))
+    normal = [t(2), -t(1)]/max(norm2(t), tiny(1.0_wp))
+  end function normal_of
+
+  !> Whether a segment from a to b may be within `capture` of a surface, by the box of that.
+  pure function is_near(view, a, b, capture) result(near)
+    type(side_view_t), intent(in) :: view
+    real(wp), intent(in) :: a(4), b(4), capture
+    logical :: near
+    real(wp) :: y(2), z(2)
+
+    y = separation(a, view%places(:, 1))
+    z = separation(b, view%places(:, 1))
+    near = all(min(y, z) <= view%grid%high + capture .and. max(y, z) >= view%grid%low - capture)
+  end function is_near
+
+  !> The segment of a surface that a place faces, of several the one whose line is nearest; 0: none.
+  !> The normals from `first` on to `last`, counter-clockwise, are those of the place.
+  pure function nearest_faced(target, view, place, first, last, capture, nodes, &
+      is_same) result(found)
+    type(surface_t), intent(in) :: target
+    type(side_view_t), intent(in) :: view
+    real(wp), intent(in) :: place(4), first(2), last(2), capture
+    integer, intent(in) :: nodes(2)  !! that the place belongs to, of the same surface or another
+    logical, intent(in) :: is_same
+    integer :: found
+    real(wp) :: gap, nearest
+    integer :: low(2), high(2), ix, iy, bucket, i
+    type(sight_t) :: sight
+
+    found = 0
+    nearest = huge(1.0_wp)
+    associate (y => separation(place, view%places(:, 1)), grid => view%grid, &
+      ends => target%segments)
+      low = cell_of(grid, max(y - capture, grid%low))
+      high = cell_of(grid, min(y + capture, grid%high))
+      do iy = low(2), high(2)
+        do ix = low(1), high(1)
+          bucket = bucket_of(grid, ix, iy)
+          do i = grid%first(bucket) + 1, grid%first(bucket + 1)
+            associate (t => grid%items(i))
+              if (is_same .and. (any(ends(1, t) == nodes) .or. any(ends(2, t) == nodes))) cycle
+              sight = sight_of_segment(place, view%places(:, ends(1, t)), &
+                view%places(:, ends(2, t)))
+              if (.not. is_over_segment(sight)) cycle
+              gap = sight_gap(sight)
+              if (gap >= capture .or. gap <= -view%depth(t) .or. abs(gap) >= nearest) cycle
+              if (.not. is_against(first, last, sight_normal(sight))) cycle
+              found = t
+              nearest = abs(gap)
+            end associate
+          end do
+        end do
+      end do
+    end associate
+  end function nearest_faced
+
+  !> Whether the opposite of a normal lies within 60 degrees of that of a segment, or well between
+  !> those of the two at a corner. Next to one of these the side lies along the target, and faces
+  !> or does not by its own places.
+  pure function is_against(first, last, normal) result(against)
+    real(wp), intent(in), dimension(2) :: first, last !! of the segment, or before and behind the
+                                                      !! corner
+    real(wp), intent(in) :: normal(2)
+    logical :: against
+
+    if (all(abs(first - last) <= 0.0_wp)) then
+      against = dot_product(first, normal) < face_on
+    else
+      against = first(1)*normal(2) - first(2)*normal(1) < -well_between .and. &
+        normal(1)*last(2) - normal(2)*last(1) < -well_between
+    end if
+  end function is_against
+
+end module facing_m

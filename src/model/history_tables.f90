@@ -1,0 +1,63 @@
+! SPDX-License-Identifier: MIT
+!> The history files, one row each: what reading decks, schedules, files, restarts and names of
+!> results walk by loops. Columns stand in `history_rows_m`; how to add either is told in
+!> doc/add_a_history.md.
+module history_tables_m
+  use text_m, only : upper_case
+  implicit none
+  private
+  public :: history_table_t, history_tables, table_of_keyword, n_table, table_glstat, &
+    table_rcforc, table_nodout, table_contact, table_matsum, table_rwforc, table_sleout, &
+    table_spcforc, asked_alone, asked_or_states, asked_by_states, each_run, each_contact, &
+    each_history_node, each_part, each_wall, each_support, text_none, text_rows, text_instants
+
+  !> The files. Their order is that in restart files and results.
+  integer, parameter :: n_table = 8
+  integer, parameter :: table_glstat = 1, table_rcforc = 2, table_nodout = 3, table_contact = 4, &
+    table_matsum = 5, table_rwforc = 6, table_sleout = 7, table_spcforc = 8
+
+  !> Who asks for a file: its keyword; its keyword, or else it is there in every run and goes with
+  !> the states; the states, it has no keyword.
+  integer, parameter :: asked_alone = 1, asked_or_states = 2, asked_by_states = 3
+
+  !> What an instant has rows of. Where the model has none of it there is no file.
+  integer, parameter :: each_run = 1, each_contact = 2, each_history_node = 3, each_part = 4, &
+    each_wall = 5, each_support = 6
+
+  !> A text file in DYNA's layout beside it (BINARY): none, each row a block of lines of its own, or
+  !> the rows of an instant together.
+  integer, parameter :: text_none = 0, text_rows = 1, text_instants = 2
+
+  !> One file.
+  type :: history_table_t
+    character(8) :: name   !! end of the file's name, and of its keyword *DATABASE_<NAME>
+    integer :: asked       !! one of `asked_`
+    integer :: each        !! one of `each_`
+    integer :: text        !! one of `text_`
+  end type history_table_t
+
+  type(history_table_t), parameter :: history_tables(n_table) = [ &
+    history_table_t('glstat  ', asked_or_states, each_run, text_rows), &
+    history_table_t('rcforc  ', asked_alone, each_contact, text_rows), &
+    history_table_t('nodout  ', asked_alone, each_history_node, text_instants), &
+    history_table_t('contact ', asked_by_states, each_contact, text_none), &
+    history_table_t('matsum  ', asked_alone, each_part, text_instants), &
+    history_table_t('rwforc  ', asked_alone, each_wall, text_none), &
+    history_table_t('sleout  ', asked_alone, each_contact, text_instants), &
+    history_table_t('spcforc ', asked_alone, each_support, text_instants)]
+
+contains
+
+  !> The table whose interval a keyword without its asterisk gives (DATABASE_GLSTAT); 0 = none.
+  pure function table_of_keyword(keyword) result(i_table)
+    character(*), intent(in) :: keyword   !! in capital letters
+    integer :: i_table
+    character(*), parameter :: head = 'DATABASE_'
+
+    do i_table = n_table, 1, -1
+      if (history_tables(i_table)%asked == asked_by_states) cycle
+      if (keyword == head//upper_case(history_tables(i_table)%name)) exit
+    end do
+  end function table_of_keyword
+
+end module history_tables_m

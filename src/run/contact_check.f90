@@ -1,0 +1,86 @@
+! SPDX-License-Identifier: MIT
+!> What the run says about its interfaces at its start and at its end.
+module contact_check_m
+  use contact_log_m, only : report_initial_contact, report_released
+  use contact_overhang_m, only : report_overhang
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
+    opening_step, binding_bound, fitting_scale
+  use controls_m, only : contact_step_free
+  use kinds_m, only : wp
+  use log_m, only : log_t, warn, to_text
+  use model_m, only : model_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: report_contact_start, report_contact_end
+
+  !> By which a step may miss the bound that its penalty was made for (PUNIT 3).
+  real(wp), parameter :: round_off = 1.0e-12_wp
+
+contains
+
+  !> Initial penetrations, places just beyond ends of the master, and in explicit runs a warning
+  !> where the penalty demands a smaller step than `state%dt`.
+  subroutine report_contact_start(model, state, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(log_t), intent(inout) :: log
+    type(spring_bound_t) :: bounds(size(model%contacts))
+    real(wp) :: element_limit
+    logical :: limits_step
+    integer :: i
+
+    limits_step = model%controls%contact_step /= contact_step_free &
+      .and. .not. model%controls%implicit%is_on
+    element_limit = minval(state%elements%time_limit)
+    if (limits_step) call bound_springs(model%contacts, &
+      state%contact_mass, state%contacts, [(1.0_wp, i=1, size(bounds))], bounds)
+    do i = 1, size(model%contacts)
+      call report_initial_contact(model%contacts(i), model, state%contacts(i), log)
+      call report_overhang(model%contacts(i), model, state%contacts(i), log)
+      if (.not. limits_step) cycle
+      if (state%dt <= stable_step(element_limit, bounds(i))*(1.0_wp + round_off)) cycle
+      call warn_of_step(model, i, state%dt, element_limit, bounds(i), log)
+    end do
+  end subroutine report_contact_start
+
+  !> The warning for one interface: which bound asks for what, the node and the penalty that would
+  !> fit.
+  subroutine warn_of_step(model, i, dt, element_limit, bound, log)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    real(wp), intent(in) :: dt, element_limit !! s
+    type(spring_bound_t), intent(in) :: bound
+    type(log_t), intent(inout) :: log
+
+    if (dt < element_limit) then
+      call warn(log, 'interface '//to_text(model%contacts(i)%id)//': its penalty demands a time ' &
+        //'step of at most '//to_text(stable_step(element_limit, bound))//', the bound of ' &
+        //binding_bound(element_limit, bound)//' (while they stay closed ' &
+        //to_text(closed_step(element_limit, bound))//', where they open and close ' &
+        //to_text(opening_step(bound))//', elements alone '//to_text(element_limit) &
+        //', springs of all contacts at its nodes alone ' &
+        //to_text(closed_step(huge(1.0_wp), bound))//' at node ' &
+        //to_text(model%mesh%node_id(bound%node))//'), the step is '//to_text(dt) &
+        //'; a penalty of '//to_text(fitting_scale(dt, element_limit, bound)) &
+        //' times the present one would fit')
+    else
+      call warn(log, 'interface '//to_text(model%contacts(i)%id)//': the time step ' &
+        //to_text(dt)//' lies above the limit of the elements '//to_text(element_limit) &
+        //' and leaves no room for contact springs')
+    end if
+  end subroutine warn_of_step
+
+  !> First contacts that were released.
+  subroutine report_contact_end(model, state, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(log_t), intent(inout) :: log
+    integer :: i
+
+    do i = 1, size(model%contacts)
+      call report_released(model%contacts(i), state%contacts(i), log)
+    end do
+  end subroutine report_contact_end
+
+end module contact_check_m

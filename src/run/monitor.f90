@@ -1,0 +1,172 @@
+! SPDX-License-Identifier: MIT
+!> Watches a run for the files: what is due, and writing it.
+module monitor_m
+  use clock_m, only : clock_t
+  use controls_m, only : interval_t, is_asked
+  use errors_m, only : error_t
+  use history_file_m, only : histories_t, plan_histories, open_histories, check_histories, &
+    flush_histories, close_histories, has_rows
+  use history_rows_m, only : append_rows
+  use history_tables_m, only : history_tables, n_table, asked_or_states, asked_by_states
+  use kinds_m, only : wp
+  use log_m, only : log_t
+  use model_m, only : model_t
+  use output_schedule_m, only : schedule_t, start_schedule, is_due, mark_written
+  use progress_m, only : progress_t, start_progress
+  use restart_plan_m, only : restarts_t, plan_restarts
+  use results_file_m, only : results_file_t, run_info_t, open_results, append_state, finish_results
+  use snapshot_m, only : snapshot_t
+  use snapshot_filling_m, only : start_snapshot
+  implicit none
+  private
+  public :: monitor_t, open_files, start_monitor, plan_outputs, find_due, any_due, write_due, &
+    finish_monitor, due_t
+
+  !> What is due in one cycle.
+  type :: due_t
+    logical :: plot = .false.
+    logical :: tables(n_table) = .false. !! by the `table_` constants
+  end type due_t
+
+  !> Files, their schedules, the log, the clock and the progress lines of a run.
+  type :: monitor_t
+    type(schedule_t) :: plot
+    type(schedule_t) :: tables(n_table) !! by the `table_` constants; never due: what goes with plot
+    type(results_file_t) :: results
+    type(histories_t) :: histories
+    type(snapshot_t) :: snapshot
+    type(log_t) :: log
+    type(clock_t) :: clock
+    type(progress_t) :: progress
+    type(restarts_t) :: restarts
+    logical :: has_plot = .false. !! the deck asks for plot states
+    logical :: only_checks = .false. !! the state at time zero is made, and no file
+  end type monitor_t
+
+contains
+
+  !> Open the files that the deck asks for. `prefix` is directory and job name.
+  subroutine open_files(model, prefix, run_info, monitor, error)
+    type(model_t), intent(in) :: model
+    character(*), intent(in) :: prefix
+    type(run_info_t), intent(in) :: run_info
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+
+    monitor%has_plot = is_asked(model%controls%output%plot)
+    call open_histories(monitor%histories, prefix, model, error)
+    if (allocated(error)) return
+    if (monitor%has_plot) &
+      call open_results(monitor%results, prefix//'.vtkhdf', model, run_info, &
+        monitor%restarts%goes_on, error)
+  end subroutine open_files
+
+  !> Schedules, progress lines and the snapshot.
+  subroutine start_monitor(model, has_history, monitor)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: has_history !! some part keeps a plastic strain
+    type(monitor_t), intent(inout) :: monitor
+
+    call start_schedules(model, monitor)
+    call start_progress(monitor%progress, model%controls%end_time, &
+      model%controls%output%status_interval)
+    call plan_restarts(monitor%restarts, model%controls)
+    call start_snapshot(model, has_history, monitor%snapshot)
+  end subroutine start_monitor
+
+  !> Tables and schedules of a run that opens no files: what a restart file says of them can be
+  !> read.
+  subroutine plan_outputs(model, monitor)
+    type(model_t), intent(in) :: model
+    type(monitor_t), intent(inout) :: monitor
+
+    call plan_histories(monitor%histories, model)
+    call start_schedules(model, monitor)
+  end subroutine plan_outputs
+
+  !> Energies go with the plot states where the deck gives them no interval of their own, since
+  !> every run has an energy history.
+  subroutine start_schedules(model, monitor)
+    type(model_t), intent(in) :: model
+    type(monitor_t), intent(inout) :: monitor
+    type(interval_t) :: interval
+    integer :: k
+
+    associate (plan => model%controls%output, end_time => model%controls%end_time)
+      call start_schedule(monitor%plot, plan%plot, model%curves, end_time)
+      do k = 1, n_table
+        ! Rows that no file receives must not make a cycle write.
+        if (.not. has_rows(model, k)) cycle
+        interval = plan%histories(k)
+        if (history_tables(k)%asked == asked_or_states .and. .not. is_asked(interval)) &
+          interval = plan%plot
+        call start_schedule(monitor%tables(k), interval, model%curves, end_time)
+      end do
+    end associate
+  end subroutine start_schedules
+
+  !> What is due at `time`; `everything` for the first and the last state.
+  pure function find_due(monitor, time, dt, everything) result(due)
+    type(monitor_t), intent(in) :: monitor
+    real(wp), intent(in) :: time, dt
+    logical, intent(in) :: everything
+    type(due_t) :: due
+    integer :: k
+
+    due%plot = monitor%has_plot .and. (everything .or. is_due(monitor%plot, time, dt))
+    do k = 1, n_table
+      if (history_tables(k)%asked == asked_by_states) then
+        due%tables(k) = due%plot
+      else
+        due%tables(k) = everything .or. is_due(monitor%tables(k), time, dt)
+      end if
+    end do
+  end function find_due
+
+  !> Whether anything is due.
+  pure function any_due(due) result(any_of_them)
+    type(due_t), intent(in) :: due
+    logical :: any_of_them
+
+    any_of_them = due%plot .or. any(due%tables)
+  end function any_due
+
+  !> Write what is due from the snapshot.
+  subroutine write_due(model, due, dt, monitor, error)
+    type(model_t), intent(in) :: model
+    type(due_t), intent(in) :: due
+    real(wp), intent(in) :: dt
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+    integer :: k
+
+    if (monitor%only_checks) return
+    associate (shot => monitor%snapshot, histories => monitor%histories)
+      do k = 1, n_table
+        if (due%tables(k)) call append_rows(histories%tables(k), k, model, shot)
+      end do
+      if (due%plot) then
+        call append_state(monitor%results, model, shot, error)
+        if (allocated(error)) return
+        call flush_histories(histories, error)
+      else
+        call check_histories(histories, error)
+      end if
+      do k = 1, n_table
+        if (due%tables(k)) call mark_written(monitor%tables(k), shot%time, dt)
+      end do
+      if (due%plot) call mark_written(monitor%plot, shot%time, dt)
+    end associate
+  end subroutine write_due
+
+  !> Close the files.
+  subroutine finish_monitor(monitor, error)
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+
+    call close_histories(monitor%histories, error)
+    if (allocated(error)) return
+    call finish_results(monitor%results, monitor%histories, error)
+  end subroutine finish_monitor
+
+end module monitor_m

@@ -1,0 +1,247 @@
+! SPDX-License-Identifier: MIT
+!> Whether the numbers of a state that was read may be used: every index lies within what it points
+!> at, every list is one, and times are times. Shapes have been compared before (`keep`). A restart
+!> file may come from elsewhere: its checksum says that it is whole, not that it is sound.
+module restart_bounds_m
+  use archive_file_m, only : archive_t, refuse
+  use contact_state_m, only : contact_state_t, tracking_t, bucket_grid_t, &
+    is_free, is_touching, is_behind
+  use contacts_m, only : contact_t
+  use facing_state_m, only : facing_t, facing_side_t
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use model_m, only : model_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: check_state
+
+  !> Cells of the smallest side that the reach of a search takes, at most: 100 but for rounding.
+  real(wp), parameter :: most_cells = 101.0_wp
+
+contains
+
+  !> Look at a whole state; the first thing that is wrong is told as an error of the archive.
+  subroutine check_state(model, state, archive)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state      !! of the shapes of the model
+    type(archive_t), intent(inout) :: archive
+    integer :: i
+
+    call require(archive, 'state/cycle', state%cycle >= 0 .and. state%cycle < huge(1), &
+      'a cycle that no run reaches')
+    call require(archive, 'state/time', state%time >= 0.0_wp, 'a time below zero')
+    call require(archive, 'state/dt', state%dt > 0.0_wp, 'a step that is not positive')
+    call require(archive, 'state/dt_before', state%dt_before >= 0.0_wp, 'a step below zero')
+    call require(archive, 'state/mass', all(state%mass >= 0.0_wp), 'masses below zero')
+    do i = 1, size(state%contacts)
+      call check_contact(model%contacts(i), model%mesh%n_node, state%contacts(i), &
+        'state/contacts/'//to_text(i)//'/', archive)
+    end do
+  end subroutine check_state
+
+  !> The memory of one interface.
+  subroutine check_contact(contact, n_node, memory, folder, archive)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: n_node !! of the mesh
+    type(contact_state_t), intent(in) :: memory
+    character(*), intent(in) :: folder
+    type(archive_t), intent(inout) :: archive
+    integer :: i, n_segments(2), n_spot
+
+    call require(archive, folder//'travel', memory%travel >= 0.0_wp, 'a way below zero')
+    call require(archive, folder//'n_active', memory%n_active >= 0, 'a number below zero')
+    call require(archive, folder//'n_released', memory%n_released >= 0 .and. &
+      memory%n_released <= 10**9, 'a number that no run reaches')
+    call check_node('watch/node', memory%watch%node)
+    do i = 1, size(memory%watch%changes)
+      call check_node('watch/'//to_text(i)//'/node', memory%watch%changes(i)%node)
+    end do
+    call check_points(memory, folder//'points/', archive)
+    if (allocated(archive%error)) return
+    n_segments = [contact%slave%n_segment, contact%master%n_segment]
+    n_spot = memory%n_slave
+    if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
+    if (memory%facing%is_used) then
+      call check_facing(memory%facing, n_segments, folder//'facing/', archive)
+      if (allocated(archive%error)) return
+      n_segments = [memory%facing%slave%n, memory%facing%master%n]
+      if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
+    end if
+    call check_tracking(memory%slave_tracking, n_spot, n_segments(2), &
+      folder//'slave_tracking/', archive)
+    if (allocated(archive%error)) return
+    call check_tracking(memory%master_tracking, memory%n_master, n_segments(1), &
+      folder//'master_tracking/', archive)
+    if (allocated(memory%segments%status)) call require(archive, folder//'segments/status', &
+      all(memory%segments%status >= is_free .and. memory%segments%status <= is_behind), &
+      'numbers that mean nothing')
+
+  contains
+
+    !> A node of the mesh, or none.
+    subroutine check_node(name, node)
+      character(*), intent(in) :: name
+      integer, intent(in) :: node
+
+      call require(archive, folder//name, node >= 0 .and. node <= n_node, &
+        'a number that no node has')
+    end subroutine check_node
+
+  end subroutine check_contact
+
+  !> Runs of facing segments: rising numbers of segments that there are.
+  subroutine check_facing(facing, n_segments, folder, archive)
+    type(facing_t), intent(in) :: facing
+    integer, intent(in) :: n_segments(2) !! of slave and master
+    character(*), intent(in) :: folder
+    type(archive_t), intent(inout) :: archive
+
+    call require(archive, folder//'n_look', facing%n_look >= 0 .and. facing%n_look <= 10**9 &
+      .and. facing%n_change >= 0 .and. facing%n_change <= 10**9, 'a number that no run reaches')
+    call check_side(facing%slave, n_segments(1), folder//'slave/')
+    if (.not. allocated(archive%error)) &
+      call check_side(facing%master, n_segments(2), folder//'master/')
+
+  contains
+
+    !> The list of one surface.
+    subroutine check_side(side, n, folder)
+      type(facing_side_t), intent(in) :: side
+      integer, intent(in) :: n
+      character(*), intent(in) :: folder
+
+      call require(archive, folder//'n', side%n >= 0 .and. side%n <= n, &
+        'a number beyond the length of its list')
+      if (allocated(archive%error)) return
+      call require(archive, folder//'segments', all(side%segments(:side%n) >= 1 &
+        .and. side%segments(:side%n) <= n) .and. all(side%segments(2:side%n) &
+        > side%segments(:side%n - 1)), 'numbers that do not rise, or that no segment has')
+    end subroutine check_side
+
+  end subroutine check_facing
+
+  !> The list of points: as many in all its arrays, and nodes of the interface.
+  subroutine check_points(memory, folder, archive)
+    type(contact_state_t), intent(in) :: memory
+    character(*), intent(in) :: folder
+    type(archive_t), intent(inout) :: archive
+    integer :: n_local
+    logical :: fits
+
+    associate (points => memory%points)
+      fits = allocated(points%slave_nodes) .and. allocated(points%master_nodes) .and. &
+        allocated(points%slave_weights) .and. allocated(points%master_weights) .and. &
+        allocated(points%normal) .and. allocated(points%gap) .and. allocated(points%area) .and. &
+        allocated(points%stiffness) .and. allocated(points%pressure)
+      if (fits) fits = all([size(points%slave_nodes, 2), size(points%master_nodes, 2), &
+        size(points%slave_weights, 2), size(points%master_weights, 2), size(points%normal, 2), &
+        size(points%area), size(points%stiffness), size(points%pressure)] == size(points%gap))
+      if (fits .and. allocated(points%load)) fits = size(points%load, 2) == size(points%gap)
+      call require(archive, folder//'gap', fits, 'not as many values as the arrays beside it')
+      if (allocated(archive%error)) return
+      call require(archive, folder//'n', points%n >= 0 .and. points%n <= size(points%gap), &
+        'a number beyond the length of the list')
+      n_local = memory%n_slave + memory%n_master
+      call require(archive, folder//'slave_nodes', all(points%slave_nodes >= 1 &
+        .and. points%slave_nodes <= n_local), 'numbers that no node of the interface has')
+      call require(archive, folder//'master_nodes', all(points%master_nodes >= 1 &
+        .and. points%master_nodes <= n_local), 'numbers that no node of the interface has')
+    end associate
+  end subroutine check_points
+
+  !> Spots followed over a chain.
+  subroutine check_tracking(tracking, n_spot, n_segment, folder, archive)
+    type(tracking_t), intent(in) :: tracking
+    integer, intent(in) :: n_spot       !! spots, where there are any
+    integer, intent(in) :: n_segment    !! of the chain
+    character(*), intent(in) :: folder
+    type(archive_t), intent(inout) :: archive
+    integer :: n
+
+    n = tracking%n
+    if (.not. allocated(tracking%status)) then
+      call require(archive, folder//'n_touching', tracking%n_touching == 0, &
+        'spots that are not there')
+      return
+    end if
+    call require(archive, folder//'n', n == n_spot, 'another number of spots than there are')
+    call require(archive, folder//'chord', all(tracking%chord >= 1 &
+      .and. tracking%chord <= max(1, n)), 'numbers that no spot has')
+    if (allocated(archive%error)) return
+    call require(archive, folder//'n_touching', tracking%n_touching >= 0 &
+      .and. tracking%n_touching <= n, 'more than there are spots')
+    call require(archive, folder//'segment', all(tracking%segment >= 0 &
+      .and. tracking%segment <= n_segment), 'numbers that no segment has')
+    call require(archive, folder//'status', all(tracking%status >= is_free &
+      .and. tracking%status <= is_behind), 'numbers that mean nothing')
+    call require(archive, folder//'status', all(tracking%status == is_free &
+      .or. tracking%segment > 0), 'spots that stand before no segment')
+    call require(archive, folder//'due', all(tracking%due >= 0 &
+      .and. tracking%due <= size(tracking%due)), 'numbers that no spot has')
+    call require(archive, folder//'touching', all(tracking%touching >= 0 &
+      .and. tracking%touching <= size(tracking%touching)), 'numbers that no spot has')
+    if (allocated(archive%error)) return
+    call require(archive, folder//'touching', is_list(tracking%touching(:tracking%n_touching), n), &
+      'spots that stand on its list twice')
+    if (allocated(archive%error)) return
+    call require(archive, folder//'touching', all(tracking%status( &
+      tracking%touching(:tracking%n_touching)) == is_touching), 'spots that do not touch')
+    call require(archive, folder//'n_touching', count(tracking%status == is_touching) &
+      == tracking%n_touching, 'another number than there are spots in contact')
+    call require(archive, folder//'reach', tracking%reach >= 0.0_wp .and. tracking%reach &
+      <= most_cells*tracking%grid%least_cell, 'a distance that does not fit its cells')
+    call check_grid(tracking%grid, n_segment, folder//'grid/', archive)
+  end subroutine check_tracking
+
+  !> Whether numbers are from 1 to n, each at most once.
+  pure function is_list(numbers, n)
+    integer, intent(in) :: numbers(:)
+    integer, intent(in) :: n
+    logical :: is_list
+    logical, allocatable :: is_used(:)
+    integer :: i
+
+    allocate (is_used(n), source=.false.)
+    is_list = .false.
+    do i = 1, size(numbers)
+      if (numbers(i) < 1 .or. numbers(i) > n) return
+      if (is_used(numbers(i))) return
+      is_used(numbers(i)) = .true.
+    end do
+    is_list = .true.
+  end function is_list
+
+  !> Segments in cells: each bucket ends where the next one starts.
+  subroutine check_grid(grid, n_segment, folder, archive)
+    type(bucket_grid_t), intent(in) :: grid
+    integer, intent(in) :: n_segment
+    character(*), intent(in) :: folder
+    type(archive_t), intent(inout) :: archive
+    integer :: n
+
+    n = size(grid%first)
+    call require(archive, folder//'cell', grid%cell >= 0.0_wp, 'a side below zero')
+    if (.not. grid%cell > 0.0_wp) return ! never filled, or to be filled anew
+    call require(archive, folder//'cell', grid%cell >= grid%least_cell .and. &
+      grid%cell > tiny(1.0_wp), 'a side below the smallest')
+    call require(archive, folder//'first', grid%first(1) >= 0 .and. grid%first(n) &
+      <= size(grid%items) .and. all(grid%first(2:) >= grid%first(:n - 1)), &
+      'places that do not follow each other in its list')
+    if (allocated(archive%error)) return
+    call require(archive, folder//'items', all(grid%items(grid%first(1) + 1:grid%first(n)) >= 1 &
+      .and. grid%items(grid%first(1) + 1:grid%first(n)) <= n_segment), &
+      'numbers that no segment has')
+  end subroutine check_grid
+
+  !> Refuse the file unless something holds.
+  subroutine require(archive, name, holds, what)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    logical, intent(in) :: holds
+    character(*), intent(in) :: what    !! the component has otherwise
+
+    if (.not. holds) call refuse(archive, name, what)
+  end subroutine require
+
+end module restart_bounds_m

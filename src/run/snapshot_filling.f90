@@ -1,0 +1,291 @@
+! SPDX-License-Identifier: MIT
+!> Fills a snapshot from the state, only what is due. Forces, energies and motion of one cycle
+!> belong to one instant: v(n) = v(n-1/2) + a(n) dt/2.
+module snapshot_filling_m
+  use kinds_m, only : wp
+  use constraints_m, only : is_active
+  use contact_results_m, only : interface_resultants, slave_rows
+  use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains
+  use controls_m, only : is_asked
+  use history_tables_m, only : table_matsum
+  use layout_m, only : slot_part
+  use model_m, only : model_t
+  use snapshot_m, only : snapshot_t
+  use state_m, only : state_t
+  use support_forces_m, only : find_supports
+  implicit none
+  private
+  public :: start_snapshot, fill_motion, find_motion, fill_energies, fill_parts, fill_interfaces, &
+    fill_plot
+
+  !> Nodes whose motion is summed at a time.
+  integer, parameter :: block_size = 512
+
+contains
+
+  !> Allocate what this run can ask for: motion of all nodes only where a
+  !> file or an override needs it.
+  subroutine start_snapshot(model, has_history, snapshot)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: has_history !! some part keeps a plastic strain
+    type(snapshot_t), intent(out) :: snapshot
+    integer :: n_node, n_element
+
+    n_node = model%mesh%n_node
+    n_element = model%mesh%n_element
+    if (keeps_motion(model)) allocate (snapshot%displacement(2, n_node), &
+      snapshot%acceleration(2, n_node), source=0.0_wp)
+    if (keeps_motion(model) .or. is_asked(model%controls%output%histories(table_matsum))) &
+      allocate (snapshot%velocity(2, n_node), source=0.0_wp)
+    allocate (snapshot%parts(size(model%parts)))
+    if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
+    allocate (snapshot%interfaces(size(model%contacts)), snapshot%slaves(size(model%contacts)))
+    call find_supports(model, snapshot)
+    if (.not. is_asked(model%controls%output%plot)) return
+    allocate (snapshot%stress(6, n_element), source=0.0_wp)
+    if (has_history) &
+      allocate (snapshot%plastic_strain(n_element), source=0.0_wp)
+    if (size(model%contacts) > 0) allocate (snapshot%contact_force(2, n_node), &
+      snapshot%contact_pressure(n_node), snapshot%gap(n_node), source=0.0_wp)
+  end subroutine start_snapshot
+
+  !> Whether the motion of all nodes is kept: for files, or since that of some comes from elsewhere.
+  pure function keeps_motion(model) result(keeps)
+    type(model_t), intent(in) :: model
+    logical :: keeps
+
+    keeps = is_asked(model%controls%output%plot) .or. size(model%controls%output%history_nodes) &
+      > 0 .or. size(model%conditions%motions) > 0 .or. size(model%rigids) > 0 &
+      .or. model%controls%implicit%is_on
+  end function keeps_motion
+
+  !> Displacement, velocity and acceleration of the present instant, where they are kept.
+  !> `velocity_next` is v(n+1/2) of the prescribed degrees of freedom.
+  subroutine fill_motion(model, state, damping, velocity_next, snapshot)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)       !! D per direction
+    real(wp), intent(in) :: velocity_next(:) !! (n_motion)
+    type(snapshot_t), intent(inout) :: snapshot
+    real(wp) :: velocity(2), acceleration(2)
+    integer :: i
+
+    snapshot%time = state%time
+    snapshot%cycle = state%cycle
+    snapshot%dt = state%dt
+    if (.not. allocated(snapshot%velocity)) return
+    do i = 1, model%mesh%n_node
+      call find_motion(model%layout%n_special, state, damping, i, velocity, acceleration)
+      snapshot%velocity(:, i) = velocity
+      if (.not. allocated(snapshot%displacement)) cycle
+      snapshot%displacement(:, i) = state%motion(1:2, i)
+      snapshot%acceleration(:, i) = acceleration
+    end do
+    if (allocated(snapshot%displacement)) &
+      call fill_prescribed(model, state, velocity_next, snapshot)
+  end subroutine fill_motion
+
+  !> Velocity and acceleration of a node that moves freely, at the present instant.
+  pure subroutine find_motion(n_special, state, damping, node, velocity, acceleration)
+    integer, intent(in) :: n_special
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)
+    integer, intent(in) :: node
+    real(wp), intent(out) :: velocity(2), acceleration(2)
+    real(wp) :: force, a
+    integer :: k
+
+    do k = 1, 2
+      force = -state%internal_force(k, node)
+      if (node <= n_special) force = force + state%force_special(k, node)
+      a = force*state%inverse_mass(k, node)
+      if (state%inverse_mass(k, node) > 0.0_wp) a = a + state%body_acceleration(k)
+      a = (a - damping(k)*state%motion(2 + k, node))/(1.0_wp + 0.5_wp*damping(k)*state%dt_before)
+      acceleration(k) = a
+      velocity(k) = state%motion(2 + k, node) + 0.5_wp*state%dt_before*a
+    end do
+  end subroutine find_motion
+
+  !> Prescribed degrees of freedom: the mean of their two half-step velocities.
+  subroutine fill_prescribed(model, state, velocity_next, snapshot)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: velocity_next(:)
+    type(snapshot_t), intent(inout) :: snapshot
+    real(wp) :: acceleration
+    integer :: i
+
+    if (.not. state%dt > 0.0_wp) return
+    do i = 1, size(model%conditions%motions)
+      associate (prescribed => model%conditions%motions(i))
+        if (.not. is_active(prescribed, state%time)) cycle
+        acceleration = (velocity_next(i) - state%prescribed_velocity(i)) &
+          /(0.5_wp*(state%dt + state%dt_before))
+        snapshot%acceleration(prescribed%direction, prescribed%node) = acceleration
+        snapshot%velocity(prescribed%direction, prescribed%node) = state%prescribed_velocity(i) &
+          + 0.5_wp*state%dt_before*acceleration
+      end associate
+    end do
+  end subroutine fill_prescribed
+
+  !> The energy account; motion must be filled where it is kept.
+  subroutine fill_energies(model, state, damping, snapshot)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2) !! D per direction
+    type(snapshot_t), intent(inout) :: snapshot
+    real(wp) :: internal(size(model%parts)), hourglass(size(model%parts)), &
+      viscous(size(model%parts)), v(2, block_size)
+    integer :: first, n
+
+    internal = 0.0_wp
+    hourglass = 0.0_wp
+    viscous = 0.0_wp
+    call add_part_energies(model, state%motion, state%elements, internal, hourglass, viscous)
+    snapshot%parts%internal = internal
+    snapshot%parts%hourglass = hourglass
+    associate (energies => snapshot%energies)
+      energies%internal = sum(internal)
+      energies%hourglass = sum(hourglass)
+      energies%viscous = sum(viscous)
+      energies%kinetic = 0.0_wp
+      snapshot%mean_velocity = 0.0_wp
+      do first = 1, model%mesh%n_node, block_size
+        n = min(block_size, model%mesh%n_node - first + 1)
+        call find_velocities(model%layout%n_special, state, damping, first, n, snapshot, v)
+        call add_motion(n, state%mass(first), v, energies%kinetic, snapshot%mean_velocity)
+      end do
+      snapshot%mean_velocity = snapshot%mean_velocity/sum(state%mass)
+      energies%damping = state%damping_work
+      energies%contact = sum(state%contacts%energy) + sum(state%contacts%damping_work)
+      energies%made = sum(max(0.0_wp, -state%contacts%watch%balance))
+      energies%external_work = state%external_work
+      energies%initial = state%initial_energy
+    end associate
+  end subroutine fill_energies
+
+  !> Present velocities of `n` nodes from the node `first` on.
+  pure subroutine find_velocities(n_special, state, damping, first, n, snapshot, velocities)
+    integer, intent(in) :: n_special
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)
+    integer, intent(in) :: first, n
+    type(snapshot_t), intent(in) :: snapshot !! may keep them
+    real(wp), intent(inout) :: velocities(:, :)
+    real(wp) :: acceleration(2)
+    integer :: i
+
+    do i = 1, n
+      if (allocated(snapshot%velocity)) then
+        velocities(:, i) = snapshot%velocity(:, first + i - 1)
+      else
+        call find_motion(n_special, state, damping, first + i - 1, velocities(:, i), acceleration)
+      end if
+    end do
+  end subroutine find_velocities
+
+  !> Add kinetic energy and momentum of some nodes. Products first, then sums: fused multiply-adds
+  !> in one copy of a loop and not in another would make the bits depend on where a block ends.
+  pure subroutine add_motion(n, mass, velocity, kinetic, momentum)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: mass(n), velocity(2, n)
+    real(wp), intent(inout) :: kinetic, momentum(2)
+    real(wp) :: products(3, block_size)
+    integer :: i
+
+    do i = 1, n
+      products(1, i) = 0.5_wp*mass(i)*(velocity(1, i)**2 + velocity(2, i)**2)
+      products(2:3, i) = mass(i)*velocity(:, i)
+    end do
+    do i = 1, n
+      kinetic = kinetic + products(1, i)
+      momentum = momentum + products(2:3, i)
+    end do
+  end subroutine add_motion
+
+  !> Kinetic energy, momentum and mass of each part (energies are there already),
+  !> where velocities are kept.
+  subroutine fill_parts(model, snapshot)
+    type(model_t), intent(in) :: model
+    type(snapshot_t), intent(inout) :: snapshot
+    real(wp) :: x(2, 4), share, v(2)
+    integer :: i, k, corners, slot, i_part
+
+    if (.not. allocated(snapshot%velocity)) return
+    snapshot%parts%kinetic = 0.0_wp
+    snapshot%parts%momentum(1) = 0.0_wp
+    snapshot%parts%momentum(2) = 0.0_wp
+    snapshot%parts%mass = 0.0_wp
+    do i = 1, model%mesh%n_element
+      slot = model%layout%element_slot(i)
+      i_part = slot_part(model%layout, slot)
+      associate (nodes => model%layout%slot_nodes(:, slot), part => snapshot%parts(i_part), &
+        material => model%materials(model%parts(i_part)%material))
+        x = model%mesh%coordinates(:, nodes)
+        corners = merge(3, 4, nodes(4) == nodes(3))
+        share = material%density/corners*0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
+          - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+        do k = 1, corners
+          v = snapshot%velocity(:, nodes(k))
+          part%kinetic = part%kinetic + 0.5_wp*share*(v(1)**2 + v(2)**2)
+          part%momentum = part%momentum + share*v
+          part%mass = part%mass + share
+        end do
+      end associate
+    end do
+  end subroutine fill_parts
+
+  !> Resultants of all interfaces.
+  subroutine fill_interfaces(model, state, snapshot)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(snapshot_t), intent(inout) :: snapshot
+    integer :: i
+
+    do i = 1, size(model%contacts)
+      call interface_resultants(state%contacts(i), snapshot%interfaces(i))
+      snapshot%interfaces(i)%energy = state%contacts(i)%energy
+      snapshot%interfaces(i)%damping = state%contacts(i)%damping_work
+      snapshot%interfaces(i)%stored = state%contacts(i)%watch%stored
+    end do
+  end subroutine fill_interfaces
+
+  !> Fields of a plot state and the rows of slave nodes.
+  subroutine fill_plot(model, state, snapshot)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(snapshot_t), intent(inout) :: snapshot
+    integer :: i, k
+
+    call element_stresses(model, state%motion, state%elements, snapshot%stress)
+    if (allocated(snapshot%plastic_strain)) &
+      call element_plastic_strains(model, state%elements, snapshot%plastic_strain)
+    if (size(model%contacts) == 0) return
+    snapshot%contact_force = 0.0_wp
+    snapshot%contact_pressure = 0.0_wp
+    snapshot%gap = 0.0_wp
+    do i = 1, size(model%contacts)
+      call slave_rows(model%contacts(i), state%motion, state%contacts(i), &
+        snapshot%slaves(i))
+      associate (memory => state%contacts(i), rows => snapshot%slaves(i))
+        do k = 1, size(memory%nodes)
+          snapshot%contact_force(:, memory%nodes(k)) = snapshot%contact_force(:, memory%nodes(k)) &
+            + memory%force(:, k)
+        end do
+        do k = 1, memory%n_master
+          associate (node => memory%nodes(memory%n_slave + k))
+            snapshot%contact_pressure(node) = snapshot%contact_pressure(node) &
+              + rows%master_pressure(k)
+          end associate
+        end do
+        do k = 1, memory%n_slave
+          snapshot%contact_pressure(rows%node(k)) = snapshot%contact_pressure(rows%node(k)) &
+            + rows%pressure(k)
+          if (rows%pressure(k) > 0.0_wp) snapshot%gap(rows%node(k)) = &
+            min(snapshot%gap(rows%node(k)), rows%gap(k))
+        end do
+      end associate
+    end do
+  end subroutine fill_plot
+
+end module snapshot_filling_m

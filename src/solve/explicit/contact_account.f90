@@ -1,0 +1,180 @@
+! SPDX-License-Identifier: MIT
+!> Tells of interfaces whose springs make or lose energy, and of those whose forces are limited
+!> (doc/theory/contact.md, section 6).
+!> Explicit runs alone: there the trapezoidal rule is the work that the scheme itself does.
+module contact_account_m
+  use contact_watch_m, only : has_made, has_lost
+  use energy_limit_state_m, only : energy_limit_t
+  use kinds_m, only : wp
+  use log_m, only : log_t, warn, write_log, to_text
+  use model_m, only : model_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: plan_looks, follow_contact, report_contact_energies
+
+  !> Cycles between two looks at springs; at more of them the sum over all points would show in the
+  !> time of a step.
+  integer, parameter :: look_interval = 20
+  !> Share of the largest energy so far from which on energy made or lost is told.
+  real(wp), parameter :: noticed_share = 0.01_wp
+  !> Share of the largest energy so far that all interfaces together may lend to springs that were
+  !> caught loaded.
+  real(wp), parameter :: lent_share = 0.005_wp
+  !> Limited cycles raise `recent` by 20, others with force lower it by 1: told from here on, that
+  !> is after 50 limited cycles in a row, or more where others lie between; never where no more than
+  !> one cycle of 21 is limited.
+  integer, parameter :: again_and_again = 1000
+
+contains
+
+  !> Before the contacts of a cycle: whether they look at their springs, the largest energy so far,
+  !> what may be lent, and the step to come.
+  pure subroutine plan_looks(model, writes, state)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: writes !! this cycle writes something
+    type(state_t), intent(inout) :: state
+
+    if (size(state%contacts) == 0) return
+    if (state%cycle > 0) state%largest_energy = max(state%largest_energy, &
+      abs(state%initial_energy + state%external_work))
+    if (writes .or. mod(state%cycle, look_interval) == 0) state%contacts%watch%is_due = .true.
+    state%contacts%limit%loan = lent_share*state%largest_energy/size(state%contacts)
+    ! What is led takes from its guide what it needs.
+    if (size(model%conditions%motions) + size(model%conditions%rigid_motions) > 0) &
+      state%contacts%limit%loan = huge(1.0_wp)
+    ! The step of cycle zero is not known yet.
+    state%contacts%limit%coming_step = merge(state%dt, 0.0_wp, state%cycle > 0)
+  end subroutine plan_looks
+
+  !> After the forces of an interface: what its springs have made or lost, and a warning the first
+  !> time that this is much.
+  subroutine follow_contact(model, i, state, log)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    type(state_t), intent(inout) :: state
+    type(log_t), intent(inout) :: log
+    real(wp) :: change
+    integer :: sign_of
+
+    call follow_limit(model, i, state, log)
+    associate (contact => state%contacts(i), watch => state%contacts(i)%watch)
+      if (.not. watch%has_looked) return
+      ! What springs hold beyond what they were given is not returned (energy_limit).
+      watch%stored = min(watch%stored, max(0.0_wp, contact%energy + contact%limit%credit))
+      change = contact%energy - watch%stored - watch%balance
+      watch%balance = contact%energy - watch%stored
+      ! What is loaded at time zero is what it stores.
+      if (state%cycle == 0) return
+      sign_of = merge(has_made, has_lost, change < 0.0_wp)
+      if (abs(change) > watch%changes(sign_of)%amount) then
+        watch%changes(sign_of)%amount = abs(change)
+        watch%changes(sign_of)%time = state%time
+        watch%changes(sign_of)%node = watch%node
+        if (watch%node > 0) watch%changes(sign_of)%place = &
+          model%mesh%coordinates(:, watch%node) + state%motion(1:2, watch%node)
+      end if
+      sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
+      if (watch%changes(sign_of)%warned .or. &
+        abs(watch%balance) <= noticed_share*state%largest_energy) return
+      watch%changes(sign_of)%warned = .true.
+      call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
+        //to_text(state%cycle)//', time '//to_text(state%time)//', the contact springs have ' &
+        //amount_text(model, i, sign_of, state)//hint(sign_of))
+    end associate
+  end subroutine follow_contact
+
+  !> A warning where the forces of an interface are limited again and again.
+  subroutine follow_limit(model, i, state, log)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    type(state_t), intent(inout) :: state
+    type(log_t), intent(inout) :: log
+
+    associate (limit => state%contacts(i)%limit)
+      if (limit%recent < again_and_again .or. limit%warned) return
+      limit%warned = .true.
+      call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
+        //to_text(state%cycle)//', time '//to_text(state%time)//', again and again' &
+        //limit_text(limit)//hint(has_made))
+    end associate
+  end subroutine follow_limit
+
+  !> How often forces were limited, and by how much.
+  function limit_text(limit) result(text)
+    type(energy_limit_t), intent(in) :: limit
+    character(:), allocatable :: text
+
+    text = ': contact forces limited, so that they return no more energy than they took, in ' &
+      //to_text(limit%n_limited)//' of '//to_text(limit%n_loaded) &
+      //' cycles with force, the smallest factor '//to_text(limit%least_factor)//' at time ' &
+      //to_text(limit%least_time)
+  end function limit_text
+
+  !> At the end of a run: each interface whose forces were limited, and each whose springs have made
+  !> or lost much, or had.
+  subroutine report_contact_energies(model, state, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(log_t), intent(inout) :: log
+    integer :: i, sign_of
+
+    do i = 1, size(state%contacts)
+      associate (watch => state%contacts(i)%watch, limit => state%contacts(i)%limit, &
+        id => model%contacts(i)%id)
+        if (limit%n_limited > 0) call write_log(log, 'interface '//to_text(id)//limit_text(limit))
+        sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
+        if (abs(watch%balance) > noticed_share*state%largest_energy .and. state%cycle > 0) then
+          call warn(log, 'interface '//to_text(id)//': in the whole run the contact springs have ' &
+            //amount_text(model, i, sign_of, state))
+        else if (any(watch%changes%warned)) then
+          call write_log(log, 'interface '//to_text(id)//': at the end the contact springs have ' &
+            //amount_text(model, i, sign_of, state))
+        end if
+      end associate
+    end do
+  end subroutine report_contact_energies
+
+  !> How much, of what, and where most of it.
+  function amount_text(model, i, sign_of, state) result(text)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i, sign_of
+    type(state_t), intent(in) :: state
+    character(:), allocatable :: text
+
+    associate (watch => state%contacts(i)%watch, &
+      largest => state%contacts(i)%watch%changes(sign_of))
+      text = trim(merge('made', 'lost', sign_of == has_made))//' energy: ' &
+        //to_text(abs(watch%balance))//', '//percent(abs(watch%balance), state%largest_energy) &
+        //' of the largest energy so far '//to_text(state%largest_energy) &
+        //' (initial energy and external work)'
+      if (largest%node == 0) return
+      text = text//'; the largest step of it, '//to_text(largest%amount)//', near node ' &
+        //to_text(model%mesh%node_id(largest%node))//' at ('//to_text(largest%place(1))//', ' &
+        //to_text(largest%place(2))//') up to time '//to_text(largest%time)
+    end associate
+  end function amount_text
+
+  !> A share in per cent.
+  function percent(part, whole) result(text)
+    real(wp), intent(in) :: part, whole
+    character(:), allocatable :: text
+    character(24) :: buffer
+
+    text = 'all'
+    if (.not. whole > 0.0_wp) return
+    write (buffer, '(ss,es10.2)') 100.0_wp*part/whole
+    if (100.0_wp*part < 1.0e4_wp*whole) write (buffer, '(ss,f8.2)') 100.0_wp*part/whole
+    text = trim(adjustl(buffer))//' %'
+  end function percent
+
+  !> What to look at.
+  pure function hint(sign_of)
+    integer, intent(in) :: sign_of
+    character(:), allocatable :: hint
+
+    hint = '; look at corners there, at the penalty and at the time step'
+    if (sign_of == has_lost) hint = hint//' (damping and friction are no part of it)'
+  end function hint
+
+end module contact_account_m

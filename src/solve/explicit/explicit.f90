@@ -1,0 +1,175 @@
+! SPDX-License-Identifier: MIT
+!> Central difference in leap-frog form: v lives at half steps.
+!> One parallel region spans the whole run. Each cycle has three parts with a barrier behind
+!> each: elements, tile by tile, whose interior nodes move at once; special nodes; and the
+!> end of the cycle with contact and loads on the special nodes for the next (one thread). A
+!> cycle that writes keeps the forces and moves the nodes after writing, so that what is
+!> written belongs to one instant.
+module explicit_m
+  use clock_m, only : lap, phase_elements, phase_nodes, phase_output
+  use contact_account_m, only : report_contact_energies
+  use contact_check_m, only : report_contact_end
+  use element_dispatch_m, only : add_tile_forces
+  use errors_m, only : error_t
+  use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
+  use health_m, only : check_tile, judge_energies, judge_ratio
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use motion_sums_m, only : sum_motion, sum_blocks
+  use monitor_m, only : monitor_t
+  use node_motion_m, only : move_tile_nodes, move_special_nodes
+  use state_m, only : state_t
+  use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
+  use wall_motion_m, only : hold_nodes
+  implicit none
+  private
+  public :: advance_explicit
+
+contains
+
+  !> From the state at time zero to the end of the run.
+  subroutine advance_explicit(model, n_thread, state, monitor, reason, error)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: n_thread
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    character(:), allocatable, intent(out) :: reason  !! what ended the run
+    type(error_t), allocatable, intent(out) :: error  !! what went wrong, if anything
+    type(explicit_cycle_t) :: cycle
+
+    call start_cycles(model, state, monitor, cycle)
+    if (allocated(cycle%error)) then
+      reason = cycle%error%message
+      call move_alloc(cycle%error, error)
+      return
+    end if
+    if (n_thread == 1) then
+      ! Outside of a parallel region: in a team of one every barrier still is a system call.
+      call run_cycles(model, state, monitor, cycle)
+    else
+      !$omp parallel num_threads(n_thread) default(none) shared(model, state, monitor, cycle)
+      call run_cycles(model, state, monitor, cycle)
+      !$omp end parallel
+    end if
+    reason = cycle%reason
+    if (allocated(cycle%error)) call move_alloc(cycle%error, error)
+    call report_contact_end(model, state, monitor%log)
+    call report_contact_energies(model, state, monitor%log)
+    if (allocated(error)) return
+    call judge_energies(monitor%snapshot%energies, monitor%log)
+    call judge_ratio(monitor%snapshot%energies, monitor%log)
+  end subroutine advance_explicit
+
+  !> The cycles, run by every thread of the team. The end of a cycle and the beginning of the next
+  !> are one piece of serial work; `cycle` may then already speak of the next one, so that what
+  !> others still ask it is kept.
+  subroutine run_cycles(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+    real(wp), allocatable :: force(:, :)
+    logical :: writes
+
+    allocate (force(2, model%layout%n_local))
+    !$omp master
+    call begin_cycle(model, state, monitor, cycle)
+    !$omp end master
+    !$omp barrier
+    do
+      writes = cycle%writes
+      call advance_tiles(model, state, cycle, force)
+      !$omp master
+      call lap(monitor%clock, phase_elements)
+      !$omp end master
+      call advance_special_nodes(model, state, cycle)
+      if (writes) then
+        !$omp master
+        call lap(monitor%clock, phase_nodes)
+        call report_cycle(model, state, monitor, cycle)
+        call lap(monitor%clock, phase_output)
+        !$omp end master
+        !$omp barrier
+        if (.not. cycle%finished) call move_all_nodes(model, state, cycle)
+      end if
+      !$omp master
+      call end_cycle(model, state, monitor, cycle)
+      if (.not. cycle%finished) call begin_cycle(model, state, monitor, cycle)
+      !$omp end master
+      !$omp barrier
+      if (cycle%finished) exit
+    end do
+  end subroutine run_cycles
+
+  !> Element forces; interior nodes move at once unless this cycle writes.
+  subroutine advance_tiles(model, state, cycle, force)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(inout) :: cycle
+    real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local) this thread's own
+    integer :: i_tile
+    logical :: sums
+
+    sums = allocated(cycle%sums%parts)
+    if (sums) call sum_blocks(model%layout, state, cycle%sums)
+    !$omp do schedule(static)
+    do i_tile = 1, size(model%layout%tiles)
+      associate (tile => model%layout%tiles(i_tile))
+        call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+        cycle%checks(i_tile) = check_tile(tile, state%elements)
+        call share_tile_forces(tile, force, state%force_slots)
+        if (sums) call sum_motion(tile%first_node, tile%last_node, state, &
+          cycle%sums%parts(:, i_tile))
+        if (cycle%writes) then
+          call keep_tile_forces(tile, force, state%internal_force)
+        else
+          call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, force, &
+            state%inverse_mass, state%motion)
+        end if
+      end associate
+    end do
+    !$omp end do
+  end subroutine advance_tiles
+
+  !> Sum the forces of special nodes; they move at once unless this cycle writes. Each thread has
+  !> the nodes of its own tiles: what it reads here it has mostly written itself.
+  subroutine advance_special_nodes(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(in) :: cycle
+    integer :: i_tile
+
+    !$omp do schedule(static)
+    do i_tile = 1, size(model%layout%tiles)
+      associate (first => model%layout%tiles(i_tile)%first_owned, &
+        last => model%layout%tiles(i_tile)%last_owned)
+        call sum_special_forces(model%layout, state%force_slots, first, last, state%internal_force)
+        if (.not. cycle%writes) then
+          if (allocated(state%walls)) call hold_nodes(model, cycle%leap, first, last, state)
+          call move_special_nodes(cycle%leap, first, last, state)
+        end if
+      end associate
+    end do
+    !$omp end do
+  end subroutine advance_special_nodes
+
+  !> Move all nodes after a cycle that wrote.
+  subroutine move_all_nodes(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(in) :: cycle
+    integer :: i_tile
+
+    !$omp do schedule(static)
+    do i_tile = 1, size(model%layout%tiles)
+      associate (tile => model%layout%tiles(i_tile))
+        if (tile%last_node >= tile%first_node) call move_tile_nodes(cycle%leap, tile%first_node, &
+          tile%last_node, state%internal_force(1, tile%first_node), state%inverse_mass, &
+          state%motion)
+        call move_special_nodes(cycle%leap, tile%first_owned, tile%last_owned, state)
+      end associate
+    end do
+    !$omp end do
+  end subroutine move_all_nodes
+
+end module explicit_m

@@ -1,0 +1,301 @@
+! SPDX-License-Identifier: MIT
+!> What one thread does in each explicit cycle: contact and loads before the elements; writing;
+!> time, step and health after them.
+module explicit_cycle_m
+  use clock_m, only : lap, share_contact, phase_nodes
+  use constraints_m, only : fix_nodes, update_activity, is_active
+  use contact_account_m, only : plan_looks, follow_contact
+  use contact_check_m, only : report_contact_start
+  use contact_inertia_m, only : weigh_contacts
+  use cycle_loads_m, only : apply_loads
+  use energies_m, only : energy_ratio, total_energy
+  use errors_m, only : error_t
+  use explicit_memory_m, only : write_restarts, take_up_steps
+  use explicit_prescribed_m, only : find_prescribed_velocities, start_prescribed, &
+    impose_prescribed, prescribed_work
+  use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
+    table_sleout, table_spcforc
+  use health_m, only : tile_check_t, are_sound, check_elements, check_step, check_cycle, &
+    check_energy, made_by_springs
+  use interface_m, only : apply_contact
+  use kinds_m, only : wp
+  use leapfrog_balance_m, only : complete_balance
+  use model_log_m, only : log_smallest_steps, judge_damping
+  use model_m, only : model_t
+  use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
+  use motion_sums_m, only : motion_sums_t, plan_sums, count_sums
+  use node_motion_m, only : leap_t, make_leap
+  use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
+  use progress_m, only : show_progress, follow_progress
+  use requests_m, only : requests_t, take_requests
+  use restart_plan_m, only : wanted_files
+  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
+  use slowest_element_m, only : find_slowest
+  use state_m, only : state_t
+  use wall_motion_m, only : hold_nodes, count_walls, fill_walls
+  use support_forces_m, only : fill_explicit_reactions
+  use time_step_m, only : step_plan_t, start_steps, first_step, next_step, is_last, follow_springs
+  implicit none
+  private
+  public :: explicit_cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
+
+  !> Shared by the team, written by one thread between barriers.
+  type :: explicit_cycle_t
+    logical :: writes = .true.       !! this cycle writes something
+    logical :: finished = .false.    !! the run is over
+    logical :: last = .false.        !! this cycle is the last one
+    logical :: plots = .false.       !! this cycle writes a plot state because someone asked for it
+    type(due_t) :: due
+    type(leap_t) :: leap             !! motion factors of this cycle
+    type(step_plan_t) :: steps
+    logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
+    logical, allocatable :: active(:)  !! (n_motion) which of them hold, once that has been asked
+    type(motion_sums_t) :: sums      !! for the work of body loads and damping
+    type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
+                                                 !! come to
+    real(wp) :: damping(2) = 0.0_wp  !! D per direction
+    real(wp) :: ratio = 1.0_wp       !! last energy ratio known
+    real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
+    real(wp), allocatable :: displacement(:) !! (n_motion) u(n) of prescribed motions
+    character(:), allocatable :: reason      !! what ended the run
+    type(error_t), allocatable :: error
+  end type explicit_cycle_t
+
+contains
+
+  !> Set up the cycles.
+  subroutine start_cycles(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(out) :: cycle
+
+    associate (motions => model%conditions%motions)
+      allocate (cycle%velocity(size(motions)), cycle%displacement(size(motions)), source=0.0_wp)
+      cycle%timed_motions = any(motions%birth > 0.0_wp .or. &
+        motions%death < model%controls%end_time)
+    end associate
+    call plan_sums(model, cycle%sums)
+    allocate (cycle%checks(size(model%layout%tiles)))
+    cycle%reason = 'termination time reached'
+    cycle%steps = start_steps(model, state%time)
+    if (monitor%restarts%goes_on) call take_up_steps(model, state, monitor%restarts%source, &
+      cycle%steps, cycle%damping, cycle%ratio, cycle%error)
+  end subroutine start_cycles
+
+  !> Forces on the special nodes at u(n), and what this cycle has to write.
+  subroutine begin_cycle(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+    integer :: i
+
+    cycle%last = is_last(cycle%steps, state%cycle, state%time) .or. cycle%last .or. &
+      monitor%only_checks
+    cycle%due = find_due(monitor, state%time, state%dt, state%cycle == 0 .or. cycle%last)
+    cycle%due%plot = cycle%due%plot .or. (cycle%plots .and. monitor%has_plot)
+    cycle%plots = .false.
+    cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
+    call apply_loads(model, state, cycle%damping, cycle%sums)
+    ! What ended the cycle before is in this lap, or without contact in the one below.
+    if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
+    call plan_looks(model, cycle%writes, state)
+    do i = 1, size(model%contacts)
+      call apply_contact(model%contacts(i), state%motion, state%contact_mass, &
+        state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
+        state%force_special)
+      call share_contact(monitor%clock, i)
+      call follow_contact(model, i, state, monitor%log)
+    end do
+    if (state%cycle > 0) call prepare_leap(model, state, cycle)
+    call lap(monitor%clock, phase_nodes)
+  end subroutine begin_cycle
+
+  !> Motion factors and prescribed velocities once the step is known.
+  subroutine prepare_leap(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(inout) :: cycle
+    integer :: i
+
+    cycle%leap = make_leap(state%dt_before, state%dt, cycle%damping, state%body_acceleration)
+    if (cycle%timed_motions) call follow_activity(model, state, cycle)
+    do i = 1, size(cycle%displacement)
+      associate (prescribed => model%conditions%motions(i))
+        cycle%displacement(i) = state%motion(prescribed%direction, prescribed%node)
+      end associate
+    end do
+    call find_prescribed_velocities(model, state, cycle%velocity)
+  end subroutine prepare_leap
+
+  !> Inverse masses where some prescribed motion has just started or ended.
+  subroutine follow_activity(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(inout) :: cycle
+    logical, allocatable :: active(:)
+
+    allocate (active(size(model%conditions%motions)))
+    active = is_active(model%conditions%motions, state%time)
+    if (allocated(cycle%active)) then
+      if (all(active .eqv. cycle%active)) return
+    end if
+    call move_alloc(active, cycle%active)
+    call update_activity(model, state%time, state%mass, state%inverse_mass)
+    call fix_nodes(model, state%inverse_mass)
+    call weigh_contacts(model, state)
+  end subroutine follow_activity
+
+  !> Write what is due, unless the state has gone wrong; the first cycle first finds its step.
+  subroutine report_cycle(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+
+    call count_sums(cycle%sums, state%external_work, state%damping_work)
+    call check_elements(model, state, cycle%error)
+    if (state%cycle == 0) call follow_springs(model, state, cycle%steps%springs)
+    if (state%cycle == 0 .and. .not. allocated(cycle%error)) &
+      call first_step(model, state%elements, monitor%log, cycle%steps, state%dt, cycle%error)
+    if (allocated(cycle%error)) then
+      cycle%finished = .true.
+      return
+    end if
+    if (state%cycle == 0) then
+      call report_contact_start(model, state, monitor%log)
+      call log_smallest_steps(model, state, monitor%log)
+      call judge_damping(model, state%dt, monitor%log)
+      call prepare_leap(model, state, cycle)
+      call start_prescribed(model, cycle%velocity, state)
+    end if
+    call report_rigids(model, state, cycle)
+    call report_walls(model, state, monitor, cycle)
+    state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
+      cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
+    call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
+    call fill_rigids(model, state, monitor%snapshot)
+    if (any(cycle%due%tables([table_glstat, table_matsum]))) call fill_energies(model, state, &
+      cycle%damping, monitor%snapshot)
+    if (cycle%due%tables(table_glstat)) call complete_balance(model, state, cycle%damping, &
+      cycle%velocity, monitor%snapshot)
+    if (state%cycle == 0) then
+      state%initial_energy = total_energy(monitor%snapshot%energies)
+      monitor%snapshot%energies%initial = state%initial_energy
+    end if
+    if (cycle%due%tables(table_matsum)) call fill_parts(model, monitor%snapshot)
+    if (cycle%due%tables(table_glstat)) call find_slowest(model, state, monitor%snapshot)
+    if (any(cycle%due%tables([table_rcforc, table_sleout]))) &
+      call fill_interfaces(model, state, monitor%snapshot)
+    if (cycle%due%tables(table_spcforc)) &
+      call fill_explicit_reactions(model, state, monitor%snapshot)
+    if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
+    call write_due(model, cycle%due, state%dt, monitor, cycle%error)
+    if (cycle%due%tables(table_glstat)) cycle%ratio = energy_ratio(monitor%snapshot%energies)
+    if (cycle%due%plot .and. .not. allocated(cycle%error)) call show_progress(monitor%progress, &
+      monitor%clock, state%cycle, state%time, state%dt, cycle%ratio, 'write vtkhdf state')
+    if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) &
+      call check_energy(model%controls, monitor%snapshot%energies, made_by_springs, cycle%error)
+    cycle%finished = cycle%last .or. allocated(cycle%error)
+  end subroutine report_cycle
+
+  !> Rigid bodies in a cycle that writes: what their forces ask for, and the work of
+  !> prescribed motion so far.
+  subroutine report_rigids(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(in) :: cycle
+
+    if (size(state%rigids) == 0) return
+    call solve_rigids(model, cycle%damping, state)
+    if (state%cycle == 0) call start_rigid_motions(model, state)
+    state%external_work = state%external_work + rigid_work(model, state, cycle%damping, &
+      0.5_wp*state%dt_before, 0.0_wp)
+  end subroutine report_rigids
+
+  !> Rigid walls in a cycle that writes: their forces, and their work so far.
+  subroutine report_walls(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(in) :: cycle
+
+    if (.not. allocated(state%walls)) return
+    call hold_nodes(model, cycle%leap, 1, model%layout%n_special, state)
+    call count_walls(model, .true., .false., state)
+    if (cycle%due%tables(table_rwforc)) call fill_walls(model, state, monitor%snapshot%walls)
+  end subroutine report_walls
+
+  !> Rigid bodies to their next places.
+  subroutine advance_rigids(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(in) :: cycle
+
+    if (.not. cycle%writes) call solve_rigids(model, cycle%damping, state)
+    state%external_work = state%external_work + rigid_work(model, state, cycle%damping, &
+      merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes), 0.5_wp*state%dt)
+    call move_rigids(model, state)
+  end subroutine advance_rigids
+
+  !> Prescribed nodes to their places, health, and on to the next instant.
+  subroutine end_cycle(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+    real(wp) :: before
+
+    if (cycle%finished) return
+    if (.not. cycle%writes) then
+      call count_sums(cycle%sums, state%external_work, state%damping_work)
+      if (.not. are_sound(cycle%checks, state%contacts)) &
+        call check_elements(model, state, cycle%error)
+    end if
+    if (size(cycle%velocity) > 0) then
+      before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
+      state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
+        cycle%damping, before, 0.5_wp*state%dt)
+      call impose_prescribed(model, cycle%velocity, cycle%displacement, state)
+    end if
+    if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
+    if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
+    state%cycle = state%cycle + 1
+    state%former_dt = state%dt_before
+    state%dt_before = state%dt
+    call follow_springs(model, state, cycle%steps%springs)
+    call next_step(model, minval(cycle%checks%time_limit), monitor%log, state%cycle, cycle%steps, &
+      state%time, state%dt)
+    if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
+      state%time, state%dt, cycle%error)
+    if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
+    cycle%finished = allocated(cycle%error)
+    if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
+    call follow_progress(monitor%progress, monitor%clock, state%cycle, .false., state%time, &
+      state%dt, cycle%ratio)
+  end subroutine end_cycle
+
+  !> Stop, restart files, states and lines that are due or that someone asks for; for restart files
+  !> a stop by a signal counts as an end. The state is that before the next cycle; a run that goes
+  !> on from it repeats that cycle.
+  subroutine heed_requests(state, monitor, cycle)
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+    type(requests_t) :: asked
+    logical :: ends
+
+    call take_requests(state, cycle%ratio, .false., monitor, asked, cycle%error)
+    cycle%plots = asked%plot
+    ends = is_last(cycle%steps, state%cycle, state%time)
+    if (.not. allocated(cycle%error)) call write_restarts(wanted_files(monitor%restarts, &
+      state%cycle, asked%dump, ends, asked%signalled .and. .not. ends), state, monitor, &
+      cycle%steps, cycle%damping, cycle%ratio, cycle%error)
+    cycle%finished = allocated(cycle%error)
+    if (ends .or. .not. asked%stop) return
+    cycle%last = .true.
+    cycle%reason = 'stopped on request'
+  end subroutine heed_requests
+
+end module explicit_cycle_m

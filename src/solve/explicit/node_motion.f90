@@ -1,0 +1,88 @@
+! SPDX-License-Identifier: MIT
+!> The leap-frog motion of the nodes:
+!> v(n+1/2) = [(1 - D h/2) v(n-1/2) + h a]/(1 + D h/2), u(n+1) = u(n) + dt v(n+1/2),
+!> with h the mean of the two steps. The damping acts on the mean of the two velocities,
+!> so it never limits the step.
+module node_motion_m
+  use kinds_m, only : wp
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: leap_t, make_leap, move_tile_nodes, move_special_nodes
+
+  !> Factors of one leap, the same for all nodes.
+  type :: leap_t
+    real(wp) :: dt = 0.0_wp        !! t(n+1) - t(n)
+    real(wp) :: half(2) = 0.0_wp   !! what an acceleration counts in the velocity
+    real(wp) :: keep(2) = 1.0_wp   !! what the old velocity counts
+    real(wp) :: body(2) = 0.0_wp   !! acceleration of every free node
+  end type leap_t
+
+contains
+
+  !> Factors from the steps before and after, damping and body acceleration.
+  pure function make_leap(dt_before, dt, damping, body) result(leap)
+    real(wp), intent(in) :: dt_before, dt
+    real(wp), intent(in) :: damping(2) !! D per direction
+    real(wp), intent(in) :: body(2)    !! acceleration per direction
+    type(leap_t) :: leap
+    real(wp) :: mean
+
+    mean = 0.5_wp*(dt_before + dt)
+    leap%dt = dt
+    leap%half = mean/(1.0_wp + 0.5_wp*damping*mean)
+    leap%keep = (1.0_wp - 0.5_wp*damping*mean)/(1.0_wp + 0.5_wp*damping*mean)
+    leap%body = body
+  end function make_leap
+
+  !> Move the interior nodes first .. last.
+  subroutine move_tile_nodes(leap, first, last, force, inverse_mass, motion)
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
+    real(wp), intent(in) :: force(2, first:*)        !! internal force of those nodes
+    real(wp), intent(in) :: inverse_mass(2, *)       !! of all nodes
+    real(wp), intent(inout) :: motion(4, *)          !! of all nodes
+    integer :: i, k
+
+    do i = first, last
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        motion(2 + k, i) = leap%keep(k)*motion(2 + k, i) + leap%half(k) &
+          *(merge(leap%body(k), 0.0_wp, inverse_mass(k, i) > 0.0_wp) &
+          - force(k, i)*inverse_mass(k, i))
+        motion(k, i) = motion(k, i) + leap%dt*motion(2 + k, i)
+      end do
+    end do
+  end subroutine move_tile_nodes
+
+  !> Move the special nodes first .. last; their internal forces stand in state%internal_force.
+  subroutine move_special_nodes(leap, first, last, state)
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
+    type(state_t), intent(inout) :: state
+
+    call move_each(leap, first, last, state%force_special, state%internal_force, &
+      state%inverse_mass, state%motion)
+  end subroutine move_special_nodes
+
+  !> The same for arrays of known shape.
+  subroutine move_each(leap, first, last, special, internal, inverse_mass, motion)
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
+    real(wp), intent(in) :: special(2, *), internal(2, *) !! forces
+    real(wp), intent(in) :: inverse_mass(2, *)
+    real(wp), intent(inout) :: motion(4, *)
+    integer :: i, k
+
+    do i = first, last
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        motion(2 + k, i) = leap%keep(k)*motion(2 + k, i) + leap%half(k) &
+          *(merge(leap%body(k), 0.0_wp, inverse_mass(k, i) > 0.0_wp) &
+          + (special(k, i) - internal(k, i))*inverse_mass(k, i))
+        motion(k, i) = motion(k, i) + leap%dt*motion(2 + k, i)
+      end do
+    end do
+  end subroutine move_each
+
+end module node_motion_m

@@ -1,0 +1,197 @@
+! SPDX-License-Identifier: MIT
+!> The time step: TSSFAC times the smallest L/c of the elements (or what contact springs
+!> leave of it), capped by a curve; constant where the curve is constant and lies below the
+!> stable step. Where the elements or springs rule it falls at once and rises by a twentieth at
+!> least; where the curve rules it follows the curve. The limit of one cycle rules
+!> the step of the next, so that a cycle need not wait for its own elements.
+module time_step_m
+  use block_state_m, only : block_state_t
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
+  use controls_m, only : contact_step_rules
+  use curves_m, only : curve_value, curve_is_constant
+  use errors_m, only : error_t, raise, status_input
+  use kinds_m, only : wp
+  use log_m, only : log_t, warn, write_log, to_text
+  use model_m, only : model_t
+  use scaled_step_m, only : scaled_step
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: step_plan_t, start_steps, first_step, next_step, is_last, cycles_in, &
+    follow_springs
+
+  !> What a step must be allowed to rise by before it does.
+  real(wp), parameter :: least_rise = 0.05_wp
+
+  !> Cycles between two looks at the lengths that contact springs stand for.
+  integer, parameter :: refresh_interval = 20
+
+  !> How the steps go on.
+  type :: step_plan_t
+    real(wp) :: first_dt = 0.0_wp    !! first step, the measure of the floor
+    real(wp) :: constant = 0.0_wp    !! the constant step while it holds, else 0
+    real(wp) :: start_time = 0.0_wp  !! time at `start_cycle`, from where the constant step counts
+    integer :: start_cycle = 0
+    integer :: n_cycle = 0           !! cycles to the end at the constant step
+    integer :: end_cycle = 0         !! ENDCYC, 0 = none
+    real(wp) :: end_time = 0.0_wp
+    logical :: warned = .false.      !! the cap has been found above the stable step
+    type(spring_bound_t), allocatable :: springs(:) !! that the step must respect; none unless ECDT
+                                                    !! = 2
+  end type step_plan_t
+
+contains
+
+  !> The plan at the start.
+  pure function start_steps(model, time) result(steps)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: time
+    type(step_plan_t) :: steps
+
+    steps%end_time = model%controls%end_time
+    steps%end_cycle = model%controls%end_cycle
+    steps%start_time = time
+  end function start_steps
+
+  !> The first step, from the elements at time zero.
+  subroutine first_step(model, elements, log, steps, dt, error)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    type(log_t), intent(inout) :: log
+    type(step_plan_t), intent(inout) :: steps
+    real(wp), intent(out) :: dt
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: limit
+
+    limit = stable_limit(minval(elements%time_limit), steps)
+    dt = choose_step(model, limit, steps%start_time, log, steps)
+    if (model%controls%dt_initial > 0.0_wp .and. model%controls%dt_curve == 0) &
+      dt = min(dt, model%controls%dt_initial)
+    if (.not. dt > 0.0_wp) then
+      call raise(error, 'the first time step is not positive: stable step '//to_text(limit) &
+        //', step '//to_text(dt), status_input)
+      return
+    end if
+    steps%first_dt = dt
+    if (model%controls%dt_curve > 0 .and. .not. steps%warned) then
+      if (curve_is_constant(model%curves(model%controls%dt_curve))) then
+        steps%constant = dt
+        steps%n_cycle = cycles_in(steps%end_time - steps%start_time, dt)
+      end if
+    end if
+    call write_log(log, 'first time step '//to_text(dt)//', smallest L/c of the elements ' &
+      //to_text(minval(elements%time_limit)))
+    if (allocated(steps%springs)) call write_log(log, 'stable step of elements and contact ' &
+      //'springs '//to_text(limit))
+  end subroutine first_step
+
+  !> Constant steps `dt` in a time, at least one and no more than can be counted.
+  pure function cycles_in(time, dt) result(n)
+    real(wp), intent(in) :: time, dt !! s
+    integer :: n
+
+    n = huge(n)
+    if (time < 0.5_wp*huge(n)*dt) n = max(1, nint(time/dt))
+  end function cycles_in
+
+  !> Smallest L/c of the elements, or below it what contact springs leave of it.
+  pure function stable_limit(element_limit, steps) result(limit)
+    real(wp), intent(in) :: element_limit !! smallest L/c
+    type(step_plan_t), intent(in) :: steps
+    real(wp) :: limit
+
+    limit = element_limit
+    if (allocated(steps%springs)) limit = minval([limit, stable_step(limit, steps%springs)])
+  end function stable_limit
+
+  !> Step at `time` from the elements' limit; warns once when the cap is above the stable step.
+  function choose_step(model, limit, time, log, steps) result(dt)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: limit, time
+    type(log_t), intent(inout) :: log
+    type(step_plan_t), intent(inout) :: steps
+    real(wp) :: dt, cap
+
+    dt = scaled_step(model, limit, time)
+    if (model%controls%dt_curve == 0) return
+    cap = curve_value(model%curves(model%controls%dt_curve), time)
+    if (cap > limit .and. .not. steps%warned &
+      .and. curve_is_constant(model%curves(model%controls%dt_curve))) then
+      call warn(log, 'the constant time step '//to_text(cap)//' at time '//to_text(time) &
+        //' lies above the stable step '//to_text(limit)//' of the elements' &
+        //trim(merge(' and contact springs', '                    ', allocated(steps%springs))) &
+        //'; using TSSFAC times the stable step while it does')
+      steps%warned = .true.
+    end if
+  end function choose_step
+
+  !> Time of cycle `cycle` and the step that leads away from it. A constant
+  !> step counts time as n dt.
+  subroutine next_step(model, element_limit, log, cycle, steps, time, dt)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: element_limit     !! smallest L/c
+    type(log_t), intent(inout) :: log
+    integer, intent(in) :: cycle              !! number of the new cycle
+    type(step_plan_t), intent(inout) :: steps
+    real(wp), intent(inout) :: time           !! in: old, out: new
+    real(wp), intent(inout) :: dt             !! in: step that led here, out: next one
+    real(wp) :: wanted, before
+
+    before = time
+    if (steps%constant > 0.0_wp) then
+      time = steps%start_time + (cycle - steps%start_cycle)*steps%constant
+    else
+      time = time + dt
+    end if
+    wanted = choose_step(model, stable_limit(element_limit, steps), time, log, steps)
+    if (must_change(model, before, wanted, dt)) dt = wanted
+    if (steps%warned) steps%constant = 0.0_wp
+  end subroutine next_step
+
+  !> Whether a step gives way to the one that is wanted. Leap-frog keeps energy without a trend only
+  !> while its step is constant; the limits of elements and springs beat with the vibrations of a
+  !> body, and a step that follows them feeds those (doc/theory/time_integration.md). So a step that
+  !> a limit has set is held, whatever curve lies above; one that a curve has set follows it.
+  pure function must_change(model, before, wanted, dt) result(must)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: before     !! time at which `dt` was chosen
+    real(wp), intent(in) :: wanted, dt !! s
+    logical :: must
+
+    must = wanted < dt .or. wanted > (1.0_wp + least_rise)*dt
+    if (must .or. model%controls%dt_curve == 0) return
+    must = dt >= curve_value(model%curves(model%controls%dt_curve), before)
+  end function must_change
+
+  !> Whether the cycle at `time` is the last: nint(ENDTIM/dt) cycles of a constant step, otherwise
+  !> the first cycle at or after the end time.
+  pure function is_last(steps, cycle, time) result(last)
+    type(step_plan_t), intent(in) :: steps
+    integer, intent(in) :: cycle
+    real(wp), intent(in) :: time
+    logical :: last
+
+    if (steps%constant > 0.0_wp) then
+      last = cycle - steps%start_cycle >= steps%n_cycle
+    else
+      last = time >= steps%end_time*(1.0_wp - 1.0e-12_wp)
+    end if
+    if (steps%end_cycle > 0) last = last .or. cycle >= steps%end_cycle
+  end function is_last
+
+  !> Where ECDT = 2 asks for it: find now and then what the springs at the present places
+  !> demand of the steps to come.
+  pure subroutine follow_springs(model, state, bounds)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(spring_bound_t), allocatable, intent(inout) :: bounds(:)
+    integer :: i
+
+    if (model%controls%contact_step /= contact_step_rules) return
+    if (mod(state%cycle, refresh_interval) /= 0) return
+    if (.not. allocated(bounds)) allocate (bounds(size(model%contacts)))
+    call bound_springs(model%contacts, state%contact_mass, state%contacts, &
+      [(1.0_wp, i=1, size(bounds))], bounds)
+  end subroutine follow_springs
+
+end module time_step_m

@@ -1,0 +1,205 @@
+! SPDX-License-Identifier: MIT
+!> Rigid walls in the explicit driver: perfectly plastic impact of nodes. A node that would pass a
+!> wall in the step ahead gets the normal velocity that takes it to the wall (one behind it: none),
+!> and the wall the force that this takes at t(n). Tangentially the wall holds it back with what
+!> stops it, at most the coefficient of friction times that force.
+module wall_motion_m
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use node_motion_m, only : leap_t
+  use snapshot_m, only : wall_result_t
+  use state_m, only : state_t
+  use walls_m, only : wall_t, wall_distance, wall_tangent, friction_sticks
+  implicit none
+  private
+  public :: hold_nodes, count_walls, fill_walls
+
+  !> Rounds over the walls that one node meets (two in a corner settle at once where
+  !> they are at right angles).
+  integer, parameter :: most_rounds = 40
+
+contains
+
+  !> Add the forces of all walls to one special node, whose other forces are known, before it moves.
+  subroutine hold_node(model, leap, node, state)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: node
+    type(state_t), intent(inout) :: state
+    real(wp) :: velocity(2), mobility(2), more, most
+    integer :: i, k, round, n_seen
+    logical :: settles
+
+    n_seen = 0
+    settles = .true.
+    do i = 1, size(model%walls)
+      k = model%walls(i)%place(node)
+      if (k == 0) cycle
+      n_seen = n_seen + 1
+      state%walls(i)%force(k) = 0.0_wp
+      state%walls(i)%speed(k) = dot_product(model%walls(i)%normal, state%motion(3:4, node))
+      if (.not. model%walls(i)%friction > 0.0_wp) cycle
+      state%walls(i)%friction(k) = 0.0_wp
+      state%walls(i)%slip_speed(k) = dot_product(wall_tangent(model%walls(i)), &
+        state%motion(3:4, node))
+      settles = .false.
+    end do
+    if (n_seen == 0) return
+    mobility = leap%half*state%inverse_mass(:, node)
+    velocity = leap%keep*state%motion(3:4, node) + leap%half*merge(leap%body, 0.0_wp, &
+      state%inverse_mass(:, node) > 0.0_wp) + mobility*(state%force_special(:, node) &
+      - state%internal_force(:, node))
+    do round = 1, most_rounds
+      most = 0.0_wp
+      do i = 1, size(model%walls)
+        k = model%walls(i)%place(node)
+        if (k == 0) cycle
+        more = missing_force(model%walls(i), state%time, leap%dt, model%mesh%coordinates(:, node), &
+          state%motion(1:2, node), velocity, mobility, state%walls(i)%force(k))
+        state%walls(i)%force(k) = state%walls(i)%force(k) + more
+        velocity = velocity + mobility*(more*model%walls(i)%normal)
+        state%force_special(:, node) = state%force_special(:, node) + more*model%walls(i)%normal
+        most = max(most, abs(more) - 1.0e-14_wp*state%walls(i)%force(k))
+        if (.not. model%walls(i)%friction > 0.0_wp) cycle
+        more = missing_friction(model%walls(i), velocity, mobility, state%walls(i)%force(k), &
+          state%walls(i)%friction(k))
+        state%walls(i)%friction(k) = state%walls(i)%friction(k) + more
+        velocity = velocity + mobility*(more*wall_tangent(model%walls(i)))
+        state%force_special(:, node) = state%force_special(:, node) &
+          + more*wall_tangent(model%walls(i))
+        most = max(most, abs(more) - 1.0e-14_wp*state%walls(i)%force(k))
+      end do
+      if ((n_seen == 1 .and. settles) .or. .not. most > 0.0_wp) exit
+    end do
+  end subroutine hold_node
+
+  !> What the force of one wall lacks so that the node does not pass; never so
+  !> negative that the wall pulls.
+  pure function missing_force(wall, time, dt, coordinates, displacement, velocity, mobility, &
+      force) result(more)
+    type(wall_t), intent(in) :: wall
+    real(wp), intent(in) :: time, dt
+    real(wp), intent(in) :: coordinates(2), displacement(2)
+    real(wp), intent(in) :: velocity(2)  !! with the forces so far
+    real(wp), intent(in) :: mobility(2)  !! velocity from a force of 1
+    real(wp), intent(in) :: force        !! of the wall so far
+    real(wp) :: more
+    real(wp) :: gain, least
+
+    more = 0.0_wp
+    gain = dot_product(wall%normal**2, mobility)
+    if (.not. gain > 0.0_wp .or. time < wall%birth .or. time >= wall%death) return
+    least = -max(0.0_wp, wall_distance(wall, coordinates, displacement))/dt
+    more = max((least - dot_product(wall%normal, velocity))/gain, -force)
+  end function missing_force
+
+  !> What the friction of one wall lacks so that the node stops, as far as its force allows.
+  pure function missing_friction(wall, velocity, mobility, force, friction) result(more)
+    type(wall_t), intent(in) :: wall
+    real(wp), intent(in) :: velocity(2)  !! with the forces so far
+    real(wp), intent(in) :: mobility(2)  !! velocity from a force of 1
+    real(wp), intent(in) :: force        !! of the wall along its normal
+    real(wp), intent(in) :: friction     !! of the wall along its tangent so far
+    real(wp) :: more
+    real(wp) :: tangent(2), gain
+
+    tangent = wall_tangent(wall)
+    gain = dot_product(tangent**2, mobility)
+    more = -friction
+    if (.not. (gain > 0.0_wp .and. force > 0.0_wp)) return
+    more = -dot_product(tangent, velocity)/gain
+    if (wall%friction < friction_sticks) more = max(-wall%friction*force - friction, &
+      min(more, wall%friction*force - friction))
+  end function missing_friction
+
+  !> The special nodes first .. last.
+  subroutine hold_nodes(model, leap, first, last, state)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
+    type(state_t), intent(inout) :: state
+    integer :: node
+
+    do node = first, last
+      call hold_node(model, leap, node, state)
+    end do
+  end subroutine hold_nodes
+
+  !> Impulse and work of the walls over the half steps before and after the instant. Together they
+  !> do the work F h (v(n-1/2) + v(n+1/2))/2, which is the change of kinetic energy that F makes,
+  !> whatever the two steps are; it counts as external, that of friction too.
+  subroutine count_walls(model, is_before, is_after, state)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: is_before, is_after !! which half steps are due
+    type(state_t), intent(inout) :: state
+    real(wp) :: work, next, length
+    integer :: i, k
+
+    length = 0.0_wp
+    if (is_before) length = 0.5_wp*state%dt_before
+    if (is_after) length = length + 0.5_wp*state%dt
+    do i = 1, size(state%walls)
+      associate (wall => model%walls(i), memory => state%walls(i))
+        work = 0.0_wp
+        do k = 1, size(wall%nodes)
+          if (.not. memory%force(k) > 0.0_wp) cycle
+          if (is_before) work = work + memory%force(k)*0.5_wp*state%dt_before*memory%speed(k)
+          if (.not. is_after) cycle
+          next = dot_product(wall%normal, state%motion(3:4, wall%nodes(k)))
+          work = work + memory%force(k)*(0.25_wp*(state%dt_before + state%dt) &
+            *(memory%speed(k) + next) - 0.5_wp*state%dt_before*memory%speed(k))
+        end do
+        memory%impulse = memory%impulse + length*sum(memory%force)
+        memory%work = memory%work + work
+        state%external_work = state%external_work + work
+      end associate
+      if (size(state%walls(i)%friction) > 0) call count_friction(model%walls(i), i, is_before, &
+        is_after, state)
+    end do
+  end subroutine count_walls
+
+  !> The same work of the friction of one wall.
+  subroutine count_friction(wall, i_wall, is_before, is_after, state)
+    type(wall_t), intent(in) :: wall
+    integer, intent(in) :: i_wall
+    logical, intent(in) :: is_before, is_after !! which half steps are due
+    type(state_t), intent(inout) :: state
+    real(wp) :: work, next
+    integer :: k
+
+    work = 0.0_wp
+    associate (memory => state%walls(i_wall))
+      do k = 1, size(wall%nodes)
+        if (is_before) work = work + memory%friction(k)*0.5_wp*state%dt_before*memory%slip_speed(k)
+        if (.not. is_after) cycle
+        next = dot_product(wall_tangent(wall), state%motion(3:4, wall%nodes(k)))
+        work = work + memory%friction(k)*(0.25_wp*(state%dt_before + state%dt) &
+          *(memory%slip_speed(k) + next) - 0.5_wp*state%dt_before*memory%slip_speed(k))
+      end do
+      memory%dissipated = memory%dissipated - work
+      memory%work = memory%work + work
+    end associate
+    state%external_work = state%external_work + work
+  end subroutine count_friction
+
+  !> What the output says of the walls.
+  subroutine fill_walls(model, state, results)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(wall_result_t), intent(inout) :: results(:)
+    integer :: i
+
+    do i = 1, size(state%walls)
+      results(i)%normal_force = sum(state%walls(i)%force)
+      results(i)%force = results(i)%normal_force*model%walls(i)%normal
+      results(i)%impulse = state%walls(i)%impulse
+      results(i)%work = state%walls(i)%work
+      results(i)%n_active = count(state%walls(i)%force > 0.0_wp)
+      results(i)%tangential_force = sum(state%walls(i)%friction)
+      results(i)%force = results(i)%force + results(i)%tangential_force &
+        *wall_tangent(model%walls(i))
+      results(i)%dissipated = state%walls(i)%dissipated
+    end do
+  end subroutine fill_walls
+
+end module wall_motion_m

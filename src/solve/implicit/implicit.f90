@@ -1,0 +1,244 @@
+! SPDX-License-Identifier: MIT
+!> The implicit driver: static equilibrium or generalised-alpha dynamics, step by step
+!> (doc/theory/implicit.md, section 4).
+module implicit_m
+  use kinds_m, only : wp
+  use clock_m, only : lap, phase_nodes
+  use contact_check_m, only : report_contact_end
+  use contact_springs_m, only : measure_springs
+  use energies_m, only : energy_ratio
+  use equations_m, only : number_equations, find_equation
+  use errors_m, only : error_t, raise, status_run
+  use implicit_forces_m, only : trial_t, start_trial, net_force
+  use implicit_memory_m, only : implicit_memory_t, write_restarts
+  use implicit_prescribed_m, only : prescribe_step
+  use implicit_report_m, only : reactions_work, report_step
+  use implicit_start_m, only : begin_steps, plan_next, has_ended
+  use implicit_tangent_m, only : step_t, new_acceleration, new_velocity
+  use log_m, only : write_log, to_text
+  use model_m, only : model_t
+  use monitor_m, only : monitor_t, any_due
+  use newton_m, only : outcome_t, find_equilibrium
+  use progress_m, only : follow_progress
+  use requests_m, only : requests_t, take_requests
+  use restart_plan_m, only : wanted_files
+  use state_m, only : state_t
+  use step_control_m, only : step_control_t, plan_step, grow_step, cut_step
+  implicit none
+  private
+  public :: advance_implicit
+
+  !> Energy ratio above which a failure is put down to it.
+  real(wp), parameter :: gained = 1.1_wp
+
+contains
+
+  !> From where the run begins to its end. When a step finds no equilibrium the last converged
+  !> state is written and stays.
+  subroutine advance_implicit(model, state, monitor, reason, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    character(:), allocatable, intent(out) :: reason
+    type(error_t), allocatable, intent(out) :: error
+    type(implicit_memory_t) :: memory
+    type(requests_t) :: asked
+    type(error_t), allocatable :: second
+    logical :: last
+
+    reason = 'termination time reached'
+    call begin_steps(model, state, monitor, memory, last, error)
+    if (allocated(error) .or. monitor%only_checks) return
+    call report_instant(model, state, last, .false., monitor, memory, error)
+    do while (.not. last .and. .not. allocated(error))
+      call take_step(model, state, monitor, memory%control, memory%step, memory%trial, error)
+      if (allocated(error)) exit
+      call heed_requests(model, state, monitor, memory, asked, last, error)
+      if (allocated(error)) exit
+      if (asked%stop) reason = 'stopped on request'
+      call report_instant(model, state, last, asked%plot, monitor, memory, error)
+      call follow_progress(monitor%progress, monitor%clock, state%cycle, .true., state%time, &
+        state%dt_before, memory%ratio)
+    end do
+    if (allocated(error) .and. .not. last) then
+      call report_instant(model, state, .true., .false., monitor, memory, second)
+      call hint_at_energy(memory%step, memory%ratio, error)
+    end if
+    call report_contact_end(model, state, monitor%log)
+  end subroutine advance_implicit
+
+  !> Write what is due of the state.
+  subroutine report_instant(model, state, last, plots, monitor, memory, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    logical, intent(in) :: last
+    logical, intent(in) :: plots         !! someone asks for a plot state
+    type(monitor_t), intent(inout) :: monitor
+    type(implicit_memory_t), intent(inout) :: memory
+    type(error_t), allocatable, intent(out) :: error
+
+    call report_step(model, state, memory%step%old_force, last, plots, monitor, memory%written, &
+      error)
+    if (any_due(memory%written)) memory%ratio = energy_ratio(monitor%snapshot%energies)
+  end subroutine report_instant
+
+  !> After a step: what someone asks for, the plan of the next step, and the restart files that are
+  !> due. A run that goes on from one reports the state as this one is about to.
+  subroutine heed_requests(model, state, monitor, memory, asked, last, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(implicit_memory_t), intent(inout) :: memory
+    type(requests_t), intent(out) :: asked  !! a stop only where there was a step left
+    logical, intent(out) :: last            !! the state is the last one
+    type(error_t), allocatable, intent(inout) :: error
+    type(step_control_t) :: planned
+    logical :: ends
+
+    last = .false.
+    call take_requests(state, memory%ratio, .true., monitor, asked, error)
+    if (allocated(error)) return
+    last = has_ended(model, state, memory%control)
+    asked%stop = asked%stop .and. .not. last
+    asked%signalled = asked%signalled .and. .not. last
+    last = last .or. asked%stop
+    planned = memory%control
+    call plan_next(model, last, state, planned, ends)
+    call write_restarts(wanted_files(monitor%restarts, state%cycle, asked%dump, ends, &
+      asked%signalled), state, monitor, memory, error)
+    last = last .and. .not. allocated(error)
+    memory%control = planned
+  end subroutine heed_requests
+
+  !> One step, tried again with a shorter one while that is allowed.
+  subroutine take_step(model, state, monitor, control, step, trial, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(step_control_t), intent(inout) :: control
+    type(step_t), intent(inout) :: step
+    type(trial_t), intent(inout) :: trial
+    type(error_t), allocatable, intent(out) :: error
+    type(outcome_t) :: outcome
+    type(trial_t) :: attempt
+    logical :: may_retry
+
+    do
+      call try_step(model, state, monitor, control%next, step, attempt, outcome)
+      if (outcome%converged) exit
+      may_retry = .false.
+      ! A body that nothing holds at the start of the step is none the better for a shorter one.
+      if (outcome%singular_equation == 0 .or. outcome%iterations > 1) &
+        call cut_step(control, state%time, may_retry)
+      if (.not. may_retry) then
+        call raise_failure(model, state, step, outcome, error)
+        return
+      end if
+      call plan_step(control, state%time)
+    end do
+    call commit(model, state, step, attempt, trial)
+    call grow_step(control, step%dt, outcome%iterations)
+    call lap(monitor%clock, phase_nodes)
+  end subroutine take_step
+
+  !> A step to `time`: full iterations or searched ones, as the step before, then the other kind.
+  subroutine try_step(model, state, monitor, time, step, attempt, outcome)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(monitor_t), intent(inout) :: monitor
+    real(wp), intent(in) :: time
+    type(step_t), intent(inout) :: step
+    type(trial_t), intent(inout) :: attempt
+    type(outcome_t), intent(out) :: outcome
+    integer :: i
+
+    step%time = time
+    step%dt = time - state%time
+    call number_equations(model, state, 0.5_wp*(state%time + time), step%equations)
+    call prescribe_step(model, state, time, step%equations, step%prescribed)
+    do i = 1, 2
+      call start_trial(model, state, attempt)
+      call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
+      if (outcome%converged) return
+      call write_log(monitor%log, 'step to '//to_text(time)//': '//outcome%reason)
+      ! The first iteration is not searched: one that fails there fails again.
+      if (outcome%iterations <= 1) return
+      step%searches = .not. step%searches
+    end do
+  end subroutine try_step
+
+  !> The trial becomes the state; works of contact, loads and prescribed
+  !> motion by the trapezoidal rule.
+  subroutine commit(model, state, step, attempt, trial)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(step_t), intent(inout) :: step
+    type(trial_t), intent(inout) :: attempt
+    type(trial_t), intent(inout) :: trial    !! of the state before; of the new state on return
+    real(wp), allocatable :: acceleration(:, :), velocity(:, :)
+    integer :: i
+
+    state%external_work = state%external_work + 0.5_wp*sum((trial%external + attempt%external) &
+      *attempt%motion(3:4, :))
+    do i = 1, size(model%contacts)
+      associate (nodes => state%contacts(i)%nodes)
+        attempt%contacts(i)%energy = state%contacts(i)%energy - 0.5_wp &
+          *sum((state%contacts(i)%force + attempt%contacts(i)%force)*attempt%motion(3:4, nodes))
+      end associate
+      call measure_springs(attempt%contacts(i))
+    end do
+    if (step%is_dynamic) then
+      acceleration = new_acceleration(state, step, attempt)
+      velocity = new_velocity(state, step, acceleration)
+      state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
+        attempt, reshape([state%motion(3:4, :), velocity], [2, size(velocity, 2), 2]))
+      state%motion(3:4, :) = velocity
+      state%acceleration = acceleration
+    else
+      state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
+        attempt)
+    end if
+    state%motion(1:2, :) = attempt%motion(1:2, :)
+    state%elements = attempt%elements
+    state%contacts = attempt%contacts
+    step%old_force = net_force(attempt)
+    trial = attempt
+    state%time = step%time
+    state%dt_before = step%dt
+    state%cycle = state%cycle + 1
+  end subroutine commit
+
+  !> The error that ends the run; a free motion is named by node and direction.
+  subroutine raise_failure(model, state, step, outcome, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(outcome_t), intent(in) :: outcome
+    type(error_t), allocatable, intent(out) :: error
+    integer :: node, direction
+
+    if (outcome%singular_equation > 0) then
+      call find_equation(step%equations, outcome%singular_equation, node, direction)
+      call raise(error, 'the stiffness is singular at time '//to_text(state%time)//': node ' &
+        //to_text(model%mesh%node_id(node))//' moves freely in ' &
+        //merge('x', 'y', direction == 1)//'; the model needs constraints, contact or inertia ' &
+        //'(IMASS = 1) that hold it', status_run)
+    else
+      call raise(error, 'no equilibrium at time '//to_text(step%time)//' with the step ' &
+        //to_text(step%dt)//': '//outcome%reason//'; the last converged state is that of time ' &
+        //to_text(state%time), status_run)
+    end if
+  end subroutine raise_failure
+
+  !> Say so where a run that found no equilibrium had gained energy before.
+  subroutine hint_at_energy(step, ratio, error)
+    type(step_t), intent(in) :: step
+    real(wp), intent(in) :: ratio !! of the last converged state
+    type(error_t), intent(inout) :: error
+
+    if (error%status /= status_run .or. .not. step%is_dynamic .or. ratio <= gained) return
+    error%message = error%message//'; its energy ratio is '//to_text(ratio) &
+      //': the steps gain energy (shorter steps, or a spectral radius below 1)'
+  end subroutine hint_at_energy
+
+end module implicit_m

@@ -1,0 +1,121 @@
+! SPDX-License-Identifier: MIT
+!> All nodal forces of one instant for the implicit driver: the explicit kernels from a committed
+!> state to a trial displacement (doc/theory/implicit.md, section 1).
+module implicit_forces_m
+  use interface_m, only : evaluate_contact
+  use kinds_m, only : wp
+  use block_state_m, only : block_state_t
+  use clock_m, only : clock_t, lap, share_contact, phase_elements, &
+    phase_contact_force, phase_nodes
+  use contact_state_m, only : contact_state_t
+  use element_dispatch_m, only : add_tile_forces
+  use element_mass_m, only : mass_times
+  use external_force_m, only : form_external_force, body_acceleration
+  use model_m, only : model_t
+  use state_m, only : state_t
+  use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
+  implicit none
+  private
+  public :: trial_t, start_trial, assemble_forces, net_force, trouble_of
+
+  !> What a trial displacement makes of a committed state.
+  type :: trial_t
+    real(wp), allocatable :: motion(:, :)   !! (4, n_node) u, and u minus the committed u
+    type(block_state_t) :: elements
+    type(contact_state_t), allocatable :: contacts(:)
+    real(wp), allocatable :: internal(:, :) !! (2, n_node) divergence of stress
+    real(wp), allocatable :: contact(:, :)  !! (2, n_node)
+    real(wp), allocatable :: external(:, :) !! (2, n_node) loads and gravity
+    real(wp), allocatable :: slots(:, :)    !! forces of tiles on their special nodes
+  end type trial_t
+
+contains
+
+  !> A trial at the committed state.
+  subroutine start_trial(model, state, trial)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(trial_t), intent(out) :: trial
+
+    allocate (trial%motion(4, model%mesh%n_node), trial%internal(2, model%mesh%n_node), &
+      trial%contact(2, model%mesh%n_node), trial%external(2, model%mesh%n_node), source=0.0_wp)
+    allocate (trial%slots, source=state%force_slots)
+    trial%motion(1:2, :) = state%motion(1:2, :)
+  end subroutine start_trial
+
+  !> Forces at the displacement in `trial%motion(1:2)`, loads at `time`.
+  subroutine assemble_forces(model, state, time, is_first, clock, trial)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state      !! committed
+    real(wp), intent(in) :: time
+    logical, intent(in) :: is_first         !! touching counts as closed
+    type(clock_t), intent(inout) :: clock
+    type(trial_t), intent(inout) :: trial
+    real(wp) :: body(2)
+    integer :: i
+
+    trial%motion(3:4, :) = trial%motion(1:2, :) - state%motion(1:2, :)
+    call assemble_internal(model, state, trial)
+    call lap(clock, phase_elements)
+    trial%contact = 0.0_wp
+    trial%contacts = state%contacts
+    do i = 1, size(model%contacts)
+      call evaluate_contact(model%contacts(i), trial%motion, time, is_first, trial%contacts(i), &
+        trial%contact)
+      call lap(clock, phase_contact_force)
+      call share_contact(clock, i)
+    end do
+    trial%external = 0.0_wp
+    call form_external_force(model, trial%motion, time, trial%external)
+    if (size(model%conditions%body_loads) > 0) then
+      body = body_acceleration(model%conditions, model%curves, time)
+      trial%external = trial%external + mass_times(model, spread(body, 2, model%mesh%n_node))
+    end if
+    call lap(clock, phase_nodes)
+  end subroutine assemble_forces
+
+  !> Element forces from the committed history.
+  subroutine assemble_internal(model, state, trial)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(trial_t), intent(inout) :: trial
+    real(wp), allocatable :: force(:, :)
+    integer :: i_tile
+
+    trial%elements = state%elements
+    allocate (force(2, model%layout%n_local))
+    do i_tile = 1, size(model%layout%tiles)
+      associate (tile => model%layout%tiles(i_tile))
+        call add_tile_forces(model, tile, trial%motion, 1.0_wp, trial%elements, force)
+        call share_tile_forces(tile, force, trial%slots)
+        call keep_tile_forces(tile, force, trial%internal)
+      end associate
+    end do
+    call sum_special_forces(model%layout, trial%slots, 1, model%layout%n_special, trial%internal)
+  end subroutine assemble_internal
+
+  !> Internal minus contact and external forces.
+  pure function net_force(trial) result(force)
+    type(trial_t), intent(in) :: trial
+    real(wp) :: force(2, size(trial%internal, 2))
+
+    force = trial%internal - trial%contact - trial%external
+  end function net_force
+
+  !> What is wrong with a trial in words; empty where all volumes are
+  !> positive and all forces finite.
+  pure function trouble_of(trial) result(trouble)
+    type(trial_t), intent(in) :: trial
+    character(:), allocatable :: trouble
+
+    trouble = ''
+    if (.not. minval(trial%elements%volume_limit) > 0.0_wp) then
+      trouble = 'an element has turned inside out'
+    else if (.not. sum(abs(trial%external)) <= huge(1.0_wp)) then
+      trouble = 'the loads are not finite'
+    else if (.not. sum(abs(trial%internal)) + sum(abs(trial%contact)) <= huge(1.0_wp)) then
+      trouble = 'the forces are not finite'
+    end if
+  end function trouble_of
+
+end module implicit_forces_m

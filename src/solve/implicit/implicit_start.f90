@@ -1,0 +1,190 @@
+! SPDX-License-Identifier: MIT
+!> Where an implicit run begins: at time zero, or where a restart file says.
+module implicit_start_m
+  use kinds_m, only : wp
+  use clock_m, only : lap, phase_solver
+  use contact_check_m, only : report_contact_start
+  use contact_springs_m, only : measure_springs
+  use element_mass_m, only : add_mass, mass_times
+  use equations_m, only : equations_t, number_equations, take_free
+  use errors_m, only : error_t, raise, status_run
+  use implicit_forces_m, only : start_trial, assemble_forces, net_force
+  use implicit_memory_m, only : implicit_memory_t, take_up_memory, write_restarts
+  use implicit_prescribed_m, only : prescribe_start, list_changes
+  use implicit_tangent_m, only : step_t
+  use linear_solver_m, only : report_t, solve_linear
+  use log_m, only : log_t, write_log, warn, to_text
+  use model_m, only : model_t
+  use monitor_m, only : monitor_t
+  use restart_plan_m, only : wanted_files
+  use sparse_m, only : sparse_t, start_matrix, compress_matrix
+  use state_m, only : state_t
+  use step_control_m, only : step_control_t, start_step_control, plan_step, is_over
+  implicit none
+  private
+  public :: begin_steps, plan_next, has_ended
+
+contains
+
+  !> What is remembered up to the first report, and the plan of the first step.
+  subroutine begin_steps(model, state, monitor, memory, last, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(implicit_memory_t), intent(out) :: memory
+    logical, intent(out) :: last       !! there is no step left
+    type(error_t), allocatable, intent(out) :: error
+    type(step_control_t) :: planned
+    real(wp), allocatable :: changes(:)
+    logical :: ends
+
+    call list_changes(model, changes)
+    memory%control = start_step_control(model%controls, changes)
+    call set_scheme(model, memory%step)
+    last = .false.
+    if (monitor%restarts%goes_on) then
+      call take_up_memory(model, state, monitor%restarts%source, memory, error)
+      if (allocated(error)) return
+      last = has_ended(model, state, memory%control)
+    else
+      call log_method(model, memory%control, monitor%log)
+    end if
+    planned = memory%control
+    call plan_next(model, last, state, planned, ends)
+    if (.not. monitor%restarts%goes_on) then
+      call start_implicit(model, planned%next, state, monitor, memory, error)
+      if (.not. allocated(error)) call report_contact_start(model, state, monitor%log)
+      if (.not. allocated(error)) call write_restarts(wanted_files(monitor%restarts, state%cycle, &
+        .false., ends, .false.), state, monitor, memory, error)
+    end if
+    memory%control = planned
+  end subroutine begin_steps
+
+  !> Plan the step that leads away from the state, unless there is none.
+  pure subroutine plan_next(model, last, state, control, ends)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: last
+    type(state_t), intent(inout) :: state   !! gets its step
+    type(step_control_t), intent(inout) :: control
+    logical, intent(out) :: ends            !! that step is meant to be the last one
+
+    state%dt = control%dt
+    ends = .false.
+    if (last) return
+    call plan_step(control, state%time)
+    state%dt = control%next - state%time
+    ends = control%is_last
+    if (model%controls%end_cycle > 0) ends = ends .or. state%cycle + 1 >= model%controls%end_cycle
+  end subroutine plan_next
+
+  !> Whether the run has come to its end.
+  pure function has_ended(model, state, control) result(ended)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_control_t), intent(in) :: control
+    logical :: ended
+
+    ended = is_over(control, state%time)
+    if (model%controls%end_cycle > 0) ended = ended .or. state%cycle >= model%controls%end_cycle
+  end function has_ended
+
+  !> The weights of the two instants of a step.
+  pure subroutine set_scheme(model, step)
+    type(model_t), intent(in) :: model
+    type(step_t), intent(inout) :: step
+
+    associate (implicit => model%controls%implicit)
+      step%is_dynamic = implicit%is_dynamic
+      step%alpha_m = implicit%alpha_m
+      step%alpha_f = implicit%alpha_f
+      step%gamma = implicit%gamma
+      step%beta = implicit%beta
+    end associate
+  end subroutine set_scheme
+
+  !> Tell the log of the method.
+  subroutine log_method(model, control, log)
+    type(model_t), intent(in) :: model
+    type(step_control_t), intent(in) :: control
+    type(log_t), intent(inout) :: log
+
+    associate (implicit => model%controls%implicit)
+      if (abs(control%dt - implicit%dt) > 0.0_wp) call warn(log, 'the first step ' &
+        //to_text(implicit%dt)//' does not lie between DTMIN and DTMAX of ' &
+        //'*CONTROL_IMPLICIT_AUTO; it is '//to_text(control%dt))
+      call write_log(log, 'implicit method: '//trim(merge('dynamic', 'static ', &
+        implicit%is_dynamic))//', first step '//to_text(implicit%dt))
+      if (implicit%is_dynamic) call write_log(log, '  '//implicit%scheme//': alpha_m ' &
+        //to_text(implicit%alpha_m)//', alpha_f '//to_text(implicit%alpha_f)//', gamma ' &
+        //to_text(implicit%gamma)//', beta '//to_text(implicit%beta))
+    end associate
+  end subroutine log_method
+
+  !> Forces and acceleration at time zero.
+  subroutine start_implicit(model, dt, state, monitor, memory, error)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: dt !! first step
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(implicit_memory_t), intent(inout) :: memory
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i
+
+    allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
+    if (memory%step%is_dynamic) then
+      call prescribe_start(model, dt, state)
+    else
+      state%motion(3:4, :) = 0.0_wp
+    end if
+    call start_trial(model, state, memory%trial)
+    call assemble_forces(model, state, 0.0_wp, .false., monitor%clock, memory%trial)
+    state%contacts = memory%trial%contacts
+    ! Springs loaded at time zero hold energy that no force has put in.
+    do i = 1, size(state%contacts)
+      call measure_springs(state%contacts(i))
+      state%contacts(i)%energy = state%contacts(i)%watch%stored
+    end do
+    memory%step%old_force = net_force(memory%trial)
+    if (memory%step%is_dynamic) call find_first_acceleration(model, monitor, memory%step, state, &
+      error)
+    call lap(monitor%clock, phase_solver)
+  end subroutine start_implicit
+
+  !> M a(0) = -f(0) on the free degrees of freedom; those of prescribed ones, which
+  !> the state has, act on them.
+  subroutine find_first_acceleration(model, monitor, step, state, error)
+    type(model_t), intent(in) :: model
+    type(monitor_t), intent(inout) :: monitor
+    type(step_t), intent(in) :: step
+    type(state_t), intent(inout) :: state
+    type(error_t), allocatable, intent(out) :: error
+    type(equations_t) :: equations
+    type(sparse_t) :: matrix
+    type(report_t) :: report
+    real(wp), allocatable :: x(:)
+    integer :: i, k
+
+    call number_equations(model, state, 0.0_wp, equations)
+    call start_matrix(matrix, equations%n)
+    call add_mass(model, 1.0_wp, merge(equations%number, 0, equations%number <= equations%n_free), &
+      matrix)
+    matrix%n = equations%n_free
+    call compress_matrix(matrix)
+    allocate (x(equations%n_free))
+    call solve_linear(matrix, -take_free(equations, step%old_force &
+      + mass_times(model, state%acceleration)), x, report)
+    if (.not. report%is_solved) then
+      call raise(error, 'no acceleration at time zero: '//report%message, status_run)
+      return
+    end if
+    call write_log(monitor%log, '  equations: '//to_text(equations%n_free)//' free, ' &
+      //to_text(equations%n - equations%n_free)//' prescribed; mass solved by '//report%method)
+    do i = 1, model%mesh%n_node
+      do k = 1, 2
+        if (equations%number(k, i) > 0 .and. equations%number(k, i) <= equations%n_free) &
+          state%acceleration(k, i) = x(equations%number(k, i))
+      end do
+    end do
+  end subroutine find_first_acceleration
+
+end module implicit_start_m

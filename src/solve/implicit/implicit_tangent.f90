@@ -1,0 +1,132 @@
+! SPDX-License-Identifier: MIT
+!> Residual and tangent of one implicit step (doc/theory/implicit.md, sections 1 and 2).
+module implicit_tangent_m
+  use kinds_m, only : wp
+  use clock_m, only : clock_t, lap, share_contact, phase_elements, phase_contact_force
+  use conditions_m, only : pressure_load_t
+  use contact_stiffness_m, only : add_contact_stiffness
+  use curves_m, only : curve_value
+  use element_mass_m, only : add_mass, mass_times
+  use element_stiffness_m, only : add_stiffness
+  use equations_m, only : equations_t, put_prescribed
+  use implicit_forces_m, only : trial_t
+  use implicit_prescribed_m, only : prescribed_step_t
+  use model_m, only : model_t
+  use sparse_m, only : sparse_t, start_matrix, add_block
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: step_t, assemble_residual, assemble_tangent, new_acceleration, new_velocity
+
+  !> One step. Static: all weights of the old instant are zero and there is no inertia.
+  type :: step_t
+    real(wp) :: time = 0.0_wp          !! at its end
+    real(wp) :: dt = 0.0_wp
+    logical :: is_dynamic = .false.
+    real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, gamma = 0.5_wp, beta = 0.25_wp
+    real(wp), allocatable :: old_force(:, :) !! (2, n_node) f_int - f_contact - f_ext at its start
+    type(equations_t) :: equations
+    logical :: searches = .false.      !! iterations that go too far are shortened
+    type(prescribed_step_t) :: prescribed    !! what the curves ask for
+  end type step_t
+
+contains
+
+  !> R = M A + (1 - alpha_f) f(n+1) + alpha_f f(n) with f = f_int - f_contact - f_ext and
+  !> A = (1 - alpha_m) a(n+1) + alpha_m a(n) (Chung & Hulbert 1993, eq. 12, forces of both
+  !> instants weighted); on prescribed degrees of freedom A is the change of velocity over the
+  !> step, whatever the weights.
+  function assemble_residual(model, state, step, trial) result(residual)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(trial_t), intent(in) :: trial
+    real(wp), allocatable :: residual(:, :) !! (2, n_node)
+    real(wp), allocatable :: acceleration(:, :)
+
+    residual = trial%internal - trial%contact - trial%external
+    if (.not. step%is_dynamic) return
+    acceleration = (1.0_wp - step%alpha_m)*new_acceleration(state, step, trial) &
+      + step%alpha_m*state%acceleration
+    call put_prescribed(step%equations, step%prescribed%mean, acceleration)
+    residual = (1.0_wp - step%alpha_f)*residual + step%alpha_f*step%old_force &
+      + mass_times(model, acceleration)
+  end function assemble_residual
+
+  !> a(n+1): Newmark's formulas from the displacement of the trial, or the curves.
+  pure function new_acceleration(state, step, trial) result(acceleration)
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(trial_t), intent(in) :: trial
+    real(wp) :: acceleration(2, size(state%motion, 2))
+
+    acceleration = (trial%motion(3:4, :) - step%dt*state%motion(3:4, :))/(step%beta*step%dt**2) &
+      - (0.5_wp/step%beta - 1.0_wp)*state%acceleration
+    call put_prescribed(step%equations, step%prescribed%acceleration, acceleration)
+  end function new_acceleration
+
+  !> v(n+1) likewise.
+  pure function new_velocity(state, step, acceleration) result(velocity)
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    real(wp), intent(in) :: acceleration(:, :) !! a(n+1)
+    real(wp) :: velocity(2, size(state%motion, 2))
+
+    velocity = state%motion(3:4, :) + step%dt*((1.0_wp - step%gamma)*state%acceleration &
+      + step%gamma*acceleration)
+    call put_prescribed(step%equations, step%prescribed%velocity, velocity)
+  end function new_velocity
+
+  !> dR/du(n+1), collected. The inertia of prescribed degrees of freedom does not depend on u, so
+  !> their columns hold stiffness alone.
+  subroutine assemble_tangent(model, state, step, trial, clock, matrix)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(trial_t), intent(in) :: trial
+    type(clock_t), intent(inout) :: clock
+    type(sparse_t), intent(inout) :: matrix
+    integer :: i
+
+    call start_matrix(matrix, step%equations%n)
+    call add_stiffness(model, trial%motion, 1.0_wp, state%elements, step%equations%number, matrix)
+    call lap(clock, phase_elements)
+    do i = 1, size(model%contacts)
+      call add_contact_stiffness(model%contacts(i), trial%contacts(i), step%equations%number, &
+        matrix)
+      call lap(clock, phase_contact_force)
+      call share_contact(clock, i)
+    end do
+    do i = 1, size(model%conditions%pressures)
+      call add_pressure_stiffness(model, model%conditions%pressures(i), step%time, step%equations, &
+        matrix)
+    end do
+    if (.not. step%is_dynamic) return
+    matrix%values(:matrix%n_entry) = (1.0_wp - step%alpha_f)*matrix%values(:matrix%n_entry)
+    call add_mass(model, (1.0_wp - step%alpha_m)/(step%beta*step%dt**2), &
+      merge(step%equations%number, 0, step%equations%number <= step%equations%n_free), matrix)
+  end subroutine assemble_tangent
+
+  !> Minus the derivative of a pressure, which turns and stretches with its edge.
+  subroutine add_pressure_stiffness(model, load, time, equations, matrix)
+    type(model_t), intent(in) :: model
+    type(pressure_load_t), intent(in) :: load
+    real(wp), intent(in) :: time
+    type(equations_t), intent(in) :: equations
+    type(sparse_t), intent(inout) :: matrix
+    real(wp) :: half, block(4, 4)
+    integer :: rows(4)
+
+    if (time < load%arrival) return
+    half = 0.5_wp*load%scale*curve_value(model%curves(load%curve), time - load%arrival)
+    ! Force on both nodes: half*(-edge_y, edge_x), edge = x_2 - x_1.
+    block = 0.0_wp
+    block([1, 3], 2) = -half
+    block([1, 3], 4) = half
+    block([2, 4], 1) = half
+    block([2, 4], 3) = -half
+    rows = [equations%number(:, load%nodes(1)), equations%number(:, load%nodes(2))]
+    call add_block(matrix, rows, rows, block)
+  end subroutine add_pressure_stiffness
+
+end module implicit_tangent_m

@@ -1,0 +1,221 @@
+! SPDX-License-Identifier: MIT
+!> One step of the implicit method: equilibrium at its end by Newton's method with line search
+!> (doc/theory/implicit.md, section 3).
+module newton_m
+  use kinds_m, only : wp
+  use clock_m, only : clock_t, lap, phase_nodes, phase_solver
+  use contact_scatter_m, only : add_gap_round_off
+  use controls_m, only : implicit_t
+  use equations_m, only : take_free, move_prescribed, find_equation
+  use implicit_forces_m, only : trial_t, assemble_forces, trouble_of
+  use implicit_tangent_m, only : step_t, assemble_tangent, assemble_residual
+  use line_search_m, only : way_t, move_nodes
+  use linear_solver_m, only : report_t, solve_linear
+  use log_m, only : log_t, write_log, to_text
+  use model_m, only : model_t
+  use sparse_m, only : sparse_t, compress_matrix
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: outcome_t, find_equilibrium
+
+  !> How far above the estimate of the round-off in the residual it counts as reached.
+  real(wp), parameter :: floor_margin = 4.0_wp
+
+  !> Part of the residual before above which it counts as falling no more.
+  real(wp), parameter :: stagnation = 0.3_wp
+
+  !> How a step ended.
+  type :: outcome_t
+    logical :: converged = .false.
+    integer :: iterations = 0
+    integer :: singular_equation = 0       !! free motion found, 0 = none
+    character(:), allocatable :: reason    !! why it did not converge
+  end type outcome_t
+
+  !> Measures of one iteration.
+  type :: measure_t
+    real(wp) :: energy = 0.0_wp   !! |dU.R|
+    real(wp) :: start = 0.0_wp    !! norm of what the iteration set out to remove
+    real(wp) :: residual = huge(1.0_wp) !! norm of R
+    integer :: worst = 0          !! equation of the largest entry of R
+    real(wp) :: before = huge(1.0_wp) !! norm of R one iteration ago
+    real(wp) :: floor = 0.0_wp    !! round-off in it that comes from forces and displacements
+    real(wp) :: gap_floor = 0.0_wp !! and with that of places in gaps, an upper estimate
+    real(wp) :: step = 0.0_wp     !! norm of dU
+    real(wp) :: factor = 1.0_wp   !! of the line search
+  end type measure_t
+
+contains
+
+  !> Iterate from the committed state to equilibrium at `step%time`; `trial` is
+  !> that state when converged.
+  subroutine find_equilibrium(model, state, step, log, clock, trial, outcome)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(log_t), intent(inout) :: log
+    type(clock_t), intent(inout) :: clock
+    type(trial_t), intent(inout) :: trial
+    type(outcome_t), intent(out) :: outcome
+    type(sparse_t) :: matrix
+    type(measure_t) :: first, now
+    type(way_t) :: way
+    type(report_t) :: report
+    integer :: iteration, node, direction
+    logical :: solved
+
+    trial%motion(1:2, :) = state%motion(1:2, :)
+    call assemble_forces(model, state, step%time, .true., clock, trial)
+    outcome%reason = trouble_of(trial)
+    if (len(outcome%reason) > 0) return
+    do iteration = 1, model%controls%implicit%max_iteration
+      outcome%iterations = iteration
+      way%moved = step%prescribed%increment
+      if (iteration > 1) way%moved = 0.0_wp
+      call find_way(model, state, step, clock, trial, matrix, way, report)
+      call judge_solution(report, outcome, solved)
+      if (.not. solved) return
+      now%energy = abs(dot_product(way%x, way%b))
+      now%step = norm2(way%x)
+      now%start = norm2(way%b)
+      call move_nodes(model, state, step, clock, trial, way)
+      outcome%reason = way%trouble
+      if (len(outcome%reason) > 0) return
+      now%factor = way%factor
+      call measure_residual(model, state, step, trial, matrix, now)
+      if (iteration == 1) first = now
+      call write_log(log, iteration_line(step, iteration, first, now, report))
+      outcome%converged = is_converged(model%controls%implicit, first, now, &
+        norm2(trial%motion(3:4, :)))
+      if (outcome%converged) return
+    end do
+    call find_equation(step%equations, now%worst, node, direction)
+    outcome%reason = 'no equilibrium after '//to_text(outcome%iterations) &
+      //' iterations, most force out of balance at node ' &
+      //to_text(model%mesh%node_id(max(node, 1)))//' in '//merge('x', 'y', direction == 1) &
+      //contacts_of(model, max(node, 1))
+  end subroutine find_equilibrium
+
+  !> The interfaces that a node belongs to, in words; empty where there are none.
+  function contacts_of(model, node) result(words)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: node
+    character(:), allocatable :: words
+    integer :: i
+
+    words = ''
+    do i = 1, size(model%contacts)
+      associate (contact => model%contacts(i))
+        if (any(contact%slave%nodes == node)) words = words//', a slave node of interface ' &
+          //to_text(contact%id)
+        if (any(contact%master%nodes == node)) words = words//', a master node of interface ' &
+          //to_text(contact%id)
+      end associate
+    end do
+  end function contacts_of
+
+  !> Where an iteration leads: the solution of the linear system in which prescribed degrees of
+  !> freedom move by `way%moved`, to their places in the first iteration of a step.
+  subroutine find_way(model, state, step, clock, trial, matrix, way, report)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(clock_t), intent(inout) :: clock
+    type(trial_t), intent(in) :: trial
+    type(sparse_t), intent(inout) :: matrix !! of the free degrees of freedom, collected
+    type(way_t), intent(inout) :: way
+    type(report_t), intent(out) :: report
+
+    way%b = -take_free(step%equations, assemble_residual(model, state, step, trial))
+    call lap(clock, phase_nodes)
+    call assemble_tangent(model, state, step, trial, clock, matrix)
+    call move_prescribed(step%equations%n_free, way%moved, matrix, way%b)
+    call compress_matrix(matrix)
+    if (.not. allocated(way%x)) allocate (way%x(step%equations%n_free))
+    call solve_linear(matrix, way%b, way%x, report)
+    call lap(clock, phase_solver)
+  end subroutine find_way
+
+  !> Whether the linear system had a solution.
+  subroutine judge_solution(report, outcome, solved)
+    type(report_t), intent(in) :: report
+    type(outcome_t), intent(inout) :: outcome
+    logical, intent(out) :: solved
+
+    solved = .false.
+    if (report%is_singular) outcome%singular_equation = report%equation
+    if (report%is_solved) then
+      solved = .true.
+    else
+      outcome%reason = report%message
+    end if
+  end subroutine judge_solution
+
+  !> Norm of the residual and of the round-off that it must hold: that of forces, of displacements
+  !> times stiffness, and of places in gaps times the springs of contact.
+  subroutine measure_residual(model, state, step, trial, matrix, now)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(trial_t), intent(in) :: trial
+    type(sparse_t), intent(in) :: matrix
+    type(measure_t), intent(inout) :: now
+    real(wp) :: u(step%equations%n_free), total(step%equations%n_free)
+    real(wp), allocatable :: forces(:, :)
+    integer :: i, k
+
+    now%before = now%residual
+    u = take_free(step%equations, assemble_residual(model, state, step, trial))
+    now%residual = norm2(u)
+    now%worst = maxloc(abs(u), 1)
+    u = abs(take_free(step%equations, trial%motion(1:2, :)))
+    total = take_free(step%equations, abs(trial%internal) + abs(trial%contact) &
+      + abs(trial%external))
+    do i = 1, matrix%n
+      do k = matrix%first(i), matrix%first(i + 1) - 1
+        total(i) = total(i) + abs(matrix%value(k))*u(matrix%column(k))
+      end do
+    end do
+    now%floor = epsilon(1.0_wp)*norm2(total)
+    forces = 0.0_wp*trial%contact
+    do i = 1, size(trial%contacts)
+      call add_gap_round_off(trial%contacts(i), forces)
+    end do
+    now%gap_floor = now%floor + epsilon(1.0_wp)*norm2(take_free(step%equations, forces))
+  end subroutine measure_residual
+
+  !> The energy criterion of Kang, Lee & Shin (2023) or the round-off floor of the residual; the
+  !> other criteria where the deck sets them.
+  pure function is_converged(implicit, first, now, step) result(converged)
+    type(implicit_t), intent(in) :: implicit
+    type(measure_t), intent(in) :: first, now
+    real(wp), intent(in) :: step !! norm of the displacement of the whole step
+    logical :: converged
+
+    converged = implicit%is_linear .or. now%residual <= floor_margin*now%floor &
+      .or. (now%residual <= floor_margin*now%gap_floor .and. now%residual > stagnation*now%before)
+    if (converged) return
+    converged = now%energy <= implicit%energy_tolerance*first%energy
+    if (implicit%step_tolerance > 0.0_wp) converged = converged .and. now%step &
+      <= implicit%step_tolerance*step
+    if (implicit%residual_tolerance > 0.0_wp) converged = converged .and. now%residual &
+      <= implicit%residual_tolerance*first%start
+  end function is_converged
+
+  !> One line of the account.
+  function iteration_line(step, iteration, first, now, report) result(line)
+    type(step_t), intent(in) :: step
+    integer, intent(in) :: iteration
+    type(measure_t), intent(in) :: first, now
+    type(report_t), intent(in) :: report
+    character(:), allocatable :: line
+
+    line = 'step to '//to_text(step%time)//' iteration '//to_text(iteration)//': energy ratio ' &
+      //to_text(now%energy/max(first%energy, tiny(1.0_wp)))//', |R| '//to_text(now%residual) &
+      //' (round-off '//to_text(now%floor)//'), |dU| '//to_text(now%step)//', factor ' &
+      //to_text(now%factor)//', '//report%method//', residual of the solution ' &
+      //to_text(report%residual)
+  end function iteration_line
+
+end module newton_m

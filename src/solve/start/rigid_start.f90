@@ -1,0 +1,160 @@
+! SPDX-License-Identifier: MIT
+!> Rigid bodies at time zero: mass, centre and inertia from the lumped masses of their nodes,
+!> velocity from the momentum of these, and the mass that contact feels.
+module rigid_start_m
+  use kinds_m, only : wp
+  use conditions_m, only : motion_velocity
+  use constraints_m, only : is_active
+  use curves_m, only : curve_value
+  use log_m, only : log_t, write_log, to_text
+  use model_m, only : model_t
+  use rigid_state_m, only : rigid_state_t, velocity_of
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: start_rigids, weigh_body, is_held
+
+contains
+
+  !> Set up all bodies; nodal masses and initial velocities are there already.
+  subroutine start_rigids(model, log, state)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    type(state_t), intent(inout) :: state
+    integer :: i, k
+
+    state%contact_mass = state%mass(:model%layout%n_special)
+    allocate (state%rigids(size(model%rigids)))
+    do i = 1, size(model%rigids)
+      associate (body => model%rigids(i), rigid => state%rigids(i))
+        call weigh_body(model%mesh%coordinates(:, body%nodes), state%mass(body%nodes), rigid)
+        call find_velocity(state%mass(body%nodes), state%motion(3:4, body%nodes), rigid)
+        if (body%has_velocity) rigid%velocity = body%velocity
+        call constrain_velocity(model, i, rigid)
+        do k = 1, size(body%nodes)
+          state%motion(3:4, body%nodes(k)) = velocity_of(rigid%velocity, rigid%arms(:, k))
+        end do
+        state%inverse_mass(:, body%nodes) = 0.0_wp
+        call write_log(log, 'rigid part '//to_text(model%parts(body%part)%id)//': mass ' &
+          //to_text(rigid%inertia(1))//', moment of inertia '//to_text(rigid%inertia(3)) &
+          //' about its centre of mass '//to_text(rigid%centre(1))//', '//to_text(rigid%centre(2)))
+      end associate
+    end do
+    call share_contact_mass(model, state)
+  end subroutine start_rigids
+
+  !> Mass, centre and second moments of lumped masses.
+  pure subroutine weigh_body(places, mass, rigid)
+    real(wp), intent(in) :: places(:, :) !! (2, n) at time zero
+    real(wp), intent(in) :: mass(:)      !! (n)
+    type(rigid_state_t), intent(inout) :: rigid
+    integer :: k
+
+    rigid%inertia(1:2) = sum(mass)
+    do k = 1, 2
+      ! From the first node, so that digits are kept far from the origin.
+      rigid%centre(k) = places(k, 1) + sum(mass*(places(k, :) - places(k, 1)))/rigid%inertia(1)
+    end do
+    rigid%arms = places - spread(rigid%centre, 2, size(mass))
+    rigid%second = [sum(mass*rigid%arms(1, :)**2), sum(mass*rigid%arms(2, :)**2), &
+      sum(mass*rigid%arms(1, :)*rigid%arms(2, :))]
+    rigid%inertia(3) = rigid%second(1) + rigid%second(2)
+  end subroutine weigh_body
+
+  !> The velocity that keeps momentum and angular momentum of the nodes.
+  pure subroutine find_velocity(mass, velocity, rigid)
+    real(wp), intent(in) :: mass(:)        !! (n)
+    real(wp), intent(in) :: velocity(:, :) !! (2, n)
+    type(rigid_state_t), intent(inout) :: rigid
+    integer :: k
+
+    do k = 1, 2
+      ! Exact where all nodes have one velocity.
+      rigid%velocity(k) = velocity(k, 1) &
+        + sum(mass*(velocity(k, :) - velocity(k, 1)))/rigid%inertia(1)
+    end do
+    rigid%velocity(3) = sum(mass*(rigid%arms(1, :)*(velocity(2, :) - rigid%velocity(2)) &
+      - rigid%arms(2, :)*(velocity(1, :) - rigid%velocity(1))))/rigid%inertia(3)
+  end subroutine find_velocity
+
+  !> What is fixed rests; what has a prescribed velocity from the start has its first value.
+  pure subroutine constrain_velocity(model, i_body, rigid)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_body
+    type(rigid_state_t), intent(inout) :: rigid
+    integer :: i
+
+    where (model%rigids(i_body)%is_fixed) rigid%velocity = 0.0_wp
+    do i = 1, size(model%conditions%rigid_motions)
+      associate (motion => model%conditions%rigid_motions(i))
+        if (motion%node /= i_body .or. motion%kind /= motion_velocity) cycle
+        if (is_active(motion, 0.0_wp)) rigid%velocity(motion%direction) = motion%scale &
+          *curve_value(model%curves(motion%curve), 0.0_wp)
+      end associate
+    end do
+  end subroutine constrain_velocity
+
+  !> The mass of a body is shared among its nodes that contact can touch, in proportion to their
+  !> lumped masses and so that no motion of the body gives these nodes more kinetic energy than the
+  !> body has: limits of the step found with these masses hold for the body
+  !> (doc/theory/rigid_bodies.md, section 4).
+  subroutine share_contact_mass(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    real(wp), parameter :: as_good_as_none = 1.0e-30_wp
+    logical, allocatable :: touched(:)
+    integer, allocatable :: list(:)
+    integer :: i, k
+
+    allocate (touched(model%mesh%n_node), source=.false.)
+    do i = 1, size(model%contacts)
+      touched(model%contacts(i)%slave%nodes) = .true.
+      touched(model%contacts(i)%master%nodes) = .true.
+    end do
+    do i = 1, size(model%rigids)
+      associate (nodes => model%rigids(i)%nodes)
+        list = pack([(k, k=1, size(nodes))], touched(nodes))
+        if (size(list) == 0) cycle
+        state%contact_mass(nodes(list)) = state%mass(nodes(list))/max(as_good_as_none, &
+          largest_share(state%rigids(i), state%mass(nodes(list)), state%rigids(i)%arms(:, list), &
+          is_held(model, i)))
+      end associate
+    end do
+  end subroutine share_contact_mass
+
+  !> Degrees of freedom of a body that no force moves during the whole run.
+  pure function is_held(model, i_body) result(held)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_body
+    logical :: held(3)
+    integer :: i
+
+    held = model%rigids(i_body)%is_fixed
+    do i = 1, size(model%conditions%rigid_motions)
+      associate (motion => model%conditions%rigid_motions(i))
+        if (motion%node == i_body .and. motion%birth <= 0.0_wp &
+          .and. motion%death >= model%controls%end_time) held(motion%direction) = .true.
+      end associate
+    end do
+  end function is_held
+
+  !> Largest part of the body's kinetic energy that some of its nodes can have: the
+  !> largest eigenvalue of their inertia over the body's. A body held in one
+  !> direction counts as free in both.
+  pure function largest_share(rigid, mass, arms, held) result(share)
+    type(rigid_state_t), intent(in) :: rigid
+    real(wp), intent(in) :: mass(:)    !! (n) of those nodes
+    real(wp), intent(in) :: arms(:, :) !! (2, n)
+    logical, intent(in) :: held(3)
+    real(wp) :: share
+    real(wp) :: shift, turn, mixed
+
+    shift = merge(0.0_wp, sum(mass)/rigid%inertia(1), all(held(1:2)))
+    turn = merge(0.0_wp, sum(mass*(arms(1, :)**2 + arms(2, :)**2))/rigid%inertia(3), held(3))
+    mixed = norm2([sum(mass*arms(1, :)), sum(mass*arms(2, :))]) &
+      /sqrt(rigid%inertia(1)*rigid%inertia(3))
+    if (all(held(1:2)) .or. held(3)) mixed = 0.0_wp
+    share = 0.5_wp*(shift + turn + sqrt((shift - turn)**2 + 4.0_wp*mixed**2))
+  end function largest_share
+
+end module rigid_start_m

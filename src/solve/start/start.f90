@@ -1,0 +1,94 @@
+! SPDX-License-Identifier: MIT
+!> From a model to its state at time zero.
+module start_m
+  use interface_m, only : start_contact, resume_contact
+  use kinds_m, only : wp
+  use automatic_penalty_m, only : set_automatic_penalties
+  use constraints_m, only : fix_nodes, update_activity
+  use contact_inertia_m, only : weigh_contacts
+  use element_log_m, only : log_elements
+  use element_state_m, only : start_elements, lump_mass
+  use errors_m, only : error_t
+  use initial_values_m, only : start_motion
+  use log_m, only : log_t
+  use model_log_m, only : log_masses
+  use model_m, only : model_t
+  use rigid_start_m, only : start_rigids
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: start_state, resume_contacts
+
+contains
+
+  !> Allocate and fill everything that the run changes.
+  subroutine start_state(model, log, state, error)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    type(state_t), intent(out) :: state
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i
+
+    call start_motion(model, state%motion)
+    call lump_mass(model, state%mass)
+    allocate (state%inverse_mass(2, model%mesh%n_node), source=0.0_wp)
+    do i = 1, model%mesh%n_node
+      if (state%mass(i) > 0.0_wp) state%inverse_mass(:, i) = 1.0_wp/state%mass(i)
+    end do
+    call update_activity(model, 0.0_wp, state%mass, state%inverse_mass)
+    call fix_nodes(model, state%inverse_mass)
+    allocate (state%force_special(2, model%layout%n_special), source=0.0_wp)
+    if (size(model%conditions%nodal_loads) + size(model%conditions%pressures) > 0) &
+      allocate (state%external(2, model%layout%n_special), source=0.0_wp)
+    if (allocated(model%conditions%damping) .and. .not. model%controls%implicit%is_on) &
+      allocate (state%former_velocity(2, model%mesh%n_node), source=0.0_wp)
+    allocate (state%force_slots(2, size(model%layout%special_node)), source=0.0_wp)
+    allocate (state%internal_force(2, model%mesh%n_node), source=0.0_wp)
+    allocate (state%prescribed_velocity(size(model%conditions%motions)), source=0.0_wp)
+    do i = 1, size(model%conditions%motions)
+      associate (prescribed => model%conditions%motions(i))
+        state%prescribed_velocity(i) = state%motion(2 + prescribed%direction, prescribed%node)
+      end associate
+    end do
+    call log_elements(model, log)
+    call log_masses(model, log)
+    call start_rigids(model, log, state)
+    call start_walls(model, state)
+    call start_elements(model, state%elements)
+    allocate (state%contacts(size(model%contacts)))
+    do i = 1, size(model%contacts)
+      call start_contact(model%contacts(i), model, log, state%contacts(i))
+    end do
+    call weigh_contacts(model, state)
+    call set_automatic_penalties(model, state, log, error)
+  end subroutine start_state
+
+  !> Memories of the walls, where the deck has any.
+  subroutine start_walls(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    integer :: i, n
+
+    if (.not. allocated(model%walls)) return
+    if (size(model%walls) == 0) return
+    allocate (state%walls(size(model%walls)))
+    do i = 1, size(model%walls)
+      allocate (state%walls(i)%force(size(model%walls(i)%nodes)), &
+        state%walls(i)%speed(size(model%walls(i)%nodes)), source=0.0_wp)
+      n = merge(size(model%walls(i)%nodes), 0, model%walls(i)%friction > 0.0_wp)
+      allocate (state%walls(i)%friction(n), state%walls(i)%slip_speed(n), source=0.0_wp)
+    end do
+  end subroutine start_walls
+
+  !> After a restart: what interfaces make anew of the memory that has been read.
+  pure subroutine resume_contacts(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    integer :: i
+
+    do i = 1, size(state%contacts)
+      call resume_contact(model%contacts(i), state%contacts(i))
+    end do
+  end subroutine resume_contacts
+
+end module start_m

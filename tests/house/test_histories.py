@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+"""The table of history files (src/model/history_tables.f90), their columns (src/output/history_rows.f90), the keywords
+that the reader knows, and doc/results.md name the same."""
+import re
+
+from fortran_source import ROOT
+
+TABLES = (ROOT / "src/model/history_tables.f90").read_text(encoding="utf-8")
+ROWS = (ROOT / "src/output/history_rows.f90").read_text(encoding="utf-8")
+RESULTS = (ROOT / "doc/results.md").read_text(encoding="utf-8")
+NAMES = re.findall(r"history_table_t\('(\w+) *', (\w+)", TABLES)
+
+
+def csv_columns(name):
+    """Of the procedure that puts a row together."""
+    body = re.search(rf"subroutine put_{name}\(.*?end subroutine put_{name}", ROWS, re.DOTALL)[0]
+    return ",".join(re.findall(r"call put(?:_side)?\(row, '([\w,]+)'", body.partition("call end_csv")[0]))
+
+
+def test_results_page_names_the_columns_of_every_history():
+    assert len(NAMES) > 7
+    for name, _ in NAMES:
+        assert f"\n| {name} | `{csv_columns(name)}` |\n" in RESULTS, name
+        assert f"| `<job>.{name}.csv` |" in RESULTS, name
+
+
+def test_keyword_of_every_history_is_read_and_described():
+    schema = (ROOT / "src/deck/deck_schema_tables.f90").read_text(encoding="utf-8")
+    keywords = (ROOT / "doc/keywords.md").read_text(encoding="utf-8")
+    for name, asked in NAMES:
+        keyword = f"DATABASE_{name.upper()}"
+        assert (f"'{keyword}'" in schema) == (asked != "asked_by_states"), name
+        assert (f"*{keyword}" in keywords) == (asked != "asked_by_states"), name

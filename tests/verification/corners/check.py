@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""Random polygons meet with their corners: energy that contact makes, momentum, and who ends inside whom."""
+import concurrent.futures
+import csv
+import os
+import pathlib
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+from contact_types import MOMENT_FREE, TYPES  # noqa: E402
+from scene import FAMILIES, Scene, measure  # noqa: E402
+
+#: Most energy that contact may make, over E0.
+MADE = 0.02
+#: Bodies that share more of the smaller one's area than type 2 leaves, and than this, are inside each other.
+OVERLAP = 0.01
+ONE_PASS = 2
+#: Scenes of every family that CI runs with all types.
+FIXED = {"pair": range(5), "rigid slave": range(3), "rigid master": range(3), "three": range(3)}
+
+
+def measure_all(run, scenes):
+    """Rows of all types in all scenes, as many at a time as there are cores."""
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        rows = list(pool.map(lambda pair: measure(run, *pair), [(scene, kind) for scene in scenes for kind in TYPES]))
+    left = {(row["family"], row["seed"]): row["overlap"] for row in rows if row["kind"] == ONE_PASS}
+    for row in rows:
+        row["excess"] = row["overlap"] - max(OVERLAP, left[row["family"], row["seed"]])
+    return rows
+
+
+def columns(rows, **wanted):
+    """The rows with the wanted values, column by column."""
+    kept = [row for row in rows if all(row[key] == value for key, value in wanted.items())]
+    return {key: np.array([row[key] for row in kept]) for key in rows[0]}
+
+
+def judge(run, rows):
+    """What holds for each type in all scenes."""
+    for kind, name in TYPES.items():
+        found = columns(rows, kind=kind)
+        run.check(f"{name}: momentum, largest change / sum of |p|", found["momentum"], 0.0, 1e-12, "abs", "third law")
+        if kind in MOMENT_FREE:
+            run.check(f"{name}: angular momentum, largest change / (sum of |p| x 1 m)", found["turning"], 0.0, 1e-12,
+                      "abs", "P2")
+        run.check(f"{name}: runs that ended early", np.sum(~found["ended"]), 0, 0.0, "abs", "nothing in these scenes ends one")
+        run.check(f"{name}: made by contact / E0, largest", np.max(found["made"]), MADE, 0.0, "max",
+                  "no potential, no gain")
+        run.report(f"{name}: made by contact / E0, share of scenes above {MADE}", np.mean(found["made"] > MADE))
+        run.report(f"{name}: lost by contact / E0, largest", np.max(found["lost"]))
+        run.check(f"{name}: bodies inside each other, scenes", np.sum(found["excess"] > 0.0), 0, 0.0, "abs",
+                  "no more than type 2 leaves, or 1 %")
+
+
+def table(rows):
+    """Types by families: share of scenes above 2 %, the largest, and those with bodies inside each other."""
+    lines = ["| type | " + " | ".join(FAMILIES) + " |", "|---" * (1 + len(FAMILIES)) + "|"]
+    for kind, name in TYPES.items():
+        cells = []
+        for family in FAMILIES:
+            found = columns(rows, kind=kind, family=family)
+            if not len(found["made"]):
+                cells.append("")
+                continue
+            cells.append(f"{np.sum(found['made'] > MADE)} of {len(found['made'])}, {np.max(found['made']):.2g}; "
+                         f"lost {np.max(found['lost']):.2g}; inside {np.sum(found['excess'] > 0.0)}, "
+                         f"{np.max(found['overlap']):.2g}; ended {np.sum(~found['ended'])}")
+        lines.append(f"| {kind} {name} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def check(run):
+    judge(run, measure_all(run, [Scene(family, seed) for family, seeds in FIXED.items() for seed in seeds]))
+
+
+def sweep(run, seed, count):
+    """`count` new scenes of each family from `seed` on, all types; a table and a row for each run."""
+    rows = measure_all(run, [Scene(family, seed + k) for family in FAMILIES for k in range(count)])
+    with open(run.work / "sweep.csv", "w", newline="") as stream:
+        writer = csv.DictWriter(stream, rows[0])
+        writer.writeheader()
+        writer.writerows(rows)
+    print(f"\nMade by contact / E0: scenes above {MADE}, largest; lost, largest; bodies inside each other, scenes, largest "
+          f"share of an area; runs that ended early\n\n{table(rows)}\n\nall runs: {run.work / 'sweep.csv'}\n")
+    judge(run, rows)

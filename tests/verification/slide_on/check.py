@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: MIT
+"""Whole outlines: a block slides on to the end of a plate and off it, lies on a patch, falls on its corner."""
+import numpy as np
+
+import static_patch
+from contact_types import PASS_PATCH, TYPES
+from meshes import Deck, grid, lumped_mass, rotate, trapezoid
+from patch_layouts import load_edges
+
+MM = 1.0e-3
+SPEED, DEPTH = 20.0, 2.0 * MM
+#: Penalty of the built-in estimate for the coarse mesh, N/m^2: the same with part sets and with node sets.
+PENALTY = 6.7e12
+BLOCK, PLATE = (7850.0, 210.0e9, 0.3), (2700.0, 69.0e9, 0.33)
+#: Stock keywords and the types that they stand for.
+STOCK = {"NODE_TO_SURFACE": 1, "ONE_WAY_SURFACE_TO_SURFACE": 2, "SURFACE_TO_SURFACE": 3,
+         "SURFACE_TO_SURFACE_MORTAR": 7}
+#: Element length and overlap, mm.
+SCENES = ((1.0, 0.02), (1.0, 0.2), (0.25, 0.2))
+#: Its master nodes come and go at corners: what it makes is told, not judged.
+NTS_MAR = 5
+SIDES = {"block": (1, 2), "plate": (2, 1)}
+
+
+def sled(size, overlap, ramp, rise, start):
+    """Block of 8 x 2 mm with its nose, on the right, ramped up; under side at -overlap."""
+    n_x, n_y = round(8 / size), max(2, round(2 / size))
+    x, quads = grid(n_x, n_y, 8 * MM, DEPTH, (start - 8 * MM, -overlap))
+    along = np.clip((x[:, 0] - (start - ramp)) / ramp, 0.0, 1.0)
+    x[:, 1] += rise * along * (1.0 - (x[:, 1] + overlap) / DEPTH)
+    return x, quads, n_x + 1
+
+
+def sliding(title, size, overlap, start, end, card, whole, sides):
+    """The upper side of the block is led along the plate (12 mm long, its lower side held) at a fixed height."""
+    deck = Deck(title).control(end, scale=0.5).hourglass(4, 0.1)
+    for part, material in enumerate((BLOCK, PLATE), start=1):
+        deck.part(part).elastic(*material, part)
+    x, quads, n = sled(size, overlap * MM, 4 * MM, (1.5 * overlap + 0.02) * MM, start * MM)
+    block = deck.mesh(x, quads, part=1)
+    m = round(12 / size) + 2
+    plate = deck.mesh(*grid(m - 1, max(2, round(3 / size)), 12 * MM, 3 * MM, (0.0, -3 * MM)), part=2)
+    deck.fix(plate[:m], x=1, y=1).fix(block[-n:], y=1).curve(1, [(0.0, 1.0), (1.0, 1.0)])
+    for node in block[-n:]:
+        deck.prescribe(node, 1, 0, 1, SPEED)
+    deck.node_set(1, block).add("*INITIAL_VELOCITY", (1,), (SPEED, 0.0))
+    if whole:
+        deck.add("*SET_PART_LIST", (11,), (1,)).add("*SET_PART_LIST", (12,), (2,))
+    else:
+        deck.node_set(11, block[:n]).node_set(12, plate[-m:][::-1])
+    sign = 1 if whole else -1
+    pair = [sign * (10 + side) for side in sides]
+    if isinstance(card, str):
+        deck.add(f"*CONTACT_2D_AUTOMATIC_{card}", pair)
+    else:
+        deck.add("*CONTACT_2D_SLIDELINE", (*pair, card, 3, PENALTY), (0.0, 1.0e20, 1))
+    return deck.output(rcforc=2.0e-6, glstat=2.0e-6)
+
+
+def mean_forces(result, sides, first):
+    """Drag on the block against its way and force that lifts it, means from a time on."""
+    rows = result.table("rcforc").where(side="slave")
+    late = rows["time"] >= first
+    sign = 1.0 if sides == SIDES["block"] else -1.0
+    drag, lift = (sign * trapezoid(rows[axis][late], rows["time"][late]) / np.ptp(rows["time"][late])
+                  for axis in ("fx", "fy"))
+    return -drag, lift
+
+
+def check_sliding(run, name, size, overlap, start, end, first, card, sides):
+    """Part sets against open node sets."""
+    found = {}
+    for whole in (True, False):
+        result = run.program(sliding(name, size, overlap, start, end, card, whole, sides))
+        found[whole] = mean_forces(result, sides, first)
+    (drag, lift), (open_drag, open_lift) = found[True], found[False]
+    run.check(f"{name}: lift / that of open node sets", lift / open_lift, 1.0, 0.03, "abs",
+              "surfaces touch where they face")
+    run.check(f"{name}: drag / lift, at most", drag / open_lift, open_drag / open_lift, 0.005, "max",
+              "open node sets")
+    return lift
+
+
+def check_slide_on(run):
+    for size, overlap in SCENES:
+        for side, sides in SIDES.items():
+            lifts = [check_sliding(run, f"on, {size:g} mm, {overlap:g} mm deep, {side} is the slave: {TYPES[kind]}",
+                                   size, overlap, -0.5, 3.5e-4, 1.5e-4, kind, sides) for kind in TYPES]
+            run.check(f"on, {size:g} mm, {overlap:g} mm deep, {side} is the slave: least lift of all types / largest",
+                      min(lifts) / max(lifts), 0.1, 0.0, "min", "so that the ratios mean something")
+    for keyword in STOCK:
+        for side, sides in SIDES.items():
+            check_sliding(run, f"on, stock {keyword}, {side} is the slave", 1.0, 0.2, -0.5, 3.5e-4, 1.5e-4, keyword, sides)
+
+
+def check_slide_off(run):
+    """From the middle of the plate over its far end, until a quarter of the block is left on it."""
+    for side, sides in SIDES.items():
+        for kind in TYPES:
+            check_sliding(run, f"off, {side} is the slave: {TYPES[kind]}", 1.0, 0.02, 11.2, 4.5e-4, 0.0, kind, sides)
+
+
+def static_deck(title, parts):
+    """Two fully integrated bodies; the load grows over one static step."""
+    deck = Deck(title)
+    deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 1.0))
+    for part in (1, 2):
+        deck.part(part, points=4).elastic(1000.0, 1.0e6, 0.0, part)
+    ids = [deck.mesh(*body, part=k + 1) for k, body in enumerate(parts)]
+    deck.curve(1, [(0.0, 0.0), (1.0, 1.0)])
+    return deck.output(plot=1.0, glstat=1.0, rcforc=1.0), *ids
+
+
+def check_patch(run):
+    """Static patch test of whole outlines: 5 segments on 4, uniform pressure."""
+    blocks = static_patch.Blocks(np.linspace(0.0, 1.0, 6), np.linspace(0.0, 1.0, 5), 1.0e6)
+    for kind in TYPES:
+        name = f"patch: {TYPES[kind]}"
+        deck, upper, lower = static_deck(name, ((blocks.upper, blocks.upper_quads),
+                                                (blocks.lower, blocks.lower_quads)))
+        ids = np.concatenate([upper, lower])
+        held = blocks.fixed()
+        deck.fix(ids[held[held % 2 == 0] // 2], x=1).fix(ids[held[held % 2 == 1] // 2], y=1)
+        load_edges(deck, ids[blocks.top])
+        deck.add("*SET_PART_LIST", (11,), (1,)).add("*SET_PART_LIST", (12,), (2,))
+        deck.add("*CONTACT_2D_SLIDELINE", (11, 12, kind, 4, 1.0e6), (0.0, 1.0e20, 0))
+        result = run.program(deck)
+        rows = result.table("contact").where(time=1.0)
+        pressed = np.isin(rows["node"], ids[blocks.slave])
+        force = result.points("contact_force")[-1]
+        sides = {"slave": rows["pressure"][pressed],
+                 "master": -force[ids[blocks.master] - 1, 1] / blocks.lengths(1)}
+        run.check(f"{name}: pressure elsewhere", rows["pressure"][~pressed], 0.0, 1e-12, "abs", "nothing faces")
+        for side, pressure in sides.items():
+            if kind in PASS_PATCH:
+                run.check(f"{name}: {side} pressure", pressure, 1.0, 1e-9, "abs", "statics")
+            else:
+                run.report(f"{name}: {side} pressure, largest deviation", np.max(np.abs(pressure - 1.0)))
+
+
+def falling(kind, angle, sides, shape, quads):
+    """A body over a held plate of 4 x 0.6 m, turned by `angle`, lowest node 1 cm above it, falling at 5 m/s."""
+    deck = Deck(f"falling, type {kind}").control(0.15, scale=0.5).hourglass(4, 0.1)
+    for part in (1, 2):
+        deck.part(part).elastic(1000.0, 1.0e7, 0.3, part)
+    x = rotate(shape, angle)
+    x[:, 1] += 0.01 - np.min(x[:, 1])
+    ids = deck.mesh(x, quads, part=1)
+    plate = deck.mesh(*grid(47, 7, 4.0, 0.6, (-2.0, -0.6)), part=2)
+    deck.fix(plate[:48], x=1, y=1).node_set(1, ids).add("*INITIAL_VELOCITY", (1,), (0.0, -5.0))
+    deck.add("*SET_PART_LIST", (11,), (1,)).add("*SET_PART_LIST", (12,), (2,))
+    deck.add("*CONTACT_2D_SLIDELINE", (*(10 + side for side in sides), kind, 4, 0.2), (0.0, 1.0e20, 2))
+    return deck.output(plot=1.0e-3, glstat=1.0e-4, rcforc=1.0e-4), x
+
+
+def wedge(half_angle):
+    """A wedge of quads, 1 m high, whose sides are at that angle from the vertical; 0.04 m wide at its lower end."""
+    x, quads = grid(4, 6, 1.0, 1.0, (-0.5, 0.0))
+    narrow = np.maximum(x[:, 1], 0.0) * np.tan(half_angle)
+    x[:, 0] = 2.0 * x[:, 0] * (0.02 + narrow)
+    return x, quads
+
+
+def check_falls(run):
+    block = grid(6, 4, 0.9, 0.6)
+    shapes = {"on its corner at 45 degrees": (block, np.pi / 4), "at 20 degrees, tilts on to its corner": (block, np.radians(20)),
+              "at 31 degrees": (block, np.radians(31)), "flat": (block, 0.0),
+              "on a corner of 50 degrees": (wedge(np.radians(25)), 0.3)}
+    for words, ((shape, quads), angle) in shapes.items():
+        for side, sides in SIDES.items():
+            for kind in TYPES:
+                name = f"{words}, {'body' if side == 'block' else 'plate'} is the slave: {TYPES[kind]}"
+                deck, start = falling(kind, angle, sides, shape, quads)
+                result = run.program(deck)
+                mass = lumped_mass(start, quads, 1000.0)
+                velocity = result.points("velocity")[:, :len(mass), 1]
+                momentum = velocity @ mass / np.sum(mass)
+                energy = result.table("glstat")
+                run.check(f"{name}: turned back, v / v0", momentum[-1] / 5.0, 0.0, 0.0, "min", "nobody passes")
+                made = -np.min(energy["contact"]) / energy["total"][0]
+                if kind == NTS_MAR:
+                    run.report(f"{name}: contact made / E0", made)
+                else:
+                    run.check(f"{name}: contact made / E0", made, 0.02, 0.0, "max", "springs")
+                run.report(f"{name}: contact left / E0", energy["contact"][-1] / energy["total"][0])
+
+
+def check(run):
+    check_slide_on(run)
+    check_slide_off(run)
+    check_patch(run)
+    check_falls(run)
