@@ -6,8 +6,9 @@ module contact_results_m
   use foot_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
   use geometry_m, only : segment_length
   use kinds_m, only : wp
+  use friction_state_m, only : is_open
   use lengths_m, only : competence_length
-  use snapshot_m, only : interface_result_t, slave_result_t
+  use snapshot_m, only : interface_result_t, slave_result_t, rubbed_t
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -54,7 +55,7 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
-    real(wp), allocatable :: places(:, :), share(:)
+    real(wp), allocatable :: places(:, :), share(:), pull(:)
     integer :: i, n
 
     n = memory%n_slave
@@ -62,12 +63,13 @@ contains
       rows%node = contact%slave%nodes
       allocate (rows%arc_length(n), rows%gap(n), rows%pressure(n), rows%force(2, n), &
         rows%length(n), rows%master_pressure(memory%n_master))
+      if (allocated(memory%friction%state)) allocate (rows%rubbed(n + memory%n_master))
     end if
     places = memory%places
     places(3:4, :) = motion(1:2, memory%nodes)
     rows%force = memory%force(:, :n)
     call fill_arc_lengths(contact%slave, places(:, :n), rows%arc_length)
-    share = normal_forces(memory)
+    share = nodal_sums(memory, memory%points%pressure)
     do i = 1, memory%n_master
       rows%master_pressure(i) = share(n + i)/max(tiny(1.0_wp), &
         competence_length(contact%master, places(:, n + 1:), i))
@@ -77,6 +79,11 @@ contains
       rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
       rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
+    if (.not. allocated(memory%friction%state)) return
+    pull = nodal_sums(memory, memory%points%traction)
+    call fill_rubbed(contact%slave, 0, places(:, :n), pull(:n), memory, rows%rubbed(:n))
+    call fill_rubbed(contact%master, n, places(:, n + 1:), pull(n + 1:), memory, &
+      rows%rubbed(n + 1:))
   end subroutine rows_between
 
   !> Distance along each chain from its first node, in the present shape.
@@ -96,9 +103,51 @@ contains
     end do
   end subroutine fill_arc_lengths
 
-  !> Normal force on each node of the interface from all points, N/m.
-  pure function normal_forces(memory) result(share)
+  !> Friction at the nodes of one surface.
+  pure subroutine fill_rubbed(surface, offset, places, force, memory, rubbed)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: offset                    !! local number before the first of its nodes
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of these
+    real(wp), intent(in) :: force(:)                 !! (n_node) N/m, along the chain
     type(contact_state_t), intent(in) :: memory
+    type(rubbed_t), intent(inout) :: rubbed(:)       !! (n_node)
+    integer :: i
+
+    do i = 1, size(rubbed)
+      rubbed(i)%traction = force(i)/max(competence_length(surface, places, i), tiny(1.0_wp))
+      call find_state(surface, offset, i, memory, rubbed(i)%slip, rubbed(i)%state)
+    end do
+  end subroutine fill_rubbed
+
+  !> Slip and state of a node. With virtual nodes: of those next to it, the mean slip, and slip if
+  !> one slips.
+  pure subroutine find_state(surface, offset, i, memory, slip, state)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: offset, i !! see above; node of the surface
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(out) :: slip
+    integer, intent(out) :: state
+    integer :: near(2)
+
+    near = offset + i
+    if (allocated(memory%spots) .and. .not. allocated(memory%node_pressure)) then
+      slip = 0.0_wp
+      state = is_open
+      if (offset > 0 .or. max(surface%incoming(i), surface%outgoing(i)) == 0) return
+      near = 2*i - 1
+      if (surface%incoming(i) > 0) near(2) = 2*surface%segments(1, surface%incoming(i))
+      if (surface%outgoing(i) == 0) near(1) = near(2)
+    end if
+    ! Slips are those of the slave side along the master's chain, which runs the other way.
+    slip = -0.5_wp*(memory%friction%slip(near(1)) + memory%friction%slip(near(2)))
+    state = maxval(memory%friction%state(near))
+  end subroutine find_state
+
+  !> Values of points times their areas, shared out to the nodes on both sides: the normal forces on
+  !> them of pressures, N/m, forces along their chains of tractions.
+  pure function nodal_sums(memory, values) result(share)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in), contiguous :: values(:) !! of the points, N/m^2
     real(wp) :: share(memory%n_slave + memory%n_master)
     real(wp) :: total
     integer :: p, k
@@ -106,7 +155,7 @@ contains
     share = 0.0_wp
     associate (points => memory%points)
       do p = 1, points%n
-        total = points%pressure(p)*points%area(p)
+        total = values(p)*points%area(p)
         do k = 1, n_side
           share(points%slave_nodes(k, p)) = share(points%slave_nodes(k, p)) &
             + points%slave_weights(k, p)*total
@@ -115,7 +164,7 @@ contains
         end do
       end do
     end associate
-  end function normal_forces
+  end function nodal_sums
 
   !> Gap of a slave node at the present places; 0 when it is unpaired. A spot that sleeps keeps its
   !> segment although it may have gone out of reach since.

@@ -9,17 +9,19 @@ module interface_m
   use contact_law_m, only : pressed_at_slave_nodes, press_places
   use contact_log_m, only : log_contact
   use contact_penalty_m, only : set_penalties
-  use contact_scatter_m, only : scatter_forces
+  use contact_scatter_m, only : scatter_forces, scatter_friction
   use contact_springs_m, only : begin_look, measure_springs, end_look
   use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
-    allocate_scratch, is_free
-  use contacts_m, only : contact_t
+    allocate_tractions, allocate_scratch, is_free
+  use contacts_m, only : contact_t, has_friction
   use crossing_m, only : crossings_t, find_crossings, catch_crossings
   use damping_m, only : damp_points
   use energy_limit_m, only : keep_former_springs, limit_forces, follow_largest, lend
   use energy_limit_state_m, only : allocate_limit
   use facing_change_m, only : rest_loose_nodes
   use facing_look_m, only : has_outline, start_facing, look_at_facing, make_present
+  use friction_m, only : take_increments, set_tractions_aside, rub_places
+  use friction_state_m, only : allocate_friction
   use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
     start_slave_tracking, start_master_tracking, start_segments
   use gather_m, only : gather_places, take_force, power_of, keep_former, add_force
@@ -71,6 +73,10 @@ contains
       allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
     end if
     if (.not. model%controls%implicit%is_on) call allocate_limit(memory%limit, n_slave + n_master)
+    if (has_friction(contact) .and. .not. model%controls%implicit%is_on) then
+      call allocate_tractions(memory%points)
+      call allocate_friction(memory%friction, 2*n_slave + n_master, n_slave + n_master)
+    end if
     call allocate_scratch(memory)
     call log_contact(contact, model, formulation%kind, memory, log)
   end subroutine start_contact
@@ -122,11 +128,13 @@ contains
     if (is_suspended(contact, time)) then
       call suspend_contact(motion, dt, memory)
     else if (memory%facing%is_used) then
+      if (allocated(memory%friction%force)) call take_increments(motion, memory)
       call follow_runs(contact, motion, memory)
       call move_alloc(memory%facing%present, present)
       call apply_between(present, motion, mass, [time, dt], cycle, clock, memory, force)
       call move_alloc(present, memory%facing%present)
     else
+      if (allocated(memory%friction%force)) call take_increments(motion, memory)
       call apply_between(contact, motion, mass, [time, dt], cycle, clock, memory, force)
     end if
   end subroutine apply_contact
@@ -142,7 +150,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     type(formulation_t) :: formulation
-    real(wp) :: damping_power
+    real(wp) :: apart(2)
     logical :: had_force, is_born
 
     formulation = formulation_of(contact)
@@ -151,7 +159,7 @@ contains
     call gather_spots(contact, motion, memory)
     call search_pairs(contact, cycle, memory)
     call lap(clock, phase_contact_search)
-    call set_forces_aside(motion, had_force, memory, damping_power)
+    call set_forces_aside(motion, had_force, memory, apart)
     call place_points(contact, memory)
     call lap(clock, phase_contact_pairing)
     if (memory%points%n > 0) then
@@ -163,33 +171,49 @@ contains
       else
         call lend(energy_caught(contact, formulation%has_unit_area, memory), memory%limit)
       end if
+      if (allocated(memory%friction%force)) &
+        call rub_places(contact, formulation%has_unit_area, times(2), memory)
       if (contact%damping > 0.0_wp) call damp_points(memory%points, contact%damping, &
         memory%nodes, motion, mass, memory%scratch%nodal)
       call scatter_forces(memory)
+      if (allocated(memory%friction%force)) call scatter_friction(memory)
       if (had_force .or. memory%n_active > 0) call limit_forces(motion, times(1), times(2), memory)
     end if
     if (memory%points%n > 0 .or. had_force) &
-      call hand_over(times(2), motion, damping_power, memory, force)
+      call hand_over(times(2), motion, apart, memory, force)
     call end_look(had_force, memory%n_active > 0, memory%watch)
     call lap(clock, phase_contact_force)
   end subroutine apply_between
 
   !> Before the points are placed: the forces of the last call stand aside, for their half of the
   !> work of the step.
-  pure subroutine set_forces_aside(motion, had_force, memory, damping_power)
+  pure subroutine set_forces_aside(motion, had_force, memory, apart)
     real(wp), intent(in), contiguous :: motion(:, :)
     logical, intent(in) :: had_force              !! that call had some
     type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(out) :: damping_power        !! of its damping forces, W/m
+    real(wp), intent(out) :: apart(2)             !! power of its damping and of its friction, W/m
 
     memory%n_active = 0
     call begin_look(had_force, memory%watch)
     if (had_force) call keep_former(memory)
     call keep_former_springs(had_force, memory)
-    damping_power = 0.0_wp
-    if (allocated(memory%damping_force)) &
-      call take_force(memory%nodes, motion, memory%damping_force, damping_power)
+    call take_apart(motion, memory, apart)
   end subroutine set_forces_aside
+
+  !> Power of the former forces of damping and of friction, which are zero then; nothing is left of
+  !> the tractions but what friction goes on from.
+  pure subroutine take_apart(motion, memory, apart)
+    real(wp), intent(in), contiguous :: motion(:, :)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(out) :: apart(2) !! W/m
+
+    apart = 0.0_wp
+    if (allocated(memory%damping_force)) &
+      call take_force(memory%nodes, motion, memory%damping_force, apart(1))
+    if (.not. allocated(memory%friction%force)) return
+    call take_force(memory%nodes, motion, memory%friction%force, apart(2))
+    call set_tractions_aside(memory)
+  end subroutine take_apart
 
   !> The springs as pressed, in calls that look at them. Those loaded at time zero hold energy that
   !> no force has put in.
@@ -203,30 +227,33 @@ contains
 
   !> Add the forces to those of the mesh and count the work of a step: half of it was done by the
   !> former forces.
-  pure subroutine hand_over(dt, motion, former_damping, memory, force)
+  pure subroutine hand_over(dt, motion, former, memory, force)
     real(wp), intent(in) :: dt
     real(wp), intent(in), contiguous :: motion(:, :)
-    real(wp), intent(in) :: former_damping        !! power of the former damping forces, W/m
+    real(wp), intent(in) :: former(2)             !! power of the former damping and friction, W/m
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)
-    real(wp) :: power, damping_power
+    real(wp) :: power, apart(2)
 
     call add_force(memory%nodes, memory%scratch%former_force, memory%force, motion, force, power)
-    damping_power = former_damping
-    if (allocated(memory%damping_force)) damping_power = damping_power &
+    apart = former
+    if (allocated(memory%damping_force)) apart(1) = apart(1) &
       + power_of(memory%nodes, motion, memory%damping_force)
-    call count_work(dt, power, damping_power, memory)
+    if (allocated(memory%friction%force)) apart(2) = apart(2) &
+      + power_of(memory%nodes, motion, memory%friction%force)
+    call count_work(dt, power, apart, memory)
     call follow_largest(memory%energy, memory%limit)
   end subroutine hand_over
 
-  !> Work of half a step, that of the damping forces apart.
-  pure subroutine count_work(dt, power, damping_power, memory)
+  !> Work of half a step, that of damping and of friction apart.
+  pure subroutine count_work(dt, power, apart, memory)
     real(wp), intent(in) :: dt
-    real(wp), intent(in) :: power, damping_power !! of all contact forces, and of those of damping
+    real(wp), intent(in) :: power, apart(2) !! of all contact forces, and of damping and friction
     type(contact_state_t), intent(inout) :: memory
 
-    memory%energy = memory%energy - 0.5_wp*dt*(power - damping_power)
-    memory%damping_work = memory%damping_work - 0.5_wp*dt*damping_power
+    memory%energy = memory%energy - 0.5_wp*dt*(power - apart(1) - apart(2))
+    memory%damping_work = memory%damping_work - 0.5_wp*dt*apart(1)
+    memory%friction%work = memory%friction%work - 0.5_wp*dt*apart(2)
   end subroutine count_work
 
   !> Contact forces of one interface at the given u, added to `force`; no damping, no energy, no
@@ -351,16 +378,14 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)
     real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: power, damping_power
+    real(wp) :: power, apart(2)
 
     memory%is_stale = .true.
     memory%watch%has_looked = .false.
     if (memory%n_active == 0) return
     call take_force(memory%nodes, motion, memory%force, power)
-    damping_power = 0.0_wp
-    if (allocated(memory%damping_force)) &
-      call take_force(memory%nodes, motion, memory%damping_force, damping_power)
-    call count_work(dt, power, damping_power, memory)
+    call take_apart(motion, memory, apart)
+    call count_work(dt, power, apart, memory)
     call end_look(.true., .false., memory%watch)
     memory%points%n = 0
     memory%n_active = 0

@@ -222,11 +222,10 @@ contains
     end associate
   end subroutine warn_of_rule
 
-  !> Refuse every interface that has friction.
-  subroutine refuse_friction(deck, raw, who)
+  !> Implicit runs: refuse every interface that has friction.
+  subroutine refuse_friction(deck, raw)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    character(*), intent(in) :: who      !! what does not have friction
     character(:), allocatable :: message
     integer :: i
 
@@ -234,7 +233,7 @@ contains
       associate (entry => raw%contacts(i))
         if (.not. has_friction(entry%contact)) cycle
         message = 'asks for friction of interface '//to_text(entry%contact%id)//', ' &
-          //trim(entry%kind)//', which '//who//' does not have'
+          //trim(entry%kind)//', which implicit runs do not have'
         if (entry%friction_place%line > 0) then
           call reject_field(deck, entry%friction_place, message)
         else

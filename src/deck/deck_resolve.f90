@@ -36,6 +36,7 @@ contains
     type(model_t), intent(in) :: model
     integer :: i
 
+    call refuse_friction(deck, raw)
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
         if (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) &
@@ -140,8 +141,6 @@ contains
         call take_interval(deck, maps, raw%outputs(i), model, output%histories(i))
       end do
     end associate
-    ! Until explicit runs have the law of friction, no run has.
-    call refuse_friction(deck, raw, 'this version')
     if (model%controls%implicit%is_on) call check_implicit(deck, raw, model)
     call resolve_conditions(deck, raw, maps, model)
     call resolve_rigids(deck, raw, maps, model)

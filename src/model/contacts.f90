@@ -60,7 +60,7 @@ module contacts_m
 contains
 
   !> Whether an interface has friction.
-  pure function has_friction(contact) result(has)
+  elemental function has_friction(contact) result(has)
     type(contact_t), intent(in) :: contact
     logical :: has
 

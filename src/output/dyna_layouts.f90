@@ -47,7 +47,8 @@ contains
     select case (i_table)
     case (table_glstat)
       names = 'time,cycle,dt,kinetic,internal,hourglass,viscous,damping,contact,external_work,'// &
-        'total,energy_ratio,leapfrog,velocity_x,velocity_y,element,element_part'
+        'total,energy_ratio,leapfrog,velocity_x,velocity_y,element,element_part,'// &
+        'friction'
     case (table_rcforc)
       names = 'time,interface,side,fx,fy'
     case (table_nodout)
@@ -55,7 +56,7 @@ contains
     case (table_matsum)
       names = 'time,part,kinetic,internal,hourglass,momentum_x,momentum_y,mass'
     case (table_sleout)
-      names = 'time,cycle,interface,energy,damping'
+      names = 'time,cycle,interface,energy,friction,damping'
     case (table_spcforc)
       names = 'time,node,fx,fy'
     end select
@@ -122,7 +123,8 @@ contains
       call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by '//control, lines, n_line)
     end if
     call add_line('', lines, n_line)
-    values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), row(9), &
+    values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), &
+      row(9) + row(18), &
       row(10), 0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(14), row(15), 0.0_wp]
     do i = 1, n_label
       write (line, '(ss,a,es14.5)') labels(i), tidy(values(i))
@@ -247,15 +249,15 @@ contains
     call add_line(line, lines, n_line)
     call add_line('', lines, n_line)
     do i = 1, size(rows, 2)
-      write (line, '(ss,i10,es13.4)') nint(rows(3, i)), tidy(rows(4, i) + rows(5, i))
+      write (line, '(ss,i10,es13.4)') nint(rows(3, i)), tidy(rows(4, i) + rows(6, i) + rows(5, i))
       call add_line(line, lines, n_line)
     end do
     call add_line('', lines, n_line)
-    write (line, '(ss,a,es14.7)') ' summary   total slave side=', tidy(sum(rows(4:5, :)))
+    write (line, '(ss,a,es14.7)') ' summary   total slave side=', tidy(sum(rows(4:6, :)))
     call add_line(line, lines, n_line)
     write (line, '(ss,a,es14.7)') '           total mastr side=', 0.0_wp
     call add_line(line, lines, n_line)
-    write (line, '(ss,a,es14.7)') '           total energy    =', tidy(sum(rows(4:5, :)))
+    write (line, '(ss,a,es14.7)') '           total energy    =', tidy(sum(rows(4:6, :)))
     call add_line(line, lines, n_line)
   end subroutine form_sleout
 

@@ -10,7 +10,7 @@ module history_rows_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t, interface_result_t, part_result_t, slave_result_t, &
-    wall_result_t
+    wall_result_t, rubbed_t
   use table_row_m, only : row_t, put, put_side, end_csv
   implicit none
   private
@@ -157,6 +157,7 @@ contains
       call put(row, 'total', total_energy(e))
       call put(row, 'energy_ratio', energy_ratio(e))
       call put(row, 'leapfrog', e%leapfrog)
+      call put(row, 'friction', e%friction)
       call end_csv(row)
       call put(row, 'velocity_x,velocity_y', shot%mean_velocity)
       call put(row, 'element', shot%slowest(1))
@@ -204,6 +205,7 @@ contains
     real(wp), intent(in) :: place(2)      !! of the node, now
     type(slave_result_t), intent(in) :: slave
     integer, intent(in) :: i              !! its index there
+    type(rubbed_t) :: rubbed
 
     call put(row, 'time', time)
     call put(row, 'interface', ids(1))
@@ -214,6 +216,11 @@ contains
     call put(row, 'pressure', value_of(slave%pressure, i))
     call put(row, 'fx,fy', vector_of(slave%force, i))
     call put(row, 'length', value_of(slave%length, i))
+    rubbed = rubbed_t()
+    if (allocated(slave%rubbed)) rubbed = slave%rubbed(i)
+    call put(row, 'traction', rubbed%traction)
+    call put(row, 'slip', rubbed%slip)
+    call put(row, 'state', rubbed%state)
   end subroutine put_contact
 
   !> Sums over a part.
@@ -261,6 +268,7 @@ contains
     call put(row, 'cycle', shot%cycle)
     call put(row, 'interface', id)
     call put(row, 'energy', result%energy)
+    call put(row, 'friction', result%friction)
     call put(row, 'damping', result%damping)
     call put(row, 'stored', result%stored)
   end subroutine put_sleout

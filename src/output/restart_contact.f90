@@ -8,6 +8,7 @@ module restart_contact_m
   use facing_state_m, only : facing_t, facing_side_t
   use contact_watch_m, only : contact_watch_t, contact_change_t
   use energy_limit_state_m, only : energy_limit_t
+  use friction_state_m, only : friction_memory_t
   use log_m, only : to_text
   implicit none
   private
@@ -46,6 +47,7 @@ contains
     call keep(archive, 'master_penalty', contact%master_penalty)
     call keep(archive, 'node_penalty', contact%node_penalty)
     call keep(archive, 'damping_force', contact%damping_force)
+    call keep_friction(archive, 'friction', contact%friction)
     call keep(archive, 'energy', contact%energy)
     call keep(archive, 'damping_work', contact%damping_work)
     call keep_watch(archive, 'watch', contact%watch)
@@ -54,6 +56,22 @@ contains
     call keep(archive, 'n_released', contact%n_released)
     call leave(archive)
   end subroutine keep_contact
+
+  !> What its friction remembers.
+  subroutine keep_friction(archive, name, friction)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(friction_memory_t), intent(inout) :: friction
+
+    call enter(archive, name)
+    call keep(archive, 'traction', friction%traction)
+    call keep(archive, 'state', friction%state)
+    call keep(archive, 'slip', friction%slip)
+    call keep(archive, 'force', friction%force)
+    call keep(archive, 'work', friction%work)
+    call keep(archive, 'stored', friction%stored)
+    call leave(archive)
+  end subroutine keep_friction
 
   !> What is known of its energy.
   subroutine keep_watch(archive, name, watch)
@@ -218,6 +236,7 @@ contains
     call keep_growing(archive, 'stiffness', points%stiffness)
     call keep_growing(archive, 'pressure', points%pressure)
     call keep_growing(archive, 'load', points%load)
+    call keep_growing(archive, 'traction', points%traction)
     call leave(archive)
   end subroutine keep_points
 

@@ -29,10 +29,13 @@ module results_arrays_m
     point_names, point_columns, cell_names, cell_columns, step_values, step_points, step_ones
 
   !> Fields, in the order in which `append_state` writes them, and their numbers of columns.
-  integer, parameter :: n_point_field = 6, n_cell_field = 4
+  integer, parameter :: n_point_field = 9, n_cell_field = 4
   character(16), parameter :: point_names(n_point_field) = [character(16) :: 'Points', &
-    'displacement', 'velocity', 'contact_force', 'contact_pressure', 'gap']
-  integer, parameter :: point_columns(n_point_field) = [3, 3, 3, 3, 0, 0]
+    'displacement', 'velocity', 'contact_force', 'contact_pressure', 'gap', 'contact_traction', &
+    'contact_slip', 'contact_state']
+  integer, parameter :: point_columns(n_point_field) = [3, 3, 3, 3, 0, 0, 0, 0, 0]
+  !> Without friction the fields from that one on are left out.
+  integer, parameter :: n_plain_field = 6
   character(16), parameter :: cell_names(n_cell_field) = [character(16) :: 'stress', &
     'plastic_strain', 'pressure', 'mises']
   integer, parameter :: cell_columns(n_cell_field) = [6, 0, 0, 0]
@@ -64,6 +67,7 @@ module results_arrays_m
     integer(hid_t) :: n_steps = -1              !! open attribute NSteps
     integer(long) :: n_state = 0                !! states in the file
     real(wp), allocatable :: times(:)           !! (n_state or more) their times
+    integer :: n_point_field = n_plain_field    !! of those above that the file has
     type(growing_t) :: point_fields(n_point_field)
     type(growing_t) :: cell_fields(n_cell_field)
     type(growing_t) :: steps(n_step_array)
@@ -151,7 +155,7 @@ contains
     cell_rows = mesh%n_element*states_per_chunk(2*mesh%n_element, n_planned)
     call make_group(group, 'PointData', error)
     call make_group(group, 'CellData', error)
-    do i = 1, n_point_field
+    do i = 1, file%n_point_field
       name = trim(point_names(i))
       if (i > 1) name = 'PointData/'//name
       call create_growing(file%id, name, as_real, point_columns(i), point_rows, &
@@ -195,7 +199,7 @@ contains
     call link_growing(file%steps(step_zeros), group, 'Steps/CellDataOffsets/element_id', error)
     call link_growing(file%steps(step_zeros), group, 'Steps/CellDataOffsets/part_id', error)
     call link_growing(file%steps(step_points), group, 'Steps/PointOffsets', error)
-    do i = 2, n_point_field
+    do i = 2, file%n_point_field
       call link_growing(file%steps(step_points), group, &
         'Steps/PointDataOffsets/'//trim(point_names(i)), error)
     end do

@@ -12,7 +12,7 @@ module results_copy_m
   use hdf5_writing_m, only : append_rows, as_real, memory_type
   use kinds_m, only : wp, long
   use model_m, only : model_t
-  use results_arrays_m, only : results_file_t, n_point_field, n_cell_field, point_names, &
+  use results_arrays_m, only : results_file_t, n_cell_field, point_names, &
     point_columns, cell_names, cell_columns
   use results_file_m, only : append_instant, take_name, note_failure
   implicit none
@@ -113,7 +113,7 @@ contains
     integer :: i, n
 
     n = model%mesh%n_node
-    do i = 1, n_point_field
+    do i = 1, file%n_point_field
       allocate (rows(n*max(point_columns(i), 1)))
       call read_rows(old, 'VTKHDF/'//trim(merge('          ', 'PointData/', i == 1)) &
         //trim(point_names(i)), point_columns(i), (k - 1)*int(n, long), n, c_loc(rows), error)

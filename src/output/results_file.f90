@@ -12,6 +12,7 @@ module results_file_m
   use hdf5, only : hid_t, H5F_SCOPE_LOCAL_F, H5_INTEGER_KIND, h5kind_to_type, h5gopen_f, &
     h5gclose_f, h5awrite_f, h5aclose_f, h5fflush_f, h5fclose_f, h5close_f
   use kinds_m, only : wp, long
+  use contacts_m, only : has_friction
   use errors_m, only : error_t, raise, status_files
   use file_facts_m, only : file_facts_t, facts_of_name, is_same_file
   use files_m, only : remove_file, rename_file, unfinished
@@ -51,6 +52,7 @@ contains
     if (.not. goes_on) call remove_file(path, error)
     if (allocated(error)) return
     allocate (file%times(n_planned))
+    if (has_friction_fields(model)) file%n_point_field = n_point_field
     call create_file(file, error)
     if (allocated(error)) return
     call make_group(file%id, 'VTKHDF', error)
@@ -67,6 +69,14 @@ contains
     allocate (file%rows(3*block_rows))
     call note_failure(file, error)
   end subroutine open_results
+
+  !> Whether there are fields of friction.
+  pure function has_friction_fields(model) result(has)
+    type(model_t), intent(in) :: model
+    logical :: has
+
+    has = any(has_friction(model%contacts)) .and. .not. model%controls%implicit%is_on
+  end function has_friction_fields
 
   !> Append one state and bring it into the file whole.
   subroutine append_state(file, model, snapshot, error)
@@ -126,7 +136,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     integer :: i, first, n
 
-    do i = 1, n_point_field
+    do i = 1, file%n_point_field
       file%rows = 0.0_wp
       do first = 1, model%mesh%n_node, block_rows
         n = min(block_rows, model%mesh%n_node - first + 1)
@@ -139,6 +149,9 @@ contains
           case (4); call gather_vectors(nodes, snapshot%contact_force, file%rows)
           case (5); call gather_scalars(nodes, snapshot%contact_pressure, file%rows)
           case (6); call gather_scalars(nodes, snapshot%gap, file%rows)
+          case (7); call gather_scalars(nodes, snapshot%contact_traction, file%rows)
+          case (8); call gather_scalars(nodes, snapshot%contact_slip, file%rows)
+          case (9); call gather_scalars(nodes, snapshot%contact_state, file%rows)
           end select
         end associate
         call append_rows(file%point_fields(i), n, c_loc(file%rows), error)
@@ -297,7 +310,7 @@ contains
     integer :: i, status
 
     call h5aclose_f(file%n_steps, status)
-    do i = 1, n_point_field
+    do i = 1, file%n_point_field
       call close_growing(file%point_fields(i), error)
     end do
     do i = 1, n_cell_field

@@ -8,6 +8,7 @@ module restart_bounds_m
     is_free, is_touching, is_behind
   use contacts_m, only : contact_t
   use facing_state_m, only : facing_t, facing_side_t
+  use friction_state_m, only : is_open, slips
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
@@ -57,6 +58,9 @@ contains
     do i = 1, size(memory%watch%changes)
       call check_node('watch/'//to_text(i)//'/node', memory%watch%changes(i)%node)
     end do
+    if (allocated(memory%friction%state)) call require(archive, folder//'friction/state', &
+      all(memory%friction%state >= is_open .and. memory%friction%state <= slips), &
+      'numbers that mean nothing')
     call check_points(memory, folder//'points/', archive)
     if (allocated(archive%error)) return
     n_segments = [contact%slave%n_segment, contact%master%n_segment]
@@ -138,6 +142,7 @@ contains
         size(points%slave_weights, 2), size(points%master_weights, 2), size(points%normal, 2), &
         size(points%area), size(points%stiffness), size(points%pressure)] == size(points%gap))
       if (fits .and. allocated(points%load)) fits = size(points%load, 2) == size(points%gap)
+      if (fits .and. allocated(points%traction)) fits = size(points%traction) == size(points%gap)
       call require(archive, folder//'gap', fits, 'not as many values as the arrays beside it')
       if (allocated(archive%error)) return
       call require(archive, folder//'n', points%n >= 0 .and. points%n <= size(points%gap), &

@@ -6,11 +6,12 @@ module snapshot_filling_m
   use constraints_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains
+  use contacts_m, only : has_friction
   use controls_m, only : is_asked
   use history_tables_m, only : table_matsum
   use layout_m, only : slot_part
   use model_m, only : model_t
-  use snapshot_m, only : snapshot_t
+  use snapshot_m, only : snapshot_t, rubbed_t
   use state_m, only : state_t
   use support_forces_m, only : find_supports
   implicit none
@@ -47,6 +48,8 @@ contains
       allocate (snapshot%plastic_strain(n_element), source=0.0_wp)
     if (size(model%contacts) > 0) allocate (snapshot%contact_force(2, n_node), &
       snapshot%contact_pressure(n_node), snapshot%gap(n_node), source=0.0_wp)
+    if (any(has_friction(model%contacts))) allocate (snapshot%contact_traction(n_node), &
+      snapshot%contact_slip(n_node), snapshot%contact_state(n_node), source=0.0_wp)
   end subroutine start_snapshot
 
   !> Whether the motion of all nodes is kept: for files, or since that of some comes from elsewhere.
@@ -157,7 +160,11 @@ contains
       end do
       snapshot%mean_velocity = snapshot%mean_velocity/sum(state%mass)
       energies%damping = state%damping_work
-      energies%contact = sum(state%contacts%energy) + sum(state%contacts%damping_work)
+      energies%contact = sum(state%contacts%energy) + sum(state%contacts%damping_work) &
+        + sum(state%contacts%friction%stored)
+      energies%friction = sum(state%contacts%friction%work) - sum(state%contacts%friction%stored)
+      if (allocated(state%walls)) energies%friction = energies%friction &
+        + sum(state%walls%dissipated)
       energies%made = sum(max(0.0_wp, -state%contacts%watch%balance))
       energies%external_work = state%external_work
       energies%initial = state%initial_energy
@@ -244,9 +251,12 @@ contains
 
     do i = 1, size(model%contacts)
       call interface_resultants(state%contacts(i), snapshot%interfaces(i))
-      snapshot%interfaces(i)%energy = state%contacts(i)%energy
-      snapshot%interfaces(i)%damping = state%contacts(i)%damping_work
-      snapshot%interfaces(i)%stored = state%contacts(i)%watch%stored
+      associate (friction => state%contacts(i)%friction)
+        snapshot%interfaces(i)%energy = state%contacts(i)%energy + friction%stored
+        snapshot%interfaces(i)%friction = friction%work - friction%stored
+        snapshot%interfaces(i)%damping = state%contacts(i)%damping_work
+        snapshot%interfaces(i)%stored = state%contacts(i)%watch%stored + friction%stored
+      end associate
     end do
   end subroutine fill_interfaces
 
@@ -264,6 +274,11 @@ contains
     snapshot%contact_force = 0.0_wp
     snapshot%contact_pressure = 0.0_wp
     snapshot%gap = 0.0_wp
+    if (allocated(snapshot%contact_state)) then
+      snapshot%contact_traction = 0.0_wp
+      snapshot%contact_slip = 0.0_wp
+      snapshot%contact_state = 0.0_wp
+    end if
     do i = 1, size(model%contacts)
       call slave_rows(model%contacts(i), state%motion, state%contacts(i), &
         snapshot%slaves(i))
@@ -284,8 +299,27 @@ contains
           if (rows%pressure(k) > 0.0_wp) snapshot%gap(rows%node(k)) = &
             min(snapshot%gap(rows%node(k)), rows%gap(k))
         end do
+        if (allocated(rows%rubbed)) call fill_friction(memory%nodes, rows%rubbed, snapshot)
       end associate
     end do
   end subroutine fill_plot
+
+  !> Friction at the nodes of an interface. Nodes of several have the sum of their tractions, the
+  !> largest slip and the last of their states.
+  pure subroutine fill_friction(nodes, rubbed, snapshot)
+    integer, intent(in) :: nodes(:)         !! (n_slave + n_master)
+    type(rubbed_t), intent(in) :: rubbed(:)
+    type(snapshot_t), intent(inout) :: snapshot
+    integer :: k
+
+    do k = 1, size(nodes)
+      associate (traction => snapshot%contact_traction(nodes(k)), &
+        slip => snapshot%contact_slip(nodes(k)), now => snapshot%contact_state(nodes(k)))
+        traction = traction + rubbed(k)%traction
+        if (abs(rubbed(k)%slip) > abs(slip)) slip = rubbed(k)%slip
+        now = max(now, real(rubbed(k)%state, wp))
+      end associate
+    end do
+  end subroutine fill_friction
 
 end module snapshot_filling_m

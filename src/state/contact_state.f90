@@ -19,14 +19,15 @@ module contact_state_m
   use contact_watch_m, only : contact_watch_t
   use energy_limit_state_m, only : energy_limit_t
   use facing_state_m, only : facing_t
+  use friction_state_m, only : friction_memory_t
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
   implicit none
   private
   public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
-    segment_memory_t, contact_scratch_t, allocate_points, allocate_loads, make_room, &
-    allocate_tracking, allocate_grid, allocate_scratch, n_side, n_load, is_free, is_in_front, &
-    is_touching, is_behind
+    segment_memory_t, contact_scratch_t, allocate_points, allocate_loads, &
+    allocate_tractions, make_room, allocate_tracking, allocate_grid, allocate_scratch, n_side, n_load, &
+    is_free, is_in_front, is_touching, is_behind
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
@@ -51,6 +52,8 @@ module contact_state_m
     real(wp), allocatable :: load(:, :)        !! (n_load, capacity) force on the slave side, and
                                                !! the part of it that damping has, N/m; only where
                                                !! there is damping
+    real(wp), allocatable :: traction(:)       !! as pressure, along -(-n_y, n_x) on the slave side;
+                                               !! only where there is friction
   end type contact_points_t
 
   !> Segments sorted into square cells by hashing; tells which segments are near a place.
@@ -107,9 +110,13 @@ module contact_state_m
                                             !! nodes
     real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) of this call; only where
                                             !! forces are limited
-    real(wp), allocatable :: spring(:, :)   !! (2, n_slave + n_master) forces without damping; only
-                                            !! where there is any
+    real(wp), allocatable :: spring(:, :)   !! (2, n_slave + n_master) forces of the normal springs
+                                            !! alone; only where there are others
     real(wp), allocatable :: former_spring(:, :) !! the same of the call before
+    real(wp), allocatable :: increment(:, :) !! (2, n_slave + n_master) displacements of the step, m;
+                                            !! this and the next two only where there is friction
+    real(wp), allocatable :: former_traction(:) !! (n_place) of the call before
+    integer, allocatable :: former_state(:) !! (n_place) the same
     integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps
     logical, allocatable :: is_placed(:)    !! (slave segments) have their points
     type(piece_table_t), allocatable :: pieces !! lent to the placement while it works
@@ -147,6 +154,7 @@ module contact_state_m
                                                  !! damping has; only where there is damping
     real(wp) :: energy = 0.0_wp             !! minus the accumulated work of the springs, J/m
     real(wp) :: damping_work = 0.0_wp       !! minus that of the damping forces
+    type(friction_memory_t) :: friction     !! of places, and its forces
     type(contact_watch_t) :: watch          !! whether the springs give back what they take
     type(energy_limit_t) :: limit           !! that they give back no more
     integer :: n_active = 0                 !! points that carry pressure
@@ -175,6 +183,13 @@ contains
     allocate (points%load(n_load, size(points%gap)), source=0.0_wp)
   end subroutine allocate_loads
 
+  !> The column of tractions, for a list that is allocated.
+  pure subroutine allocate_tractions(points)
+    type(contact_points_t), intent(inout) :: points
+
+    allocate (points%traction(size(points%gap)), source=0.0_wp)
+  end subroutine allocate_tractions
+
   !> Make room for `n_more` points. The capacity of the start serves chains that face each other
   !> once; only where slave segments lie upon each other is more needed, and the list then doubles.
   pure subroutine make_room(points, n_more)
@@ -199,6 +214,10 @@ contains
     if (allocated(points%load)) then
       call allocate_loads(larger)
       larger%load(:, :n) = points%load(:, :n)
+    end if
+    if (allocated(points%traction)) then
+      call allocate_tractions(larger)
+      larger%traction(:n) = points%traction(:n)
     end if
     points = larger
   end subroutine make_room
@@ -239,8 +258,14 @@ contains
       allocate (scratch%former_force(2, n), scratch%nodal(2, n), source=0.0_wp)
       allocate (scratch%point_at(memory%n_slave), source=0)
       if (allocated(memory%limit%velocity)) allocate (scratch%velocity(2, n), source=0.0_wp)
-      if (allocated(memory%limit%velocity) .and. allocated(memory%damping_force)) &
+      if (allocated(memory%limit%velocity) .and. (allocated(memory%damping_force) &
+        .or. allocated(memory%friction%force))) &
         allocate (scratch%spring(2, n), scratch%former_spring(2, n), source=0.0_wp)
+      if (allocated(memory%friction%force)) then
+        allocate (scratch%increment(2, n), scratch%former_traction(size(memory%friction%state)), &
+          source=0.0_wp)
+        allocate (scratch%former_state(size(memory%friction%state)), source=0)
+      end if
       if (.not. allocated(memory%segments%status)) return
       allocate (scratch%is_placed(size(memory%segments%status)), source=.false.)
       allocate (scratch%pieces)

@@ -17,7 +17,8 @@ module energies_m
     real(wp) :: hourglass = 0.0_wp
     real(wp) :: viscous = 0.0_wp       !! dissipated by the bulk viscosity
     real(wp) :: damping = 0.0_wp       !! dissipated by global damping
-    real(wp) :: contact = 0.0_wp       !! minus the work of the contact forces
+    real(wp) :: contact = 0.0_wp       !! minus the work of the contact forces, but for the next
+    real(wp) :: friction = 0.0_wp      !! dissipated by friction, of interfaces and rigid walls
     real(wp) :: made = 0.0_wp          !! what contact springs gave beyond what they took, over the
                                        !! interfaces where they did; no part of the sum
     real(wp) :: external_work = 0.0_wp !! work of loads and prescribed motion
@@ -34,7 +35,7 @@ contains
     real(wp) :: total
 
     total = energies%kinetic + energies%internal + energies%hourglass + energies%viscous &
-      + energies%damping + energies%contact + energies%leapfrog
+      + energies%damping + energies%contact + energies%leapfrog + energies%friction
   end function total_energy
 
   !> total / (initial + external work); 1 when both vanish against the terms that they are sums of.
@@ -61,7 +62,7 @@ contains
     real(wp) :: largest
 
     largest = maxval(abs([energies%kinetic, energies%internal, energies%hourglass, &
-      energies%viscous, energies%damping, energies%contact, energies%leapfrog, &
+      energies%viscous, energies%damping, energies%contact, energies%friction, energies%leapfrog, &
       energies%external_work, energies%initial]))
   end function largest_term
 

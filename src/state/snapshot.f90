@@ -6,14 +6,17 @@ module snapshot_m
   use energies_m, only : energies_t
   implicit none
   private
-  public :: snapshot_t, interface_result_t, part_result_t, slave_result_t, wall_result_t
+  public :: snapshot_t, interface_result_t, part_result_t, slave_result_t, wall_result_t, &
+    rubbed_t
 
   !> Resultants of one interface.
   type :: interface_result_t
     real(wp) :: slave_force(2) = 0.0_wp
     real(wp) :: master_force(2) = 0.0_wp
     integer :: n_active = 0
-    real(wp) :: energy = 0.0_wp  !! minus the work of the contact springs
+    real(wp) :: energy = 0.0_wp  !! minus the work of the contact springs; of tangential ones what
+                                 !! they store
+    real(wp) :: friction = 0.0_wp !! dissipated by friction
     real(wp) :: damping = 0.0_wp !! minus that of the damping of contact
     real(wp) :: stored = 0.0_wp  !! potential of the springs
   end type interface_result_t
@@ -38,7 +41,14 @@ module snapshot_m
     real(wp) :: dissipated = 0.0_wp
   end type wall_result_t
 
-  !> Slave nodes of one interface in walking order; all arrays (n_slave) but the last.
+  !> Friction at a node of an interface.
+  type :: rubbed_t
+    real(wp) :: traction = 0.0_wp !! on the node, along the walking direction of its chain
+    real(wp) :: slip = 0.0_wp     !! of the node over the other side, along that, of the whole run
+    integer :: state = 0          !! 0 open, 1 stick, 2 slip
+  end type rubbed_t
+
+  !> Slave nodes of one interface in walking order; all arrays (n_slave) but the last two.
   type :: slave_result_t
     integer, allocatable :: node(:)        !! node indices
     real(wp), allocatable :: arc_length(:) !! along the slave chain
@@ -47,6 +57,8 @@ module snapshot_m
     real(wp), allocatable :: force(:, :)   !! (2, n_slave) contact force from all points
     real(wp), allocatable :: length(:)     !! competence length, current
     real(wp), allocatable :: master_pressure(:) !! (n_master) as `pressure`, on the other side
+    type(rubbed_t), allocatable :: rubbed(:) !! (n_slave + n_master) nodes of both sides; only where
+                                             !! there is friction
   end type slave_result_t
 
   !> The instant. Node arrays are in model order (the writer maps through mesh%deck_node); element
@@ -62,6 +74,9 @@ module snapshot_m
     real(wp), allocatable :: contact_force(:, :) !! (2, n_node)
     real(wp), allocatable :: contact_pressure(:) !! (n_node)
     real(wp), allocatable :: gap(:)              !! (n_node)
+    real(wp), allocatable :: contact_traction(:) !! (n_node), this and the next two only where some
+    real(wp), allocatable :: contact_slip(:)     !! interface has friction
+    real(wp), allocatable :: contact_state(:)
     real(wp) :: mean_velocity(2) = 0.0_wp        !! momentum over mass, of all nodes
     integer :: slowest(2) = 0                    !! ids of the element that rules the step and of
                                                  !! its part, 0 = none

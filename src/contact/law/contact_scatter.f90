@@ -5,7 +5,7 @@ module contact_scatter_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: scatter_forces, scatter_points, scatter_damped, add_gap_round_off
+  public :: scatter_forces, scatter_points, scatter_damped, scatter_friction, add_gap_round_off
 
 contains
 
@@ -47,6 +47,25 @@ contains
     call scatter_loads(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
       points%master_weights, points%load, force, damping_force)
   end subroutine scatter_damped
+
+  !> Add the tractions of all points to the forces of the interface's nodes and to those of friction,
+  !> which are zero before. They act along -t = -(-n_y, n_x): the same sums as of the pressures, each
+  !> turned by a right angle. Damping may leave a point with a traction alone: it counts too.
+  pure subroutine scatter_friction(memory)
+    type(contact_state_t), intent(inout) :: memory
+    integer :: i
+
+    associate (points => memory%points, force => memory%friction%force)
+      call scatter_each(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
+        points%master_weights, points%normal, points%traction, points%area, force)
+      do i = 1, size(force, 2)
+        force(:, i) = [force(2, i), -force(1, i)]
+      end do
+      memory%force = memory%force + force
+      memory%n_active = count(points%pressure(:points%n) > 0.0_wp &
+        .or. abs(points%traction(:points%n)) > 0.0_wp)
+    end associate
+  end subroutine scatter_friction
 
   !> On arrays of known shape: through the list each access costs a multiplication by its stride. A
   !> point at a node has it at both ends of that side, and all of the force goes there. The forces

@@ -37,17 +37,28 @@ module energy_limit_m
 
 contains
 
-  !> Before the points are placed, and before damping has been counted: the forces of the springs
-  !> alone that acted in the cycle before. Only where there is damping: elsewhere they are all
-  !> forces.
+  !> Before the points are placed, and before damping and friction have been counted: the forces of
+  !> the normal springs alone that acted in the cycle before. Only where there are others.
   pure subroutine keep_former_springs(had_force, memory)
     logical, intent(in) :: had_force
     type(contact_state_t), intent(inout) :: memory
 
     if (.not. allocated(memory%scratch%former_spring)) return
     memory%scratch%former_spring = 0.0_wp
-    if (had_force) memory%scratch%former_spring = memory%scratch%former_force - memory%damping_force
+    if (had_force) call take_springs(memory%scratch%former_force, memory%damping_force, &
+      memory%friction%force, memory%scratch%former_spring)
   end subroutine keep_former_springs
+
+  !> Forces without the parts that damping and friction have.
+  pure subroutine take_springs(force, damping, friction, spring)
+    real(wp), intent(in), contiguous :: force(:, :)
+    real(wp), intent(in), allocatable :: damping(:, :), friction(:, :)
+    real(wp), intent(inout), contiguous :: spring(:, :)
+
+    spring = force
+    if (allocated(damping)) spring = spring - damping
+    if (allocated(friction)) spring = spring - friction
+  end subroutine take_springs
 
   !> Scale the forces of the interface, with the pressures and the part of damping, by what the
   !> springs may return; before they are added to those of the mesh and their work is counted.
@@ -62,7 +73,8 @@ contains
     associate (limit => memory%limit, scratch => memory%scratch)
       if (.not. allocated(limit%velocity)) return
       if (allocated(scratch%former_spring)) then
-        scratch%spring = memory%force - memory%damping_force
+        call take_springs(memory%force, memory%damping_force, memory%friction%force, &
+          scratch%spring)
         call find_factor(memory%energy, memory%nodes, motion, dt, scratch%former_spring, &
           scratch%spring, scratch%velocity, limit, factor)
       else
@@ -197,9 +209,12 @@ contains
     associate (points => memory%points)
       points%pressure(:points%n) = factor*points%pressure(:points%n)
       if (allocated(points%load)) points%load(:, :points%n) = factor*points%load(:, :points%n)
+      if (allocated(points%traction)) &
+        points%traction(:points%n) = factor*points%traction(:points%n)
     end associate
     if (allocated(memory%node_pressure)) memory%node_pressure = factor*memory%node_pressure
     if (allocated(memory%damping_force)) memory%damping_force = factor*memory%damping_force
+    if (allocated(memory%friction%force)) memory%friction%force = factor*memory%friction%force
   end subroutine scale_forces
 
   !> Count a cycle with force. Cycle zero has no step to come and is not limited.

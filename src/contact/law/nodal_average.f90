@@ -5,7 +5,7 @@ module nodal_average_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: average_gaps, share_out
+  public :: average_gaps, average_values, share_out
 
 contains
 
@@ -15,18 +15,27 @@ contains
     type(contact_points_t), intent(in) :: points
     integer, intent(in) :: n_slave
     real(wp), intent(inout) :: nodal(2, *) !! (2, n_slave or more) out: (1, :) g_A, m
+
+    call average_values(points, points%gap, n_slave, nodal)
+  end subroutine average_gaps
+
+  !> The same of any values of points.
+  pure subroutine average_values(points, values, n_slave, nodal)
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(in), contiguous :: values(:) !! (points%n or more)
+    integer, intent(in) :: n_slave
+    real(wp), intent(inout) :: nodal(2, *) !! (2, n_slave or more) out: (1, :) averages, (2, :) areas
     integer :: node
 
     do node = 1, n_slave
       nodal(1, node) = 0.0_wp
       nodal(2, node) = 0.0_wp
     end do
-    call sum_gaps(points%n, points%slave_nodes, points%slave_weights, points%area, points%gap, &
-      nodal)
+    call sum_values(points%n, points%slave_nodes, points%slave_weights, points%area, values, nodal)
     do node = 1, n_slave
       nodal(1, node) = nodal(1, node)/max(nodal(2, node), tiny(1.0_wp))
     end do
-  end subroutine average_gaps
+  end subroutine average_values
 
   !> Values of points from those of the slave nodes, by the slave shape functions.
   pure subroutine share_out(n, slave_nodes, slave_weights, at_node, at_point)
@@ -42,32 +51,32 @@ contains
     end do
   end subroutine share_out
 
-  !> Sums of weight times area times gap, and of weight times area, by slave node. Points of one
+  !> Sums of weight times area times value, and of weight times area, by slave node. Points of one
   !> segment follow each other and are summed before they are given to the nodes.
-  pure subroutine sum_gaps(n, slave_nodes, slave_weights, area, gap, nodal)
+  pure subroutine sum_values(n, slave_nodes, slave_weights, area, values, nodal)
     integer, intent(in) :: n, slave_nodes(n_side, *)
-    real(wp), intent(in) :: slave_weights(n_side, *), area(*), gap(*)
+    real(wp), intent(in) :: slave_weights(n_side, *), area(*), values(*)
     real(wp), intent(inout) :: nodal(2, *)
-    real(wp) :: gap_1, area_1, gap_2, area_2
+    real(wp) :: sum_1, area_1, sum_2, area_2
     integer :: p
     logical :: is_last
 
-    gap_1 = 0.0_wp; area_1 = 0.0_wp; gap_2 = 0.0_wp; area_2 = 0.0_wp
+    sum_1 = 0.0_wp; area_1 = 0.0_wp; sum_2 = 0.0_wp; area_2 = 0.0_wp
     do p = 1, n
-      gap_1 = gap_1 + slave_weights(1, p)*(area(p)*gap(p))
+      sum_1 = sum_1 + slave_weights(1, p)*(area(p)*values(p))
       area_1 = area_1 + slave_weights(1, p)*area(p)
-      gap_2 = gap_2 + slave_weights(2, p)*(area(p)*gap(p))
+      sum_2 = sum_2 + slave_weights(2, p)*(area(p)*values(p))
       area_2 = area_2 + slave_weights(2, p)*area(p)
       is_last = p == n
       if (.not. is_last) is_last = slave_nodes(1, p) /= slave_nodes(1, p + 1) .or. &
         slave_nodes(2, p) /= slave_nodes(2, p + 1)
       if (.not. is_last) cycle
       associate (a => slave_nodes(1, p), b => slave_nodes(2, p))
-        nodal(:, a) = nodal(:, a) + [gap_1, area_1]
-        nodal(:, b) = nodal(:, b) + [gap_2, area_2]
+        nodal(:, a) = nodal(:, a) + [sum_1, area_1]
+        nodal(:, b) = nodal(:, b) + [sum_2, area_2]
       end associate
-      gap_1 = 0.0_wp; area_1 = 0.0_wp; gap_2 = 0.0_wp; area_2 = 0.0_wp
+      sum_1 = 0.0_wp; area_1 = 0.0_wp; sum_2 = 0.0_wp; area_2 = 0.0_wp
     end do
-  end subroutine sum_gaps
+  end subroutine sum_values
 
 end module nodal_average_m

@@ -127,7 +127,7 @@ contains
 
   !> Impulse and work of the walls over the half steps before and after the instant. Together they
   !> do the work F h (v(n-1/2) + v(n+1/2))/2, which is the change of kinetic energy that F makes,
-  !> whatever the two steps are; it counts as external, that of friction too.
+  !> whatever the two steps are; it counts as external, but for that of friction.
   subroutine count_walls(model, is_before, is_after, state)
     type(model_t), intent(in) :: model
     logical, intent(in) :: is_before, is_after !! which half steps are due
@@ -158,7 +158,7 @@ contains
     end do
   end subroutine count_walls
 
-  !> The same work of the friction of one wall.
+  !> The same work of the friction of one wall, which is part of the energy account by itself.
   subroutine count_friction(wall, i_wall, is_before, is_after, state)
     type(wall_t), intent(in) :: wall
     integer, intent(in) :: i_wall
@@ -179,7 +179,6 @@ contains
       memory%dissipated = memory%dissipated - work
       memory%work = memory%work + work
     end associate
-    state%external_work = state%external_work + work
   end subroutine count_friction
 
   !> What the output says of the walls.

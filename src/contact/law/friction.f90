@@ -1,0 +1,271 @@
+! SPDX-License-Identifier: MIT
+!> Friction of an interface in explicit runs (doc/theory/contact.md, section 6.2): slip of each place
+!> in a step, and the tractions of all points from it. Only where the deck asks for friction.
+module friction_m
+  use contact_state_m, only : contact_state_t, contact_points_t, n_side
+  use contacts_m, only : contact_t, friction_rule_t
+  use friction_state_m, only : is_open
+  use geometry_m, only : separation
+  use kinds_m, only : wp
+  use law_friction_m, only : coefficient_of, return_traction
+  use lengths_m, only : competence_length
+  use nodal_average_m, only : average_values, share_out
+  implicit none
+  private
+  public :: take_increments, set_tractions_aside, rub_places, place_of_point
+
+  !> A place in a step.
+  type :: rub_t
+    real(wp) :: slip = 0.0_wp      !! of the step, m
+    real(wp) :: former = 0.0_wp    !! traction before, N/m^2
+    real(wp) :: pressure = 0.0_wp  !! N/m^2
+    real(wp) :: stiffness = 0.0_wp !! tangential, N/m^3
+    real(wp) :: most = huge(1.0_wp) !! largest traction whatever the pressure, N/m^2
+  end type rub_t
+
+contains
+
+  !> Before the present places are taken: displacements since the last call; none after a time
+  !> without contact.
+  pure subroutine take_increments(motion, memory)
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u(n), v(n-1/2)
+    type(contact_state_t), intent(inout) :: memory
+    integer :: i
+
+    associate (increment => memory%scratch%increment)
+      if (memory%is_stale) then
+        increment = 0.0_wp
+      else
+        do i = 1, size(memory%nodes)
+          increment(:, i) = motion(1:2, memory%nodes(i)) - memory%places(3:4, i)
+        end do
+      end if
+    end associate
+  end subroutine take_increments
+
+  !> Before the points are placed: all places are open until they are found to be pressed.
+  pure subroutine set_tractions_aside(memory)
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%scratch%former_traction = memory%friction%traction
+    memory%scratch%former_state = memory%friction%state
+    memory%friction%traction = 0.0_wp
+    memory%friction%state = is_open
+    memory%friction%stored = 0.0_wp
+  end subroutine set_tractions_aside
+
+  !> Tractions of all points, whose pressures are those of the springs alone.
+  pure subroutine rub_places(contact, has_unit_area, dt, memory)
+    type(contact_t), intent(in) :: contact
+    logical, intent(in) :: has_unit_area !! pressures are forces, N/m
+    real(wp), intent(in) :: dt           !! step that led to u, s
+    type(contact_state_t), intent(inout) :: memory
+
+    if (allocated(memory%node_pressure)) then
+      call rub_slave_nodes(contact%friction, dt, memory)
+    else if (allocated(memory%spots)) then
+      call rub_virtual_nodes(contact, dt, memory)
+    else
+      call rub_points(contact, has_unit_area, dt, memory)
+    end if
+  end subroutine rub_places
+
+  !> Types 1, 2, 3 and 5: each point is a place.
+  pure subroutine rub_points(contact, has_unit_area, dt, memory)
+    type(contact_t), intent(in) :: contact
+    logical, intent(in) :: has_unit_area
+    real(wp), intent(in) :: dt
+    type(contact_state_t), intent(inout) :: memory
+    type(rub_t) :: rub
+    integer :: p, place
+
+    memory%scratch%nodal(1, :) = 0.0_wp
+    do p = 1, memory%points%n
+      memory%points%traction(p) = 0.0_wp
+      if (.not. memory%points%pressure(p) > 0.0_wp) cycle
+      place = place_of_point(memory%points, p)
+      associate (points => memory%points)
+        rub%slip = slip_of(memory, points%slave_nodes(:, p), points%slave_weights(:, p), &
+          points%master_nodes(:, p), points%master_weights(:, p), points%normal(:, p), &
+          points%gap(p))
+        rub%former = former_traction(memory, p, place)
+        rub%pressure = points%pressure(p)
+        rub%stiffness = contact%friction%stiffness*points%stiffness(p)
+        rub%most = most_traction(contact%friction)
+        if (has_unit_area .and. contact%friction%most > 0.0_wp) rub%most = contact%friction%most &
+          *competence_length(contact%slave, memory%places(:, :memory%n_slave), place)
+      end associate
+      call rub_point(contact%friction, rub, dt, p, place, memory)
+    end do
+  end subroutine rub_points
+
+  !> One of them. Points at one place in a step (a node between two runs) go on from what it had, and
+  !> leave it their mean.
+  pure subroutine rub_point(rule, rub, dt, p, place, memory)
+    type(friction_rule_t), intent(in) :: rule
+    type(rub_t), intent(in) :: rub
+    real(wp), intent(in) :: dt
+    integer, intent(in) :: p, place
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: traction, area
+    integer :: state
+
+    call rub_one(rule, rub, dt, traction, state)
+    associate (friction => memory%friction, points => memory%points, &
+      total => memory%scratch%nodal(1, place))
+      points%traction(p) = traction
+      area = points%area(p)
+      friction%stored = friction%stored + area*traction**2/(2.0_wp*rub%stiffness)
+      if (friction%state(place) == is_open) then
+        friction%slip(place) = friction%slip(place) + rub%slip
+      else if (total + area > 0.0_wp) then
+        traction = (total*friction%traction(place) + area*traction)/(total + area)
+      end if
+      friction%traction(place) = traction
+      friction%state(place) = max(state, friction%state(place))
+      total = total + area
+    end associate
+  end subroutine rub_point
+
+  !> Traction in the step before. A master node that was none of the points then starts from what
+  !> the two ends of its slave segment had: of nothing it would lose that part of the shear.
+  pure function former_traction(memory, p, place) result(traction)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: p, place
+    real(wp) :: traction
+
+    associate (former => memory%scratch%former_traction, nodes => memory%points%slave_nodes(:, p))
+      traction = former(place)
+      if (nodes(1) /= nodes(2) .and. memory%scratch%former_state(place) == is_open) &
+        traction = sum(memory%points%slave_weights(:, p)*former(nodes))
+    end associate
+  end function former_traction
+
+  !> The place of a point at a node, slave or master.
+  pure function place_of_point(points, p) result(place)
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in) :: p
+    integer :: place
+
+    place = points%slave_nodes(1, p)
+    if (place /= points%slave_nodes(2, p)) place = points%master_nodes(1, p)
+  end function place_of_point
+
+  !> Type 4: virtual nodes, with the foot of each; all its portions have its traction.
+  pure subroutine rub_virtual_nodes(contact, dt, memory)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in) :: dt
+    type(contact_state_t), intent(inout) :: memory
+    type(rub_t) :: rub
+    integer :: p, half, place, spot
+
+    rub%most = most_traction(contact%friction)
+    rub%stiffness = contact%friction%stiffness*memory%slave_penalty
+    do p = 1, memory%points%n
+      memory%points%traction(p) = 0.0_wp
+      if (.not. memory%points%pressure(p) > 0.0_wp) cycle
+      associate (friction => memory%friction, points => memory%points, &
+        tracking => memory%slave_tracking, first => memory%points%slave_nodes(1, p))
+        half = merge(1, 2, points%slave_weights(1, p) > 0.5_wp)
+        place = 2*(first - 1) + half
+        if (friction%state(place) == is_open) then
+          spot = 2*(contact%slave%outgoing(first) - 1) + half
+          rub%slip = slip_of(memory, points%slave_nodes(:, p), points%slave_weights(:, p), &
+            memory%n_slave + contact%master%segments(:, tracking%segment(spot)), &
+            [1.0_wp - tracking%xi(spot), tracking%xi(spot)], tracking%normal(:, spot), &
+            tracking%gap(spot))
+          rub%former = memory%scratch%former_traction(place)
+          rub%pressure = points%pressure(p)
+          call rub_one(contact%friction, rub, dt, friction%traction(place), friction%state(place))
+          friction%slip(place) = friction%slip(place) + rub%slip
+        end if
+        points%traction(p) = friction%traction(place)
+        friction%stored = friction%stored + points%area(p)*points%traction(p)**2 &
+          /(2.0_wp*rub%stiffness)
+      end associate
+    end do
+  end subroutine rub_virtual_nodes
+
+  !> Types 6 and 7: slave nodes, with slips averaged as gaps are.
+  pure subroutine rub_slave_nodes(rule, dt, memory)
+    type(friction_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: dt
+    type(contact_state_t), intent(inout) :: memory
+    type(rub_t) :: rub
+    integer :: p, i
+
+    associate (friction => memory%friction, points => memory%points, nodal => memory%scratch%nodal)
+      do p = 1, points%n
+        points%traction(p) = slip_of(memory, points%slave_nodes(:, p), &
+          points%slave_weights(:, p), points%master_nodes(:, p), points%master_weights(:, p), &
+          points%normal(:, p), points%gap(p))
+      end do
+      call average_values(points, points%traction, memory%n_slave, nodal)
+      rub%stiffness = rule%stiffness*memory%slave_penalty
+      rub%most = most_traction(rule)
+      do i = 1, memory%n_slave
+        if (.not. memory%node_pressure(i) > 0.0_wp) cycle
+        rub%slip = nodal(1, i)
+        rub%former = memory%scratch%former_traction(i)
+        rub%pressure = memory%node_pressure(i)
+        call rub_one(rule, rub, dt, friction%traction(i), friction%state(i))
+        friction%slip(i) = friction%slip(i) + rub%slip
+        friction%stored = friction%stored + nodal(2, i)*friction%traction(i)**2 &
+          /(2.0_wp*rub%stiffness)
+      end do
+      call share_out(points%n, points%slave_nodes, points%slave_weights, friction%traction, &
+        points%traction)
+    end associate
+  end subroutine rub_slave_nodes
+
+  !> Slip of a step of the slave side of a point over its master side, along t = (-n_y, n_x), m: the
+  !> motion of the foot over the segment that has the normal, L d(xi). Its second term takes off what
+  !> the turn of that segment moves at a distance; without it a rotation of all would slip. That
+  !> segment is the master's, or the slave's where the master side is one node.
+  pure function slip_of(memory, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
+      gap) result(slip)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: slave_nodes(n_side), master_nodes(n_side)
+    real(wp), intent(in) :: slave_weights(n_side), master_weights(n_side)
+    real(wp), intent(in) :: normal(2), gap
+    real(wp) :: slip
+    real(wp) :: relative(2), t(2), turn(2)
+    integer :: owner(n_side)
+
+    associate (du => memory%scratch%increment)
+      relative = slave_weights(1)*du(:, slave_nodes(1)) + slave_weights(2)*du(:, slave_nodes(2)) &
+        - master_weights(1)*du(:, master_nodes(1)) - master_weights(2)*du(:, master_nodes(2))
+      owner = master_nodes
+      if (owner(1) == owner(2)) owner = slave_nodes
+      t = separation(memory%places(:, owner(2)), memory%places(:, owner(1)))
+      turn = du(:, owner(2)) - du(:, owner(1))
+    end associate
+    slip = normal(1)*relative(2) - normal(2)*relative(1) &
+      + gap*(t(2)*turn(1) - t(1)*turn(2))/max(t(1)**2 + t(2)**2, tiny(1.0_wp))
+  end function slip_of
+
+  !> Largest traction of a rule whatever the pressure.
+  pure function most_traction(rule) result(most)
+    type(friction_rule_t), intent(in) :: rule
+    real(wp) :: most
+
+    most = huge(1.0_wp)
+    if (rule%most > 0.0_wp) most = rule%most
+  end function most_traction
+
+  !> Traction and state of a place after a step.
+  pure subroutine rub_one(rule, rub, dt, traction, state)
+    type(friction_rule_t), intent(in) :: rule
+    type(rub_t), intent(in) :: rub
+    real(wp), intent(in) :: dt
+    real(wp), intent(out) :: traction
+    integer, intent(out) :: state
+    real(wp) :: speed
+
+    speed = 0.0_wp
+    if (dt > 0.0_wp) speed = abs(rub%slip)/dt
+    call return_traction(rub%former + rub%stiffness*rub%slip, &
+      min(coefficient_of(rule, speed)*rub%pressure, rub%most), traction, state)
+  end subroutine rub_one
+
+end module friction_m
