@@ -4,7 +4,7 @@ module contact_log_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_penalty_m, only : mean_length, built_in_penalty
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t, contact_kind_t, kind_text, penalty_share
+  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, kind_text, penalty_share
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
@@ -50,12 +50,26 @@ contains
     if (kind%has_strict_rule) call write_log(log, '  '//overhang_text(contact%strict))
     if (contact%damping > 0.0_wp) call write_log(log, '  damping: ' &
       //to_text(contact%damping)//' of critical')
+    if (allocated(memory%friction%state)) call write_log(log, '  friction: ' &
+      //friction_text(contact%friction))
     if (memory%facing%is_used) call write_log(log, '  whole outlines: at the start ' &
       //runs_text(memory%facing%present%slave)//' of the slave and ' &
       //runs_text(memory%facing%present%master)//' of the master face each other')
     call write_log(log, '  deepest first contact: '//to_text(minval( &
       memory%slave_tracking%spot_depth))//' m or less')
   end subroutine log_contact
+
+  !> The rule of friction.
+  pure function friction_text(rule) result(text)
+    type(friction_rule_t), intent(in) :: rule
+    character(:), allocatable :: text
+
+    text = 'coefficient '//to_text(rule%at_rest)
+    if (rule%decay > 0.0_wp .and. abs(rule%at_rest - rule%sliding) > 0.0_wp) text = text &
+      //' at rest, '//to_text(rule%sliding)//' in fast sliding, decay '//to_text(rule%decay)//' s/m'
+    if (rule%most > 0.0_wp) text = text//', stress at most '//to_text(rule%most)//' N/m^2'
+    text = text//'; tangential penalty '//to_text(rule%stiffness)//' of the normal one'
+  end function friction_text
 
   !> `n runs with m segments`.
   pure function runs_text(surface) result(text)

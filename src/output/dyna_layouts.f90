@@ -56,7 +56,7 @@ contains
     case (table_matsum)
       names = 'time,part,kinetic,internal,hourglass,momentum_x,momentum_y,mass'
     case (table_sleout)
-      names = 'time,cycle,interface,energy,friction,damping'
+      names = 'time,cycle,interface,energy,damping,friction'
     case (table_spcforc)
       names = 'time,node,fx,fy'
     end select
@@ -124,8 +124,7 @@ contains
     end if
     call add_line('', lines, n_line)
     values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), &
-      row(9) + row(18), &
-      row(10), 0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(14), row(15), 0.0_wp]
+      row(9) + row(18), row(10), 0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(14), row(15), 0.0_wp]
     do i = 1, n_label
       write (line, '(ss,a,es14.5)') labels(i), tidy(values(i))
       call add_line(line, lines, n_line)
@@ -249,7 +248,7 @@ contains
     call add_line(line, lines, n_line)
     call add_line('', lines, n_line)
     do i = 1, size(rows, 2)
-      write (line, '(ss,i10,es13.4)') nint(rows(3, i)), tidy(rows(4, i) + rows(6, i) + rows(5, i))
+      write (line, '(ss,i10,es13.4)') nint(rows(3, i)), tidy(sum(rows(4:6, i)))
       call add_line(line, lines, n_line)
     end do
     call add_line('', lines, n_line)

@@ -268,9 +268,9 @@ contains
     call put(row, 'cycle', shot%cycle)
     call put(row, 'interface', id)
     call put(row, 'energy', result%energy)
-    call put(row, 'friction', result%friction)
     call put(row, 'damping', result%damping)
     call put(row, 'stored', result%stored)
+    call put(row, 'friction', result%friction)
   end subroutine put_sleout
 
   !> Force of the constraint on a fixed node.

@@ -24,8 +24,10 @@ def stock(friction="", card_3="", name="AUTOMATIC_NODE_TO_SURFACE"):
 
 @pytest.fixture
 def asked(slideline, tmp_path):
-    """(field or command line, interface) of all friction that a deck asks for, and all that is said."""
-    def check(text, *words):
+    """(field or command line, interface) of all friction that an implicit run refuses, and all that is said."""
+    def check(text, *words, implicit=True):
+        if implicit:
+            text = text.replace("*END", "*CONTROL_IMPLICIT_GENERAL\n1,1.0e-4\n*END")
         (tmp_path / "deck.k").write_text(text)
         done = slideline("check", "i=deck.k", *words)
         said = done.stdout + done.stderr
@@ -77,13 +79,13 @@ def test_friction_that_counts(asked, cards, control, words, expected):
     (stock(), "0.4,", (), None),
 ])
 def test_friction_that_is_likely_not_meant(asked, cards, control, words, warning):
-    said = asked(deck(cards, control), *words)[1]
+    said = asked(deck(cards, control), *words, implicit=False)[1]
     assert said.count("warning: ") == bool(warning), said
     assert not warning or warning in said, said
 
 
 @pytest.mark.parametrize("word", ["fs=-0.1", "fd=-0.1", "dc=-1", "vc=-1", "fs=x", "tfac=0"])
 def test_no_friction_on_the_command_line(asked, word):
-    said = asked(deck(ours()), word)[1]
+    said = asked(deck(ours()), word, implicit=False)[1]
     assert f'"{word}" on the command line: the value is not a number ' in said
     assert ("of 0 or more" in said) == (not word.startswith("tfac"))

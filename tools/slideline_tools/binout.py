@@ -60,6 +60,8 @@ def glstat_branch(table, _):
     """Energies; the work of the bulk viscosity counts as internal energy, as in DYNA."""
     states = {name: table[column] for name, column in GLSTAT.items() if column in table}
     states["internal_energy"] = table["internal"] + table["viscous"]
+    if "friction" in table:
+        states["sliding_interface_energy"] = table["contact"] + table["friction"]
     zero = np.zeros(len(table))
     for name in ("spring_and_damper_energy", "eroded_kinetic_energy", "eroded_internal_energy",
                  "eroded_hourglass_energy", "global_z_velocity"):
@@ -149,8 +151,9 @@ def sleout_branch(table, _):
     """Energies of interfaces, one number each."""
     ids = entities(table, "interface")
     states = by_instant(table, len(ids), {"slave": "energy"})
-    if "damping" in table:
-        states["slave"] = states["slave"] + by_instant(table, len(ids), {"slave": "damping"})["slave"]
+    for part in ("damping", "friction"):
+        if part in table:
+            states["slave"] = states["slave"] + by_instant(table, len(ids), {"slave": part})["slave"]
     states["cycle"] = table["cycle"].reshape(-1, len(ids))[:, 0]
     states["total_slave"] = states["total_energy"] = states["slave"].sum(axis=1)
     states["total_master"] = np.zeros(len(states["time"]))

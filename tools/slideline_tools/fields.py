@@ -15,6 +15,9 @@ LABELS = {
     "contact_force": ("contact force", True),
     "contact_pressure": ("contact pressure", True),
     "gap": ("contact gap", True),
+    "contact_traction": ("friction traction", True),
+    "contact_slip": ("slip", True),
+    "contact_state": ("0 open, 1 stick, 2 slip", False),
 }
 
 

@@ -153,7 +153,8 @@ class Results:
         """(n_state, n_node) or (n_state, n_node, 3) of a field at the nodes.
 
         displacement (length), velocity (length/time), contact_force (force per unit depth),
-        contact_pressure (stress), gap (length, negative in penetration), node_id.
+        contact_pressure (stress), gap (length, negative in penetration), node_id; of runs with
+        friction contact_traction (stress), contact_slip (length) and contact_state.
         """
         self._require(name, self.point_fields, "point")
         return self._stacked(f"PointData/{name}", f"Steps/PointDataOffsets/{name}", self.n_node)

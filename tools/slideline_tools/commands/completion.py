@@ -99,5 +99,6 @@ def known_values() -> dict[str, list[str]]:
     from slideline_tools.compare import MEASURES
     # Without components: a colon parts words in the shell.
     return {"--field": ["plastic_strain", "mises", "pressure", "stress", "displacement", "velocity",
-                        "contact_force", "contact_pressure", "gap"],
+                        "contact_force", "contact_pressure", "gap", "contact_traction", "contact_slip",
+                        "contact_state"],
             "--show": list(WHAT), "--measures": [name for name in MEASURES if " " not in name]}

@@ -31,7 +31,8 @@ EXAMPLES = {
   slideline-tools plot {FILE} --contact --state 28 --state 30 -o x.png
 
 Fields: displacement, velocity, contact_force (with :x or :y, else the length), contact_pressure,
-gap, stress:xx (yy, zz, xy), plastic_strain, pressure, mises. `info` lists those of a file.""",
+gap, contact_traction, contact_slip, contact_state (with friction), stress:xx (yy, zz, xy),
+plastic_strain, pressure, mises. `info` lists those of a file.""",
     "animate": f"""Example:
 
   slideline-tools animate {FILE} --field mises --rate 24 -o x.gif""",

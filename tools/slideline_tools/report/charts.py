@@ -13,8 +13,8 @@ from slideline_tools.results import Results
 SIZE = (5.2, 2.7)
 MOST_LINES = 8
 STYLE = plots.STYLE | {"svg.hashsalt": "slideline", "axes.formatter.use_mathtext": False}
-ENERGIES = ("kinetic", "internal", "hourglass", "viscous", "damping", "contact", "leapfrog", "external_work",
-            "total")
+ENERGIES = ("kinetic", "internal", "hourglass", "viscous", "damping", "contact", "friction", "leapfrog",
+            "external_work", "total")
 
 
 def lines(series: list[tuple[str, np.ndarray, np.ndarray]], ylabel: str, xlabel: str = "time",
