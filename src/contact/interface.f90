@@ -11,20 +11,21 @@ module interface_m
   use contact_penalty_m, only : set_penalties
   use contact_scatter_m, only : scatter_forces, scatter_friction
   use contact_springs_m, only : begin_look, measure_springs, end_look
+  use contact_work_m, only : take_apart, hand_over, count_work
   use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
     allocate_tractions, allocate_scratch, is_free
   use contacts_m, only : contact_t, has_friction
   use crossing_m, only : crossings_t, find_crossings, catch_crossings
   use damping_m, only : damp_points
-  use energy_limit_m, only : keep_former_springs, limit_forces, follow_largest, lend
+  use energy_limit_m, only : keep_former_springs, limit_forces, lend
   use energy_limit_state_m, only : allocate_limit
   use facing_change_m, only : rest_loose_nodes
   use facing_look_m, only : has_outline, start_facing, look_at_facing, make_present
-  use friction_m, only : take_increments, set_tractions_aside, rub_places
+  use friction_m, only : take_increments, rub_places
   use friction_state_m, only : allocate_friction
   use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
     start_slave_tracking, start_master_tracking, start_segments
-  use gather_m, only : gather_places, take_force, power_of, keep_former, add_force
+  use gather_m, only : gather_places, take_force, keep_former
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
@@ -200,21 +201,6 @@ contains
     call take_apart(motion, memory, apart)
   end subroutine set_forces_aside
 
-  !> Power of the former forces of damping and of friction, which are zero then; nothing is left of
-  !> the tractions but what friction goes on from.
-  pure subroutine take_apart(motion, memory, apart)
-    real(wp), intent(in), contiguous :: motion(:, :)
-    type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(out) :: apart(2) !! W/m
-
-    apart = 0.0_wp
-    if (allocated(memory%damping_force)) &
-      call take_force(memory%nodes, motion, memory%damping_force, apart(1))
-    if (.not. allocated(memory%friction%force)) return
-    call take_force(memory%nodes, motion, memory%friction%force, apart(2))
-    call set_tractions_aside(memory)
-  end subroutine take_apart
-
   !> The springs as pressed, in calls that look at them. Those loaded at time zero hold energy that
   !> no force has put in.
   pure subroutine look_at_springs(cycle, memory)
@@ -224,37 +210,6 @@ contains
     if (memory%watch%is_due .or. cycle == 0) call measure_springs(memory)
     if (cycle == 0) memory%energy = memory%watch%stored
   end subroutine look_at_springs
-
-  !> Add the forces to those of the mesh and count the work of a step: half of it was done by the
-  !> former forces.
-  pure subroutine hand_over(dt, motion, former, memory, force)
-    real(wp), intent(in) :: dt
-    real(wp), intent(in), contiguous :: motion(:, :)
-    real(wp), intent(in) :: former(2)             !! power of the former damping and friction, W/m
-    type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(inout), contiguous :: force(:, :)
-    real(wp) :: power, apart(2)
-
-    call add_force(memory%nodes, memory%scratch%former_force, memory%force, motion, force, power)
-    apart = former
-    if (allocated(memory%damping_force)) apart(1) = apart(1) &
-      + power_of(memory%nodes, motion, memory%damping_force)
-    if (allocated(memory%friction%force)) apart(2) = apart(2) &
-      + power_of(memory%nodes, motion, memory%friction%force)
-    call count_work(dt, power, apart, memory)
-    call follow_largest(memory%energy, memory%limit)
-  end subroutine hand_over
-
-  !> Work of half a step, that of damping and of friction apart.
-  pure subroutine count_work(dt, power, apart, memory)
-    real(wp), intent(in) :: dt
-    real(wp), intent(in) :: power, apart(2) !! of all contact forces, and of damping and friction
-    type(contact_state_t), intent(inout) :: memory
-
-    memory%energy = memory%energy - 0.5_wp*dt*(power - apart(1) - apart(2))
-    memory%damping_work = memory%damping_work - 0.5_wp*dt*apart(1)
-    memory%friction%work = memory%friction%work - 0.5_wp*dt*apart(2)
-  end subroutine count_work
 
   !> Contact forces of one interface at the given u, added to `force`; no damping, no energy, no
   !> clock. The memory is taken from the last converged step: give a copy of it to each trial, so

@@ -124,7 +124,8 @@ contains
     end if
     call add_line('', lines, n_line)
     values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), &
-      row(9) + row(18), row(10), 0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(14), row(15), 0.0_wp]
+      row(9) + row(18), row(10), 0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(14), &
+      row(15), 0.0_wp]
     do i = 1, n_label
       write (line, '(ss,a,es14.5)') labels(i), tidy(values(i))
       call add_line(line, lines, n_line)

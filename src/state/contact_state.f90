@@ -26,8 +26,8 @@ module contact_state_m
   private
   public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
     segment_memory_t, contact_scratch_t, allocate_points, allocate_loads, &
-    allocate_tractions, make_room, allocate_tracking, allocate_grid, allocate_scratch, n_side, n_load, &
-    is_free, is_in_front, is_touching, is_behind
+    allocate_tractions, make_room, allocate_tracking, allocate_grid, allocate_scratch, n_side, &
+    n_load, is_free, is_in_front, is_touching, is_behind
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
@@ -113,8 +113,9 @@ module contact_state_m
     real(wp), allocatable :: spring(:, :)   !! (2, n_slave + n_master) forces of the normal springs
                                             !! alone; only where there are others
     real(wp), allocatable :: former_spring(:, :) !! the same of the call before
-    real(wp), allocatable :: increment(:, :) !! (2, n_slave + n_master) displacements of the step, m;
-                                            !! this and the next two only where there is friction
+    real(wp), allocatable :: increment(:, :) !! (2, n_slave + n_master) displacements of the
+                                            !! step, m; this and the next two only where there is
+                                            !! friction
     real(wp), allocatable :: former_traction(:) !! (n_place) of the call before
     integer, allocatable :: former_state(:) !! (n_place) the same
     integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps

@@ -13,8 +13,8 @@ module friction_state_m
 
   !> Arrays are allocated in explicit runs of interfaces with friction alone.
   type :: friction_memory_t
-    real(wp), allocatable :: traction(:)  !! (n_place) of the last call, before the energy law, N/m^2
-                                          !! (N/m for type 1); 0 where open
+    real(wp), allocatable :: traction(:)  !! (n_place) of the last call, before the energy law,
+                                          !! N/m^2 (N/m for type 1); 0 where open
     integer, allocatable :: state(:)      !! (n_place) one of the constants above
     real(wp), allocatable :: slip(:)      !! (n_place) sum of all steps in contact, m
     real(wp), allocatable :: force(:, :)  !! (2, n_slave + n_master) the part of the contact forces

@@ -21,7 +21,7 @@ LAYERS = {
     "contact_search": {"base", "model", "state", "contact_chain"},
     "contact_pieces": {"base", "model", "state", "contact_chain", "contact_search"},
     "contact_place": {"base", "model", "state", "contact_chain", "contact_search", "contact_pieces"},
-    "contact_law": {"base", "model", "state"},
+    "contact_law": {"base", "model", "state", "contact_chain"},
     "contact_tangent": {"base", "linear", "model", "state", "contact_chain", "contact_pieces", "contact_place", "contact_law"},
     "contact": {"base", "linear", "model", "state", "contact_chain", "contact_search", "contact_pieces",
                 "contact_place", "contact_law", "contact_tangent"},

@@ -20,6 +20,7 @@ KEPT = {
         "changes": "kept one by one"}),
     "contact_change_t": ("state/contact_watch.f90", "output/restart_contact.f90", "change%", {}),
     "energy_limit_t": ("state/energy_limit_state.f90", "output/restart_contact.f90", "limit%", {}),
+    "friction_memory_t": ("state/friction_state.f90", "output/restart_contact.f90", "friction%", {}),
     "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {
         "n_aside": "set by each update"}),
     "bucket_grid_t": ("state/contact_state.f90", "output/restart_contact.f90", "grid%", {}),
@@ -65,7 +66,7 @@ KEPT = {
 }
 #: types of src/state that hold no memory
 WITHOUT_MEMORY = {"contact_scratch_t", "piece_table_t", "snapshot_t", "interface_result_t", "part_result_t", "slave_result_t",
-                  "wall_result_t", "energies_t"}
+                  "wall_result_t", "rubbed_t", "energies_t"}
 
 
 def types_of(path):

@@ -48,9 +48,10 @@ contains
       points%master_weights, points%load, force, damping_force)
   end subroutine scatter_damped
 
-  !> Add the tractions of all points to the forces of the interface's nodes and to those of friction,
-  !> which are zero before. They act along -t = -(-n_y, n_x): the same sums as of the pressures, each
-  !> turned by a right angle. Damping may leave a point with a traction alone: it counts too.
+  !> Add the tractions of all points to the forces of the interface's nodes and to those of
+  !> friction, which are zero before. They act along -t = -(-n_y, n_x): the same sums as of the
+  !> pressures, each turned by a right angle. Damping may leave a point with a traction alone: it
+  !> counts too.
   pure subroutine scatter_friction(memory)
     type(contact_state_t), intent(inout) :: memory
     integer :: i

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Friction of an interface in explicit runs (doc/theory/contact.md, section 6.2): slip of each place
-!> in a step, and the tractions of all points from it. Only where the deck asks for friction.
+!> Friction of an interface in explicit runs (doc/theory/contact.md, section 6.2): slip of each
+!> place in a step, and the tractions of all points from it. Only where the deck asks for friction.
 module friction_m
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contacts_m, only : contact_t, friction_rule_t
@@ -99,8 +99,8 @@ contains
     end do
   end subroutine rub_points
 
-  !> One of them. Points at one place in a step (a node between two runs) go on from what it had, and
-  !> leave it their mean.
+  !> One of them. Points at one place in a step (a node between two runs) go on from what it had,
+  !> and leave it their mean.
   pure subroutine rub_point(rule, rub, dt, p, place, memory)
     type(friction_rule_t), intent(in) :: rule
     type(rub_t), intent(in) :: rub
@@ -218,10 +218,11 @@ contains
     end associate
   end subroutine rub_slave_nodes
 
-  !> Slip of a step of the slave side of a point over its master side, along t = (-n_y, n_x), m: the
-  !> motion of the foot over the segment that has the normal, L d(xi). Its second term takes off what
-  !> the turn of that segment moves at a distance; without it a rotation of all would slip. That
-  !> segment is the master's, or the slave's where the master side is one node.
+  !> Slip of a step of the slave side of a point over its master side, along t = (-n_y, n_x), m:
+  !> the motion of the foot over the segment that has the normal, L d(xi)
+  !> (doc/theory/contact.md, section 6.2). Its second term takes off what the turn of that segment
+  !> moves at a distance; without it a rotation of all would slip. That segment is the master's, or
+  !> the slave's where the master side is one node.
   pure function slip_of(memory, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
       gap) result(slip)
     type(contact_state_t), intent(in) :: memory

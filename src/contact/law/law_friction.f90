@@ -7,7 +7,7 @@ module law_friction_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: coefficient_of, return_traction, dissipated_by
+  public :: coefficient_of, return_traction
 
 contains
 
@@ -30,15 +30,5 @@ contains
     state = merge(slips, sticks, abs(trial) > limit)
     traction = merge(sign(limit, trial), trial, abs(trial) > limit)
   end subroutine return_traction
-
-  !> What a return dissipates per unit of area, J/m^2: the traction over the part of the slip that
-  !> the spring does not take.
-  elemental function dissipated_by(trial, traction, stiffness) result(density)
-    real(wp), intent(in) :: trial, traction !! N/m^2
-    real(wp), intent(in) :: stiffness       !! N/m^3
-    real(wp) :: density
-
-    density = abs(traction)*(abs(trial) - abs(traction))/stiffness
-  end function dissipated_by
 
 end module law_friction_m

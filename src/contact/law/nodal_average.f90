@@ -24,7 +24,7 @@ contains
     type(contact_points_t), intent(in) :: points
     real(wp), intent(in), contiguous :: values(:) !! (points%n or more)
     integer, intent(in) :: n_slave
-    real(wp), intent(inout) :: nodal(2, *) !! (2, n_slave or more) out: (1, :) averages, (2, :) areas
+    real(wp), intent(inout) :: nodal(2, *) !! (2, n_slave or more) out: averages, areas
     integer :: node
 
     do node = 1, n_slave

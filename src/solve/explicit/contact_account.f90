@@ -111,8 +111,8 @@ contains
       //to_text(limit%least_time)
   end function limit_text
 
-  !> At the end of a run: what the friction of interfaces has dissipated, each interface whose forces
-  !> were limited, and each whose springs have made or lost much, or had.
+  !> At the end of a run: what the friction of interfaces has dissipated, each interface whose
+  !> forces were limited, and each whose springs have made or lost much, or had.
   subroutine report_contact_energies(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

@@ -48,6 +48,7 @@ def check_forces(run, name, result, friction):
               1e-12, "max")
     run.check(f"{name}: energy", energies["total"] - energies["external_work"], np.full_like(
         energies["time"], energies["total"][0]), 1e-3 * max(energies["kinetic"].max(), energies["total"][0]), "abs")
+    run.check(f"{name}: friction of glstat and of rwforc", energies["friction"], force["friction"], 1e-14, "rel")
     run.true(f"{name}: friction takes energy", np.all(np.diff(force["friction"]) > -1e-9 * force["friction"].max()))
 
 
