@@ -52,7 +52,7 @@ contains
     if (.not. goes_on) call remove_file(path, error)
     if (allocated(error)) return
     allocate (file%times(n_planned))
-    if (has_friction_fields(model)) file%n_point_field = n_point_field
+    if (any(has_friction(model%contacts))) file%n_point_field = n_point_field
     call create_file(file, error)
     if (allocated(error)) return
     call make_group(file%id, 'VTKHDF', error)
@@ -69,14 +69,6 @@ contains
     allocate (file%rows(3*block_rows))
     call note_failure(file, error)
   end subroutine open_results
-
-  !> Whether there are fields of friction.
-  pure function has_friction_fields(model) result(has)
-    type(model_t), intent(in) :: model
-    logical :: has
-
-    has = any(has_friction(model%contacts)) .and. .not. model%controls%implicit%is_on
-  end function has_friction_fields
 
   !> Append one state and bring it into the file whole.
   subroutine append_state(file, model, snapshot, error)
