@@ -11,14 +11,14 @@ from meshes import Deck, grid
 
 HEADERS = {
     "glstat": "time,cycle,dt,kinetic,internal,hourglass,viscous,damping,contact,external_work,"
-              "total,energy_ratio,leapfrog",
+              "total,energy_ratio,leapfrog,friction",
     "rcforc": "time,interface,side,fx,fy,n_active",
     "nodout": "time,node,x,y,ux,uy,vx,vy,ax,ay",
-    "contact": "time,interface,node,s,x,y,gap,pressure,fx,fy,length",
+    "contact": "time,interface,node,s,x,y,gap,pressure,fx,fy,length,traction,slip,state",
     "matsum": "time,part,kinetic,internal,hourglass,momentum_x,momentum_y,mass",
     "timing": "phase,seconds,calls,share",
 }
-INTEGERS = {"cycle", "interface", "n_active", "node", "part", "calls"}
+INTEGERS = {"cycle", "interface", "n_active", "node", "part", "calls", "state"}
 REAL = re.compile(r"-?\d\.\d{16}E[+-]\d{2,3}")
 PHASES = {"elements", "contact_search", "contact_pairing", "contact_force", "nodes", "output", "input",
           "solver", "total"}

@@ -22,7 +22,7 @@ from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
 
 HEAD = 512
 VERSION = re.compile(rb"restart \d+")
-#: scene -> (deck of a contact type, cycles, cycle of the restart)
+#: scene -> (deck of a contact type, cycles, cycle of the restart, words of the first run)
 SCENES = {
     "collision": (lambda kind: scenes.collision(1, ctype=kind), 200, 90),
     "sliding": (lambda kind: scenes.sliding(1, ctype=kind), 6000, 4500),
@@ -30,6 +30,8 @@ SCENES = {
     "block": (lambda kind: scenes.block(ctype=kind), 90, 47),
     "hertz": (lambda kind: scenes.hertz(1, ctype=kind), 1500, 1100),
     "oblique": (lambda kind: scenes.oblique(ctype=kind), 280, 155),
+    "collision with friction": (lambda kind: scenes.collision(1, ctype=kind), 200, 90, "fs=0.4", "fd=0.2", "dc=0.01"),
+    "oblique with friction": (lambda kind: scenes.oblique(ctype=kind), 280, 155, "fs=0.3", "tfac=0.5"),
     "patch": (lambda kind: scenes.patch(ctype=kind), 300, 170),
     "plate": (lambda kind: scenes.symmetric_plate(16, 8, True), 300, 170),
 }
@@ -85,13 +87,14 @@ def part_of(folder, target, *names):
 
 @pytest.mark.parametrize("scene, kind", CASES)
 def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
-    make, cycles, middle = SCENES[scene]
+    make, cycles, middle, *words = SCENES[scene]
     text = re.sub(r"(\*CONTROL_TERMINATION\n(?:\$.*\n)*) *([^\s,]+).*\n", rf"\g<1>\g<2>,{cycles}\n",
                   make(kind), count=1)
-    done = slideline("d=whole", deck=with_files(text, dump=middle))
+    done = slideline("d=whole", *words, deck=with_files(text, dump=middle))
     assert done.returncode == 0, done.stderr
     whole = tmp_path / "whole"
-    if scene not in ("plate", "oblique"):  # type 1 of the oblique impact may have let go by then
+    assert not words or numbers(whole / "job.glstat.csv", "friction")[-1] > 0.0
+    if scene not in ("plate", "oblique", "oblique with friction"):  # type 1 of the oblique impact may have let go by then
         active, at = numbers(whole / "job.rcforc.csv", "n_active"), middle / cycles
         assert active[int(at * len(active)):].max() > 0
     rest = part_of(whole, tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
@@ -238,7 +241,7 @@ def test_head_is_that_of_an_independent_program(slideline, tmp_path):
     assert slideline("d=a", deck=with_files(drop(), dump=100)).returncode == 0
     data = (tmp_path / "a" / "job.dump01.h5").read_bytes()
     lines = data[:HEAD].decode().splitlines()
-    assert lines[:3] == ["slideline restart 11", f"length {len(data) - HEAD}",
+    assert lines[:3] == ["slideline restart 12", f"length {len(data) - HEAD}",
                          f"checksum {zlib.crc32(data[HEAD:]):08X}"]
     with h5py.File(tmp_path / "a" / "job.dump01.h5") as stream:
         assert stream["state/cycle"][0] == 100
