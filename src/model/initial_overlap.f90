@@ -18,12 +18,23 @@ module initial_overlap_m
   !> Deep places for which all segments are looked at; bodies with more of them overlap anyway.
   integer, parameter :: most_looks = 1000
 
+  !> Cosine of the angle between two outward normals from which on they look the same way.
+  real(wp), parameter :: same_way = 0.5_wp
+
+  !> A place of a surface that is looked at.
+  type :: place_t
+    real(wp) :: x(2)
+    integer :: nodes(2)           !! mesh: node of the place twice, or ends of its segment
+    real(wp) :: normal(2)         !! outward, 0 at a node
+    integer :: beside(5)          !! segments next to it where it lies on the surface asked, or 0
+  end type place_t
+
   !> The place of one surface that is deepest in the bodies of another, by the depth allowed there.
   type :: overlap_t
-    integer :: nodes(2) = 0     !! mesh: node of the place twice, or ends of its segment; 0: none
-    integer :: segment = 0      !! of the other surface, the nearest
-    real(wp) :: depth = 0.0_wp  !! distance to that, m
-    real(wp) :: allowed = 0.0_wp !! half of the row of elements behind it, m
+    integer :: nodes(2) = 0       !! as above
+    integer :: segment = 0        !! of the other surface; 0: nothing found
+    real(wp) :: depth = 0.0_wp    !! distance to that, m
+    real(wp) :: allowed = 0.0_wp  !! half of the row of elements behind it, m
   end type overlap_t
 
 contains
@@ -49,35 +60,42 @@ contains
     pair = 0
   end subroutine find_crossing
 
-  !> The place of `own` that is deepest behind `other`: of nodes, middles of segments, and middles
-  !> of what of a segment lies between two crossings, those as deep as half of the row of elements
-  !> or deeper. What stands nearest to an open end of `other` is no contact and is left alone, and
-  !> so are the segments next to its own where both are one surface.
+  !> The place of `own` that is deepest behind `other`, where it is half of a row of elements deep or
+  !> deeper behind all segments but those that look the same way as its own: these it has come
+  !> through from behind. Places are nodes, middles of segments, and middles of what of a segment lies
+  !> between two crossings. What stands nearest to an open end of `other` is no contact and is left
+  !> alone, and so are the segments next to its own where both are one surface.
   pure subroutine find_overlap(model, own, other, view, is_same, found)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, other
     type(body_view_t), intent(in) :: view !! of `other`
     logical, intent(in) :: is_same
     type(overlap_t), intent(out) :: found
-    integer :: s, i, n, n_look, beside(5), ends(2), crossed(most_crossed)
+    integer :: s, i, n, n_look, ends(2), crossed(most_crossed)
     real(wp) :: x(2, 2), at(most_crossed)
+    type(place_t) :: place
 
     n_look = 0
     do s = 1, own%n_segment
       if (n_look >= most_looks) return
       ends = own%nodes(own%segments(:, s))
       x = ends_of(model, own, s)
-      beside = 0
-      if (is_same) beside = segments_beside(own, s)
-      call look_at_place(model, other, view, x(:, 1), ends([1, 1]), beside, n_look, found)
-      if (own%next(s) == 0) &
-        call look_at_place(model, other, view, x(:, 2), ends([2, 2]), beside, n_look, found)
-      call look_at_place(model, other, view, 0.5_wp*(x(:, 1) + x(:, 2)), ends, beside, n_look, &
-        found)
+      place%beside = 0
+      if (is_same) place%beside = segments_beside(own, s)
+      place%normal = 0.0_wp
+      do i = 1, merge(2, 1, own%next(s) == 0)
+        place%x = x(:, i)
+        place%nodes = ends(i)
+        call look_at_place(model, other, view, place, n_look, found)
+      end do
+      place%normal = normal_of(x)
+      place%nodes = ends
+      place%x = 0.5_wp*(x(:, 1) + x(:, 2))
+      call look_at_place(model, other, view, place, n_look, found)
       call list_crossed(model, other, view, x, n, crossed, at)
       do i = 2, n
-        call look_at_place(model, other, view, x(:, 1) + 0.5_wp*(at(i - 1) + at(i)) &
-          *(x(:, 2) - x(:, 1)), ends, beside, n_look, found)
+        place%x = x(:, 1) + 0.5_wp*(at(i - 1) + at(i))*(x(:, 2) - x(:, 1))
+        call look_at_place(model, other, view, place, n_look, found)
       end do
     end do
   end subroutine find_overlap
@@ -95,61 +113,61 @@ contains
   end function segments_beside
 
   !> Keep one place if it is too deep and the deepest so far.
-  pure subroutine look_at_place(model, other, view, x, carriers, beside, n_look, found)
+  pure subroutine look_at_place(model, other, view, place, n_look, found)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: other
     type(body_view_t), intent(in) :: view
-    real(wp), intent(in) :: x(2)
-    integer, intent(in) :: carriers(2), beside(5)
+    type(place_t), intent(in) :: place
     integer, intent(inout) :: n_look
     type(overlap_t), intent(inout) :: found
-    integer :: k, node, near(8), segment
-    real(wp) :: depth
+    integer :: k, node, near(8)
+    type(overlap_t) :: new
 
-    if (.not. is_inside_body(view%finder, model, x, carriers)) return
-    associate (corners => model%mesh%element_nodes(:, element_at(view%finder, model, x, carriers)))
+    if (.not. is_inside_body(view%finder, model, place%x, place%nodes)) return
+    associate (corners => model%mesh%element_nodes(:, &
+      element_at(view%finder, model, place%x, place%nodes)))
       do k = 1, 4
         near(2*k - 1:2*k) = 0
         node = view%local(corners(k))
         if (node > 0) near(2*k - 1:2*k) = [other%incoming(node), other%outgoing(node)]
       end do
     end associate
-    call find_nearest_of(model, other, x, beside, near, segment, depth)
-    if (segment > 0) then
-      if (depth < half_row(model, other, segment)*(1.0_wp - hair)) return
-    end if
+    call measure(model, other, place, near, new)
+    if (new%segment > 0 .and. new%depth < new%allowed) return
     n_look = n_look + 1
-    call find_nearest_of(model, other, x, beside, [(k, k=1, other%n_segment)], segment, depth)
-    if (segment == 0) return
-    associate (allowed => half_row(model, other, segment))
-      if (depth < allowed*(1.0_wp - hair) .or. depth*found%allowed <= found%depth*allowed &
-        .and. found%segment > 0) return
-      if (is_at_open_end(model, other, segment, x)) return
-      found = overlap_t(carriers, segment, depth, allowed)
-    end associate
+    call measure(model, other, place, [(k, k=1, other%n_segment)], new)
+    if (new%segment == 0 .or. new%depth < new%allowed) return
+    if (is_at_open_end(model, other, new%segment, place%x)) return
+    if (found%segment > 0) then
+      if (new%depth*found%allowed <= found%depth*new%allowed) return
+    end if
+    found = new
   end subroutine look_at_place
 
-  !> The nearest of some segments to a place, and its distance; 0 where there is none.
-  pure subroutine find_nearest_of(model, surface, x, beside, segments, nearest, distance)
+  !> How deep a place lies behind that of some segments behind which it is least deep, by what is
+  !> allowed there.
+  pure subroutine measure(model, other, place, segments, least)
     type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: x(2)
-    integer, intent(in) :: beside(5), segments(:) !! left out; looked at, 0 for none
-    integer, intent(out) :: nearest
-    real(wp), intent(out) :: distance
-    real(wp) :: square
+    type(surface_t), intent(in) :: other
+    type(place_t), intent(in) :: place
+    integer, intent(in) :: segments(:) !! 0 counts for nothing
+    type(overlap_t), intent(out) :: least
+    real(wp) :: depth, allowed
     integer :: k
 
-    nearest = 0
-    distance = huge(1.0_wp)
+    least%nodes = place%nodes
     do k = 1, size(segments)
-      if (segments(k) == 0 .or. any(beside == segments(k))) cycle
-      square = closest_distance(sight_from(model, surface, segments(k), x))
-      if (sqrt(square) >= distance) cycle
-      nearest = segments(k)
-      distance = sqrt(square)
+      associate (s => segments(k))
+        if (s == 0 .or. any(place%beside == s)) cycle
+        if (dot_product(place%normal, normal_of(ends_of(model, other, s))) > same_way) cycle
+        depth = sqrt(closest_distance(sight_from(model, other, s, place%x)))
+        allowed = half_row(model, other, s)
+        if (least%segment > 0 .and. depth*least%allowed >= least%depth*allowed) cycle
+        least = overlap_t(place%nodes, s, depth, allowed)
+      end associate
     end do
-  end subroutine find_nearest_of
+    if (least%depth >= (1.0_wp - hair)*least%allowed) least%depth = max(least%depth, least%allowed)
+  end subroutine measure
 
   !> Whether a place lies beyond a segment at the end of an open chain.
   pure function is_at_open_end(model, surface, segment, x) result(at_end)
@@ -164,6 +182,14 @@ contains
     at_end = sight%along < 0.0_wp .and. surface%previous(segment) == 0 &
       .or. sight%along > sight%square .and. surface%next(segment) == 0
   end function is_at_open_end
+
+  !> Outward unit normal of a segment with these ends.
+  pure function normal_of(ends) result(normal)
+    real(wp), intent(in) :: ends(2, 2)
+    real(wp) :: normal(2)
+
+    normal = [ends(2, 2) - ends(2, 1), ends(1, 1) - ends(1, 2)]/norm2(ends(:, 2) - ends(:, 1))
+  end function normal_of
 
   !> A place seen from a segment.
   pure function sight_from(model, surface, segment, x) result(sight)
