@@ -60,11 +60,11 @@ contains
     pair = 0
   end subroutine find_crossing
 
-  !> The place of `own` that is deepest behind `other`, where it is half of a row of elements deep or
-  !> deeper behind all segments but those that look the same way as its own: these it has come
-  !> through from behind. Places are nodes, middles of segments, and middles of what of a segment lies
-  !> between two crossings. What stands nearest to an open end of `other` is no contact and is left
-  !> alone, and so are the segments next to its own where both are one surface.
+  !> The place of `own` that is deepest behind `other`, where it is half of a row of elements deep
+  !> or deeper behind all segments but those that look the same way as its own: these it has come
+  !> through from behind. Places are nodes, middles of segments, and middles of what of a segment
+  !> lies between two crossings. What stands nearest to an open end of `other` is no contact and is
+  !> left alone, and so are the segments next to its own where both are one surface.
   pure subroutine find_overlap(model, own, other, view, is_same, found)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, other

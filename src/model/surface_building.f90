@@ -89,8 +89,8 @@ contains
 
   !> The chain that a list of nodes describes; its first node repeated at the end makes it closed.
   !> The list may be walked backwards, or in no order as long as its exterior edges form one
-  !> chain, closed where the list is; `outcome` says which. When it fails `trouble` holds the two nodes of the first break, or
-  !> the repeated node.
+  !> chain, closed where the list is; `outcome` says which. When it fails `trouble` holds the two
+  !> nodes of the first break, or the repeated node.
   pure subroutine chain_surface(boundary, given, surface, outcome, trouble)
     type(boundary_t), intent(in) :: boundary
     integer, intent(in) :: given(:)        !! node indices
