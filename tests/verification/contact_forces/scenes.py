@@ -6,6 +6,7 @@ import numpy as np
 
 from meshes import Deck
 from reference import Chain, Rule, contact_forces
+from runs import Outline, facing_runs
 
 YOUNG, POISSON, RHO = 2.0e6, 0.3, 1000.0
 DEPTH = 0.4  # of a body's row of quads
@@ -53,6 +54,8 @@ class Interface:
         if displacement is not None:
             now = [Chain(chain.x + displacement[side], self.pair.closed)
                    for chain, side in zip(start, (self.slave, self.master))]
+        if self.pair.closed:
+            now = facing_runs(*(Outline(chain, thickness(first)) for chain, first in zip(now, start)))
         return start, now
 
     def compare(self, initial, found, displacement=None):
@@ -64,6 +67,15 @@ class Interface:
         error = max(np.max(np.abs(force - found[side]))
                     for force, side in zip(forces, (self.slave, self.master)))
         return error / size if size > 0.0 else error, size, forces
+
+
+def thickness(chain):
+    """Area over length of the quad behind each segment of a body of one row; both rows of nodes one
+    after the other round the body."""
+    x, n = chain.x, len(chain.x)
+    diagonals = [x[[n - 2 - k, n - 1 - k]] - x[[k, k + 1]] for k in range(n // 2 - 1)]
+    areas = np.array([0.5 * abs(a[0] * b[1] - a[1] * b[0]) for a, b in diagonals])
+    return np.concatenate([areas, areas[-1:], areas[::-1], areas[:1]]) / chain.length
 
 
 class Scene:
