@@ -281,8 +281,8 @@ def pieces(slave, master, k, feet, strict=False):
     """Cuts of slave segment k by the master nodes between the feet of its two ends.
 
     The two chains are walked in opposite senses. An end whose foot is a master node has this node
-    between it and the other end. Beyond the end of a master chain there is no piece; with feet on
-    two chains those of either count. Returns (left, right, master node at the left or None, at the
+    between it and the other end. Beyond the end of a master chain there is no piece; where the two
+    ends are nearest to two chains those of either count. Returns (left, right, master node at the left or None, at the
     right or None, master segment).
     """
     first, second = (feet[node] for node in slave.nodes[k])
@@ -291,17 +291,18 @@ def pieces(slave, master, k, feet, strict=False):
     if not len(master):
         return []
     high, low = first.after(master) if first else None, second.before(master) if second else None
-    if high is None and low is None:
-        high = low = master.nearest(slave.start[k])
-    either = low if high is None else high
-    run = master.run(either)
+    if high is None:
+        high = master.nearest(slave.x[slave.nodes[k, 0]])
+    if low is None:
+        low = master.nearest(slave.x[slave.nodes[k, 1]])
+    run, far = master.run(high), master.run(low)
+    starts, ends = first is not None, second is not None
     cuts = Cuts(slave, master, k)
-    if high is None or low is None or low in run:
-        way = way_back(master, run, high if first else None, low if second else None)
-        cuts.walk(way, starts=first is not None, ends=second is not None)
+    if low in run:
+        cuts.walk(way_back(master, run, high if starts else None, low if ends else None), starts, ends)
     else:
-        cuts.walk(way_back(master, run, high, None), starts=True, ends=False)
-        cuts.walk(way_back(master, master.run(low), None, low), starts=False, ends=True)
+        cuts.walk(way_back(master, run, high if starts else None, None), starts, False)
+        cuts.walk(way_back(master, far, None, low if ends else None), False, ends)
     return cuts.found
 
 

@@ -191,3 +191,23 @@ def random_pair(rng, number, name=None, closed=False, far=0.0):
     lines = (np.stack(side, axis=1) for side in sides)
     return Pair(f"{number} {name} {n_slave}/{n_master}", *lines, rng.uniform(-np.pi, np.pi),
                 tuple(far * rng.uniform(-1.0, 1.0, 2)), closed)
+
+
+def random_wedge(rng, number):
+    """Closed outlines: a body with a corner of 40 to 150 degrees, sunk 0.002 into a flat or hollow one;
+    either is the slave."""
+    left, right = np.exp(rng.uniform(np.log(0.3), np.log(3.0), 2))
+    apex = rng.uniform(0.35, 0.65)
+    n, m = rng.integers(1, 5, 2)
+    x = np.concatenate([spaced(n, 0.2, apex, 0.7, rng), spaced(m, apex, 0.8, 0.7, rng)[1:]])
+    wide = spaced(rng.integers(2, 9), 0.0, 1.0, 0.7, rng)
+    face = rng.uniform(-0.3, 0.3) * (wide - 0.5)
+    if rng.integers(3) == 0:
+        face = rng.uniform(0.2, 0.25) * np.abs(wide - 0.5)
+    tip = np.interp(apex, wide, face) - 0.002
+    y = tip + np.where(x < apex, left * (apex - x), right * (x - apex))
+    wedge, plate = np.stack([x, y], axis=1), np.stack([wide, face], axis=1)
+    is_slave = bool(rng.integers(2))
+    sides = (wedge, plate) if is_slave else (plate * [1.0, -1.0], wedge * [1.0, -1.0])
+    return Pair(f"{number} wedge, {'slave' if is_slave else 'master'}", *sides,
+                rng.uniform(-np.pi, np.pi), closed=True)
