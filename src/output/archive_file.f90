@@ -236,8 +236,8 @@ contains
       call h5sget_simple_extent_ndims_f(space, found%rank, status(8))
     if (found%rank > 0 .and. minval(status) >= 0) &
       call h5sget_simple_extent_dims_f(space, found%dims(:found%rank), most(:found%rank), i)
-    stored = 0
     call h5dget_storage_size_f(dataset, stored, i)
+    if (i < 0) stored = 0 ! an empty array: some releases of HDF5 call that a failure
     found%is_readable = minval(status) >= 0 .and. is_alike .and. n_outside == 0 .and. &
       (kind_of_space == H5S_NULL_F .or. kind_of_space == H5S_SIMPLE_F)
     found%text = 'other values than '//trim(content_names(content))

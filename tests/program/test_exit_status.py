@@ -125,9 +125,13 @@ def test_contact_too_stiff_for_the_step_is_warned_of(slideline, tmp_path):
 
 
 def test_energy_that_contact_created_is_warned_of(slideline, tmp_path):
-    """A contact far too stiff for its step gives more than it took: the warning names the sum of the table."""
-    done = slideline("d=p", "pen=1.0e10", deck=drop())
-    created = numbers(tmp_path / "p" / "job.glstat.csv", "contact")[-1]
+    """An interface that is born deep holds energy that nothing put in: the warning names the sum of the table."""
+    deck = drop(penalty=3.0e6).add("*DATABASE_SLEOUT", (1.0e-3,))
+    deck.lines = [line.replace("0.0,1e+20,0", "0.004,1e+20,0") for line in deck.lines]
+    done = slideline("d=p", deck=deck)
+    created = numbers(tmp_path / "p" / "job.sleout.csv", "energy")[-1] - numbers(tmp_path / "p" / "job.sleout.csv", "stored")[-1]
+    in_all = numbers(tmp_path / "p" / "job.glstat.csv", "contact")[-1]
+    assert in_all == pytest.approx(numbers(tmp_path / "p" / "job.sleout.csv", "energy")[-1], rel=1e-12)
     said = re.search(r"warning: interface 1: in the whole run the contact springs have made energy: (\S+),", done.stderr)
     assert created < 0.0 and said and float(said[1]) == pytest.approx(-created, rel=1e-6), done.stderr
     assert "springs have" not in slideline("d=q", deck=drop()).stderr

@@ -21,6 +21,7 @@ from slideline_tools import scenes  # noqa: E402
 from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
 
 HEAD = 512
+VERSION = re.compile(rb"restart \d+")
 #: scene -> (deck of a contact type, cycles, cycle of the restart)
 SCENES = {
     "collision": (lambda kind: scenes.collision(1, ctype=kind), 200, 90),
@@ -254,8 +255,8 @@ def test_bad_files_are_refused_with_the_reason(slideline, tmp_path):
         flipped[at] ^= 1 << int(random.integers(8))
         cases.append((bytes(flipped), "damaged"))
     cases += [(good + b" ", "damaged"), (good[:300], "truncated"), (b"", "empty"),
-              (good.replace(b"restart 11", b"restart 10", 1), "an older version"),
-              (good.replace(b"restart 11", b"restart 12", 1), "a newer version"),
+              (VERSION.sub(b"restart 06", good, count=1), "an older version"),
+              (VERSION.sub(b"restart 99", good, count=1), "a newer version"),
               (good.replace(b"checksum ", b"checksun ", 1), "damaged"),
               (good[HEAD:], "another HDF5 file"), (b"*KEYWORD\n*END\n", "not a restart file"),
               ((tmp_path / "a" / "job.vtkhdf").read_bytes(), "another HDF5 file")]
