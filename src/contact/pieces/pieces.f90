@@ -164,7 +164,8 @@ contains
         start = feet(k)%segment
       end do
       do k = 1, 2
-        if (feet(k)%segment == 0) feet(k) = foot_from(contact, memory, ends(k), k, start)
+        if (feet(k)%segment == 0) &
+          feet(k) = foot_from(contact, memory, ends(k), k, start)
         start = feet(1)%segment
       end do
     end associate
