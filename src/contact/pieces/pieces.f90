@@ -184,8 +184,8 @@ contains
   end subroutine find_feet
 
   !> Foot of an end that is not in contact, looked for from a master segment, or on the chain that
-  !> it is paired with if that is another one and nearer: at a sharp corner one run ends and the next
-  !> begins, and a slave segment above the corner stands on both.
+  !> it is paired with if that is another one and nearer: at a sharp corner one run ends and the
+  !> next begins, and a slave segment above the corner stands on both.
   pure function foot_from(contact, memory, node, k, start) result(foot)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
