@@ -89,8 +89,8 @@ contains
 
   !> The chain that a list of nodes describes; its first node repeated at the end makes it closed.
   !> The list may be walked backwards, or in no order as long as its exterior edges form one
-  !> chain; `outcome` says which. When it fails `trouble` holds the two nodes of the first break, or
-  !> the repeated node.
+  !> chain, closed where the list is; `outcome` says which. When it fails `trouble` holds the two
+  !> nodes of the first break, or the repeated node.
   pure subroutine chain_surface(boundary, given, surface, outcome, trouble)
     type(boundary_t), intent(in) :: boundary
     integer, intent(in) :: given(:)        !! node indices
@@ -98,7 +98,7 @@ contains
     integer, intent(out) :: outcome        !! one of the `chain_` constants
     integer, intent(out) :: trouble(2)
     integer, allocatable :: chain(:), position(:)
-    logical :: closed
+    logical :: closed, is_ring
     integer :: n, i, n_forward, n_backward
 
     trouble = 0
@@ -129,8 +129,10 @@ contains
         outcome = chain_turned
         chain = chain(n:1:-1)
       else
+        is_ring = closed
         call order_chain(boundary, position, chain, closed, outcome)
-        if (outcome == chain_broken) call find_break(boundary, chain, closed, &
+        if (is_ring .and. .not. closed) outcome = chain_broken
+        if (outcome == chain_broken) call find_break(boundary, given(:n), is_ring, &
           n_forward >= n_backward, trouble)
       end if
     end if

@@ -5,7 +5,7 @@
 module surfaces_m
   implicit none
   private
-  public :: surface_t, link_segments, number_chains
+  public :: surface_t, link_segments, number_chains, has_closed_chain
 
   !> One surface. "Local" node numbers count the nodes of this surface in walking order.
   type :: surface_t
@@ -45,6 +45,20 @@ contains
     end do
     call number_chains(surface)
   end subroutine link_segments
+
+  !> Whether some chain of a surface is closed.
+  pure function has_closed_chain(surface) result(closed)
+    type(surface_t), intent(in) :: surface
+    logical :: closed
+    logical :: is_open(maxval([0, surface%chain]))
+    integer :: s
+
+    is_open = .false.
+    do s = 1, surface%n_segment
+      if (surface%previous(s) == 0) is_open(surface%chain(s)) = .true.
+    end do
+    closed = .not. all(is_open)
+  end function has_closed_chain
 
   !> Number the chains of a surface in the order of their first segments.
   pure subroutine number_chains(surface)

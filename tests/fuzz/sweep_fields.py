@@ -22,7 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-TABLES = ROOT / "src/deck/deck_schema_tables.f90"
+TABLES = ROOT / "src/deck/schema/deck_schema_tables.f90"
 EXAMPLES = ROOT / "doc/examples"
 REALS = ("-1.0", "-1.0E-3", "0.0", "1.0E-30", "1.0E+30", "1.0E+40", "1.0E+300", "NAN", "INF", "-INF", "x")
 INTEGERS = ("-1", "0", "3", "99", "2147483647", "99999999999", "1.5", "x")

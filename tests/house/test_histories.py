@@ -25,7 +25,7 @@ def test_results_page_names_the_columns_of_every_history():
 
 
 def test_keyword_of_every_history_is_read_and_described():
-    schema = (ROOT / "src/deck/deck_schema_tables.f90").read_text(encoding="utf-8")
+    schema = (ROOT / "src/deck/schema/deck_schema_tables.f90").read_text(encoding="utf-8")
     keywords = (ROOT / "doc/keywords.md").read_text(encoding="utf-8")
     for name, asked in NAMES:
         keyword = f"DATABASE_{name.upper()}"

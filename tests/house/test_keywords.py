@@ -6,7 +6,7 @@ import pytest
 
 from fortran_source import ROOT, read_source
 
-SOURCE = "".join((ROOT / "src/deck" / name).read_text(encoding="utf-8")
+SOURCE = "".join((ROOT / "src/deck/schema" / name).read_text(encoding="utf-8")
                  for name in ("deck_schema_tables.f90", "deck_schema_others.f90"))
 KINDS = {"i": "integer", "f": "real", "a": "text"}
 TREATMENTS = {"": "honoured", "s": "no effect", "w": "warning", "r": "refused"}

@@ -32,14 +32,14 @@ calls=1 0
 
 fn=__interface_m_MOD_apply_contact.isra.0
 20 1000
-cfn=__points_nts_m_MOD_place
+cfn=__place_nts_m_MOD_place_nts
 calls=1 0
 21 600
 cfn=memcpy
 calls=1 0
 22 100
 
-fn=__points_nts_m_MOD_place
+fn=__place_nts_m_MOD_place_nts
 30 600
 
 fn=memcpy

@@ -166,15 +166,16 @@ def solve(blocks, kind, penalty, load, n_gauss=4, hourglass=0.1):
 
 
 def frequencies(blocks, rho, penalty, hourglass=0.1):
-    """Lowest and highest angular frequency with the springs of type 3 (the stiffest)."""
+    """Lowest and highest angular frequency with the springs of type 3 (the stiffest), and the highest
+    of these springs alone."""
     total = body_stiffness(blocks, hourglass)
     interface = 2 * np.concatenate([blocks.slave, blocks.master]) + 1
-    low, high = (total.copy() for _ in range(2))
-    for matrix, kind in ((low, 2), (high, 3)):
+    low, high, alone = total.copy(), total.copy(), np.zeros_like(total)
+    for matrix, kind in ((low, 2), (high, 3), (alone, 3)):
         matrix[np.ix_(interface, interface)] += contact_stiffness(blocks, kind, penalty, 0, None)
     mass = lumped_mass(blocks.x, blocks.quads, rho)
     root = np.repeat(np.sqrt(mass), 2)
     free = np.setdiff1d(np.arange(len(total)), blocks.fixed())
     scaled = [np.linalg.eigvalsh((matrix / np.outer(root, root))[np.ix_(free, free)])
-              for matrix in (low, high)]
-    return np.sqrt(scaled[0][0]), np.sqrt(scaled[1][-1])
+              for matrix in (low, high, alone)]
+    return np.sqrt(scaled[0][0]), np.sqrt(scaled[1][-1]), np.sqrt(scaled[2][-1])

@@ -20,9 +20,9 @@ import sys
 from slideline_tools import UserError
 
 HARDWARE, CALLGRIND = "hardware counters", "callgrind, x86-64-v3"
-# Parts of the program by the modules of their procedures: inclusive of what those call elsewhere.
-PARTS = {"contact": re.compile(r"__(interface|contact|points|tangent|element_finder)_?\w*_MOD_"),
-         "elements": re.compile(r"__(element(?!_finder)|quad|material)_?\w*_MOD_")}
+# Parts of the program by the folders of src/ that their procedures are in: inclusive of what those call elsewhere.
+PARTS = {"contact": ("contact",), "elements": ("element", "material")}
+SOURCES = pathlib.Path(__file__).resolve().parents[2] / "src"
 PROFILE = "callgrind.out"
 
 # <linux/perf_event.h>
@@ -162,8 +162,15 @@ def read_profile(path):
                     own[name] = own.get(name, 0) + cost
     if not total:
         raise UserError(f"{path}: not a profile of callgrind")
-    parts = {part: share_of(pattern, own, calls) for part, pattern in PARTS.items()}
+    parts = {part: share_of(procedures_in(folders), own, calls) for part, folders in PARTS.items()}
     return Counts(total, parts, CALLGRIND)
+
+
+@functools.lru_cache(maxsize=None)
+def procedures_in(folders):
+    """What the procedures of all modules in these folders of src/ are called in a profile: a module is named as its file."""
+    names = sorted(path.stem for folder in folders for path in (SOURCES / folder).rglob("*.f90"))
+    return re.compile(rf"__({'|'.join(names)})_m_MOD_")
 
 
 def share_of(pattern, own, calls):

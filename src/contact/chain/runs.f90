@@ -8,7 +8,7 @@ module runs_m
   use surfaces_m, only : surface_t, link_segments, number_chains
   implicit none
   private
-  public :: has_closed_chain, turn_t, turn_at, extend_runs, list_runs, take_runs, count_runs
+  public :: turn_t, turn_at, extend_runs, list_runs, take_runs, count_runs
 
   !> How the boundary turns from one segment to the next.
   type :: turn_t
@@ -17,20 +17,6 @@ module runs_m
   end type turn_t
 
 contains
-
-  !> Whether some chain of a surface is closed.
-  pure function has_closed_chain(surface) result(closed)
-    type(surface_t), intent(in) :: surface
-    logical :: closed
-    logical :: is_open(maxval([0, surface%chain]))
-    integer :: s
-
-    is_open = .false.
-    do s = 1, surface%n_segment
-      if (surface%previous(s) == 0) is_open(surface%chain(s)) = .true.
-    end do
-    closed = .not. all(is_open)
-  end function has_closed_chain
 
   !> Turn between a segment and the next one.
   pure function turn_at(surface, places, segment, next) result(turn)

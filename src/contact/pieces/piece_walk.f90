@@ -15,7 +15,7 @@ module piece_walk_m
   !> Where a walk is.
   type :: walk_t
     integer :: segment = 0      !! of the master, whose piece comes next
-    integer :: far_segment = 0  !! below the second end, where that is of another chain; else 0
+    integer :: far_segment = 0  !! below the second end, while that is of another chain; else 0
     integer :: before = 0       !! the one before that
     integer :: node = 0         !! master node that cuts at `at`, 0: none
     real(wp) :: at = 0.0_wp     !! how far along the slave segment, 0 to 1
@@ -83,8 +83,8 @@ contains
     walk%is_over = minval(feet%segment) == 0
     if (walk%is_over) return
     walk%segment = feet(1)%segment
-    if (all(feet%is_on) .and. contact%master%chain(feet(1)%segment) &
-      /= contact%master%chain(feet(2)%segment)) walk%far_segment = feet(2)%segment
+    if (contact%master%chain(feet(1)%segment) /= contact%master%chain(feet(2)%segment)) &
+      walk%far_segment = feet(2)%segment
     ! Both ends beyond the same end of the master chain: nothing faces the segment.
     if (.not. feet(1)%is_on) walk%is_over = feet(1)%xi < 0.5_wp
     if (.not. feet(2)%is_on) walk%is_over = walk%is_over .or. feet(2)%xi > 0.5_wp
@@ -174,6 +174,7 @@ contains
       if (.not. goes_on(segment, contact%master%next(segment))) exit
       segment = contact%master%next(segment)
     end do
+    walk%far_segment = 0
     walk%segment = segment
     walk%at = max(walk%at, min(1.0_wp, sight%along/sight%square))
     walk%node = contact%master%segments(2, segment)

@@ -164,8 +164,8 @@ contains
         start = feet(k)%segment
       end do
       do k = 1, 2
-        if (feet(k)%segment == 0) feet(k) = nearest_foot(contact%master, &
-          memory%places(:, memory%n_slave + 1:), memory%places(:, ends(k)), start)
+        if (feet(k)%segment == 0) &
+          feet(k) = foot_from(contact, memory, ends(k), k, start)
         start = feet(1)%segment
       end do
     end associate
@@ -182,6 +182,28 @@ contains
       end if
     end associate
   end subroutine find_feet
+
+  !> Foot of an end that is not in contact, looked for from a master segment, or on the chain that
+  !> it is paired with if that is another one and nearer: at a sharp corner one run ends and the
+  !> next begins, and a slave segment above the corner stands on both.
+  pure function foot_from(contact, memory, node, k, start) result(foot)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: node, start
+    integer, intent(in) :: k !! which end of its segment
+    type(foot_t) :: foot, other
+
+    associate (places => memory%places(:, memory%n_slave + 1:), &
+      place => memory%places(:, node), own => memory%slave_tracking%segment(node))
+      foot = nearest_foot(contact%master, places, place, start)
+      if (own == 0) return
+      if (contact%master%chain(own) == contact%master%chain(start)) return
+      other = nearest_foot(contact%master, places, place, own)
+      if (.not. (other%distance < foot%distance)) return
+      ! Beyond the end that the way along the slave segment comes to first, nothing lies below it.
+      if (other%is_on .or. (other%xi > 0.5_wp .eqv. k == 1)) foot = other
+    end associate
+  end function foot_from
 
   !> Foot of a spot in contact.
   pure function tracked_foot(segment, xi, gap, normal) result(foot)

@@ -38,9 +38,11 @@ contains
     logical, intent(in) :: is_same       !! both are one surface: neighbours never face
     logical, intent(inout) :: faces(:)   !! (segments of `own`)
     logical, intent(inout) :: faced(:)   !! (segments of `target`)
+    logical, allocatable :: by_place(:) !! what the other surface has found says nothing of corners
     real(wp) :: place(4), normal(2)
     integer :: s, k, found
 
+    allocate (by_place(own%n_segment), source=.false.)
     do s = 1, own%n_segment
       associate (a => own_view%places(:, own%segments(1, s)), &
         b => own_view%places(:, own%segments(2, s)))
@@ -51,32 +53,33 @@ contains
           found = nearest_faced(target, view, place, normal, normal, capture, &
             own%segments(:, s), is_same)
           if (found == 0) cycle
-          faces(s) = .true.
+          by_place(s) = .true.
           faced(found) = .true.
         end do
       end associate
     end do
-    call find_facing_corners(own, own_view, target, view, capture, is_same, faces, faced)
+    faces = faces .or. by_place
+    call find_facing_corners(own, own_view, target, view, capture, is_same, by_place, faces, faced)
   end subroutine find_facing
 
   !> Sharp convex corners neither side of which faces by its places: by the normals between those of
   !> the sides. Of these count those within 60 degrees of the target, or both where none is.
-  pure subroutine find_facing_corners(own, own_view, target, view, capture, is_same, faces, faced)
+  pure subroutine find_facing_corners(own, own_view, target, view, capture, is_same, by_place, &
+      faces, faced)
     type(surface_t), intent(in) :: own, target
     type(side_view_t), intent(in) :: own_view, view
     real(wp), intent(in) :: capture
     logical, intent(in) :: is_same
+    logical, intent(in) :: by_place(:)           !! segments that face by their own places
     logical, intent(inout) :: faces(:), faced(:)
-    logical, allocatable :: was_facing(:)
     type(turn_t) :: turn
     real(wp) :: cosines(2)
     integer :: s, next, node, found
 
-    allocate (was_facing, source=faces)
     do s = 1, own%n_segment
       next = own%next(s)
-      if (next == 0 .or. was_facing(s)) cycle
-      if (was_facing(next)) cycle
+      if (next == 0 .or. by_place(s)) cycle
+      if (by_place(next)) cycle
       turn = turn_at(own, own_view%places, s, next)
       if (.not. (turn%is_sharp .and. turn%is_convex)) cycle
       node = own%segments(2, s)

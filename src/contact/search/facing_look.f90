@@ -2,6 +2,7 @@
 !> The runs of an interface with a whole outline: when they are looked at anew, which segments they
 !> have, and the present interface made of them (doc/theory/contact.md, section 3.7).
 module facing_look_m
+  use body_view_m, only : half_row
   use contact_state_m, only : contact_state_t, bucket_grid_t, allocate_grid, n_side
   use contacts_m, only : contact_t
   use facing_m, only : side_view_t, find_facing
@@ -12,8 +13,8 @@ module facing_look_m
   use grid_m, only : fill_grid
   use kinds_m, only : wp
   use model_m, only : model_t
-  use runs_m, only : has_closed_chain, extend_runs, list_runs, take_runs
-  use surfaces_m, only : surface_t
+  use runs_m, only : extend_runs, list_runs, take_runs
+  use surfaces_m, only : surface_t, has_closed_chain
   implicit none
   private
   public :: has_outline, start_facing, look_at_facing, make_present
@@ -50,19 +51,16 @@ contains
     type(surface_t), intent(in) :: surface
     type(model_t), intent(in) :: model
     type(facing_side_t), intent(inout) :: side
-    real(wp) :: length, area
+    real(wp) :: length
     integer :: s
 
     call allocate_side(side, surface%n_segment)
     do s = 1, surface%n_segment
-      associate (x => model%mesh%coordinates, ends => surface%nodes(surface%segments(:, s)), &
-        nodes => model%mesh%element_nodes(:, surface%segment_element(s)))
+      associate (x => model%mesh%coordinates, ends => surface%nodes(surface%segments(:, s)))
         length = norm2(x(:, ends(2)) - x(:, ends(1)))
-        area = 0.5_wp*((x(1, nodes(3)) - x(1, nodes(1)))*(x(2, nodes(4)) - x(2, nodes(2))) &
-          - (x(1, nodes(4)) - x(1, nodes(2)))*(x(2, nodes(3)) - x(2, nodes(1))))
       end associate
-      side%depth(s) = 0.5_wp*area/length
-      side%caught(s) = 0.5_wp*min(length, area/length)
+      side%depth(s) = half_row(model, surface, s)
+      side%caught(s) = min(0.5_wp*length, side%depth(s))
       side%reached(s) = 0.5_wp*length
     end do
     if (.not. contact%search_depth > 0.0_wp) return

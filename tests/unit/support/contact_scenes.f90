@@ -1,25 +1,27 @@
 ! SPDX-License-Identifier: MIT
 !> The scenes in which all contact formulations are tested, and the table of formulations. A new formulation
-!> is one more row of `types`.
+!> is one more row of `rows`.
 module contact_scenes_m
   use contact_factories_m, only : problem_t, make_problem, line
   use kinds_m, only : wp
   use log_m, only : to_text
   implicit none
   private
-  public :: types, adds_slave_length, adds_master_length, adds_facing_length, keeps_p2, keeps_places, &
-    n_scene, penalty, depth, label, make_scene
+  public :: types, n_types, adds_slave_length, adds_master_length, adds_facing_length, keeps_p2, &
+    keeps_places, n_scene, penalty, depth, label, make_scene
 
   !> One row per formulation: number; areas add up to the slave length, to the master length too, to the
   !> facing length; P2 holds; places of points stay on their nodes or segments when these move; (0 or 1).
-  integer, parameter :: types(6, 7) = reshape([ &
+  integer, parameter :: rows(*) = [ &
     1, 0, 0, 0, 1, 1, &
     2, 1, 0, 0, 1, 1, &
     3, 1, 1, 0, 1, 1, &
     4, 1, 0, 0, 0, 0, &
     5, 1, 0, 1, 1, 1, &
     6, 1, 0, 0, 1, 1, &
-    7, 1, 0, 1, 1, 0], [6, 7])
+    7, 1, 0, 1, 1, 0]
+  integer, parameter :: n_types = size(rows)/6
+  integer, parameter :: types(6, n_types) = reshape(rows, [6, n_types])
   integer, parameter :: adds_slave_length = 2, adds_master_length = 3, adds_facing_length = 4, &
     keeps_p2 = 5, keeps_places = 6
   integer, parameter :: n_scene = 8

@@ -10,15 +10,14 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from contact_types import TYPES  # noqa: E402
 from reference import Rule  # noqa: E402
-from scenes import Pair, Scene, random_pair  # noqa: E402
+from scenes import Pair, Scene, random_pair, random_wedge  # noqa: E402
 from sliding import STRETCHES, largest_jump, masters, rigid_line, sliding_scene  # noqa: E402
 
 PENALTY = 1.0e5
 POINTS = range(1, 11)
 TOLERANCE = 1.0e-10
-WHOLE_OUTLINES = ("designed", "closed and flush, turned", "closed chains")
 SEED = 20240607
-N_RANDOM, N_FAR, N_CLOSED = 40, 12, 12
+N_RANDOM, N_FAR, N_CLOSED, N_WEDGE = 40, 12, 12, 40
 N_TURN = 16
 FAR = 1.0e6
 N_JUMP = 7  # slave segments
@@ -49,6 +48,7 @@ def designed_pairs():
     under = lambda y, d=0.002: lambda x: y(x) - d  # noqa: E731
     uneven = np.array([0.0, 0.1, 0.37, 0.45, 0.8, 1.0])
     tilted = lambda x: -0.001 - 0.004 * x        # noqa: E731
+    wedge = lambda slope: lambda x: slope * np.abs(x - 0.5) - 0.002  # noqa: E731
     return [
         Pair("flat, slave finer", line(np.linspace(0, 1, 8), -0.002), line(lower, 0.0)),
         Pair("flat, master finer", line(lower, -0.002), line(np.linspace(0, 1, 12), 0.0)),
@@ -83,6 +83,18 @@ def designed_pairs():
         Pair("closed, flush", line(lower, -0.002), line(seven, 0.0), 0.5, closed=True),
         Pair("closed, overhanging", line(np.linspace(-0.3, 1.4, 5), -0.002), line(seven, 0.0), -1.5,
              closed=True),
+        Pair("closed, slave slides on by one segment", line(np.linspace(0.8, 1.8, 6), -0.002),
+             line(seven, 0.0), 2.5, closed=True),
+        Pair("closed, blunt wedge on a plate", line(np.linspace(0, 1, 7), wedge(0.9)), line(seven, 0.0),
+             0.9, closed=True),
+        Pair("closed, sharp wedge on a plate", line(np.linspace(0, 1, 7), wedge(2.2)), line(seven, 0.0),
+             -0.4, closed=True),
+        Pair("closed, plate on a sharp wedge", line(seven, 0.0), line(
+            np.linspace(0, 1, 7), lambda x: -wedge(2.2)(x)), -0.4, closed=True),
+        Pair("closed, lopsided wedge on a plate", line([0.3, 0.4, 0.52, 0.6, 0.9], lambda x: np.where(
+            x < 0.52, 3.0 * (0.52 - x), 0.3 * (x - 0.52)) - 0.002), line(seven, 0.0), 0.7, closed=True),
+        Pair("closed, wedge in a valley", line(np.linspace(0.2, 0.8, 7), lambda x: wedge(1.0)(x)),
+             line(np.linspace(0, 1, 6), lambda x: 0.9 * np.abs(x - 0.5)), -2.2, closed=True),
     ]
 
 
@@ -111,10 +123,6 @@ class Verdicts:
 
     def judge(self, run, what, least=0.8):
         for key, error in self.worst.items():
-            if what in WHOLE_OUTLINES:
-                # The reference has whole chains, the program runs of facing segments: open.
-                run.report(f"{what}, {key}: nodal forces of both sides / largest", error)
-                continue
             run.check(f"{what}, {key}: nodal forces of both sides / largest ({self.count[key]} "
                       "interfaces)", error, 0.0, TOLERANCE, "abs", "brute-force reference")
             run.check(f"{what}, {key}: interfaces in contact", self.active[key],
@@ -132,7 +140,7 @@ def compare(run, name, scene, verdicts, key=lambda interface: label(interface.ru
     return found
 
 
-def one_interface_each(run, name, pairs, rules, what):
+def one_interface_each(run, name, pairs, rules, what, least=0.8):
     """Every rule on bodies of its own, all in one deck."""
     scene = Scene(name)
     for pair in pairs:
@@ -140,7 +148,7 @@ def one_interface_each(run, name, pairs, rules, what):
             scene.add(pair, rule)
     verdicts = Verdicts()
     compare(run, name, scene, verdicts)
-    verdicts.judge(run, what)
+    verdicts.judge(run, what, least)
 
 
 def penalty_units(run):
@@ -227,6 +235,11 @@ def check(run):
     pairs = [random_pair(rng, number, closed=True) for number in range(N_CLOSED)]
     rules = [rule for rule in MAIN_RULES if not rule.strict]
     one_interface_each(run, "closed", pairs, rules, "closed chains")
+    rng = np.random.default_rng(SEED + 4)
+    pairs = [random_wedge(rng, number) for number in range(N_WEDGE)]
+    # Types 4, 6 and 7 see nothing of a tip so short; types 1 and 2 not with the wedge as master.
+    rules = [rule for rule in MAIN_RULES if rule.kind in (1, 2, 3, 5)]
+    one_interface_each(run, "wedges", pairs, rules, "closed wedges", 0.4)
     penalty_units(run)
     shared_chains(run)
     sliding(run)

@@ -6,7 +6,7 @@ looking at all of them, nothing is tracked, ordered or kept. Positions are hande
 point near the interface, so that they carry no large common part.
 
 A surface is walked with its body on the left; the outward normal of a segment is (t_y, -t_x).
-A place on a chain is one number: segment number + coordinate along the segment (0 to 1).
+Whole outlines are in contact by runs of segments that face each other (runs.py).
 """
 from dataclasses import dataclass
 
@@ -16,18 +16,31 @@ OVERSHOOT = 0.01      # of the end segment of an open chain: still projected, no
 SIDE_ON, FACE_ON = -0.1, -0.5  # slave normal . master normal: no facing above, full facing below
 SHALLOW = 0.25        # of the segment: how deep a point may be to change sides at a sharp corner
 ON_NODE = 1.0e-9     # of the segment: a foot this close to a node stands on it
+TINY = 1.0e-300
 SHARP = np.cos(np.radians(60.0))  # a projection does not walk across corners that turn more
 
 
 class Chain:
-    """Nodes (n, 2) in walking order and whether the last is joined to the first."""
+    """Nodes (n, 2) in walking order and whether the last is joined to the first.
 
-    def __init__(self, x, closed=False):
+    `taken`: the segments that take part, of all; `cuts`: those of them that the one before does not
+    go on to. Together they are runs: chains of their own, with the nodes of the whole.
+    """
+
+    def __init__(self, x, closed=False, taken=None, cuts=()):
         self.x = np.asarray(x, dtype=float)
         self.closed = closed
         n = len(self.x)
         first = np.arange(n if closed else n - 1)
-        self.nodes = np.stack([first, (first + 1) % n], axis=1)
+        taken = first if taken is None else np.asarray(taken, dtype=int)
+        self.nodes = np.stack([taken, (taken + 1) % n], axis=1)
+        at = {int(segment): k for k, segment in enumerate(taken)}
+        follows = [at.get((s + 1) % n if closed else s + 1) for s in taken.tolist()]
+        self.after = [None if k is None or taken[k] in cuts else k for k in follows]
+        self.behind = [None] * len(taken)
+        for k, other in enumerate(self.after):
+            if other is not None:
+                self.behind[other] = k
         self.start = self.x[self.nodes[:, 0]]
         edge = self.x[self.nodes[:, 1]] - self.start
         self.length = np.hypot(edge[:, 0], edge[:, 1])
@@ -39,17 +52,36 @@ class Chain:
 
     def next(self, segment, step):
         """The neighbour segment in the walking sense (step 1) or against it (-1), or None."""
-        other = segment + step
-        if self.closed:
-            return other % len(self)
-        return other if 0 <= other < len(self) else None
+        return self.after[segment] if step > 0 else self.behind[segment]
+
+    def run(self, segment):
+        """The segments of the run that this one is of, in walking order; a closed one from it on."""
+        first = segment
+        while self.behind[first] is not None and self.behind[first] != segment:
+            first = self.behind[first]
+        if self.behind[first] == segment:
+            first = segment
+        found = [first]
+        while self.after[found[-1]] not in (None, first):
+            found.append(self.after[found[-1]])
+        return found
+
+    def nearest(self, point):
+        """The segment nearest to a point."""
+        away = point - self.start
+        at = np.clip(np.sum(away * self.tangent, axis=1), 0.0, self.length)
+        return int(np.argmin(np.linalg.norm(away - at[:, None] * self.tangent, axis=1)))
+
+    def used(self):
+        """The nodes that take part."""
+        return np.unique(self.nodes)
 
     def chords(self):
         """Direction of the surface at each node: from the node before to the node after."""
         chord = np.zeros(self.x.shape)
         for side in (0, 1):
             np.add.at(chord, self.nodes[:, side], self.length[:, None] * self.tangent)
-        return chord / np.hypot(chord[:, 0], chord[:, 1])[:, None]
+        return chord / np.maximum(np.hypot(chord[:, 0], chord[:, 1]), TINY)[:, None]
 
     def competence(self):
         """Half of the segments on either side of each node."""
@@ -87,6 +119,8 @@ def project(points, chain, along):
     """
     points = np.atleast_2d(points)
     along = np.broadcast_to(along, points.shape)
+    if not len(chain):
+        return [None] * len(points)
     away = points[:, None, :] - chain.start[None, :, :]
     at = np.sum(away * chain.tangent, axis=2) / chain.length
     height = np.sum(away * chain.normal, axis=2)
@@ -162,7 +196,8 @@ def gauss(n):
 def push_nodes(forces, side, stiffness):
     """Nodes of one side on their closest segment of the other; stiffness per node."""
     chain, other = forces.chains[side], forces.chains[1 - side]
-    for node, foot in enumerate(project(chain.x, other, chain.chords())):
+    used = chain.used()
+    for node, foot in zip(used, project(chain.x[used], other, chain.chords()[used])):
         if foot and foot.gap < 0.0:
             force = -stiffness[node] * foot.gap * foot.normal
             forces.at_node(side, node, force)
@@ -246,35 +281,79 @@ def pieces(slave, master, k, feet, strict=False):
     """Cuts of slave segment k by the master nodes between the feet of its two ends.
 
     The two chains are walked in opposite senses. An end whose foot is a master node has this node
-    between it and the other end. Beyond the end of the master chain there is no piece. Returns
-    (left, right, master node at the left or None, at the right or None, master segment).
+    between it and the other end. Beyond the end of a master chain there is no piece; where the two
+    ends are nearest to two chains those of either count. Returns (left, right, master node at the left or None, at the
+    right or None, master segment).
     """
     first, second = (feet[node] for node in slave.nodes[k])
     if strict and not (first and second):
         return [(0.0, 1.0, None, None, None)]
-    n = len(master.x)
-    high = first.after(master) if first else n - 1
-    low = second.before(master) if second else -1
-    if master.closed and high - low < -0.5 * n:
-        high += n
-    if master.closed and high - low > 0.5 * n:
-        low += n
-    found = []
-    left, left_node = 0.0, None
-    started = first is not None
-    for index in range(high, low, -1):
-        node = index % n
-        at = np.dot(master.x[node] - slave.start[k], slave.tangent[k]) / slave.length[k]
-        if started and at > left:
-            found.append((left, min(at, 1.0), left_node, node if at < 1.0 else None, node))
-        if at >= 1.0:
-            return found
-        if at > left:
-            left, left_node = at, node
-        started = True
-    if second:
-        found.append((left, 1.0, left_node, None, low % n))
-    return found
+    if not len(master):
+        return []
+    high, low = first.after(master) if first else None, second.before(master) if second else None
+    if high is None:
+        high = master.nearest(slave.x[slave.nodes[k, 0]])
+    if low is None:
+        low = master.nearest(slave.x[slave.nodes[k, 1]])
+    run, far = master.run(high), master.run(low)
+    starts, ends = first is not None, second is not None
+    cuts = Cuts(slave, master, k)
+    if low in run:
+        cuts.walk(way_back(master, run, high if starts else None, low if ends else None), starts, ends)
+    else:
+        cuts.walk(way_back(master, run, high if starts else None, None), starts, False)
+        cuts.walk(way_back(master, far, None, low if ends else None), False, ends)
+    return cuts.found
+
+
+def way_back(master, run, high, low):
+    """Segments of a run from `high` back to `low` (None: its end), of a closed one the shorter way;
+    none where slave and master run along with each other."""
+    closed = master.next(run[-1], 1) == run[0] and len(run) > 1
+    high = len(run) - 1 if high is None else run.index(high)
+    low = 0 if low is None else run.index(low)
+    if closed and high - low < -0.5 * len(run):
+        high += len(run)
+    if closed and high - low > 0.5 * len(run):
+        low += len(run)
+    return [run[index % len(run)] for index in range(high, low - 1, -1)]
+
+
+class Cuts:
+    """Pieces of slave segment k, met on the way back along a master chain."""
+
+    def __init__(self, slave, master, k):
+        self.slave, self.master, self.k = slave, master, k
+        self.left, self.left_node, self.found = 0.0, None, []
+
+    def at(self, node):
+        away = self.master.x[node] - self.slave.start[self.k]
+        return np.dot(away, self.slave.tangent[self.k]) / self.slave.length[self.k]
+
+    def cut(self, at, node):
+        if at > self.left:
+            self.left, self.left_node = at, node
+
+    def walk(self, way, starts, ends):
+        """`starts`, `ends`: the first foot is on the first segment of the way, the second one on
+        the last; otherwise the chain ends there."""
+        if way and not starts:
+            node = self.master.nodes[way[0], 1]
+            if self.at(node) >= 1.0:
+                return
+            self.cut(self.at(node), node)
+        for segment in way:
+            if ends and segment == way[-1]:
+                self.found.append((self.left, 1.0, self.left_node, None, segment))
+                return
+            node = self.master.nodes[segment, 0]
+            at = self.at(node)
+            if at > self.left:
+                self.found.append((self.left, min(at, 1.0), self.left_node,
+                                   node if at < 1.0 else None, segment))
+            if at >= 1.0:
+                return
+            self.cut(at, node)
 
 
 def facing(slave_normal, master_normal):
@@ -298,7 +377,10 @@ def nts_mar(slave, master, penalty, strict=False):
                     extra[k, node] = extra.get((k, node), 0.0) + half
                 else:
                     weight[slave.nodes[k, end]] += half
+    used = set(slave.used().tolist())
     for node, foot in enumerate(feet):
+        if node not in used:
+            continue
         beside = [k for k in range(len(slave)) if node in slave.nodes[k]]
         if foot and weight[node] == 0.0 and not any(facing(slave.normal[k], foot.normal) > 0.0
                                                     for k in beside):

@@ -6,6 +6,7 @@ import numpy as np
 
 from meshes import Deck
 from reference import Chain, Rule, contact_forces
+from runs import Outline, facing_runs
 
 YOUNG, POISSON, RHO = 2.0e6, 0.3, 1000.0
 DEPTH = 0.4  # of a body's row of quads
@@ -53,6 +54,8 @@ class Interface:
         if displacement is not None:
             now = [Chain(chain.x + displacement[side], self.pair.closed)
                    for chain, side in zip(start, (self.slave, self.master))]
+        if self.pair.closed:
+            now = facing_runs(*(Outline(chain, thickness(first)) for chain, first in zip(now, start)))
         return start, now
 
     def compare(self, initial, found, displacement=None):
@@ -64,6 +67,15 @@ class Interface:
         error = max(np.max(np.abs(force - found[side]))
                     for force, side in zip(forces, (self.slave, self.master)))
         return error / size if size > 0.0 else error, size, forces
+
+
+def thickness(chain):
+    """Area over length of the quad behind each segment of a body of one row; both rows of nodes one
+    after the other round the body."""
+    x, n = chain.x, len(chain.x)
+    diagonals = [x[[n - 2 - k, n - 1 - k]] - x[[k, k + 1]] for k in range(n // 2 - 1)]
+    areas = np.array([0.5 * abs(a[0] * b[1] - a[1] * b[0]) for a, b in diagonals])
+    return np.concatenate([areas, areas[-1:], areas[::-1], areas[:1]]) / chain.length
 
 
 class Scene:
@@ -179,3 +191,23 @@ def random_pair(rng, number, name=None, closed=False, far=0.0):
     lines = (np.stack(side, axis=1) for side in sides)
     return Pair(f"{number} {name} {n_slave}/{n_master}", *lines, rng.uniform(-np.pi, np.pi),
                 tuple(far * rng.uniform(-1.0, 1.0, 2)), closed)
+
+
+def random_wedge(rng, number):
+    """Closed outlines: a body with a corner of 40 to 150 degrees, sunk 0.002 into a flat or hollow one;
+    either is the slave."""
+    left, right = np.exp(rng.uniform(np.log(0.3), np.log(3.0), 2))
+    apex = rng.uniform(0.35, 0.65)
+    n, m = rng.integers(1, 5, 2)
+    x = np.concatenate([spaced(n, 0.2, apex, 0.7, rng), spaced(m, apex, 0.8, 0.7, rng)[1:]])
+    wide = spaced(rng.integers(2, 9), 0.0, 1.0, 0.7, rng)
+    face = rng.uniform(-0.3, 0.3) * (wide - 0.5)
+    if rng.integers(3) == 0:
+        face = rng.uniform(0.2, 0.25) * np.abs(wide - 0.5)
+    tip = np.interp(apex, wide, face) - 0.002
+    y = tip + np.where(x < apex, left * (apex - x), right * (x - apex))
+    wedge, plate = np.stack([x, y], axis=1), np.stack([wide, face], axis=1)
+    is_slave = bool(rng.integers(2))
+    sides = (wedge, plate) if is_slave else (plate * [1.0, -1.0], wedge * [1.0, -1.0])
+    return Pair(f"{number} wedge, {'slave' if is_slave else 'master'}", *sides,
+                rng.uniform(-np.pi, np.pi), closed=True)

@@ -212,7 +212,7 @@ def check_inclined(run, kind, matching):
 
 def damped_forces(run, kind, penalty, blocks):
     """The explicit program on the same deck, damped to rest: contact forces in y of all nodes."""
-    low, high = static_patch.frequencies(blocks, RHO, penalty, hourglass=None)
+    low, high, _ = static_patch.frequencies(blocks, RHO, penalty, hourglass=None)
     end = DECAY / low
     deck = pressed_blocks(kind, penalty, blocks)
     start = deck.lines.index("*CONTROL_TERMINATION")

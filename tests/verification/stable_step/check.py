@@ -24,10 +24,10 @@ YOUNG, RHO, HOURGLASS = 1.0e6, 1000.0, 0.1
 DEPTH, NUDGE = 1.0e-4, 1.0e-6      # m
 GAUSS = 4
 SLOW = ("p:v0=-1e-3",)                 # m/s: shapes hardly change
-#: The energy law of contact holds growth back: a thousand times what a stable run shows.
-GROWTH = 0.002
 INSIDE, OUTSIDE = 1.03, 0.97       # limit by eigenvalue over the step
-BOUND, SHARP = 0.05, 1.5         # of |energy ratio - 1|; of limit by eigenvalue over step
+BOUND, SHARP = 1.0e-4, 1.5       # of |energy ratio - 1|; of limit by eigenvalue over step
+#: Share of the cycles in which the energy law holds the springs back, stable and growing.
+FEW, MANY = 0.02, 0.25
 DIGITS = 1.0e-7      # of the log
 OPENING = "1/omega of the contact springs"
 RULE = "*CONTROL_CONTACT\n\n0,0,0,0,0,0,2\n"
@@ -107,6 +107,13 @@ def strayed(result):
     return float(np.max(np.abs(result.table("glstat")["energy_ratio"][5:] - 1.0)))
 
 
+def held_back(result):
+    """Share of the cycles with force in which the energy law limited the springs."""
+    text = (result.folder / f"{result.job}.log").read_text()
+    found = re.findall(r"in (\d+) of (\d+) cycles with force, the smallest", text)
+    return int(found[-1][0]) / int(found[-1][1]) if found else 0.0
+
+
 def check_one(run, kind, meshes):
     name = f"{TYPES[kind]}, {meshes[0]}/{meshes[1]} quads"
     eigen, deck = Eigen(kind, meshes), deck_of(kind, meshes)
@@ -128,15 +135,15 @@ def check_one(run, kind, meshes):
     for what, factor in (("inside", INSIDE), ("outside", OUTSIDE)):
         penalty = eigen.fitting(factor * auto.step)
         options = ("punit=1", f"pen={penalty!r}", *SLOW, "dt=1", "tssfac=0.9", "endtim=2.0")
-        try:
-            away = strayed(go(what, *options))
-        except RuntimeError as problem:
-            if "exit status 2" not in str(problem):
-                raise
-            away = np.inf
-        run.check(f"{name}: energy ratio, limit by eigenvalue {factor:g} times the step",
-                  min(away, 1.0e6), BOUND if factor > 1.0 else GROWTH, 0.0,
-                  "max" if factor > 1.0 else "min", "stability")
+        away = go(what, *options)
+        is_stable = factor > 1.0
+        run.check(f"{name}: share of cycles held back, limit by eigenvalue {factor:g} times the step",
+                  held_back(away), FEW if is_stable else MANY, 0.0, "max" if is_stable else "min",
+                  "closed springs that grow return more than they took")
+        if is_stable:
+            run.check(f"{name}: energy ratio there", strayed(away), BOUND, 0.0, "max", "stability")
+        else:
+            run.report(f"{name}: energy ratio there", strayed(away))
     stiff = 1.0e3 * auto.penalty
     ruled = said(go("ruled", "punit=1", f"pen={stiff!r}", "dt=1", "tssfac=1.0", "endtim=0.05",
                     deck=deck_of(kind, meshes, True)))

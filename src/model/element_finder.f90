@@ -7,7 +7,7 @@ module element_finder_m
   use model_m, only : model_t
   implicit none
   private
-  public :: element_finder_t, start_finder, is_inside_body
+  public :: element_finder_t, start_finder, is_inside_body, element_at, cell_of
 
   !> Part of a cell by which a node must lie within the boundary.
   real(wp), parameter :: margin = 1.0e-6_wp
@@ -103,31 +103,32 @@ contains
     real(wp) :: hair(2)
 
     hair = margin*finder%cell
-    inside = is_covered(finder, model, carriers, x + hair)
-    if (inside) inside = is_covered(finder, model, carriers, x - hair)
-    if (inside) inside = is_covered(finder, model, carriers, x + [hair(1), -hair(2)])
-    if (inside) inside = is_covered(finder, model, carriers, x + [-hair(1), hair(2)])
+    inside = element_at(finder, model, x + hair, carriers) > 0
+    if (inside) inside = element_at(finder, model, x - hair, carriers) > 0
+    if (inside) inside = element_at(finder, model, x + [hair(1), -hair(2)], carriers) > 0
+    if (inside) inside = element_at(finder, model, x + [-hair(1), hair(2)], carriers) > 0
   end function is_inside_body
 
-  !> Whether x is in an element that does not belong to `node`.
-  pure function is_covered(finder, model, carriers, x) result(covered)
+  !> An element that x is in and that does not have all of `carriers`, or 0.
+  pure function element_at(finder, model, x, carriers) result(element)
     type(element_finder_t), intent(in) :: finder
     type(model_t), intent(in) :: model
-    integer, intent(in) :: carriers(:)
     real(wp), intent(in) :: x(2)
-    logical :: covered
+    integer, intent(in) :: carriers(:)
+    integer :: element
     integer :: cell(2), k, i
 
-    covered = .false.
+    element = 0
     if (any(x < finder%low) .or. any(x > finder%high)) return
     cell = cell_of(finder, x)
     k = 1 + cell(1) + cell(2)*finder%cells(1)
     do i = finder%first(k) + 1, finder%first(k + 1)
       if (has_all(model%mesh%element_nodes(:, finder%items(i)), carriers)) cycle
-      covered = is_in_element(model, finder%items(i), x)
-      if (covered) return
+      if (.not. is_in_element(model, finder%items(i), x)) cycle
+      element = finder%items(i)
+      return
     end do
-  end function is_covered
+  end function element_at
 
   !> Whether an element has all of the given nodes.
   pure function has_all(nodes, wanted)

@@ -22,7 +22,7 @@ module deck_resolve_m
   use deck_resolve_rigids_m, only : resolve_rigids
   use deck_resolve_velocity_m, only : resolve_velocity
   use deck_resolve_contacts_m, only : resolve_contacts, check_references
-  use deck_wall_m, only : resolve_walls
+  use deck_resolve_walls_m, only : resolve_walls
   implicit none
   private
   public :: resolve_model

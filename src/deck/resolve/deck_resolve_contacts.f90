@@ -10,6 +10,7 @@ module deck_resolve_contacts_m
     chain_broken, chain_repeated, chain_short
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
+  use deck_initial_overlap_m, only : check_overlap
   use deck_maps_m, only : maps_t, resolve_id
   use deck_raw_m, only : raw_t, row_t, raw_contact_t, row_pressure, row_pressure_set, &
     id_fields, id_place
@@ -33,7 +34,7 @@ contains
     type(boundary_t) :: outside
     type(surface_t) :: sides(2)
     logical, allocatable :: among(:), all_elements(:)
-    integer :: i, k
+    integer :: i, k, n_error
 
     allocate (among(model%mesh%n_node), source=.false.)
     allocate (all_elements(model%mesh%n_element), source=.true.)
@@ -42,6 +43,7 @@ contains
     call resolve_pressures(deck, raw, maps, outside, model)
     allocate (model%contacts(size(raw%contacts)))
     do i = 1, size(raw%contacts)
+      n_error = deck%report%n_error
       do k = 1, 2
         call resolve_side(deck, raw%contacts(i), k, maps, outside, model, sides(k))
       end do
@@ -49,6 +51,7 @@ contains
       model%contacts(i)%slave = sides(1)
       model%contacts(i)%master = sides(2)
       call check_common_nodes(deck, raw%contacts(i), sides, model)
+      if (deck%report%n_error == n_error) call check_overlap(deck, raw%contacts(i), sides, model)
     end do
   end subroutine resolve_contacts
 

@@ -1,0 +1,208 @@
+! SPDX-License-Identifier: MIT
+!> What can not be right of contact surfaces at time zero: a chain that crosses itself, and bodies
+!> that lie in each other deeper than whole outlines are caught (doc/theory/contact.md, sections 3.4
+!> and 3.7). Linear in elements and segments. Used once, when the deck is read.
+module initial_overlap_m
+  use body_view_m, only : body_view_t, most_crossed, half_row, list_crossed, ends_of
+  use element_finder_m, only : is_inside_body, element_at
+  use geometry_m, only : sight_t, sight_of_segment, closest_distance
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: overlap_t, find_crossing, find_overlap
+
+  !> Part of the allowed depth by which bodies that lie half an element deep may miss it.
+  real(wp), parameter :: hair = 1.0e-9_wp
+  !> Deep places for which all segments are looked at; bodies with more of them overlap anyway.
+  integer, parameter :: most_looks = 1000
+
+  !> Cosine of the angle between two outward normals from which on they look the same way.
+  real(wp), parameter :: same_way = 0.5_wp
+
+  !> A place of a surface that is looked at.
+  type :: place_t
+    real(wp) :: x(2)
+    integer :: nodes(2)           !! mesh: node of the place twice, or ends of its segment
+    real(wp) :: normal(2)         !! outward, 0 at a node
+    integer :: beside(5)          !! segments next to it where it lies on the surface asked, or 0
+  end type place_t
+
+  !> The place of one surface that is deepest in the bodies of another, by the depth allowed there.
+  type :: overlap_t
+    integer :: nodes(2) = 0       !! as above
+    integer :: segment = 0        !! of the other surface; 0: nothing found
+    real(wp) :: depth = 0.0_wp    !! distance to that, m
+    real(wp) :: allowed = 0.0_wp  !! half of the row of elements behind it, m
+  end type overlap_t
+
+contains
+
+  !> The first two segments of one chain that cross, 0 where there are none.
+  pure subroutine find_crossing(model, surface, view, pair)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: surface
+    type(body_view_t), intent(in) :: view
+    integer, intent(out) :: pair(2)
+    integer :: crossed(most_crossed), s, i, n
+    real(wp) :: at(most_crossed)
+
+    do s = 1, surface%n_segment
+      call list_crossed(model, surface, view, ends_of(model, surface, s), n, crossed, at)
+      do i = 1, n
+        pair = [s, crossed(i)]
+        if (surface%chain(crossed(i)) /= surface%chain(s)) cycle
+        if (any(crossed(i) == [surface%previous(s), surface%next(s)])) cycle
+        return
+      end do
+    end do
+    pair = 0
+  end subroutine find_crossing
+
+  !> The place of `own` that is deepest behind `other`, where it is half of a row of elements deep
+  !> or deeper behind all segments but those that look the same way as its own: these it has come
+  !> through from behind. Places are nodes, middles of segments, and middles of what of a segment
+  !> lies between two crossings. What stands nearest to an open end of `other` is no contact and is
+  !> left alone, and so are the segments next to its own where both are one surface.
+  pure subroutine find_overlap(model, own, other, view, is_same, found)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: own, other
+    type(body_view_t), intent(in) :: view !! of `other`
+    logical, intent(in) :: is_same
+    type(overlap_t), intent(out) :: found
+    integer :: s, i, n, n_look, ends(2), crossed(most_crossed)
+    real(wp) :: x(2, 2), at(most_crossed)
+    type(place_t) :: place
+
+    n_look = 0
+    do s = 1, own%n_segment
+      if (n_look >= most_looks) return
+      ends = own%nodes(own%segments(:, s))
+      x = ends_of(model, own, s)
+      place%beside = 0
+      if (is_same) place%beside = segments_beside(own, s)
+      place%normal = 0.0_wp
+      do i = 1, merge(2, 1, own%next(s) == 0)
+        place%x = x(:, i)
+        place%nodes = ends(i)
+        call look_at_place(model, other, view, place, n_look, found)
+      end do
+      place%normal = normal_of(x)
+      place%nodes = ends
+      place%x = 0.5_wp*(x(:, 1) + x(:, 2))
+      call look_at_place(model, other, view, place, n_look, found)
+      call list_crossed(model, other, view, x, n, crossed, at)
+      do i = 2, n
+        place%x = x(:, 1) + 0.5_wp*(at(i - 1) + at(i))*(x(:, 2) - x(:, 1))
+        call look_at_place(model, other, view, place, n_look, found)
+      end do
+    end do
+  end subroutine find_overlap
+
+  !> A segment, and two on either side of it, 0 where its chain ends.
+  pure function segments_beside(surface, segment) result(beside)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    integer :: beside(5)
+
+    beside = 0
+    beside(1:3) = [segment, surface%previous(segment), surface%next(segment)]
+    if (beside(2) > 0) beside(4) = surface%previous(beside(2))
+    if (beside(3) > 0) beside(5) = surface%next(beside(3))
+  end function segments_beside
+
+  !> Keep one place if it is too deep and the deepest so far.
+  pure subroutine look_at_place(model, other, view, place, n_look, found)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: other
+    type(body_view_t), intent(in) :: view
+    type(place_t), intent(in) :: place
+    integer, intent(inout) :: n_look
+    type(overlap_t), intent(inout) :: found
+    integer :: k, node, near(8)
+    type(overlap_t) :: new
+
+    if (.not. is_inside_body(view%finder, model, place%x, place%nodes)) return
+    associate (corners => model%mesh%element_nodes(:, &
+      element_at(view%finder, model, place%x, place%nodes)))
+      do k = 1, 4
+        near(2*k - 1:2*k) = 0
+        node = view%local(corners(k))
+        if (node > 0) near(2*k - 1:2*k) = [other%incoming(node), other%outgoing(node)]
+      end do
+    end associate
+    call measure(model, other, place, near, new)
+    if (new%segment > 0 .and. new%depth < new%allowed) return
+    n_look = n_look + 1
+    call measure(model, other, place, [(k, k=1, other%n_segment)], new)
+    if (new%segment == 0 .or. new%depth < new%allowed) return
+    if (is_at_open_end(model, other, new%segment, place%x)) return
+    if (found%segment > 0) then
+      if (new%depth*found%allowed <= found%depth*new%allowed) return
+    end if
+    found = new
+  end subroutine look_at_place
+
+  !> How deep a place lies behind that of some segments behind which it is least deep, by what is
+  !> allowed there.
+  pure subroutine measure(model, other, place, segments, least)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: other
+    type(place_t), intent(in) :: place
+    integer, intent(in) :: segments(:) !! 0 counts for nothing
+    type(overlap_t), intent(out) :: least
+    real(wp) :: depth, allowed
+    integer :: k
+
+    least%nodes = place%nodes
+    do k = 1, size(segments)
+      associate (s => segments(k))
+        if (s == 0 .or. any(place%beside == s)) cycle
+        if (dot_product(place%normal, normal_of(ends_of(model, other, s))) > same_way) cycle
+        depth = sqrt(closest_distance(sight_from(model, other, s, place%x)))
+        allowed = half_row(model, other, s)
+        if (least%segment > 0 .and. depth*least%allowed >= least%depth*allowed) cycle
+        least = overlap_t(place%nodes, s, depth, allowed)
+      end associate
+    end do
+    if (least%depth >= (1.0_wp - hair)*least%allowed) least%depth = max(least%depth, least%allowed)
+  end subroutine measure
+
+  !> Whether a place lies beyond a segment at the end of an open chain.
+  pure function is_at_open_end(model, surface, segment, x) result(at_end)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: x(2)
+    logical :: at_end
+    type(sight_t) :: sight
+
+    sight = sight_from(model, surface, segment, x)
+    at_end = sight%along < 0.0_wp .and. surface%previous(segment) == 0 &
+      .or. sight%along > sight%square .and. surface%next(segment) == 0
+  end function is_at_open_end
+
+  !> Outward unit normal of a segment with these ends.
+  pure function normal_of(ends) result(normal)
+    real(wp), intent(in) :: ends(2, 2)
+    real(wp) :: normal(2)
+
+    normal = [ends(2, 2) - ends(2, 1), ends(1, 1) - ends(1, 2)]/norm2(ends(:, 2) - ends(:, 1))
+  end function normal_of
+
+  !> A place seen from a segment.
+  pure function sight_from(model, surface, segment, x) result(sight)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: x(2)
+    type(sight_t) :: sight
+    real(wp) :: ends(2, 2)
+
+    ends = ends_of(model, surface, segment)
+    sight = sight_of_segment([x, 0.0_wp, 0.0_wp], [ends(:, 1), 0.0_wp, 0.0_wp], &
+      [ends(:, 2), 0.0_wp, 0.0_wp])
+  end function sight_from
+
+end module initial_overlap_m
