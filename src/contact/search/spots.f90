@@ -26,16 +26,19 @@ contains
     type(contact_state_t), intent(inout) :: memory
     integer :: s, q, n
 
-    if (rule == spots_at_nodes) return
-    n = merge(2, n_gauss, rule == spots_at_quarters)
+    select case (rule)
+    case (spots_at_quarters); n = 2
+    case (spots_at_gauss_points); n = n_gauss
+    case default; return
+    end select
     allocate (memory%spot_xi(n), memory%spot_share(n), memory%spots(4, n*slave%n_segment))
-    memory%spot_xi = 0.25_wp
-    memory%spot_share = 1.0_wp/n
-    if (rule == spots_at_quarters) then
-      memory%spot_xi(2) = 0.75_wp
-    else
+    select case (rule)
+    case (spots_at_quarters)
+      memory%spot_xi(:) = [0.25_wp, 0.75_wp]
+      memory%spot_share = 0.5_wp
+    case (spots_at_gauss_points)
       call gauss_rule(memory%spot_xi, memory%spot_share)
-    end if
+    end select
     do s = 1, slave%n_segment
       associate (a => memory%places(:, slave%segments(1, s)), &
         b => memory%places(:, slave%segments(2, s)))
