@@ -8,28 +8,43 @@ module contact_scenes_m
   implicit none
   private
   public :: types, n_types, adds_slave_length, adds_master_length, adds_facing_length, keeps_p2, &
-    keeps_places, n_scene, penalty, depth, label, make_scene
+    keeps_places, passes_patch, weighs_facing, stands_at_nodes, n_scene, penalty, depth, carried_by, &
+    label, make_scene
 
-  !> One row per formulation: number; areas add up to the slave length, to the master length too, to the
-  !> facing length; P2 holds; places of points stay on their nodes or segments when these move; (0 or 1).
+  !> One row per formulation: number (rows in order of it); then, 0 or 1: areas add up to the slave length (0: a spring of
+  !> one stiffness at each node), to the master length too, to the facing length; P2 holds; places of points stay
+  !> on their nodes or segments when these move; uniform pressure between flat chains; areas are less where a slave
+  !> segment turns away from the master; every slave node in contact has a point, the first on the list.
   integer, parameter :: rows(*) = [ &
-    1, 0, 0, 0, 1, 1, &
-    2, 1, 0, 0, 1, 1, &
-    3, 1, 1, 0, 1, 1, &
-    4, 1, 0, 0, 0, 0, &
-    5, 1, 0, 1, 1, 1, &
-    6, 1, 0, 0, 1, 1, &
-    7, 1, 0, 1, 1, 0]
-  integer, parameter :: n_types = size(rows)/6
-  integer, parameter :: types(6, n_types) = reshape(rows, [6, n_types])
+    1, 0, 0, 0, 1, 1, 0, 0, 1, &
+    2, 1, 0, 0, 1, 1, 0, 0, 1, &
+    3, 1, 1, 0, 1, 1, 0, 0, 1, &
+    4, 1, 0, 0, 0, 0, 1, 0, 0, &
+    5, 1, 0, 1, 1, 1, 1, 1, 1, &
+    6, 1, 0, 0, 1, 1, 0, 1, 0, &
+    7, 1, 0, 1, 1, 0, 1, 1, 0]
+  integer, parameter :: n_column = 9
+  integer, parameter :: n_types = size(rows)/n_column
+  integer, parameter :: types(n_column, n_types) = reshape(rows, [n_column, n_types])
   integer, parameter :: adds_slave_length = 2, adds_master_length = 3, adds_facing_length = 4, &
-    keeps_p2 = 5, keeps_places = 6
+    keeps_p2 = 5, keeps_places = 6, passes_patch = 7, weighs_facing = 8, stands_at_nodes = 9
   integer, parameter :: n_scene = 8
   character(16), parameter :: scenes(n_scene) = [character(16) :: 'master finer', 'slave finer', &
     'tilted', 'kinked', 'arc', 'partly facing', 'far away', 'spread segment']
   real(wp), parameter :: penalty = 3.0e6_wp, depth = 0.004_wp
 
 contains
+
+  !> What all springs of the i-th type carry, from what each way to place them would: a spring at each slave node, areas
+  !> that add up to the slave length, areas of a second pass.
+  pure function carried_by(i, at_nodes, over_slave, over_master) result(carried)
+    integer, intent(in) :: i
+    real(wp), intent(in) :: at_nodes, over_slave, over_master
+    real(wp) :: carried
+
+    carried = merge(over_slave, at_nodes, types(adds_slave_length, i) == 1)
+    if (types(adds_master_length, i) == 1) carried = carried + over_master
+  end function carried_by
 
   !> Type and scene, for messages.
   function label(i, k)

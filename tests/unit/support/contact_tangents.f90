@@ -27,7 +27,7 @@ contains
     down = 0.02_wp
     select case (places(k))
     case ('valley')
-      slave = reshape([0.0_wp, 0.15_wp, 0.25_wp, 0.075_wp, 0.4985_wp, 0.003_wp, 0.512_wp, 0.0036_wp, &
+      slave = reshape([0.0_wp, 0.15_wp, 0.25_wp, 0.075_wp, 0.4985_wp, 0.003_wp, 0.509_wp, 0.0036_wp, &
         0.75_wp, 0.075_wp, 1.0_wp, 0.15_wp], [2, 6])
       master = reshape([1.1_wp, 0.18_wp, 0.8_wp, 0.09_wp, 0.5_wp, 0.0_wp, 0.2_wp, 0.09_wp, -0.1_wp, &
         0.18_wp], [2, 5])

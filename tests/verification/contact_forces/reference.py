@@ -497,4 +497,6 @@ def contact_forces(rule, slave, master, initial, estimate=None):
         return nts_mar(slave, master, penalty, rule.strict)
     if rule.kind == 6:
         return mortar(slave, master, penalty, rule.gauss)
-    return segmented_mortar(slave, master, penalty)
+    if rule.kind == 7:
+        return segmented_mortar(slave, master, penalty)
+    raise ValueError(f"no reference for type {rule.kind}")
