@@ -3,6 +3,7 @@
 !> never stood, as when a body slides on to the end of another. Nobody has loaded their springs
 !> (doc/theory/contact.md, section 6.1).
 module caught_aside_m
+  use contact_law_m, only : density_of
   use contact_state_m, only : contact_state_t, tracking_t
   use contacts_m, only : contact_t
   use geometry_m, only : separation
@@ -28,24 +29,28 @@ contains
     real(wp) :: stiffness
 
     energy = 0.0_wp
-    if (memory%slave_tracking%n_aside > 0) then
-      stiffness = merge(memory%node_penalty, memory%slave_penalty, has_unit_area)
-      if (allocated(memory%spots)) then
-        energy = stiffness*square_sum(memory%slave_tracking, contact%slave, has_unit_area, &
-          memory%places(:, :memory%n_slave), memory%spots, memory%spot_share)
-      else
-        energy = stiffness*square_sum(memory%slave_tracking, contact%slave, has_unit_area, &
-          memory%places(:, :memory%n_slave), memory%places(:, :memory%n_slave))
+    associate (n => memory%n_slave, law => memory%contact_law)
+      if (memory%slave_tracking%n_aside > 0) then
+        stiffness = merge(memory%node_penalty, memory%slave_penalty, has_unit_area)
+        if (allocated(memory%spots)) then
+          energy = energy_of(law, stiffness, memory%slave_tracking, contact%slave, has_unit_area, &
+            memory%places(:, :n), memory%spots, memory%spot_share)
+        else
+          energy = energy_of(law, stiffness, memory%slave_tracking, contact%slave, has_unit_area, &
+            memory%places(:, :n), memory%places(:, :n))
+        end if
       end if
-    end if
-    if (memory%master_tracking%n_aside > 0) energy = energy + memory%master_penalty &
-      *square_sum(memory%master_tracking, contact%master, has_unit_area, &
-      memory%places(:, memory%n_slave + 1:), memory%places(:, memory%n_slave + 1:))
+      if (memory%master_tracking%n_aside > 0) energy = energy + energy_of(law, &
+        memory%master_penalty, memory%master_tracking, contact%master, has_unit_area, &
+        memory%places(:, n + 1:), memory%places(:, n + 1:))
+    end associate
   end function energy_caught
 
-  !> Sum of area times half the square of the gap over the places of one tracking that lie along
-  !> the face, m^3 (m^2 for unit areas).
-  pure function square_sum(tracking, own, has_unit_area, places, spots, spot_share) result(total)
+  !> The same of the places of one tracking that lie along the face.
+  pure function energy_of(contact_law, stiffness, tracking, own, has_unit_area, places, spots, &
+    spot_share) result(total)
+    integer, intent(in) :: contact_law
+    real(wp), intent(in) :: stiffness                  !! N/m^2 (N/m for unit areas)
     type(tracking_t), intent(in) :: tracking
     type(surface_t), intent(in) :: own                 !! of the spots
     logical, intent(in) :: has_unit_area
@@ -70,8 +75,8 @@ contains
       else
         area = competence_length(own, places, i)
       end if
-      total = total + 0.5_wp*area*tracking%gap(i)**2
+      total = total + area*density_of(contact_law, stiffness, tracking%gap(i))
     end do
-  end function square_sum
+  end function energy_of
 
 end module caught_aside_m
