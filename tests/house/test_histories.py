@@ -2,8 +2,12 @@
 """The table of history files (src/model/history_tables.f90), their columns (src/output/history_rows.f90), the keywords
 that the reader knows, and doc/results.md name the same."""
 import re
+import sys
 
 from fortran_source import ROOT
+
+sys.path.insert(0, str(ROOT / "tools"))
+from slideline_tools import histories  # noqa: E402
 
 TABLES = (ROOT / "src/model/history_tables.f90").read_text(encoding="utf-8")
 ROWS = (ROOT / "src/output/history_rows.f90").read_text(encoding="utf-8")
@@ -22,6 +26,10 @@ def test_results_page_names_the_columns_of_every_history():
     for name, _ in NAMES:
         assert f"\n| {name} | `{csv_columns(name)}` |\n" in RESULTS, name
         assert f"| `<job>.{name}.csv` |" in RESULTS, name
+
+
+def test_tools_know_every_history():
+    assert sorted(histories.TABLES) == sorted(name for name, _ in NAMES)
 
 
 def test_keyword_of_every_history_is_read_and_described():
