@@ -127,15 +127,16 @@ contains
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(out) :: slip
     integer, intent(out) :: state
-    integer :: near(2)
+    integer :: near(2), n
 
     near = offset + i
     if (allocated(memory%spots) .and. .not. allocated(memory%node_pressure)) then
       slip = 0.0_wp
       state = is_open
       if (offset > 0 .or. max(surface%incoming(i), surface%outgoing(i)) == 0) return
-      near = 2*i - 1
-      if (surface%incoming(i) > 0) near(2) = 2*surface%segments(1, surface%incoming(i))
+      n = size(memory%spot_xi)
+      near = n*(i - 1) + 1
+      if (surface%incoming(i) > 0) near(2) = n*surface%segments(1, surface%incoming(i))
       if (surface%outgoing(i) == 0) near(1) = near(2)
     end if
     ! Slips are those of the slave side along the master's chain, which runs the other way.

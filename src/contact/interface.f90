@@ -44,7 +44,7 @@ contains
     type(log_t), intent(inout) :: log
     type(contact_state_t), intent(out) :: memory
     type(formulation_t) :: formulation
-    integer :: n_slave, n_master, i
+    integer :: n_slave, n_master, n_each, i
 
     n_slave = contact%slave%n_node
     n_master = contact%master%n_node
@@ -76,7 +76,9 @@ contains
     if (.not. model%controls%implicit%is_on) call allocate_limit(memory%limit, n_slave + n_master)
     if (has_friction(contact) .and. .not. model%controls%implicit%is_on) then
       call allocate_tractions(memory%points)
-      call allocate_friction(memory%friction, 2*n_slave + n_master, n_slave + n_master)
+      n_each = 1
+      if (allocated(memory%spots)) n_each = size(memory%spot_xi)
+      call allocate_friction(memory%friction, n_each*n_slave + n_master, n_slave + n_master)
     end if
     call allocate_scratch(memory)
     call log_contact(contact, model, formulation%kind, memory, log)

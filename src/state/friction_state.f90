@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> What the friction of an interface remembers (contact/law/friction): tractions at the places where
-!> pressure is formed. A place is a local node; with virtual nodes (2 k - 1) and (2 k) are those of
-!> the slave segment that starts at node k. Nodes keep their numbers when runs of segments change.
+!> pressure is formed. A place is a local node; with n virtual nodes to a segment n (k - 1) + q is
+!> the q-th of the slave segment that starts at node k. Nodes keep their numbers when runs of
+!> segments change.
 module friction_state_m
   use kinds_m, only : wp
   implicit none

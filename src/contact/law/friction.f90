@@ -151,25 +151,27 @@ contains
     if (place /= points%slave_nodes(2, p)) place = points%master_nodes(1, p)
   end function place_of_point
 
-  !> Type 4: virtual nodes, with the foot of each; all its portions have its traction.
+  !> Type 4, and whatever presses at spots between nodes: virtual nodes, with the foot of each; all
+  !> its portions have its traction.
   pure subroutine rub_virtual_nodes(contact, dt, memory)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
     type(rub_t) :: rub
-    integer :: p, half, place, spot
+    integer :: p, n, q, place, spot
 
     rub%most = most_traction(contact%friction)
     rub%stiffness = contact%friction%stiffness*memory%slave_penalty
+    n = size(memory%spot_xi)
     do p = 1, memory%points%n
       memory%points%traction(p) = 0.0_wp
       if (.not. memory%points%pressure(p) > 0.0_wp) cycle
       associate (friction => memory%friction, points => memory%points, &
         tracking => memory%slave_tracking, first => memory%points%slave_nodes(1, p))
-        half = merge(1, 2, points%slave_weights(1, p) > 0.5_wp)
-        place = 2*(first - 1) + half
+        q = minloc(abs(memory%spot_xi - points%slave_weights(2, p)), 1)
+        place = n*(first - 1) + q
         if (friction%state(place) == is_open) then
-          spot = 2*(contact%slave%outgoing(first) - 1) + half
+          spot = n*(contact%slave%outgoing(first) - 1) + q
           rub%slip = slip_of(memory, points%slave_nodes(:, p), points%slave_weights(:, p), &
             memory%n_slave + contact%master%segments(:, tracking%segment(spot)), &
             [1.0_wp - tracking%xi(spot), tracking%xi(spot)], tracking%normal(:, spot), &
