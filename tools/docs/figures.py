@@ -164,11 +164,12 @@ def spots(kind):
 
 
 def contact_points(program, folder):
-    """Seven panels: spots, and the nodal forces of the program."""
+    """A panel for each type: spots, and the nodal forces of the program."""
     deck = blocks_deck(folder)
-    figure, panels = plt.subplots(4, 2, figsize=(9.0, 7.2))
+    n_row = len(TYPES) // 2 + 1  # the last panel is the key
+    figure, panels = plt.subplots(n_row, 2, figsize=(9.0, 1.8 * n_row))
     lift = 0.12  # the bodies are drawn apart, so that both surfaces can be seen
-    for kind, axes in enumerate(panels.flat[:7], 1):
+    for kind, axes in zip(TYPES, panels.flat):
         results = read(run(program, deck, folder / f"type_{kind}", f"ctype={kind}"))
         ids = results.point_field("node_id")[0].astype(int)
         x = results.points[0][:, 0]
@@ -193,8 +194,9 @@ def contact_points(program, folder):
         axes.set_title(f"{kind}  {TYPES[kind]}", fontsize=10, loc="left", color=INK)
         axes.set_ylim(-0.36, 0.48)
         axes.axis("off")
-    key = panels.flat[7]
-    key.axis("off")
+    for axes in panels.flat[len(TYPES):]:
+        axes.axis("off")
+    key = panels.flat[-1]
     for row, (mark, colour, text) in enumerate((
             ("x", SLAVE, "looks from the slave surface at the master"),
             ("x", MASTER, "looks from the master surface at the slave"),
