@@ -10,7 +10,7 @@ from PIL import Image
 from slideline_tools import UserError
 from slideline_tools.contact_types import TYPES
 from slideline_tools.fields import scalar_field
-from slideline_tools.plots import (COLOURS, PAGE_WIDTH, STYLE, colour_bar, draw_field,
+from slideline_tools.plots import (COLOURS, MARKERS, PAGE_WIDTH, STYLE, colour_bar, draw_field,
                                    panel_height, plt)
 from slideline_tools.study.pages import with_origin
 
@@ -25,6 +25,11 @@ def label(ctype):
 def colour(ctype):
     """The colour of a contact type, the same in every picture."""
     return COLOURS[ctype - 1]
+
+
+def marker(ctype):
+    """Its marker, where points of types are told apart by shape too."""
+    return MARKERS[ctype - 1]
 
 
 def markdown_table(names, rows):

@@ -17,7 +17,7 @@ from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.scenes.common import ALUMINIUM, STEEL
 from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, END, PENALTY, RADIUS
 from slideline_tools.studies import line_contact as lines
-from slideline_tools.studies.common import (colour, label, markdown_table, save_small,
+from slideline_tools.studies.common import (colour, label, marker, markdown_table, save_small,
                                             study_main, write_page)
 
 JOB = "hertz"
@@ -139,14 +139,11 @@ def pressure_figure(runs):
         return figure
 
 
-MARKERS = {1: "s", 2: "x", 3: "o", 4: "v", 5: "^", 6: "D", 7: "o"}
-
-
 def draw_run(upper, lower, run):
     """Points of one run at x >= 0 in both panels."""
     right = run.x >= -1e-9
     x, pressure = run.x[right] / run.hertz[0], run.pressure[right] / run.hertz[1]
-    look = dict(color=colour(run.ctype), marker=MARKERS[run.ctype], fillstyle="none",
+    look = dict(color=colour(run.ctype), marker=marker(run.ctype), fillstyle="none",
                 markersize=4.0 + 2.0 * (run.ctype in (1, 6)))
     upper.plot(x, pressure, linestyle="none", label=label(run.ctype), **look)
     lower.plot(x, 100.0 * (pressure - lines.ellipse(x, 1.0, 1.0)), **look)

@@ -3,13 +3,12 @@
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from slideline_tools.plots import PAGE_WIDTH, plt
-from slideline_tools.studies.common import colour, label
+from slideline_tools.studies.common import colour, label, marker
 from slideline_tools.study.charts import save, styled
 from slideline_tools.study.speed_accuracy_front import COSTS, front, points_of, times_of
 from slideline_tools.study.speed_accuracy_scenes import SCENES
 
 LOWEST = 1.0e-12  # errors are drawn here at least
-MARKERS = {1: "s", 2: ">", 3: "o", 4: "v", 5: "^", 6: "D", 7: "P"}
 
 
 def draw_type(axes, points, cost, key):
@@ -21,7 +20,7 @@ def draw_type(axes, points, cost, key):
     for flag, face in ((True, colour(ctype)), (False, "white")):
         chosen = [k for k, point in enumerate(points) if point.resolved(key) is flag]
         axes.plot([x[k] for k in chosen], [y[k] for k in chosen], linestyle="none",
-                  marker=MARKERS[ctype], color=colour(ctype), markersize=4.5,
+                  marker=marker(ctype), color=colour(ctype), markersize=4.5,
                   markerfacecolor=face, label=label(ctype) if flag else None)
 
 
