@@ -403,13 +403,13 @@ contains
       master => memory%places(:, memory%n_slave + 1:))
       if (allocated(memory%spots)) then
         call update_tracking(memory%slave_tracking, contact%master, master, memory%spots, &
-          memory%travel, memory%n_released)
+          memory%travel, memory%facing%is_used, memory%n_released)
       else
         call update_tracking(memory%slave_tracking, contact%master, master, slave, memory%travel, &
-          memory%n_released)
+          memory%facing%is_used, memory%n_released)
       end if
       if (memory%master_tracking%n > 0) call update_tracking(memory%master_tracking, &
-        contact%slave, slave, master, memory%travel, memory%n_released)
+        contact%slave, slave, master, memory%travel, memory%facing%is_used, memory%n_released)
     end associate
   end subroutine search_pairs
 

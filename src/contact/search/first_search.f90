@@ -130,7 +130,7 @@ contains
 
     if (contact%birth > 0.0_wp) return
     n_ignored = 0
-    call update_tracking(tracking, surface, chain, spots, 0.0_wp, n_ignored)
+    call update_tracking(tracking, surface, chain, spots, 0.0_wp, .false., n_ignored)
     call catch_edges(tracking, surface, chain, spots)
     call catch_deep_spots(tracking, model, own, surface, spots, chain, owners)
     call list_touching(tracking)

@@ -21,12 +21,14 @@ module tracking_m
 contains
 
   !> Bring the pairs of all spots up to date and list the spots in contact.
-  pure subroutine update_tracking(tracking, surface, chain, spots, travel, n_released)
+  pure subroutine update_tracking(tracking, surface, chain, spots, travel, only_faced, n_released)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface            !! the chain tracked upon
     real(wp), intent(in), contiguous :: chain(:, :)   !! (4, n_node) places of its nodes
     real(wp), intent(in), contiguous :: spots(:, :)   !! (4, n) places of the spots
     real(wp), intent(in) :: travel                    !! relative motion since the start, m
+    logical, intent(in) :: only_faced                 !! between outlines: no spot begins contact
+                                                      !! with what its own surface does not face
     integer, intent(inout) :: n_released              !! deep first contacts let go
     integer :: n_left, n_due, i, k
     logical :: has_changed, was_free
@@ -42,7 +44,7 @@ contains
     do k = 1, n_due
       i = tracking%due(k)
       was_free = tracking%status(i) == is_free
-      call update_spot(tracking, surface, chain, spots, i, travel, n_released)
+      call update_spot(tracking, surface, chain, spots, i, travel, only_faced, n_released)
       has_changed = has_changed .or. (tracking%status(i) == is_touching .neqv. k <= n_left)
       if (tracking%status(i) /= is_touching) tracking%next_wake = &
         min(tracking%next_wake, tracking%wake(i))
@@ -138,12 +140,13 @@ contains
   end subroutine store_run
 
   !> Any other case, by what the spot was doing.
-  pure subroutine update_spot(tracking, surface, chain, spots, i, travel, n_released)
+  pure subroutine update_spot(tracking, surface, chain, spots, i, travel, only_faced, n_released)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
     integer, intent(in) :: i
     real(wp), intent(in) :: travel
+    logical, intent(in) :: only_faced
     integer, intent(inout) :: n_released
     type(foot_t) :: foot
     type(sight_t) :: sight
@@ -159,7 +162,8 @@ contains
       sight = see_segment(surface, chain, spots(:, i), tracking%segment(i))
       if (sight%across < 0.0_wp .and. is_over_segment(sight)) then
         foot = follow_contact(surface, chain, spots(:, i), tracking%segment(i))
-        if (foot%is_on .and. foot%gap < 0.0_wp) then
+        if (foot%is_on .and. foot%gap < 0.0_wp .and. may_begin(tracking, spots, i, foot, &
+          only_faced)) then
           call begin_contact(tracking, i, foot, n_released)
           return
         end if
@@ -173,7 +177,13 @@ contains
       end if
     end select
     call find_foot(tracking, surface, chain, spots(:, i), i, travel, foot)
-    call judge_foot(tracking, surface, chain, spots, i, foot, travel, n_released)
+    if (foot%segment > 0 .and. foot%is_on .and. foot%gap < 0.0_wp &
+      .and. .not. may_begin(tracking, spots, i, foot, only_faced)) then
+      tracking%status(i) = is_free
+      tracking%wake(i) = -huge(1.0_wp)
+    else
+      call judge_foot(tracking, surface, chain, spots, i, foot, travel, n_released)
+    end if
   end subroutine update_spot
 
   !> Closest foot of a spot that is not in contact: by walking where that is safe, else by the
@@ -243,6 +253,24 @@ contains
       if (.not. foot%is_on) tracking%wake(i) = -huge(1.0_wp)
     end if
   end subroutine judge_foot
+
+  !> Whether a spot may begin contact at its foot: where only what is faced counts, its own surface
+  !> must not stand on that with its side. A wall's node below the corner of a block that slides
+  !> down along the wall does not face the block's under side.
+  pure function may_begin(tracking, spots, i, foot, only_faced) result(may)
+    type(tracking_t), intent(in) :: tracking
+    real(wp), intent(in), contiguous :: spots(:, :)
+    integer, intent(in) :: i
+    type(foot_t), intent(in) :: foot
+    logical, intent(in) :: only_faced
+    logical :: may
+    real(wp) :: t(2)
+
+    may = .true.
+    if (.not. only_faced) return
+    t = separation(spots(:, tracking%chord(2, i)), spots(:, tracking%chord(1, i)))
+    may = t(2)*foot%normal(1) - t(1)*foot%normal(2) <= side_on*norm2(t)
+  end function may_begin
 
   !> A spot has come behind a face: contact, unless it is deeper than a first contact may be.
   pure subroutine begin_contact(tracking, i, foot, n_released)
