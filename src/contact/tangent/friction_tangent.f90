@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Slips and tractions of varied points (doc/theory/contact.md, section 9.6): what law/friction does
+!> Slips and tractions of varied points (doc/theory/contact.md, section 9.8): what law/friction does
 !> with places, gone through once more in dual numbers.
 module friction_tangent_m
   use contact_state_m, only : contact_state_t

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> What friction adds to the tangent where slips are averaged at slave nodes as gaps are (types 6 and
-!> 7; doc/theory/contact.md, section 9.6): the points under their present nodal tractions, and for
-!> each loaded slave node one product of the force of unit traction and the gradient of the traction.
+!> What friction adds to the tangent where slips are averaged at slave nodes as gaps are (types 6
+!> and 7; doc/theory/contact.md, section 9.8): the points under their present nodal tractions, and
+!> for each loaded slave node one product of the force of unit traction and the gradient of the
+!> traction.
 module nodal_grip_m
   use assembly_m, only : add_varied_point, pattern_t, start_pattern, add_to_row, add_to_column, &
     add_product
