@@ -118,7 +118,7 @@ contains
     type(sparse_t), intent(inout) :: matrix
 
     select case (contact%contact_type)
-    case (type_nts); call add_nts_tangent(memory, equations, matrix)
+    case (type_nts); call add_nts_tangent(contact, memory, equations, matrix)
     case (type_nts_ar, type_two_pass_ar)
       call add_nts_ar_tangent(contact, memory, equations, matrix)
     case (type_vts_ppt); call add_vts_ppt_tangent(contact, memory, equations, matrix)

@@ -10,7 +10,7 @@ module contact_work_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: take_apart, hand_over, count_work
+  public :: take_apart, hand_over, count_work, count_step
 
 contains
 
@@ -59,5 +59,20 @@ contains
     memory%damping_work = memory%damping_work - 0.5_wp*dt*apart(1)
     memory%friction%work = memory%friction%work - 0.5_wp*dt*apart(2)
   end subroutine count_work
+
+  !> Work of an implicit step.
+  pure subroutine count_step(motion, before, after)
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) rows 3, 4: displacement
+    type(contact_state_t), intent(in) :: before      !! where the step starts
+    type(contact_state_t), intent(inout) :: after    !! where it ends
+    real(wp) :: work, rubbed
+
+    work = sum((before%force + after%force)*motion(3:4, after%nodes))
+    rubbed = 0.0_wp
+    if (allocated(after%friction%force)) rubbed = sum((before%friction%force &
+      + after%friction%force)*motion(3:4, after%nodes))
+    after%energy = before%energy - 0.5_wp*(work - rubbed)
+    after%friction%work = before%friction%work - 0.5_wp*rubbed
+  end subroutine count_step
 
 end module contact_work_m

@@ -21,7 +21,7 @@ module interface_m
   use energy_limit_state_m, only : allocate_limit
   use facing_change_m, only : rest_loose_nodes
   use facing_look_m, only : has_outline, start_facing, look_at_facing, make_present
-  use friction_m, only : take_increments, rub_places
+  use friction_m, only : take_increments, start_trial_slip, rub_places
   use friction_state_m, only : allocate_friction
   use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
     start_slave_tracking, start_master_tracking, start_segments
@@ -74,7 +74,7 @@ contains
       allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
     end if
     if (.not. model%controls%implicit%is_on) call allocate_limit(memory%limit, n_slave + n_master)
-    if (has_friction(contact) .and. .not. model%controls%implicit%is_on) then
+    if (has_friction(contact)) then
       call allocate_tractions(memory%points)
       n_each = 1
       if (allocated(memory%spots)) n_each = size(memory%spot_xi)
@@ -216,11 +216,12 @@ contains
   !> Contact forces of one interface at the given u, added to `force`; no damping, no energy, no
   !> clock. The memory is taken from the last converged step: give a copy of it to each trial, so
   !> that forces are a function of u.
-  pure subroutine evaluate_contact(contact, motion, time, is_first, memory, force)
+  pure subroutine evaluate_contact(contact, motion, time, dt, is_first, memory, force)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u, and u minus that of the
                                                        !! start of the step
     real(wp), intent(in) :: time                       !! of u, s
+    real(wp), intent(in) :: dt                         !! of the step to u, s
     logical, intent(in) :: is_first                    !! of a step: gaps of zero count as contact
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
@@ -233,6 +234,7 @@ contains
     memory%n_active = 0
     memory%force = 0.0_wp
     memory%closed_gap = 0.0_wp
+    if (allocated(memory%friction%force)) call start_trial_slip(motion, dt, memory)
     if (is_suspended(contact, time)) return
     if (.not. memory%facing%is_used) then
       call evaluate_between(contact, motion, is_first, memory, force)
@@ -265,7 +267,10 @@ contains
     call place_points(contact, memory)
     if (memory%points%n == 0) return
     call press_places(memory%contact_law, formulation%where_pressed, memory)
+    if (allocated(memory%friction%force)) &
+      call rub_places(contact, formulation%has_unit_area, memory%scratch%dt, memory)
     call scatter_forces(memory)
+    if (allocated(memory%friction%force)) call scatter_friction(memory)
     do i = 1, size(memory%nodes)
       associate (node => memory%nodes(i))
         force(:, node) = force(:, node) + memory%force(:, i)

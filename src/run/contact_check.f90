@@ -7,7 +7,7 @@ module contact_check_m
     opening_step, binding_bound, fitting_scale
   use controls_m, only : contact_step_free
   use kinds_m, only : wp
-  use log_m, only : log_t, warn, to_text
+  use log_m, only : log_t, warn, write_log, to_text
   use model_m, only : model_t
   use state_m, only : state_t
   implicit none
@@ -80,6 +80,11 @@ contains
 
     do i = 1, size(model%contacts)
       call report_released(model%contacts(i), state%contacts(i), log)
+      associate (friction => state%contacts(i)%friction)
+        if (abs(friction%work) > 0.0_wp) call write_log(log, 'interface ' &
+          //to_text(model%contacts(i)%id)//': friction has dissipated ' &
+          //to_text(friction%work - friction%stored)//' J/m')
+      end associate
     end do
   end subroutine report_contact_end
 

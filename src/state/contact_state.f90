@@ -116,6 +116,7 @@ module contact_state_m
     real(wp), allocatable :: increment(:, :) !! (2, n_slave + n_master) displacements of the
                                             !! step, m; this and the next two only where there is
                                             !! friction
+    real(wp) :: dt = 0.0_wp                 !! step that made them, s; only in implicit runs
     real(wp), allocatable :: former_traction(:) !! (n_place) of the call before
     integer, allocatable :: former_state(:) !! (n_place) the same
     integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps

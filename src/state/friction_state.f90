@@ -12,7 +12,7 @@ module friction_state_m
   !> What a place is doing.
   integer, parameter :: is_open = 0, sticks = 1, slips = 2
 
-  !> Arrays are allocated in explicit runs of interfaces with friction alone.
+  !> Arrays are allocated for interfaces with friction alone.
   type :: friction_memory_t
     real(wp), allocatable :: traction(:)  !! (n_place) of the last call, before the energy law,
                                           !! N/m^2 (N/m for type 1); 0 where open

@@ -5,7 +5,7 @@ import re
 import pytest
 from conftest import drop
 
-ASKS = re.compile(r"(?:\((\w+)\): \"\S+\"|(the command line)) asks for friction of interface (\d+), ([^(]*) \(type")
+INTERFACE = re.compile(r"^interface (\d+).*\(type|^  friction: coefficient ([^ ;,]+)", re.M)
 
 
 def deck(cards, control=None):
@@ -24,14 +24,19 @@ def stock(friction="", card_3="", name="AUTOMATIC_NODE_TO_SURFACE"):
 
 @pytest.fixture
 def asked(slideline, tmp_path):
-    """(field or command line, interface) of all friction that an implicit run refuses, and all that is said."""
-    def check(text, *words, implicit=True):
-        if implicit:
-            text = text.replace("*END", "*CONTROL_IMPLICIT_GENERAL\n1,1.0e-4\n*END")
+    """(interface, coefficient at rest) of all friction that the log tells of, and all that is said."""
+    def check(text, *words):
         (tmp_path / "deck.k").write_text(text)
         done = slideline("check", "i=deck.k", *words)
-        said = done.stdout + done.stderr
-        return [(field or line, int(number)) for field, line, number, _ in ASKS.findall(said)], said
+        found, interface = [], 0
+        if done.returncode:
+            return found, done.stdout + done.stderr
+        assert slideline("i=deck.k", *words).returncode == 0
+        for number, coefficient in INTERFACE.findall((tmp_path / "deck.log").read_text()):
+            interface = int(number or interface)
+            if coefficient:
+                found.append((interface, float(coefficient)))
+        return found, done.stdout + done.stderr
     return check
 
 
@@ -41,26 +46,26 @@ STOCK = ["AUTOMATIC_NODE_TO_SURFACE", "AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE", "A
 
 @pytest.mark.parametrize("name", STOCK)
 def test_stock_cards_ask_for_friction(asked, name):
-    assert asked(deck(stock("0.3", name=name)))[0] == [("FS", 1)]
+    assert asked(deck(stock("0.3", name=name)))[0] == [(1, 0.3)]
     assert asked(deck(stock("", "1.0e5", name=name)))[0] == []
 
 
 @pytest.mark.parametrize("cards, control, words, expected", [
     (ours(), None, (), []),
-    (ours("0.3"), None, (), [("FS", 1)]),
-    (ours("0.0,0.3"), None, (), [("FD", 1)]),
+    (ours("0.3"), None, (), [(1, 0.3)]),
+    (ours("0.0,0.3"), None, (), [(1, 0.0)]),
     (ours("0.3"), None, ("fs=0",), []),
-    (ours("0.3,0.2,1.0"), None, ("fs=0",), [("the command line", 1)]),
+    (ours("0.3,0.2,1.0"), None, ("fs=0",), [(1, 0.0)]),
     (ours("0.3,0.2,1.0"), None, ("fs=0", "fd=0"), []),
-    (ours() + stock(), None, ("fs.2=0.3",), [("the command line", 2)]),
+    (ours() + stock(), None, ("fs.2=0.3",), [(2, 0.3)]),
     (stock("0.3,0.0,2.0"), None, ("fs=0",), []),
-    (ours() + stock(), "0.4,", (), [("SFRIC", 2)]),
-    (stock() + stock("", "1.0e5"), "0.4,", (), [("SFRIC", 1)]),
-    (stock("0.1") + stock(), "0.0,0.2", (), [("FS", 1), ("DFRIC", 2)]),
+    (ours() + stock(), "0.4,", (), [(2, 0.4)]),
+    (stock() + stock("", "1.0e5"), "0.4,", (), [(1, 0.4)]),
+    (stock("0.1") + stock(), "0.0,0.2", (), [(1, 0.1), (2, 0.0)]),
     (stock(), "0.4,", ("fs=0",), []),
-    ("*CONTACT_2D_PENALTY_FRICTION\n2,3\n,\n0.3,\n", "0.4,", (), [("FRIC", 1)]),
+    ("*CONTACT_2D_PENALTY_FRICTION\n2,3\n,\n0.3,\n", "0.4,", (), [(1, 0.3)]),
     ("*CONTACT_2D_PENALTY_FRICTION\n2,3\n,\n0.3,0.3,0.3\n", None, ("fs=0",), []),
-    ("*CONTACT_2D_PENALTY_FRICTION\n2,3\n,\n,0.3,0.3\n", None, (), [("FRIC_L", 1)]),
+    ("*CONTACT_2D_PENALTY_FRICTION\n2,3\n,\n,0.3,0.3\n", None, (), [(1, 0.3)]),
 ])
 def test_friction_that_counts(asked, cards, control, words, expected):
     found, said = asked(deck(cards, control), *words)
@@ -79,13 +84,13 @@ def test_friction_that_counts(asked, cards, control, words, expected):
     (stock(), "0.4,", (), None),
 ])
 def test_friction_that_is_likely_not_meant(asked, cards, control, words, warning):
-    said = asked(deck(cards, control), *words, implicit=False)[1]
+    said = asked(deck(cards, control), *words)[1]
     assert said.count("warning: ") == bool(warning), said
     assert not warning or warning in said, said
 
 
 @pytest.mark.parametrize("word", ["fs=-0.1", "fd=-0.1", "dc=-1", "vc=-1", "fs=x", "tfac=0"])
 def test_no_friction_on_the_command_line(asked, word):
-    said = asked(deck(ours()), word, implicit=False)[1]
+    said = asked(deck(ours()), word)[1]
     assert f'"{word}" on the command line: the value is not a number ' in said
     assert ("of 0 or more" in said) == (not word.startswith("tfac"))

@@ -34,9 +34,9 @@ def tables(deck, interval, nodes):
     return deck.add("*DATABASE_SLEOUT", (interval,)).add("*DATABASE_SPCFORC", (interval,))
 
 
-def pressed(kind):
+def pressed(kind, most_iterations=5):
     """Static: pressed down by a curve with corners, then moved aside; steps grow, are cut and end at corners and plots."""
-    deck = implicit(1.0, 0.04, automatic=(1.0e-4, 0.3), most_iterations=5)
+    deck = implicit(1.0, 0.04, automatic=(1.0e-4, 0.3), most_iterations=most_iterations)
     upper, lower = blocks(deck, kind)
     deck.curve(1, [(0.0, 0.0), (0.31, -0.03), (1.0, -0.05)]).curve(2, [(0.0, 0.0), (0.45, 0.0), (1.0, 0.2)])
     for node in upper[-5:]:
@@ -64,9 +64,17 @@ def grown(kind):
     return tables(deck, 1.5e-3, [1, int(upper[-1])])
 
 
+def with_friction(deck, rule):
+    """The same deck with friction: FS, FD, DC."""
+    deck.lines[deck.lines.index("*CONTACT_2D_SLIDELINE") + 1] += "," + rule
+    return deck
+
+
 #: scene -> (deck of a contact type, steps between two restart files, what its log must show)
 SCENES = {"pressed": (pressed, 5, "no equilibrium"), "struck": (struck, 23, ""),
-          "grown": (grown, 6, "no equilibrium")}
+          "grown": (grown, 6, "no equilibrium"),
+          "pressed with friction": (lambda kind: with_friction(pressed(kind, 15), "0.3"), 5, ""),
+          "struck with friction": (lambda kind: with_friction(struck(kind), "0.3,0.2,0.5"), 23, "")}
 
 
 def run_whole(slideline, deck, folder="whole", **files):
@@ -100,6 +108,7 @@ def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
     # With type 5 each step of the pressed block finds its equilibrium in some builds: a matter of rounding.
     assert shown in (whole / "job.log").read_text() or kind == 5
     assert numbers(whole / "job.rcforc.csv", "n_active").max() > 0
+    assert (numbers(whole / "job.glstat.csv", "friction")[-1] > 0.0) == ("friction" in scene)
     dumps = sorted(path.name for path in whole.glob("job.dump*"))
     assert len(dumps) >= 3
     for thread, name in enumerate(dumps[:2], 1):

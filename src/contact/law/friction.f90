@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Friction of an interface in explicit runs (doc/theory/contact.md, section 6.2): slip of each
-!> place in a step, and the tractions of all points from it. Only where the deck asks for friction.
+!> Friction of an interface (doc/theory/contact.md, section 6.2): slip of each place in a step, and
+!> the tractions of all points from it. Only where the deck asks for friction.
 module friction_m
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contacts_m, only : contact_t, friction_rule_t
@@ -12,7 +12,7 @@ module friction_m
   use nodal_average_m, only : average_values, share_out
   implicit none
   private
-  public :: take_increments, set_tractions_aside, rub_places, place_of_point
+  public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, place_of_point
 
   !> A place in a step.
   type :: rub_t
@@ -42,6 +42,20 @@ contains
       end if
     end associate
   end subroutine take_increments
+
+  !> Before the points of a trial of an implicit step are placed: friction goes on from the last
+  !> converged step, with all motion since then.
+  pure subroutine start_trial_slip(motion, dt, memory)
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, and u minus that of the start
+                                                     !! of the step
+    real(wp), intent(in) :: dt                       !! of the step, s
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%scratch%increment = motion(3:4, memory%nodes)
+    memory%scratch%dt = dt
+    memory%friction%force = 0.0_wp
+    call set_tractions_aside(memory)
+  end subroutine start_trial_slip
 
   !> Before the points are placed: all places are open until they are found to be pressed.
   pure subroutine set_tractions_aside(memory)

@@ -3,11 +3,12 @@
 !> doc/theory/contact.md, section 6.2).
 module law_friction_m
   use contacts_m, only : friction_rule_t
+  use dual_m, only : dual_t, constant, operator(+), operator(*)
   use friction_state_m, only : sticks, slips
   use kinds_m, only : wp
   implicit none
   private
-  public :: coefficient_of, return_traction
+  public :: coefficient_of, return_traction, vary_traction
 
 contains
 
@@ -30,5 +31,35 @@ contains
     state = merge(slips, sticks, abs(trial) > limit)
     traction = merge(sign(limit, trial), trial, abs(trial) > limit)
   end subroutine return_traction
+
+  !> The traction of a place in contact with its derivatives. One that touches without pressure has
+  !> none yet, and sticks.
+  pure function vary_traction(rule, former, slip, pressure, stiffness, most, dt) result(traction)
+    type(friction_rule_t), intent(in) :: rule
+    type(dual_t), intent(in) :: former   !! traction before, N/m^2
+    type(dual_t), intent(in) :: slip     !! of the step, m
+    type(dual_t), intent(in) :: pressure !! N/m^2
+    real(wp), intent(in) :: stiffness    !! tangential, N/m^3
+    type(dual_t), intent(in) :: most     !! largest traction whatever the pressure, N/m^2
+    real(wp), intent(in) :: dt           !! step that made the slip, s
+    type(dual_t) :: traction
+    type(dual_t) :: coefficient, limit
+
+    traction = stiffness*slip
+    if (.not. pressure%value > 0.0_wp) then
+      traction%value = 0.0_wp
+      return
+    end if
+    traction = former + traction
+    coefficient = constant(coefficient_of(rule, 0.0_wp))
+    if (dt > 0.0_wp) then
+      coefficient%value = coefficient_of(rule, abs(slip%value)/dt)
+      coefficient%slope = (-sign(rule%decay/dt, slip%value) &
+        *(coefficient%value - rule%sliding))*slip%slope
+    end if
+    limit = coefficient*pressure
+    if (most%value < limit%value) limit = most
+    if (abs(traction%value) > limit%value) traction = sign(1.0_wp, traction%value)*limit
+  end function vary_traction
 
 end module law_friction_m

@@ -3,7 +3,10 @@
 module assembly_m
   use variation_m, only : varied_point_t, n_slot
   use contact_law_m, only : vary_pressure
-  use dual_m, only : dual_t, n_partial, operator(-), operator(*)
+  use contact_state_m, only : contact_state_t
+  use contacts_m, only : friction_rule_t
+  use dual_m, only : dual_t, n_partial, operator(+), operator(-), operator(*)
+  use friction_tangent_m, only : vary_grip
   use kinds_m, only : wp
   use sparse_m, only : sparse_t, add_block
   implicit none
@@ -32,12 +35,14 @@ contains
     weights(3)%value = weights(3)%value - 1.0_wp
   end function point_weights
 
-  !> Add a point with the force load*normal; the load is pressure times area.
-  pure subroutine add_varied_point(point, load, equations, matrix)
+  !> Add a point with the force load*normal - shear*tangent; the load is pressure times area, the
+  !> shear traction times area, the tangent (-n_y, n_x).
+  pure subroutine add_varied_point(point, load, equations, matrix, shear)
     type(varied_point_t), intent(in) :: point
     type(dual_t), intent(in) :: load
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
+    type(dual_t), intent(in), optional :: shear !! absent: none
     type(dual_t) :: weights(4), pull(2), force
     real(wp) :: block(8, n_partial)
     integer :: numbers(n_partial), rows(8), k, j
@@ -49,6 +54,7 @@ contains
     rows = numbers(:8)
     weights = point_weights(point)
     pull = load*point%normal
+    if (present(shear)) pull = pull + [shear*point%normal(2), -(shear*point%normal(1))]
     do k = 1, 4
       if (.not. (abs(weights(k)%value) > 0.0_wp .or. any(abs(weights(k)%slope) > 0.0_wp))) &
         rows(2*k - 1:2*k) = 0
@@ -60,16 +66,26 @@ contains
     call add_block(matrix, rows, numbers, block)
   end subroutine add_varied_point
 
-  !> Add a point that is pressed by its own gap.
-  pure subroutine add_pressed_point(point, contact_law, stiffness, equations, matrix)
+  !> Add a point that is pressed by its own gap, with friction by its own slip.
+  pure subroutine add_pressed_point(rule, memory, place, point, stiffness, equations, matrix, &
+      length)
+    type(friction_rule_t), intent(in) :: rule
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: place !! of its traction, a local node
     type(varied_point_t), intent(in) :: point
-    integer, intent(in) :: contact_law
     real(wp), intent(in) :: stiffness
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
+    type(dual_t), intent(in), optional :: length !! competence length where the area is 1, m
+    type(dual_t) :: pressure
 
-    call add_varied_point(point, vary_pressure(contact_law, stiffness, point%gap)*point%area, &
-      equations, matrix)
+    pressure = vary_pressure(memory%contact_law, stiffness, point%gap)
+    if (allocated(memory%friction%force)) then
+      call add_varied_point(point, pressure*point%area, equations, matrix, &
+        vary_grip(rule, memory, place, point, pressure, stiffness, length)*point%area)
+    else
+      call add_varied_point(point, pressure*point%area, equations, matrix)
+    end if
   end subroutine add_pressed_point
 
   !> Scratch for an interface of n nodes.
@@ -97,11 +113,11 @@ contains
     end do
   end subroutine add_to_row
 
-  !> Add the force of a point under the given load to the column.
-  pure subroutine add_to_column(pattern, point, load)
+  !> Add the force of a point under the given load and shear to the column.
+  pure subroutine add_to_column(pattern, point, load, shear)
     type(pattern_t), intent(inout) :: pattern
     type(varied_point_t), intent(in) :: point
-    real(wp), intent(in) :: load
+    real(wp), intent(in) :: load, shear
     type(dual_t) :: weights(4)
     integer :: k, node
 
@@ -112,6 +128,8 @@ contains
       call use_node(pattern, node)
       pattern%column(:, node) = pattern%column(:, node) &
         + load*weights(k)%value*point%normal%value
+      if (abs(shear) > 0.0_wp) pattern%column(:, node) = pattern%column(:, node) &
+        + shear*weights(k)%value*[point%normal(2)%value, -point%normal(1)%value]
     end do
   end subroutine add_to_column
 

@@ -14,7 +14,7 @@ module nodal_tangent_m
   use sparse_m, only : sparse_t
   implicit none
   private
-  public :: varied_list_t, start_list, append_point, add_nodal_tangent
+  public :: varied_list_t, start_list, append_point, add_nodal_tangent, average, nodal_share
 
   !> Points segment by segment.
   type :: varied_list_t
@@ -68,7 +68,7 @@ contains
     real(wp), dimension(memory%n_slave) :: moment, content, pressure, stiffness
     integer :: p, node
 
-    call average(memory, list, moment, content)
+    call average(memory, list, list%points(:list%n)%gap%value, moment, content)
     pressure = 0.0_wp
     gap%slope = 0.0_wp
     gap%slope(1) = 1.0_wp
@@ -94,10 +94,11 @@ contains
     end do
   end subroutine add_nodal_tangent
 
-  !> Sums of N_A a g and N_A a of all slave nodes.
-  pure subroutine average(memory, list, moment, content)
+  !> Sums of N_A a g and N_A a of all slave nodes, g a value of points.
+  pure subroutine average(memory, list, values, moment, content)
     type(contact_state_t), intent(in) :: memory
     type(varied_list_t), intent(in) :: list
+    real(wp), intent(in) :: values(:) !! (list%n)
     real(wp), intent(out) :: moment(memory%n_slave)
     real(wp), intent(out) :: content(memory%n_slave)
     type(dual_t) :: share
@@ -109,7 +110,7 @@ contains
       do k = 1, n_side
         associate (point => list%points(p), node => list%points(p)%nodes(k))
           share = nodal_share(point, k)
-          moment(node) = moment(node) + share%value*point%gap%value
+          moment(node) = moment(node) + share%value*values(p)
           content(node) = content(node) + share%value
         end associate
       end do
@@ -145,7 +146,7 @@ contains
           share = nodal_share(point, k)
           change = share*(point%gap + (-gap))
           call add_to_row(pattern, point, change%slope)
-          call add_to_column(pattern, point, share%value)
+          call add_to_column(pattern, point, share%value, 0.0_wp)
         end associate
       end do
     end do

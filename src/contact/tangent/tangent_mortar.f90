@@ -7,6 +7,7 @@ module tangent_mortar_m
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
   use foot_m, only : foot_t, near_foot
   use kinds_m, only : wp
+  use nodal_grip_m, only : add_nodal_grip
   use nodal_tangent_m, only : varied_list_t, start_list, append_point, add_nodal_tangent
   use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
   use pieces_m, only : clear_pieces, list_segment, cut_pieces
@@ -44,6 +45,8 @@ contains
       end associate
     end do
     call add_nodal_tangent(contact, memory, list, equations, matrix)
+    if (allocated(memory%friction%force)) &
+      call add_nodal_grip(contact, memory, list, equations, matrix)
   end subroutine add_mortar_tangent
 
   !> Type 7: the points move with the cuts.
@@ -72,6 +75,8 @@ contains
       end do
     end do
     call add_nodal_tangent(contact, memory, list, equations, matrix)
+    if (allocated(memory%friction%force)) &
+      call add_nodal_grip(contact, memory, list, equations, matrix)
   end subroutine add_segmented_mortar_tangent
 
   !> Append the points of one piece that counts (share above 0).

@@ -6,7 +6,7 @@ module tangent_nts_m
   use contact_state_m, only : contact_state_t
   use variation_m, only : varied_point_t, spot_foot, put_foot, length_between
   use contacts_m, only : contact_t
-  use dual_m, only : constant, operator(+), operator(*)
+  use dual_m, only : dual_t, constant, operator(+), operator(*)
   use kinds_m, only : wp
   use sparse_m, only : sparse_t
   use surfaces_m, only : surface_t
@@ -16,17 +16,27 @@ module tangent_nts_m
 
 contains
 
-  !> Type 1.
-  pure subroutine add_nts_tangent(memory, equations, matrix)
+  !> Type 1. A largest friction stress counts times the competence length, which changes.
+  pure subroutine add_nts_tangent(contact, memory, equations, matrix)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
+    type(varied_point_t) :: point
+    type(dual_t) :: length
     integer :: p
 
+    length = constant(1.0_wp)
     do p = 1, memory%points%n
-      if (memory%points%gap(p) < memory%closed_gap) call &
-        add_pressed_point(vary_node(memory, p), memory%contact_law, memory%points%stiffness(p), &
-        equations, matrix)
+      if (.not. memory%points%gap(p) < memory%closed_gap) cycle
+      point = vary_node(memory, p)
+      if (contact%friction%most > 0.0_wp) then
+        call vary_competence(contact%slave, 0, memory, point)
+        length = point%area
+        point%area = constant(1.0_wp)
+      end if
+      call add_pressed_point(contact%friction, memory, point%nodes(1), point, &
+        memory%points%stiffness(p), equations, matrix, length)
     end do
   end subroutine add_nts_tangent
 
@@ -47,8 +57,8 @@ contains
       else
         call vary_competence(contact%master, memory%n_slave, memory, point)
       end if
-      call add_pressed_point(point, memory%contact_law, memory%points%stiffness(p), &
-        equations, matrix)
+      call add_pressed_point(contact%friction, memory, point%nodes(1), point, &
+        memory%points%stiffness(p), equations, matrix)
     end do
   end subroutine add_nts_ar_tangent
 

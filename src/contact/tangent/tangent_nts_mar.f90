@@ -45,8 +45,8 @@ contains
       if (.not. memory%points%gap(p) < memory%closed_gap) cycle
       point = vary_node(memory, p)
       call vary_competence(contact%slave, 0, memory, point)
-      call add_pressed_point(point, memory%contact_law, memory%slave_penalty, &
-        equations, matrix)
+      call add_pressed_point(contact%friction, memory, point%nodes(1), point, &
+        memory%slave_penalty, equations, matrix)
     end do
   end subroutine add_nts_mar_tangent
 
@@ -102,7 +102,7 @@ contains
     type(sparse_t), intent(inout) :: matrix
     logical, intent(inout) :: has_area(:)
     type(varied_point_t) :: point
-    integer :: i, cuts(2), ends(2)
+    integer :: i, cuts(2), ends(2), place
 
     cuts = [table%first_cut(k), table%last_cut(k)]
     ends = table%ends(:, k)
@@ -110,14 +110,16 @@ contains
     do i = 1, 2
       if (cuts(i) > 0) then
         if (memory%segments%status(table%slave(1)) /= is_touching) cycle
-        call stand_at_master_node(memory, memory%n_slave + cuts(i), point)
+        place = memory%n_slave + cuts(i)
+        call stand_at_master_node(memory, place, point)
       else
         if (memory%slave_tracking%status(ends(i)) /= is_touching) cycle
-        has_area(ends(i)) = .true.
-        call stand_at_end(contact, memory, ends(i), i, point)
+        place = ends(i)
+        has_area(place) = .true.
+        call stand_at_end(contact, memory, place, i, point)
       end if
       if (point%gap%value < memory%closed_gap) &
-        call add_pressed_point(point, memory%contact_law, memory%slave_penalty, &
+        call add_pressed_point(contact%friction, memory, place, point, memory%slave_penalty, &
         equations, matrix)
     end do
   end subroutine add_both_ends

@@ -10,7 +10,9 @@ module tangent_vts_ppt_m
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
   use foot_m, only : mark_t, walk_to_mark
+  use friction_tangent_m, only : vary_slip, largest_grip
   use kinds_m, only : wp
+  use law_friction_m, only : vary_traction
   use place_vts_ppt_m, only : end_of_half
   use sparse_m, only : sparse_t
   implicit none
@@ -34,7 +36,7 @@ contains
       spot = memory%slave_tracking%touching(k)
       if (.not. memory%slave_tracking%gap(spot) < memory%closed_gap) cycle
       call vary_portions(contact, memory, spot, portions)
-      call add_portions(portions, memory, pattern, equations, matrix)
+      call add_portions(contact, spot, portions, memory, pattern, equations, matrix)
     end do
   end subroutine add_vts_ppt_tangent
 
@@ -150,26 +152,58 @@ contains
 
   !> Share out half of the slave segment by the portions' lengths: each share at a constant sum of
   !> these, and the change of the sum as one product of two vectors.
-  pure subroutine add_portions(portions, memory, pattern, equations, matrix)
+  pure subroutine add_portions(contact, spot, portions, memory, pattern, equations, matrix)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: spot
     type(varied_point_t), intent(in) :: portions(:)
     type(contact_state_t), intent(in) :: memory
     type(pattern_t), intent(inout) :: pattern
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
-    type(dual_t) :: half, load
+    type(dual_t) :: half, pressure, grip, load, shear
     real(wp) :: total
     integer :: k
 
     total = sum(portions%area%value)
     half = 0.5_wp*length_between(memory%places, portions(1)%nodes, 1, 2)
+    pressure = vary_pressure(memory%contact_law, memory%slave_penalty, portions(1)%gap)
+    if (allocated(memory%friction%force)) grip = vary_grip(contact, memory, spot, portions(1), &
+      pressure)
     do k = 1, size(portions)
-      load = (1.0_wp/total)*(vary_pressure(memory%contact_law, memory%slave_penalty, &
-        portions(k)%gap)*half*portions(k)%area)
-      call add_varied_point(portions(k), load, equations, matrix)
+      load = (1.0_wp/total)*(pressure*half*portions(k)%area)
       call add_to_row(pattern, portions(k), portions(k)%area%slope)
-      call add_to_column(pattern, portions(k), load%value)
+      if (allocated(memory%friction%force)) then
+        shear = (1.0_wp/total)*(grip*half*portions(k)%area)
+        call add_varied_point(portions(k), load, equations, matrix, shear)
+        call add_to_column(pattern, portions(k), load%value, shear%value)
+      else
+        call add_varied_point(portions(k), load, equations, matrix)
+        call add_to_column(pattern, portions(k), load%value, 0.0_wp)
+      end if
     end do
     call add_product(pattern, 1.0_wp/total, equations, matrix)
   end subroutine add_portions
+
+  !> Traction of a virtual node, which slips at its own foot.
+  pure function vary_grip(contact, memory, spot, point, pressure) result(traction)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: spot
+    type(varied_point_t), intent(in) :: point !! one of its portions
+    type(dual_t), intent(in) :: pressure
+    type(dual_t) :: traction
+    type(varied_foot_t) :: foot
+    integer :: place
+
+    place = 2*point%nodes(1) - mod(spot, 2)
+    associate (tracking => memory%slave_tracking)
+      foot = spot_foot(memory%places, point, 5, tracking%xi(spot), tracking%gap(spot), &
+        memory%closed_gap)
+    end associate
+    traction = vary_traction(contact%friction, &
+      constant(memory%scratch%former_traction(place)), vary_slip(memory, point, 5, foot%xi), &
+      pressure, contact%friction%stiffness*memory%slave_penalty, &
+      largest_grip(contact%friction), memory%scratch%dt)
+  end function vary_grip
 
 end module tangent_vts_ppt_m

@@ -7,7 +7,7 @@ module deck_friction_m
   use contacts_m, only : friction_rule_t, has_friction
   use deck_lines_m, only : deck_t, deck_error, line_warning
   use deck_fields_m, only : card_t, smallest_value
-  use deck_cards_m, only : cursor_t, report_field, reject_field, warn_of_field
+  use deck_cards_m, only : cursor_t, report_field, warn_of_field
   use deck_checks_m, only : refuse_negative
   use deck_overrides_m, only : overrides_t, override_real, override_text, override_word
   use deck_raw_m, only : raw_t, raw_contact_t
@@ -15,7 +15,7 @@ module deck_friction_m
   implicit none
   private
   public :: take_friction, take_stock_friction, take_penalty_friction, take_default_friction, &
-    settle_friction, refuse_friction
+    settle_friction
 
   character(*), parameter :: bad_share = &
     'is not a tangential over the normal penalty (above 0, at most 1)'
@@ -221,26 +221,5 @@ contains
         //' has no effect without a coefficient of friction (FS)')
     end associate
   end subroutine warn_of_rule
-
-  !> Implicit runs: refuse every interface that has friction.
-  subroutine refuse_friction(deck, raw)
-    type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    character(:), allocatable :: message
-    integer :: i
-
-    do i = 1, size(raw%contacts)
-      associate (entry => raw%contacts(i))
-        if (.not. has_friction(entry%contact)) cycle
-        message = 'asks for friction of interface '//to_text(entry%contact%id)//', ' &
-          //trim(entry%kind)//', which implicit runs do not have'
-        if (entry%friction_place%line > 0) then
-          call reject_field(deck, entry%friction_place, message)
-        else
-          call deck_error(deck, 'the command line '//message)
-        end if
-      end associate
-    end do
-  end subroutine refuse_friction
 
 end module deck_friction_m

@@ -12,7 +12,6 @@ module deck_resolve_m
   use deck_cards_m, only : reject_field, warn_of_field
   use deck_lines_m, only : deck_t, place_t, line_error, deck_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
-  use deck_friction_m, only : refuse_friction
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, &
     row_motion_set, row_velocity, row_velocity_generation, output_plot
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
@@ -36,7 +35,6 @@ contains
     type(model_t), intent(in) :: model
     integer :: i
 
-    call refuse_friction(deck, raw)
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
         if (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) &

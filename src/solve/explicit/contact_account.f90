@@ -111,8 +111,8 @@ contains
       //to_text(limit%least_time)
   end function limit_text
 
-  !> At the end of a run: what the friction of interfaces has dissipated, each interface whose
-  !> forces were limited, and each whose springs have made or lost much, or had.
+  !> At the end of a run: each interface whose forces were limited, and each whose springs have made
+  !> or lost much, or had.
   subroutine report_contact_energies(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -122,9 +122,6 @@ contains
     do i = 1, size(state%contacts)
       associate (watch => state%contacts(i)%watch, limit => state%contacts(i)%limit, &
         id => model%contacts(i)%id)
-        if (abs(state%contacts(i)%friction%work) > 0.0_wp) call write_log(log, 'interface ' &
-          //to_text(id)//': friction has dissipated '//to_text(state%contacts(i)%friction%work &
-          - state%contacts(i)%friction%stored)//' J/m')
         if (limit%n_limited > 0) call write_log(log, 'interface '//to_text(id)//limit_text(limit))
         sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
         if (abs(watch%balance) > noticed_share*state%largest_energy .and. state%cycle > 0) then

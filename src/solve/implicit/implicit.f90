@@ -6,6 +6,7 @@ module implicit_m
   use clock_m, only : lap, phase_nodes
   use contact_check_m, only : report_contact_end
   use contact_springs_m, only : measure_springs
+  use contact_work_m, only : count_step
   use energies_m, only : energy_ratio
   use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
@@ -181,10 +182,7 @@ contains
     state%external_work = state%external_work + 0.5_wp*sum((trial%external + attempt%external) &
       *attempt%motion(3:4, :))
     do i = 1, size(model%contacts)
-      associate (nodes => state%contacts(i)%nodes)
-        attempt%contacts(i)%energy = state%contacts(i)%energy - 0.5_wp &
-          *sum((state%contacts(i)%force + attempt%contacts(i)%force)*attempt%motion(3:4, nodes))
-      end associate
+      call count_step(attempt%motion, state%contacts(i), attempt%contacts(i))
       call measure_springs(attempt%contacts(i))
     end do
     if (step%is_dynamic) then

@@ -60,8 +60,8 @@ contains
     trial%contact = 0.0_wp
     trial%contacts = state%contacts
     do i = 1, size(model%contacts)
-      call evaluate_contact(model%contacts(i), trial%motion, time, is_first, trial%contacts(i), &
-        trial%contact)
+      call evaluate_contact(model%contacts(i), trial%motion, time, time - state%time, is_first, &
+        trial%contacts(i), trial%contact)
       call lap(clock, phase_contact_force)
       call share_contact(clock, i)
     end do
