@@ -53,7 +53,7 @@ def line_contact(kind, share=1.0, refine=1, exchanged=False):
     """Two bodies of one material; the upper, round below, is pressed down and held, then moved sideways and back.
     `share`: TFAC; `refine` divides the cells."""
     deck = Deck(f"Cattaneo and Mindlin, type {kind}")
-    deck.control(SIDEWAYS[-1][0] * UNIT, scale=0.8).hourglass(4, 0.05)
+    deck.control(SIDEWAYS[-1][0] * UNIT, scale=0.55).hourglass(4, 0.05)
     for part in (1, 2):
         deck.part(part).elastic(RHO, YOUNG, POISSON, part)
     x, depth = mirrored(CELL / refine)
