@@ -3,14 +3,14 @@
 module files_m
   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_null_char, c_ptr
   use c_files_m, only : c_mkdir, c_rename, c_unlink, c_fopen, c_fileno, c_fclose, c_fsync, &
-    system_reason
+    c_ftruncate, system_reason
   use errors_m, only : error_t, raise, status_files
   use file_facts_m, only : what_hinders
   use kinds_m, only : long
   implicit none
   private
   public :: join_path, parent_path, file_exists, is_directory, make_directory, remove_file, &
-    rename_file, force_to_disk, is_endless, fill_standard_streams, open_failure, unfinished
+    rename_file, force_to_disk, lengthen_file, is_endless, fill_standard_streams, open_failure, unfinished
 
   !> Behind the name of a file that is not complete: it is written aside and renamed when it is.
   character(*), parameter :: unfinished = '.part'
@@ -145,6 +145,24 @@ contains
     if (status /= 0 .or. closing /= 0) call raise(error, 'cannot bring '//path &
       //' onto the disk: '//reason, status_files)
   end subroutine force_to_disk
+
+  !> Bring a file to at least a length, with zeros behind what it has.
+  subroutine lengthen_file(path, length, is_done)
+    character(*), intent(in) :: path
+    integer(long), intent(in) :: length !! bytes
+    logical, intent(out) :: is_done
+    type(c_ptr) :: stream
+    integer(long) :: n_byte
+    integer(c_int) :: ignored
+
+    inquire (file=path, size=n_byte)
+    is_done = n_byte >= length
+    if (is_done) return
+    stream = c_fopen(path//c_null_char, 'r+'//c_null_char)
+    if (.not. c_associated(stream)) return
+    is_done = c_ftruncate(c_fileno(stream), length) == 0
+    ignored = c_fclose(stream)
+  end subroutine lengthen_file
 
   !> Whether `path` is there and is not a file of known size with something in it: a pipe, a device,
   !> or an empty file. To open a pipe could wait for ever, and a device may have no end.

@@ -3,14 +3,14 @@
 module hdf5_library_m
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_ptr, c_size_t, &
     c_null_char
-  use hdf5, only : hid_t, hsize_t, size_t, H5S_SCALAR_F, H5T_STRING_F, H5T_STR_SPACEPAD_F, &
+  use hdf5, only : haddr_t, hid_t, hsize_t, size_t, H5S_SCALAR_F, H5T_STRING_F, H5T_STR_SPACEPAD_F, &
     h5dont_atexit_f, h5open_f, h5eset_auto_f, h5dopen_f, h5dclose_f, h5dget_space_f, &
     h5dget_storage_size_f, h5dget_type_f, h5dread_f, h5sclose_f, h5sget_simple_extent_type_f, &
     h5tclose_f, h5tget_class_f, h5tget_size_f, h5tget_strpad_f, h5tis_variable_str_f
   use refused_memory_m, only : need_memory
   implicit none
   private
-  public :: open_library, read_text
+  public :: open_library, end_of_file, read_text
 
   !> Bytes that HDF5 takes for itself and a small file. It crashes while it is opened, and while it
   !> makes a file, where memory is refused (1.10.8).
@@ -24,6 +24,15 @@ module hdf5_library_m
       integer(c_int), value :: overwrite   !! 0: what the user has set stays
       integer(c_int) :: status
     end function c_setenv
+
+    !> How long a file is once all of it is written (there is no Fortran name for it); < 0 on
+    !> failure.
+    function c_get_eoa(id, length) bind(c, name='H5Fget_eoa') result(status)
+      import :: c_int, haddr_t, hid_t
+      integer(hid_t), value :: id
+      integer(haddr_t), intent(out) :: length !! bytes
+      integer(c_int) :: status
+    end function c_get_eoa
   end interface
 
 contains
@@ -40,6 +49,14 @@ contains
     call h5eset_auto_f(0, second) ! statuses become errors here; HDF5 itself stays quiet
     status = min(status, second)
   end subroutine open_library
+
+  !> How long an open file will be when all that waits is written, bytes; 0 where HDF5 can not tell.
+  function end_of_file(id) result(length)
+    integer(hid_t), intent(in) :: id
+    integer(haddr_t) :: length
+
+    if (c_get_eoa(id, length) < 0) length = 0
+  end function end_of_file
 
   !> Let viewers open files while the run still writes them, and let them live on network file
   !> systems without locks: switches HDF5's lock off unless the user's environment says otherwise.

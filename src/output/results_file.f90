@@ -15,7 +15,7 @@ module results_file_m
   use contacts_m, only : has_friction
   use errors_m, only : error_t, raise, status_files
   use file_facts_m, only : file_facts_t, facts_of_name, is_same_file
-  use files_m, only : remove_file, rename_file, unfinished
+  use files_m, only : lengthen_file, remove_file, rename_file, unfinished
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t
   use history_file_m, only : histories_t
@@ -24,6 +24,7 @@ module results_file_m
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
     planned_states, block_rows, n_point_field, n_cell_field, n_step_array, &
     step_values, step_points, step_ones
+  use hdf5_library_m, only : end_of_file
   use hdf5_writing_m, only : append_rows, close_growing, make_group, write_string_attribute, &
     write_index_attribute, check_status
   implicit none
@@ -256,14 +257,18 @@ contains
     if (.not. file%is_named) path = path//unfinished
   end function present_path
 
-  !> Hand all that waits to the system.
+  !> Hand all that waits to the system. HDF5 writes how long the file is before it makes it so long:
+  !> where that is refused (a largest file size) the states before could not be read any more.
   subroutine flush_file(file, error)
     type(results_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(inout) :: error
     integer :: status
+    logical :: has_room
 
     if (allocated(error)) return
-    call h5fflush_f(file%id, H5F_SCOPE_LOCAL_F, status)
+    call lengthen_file(present_path(file), end_of_file(file%id), has_room)
+    status = -1
+    if (has_room) call h5fflush_f(file%id, H5F_SCOPE_LOCAL_F, status)
     call check_status(status, 'a state', error)
     file%facts = facts_of_name(present_path(file))
   end subroutine flush_file
