@@ -14,8 +14,7 @@ module energy_limit_m
   !> Work of forces with the factor one, J/m.
   type :: returned_t
     real(wp) :: behind = 0.0_wp !! in the half step behind
-    real(wp) :: ahead = 0.0_wp  !! in the half step to come, at the present velocity, as far as it
-                                !! is counted on
+    real(wp) :: ahead = 0.0_wp  !! in the half step to come, at the present velocity
     real(wp) :: pushed = 0.0_wp !! there, by what else accelerates the nodes
     real(wp) :: recoil = 0.0_wp !! there, by the acceleration that the forces make themselves
   end type returned_t
@@ -30,9 +29,8 @@ module energy_limit_m
   !> Share of the largest energy so far that may be returned beyond what is stored: bodies that
   !> slide on each other exchange that much without harm.
   real(wp), parameter :: slack = 0.01_wp
-  !> Share of what is counted on in the half step to come where it takes energy from the nodes: what
-  !> holds them back is foretold from the step before, and falls off where contact opens; nodes that
-  !> still come closer have elements behind them that stop them, and throw them back, as well.
+  !> Share of what holds the nodes back that is counted on in the half step to come: it is foretold
+  !> from the step before, and falls off where contact opens.
   real(wp), parameter :: relied_on = 0.5_wp
   !> How far one limited cycle makes `recent` rise; any other with force lowers it by one.
   integer, parameter :: rise = 20
@@ -114,25 +112,18 @@ contains
     if (.not. limit%coming_step > 0.0_wp) return
     leap = 0.25_wp*limit%coming_step*(dt + limit%coming_step)
     bound = energy + limit%credit - 0.5_wp*dt*sums%former + slack*limit%largest
-    returned%behind = 0.5_wp*dt*sums%present
-    returned%ahead = counted_on(0.5_wp*limit%coming_step*sums%present)
     ! |F.q| <= (F.F + F-.F-)/2
-    if (.not. returned%behind + returned%ahead + leap*(1.5_wp*sums%recoil &
+    if (.not. 0.5_wp*(dt + limit%coming_step)*sums%present + leap*(1.5_wp*sums%recoil &
       + 0.5_wp*former_recoil) > bound) return
+    returned%behind = 0.5_wp*dt*sums%present
+    returned%ahead = 0.5_wp*limit%coming_step*sums%present
     returned%recoil = leap*sums%recoil
-    returned%pushed = counted_on(pushed_work(dt, leap, former, present, limit%inverse_mass, &
-      velocity - limit%velocity))
+    returned%pushed = pushed_work(dt, leap, former, present, limit%inverse_mass, velocity &
+      - limit%velocity)
+    if (returned%pushed < 0.0_wp) returned%pushed = relied_on*returned%pushed
     factor = energy_factor(returned, bound)
     limit%recoil = factor**2*limit%recoil
   end subroutine find_factor
-
-  !> What is counted on of work that is foretold.
-  pure function counted_on(work)
-    real(wp), intent(in) :: work
-    real(wp) :: counted_on
-
-    counted_on = merge(relied_on, 1.0_wp, work < 0.0_wp)*work
-  end function counted_on
 
   !> The velocities, the powers of former and present forces, and what these do to the nodes. One
   !> loop gathers, the other goes through lists that lie in one piece: that is vectorised.
