@@ -47,7 +47,7 @@ fn=memcpy
 
 fn=__quad_one_point_m_MOD_advance
 50 30
-fn=__element_finder_m_MOD_find
+fn=__crossing_m_MOD_find_crossings
 60 7
 
 totals: 1887
@@ -92,7 +92,10 @@ def test_a_machine_that_can_not_count_says_so(monkeypatch):
 
 
 def test_two_counts_of_a_run_agree(tmp_path):
-    """To 1e-4, beside whatever else runs here; and contact is a small part of a short collision, but not nothing."""
+    """Beside whatever else runs here; and contact is a small part of a short collision, but not nothing.
+
+    The steps agree to 1e-6, all in all to 1e-3: how often waiting rows of tables go to the disk is decided by the clock.
+    """
     if "SLIDELINE" not in os.environ:
         pytest.skip("SLIDELINE is not set")
     try:
@@ -108,7 +111,9 @@ def test_two_counts_of_a_run_agree(tmp_path):
         if "unrecognised" not in str(problem) and "Illegal" not in str(problem) and "SIGILL" not in str(problem):
             raise
         pytest.skip("this program has instructions that callgrind does not know")
-    assert first.total > 1e6 and abs(first.total / second.total - 1.0) < 1e-4
+    assert first.total > 1e6 and abs(first.total / second.total - 1.0) < 1e-3
+    for part, count in first.parts.items():
+        assert abs(count / second.parts[part] - 1.0) < 1e-6, part
     if first.parts:
         assert 0 < first.parts["contact"] < 0.5 * first.total
 
