@@ -59,7 +59,7 @@ contains
       total = total + segment_length(chain(:, surface%segments(1, i)), &
         chain(:, surface%segments(2, i)))
     end do
-    grid%cell = max(total/surface%n_segment, grid%least_cell)
+    grid%cell = max(total/max(surface%n_segment, 1), grid%least_cell) ! runs may have no segment
     if (.not. grid%cell <= huge(1.0_wp)) grid%cell = grid%least_cell
     grid%filled_at = travel
     grid%low = huge(1.0_wp)
