@@ -10,7 +10,8 @@ module files_m
   implicit none
   private
   public :: join_path, parent_path, file_exists, is_directory, make_directory, remove_file, &
-    rename_file, force_to_disk, lengthen_file, is_endless, fill_standard_streams, open_failure, unfinished
+    rename_file, force_to_disk, lengthen_file, is_endless, fill_standard_streams, open_failure, &
+    unfinished
 
   !> Behind the name of a file that is not complete: it is written aside and renamed when it is.
   character(*), parameter :: unfinished = '.part'
