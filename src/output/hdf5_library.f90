@@ -4,8 +4,9 @@ module hdf5_library_m
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_ptr, c_size_t, &
     c_null_char
   use hdf5, only : haddr_t, hid_t, hsize_t, size_t, H5S_SCALAR_F, H5T_STRING_F, &
-    H5T_STR_SPACEPAD_F, h5dont_atexit_f, h5open_f, h5eset_auto_f, h5dopen_f, h5dclose_f, h5dget_space_f, &
-    h5dget_storage_size_f, h5dget_type_f, h5dread_f, h5sclose_f, h5sget_simple_extent_type_f, &
+    H5T_STR_SPACEPAD_F, h5dont_atexit_f, h5open_f, h5eset_auto_f, h5dopen_f, h5dclose_f, &
+    h5dget_space_f, h5dget_storage_size_f, h5dget_type_f, h5dread_f, h5sclose_f, &
+    h5sget_simple_extent_type_f, &
     h5tclose_f, h5tget_class_f, h5tget_size_f, h5tget_strpad_f, h5tis_variable_str_f
   use refused_memory_m, only : need_memory
   implicit none
