@@ -55,6 +55,7 @@ module contacts_m
     real(wp) :: search_depth = 0.0_wp      !! SRCH: deepest first contact that is caught; 0 =
                                            !! automatic
     type(friction_rule_t) :: friction
+    logical :: is_round = .false.          !! axisymmetric: lengths weigh with their radius
   end type contact_t
 
 contains
