@@ -7,8 +7,10 @@ from slideline_tools import UserError
 STUDIES = {  # name on the command line: file of this package
     "paper-tables": "paper_tables",
     "stability": "stability",
+    "stability-friction": "stability_friction",
     "stability-shapes": "stability_shapes",
     "speed-accuracy": "speed_accuracy",
+    "speed-accuracy-friction": "speed_accuracy_friction",
     "simplify": "simplify",
 }
 
