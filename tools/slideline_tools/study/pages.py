@@ -55,6 +55,7 @@ PAGES = {  # quick ones first
     "advise": batch("advise", sources=ALL),
     "paper_tables": study("paper-tables"),
     "claims": batch("claims", after=("block_to_block", "sliding", "collision", "paper_tables")),
+    "claims_friction": study("claims-friction"),
     "stability_friction": study("stability-friction"),
     "stability_shapes": study("stability-shapes"),
     "stability": study("stability"),

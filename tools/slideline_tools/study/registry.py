@@ -5,6 +5,7 @@ import importlib
 from slideline_tools import UserError
 
 STUDIES = {  # name on the command line: file of this package
+    "claims-friction": "claims_friction",
     "paper-tables": "paper_tables",
     "stability": "stability",
     "stability-friction": "stability_friction",

@@ -37,7 +37,7 @@ def rolled_aside(ctype, level):
     deck.keyword("CONTACT_2D_SLIDELINE").card("surfa surfb ctype ngauss pen fs", -3, -4, ctype, 4, passes(ctype, PENALTY), FRICTION)
     block.write(deck, 1)
     cylinder.write(deck, 2)
-    return deck.database(glstat=0.25, rcforc=0.25, binary_d3plot=3.0).text()
+    return deck.database(glstat=0.25, rcforc=0.25, binary_d3plot=1.0).text()
 
 
 def passes(ctype, penalty):

@@ -33,9 +33,11 @@ def exact_traction(x, load, shear):
 
 
 def judge_rolled(folder, jobid):
-    """Errors of traction (L2) and of the stick zone's half width (over a), and Newton's iterations."""
-    rows = read_csv(folder / f"{jobid}.contact.csv")
-    rows = rows.where(time=rows["time"].max())
+    """Errors of traction (L2) and of the stick zone's half width (over a), the tractions that pressing alone has left
+    (`pressed`, over the norm of the exact ones), and Newton's iterations."""
+    table = read_csv(folder / f"{jobid}.contact.csv")
+    rows = table.where(time=table["time"].max())
+    before = table.where(time=min(table["time"], key=lambda time: abs(time - 1.0)))
     weight = rows["pressure"] * rows["length"]
     load, shear = np.sum(weight), np.sum(np.abs(rows["traction"]) * rows["length"])
     x = rows["x"] - np.sum(rows["x"] * weight) / load
@@ -43,11 +45,14 @@ def judge_rolled(folder, jobid):
     stuck = x[rows["state"] == STICKS]
     if not len(stuck):
         raise UserError(f"{folder}: nothing sticks")
-    error = np.sqrt(np.sum((np.abs(rows["traction"]) - exact) ** 2 * rows["length"]) / np.sum(exact ** 2 * rows["length"]))
+
+    def norm(values):
+        return float(np.sqrt(np.sum(values ** 2 * rows["length"])))
+
+    size = norm(exact)
     timing = read_csv(folder / f"{jobid}.timing.csv")
     iterations = dict(zip(timing["phase"].tolist(), timing["calls"].tolist()))["solver"]
-    return {"traction_error": float(error), "edge_error": float(abs(0.5 * (stuck.max() - stuck.min()) - c) / a),
-            "segments": float(a / np.median(rows["length"])), "shear": float(shear / (FRICTION * load)),
+    return {"traction_error": norm(np.abs(rows["traction"]) - exact) / size, "pressed": norm(before["traction"]) / size, "edge_error": float(abs(0.5 * (stuck.max() - stuck.min()) - c) / a), "segments": float(a / np.median(rows["length"])), "shear": float(shear / (FRICTION * load)),
             "iterations": int(iterations)}
 
 
