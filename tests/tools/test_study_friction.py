@@ -182,3 +182,11 @@ def test_a_run_without_a_stick_zone_is_no_measure(tmp_path):
     (tmp_path / "run.contact.csv").write_text(f"{names}\n3,1,1,0,0,0,-1,1e9,0,0,1e-4,3e8,0,2\n3,1,2,0,1e-4,0,-1,1e9,0,0,1e-4,3e8,0,2\n")
     with pytest.raises(UserError, match="nothing sticks"):
         slip.judge_rolled(tmp_path, "run")
+
+
+def test_nodal_means_carry_the_shear_on_a_coarse_chain():
+    load, shear = 1.0e6, 1.2e5
+    x = np.linspace(-1.0e-3, 1.0e-3, 8)
+    means, a, _ = slip.nodal_means(x, load, shear)
+    length = np.convolve(np.diff(x), [0.5, 0.5])
+    assert a < 1.0e-3 and np.sum(means * length) == pytest.approx(shear, rel=1e-3)

@@ -11,7 +11,7 @@ from slideline_tools.scenes.hertz import RADIUS
 from slideline_tools.study.speed_accuracy_friction_decks import ALONG, DRAW, FRICTION, PRESS, SLAB, UNIT
 from slideline_tools.study.times import phases
 
-STICKS = 1
+STICKS, SAMPLES = 1, 20001
 MODULUS = 0.5 * STEEL["young"] / (1.0 - STEEL["poisson"] ** 2)
 #: Part of the way along in which forces are judged, places there, and cells of the slab at level 1.
 JUDGED, PLACES, CELLS = (0.25, 0.975), 1001, 60
@@ -32,6 +32,15 @@ def exact_traction(x, load, shear):
     return FRICTION * peak * (ellipse(x / a) - (c / a * ellipse(x / c) if c > 0.0 else 0.0)), a, c
 
 
+def nodal_means(x, load, shear):
+    """Means of the exact traction over the hat functions of nodes at x (walked to the right), and both half widths: what
+    nodal forces over lengths should be, where the slope is infinite too (at a and c)."""
+    places = np.linspace(x[0], x[-1], SAMPLES)
+    traction, a, c = exact_traction(places, load, shear)
+    hats = np.stack([np.interp(places, x, one) for one in np.eye(len(x))])
+    return hats @ traction / np.sum(hats, axis=1), a, c
+
+
 def judge_rolled(folder, jobid):
     """Errors of traction (L2) and of the stick zone's half width (over a), the tractions that pressing alone has left
     (`pressed`, over the norm of the exact ones), and Newton's iterations."""
@@ -41,7 +50,7 @@ def judge_rolled(folder, jobid):
     weight = rows["pressure"] * rows["length"]
     load, shear = np.sum(weight), np.sum(np.abs(rows["traction"]) * rows["length"])
     x = rows["x"] - np.sum(rows["x"] * weight) / load
-    exact, a, c = exact_traction(x, load, shear)
+    exact, a, c = nodal_means(x, load, shear)
     stuck = x[rows["state"] == STICKS]
     if not len(stuck):
         raise UserError(f"{folder}: nothing sticks")

@@ -140,16 +140,16 @@ def advice(rows):
                      "of the slave looks after come in between; the foot ploughs, or sinks in as a whole.")
     smooth, cheap = least(rough, ERROR_FACTOR), least(costs, COST_FACTOR)
     words.append(f"**The smoothest force of ironing: {names(smooth)}** (roughness of the horizontal force, geometric mean of the meshes: "
-                 + listed(rough, "{:.2%}") + f"; less than a factor of {ERROR_FACTOR:g} counts as alike).")
+                 + listed({ctype: 100.0 * value for ctype, value in rough.items()}, "{:.2f} %") + f"; less than a factor of {ERROR_FACTOR:g} counts as alike).")
     words.append(f"**The cheapest of those that come through: {names(cheap)}** (contact time over that of type {BASE}: "
                  + listed(costs, "{:.2f}") + f"; less than a factor of {COST_FACTOR:g} counts as alike).")
     both = [ctype for ctype in smooth if ctype in cheap]
     if both:
         words.append(f"**So {names(both)}** {'is' if len(both) == 1 else 'are'} among the smoothest and among the cheapest.")
     best, quick = least(errors, ERROR_FACTOR), least(steps, RUN_FACTOR)
-    words.append(f"**Partial slip: {'no type is better than another' if len(best) == len(types) else names(best)}** (error of the traction: "
-                 + listed(errors, "{:.3f}") + "). From one mesh to the next finer one the error changes by factors of "
-                 + ", ".join(f"{ratio:.2f}" for ratio in halvings(rows)) + " (mean of the types), not more: pressing alone has left tractions of "
+    words.append(f"**Partial slip: {'no type is better than another' if len(best) == len(types) else names(best)}** (error of the traction, geometric "
+                 "mean of the meshes: " + listed(errors, "{:.3f}") + "). From one mesh to the next finer one the error changes by factors of "
+                 + ", ".join(f"{ratio:.2f}" for ratio in halvings(rows)) + " (mean of the types), not to nothing: pressing alone has left tractions of "
                  f"{between(pressed.values(), '{:.3f}')} of the same norm, since the two bodies are no half planes and spread unlike, and the closed form "
                  f"knows nothing of them. Fewest iterations: {names(quick)} ({listed(steps, '{:.0f}')}).")
     return "\n".join(f"- {one}" for one in words)

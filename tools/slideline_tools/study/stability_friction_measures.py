@@ -4,20 +4,23 @@ import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.histories import read_csv
+from slideline_tools.results import read
 from slideline_tools.study.stability_friction_scene import SPEED, calm_after
 
+SLIPS = 2          # column `state`
 SMOOTHED = 16      # rows in a running mean of squares
 SLOW = 49          # rows whose mean is no flutter: the bodies settle as nodes move along
-LARGEST = 0.05     # of the sliding speed: beyond it slip may stop somewhere
+LARGEST = 0.01     # of the sliding speed: far below that at which slip may stop, speeds along being larger
 STRETCH = 20.0     # amplitudes over which the rate is fitted
 RATES = 400        # of a first look, then as many about the best
 SPECTRUM = 256     # rows
+GROWN = np.e       # over the stretch: amplitudes from which a rate is told
 TOLD = 1.0         # growing part over the rest, at the end, from which a rate is told
 
 
 def speeds(folder, jobid):
     """Times, s, and speeds of the slave nodes across the interface (time, node), m/s."""
-    table = read_csv(folder / f"{jobid}.nodout.csv")
+    table = read(folder / f"{jobid}.vtkhdf").history("nodout")
     times = np.unique(table["time"])
     n_node = len(np.unique(table["node"]))
     if len(times) * n_node != len(table):
@@ -26,14 +29,14 @@ def speeds(folder, jobid):
 
 
 def amplitude(times, speed):
-    """Times, s, and mean squares of the speeds, (m/s)^2, from the calm on."""
+    """Times, s, and mean squares of the speeds, (m/s)^2, from the calm on; both of the rows until then, so that what
+    comes later, when slip may have stopped, has no part in it."""
     kernel = np.full(SLOW, 1.0 / SLOW)
-    drift = np.apply_along_axis(np.convolve, 0, speed, kernel, mode="valid")
-    times, speed = times[SLOW // 2:][:len(drift)], speed[SLOW // 2:][:len(drift)] - drift
-    smooth = np.convolve(np.mean(speed ** 2, axis=1), np.full(SMOOTHED, 1.0 / SMOOTHED), mode="valid")
-    middle = 0.5 * (times[SMOOTHED - 1:] + times[:len(times) - SMOOTHED + 1])
-    late = middle > calm_after()
-    return middle[late], smooth[late]
+    quick = speed[SLOW - 1:] - np.apply_along_axis(np.convolve, 0, speed, kernel, mode="valid")
+    smooth = np.convolve(np.mean(quick ** 2, axis=1), np.full(SMOOTHED, 1.0 / SMOOTHED), mode="valid")
+    until = times[SLOW + SMOOTHED - 2:]
+    late = until > calm_after() + (SLOW + SMOOTHED) * (times[1] - times[0])
+    return until[late], smooth[late]
 
 
 def last_stretch(times, squares):
@@ -78,6 +81,14 @@ def frequency(times, speed, last):
     return 2.0 * np.pi * strongest / (len(rows) * (times[1] - times[0]))
 
 
+def pressed_share(folder, jobid):
+    """Share of the slave nodes that slip when the damping has gone; the prediction is for all of them."""
+    table = read_csv(folder / f"{jobid}.contact.csv")
+    times = np.unique(table["time"])
+    rows = table.where(time=times[np.argmin(np.abs(times - calm_after()))])
+    return float(np.mean(rows["state"] == SLIPS))
+
+
 def measure_run(folder, jobid):
     """`rate`, 1/s: 0 where nothing grows that can be told; `shown`: growing part over the rest at the end; `omega`, rad/s,
     of what grows."""
@@ -86,6 +97,8 @@ def measure_run(folder, jobid):
     if len(when) < SMOOTHED:
         raise UserError("flutter is there before the damping has gone")
     rate, shown = fitted_rate(when, squares)
-    if shown <= TOLD:
-        return {"rate": 0.0, "shown": float(shown)}
-    return {"rate": float(rate), "shown": float(min(shown, 1.0e9)), "omega": float(frequency(times, speed, when[-1]))}
+    closed = pressed_share(folder, jobid)
+    if shown <= TOLD or squares[-1] < GROWN ** 2 * squares[0]:
+        return {"rate": 0.0, "shown": float(min(shown, 1.0e9)), "closed": closed}
+    return {"rate": float(rate), "shown": float(min(shown, 1.0e9)), "closed": closed,
+            "omega": float(frequency(times, speed, when[-1]))}

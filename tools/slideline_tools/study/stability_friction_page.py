@@ -17,7 +17,7 @@ from slideline_tools.study.stability_friction_texts import PAGE
 from slideline_tools.study.table import finished
 
 THOUSAND = 1000.0
-TELLING = 4.0   # e-folds by prediction from which a run must show its rate
+TELLING = 6.0   # e-folds by prediction from which a run must show its rate
 FEW = 0.1       # e-folds in 1000 steps: what a table rounds to
 ROWS = (("rate", "measured"), ("predicted", "by eigenvalue"))
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A block that slides on another one at a steady speed: its deck, and how fast its flutter should grow.
 
-The upper block is pressed by a uniform pressure and led at its top. Mass damping brings it to steady sliding and
+The upper block is pressed down and led along by its top. Mass damping brings it to steady sliding and
 fades out; what grows from then on is flutter, as long as it is small: nothing lifts off, nothing sticks.
 """
 from __future__ import annotations
@@ -17,7 +17,7 @@ from slideline_tools.study.stability_eigen import Model
 from slideline_tools.study.stability_springs import springs
 
 YOUNG, POISSON, RHO = 1.0e9, 0.3, 1000.0
-SIDE = 0.1            # m: elements of the upper block, squares
+SIDE, HEIGHT = 0.1, 0.3  # m: elements of the upper block, squares; height of both blocks
 PRESSURE = 1.0e-5 * YOUNG
 SPEED = 2.0e-3        # m/s: 2e-6 of the wave speed
 HOURGLASS = 0.1       # stiffness form, unless a cure asks for another
@@ -47,14 +47,21 @@ class Cure:
 
 def grids():
     """Lower and upper block, m; their columns do not fit, and no node comes to another within a run."""
-    lower = Grid(spaced((-0.147, 1.253, 11)), spaced((-0.3, 0.0, 3)))
-    upper = Grid(spaced((0.0, 1.0, 10)), spaced((0.0, 0.3, 3)), first_node=1001, first_element=1001)
+    lower = Grid(spaced((-0.147, 1.253, 11)), spaced((-HEIGHT, 0.0, 3)))
+    upper = Grid(spaced((0.0, 1.0, 10)), spaced((0.0, HEIGHT, 3)), first_node=1001, first_element=1001)
     return lower, upper
 
 
 def penalty(ratio):
     """Penalty in N/m^2 for its ratio to K L/A of the elements."""
     return ratio * YOUNG / (3.0 * (1.0 - 2.0 * POISSON)) / SIDE
+
+
+def way_down(stiffness):
+    """Way of the top that makes about `PRESSURE`, m: both blocks between plates, and the springs. (A load instead of a way
+    would let the block tilt: from mu 0.5 on its rear end would lift off.)"""
+    wave = YOUNG * (1.0 - POISSON) / (1.0 + POISSON) / (1.0 - 2.0 * POISSON)
+    return PRESSURE * (2.0 * HEIGHT / wave + 1.0 / stiffness)
 
 
 class Flutter:
@@ -65,7 +72,7 @@ class Flutter:
         self.model = Model([lower, upper], YOUNG, POISSON, RHO, HOURGLASS)
         for direction in (0, 1):
             self.model.fix(lower.lower, direction)
-        self.model.fix(upper.upper, 0)
+            self.model.fix(upper.upper, direction)
         slave, master = (self.model.rows(nodes) for nodes in (upper.lower, lower.upper[::-1]))
         both = np.concatenate([slave, master])
         self.springs = np.zeros((len(self.model.x),) * 2)
@@ -148,11 +155,9 @@ def deck(ctype, friction, ratio, cure=Cure()):
     text.keyword("BOUNDARY_PRESCRIBED_MOTION_SET").card("nsid dof vad lcid sf", 5, 1, 0, 2, SPEED)
     rise = np.linspace(0.0, 1.0, 201)
     soft = rise - np.sin(2.0 * np.pi * rise) / (2.0 * np.pi)
-    text.curve(3, "pressure", [*zip(0.5 * CALM * rise, soft), (1.0e3, 1.0)])
-    text.keyword("LOAD_SEGMENT")
-    text.table("lcid sf at n1 n2 n3 n4", [10] * 7, [(3, PRESSURE, 0.0, int(a), int(b), int(b), int(b))
-                                                    for a, b in zip(upper.upper[:-1], upper.upper[1:])])
-    strong = max(STRONG * np.sqrt(YOUNG / RHO) / 0.3, HELD * fastest)
+    text.curve(3, "way down", [*zip(0.5 * CALM * rise, -way_down(stiffness) * soft), (1.0e3, -way_down(stiffness))])
+    text.keyword("BOUNDARY_PRESCRIBED_MOTION_SET").card("nsid dof vad lcid sf", 5, 2, 2, 3, 1.0)
+    strong = max(STRONG * np.sqrt(YOUNG / RHO) / HEIGHT, HELD * fastest)
     text.curve(4, "mass damping, 1/s", [(0.0, strong), *zip(CALM + FADE * rise, cure.mass + (strong - cure.mass)
                                         * (1.0 - soft)), (1.0e3, cure.mass)])
     text.keyword("DAMPING_GLOBAL").card("lcid valdmp", 4, 0.0)
@@ -166,7 +171,8 @@ def deck(ctype, friction, ratio, cure=Cure()):
     text.table("nid dof lcid sf", [10] * 4, [(int(node), 1, 4, SPEED * one) for node, one in zip(upper.node.ravel(), mass)])
     text.keyword("CONTACT_2D_SLIDELINE").card("surfa surfb ctype ngauss pen fs", -3, -4, ctype, 4, stiffness, friction)
     text.card("tbirth tdeath punit pent vdc", 0.0, 1.0e20, 1, None, cure.vdc)
-    text.database(glstat=end / 200.0, rcforc=end / 200.0, nodout=ROW * step, binary_d3plot=end)
+    text.database(glstat=end / 200.0, rcforc=end / 200.0, nodout=ROW * step,
+                  binary_d3plot=begin)
     text.keyword("DATABASE_HISTORY_NODE").row([int(node) for node in upper.lower[:8]], [10] * 8)
     text.row([int(node) for node in upper.lower[8:]], [10] * 8)
     return text.text()

@@ -10,8 +10,8 @@ without any damping may therefore flutter: some motion across and along the inte
 ([contact](../theory/contact.md#62-friction-lawlaw_friction-lawfriction), *Stability*). Here is how fast, for each type, coefficient and penalty, beside what the
 eigenvalues of the linear system say; and what stops it.
 
-An elastic block (10 x 3 elements, nu 0.3, one point, stiffness form of hourglass control) is pressed on another one (11 x 3, held at its bottom) by {pressure:g} of
-Young's modulus and led at its top by {speed:g} m/s, so slowly that no node comes to another one. Mass damping brings it to steady sliding and fades out; then one slave node gets {kick:g} of the
+An elastic block (10 x 3 elements, nu 0.3, one point, stiffness form of hourglass control) is pressed on another one (11 x 3, held at its bottom) by its top, to about {pressure:g} of
+Young's modulus, and led along by {speed:g} m/s, so slowly that no node comes to another one. Mass damping brings it to steady sliding and fades out; then one slave node gets {kick:g} of the
 sliding speed. What grows is measured by the speeds of the slave nodes across the interface, over the last factor of {stretch:g} of their amplitude
 below {largest:g} of the sliding speed, where nothing sticks and nothing lifts off. Runs end after {longest} steps at the latest.
 
