@@ -56,7 +56,7 @@ def test_growth_is_no_more_than_the_eigenvalues_give():
     for friction, folds in list(zip(*rubbing.GROWTH))[2:]:
         rate, _ = model.growth(friction, stiffness, model.step(stiffness))
         assert 0.3 * rate * unit < folds <= 1.1 * rate * unit
-    assert np.all(np.diff(rubbing.GROWTH[1]) > 0.0)
+    assert np.all(np.diff(rubbing.GROWTH[1]) >= 0.0)
 
 
 def test_friction_between_bars_that_meet_squarely_is_needless(slideline, tmp_path):

@@ -15,7 +15,7 @@ NO_TRACTION, NO_WORK, STATES_IN_CONTACT = 0.01, 1.0e-4, 10
 CHANGING, FEWEST, GROWN = 0.2, 50, 10.0
 # E-folds in 1000 of the shortest stable steps of the elements by coefficient, at a penalty of K L/A: the slowest of all types
 # (doc/studies/stability_friction.md).
-GROWTH = ((0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8), (0.0, 0.2, 1.3, 3.9, 7.5, 17.0, 31.0))
+GROWTH = ((0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8), (0.0, 0.0, 0.8, 3.9, 8.4, 14.7, 32.9))
 
 
 def with_friction(run):

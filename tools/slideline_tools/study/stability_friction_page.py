@@ -17,7 +17,7 @@ from slideline_tools.study.stability_friction_texts import PAGE
 from slideline_tools.study.table import finished
 
 THOUSAND = 1000.0
-TELLING = 6.0   # e-folds by prediction from which a run must show its rate
+TELLING = 8.0   # e-folds by prediction from which a run must show its rate
 FEW = 0.1       # e-folds in 1000 steps: what a table rounds to
 ROWS = (("rate", "measured"), ("predicted", "by eigenvalue"))
 
@@ -98,6 +98,24 @@ def expected_folds(row):
     return min(FOLDS, row["predicted"] * row["step"] * STEPS[1])
 
 
+def penalty_table(by_type):
+    """Range of the growth over the types: a row for each penalty."""
+    frictions, ratios = axes_of(by_type)
+    rows = [row for own in by_type.values() for row in own]
+    lines = []
+    for ratio in ratios:
+        found = [[folds(row["rate"]) for row in rows if (row["ratio"], row["friction"]) == (ratio, friction)]
+                 for friction in frictions]
+        lines.append([f"{ratio:g}", *(between(rates, "{:.1f}") if rates else "" for rates in found)])
+    return markdown_table(["penalty over K L/A", *(f"mu {one:g}" for one in frictions)], lines)
+
+
+def still_growing(rows):
+    """(runs with another cure than mass damping in which something still grows, all of these)."""
+    there = [row for row in finished(rows) if row["kind"] not in ("map", "mass")]
+    return sum(row["rate"] > 0.0 for row in there), len(there)
+
+
 def agreement(by_type):
     """One row a type: how measured and predicted rates compare where a run has the time to show one."""
     lines = []
@@ -173,11 +191,12 @@ def write_friction_page(rows, doc):
     shown = [ctype for ctype in (5, 7) if ctype in by_type]
     cured = [row for row in finished(rows) if row["kind"] != "map"]
     calm, held = cured_by_mass(rows)
+    growing, others = still_growing(rows)
     write_page(doc, "stability_friction", PAGE.format(
         pressure=PRESSURE / YOUNG, speed=SPEED, kick=KICK, largest=LARGEST, stretch=STRETCH, n_cells=len(cells),
-        telling=TELLING, longest=STEPS[1], agreement=agreement(by_type), ranges=threshold_table(by_type),
+        telling=TELLING, longest=STEPS[1], agreement=agreement(by_type), ranges=threshold_table(by_type), penalties=penalty_table(by_type),
         tables="\n\n".join(f"Type {label(ctype)}:\n\n{map_table(by_type[ctype])}" for ctype in shown),
         calm="; ".join(f"mu {friction:g}: {names(types)}" for friction, types in calmest.items()),
-        cures=cure_table(rows) if cured else "(not run)", calm_mass=calm, n_mass=held,
+        cures=cure_table(rows) if cured else "(not run)", calm_mass=calm, n_mass=held, growing=growing, others=others,
         modes="; ".join(f"type {ctype}: {mode_text(ctype, cured[0]['friction'], cured[0]['ratio'])}" for ctype in shown)
         if cured else ""))

@@ -29,14 +29,19 @@ Of {n_cells} cells those that should grow by {telling:g} e-folds or more within 
 
 {agreement}
 
-It does: so this is no fault of a formulation that a better one would cure, but what Coulomb's law does to two elastic bodies without damping. After the amplitude
-has reached the sliding speed, slip stops here and there in each period and bounds it.
+It does, with every type: the growth is what Coulomb's law makes of two elastic bodies on these meshes without damping, and no fault of the program. Single cells are
+off where two motions of nearly one frequency and rate beat, or where a slower motion is still ahead at the end of the run. After the speeds of the flutter
+have reached that of the sliding, slip stops for a part of each period and bounds it.
 
 ## How fast
 
-Range over the penalties, 0.1 to 10 times `K L/A`, measured:
+Measured, range over the penalties, 0.1 to 10 times `K L/A`:
 
 {ranges}
+
+Range over the types:
+
+{penalties}
 
 No flutter at any penalty: {calm}.
 
@@ -44,9 +49,9 @@ No flutter at any penalty: {calm}.
 
 (measured, in brackets predicted; "-" where nothing grows that could be told.)
 
-- It grows with mu at a rate that rises faster than mu, and hardly with the penalty: a softer contact only moves it to lower frequencies. Per step of
-  the run a stiff contact flutters more slowly, since it has more steps.
-- The types differ by less than mu does. No type is immune.
+- The rate rises with mu, faster than in proportion. No type is free of it, and none has the lowest rate everywhere.
+- A contact much softer than the elements flutters least. From about `K L/A` on the penalty matters little against mu. Rates are per step of the elements alone: a stiff contact has
+  shorter steps, and by those flutters more slowly.
 
 ## What damps it
 
@@ -56,11 +61,11 @@ At mu 0.5 and a penalty of `K L/A`. Frequencies times `L/c`: 2 is the highest th
 
 Motions that grow there without a cure, by the prediction, the fastest ones: {modes}.
 
-- **VDC, bulk viscosity and the viscous form of hourglass control** take the motions of short waves, and leave those in which whole bodies swing. They cut the rate, and
-  more of them does not help further. (Damping of contact acts across the interface alone; bulk viscosity while an element is compressed.)
+- **VDC, bulk viscosity and the viscous form of hourglass control** take the shortest waves first and leave the longer ones: they lower the rate, and in {growing} of {others} runs with them something
+  still grew. (Damping of contact acts across the interface alone; bulk viscosity while an element is compressed.)
 - **Mass damping** (`*DAMPING_GLOBAL`) takes its half from every rate, whatever moves: growth stops from `D` twice the rate on ({calm_mass} of {n_mass} runs with more than that are calm). It
-  also slows what should move: use it where the answer is steady, or give the bodies back what it takes from a steady motion.
+  also slows what should move: use it where the answer is at rest, or give the bodies back what it takes from a steady motion, as these decks do.
 - The program has no damping in proportion to stiffness (`*DAMPING_PART_STIFFNESS` is refused by name); bulk viscosity is what it has of this kind.
-- In long runs of sliding bodies at mu above 0.1: expect some e-folds in a thousand steps, plan for damping, and look at `state` in `contact.csv`: flutter shows as places that
+- In long runs of sliding bodies at mu of 0.2 and more expect some e-folds in a thousand steps, plan for damping, and look at `state` in `contact.csv`: flutter shows as places that
   stick and slip in turn under a steady drive (`slideline-tools plot RUN --zones`).
 """
