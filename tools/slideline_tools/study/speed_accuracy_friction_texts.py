@@ -23,7 +23,7 @@ Static. A steel cylinder (20 mm) is pressed on a steel block and then drawn asid
     q = mu p0 (sqrt(1 - x^2/a^2) - (c/a) sqrt(1 - x^2/c^2))
 
 The error is the distance of the nodal tractions from the means of q over the hat functions of the nodes (L2, over the norm of the latter: at single places
-the cusp at c and the end at a would decide, as nodes happen to stand to them); the edge of the stick zone is half the distance of the outermost nodes that stick, so it is known to a segment. "Left by pressing": norm of the tractions before the
+the cusp at c and the end at a would decide, as nodes happen to stand to them); the edge of the stick zone is half the distance of the outermost nodes that stick, so it is known to a segment (with type 4 to two: a node counts as slipping where one of the virtual nodes beside it slips). "Left by pressing": norm of the tractions before the
 cylinder is drawn aside, over that of q; between half planes of one material there would be none. A static run costs what its iterations cost: contact is less than 1 % of it.
 
 {slip}
