@@ -100,7 +100,7 @@ def test_the_program_flutters_as_predicted_and_mass_damping_stops_it(slideline, 
 def flutter_rows():
     """Rows of two types and two coefficients; the second type is half as fast as predicted."""
     return [{"kind": "map", "type": ctype, "friction": friction, "ratio": 1.0, "amount": 0.0, "step": 4.0e-5, "mass": 0.0,
-             "predicted": 100.0 * friction, "predicted_omega": 2.0e4, "rate": 100.0 * friction / (1.0 + (ctype == 7)),
+             "predicted": 200.0 * friction, "predicted_omega": 2.0e4, "rate": 200.0 * friction / (1.0 + (ctype == 7)),
              "omega": 2.0e4, "shown": 100.0, "state": "finished"} for ctype in (5, 7) for friction in (0.1, 0.5)]
 
 
