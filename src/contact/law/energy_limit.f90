@@ -7,7 +7,7 @@ module energy_limit_m
   use contact_state_m, only : contact_points_t, contact_state_t
   use energy_limit_state_m, only : energy_limit_t
   use kinds_m, only : wp
-  use point_scaling_m, only : sum_closing, scale_points
+  use point_scaling_m, only : split_t, find_closing, sum_closing, scale_points
   implicit none
   private
   public :: keep_former_springs, limit_forces, follow_largest, lend, energy_factor, returned_t
@@ -71,7 +71,7 @@ contains
     real(wp), intent(in) :: dt                       !! step that led to u, s
     type(contact_state_t), intent(inout) :: memory
     real(wp), allocatable :: spare(:, :)
-    real(wp) :: factors(2)
+    type(split_t) :: split
 
     associate (limit => memory%limit, scratch => memory%scratch)
       if (.not. allocated(limit%velocity)) return
@@ -79,24 +79,23 @@ contains
         call take_springs(memory%force, memory%damping_force, memory%friction%force, &
           scratch%spring)
         call find_factors(memory%energy, memory%nodes, motion, dt, scratch%former_spring, &
-          scratch%spring, memory%points, scratch%velocity, limit, factors)
+          scratch%spring, memory%points, scratch%velocity, limit, split)
       else
         call find_factors(memory%energy, memory%nodes, motion, dt, scratch%former_force, &
-          memory%force, memory%points, scratch%velocity, limit, factors)
+          memory%force, memory%points, scratch%velocity, limit, split)
       end if
       call move_alloc(limit%velocity, spare)
       call move_alloc(scratch%velocity, limit%velocity)
       call move_alloc(spare, scratch%velocity)
-      call count_cycle(minval(factors), time, limit)
+      call count_cycle(minval(split%factors), time, limit)
     end associate
-    if (minval(factors) < 1.0_wp) call scale_points(factors, memory%limit%velocity, memory)
+    if (minval(split%factors) < 1.0_wp) call scale_points(split, memory)
   end subroutine limit_forces
 
-  !> The factors of this cycle, of points that open and of points that close. The sums that are
-  !> formed in each cycle bound what may be returned; only where that is too much, most often just
-  !> before contact opens, all is looked at.
-  pure subroutine find_factors(energy, nodes, motion, dt, former, present, points, velocity, limit, &
-    factors)
+  !> The factors of this cycle. The sums that are formed in each cycle bound what may be returned;
+  !> only where that is too much, most often just before contact opens, all is looked at.
+  pure subroutine find_factors(energy, nodes, motion, dt, former, present, points, velocity, &
+    limit, split)
     real(wp), intent(in) :: energy       !! of the springs up to the cycle before, J/m
     integer, intent(in), contiguous :: nodes(:)
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node of the mesh)
@@ -106,13 +105,10 @@ contains
     type(contact_points_t), intent(in) :: points
     real(wp), intent(inout), contiguous :: velocity(:, :) !! (2, n) v(n-1/2) on return
     type(energy_limit_t), intent(inout) :: limit       !! has that of the cycle before
-    real(wp), intent(out) :: factors(2)
-    real(wp), allocatable :: closing(:, :), opening(:, :)
+    type(split_t), intent(out) :: split
     type(power_sums_t) :: sums
-    type(returned_t) :: returned
-    real(wp) :: leap, bound, former_recoil, common
+    real(wp) :: leap, bound, former_recoil
 
-    factors = 1.0_wp
     call sum_powers(size(nodes), nodes, motion, former, present, limit%inverse_mass, velocity, sums)
     former_recoil = limit%recoil
     limit%recoil = sums%recoil
@@ -120,20 +116,46 @@ contains
     leap = 0.25_wp*limit%coming_step*(dt + limit%coming_step)
     bound = energy + limit%credit - 0.5_wp*dt*sums%former + slack*limit%largest
     ! |F.q| <= (F.F + F-.F-)/2
-    if (.not. 0.5_wp*(dt + limit%coming_step)*sums%present + leap*(1.5_wp*sums%recoil &
-      + 0.5_wp*former_recoil) > bound) return
-    returned = account_of(present)
-    if (.not. energy_factor(returned, bound) < 1.0_wp) return
-    allocate (closing(2, size(nodes)), opening(2, size(nodes)))
-    call sum_closing(points, velocity, closing)
+    if (0.5_wp*(dt + limit%coming_step)*sums%present + leap*(1.5_wp*sums%recoil &
+      + 0.5_wp*former_recoil) > bound) &
+      call split_points(dt, bound, former, present, points, velocity, limit, split)
+  end subroutine find_factors
+
+  !> All that is returned, and where it is too much the factors of the points that close and of the
+  !> others.
+  pure subroutine split_points(dt, bound, former, present, points, velocity, limit, split)
+    real(wp), intent(in) :: dt
+    real(wp), intent(in) :: bound                      !! what may be returned, J/m
+    real(wp), intent(in), contiguous :: former(:, :)   !! (2, n) forces of the cycle before, N/m
+    real(wp), intent(in), contiguous :: present(:, :)  !! (2, n) forces of this cycle, N/m
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(in), contiguous :: velocity(:, :) !! (2, n) v(n-1/2)
+    type(energy_limit_t), intent(inout) :: limit
+    type(split_t), intent(inout) :: split
+    real(wp), allocatable :: other(:, :), closing(:, :), opening(:, :)
+    type(returned_t) :: returned
+    real(wp) :: mean_step, leap, common
+    integer :: n
+
+    n = size(present, 2)
+    mean_step = 0.5_wp*(dt + limit%coming_step)
+    leap = 0.5_wp*limit%coming_step*mean_step
+    allocate (other(2, n))
+    call foretell(dt, former, limit%inverse_mass, velocity, limit%velocity, other)
+    if (.not. energy_factor(account_of(present), bound) < 1.0_wp) return
+    allocate (closing(2, n), opening(2, n), split%closes(points%n))
+    ! What the nodes have after the coming half step lends the place of what opens.
+    opening(:, :) = velocity + mean_step*limit%inverse_mass*(present + other)
+    call find_closing(points, velocity, opening, split%closes)
+    call sum_closing(points, split%closes, closing)
     opening(:, :) = present - closing
     returned = account_of(closing)
-    factors = [0.0_wp, energy_factor(returned, bound)]
-    if (.not. factors(2) < 1.0_wp) then
+    split%factors = [0.0_wp, energy_factor(returned, bound)]
+    if (.not. split%factors(2) < 1.0_wp) then
       common = 2.0_wp*leap*sum(closing*opening*limit%inverse_mass)
-      factors(1) = shared_factor(returned, account_of(opening), common, bound)
+      split%factors(1) = shared_factor(returned, account_of(opening), common, bound)
     end if
-    limit%recoil = sum((factors(1)*opening + factors(2)*closing)**2*limit%inverse_mass)
+    limit%recoil = sum((split%factors(1)*opening + split%factors(2)*closing)**2*limit%inverse_mass)
 
   contains
 
@@ -147,12 +169,11 @@ contains
       returned%behind = 0.5_wp*dt*power
       returned%ahead = 0.5_wp*limit%coming_step*power
       returned%recoil = leap*sum(force**2*limit%inverse_mass)
-      returned%pushed = pushed_work(dt, leap, former, force, limit%inverse_mass, velocity &
-        - limit%velocity)
+      returned%pushed = leap*sum(force*other*limit%inverse_mass)
       if (returned%pushed < 0.0_wp) returned%pushed = relied_on*returned%pushed
     end function account_of
 
-  end subroutine find_factors
+  end subroutine split_points
 
   !> The largest factor of what opens beside all of what closes.
   pure function shared_factor(closing, opening, common, bound) result(factor)
@@ -198,30 +219,29 @@ contains
     sums = power_sums_t(power, former_power, recoil)
   end subroutine sum_powers
 
-  !> Work that all else does on the nodes in the half step to come: forces as in the cycle before,
-  !> in the free directions of each node no larger than the contact force there was.
-  pure function pushed_work(dt, leap, former, present, inverse_mass, change) result(work)
+  !> Forces of all else on the nodes in the half step to come: as in the cycle before, in the free
+  !> directions of each node no larger than the contact force there was.
+  pure subroutine foretell(dt, former, inverse_mass, velocity, before, other)
     real(wp), intent(in) :: dt
-    real(wp), intent(in) :: leap !! half the coming step times the mean of both steps, s^2
-    real(wp), intent(in), contiguous :: former(:, :), present(:, :), inverse_mass(:, :)
-    real(wp), intent(in), contiguous :: change(:, :) !! (2, n) v(n-1/2) - v(n-3/2)
-    real(wp) :: work
-    real(wp) :: other(2), square, former_square
+    real(wp), intent(in), contiguous :: former(:, :), inverse_mass(:, :)
+    real(wp), intent(in), contiguous :: velocity(:, :) !! (2, n) v(n-1/2)
+    real(wp), intent(in), contiguous :: before(:, :)   !! (2, n) v(n-3/2)
+    real(wp), intent(inout), contiguous :: other(:, :) !! (2, n) N/m
+    real(wp) :: square, former_square
     integer :: i
 
-    work = 0.0_wp
-    do i = 1, size(present, 2)
+    other = 0.0_wp
+    do i = 1, size(other, 2)
       associate (is_free => inverse_mass(:, i) > 0.0_wp)
         former_square = sum(former(:, i)**2, mask=is_free)
         if (.not. former_square > 0.0_wp) cycle
-        other = 0.0_wp
-        where (is_free) other = change(:, i)/(inverse_mass(:, i)*dt) - former(:, i)
-        square = sum(other**2)
-        if (square > former_square) other = other*sqrt(former_square/square)
-        work = work + leap*sum(present(:, i)*other*inverse_mass(:, i))
+        where (is_free) other(:, i) = (velocity(:, i) - before(:, i))/(inverse_mass(:, i)*dt) &
+          - former(:, i)
+        square = sum(other(:, i)**2)
+        if (square > former_square) other(:, i) = other(:, i)*sqrt(former_square/square)
       end associate
     end do
-  end function pushed_work
+  end subroutine foretell
 
   !> The largest factor s, from 0 to 1, with which the half step behind, s behind, and both half
   !> steps, s (behind + ahead + pushed) + s^2 recoil, return no more than `bound`; where no s does,

@@ -7,21 +7,52 @@ module point_scaling_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: sum_closing, scale_points
+  public :: split_t, find_closing, sum_closing, scale_points
+
+  !> Points of a cycle told apart.
+  type :: split_t
+    real(wp) :: factors(2) = 1.0_wp   !! of points that do not close, and of points that do
+    logical, allocatable :: closes(:) !! (n) of each point; only where a factor is below 1
+  end type split_t
 
 contains
 
-  !> Nodal forces of the springs, without damping, at points that close.
-  pure subroutine sum_closing(points, velocity, force)
+  !> The points whose gap falls, with the velocities behind and with those to come: stiff springs
+  !> turn round within a step, and such a point already returns what it takes.
+  pure subroutine find_closing(points, behind, ahead, closes)
     type(contact_points_t), intent(in) :: points
-    real(wp), intent(in), contiguous :: velocity(:, :) !! (2, n) by local node, m/s
+    real(wp), intent(in), contiguous :: behind(:, :), ahead(:, :) !! (2, n) by local node, m/s
+    logical, intent(inout) :: closes(:)                           !! (points%n)
+    integer :: p
+
+    do p = 1, points%n
+      closes(p) = max(opening_rate(points, behind, p), opening_rate(points, ahead, p)) <= 0.0_wp
+    end do
+  end subroutine find_closing
+
+  !> How fast the gap of a point grows.
+  pure function opening_rate(points, velocity, p) result(rate)
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(in), contiguous :: velocity(:, :)
+    integer, intent(in) :: p
+    real(wp) :: rate !! m/s
+
+    rate = dot_product(points%normal(:, p), matmul(velocity(:, points%slave_nodes(:, p)), &
+      points%slave_weights(:, p)) - matmul(velocity(:, points%master_nodes(:, p)), &
+      points%master_weights(:, p)))
+  end function opening_rate
+
+  !> Nodal forces of the springs, without damping, at points that close.
+  pure subroutine sum_closing(points, closes, force)
+    type(contact_points_t), intent(in) :: points
+    logical, intent(in) :: closes(:)                   !! (points%n)
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, n) set here, N/m
     real(wp) :: push(2)
     integer :: p, k
 
     force = 0.0_wp
     do p = 1, points%n
-      if (opens(points, velocity, p)) cycle
+      if (.not. closes(p)) cycle
       push = points%pressure(p)*points%area(p)*points%normal(:, p)
       if (allocated(points%load)) push = push - points%load(3:4, p)
       do k = 1, n_side
@@ -33,33 +64,19 @@ contains
     end do
   end subroutine sum_closing
 
-  !> Whether the gap of a point grows.
-  pure function opens(points, velocity, p)
-    type(contact_points_t), intent(in) :: points
-    real(wp), intent(in), contiguous :: velocity(:, :)
-    integer, intent(in) :: p
-    logical :: opens
-    real(wp) :: speed(2)
-
-    speed = matmul(velocity(:, points%slave_nodes(:, p)), points%slave_weights(:, p)) &
-      - matmul(velocity(:, points%master_nodes(:, p)), points%master_weights(:, p))
-    opens = dot_product(speed, points%normal(:, p)) > 0.0_wp
-  end function opens
-
   !> Scale all that acts in this cycle, point by point: pairs of forces stay pairs. What a law
   !> remembers stays as it is.
-  pure subroutine scale_points(factors, velocity, memory)
-    real(wp), intent(in) :: factors(2) !! of points that open and that close
-    real(wp), intent(in), contiguous :: velocity(:, :) !! (2, n_slave + n_master)
+  pure subroutine scale_points(split, memory)
+    type(split_t), intent(in) :: split
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: factor
     integer :: p, n_active
 
     n_active = memory%n_active
     associate (points => memory%points)
-      if (allocated(memory%node_pressure)) call scale_nodal(factors, velocity, memory)
+      if (allocated(memory%node_pressure)) call scale_nodal(split, memory)
       do p = 1, points%n
-        factor = merge(factors(1), factors(2), opens(points, velocity, p))
+        factor = factor_of(split, p)
         points%pressure(p) = factor*points%pressure(p)
         if (allocated(points%load)) points%load(:, p) = factor*points%load(:, p)
         if (allocated(points%traction)) points%traction(p) = factor*points%traction(p)
@@ -76,9 +93,8 @@ contains
   end subroutine scale_points
 
   !> Nodal pressures by the mean factor of their points.
-  pure subroutine scale_nodal(factors, velocity, memory)
-    real(wp), intent(in) :: factors(2) !! of points that open and that close
-    real(wp), intent(in), contiguous :: velocity(:, :) !! (2, n_slave + n_master)
+  pure subroutine scale_nodal(split, memory)
+    type(split_t), intent(in) :: split
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: push
     integer :: p, k
@@ -90,8 +106,7 @@ contains
           push = points%slave_weights(k, p)*points%pressure(p)*points%area(p)
           associate (node => points%slave_nodes(k, p))
             sums(1, node) = sums(1, node) + push
-            sums(2, node) = sums(2, node) &
-              + push*merge(factors(1), factors(2), opens(points, velocity, p))
+            sums(2, node) = sums(2, node) + push*factor_of(split, p)
           end associate
         end do
       end do
@@ -99,5 +114,14 @@ contains
         *(sums(2, :n)/sums(1, :n))
     end associate
   end subroutine scale_nodal
+
+  !> The factor of a point.
+  pure function factor_of(split, p) result(factor)
+    type(split_t), intent(in) :: split
+    integer, intent(in) :: p
+    real(wp) :: factor
+
+    factor = split%factors(merge(2, 1, split%closes(p)))
+  end function factor_of
 
 end module point_scaling_m
