@@ -84,8 +84,8 @@ contains
     integer :: i, k
 
     if (block%n_odd > n_alone) then
-      call see_neighbours(block%n, block%segment, block%xi, block%t, surface%previous, &
-        surface%next, surface%segments, chain, beside)
+      call see_neighbours(block%n, block%segment, block%xi, surface%previous, surface%next, &
+        surface%segments, chain, beside)
       call keep_near_nodes(block%n, block%t, block%d, block%xi, beside, block%odd, block%n_odd)
       if (block%n_odd == 0) return
     end if
@@ -113,32 +113,28 @@ contains
     end do
   end subroutine list_odd
 
-  !> The neighbour of each segment at the end next to the foot. Where nodes stand opposite nodes it
-  !> is the segment of the place before or behind on the list: chains run against each other.
-  pure subroutine see_neighbours(n, segment, xi, t, previous, next, ends, chain, beside)
+  !> The neighbour of each segment at the end next to the foot: first all numbers, then the vectors.
+  pure subroutine see_neighbours(n, segment, xi, previous, next, ends, chain, beside)
     integer, intent(in) :: n, segment(n)
-    real(wp), intent(in) :: xi(n), t(2, n)
+    real(wp), intent(in) :: xi(n)
     integer, intent(in) :: previous(*), next(*), ends(2, *)
     real(wp), intent(in) :: chain(4, *)
     real(wp), intent(inout) :: beside(2, n) !! its vector, m; 0 where there is none
     real(wp) :: vector(4)
-    integer :: k, near, other
+    integer :: others(n_block), k, other
 
+    do k = 1, n
+      others(k) = merge(next(segment(k)), previous(segment(k)), xi(k) > 0.5_wp)
+    end do
     !GCC$ NOVECTOR
     do k = 1, n
-      if (xi(k) > 0.5_wp) then
-        other = next(segment(k))
-        near = max(1, k - 1)
+      other = others(k)
+      if (other > 0) then
+        vector = chain(:, ends(2, other)) - chain(:, ends(1, other))
+        beside(:, k) = vector(1:2) + vector(3:4)
       else
-        other = previous(segment(k))
-        near = min(n, k + 1)
+        beside(:, k) = 0.0_wp
       end if
-      beside(:, k) = t(:, near)
-      if (other == segment(near)) cycle
-      beside(:, k) = 0.0_wp
-      if (other == 0) cycle
-      vector = chain(:, ends(2, other)) - chain(:, ends(1, other))
-      beside(:, k) = vector(1:2) + vector(3:4)
     end do
   end subroutine see_neighbours
 
