@@ -175,7 +175,7 @@ contains
     is_listed = n == 1
   end subroutine list_run
 
-  !> Note slave segments from s on whose pieces have been listed.
+  !> Note slave segments from s on whose pieces, up to the last of each, have been listed.
   pure subroutine note_segments(s, n, touch, table)
     integer, intent(in) :: s, n
     logical, intent(in) :: touch !! both ends are in contact

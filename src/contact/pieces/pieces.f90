@@ -77,6 +77,7 @@ contains
     if (.not. touches .and. all(feet%is_on) .and. may_list(contact%master)) &
       call list_run(ends, feet%segment, contact%master%previous, table, is_listed)
     if (.not. is_listed) call walk_pieces(contact, memory, ends, feet, is_strict, table)
+    table%last(table%n_segment + 1) = table%n
     call note_segments(s, 1, touches, table)
   end subroutine list_segment
 
