@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Retired instructions of contact, per slave node and step, of bench_contact: the page doc/studies/contact_cost.md.
+"""Retired instructions of contact, per slave node and step, of bench_contact.
 
-    contact_counts.py PROGRAM FOLDER DOC
+    contact_counts.py PROGRAM FOLDER
 
 PROGRAM is bench_contact of the counted build (contact_counts.sh builds it). By callgrind, and each the difference of
-two runs of which one takes more steps: they are the same on a busy machine. FOLDER takes the table contact_counts.csv;
-the page goes to DOC/studies. What contact cost before its layer was laid anew stands in contact_before.csv.
+two runs of which one takes more steps: they are the same on a busy machine. FOLDER takes the table contact_counts.csv
+and the page contact_cost.md. What contact cost before its layer was laid anew stands in contact_before.csv.
 """
 import argparse
 import concurrent.futures
@@ -19,7 +19,7 @@ import sys
 from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.counting import CALLGRIND, count_instructions
-from slideline_tools.studies.common import label, markdown_table, write_page
+from slideline_tools.studies.common import label, markdown_table
 
 HERE = pathlib.Path(__file__).resolve().parent
 NODES = 1000
@@ -30,7 +30,7 @@ MATCHING_GOAL, ANEW_GOAL, FRICTION_GOAL = 1.2, 1.15, 1.35
 
 PAGE = """# What contact costs
 
-This page is written by `tests/bench/contact_counts.sh --publish`: do not edit it. Retired instructions of contact alone, by callgrind on a
+This page is written by `tests/bench/contact_counts.sh`: do not edit it. Retired instructions of contact alone, by callgrind on a
 program built for x86-64-v3, per slave node and step: a flat chain of {nodes} slave nodes that all touch, the whole of contact from the
 gathering of places to the energy account. The figures do not depend on the machine or its load.
 
@@ -112,19 +112,18 @@ def friction_table(rows):
                           lines)
 
 
-def write(folder, doc):
+def write(folder):
     """The page from the table."""
     rows, before = read_rows(folder / TABLE), read_rows(HERE / "contact_before.csv")
-    write_page(doc, "contact_cost", PAGE.format(
+    (folder / "contact_cost.md").write_text(PAGE.format(
         nodes=NODES, matching=MATCHING_GOAL, anew=ANEW_GOAL, friction=FRICTION_GOAL, commit=BEFORE,
-        costs=cost_table(rows, before), rubbing=friction_table(rows)))
+        costs=cost_table(rows, before), rubbing=friction_table(rows)), encoding="ascii")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=pathlib.Path, help="bench_contact of the counted build")
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("doc", type=pathlib.Path)
     parser.add_argument("--scenes", nargs="+", default=SCENES, choices=SCENES, help="only count these, no page")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
@@ -138,7 +137,7 @@ def main():
         table.writeheader()
         table.writerows(rows)
     if set(options.scenes) == set(SCENES):
-        write(options.folder, options.doc)
+        write(options.folder)
     return 0
 
 
