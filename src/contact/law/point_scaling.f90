@@ -2,7 +2,7 @@
 !> Points that open and points that close, told apart and scaled apart: the first return energy, the
 !> others take it (doc/theory/contact.md, section 6.1).
 module point_scaling_m
-  use contact_scatter_m, only : scatter_forces, scatter_friction
+  use contact_scatter_m, only : scatter_forces
   use contact_state_m, only : contact_points_t, contact_state_t, n_side
   use kinds_m, only : wp
   implicit none
@@ -84,11 +84,8 @@ contains
     end associate
     memory%force = 0.0_wp
     if (allocated(memory%damping_force)) memory%damping_force = 0.0_wp
+    if (allocated(memory%friction%force)) memory%friction%force = 0.0_wp
     call scatter_forces(memory)
-    if (allocated(memory%friction%force)) then
-      memory%friction%force = 0.0_wp
-      call scatter_friction(memory)
-    end if
     memory%n_active = n_active
   end subroutine scale_points
 

@@ -54,30 +54,32 @@ contains
   !> each piece to either of its ends, as far as it counts. With the strict rule all of it counts.
   pure subroutine share_pieces(contact, table, memory)
     type(contact_t), intent(in) :: contact
-    type(piece_table_t), intent(in) :: table
+    type(piece_table_t), intent(inout) :: table
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t) :: cuts
-    real(wp) :: halves(table%n), areas(table%n), deepest
-    integer :: i, k, n_before, n_points, n, rows(table%n)
+    real(wp) :: deepest
+    integer :: i, n_before, n_points, n
     logical :: counts
 
-    do k = 1, table%n
-      halves(k) = 0.5_wp*(table%high(k) - table%low(k))*table%length(k)
-    end do
-    if (.not. contact%strict) halves = halves*table%share(:table%n)
+    call halve_pieces(table%n, table%low, table%high, table%length, table%half)
+    if (.not. contact%strict) table%half(:table%n) = table%half(:table%n)*table%share(:table%n)
     n = 0
     cuts%n = 0
     do i = 1, table%n_segment
       associate (first => table%last(i - 1) + 1, last => table%last(i), s => table%slave(i))
-        if (table%touches(i) .and. is_plain(table%kind, halves, first, last)) then
-          call share_plain(table, i, halves, memory, n, rows, areas)
+        if (table%touches(i) .and. is_plain(table%kind, table%half, first, last)) then
+          n_before = n
+          call share_plain(first, last, table%ends, table%half, table%node_gap, &
+            memory%closed_gap, memory%scratch%point_at, memory%points%area, n, table%rows)
+          call keep_segment(n > n_before, memory%travel, memory%segments%status(s), &
+            memory%segments%wake(s))
           cycle
         end if
         if (cuts%n + last - first >= n_block) &
           call append_points(cuts, memory%slave_penalty, memory%points)
         n_before = cuts%n
         n_points = memory%points%n
-        call share_segment(table, first, last, halves, memory, cuts, deepest)
+        call share_segment(table, first, last, table%half, memory, cuts, deepest)
         if (table%touches(i)) then
           call keep_segment(deepest < memory%closed_gap, memory%travel, memory%segments%status(s), &
             memory%segments%wake(s))
@@ -90,11 +92,20 @@ contains
     call append_points(cuts, memory%slave_penalty, memory%points)
     do i = 1, n, n_block
       cuts%n = min(n_block, n - i + 1)
-      call put_cuts(cuts%n, rows(i), areas(i), table%ends, table%nodes, table%cut, table%node_gap, &
-        table%normal, cuts)
+      call put_cuts(cuts%n, table%rows(i), table%half, table%ends, table%nodes, table%cut, &
+        table%node_gap, table%normal, cuts)
       call append_points(cuts, memory%slave_penalty, memory%points)
     end do
   end subroutine share_pieces
+
+  !> Half the length of each piece, m.
+  pure subroutine halve_pieces(n, low, high, length, half)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: low(n), high(n), length(n)
+    real(wp), intent(inout) :: half(n)
+
+    half = 0.5_wp*(high - low)*length
+  end subroutine halve_pieces
 
   !> Whether the pieces of a segment are listed from one end to the other, none of them empty.
   pure function is_plain(kind, halves, first, last)
@@ -114,37 +125,31 @@ contains
 
   !> The pieces of such a segment with both ends in contact; master nodes in contact go on a list of
   !> pieces that end there.
-  pure subroutine share_plain(table, i, halves, memory, n, rows, areas)
-    type(piece_table_t), intent(in) :: table
-    integer, intent(in) :: i !! segment of the table
-    real(wp), intent(in) :: halves(*)
-    type(contact_state_t), intent(inout) :: memory
+  pure subroutine share_plain(first, last, ends, halves, node_gap, closed_gap, point_at, area, n, &
+      rows)
+    integer, intent(in) :: first, last     !! pieces
+    integer, intent(in) :: ends(2, *)      !! of all pieces, as all that follow
+    real(wp), intent(in) :: halves(*), node_gap(*), closed_gap !! m
+    integer, intent(in) :: point_at(*)     !! at each slave node, 0: none
+    real(wp), intent(inout) :: area(*)     !! of the points, m
     integer, intent(inout) :: n, rows(*)
-    real(wp), intent(inout) :: areas(*) !! m
-    integer :: k, n_before, first, last, s
+    integer :: k, p
 
-    s = table%slave(i)
-    first = table%last(i - 1) + 1
-    last = table%last(i)
-    associate (point_at => memory%scratch%point_at)
-      call add_length(memory%points, point_at(table%ends(1, first)), halves(first))
-      call add_length(memory%points, point_at(table%ends(2, first)), halves(last))
-    end associate
-    n_before = n
+    p = point_at(ends(1, first))
+    if (p > 0) area(p) = area(p) + halves(first)
+    p = point_at(ends(2, first))
+    if (p > 0) area(p) = area(p) + halves(last)
     do k = first, last - 1
-      if (.not. table%node_gap(k) < memory%closed_gap) cycle
+      if (.not. node_gap(k) < closed_gap) cycle
       n = n + 1
       rows(n) = k
-      areas(n) = halves(k) + halves(k + 1)
     end do
-    call keep_segment(n > n_before, memory%travel, memory%segments%status(s), &
-      memory%segments%wake(s))
   end subroutine share_plain
 
-  !> Points at the master nodes where some pieces end.
-  pure subroutine put_cuts(n, rows, areas, ends, nodes, cut, node_gap, normal, cuts)
+  !> Points at the master nodes where some pieces end: these and the next pieces are halved there.
+  pure subroutine put_cuts(n, rows, halves, ends, nodes, cut, node_gap, normal, cuts)
     integer, intent(in) :: n, rows(n), ends(2, *), nodes(2, *)
-    real(wp), intent(in) :: areas(n), cut(*), node_gap(*), normal(2, *)
+    real(wp), intent(in) :: halves(*), cut(*), node_gap(*), normal(2, *)
     type(place_block_t), intent(inout) :: cuts
     integer :: k, row
 
@@ -158,7 +163,7 @@ contains
       cuts%feet%xi(k) = 0.0_wp
       cuts%feet%gap(k) = node_gap(row)
       cuts%feet%normal(:, k) = -normal(:, row)
-      cuts%area(k) = areas(k)
+      cuts%area(k) = halves(row) + halves(row + 1)
     end do
   end subroutine put_cuts
 
