@@ -9,9 +9,10 @@ module place_nts_mar_m
   use foot_m, only : see_segment, facing_share
   use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal
   use kinds_m, only : wp
-  use lengths_m, only : competence_length
+  use lengths_m, only : competence_area
   use piece_table_m, only : piece_table_t, is_last_piece
   use pieces_m, only : clear_pieces, list_awake, cut_pieces
+  use radii_m, only : end_radius, radius_between
   use point_list_m, only : place_block_t, append_points, append_touching, add_length
   use sleep_m, only : all_asleep, keep_segment, judge_segment, note_next_wake
   use surfaces_m, only : surface_t
@@ -51,33 +52,71 @@ contains
   end subroutine place_nts_mar
 
   !> Divide the segments of a table among their ends and the master nodes that cut them: half of
-  !> each piece to either of its ends, as far as it counts. With the strict rule all of it counts.
+  !> each piece to either of its ends, as far as it counts; in axisymmetry weighted with the radius.
+  !> With the strict rule all of it counts.
   pure subroutine share_pieces(contact, table, memory)
     type(contact_t), intent(in) :: contact
     type(piece_table_t), intent(in) :: table
     type(contact_state_t), intent(inout) :: memory
-    type(place_block_t) :: cuts
-    real(wp) :: halves(table%n), areas(table%n), deepest
-    integer :: i, k, n_before, n_points, n, rows(table%n)
-    logical :: counts
+    real(wp) :: halves(table%n)
+    integer :: k
 
     do k = 1, table%n
       halves(k) = 0.5_wp*(table%high(k) - table%low(k))*table%length(k)
     end do
     if (.not. contact%strict) halves = halves*table%share(:table%n)
+    if (contact%is_round) then
+      call share_weighted(contact, table, halves, memory)
+    else
+      call share_halves(contact, table, halves, halves, memory)
+    end if
+  end subroutine share_pieces
+
+  !> The same in axisymmetry: what either end of a piece gets differs.
+  pure subroutine share_weighted(contact, table, halves, memory)
+    type(contact_t), intent(in) :: contact
+    type(piece_table_t), intent(in) :: table
+    real(wp), intent(in) :: halves(:) !! (table%n) m
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), dimension(table%n) :: to_first, to_last
+    real(wp) :: low, high
+    integer :: k
+
+    do k = 1, table%n
+      associate (a => memory%places(:, table%ends(1, k)), b => memory%places(:, table%ends(2, k)))
+        low = radius_between(a, b, table%low(k))
+        high = radius_between(a, b, table%high(k))
+      end associate
+      to_first(k) = halves(k)*end_radius(low, high)
+      to_last(k) = halves(k)*end_radius(high, low)
+    end do
+    call share_halves(contact, table, to_first, to_last, memory)
+  end subroutine share_weighted
+
+  !> Give the areas of all pieces to what stands at their ends.
+  pure subroutine share_halves(contact, table, to_first, to_last, memory)
+    type(contact_t), intent(in) :: contact
+    type(piece_table_t), intent(in) :: table
+    real(wp), intent(in) :: to_first(:), to_last(:) !! (table%n) where a piece starts, and ends
+    type(contact_state_t), intent(inout) :: memory
+    type(place_block_t) :: cuts
+    real(wp) :: areas(table%n), deepest
+    integer :: i, n_before, n_points, n, rows(table%n)
+    logical :: counts
+
     n = 0
     cuts%n = 0
     do i = 1, table%n_segment
       associate (first => table%last(i - 1) + 1, last => table%last(i), s => table%slave(i))
-        if (table%touches(i) .and. is_plain(table%kind, halves, first, last)) then
-          call share_plain(table, i, halves, memory, n, rows, areas)
+        if (table%touches(i) .and. is_plain(table%kind, to_first, first, last)) then
+          call share_plain(table, i, to_first, to_last, memory, n, rows, areas)
           cycle
         end if
         if (cuts%n + last - first >= n_block) &
           call append_points(cuts, memory%slave_penalty, memory%points)
         n_before = cuts%n
         n_points = memory%points%n
-        call share_segment(table, first, last, halves, memory, cuts, deepest)
+        call share_segment(table, first, last, to_first, to_last, memory, cuts, deepest)
         if (table%touches(i)) then
           call keep_segment(deepest < memory%closed_gap, memory%travel, memory%segments%status(s), &
             memory%segments%wake(s))
@@ -94,12 +133,12 @@ contains
         table%normal, cuts)
       call append_points(cuts, memory%slave_penalty, memory%points)
     end do
-  end subroutine share_pieces
+  end subroutine share_halves
 
   !> Whether the pieces of a segment are listed from one end to the other, none of them empty.
-  pure function is_plain(kind, halves, first, last)
+  pure function is_plain(kind, areas, first, last)
     integer, intent(in) :: kind(*), first, last
-    real(wp), intent(in) :: halves(*)
+    real(wp), intent(in) :: areas(*)
     logical :: is_plain
     integer :: k
 
@@ -107,17 +146,17 @@ contains
     if (last < first) return
     if (kind(last) /= is_last_piece) return
     do k = first, last
-      if (.not. halves(k) > 0.0_wp) return
+      if (.not. areas(k) > 0.0_wp) return
     end do
     is_plain = .true.
   end function is_plain
 
   !> The pieces of such a segment with both ends in contact; master nodes in contact go on a list of
   !> pieces that end there.
-  pure subroutine share_plain(table, i, halves, memory, n, rows, areas)
+  pure subroutine share_plain(table, i, to_first, to_last, memory, n, rows, areas)
     type(piece_table_t), intent(in) :: table
     integer, intent(in) :: i !! segment of the table
-    real(wp), intent(in) :: halves(*)
+    real(wp), intent(in) :: to_first(*), to_last(*)
     type(contact_state_t), intent(inout) :: memory
     integer, intent(inout) :: n, rows(*)
     real(wp), intent(inout) :: areas(*) !! m
@@ -127,15 +166,15 @@ contains
     first = table%last(i - 1) + 1
     last = table%last(i)
     associate (point_at => memory%scratch%point_at)
-      call add_length(memory%points, point_at(table%ends(1, first)), halves(first))
-      call add_length(memory%points, point_at(table%ends(2, first)), halves(last))
+      call add_length(memory%points, point_at(table%ends(1, first)), to_first(first))
+      call add_length(memory%points, point_at(table%ends(2, first)), to_last(last))
     end associate
     n_before = n
     do k = first, last - 1
       if (.not. table%node_gap(k) < memory%closed_gap) cycle
       n = n + 1
       rows(n) = k
-      areas(n) = halves(k) + halves(k + 1)
+      areas(n) = to_last(k) + to_first(k + 1)
     end do
     call keep_segment(n > n_before, memory%travel, memory%segments%status(s), &
       memory%segments%wake(s))
@@ -164,10 +203,10 @@ contains
 
   !> The pieces of one segment. What stands at the end of a piece has half of it and half of the
   !> next; between two chains of the master two nodes may stand there.
-  pure subroutine share_segment(table, first, last, halves, memory, cuts, deepest)
+  pure subroutine share_segment(table, first, last, to_first, to_last, memory, cuts, deepest)
     type(piece_table_t), intent(in) :: table
     integer, intent(in) :: first, last   !! pieces
-    real(wp), intent(in) :: halves(:)    !! of all pieces, m
+    real(wp), intent(in) :: to_first(:), to_last(:) !! of all pieces, m
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t), intent(inout) :: cuts
     real(wp), intent(out) :: deepest     !! smallest gap of its master nodes, m
@@ -187,14 +226,14 @@ contains
         length = 0.0_wp
         before = 0
       end if
-      length = length + halves(k)
+      length = length + to_first(k)
       if (node > 0) then
         call add_cut(table, before, k, node, length, memory, cuts, deepest)
       else
         call add_length(memory%points, memory%scratch%point_at(table%ends(1, k)), length)
       end if
       node = table%last_cut(k)
-      length = halves(k)
+      length = to_last(k)
       before = k
     end do
     if (node > 0) then
@@ -263,7 +302,7 @@ contains
       if (memory%points%area(p) > 0.0_wp) cycle
       node = memory%points%slave_nodes(1, p)
       if (is_tip(contact%slave, memory, node)) call add_length(memory%points, p, &
-        competence_length(contact%slave, memory%places(:, :memory%n_slave), node))
+        competence_area(contact%slave, memory%places(:, :memory%n_slave), contact%is_round, node))
     end do
   end subroutine finish_nodes
 

@@ -12,6 +12,7 @@ module place_vts_ppt_m
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use point_list_m, only : place_block_t, append_points
+  use radii_m, only : centroid, radius_between
   implicit none
   private
   public :: place_vts_ppt, end_of_half
@@ -24,13 +25,15 @@ module place_vts_ppt_m
     integer :: ends(2, n_block)   !! nodes of its slave segment
     integer :: nodes(2, n_block)  !! local numbers of those of its master segment
     integer :: master(n_block)    !! segment below it
+    real(wp) :: xi(n_block)       !! place of the virtual node on its slave segment
     real(wp) :: own(2, n_block)   !! vector of the slave segment, m
     real(wp) :: t(2, n_block)     !! vector of the master segment, m
-    real(wp) :: d(2, n_block)     !! from that one's first node to the virtual node, m
+    real(wp) :: d(2, n_block)     !! from that one's first node to the middle of the half, m
     real(wp) :: low(n_block)      !! where the later end is on it: the slave runs against the master
     real(wp) :: high(n_block)     !! where the earlier end is
     real(wp) :: length(n_block)   !! of the master segment, m
-    real(wp) :: half(n_block)     !! of the slave segment's length, m
+    real(wp) :: half(n_block)     !! of the slave segment's length, m, in axisymmetry times the
+                                  !! radius of its middle
   end type halves_t
 
 contains
@@ -49,16 +52,19 @@ contains
       halves%n = n
       halves%spot(:n) = memory%slave_tracking%touching(first:first + n - 1)
       call see_halves(n, halves%spot, memory%slave_tracking%segment, contact%slave%segments, &
-        contact%master%segments, memory%n_slave, memory%places, memory%spots, halves)
+        contact%master%segments, memory%n_slave, memory%places, memory%spots, memory%spot_xi, &
+        halves)
+      if (contact%is_round) call lean_halves(memory, halves)
       call project_ends(n, halves%own, halves%t, halves%d, halves%low, halves%high, halves%length, &
         halves%half)
+      if (contact%is_round) call weigh_halves(memory, halves)
       do k = 1, n
         if (block%n + 2 > n_block) &
           call append_points(block, memory%slave_penalty, memory%points)
         if (halves%low(k) >= -round_off .and. halves%high(k) <= 1.0_wp + round_off &
           .and. halves%high(k) > halves%low(k)) then
-          call put_portion(memory, halves, k, halves%nodes(:, k), 0.5_wp*(halves%low(k) &
-            + halves%high(k)), halves%half(k), block)
+          call put_portion(memory, halves, k, halves%nodes(:, k), &
+            [halves%low(k), halves%high(k)], halves%half(k), block)
         else
           call add_portions(contact, memory, halves, k, block)
         end if
@@ -68,11 +74,13 @@ contains
   end subroutine place_vts_ppt
 
   !> Vectors of some halves.
-  pure subroutine see_halves(n, spot, segment, ends, segments, n_slave, places, spots, halves)
+  pure subroutine see_halves(n, spot, segment, ends, segments, n_slave, places, spots, spot_xi, &
+      halves)
     integer, intent(in) :: n, spot(n), segment(*)
     integer, intent(in) :: ends(2, *), segments(2, *) !! of the slave and of the master
     integer, intent(in) :: n_slave                    !! local number before the first master node
     real(wp), intent(in) :: places(4, *), spots(4, *)
+    real(wp), intent(in) :: spot_xi(2)
     type(halves_t), intent(inout) :: halves
     real(wp), dimension(4) :: own, t, d
     integer :: k, s, a, b
@@ -86,6 +94,7 @@ contains
       halves%ends(:, k) = ends(:, s)
       halves%nodes(1, k) = a
       halves%nodes(2, k) = b
+      halves%xi(k) = spot_xi(2 - iand(spot(k), 1))
       own = places(:, ends(2, s)) - places(:, ends(1, s))
       t = places(:, b) - places(:, a)
       d = spots(:, spot(k)) - places(:, a)
@@ -94,6 +103,37 @@ contains
       halves%d(:, k) = d(1:2) + d(3:4)
     end do
   end subroutine see_halves
+
+  !> In axisymmetry the virtual nodes are not in the middle of their halves: their places, and the
+  !> ways to the middles.
+  pure subroutine lean_halves(memory, halves)
+    type(contact_state_t), intent(in) :: memory
+    type(halves_t), intent(inout) :: halves
+    real(wp) :: middle
+    integer :: k
+
+    do k = 1, halves%n
+      middle = halves%xi(k)
+      associate (a => memory%places(:, halves%ends(1, k)), b => memory%places(:, halves%ends(2, k)))
+        halves%xi(k) = centroid(a, b, middle - 0.25_wp, middle + 0.25_wp)
+      end associate
+      halves%d(:, k) = halves%d(:, k) + (middle - halves%xi(k))*halves%own(:, k)
+    end do
+  end subroutine lean_halves
+
+  !> In axisymmetry halves weigh with the radius of their middle.
+  pure subroutine weigh_halves(memory, halves)
+    type(contact_state_t), intent(in) :: memory
+    type(halves_t), intent(inout) :: halves
+    integer :: k
+
+    do k = 1, halves%n
+      associate (a => memory%places(:, halves%ends(1, k)), b => memory%places(:, halves%ends(2, k)))
+        halves%half(k) = halves%half(k) &
+          *radius_between(a, b, memory%spot_xi(2 - iand(halves%spot(k), 1)))
+      end associate
+    end do
+  end subroutine weigh_halves
 
   !> Both ends of the halves on their master segments.
   pure subroutine project_ends(n, own, t, d, low, high, length, half)
@@ -123,7 +163,7 @@ contains
     type(halves_t), intent(in) :: halves
     integer, intent(in) :: k
     type(place_block_t), intent(inout) :: block
-    real(wp) :: low, high, share
+    real(wp) :: low, high, share, rest
     integer :: other, nodes(2)
     logical :: is_found
 
@@ -134,11 +174,15 @@ contains
       other = contact%master%previous(halves%master(k))
       if (other > 0) call see_other(contact, memory, halves, k, other, 1.0_wp, is_found, low, share)
       if (is_found) then
-        share = share/(share + high*halves%length(k))
         nodes = memory%n_slave + contact%master%segments(:, other)
-        call put_portion(memory, halves, k, nodes, 0.5_wp*(low + 1.0_wp), share*halves%half(k), &
-          block)
-        call put_portion(memory, halves, k, halves%nodes(:, k), 0.5_wp*high, &
+        rest = high*halves%length(k)
+        if (contact%is_round) then
+          share = share*middle_radius(memory, nodes, [low, 1.0_wp])
+          rest = rest*middle_radius(memory, halves%nodes(:, k), [0.0_wp, high])
+        end if
+        share = share/(share + rest)
+        call put_portion(memory, halves, k, nodes, [low, 1.0_wp], share*halves%half(k), block)
+        call put_portion(memory, halves, k, halves%nodes(:, k), [0.0_wp, high], &
           (1.0_wp - share)*halves%half(k), block)
       end if
     else if (high > 1.0_wp .and. low > 0.0_wp .and. low < 1.0_wp) then
@@ -146,15 +190,30 @@ contains
       if (other > 0) call see_other(contact, memory, halves, k, other, -1.0_wp, is_found, high, &
         share)
       if (is_found) then
-        share = share/(share + (1.0_wp - low)*halves%length(k))
         nodes = memory%n_slave + contact%master%segments(:, other)
-        call put_portion(memory, halves, k, halves%nodes(:, k), 0.5_wp*(low + 1.0_wp), &
+        rest = (1.0_wp - low)*halves%length(k)
+        if (contact%is_round) then
+          share = share*middle_radius(memory, nodes, [0.0_wp, high])
+          rest = rest*middle_radius(memory, halves%nodes(:, k), [low, 1.0_wp])
+        end if
+        share = share/(share + rest)
+        call put_portion(memory, halves, k, halves%nodes(:, k), [low, 1.0_wp], &
           (1.0_wp - share)*halves%half(k), block)
-        call put_portion(memory, halves, k, nodes, 0.5_wp*high, share*halves%half(k), block)
+        call put_portion(memory, halves, k, nodes, [0.0_wp, high], share*halves%half(k), block)
       end if
     end if
     if (.not. is_found) call walk_portions(contact, memory, halves, k, block)
   end subroutine add_portions
+
+  !> In axisymmetry: radius of the middle of a portion.
+  pure function middle_radius(memory, nodes, range) result(radius)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: nodes(2)   !! local numbers of those of the master segment
+    real(wp), intent(in) :: range(2)  !! of that
+    real(wp) :: radius
+
+    radius = radius_between(memory%places(:, nodes(1)), memory%places(:, nodes(2)), 0.5_wp*sum(range))
+  end function middle_radius
 
   !> Where the end of a half beyond its master segment is on the neighbour of that.
   pure subroutine see_other(contact, memory, halves, k, other, way, is_found, xi, length)
@@ -200,8 +259,8 @@ contains
     integer, intent(in) :: k
     type(place_block_t), intent(inout) :: block
     type(mark_t) :: marks(2)
-    real(wp) :: total, low, high, xi
-    integer :: segment, i, i_pass, ends(2)
+    real(wp) :: total, length, low, high, xi
+    integer :: segment, i, i_pass, ends(2), nodes(2)
 
     associate (spot => halves%spot(k), chain => memory%places(:, memory%n_slave + 1:))
       ends = contact%slave%segments(:, (spot + 1)/2)
@@ -218,22 +277,21 @@ contains
           low = merge(marks(1)%xi, 0.0_wp, i == 0)
           high = merge(marks(2)%xi, 1.0_wp, segment == marks(2)%segment)
           if (high > low) then
-            associate (length => (high - low)*segment_length( &
-              chain(:, contact%master%segments(1, segment)), &
-              chain(:, contact%master%segments(2, segment))))
-              if (i_pass == 1) total = total + length
-              if (i_pass == 2) call put_portion(memory, halves, k, memory%n_slave &
-                + contact%master%segments(:, segment), 0.5_wp*(low + high), &
-                halves%half(k)*(length/total), block)
-            end associate
+            nodes = memory%n_slave + contact%master%segments(:, segment)
+            length = (high - low)*segment_length(memory%places(:, nodes(1)), &
+              memory%places(:, nodes(2)))
+            if (contact%is_round) length = length*middle_radius(memory, nodes, [low, high])
+            if (i_pass == 1) total = total + length
+            if (i_pass == 2) call put_portion(memory, halves, k, nodes, [low, high], &
+              halves%half(k)*(length/total), block)
           end if
           segment = contact%master%next(segment)
           ! Marks of displacements beyond all bounds need not lie on one chain.
           if (segment == 0) exit
         end do
         if (total > 0.0_wp) cycle
-        call put_portion(memory, halves, k, halves%nodes(:, k), memory%slave_tracking%xi(spot), &
-          halves%half(k), block)
+        call put_portion(memory, halves, k, halves%nodes(:, k), &
+          spread(memory%slave_tracking%xi(spot), 1, 2), halves%half(k), block)
         return
       end do
     end associate
@@ -249,12 +307,12 @@ contains
   end function end_of_half
 
   !> A point with the gap and the normal of the virtual node and a place of its own on the master.
-  pure subroutine put_portion(memory, halves, k, nodes, xi, area, block)
+  pure subroutine put_portion(memory, halves, k, nodes, range, area, block)
     type(contact_state_t), intent(inout) :: memory
     type(halves_t), intent(in) :: halves
     integer, intent(in) :: k
     integer, intent(in) :: nodes(2)        !! local numbers of those of the master segment
-    real(wp), intent(in) :: xi             !! place on that
+    real(wp), intent(in) :: range(2)       !! of that: the point stands at its centre
     real(wp), intent(in) :: area           !! m
     type(place_block_t), intent(inout) :: block
     integer :: n, spot
@@ -264,9 +322,11 @@ contains
     block%n = n
     spot = halves%spot(k)
     block%ends(:, n) = halves%ends(:, k)
-    block%xi(n) = memory%spot_xi(2 - iand(spot, 1))
+    block%xi(n) = halves%xi(k)
     block%nodes(:, n) = nodes
-    block%feet%xi(n) = xi
+    block%feet%xi(n) = 0.5_wp*(range(1) + range(2))
+    if (memory%spot_spread > 0.0_wp) block%feet%xi(n) = centroid(memory%places(:, nodes(1)), &
+      memory%places(:, nodes(2)), range(1), range(2))
     block%feet%gap(n) = memory%slave_tracking%gap(spot)
     block%feet%normal(1, n) = memory%slave_tracking%normal(1, spot)
     block%feet%normal(2, n) = memory%slave_tracking%normal(2, spot)
