@@ -35,7 +35,7 @@ contains
   end function radius_between
 
   !> Where the centre of a stretch of the segment a-b is when its parts weigh with their radius. On
-  !> the axis itself nothing has weight: there it is the middle or an end.
+  !> the axis itself nothing has weight: there it is the middle; never outside of the stretch.
   pure function centroid(a, b, low, high) result(xi)
     real(wp), intent(in) :: a(4), b(4)
     real(wp), intent(in) :: low, high !! where the stretch starts and ends on the segment, 0 to 1
@@ -45,7 +45,7 @@ contains
     first = radius_between(a, b, low)
     last = radius_between(a, b, high)
     xi = 0.5_wp*(low + high) + (high - low)/6.0_wp &
-      *max(-1.0_wp, min(1.0_wp, (last - first)/max(first + last, tiny(1.0_wp))))
+      *max(-3.0_wp, min(3.0_wp, (last - first)/max(first + last, tiny(1.0_wp))))
   end function centroid
 
 end module radii_m

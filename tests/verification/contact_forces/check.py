@@ -162,7 +162,9 @@ def beside_the_axis(pairs, distances):
 
 def axisymmetric(run):
     """Designed and random pairs as bodies of revolution: forces per radian, weights by radius."""
-    pairs = beside_the_axis([dataclasses.replace(pair, angle=0.0) for pair in designed_pairs()], [0.0])
+    # Not turned a closed pair is one of ties.
+    pairs = beside_the_axis([dataclasses.replace(pair, angle=0.0) for pair in designed_pairs()
+                             if not pair.closed], [0.0])
     one_interface_each(run, "discs", pairs, RULES, "axisymmetric, from the axis on", is_round=True)
     one_interface_each(run, "rings", beside_the_axis(designed_pairs(), RADII), RULES,
                        "axisymmetric, rings", is_round=True)

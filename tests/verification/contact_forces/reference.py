@@ -100,8 +100,9 @@ class Chain:
         return self.integral(k, left, right, np.ones_like)
 
     def centre(self, k, left, right):
-        """Of a stretch of a segment, by weight."""
-        return self.integral(k, left, right, lambda at: at) / self.weight(k, left, right)
+        """Of a stretch of a segment, by weight; on the axis, where there is none, the middle."""
+        weight = self.weight(k, left, right)
+        return self.integral(k, left, right, lambda at: at) / weight if weight else 0.5 * (left + right)
 
     def shares(self, k, left, right):
         """What either end of a stretch has of its weight: the integral by its hat function there."""
