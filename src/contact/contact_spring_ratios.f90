@@ -182,10 +182,10 @@ contains
     end do
   end function most_on_nodes
 
-  !> The same weighted with the radius, m^2 per radian, at distances up to s: the integral of the hat
-  !> function by radius, h (2 r_i + r_j)/6, and the error at its foot with the mean radius there, at
-  !> most s/6 above that of the foot. One Gauss point on a segment errs at the top of the hat instead,
-  !> and by s^2/12 since radius times hat function is curved.
+  !> The same weighted with the radius, m^2 per radian, at distances up to s: the integral of the
+  !> hat function by radius, h (2 r_i + r_j)/6, and the error at its foot with the mean radius
+  !> there, at most s/6 above that of the foot. One Gauss point on a segment errs at the top of the
+  !> hat instead, and by s^2/12 since radius times hat function is curved.
   pure function most_by_radius(surface, places, s, overhang, is_lonely) result(most)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: places(:, :)

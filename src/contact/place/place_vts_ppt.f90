@@ -212,7 +212,8 @@ contains
     real(wp), intent(in) :: range(2)  !! of that
     real(wp) :: radius
 
-    radius = radius_between(memory%places(:, nodes(1)), memory%places(:, nodes(2)), 0.5_wp*sum(range))
+    radius = radius_between(memory%places(:, nodes(1)), memory%places(:, nodes(2)), &
+      0.5_wp*sum(range))
   end function middle_radius
 
   !> Where the end of a half beyond its master segment is on the neighbour of that.

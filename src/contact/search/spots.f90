@@ -54,8 +54,8 @@ contains
     call move_spots(slave, memory%places, memory%spot_xi, memory%spot_spread, memory%spots)
   end subroutine start_spots
 
-  !> Displacements of the spots from those of the nodes. Where they stand at centres by radius, these
-  !> move on their segments: how far at most is added to `travel`.
+  !> Displacements of the spots from those of the nodes. Where they stand at centres by radius,
+  !> these move on their segments: how far at most is added to `travel`.
   pure subroutine move_spots(slave, places, spot_xi, spot_spread, spots, travel)
     type(surface_t), intent(in) :: slave
     real(wp), intent(in), contiguous :: places(:, :)   !! (4, n_node) of the interface

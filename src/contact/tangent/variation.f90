@@ -15,8 +15,8 @@ module variation_m
   implicit none
   private
   public :: varied_point_t, varied_foot_t, n_slot, round_off, apart, length_between, project, &
-    spot_foot, put_foot, see_from, take_piece, piece_ends, vary_share, vary_radius, vary_end_radius, &
-    vary_centroid
+    spot_foot, put_foot, see_from, take_piece, piece_ends, vary_share, vary_radius, &
+    vary_end_radius, vary_centroid
 
   !> Nodes that a point depends on, at most.
   integer, parameter :: n_slot = n_partial/2
@@ -227,7 +227,8 @@ contains
     radius = vary_radius(places, nodes, i, j, (1.0_wp/3.0_wp)*(2.0_wp*near + far))
   end function vary_end_radius
 
-  !> Centre by radius of a stretch of the segment in slots i, j; the middle where nothing has weight.
+  !> Centre by radius of a stretch of the segment in slots i, j; the middle where nothing has
+  !> weight.
   pure function vary_centroid(places, nodes, i, j, low, high) result(xi)
     real(wp), intent(in), contiguous :: places(:, :)
     integer, intent(in) :: nodes(n_slot)
