@@ -76,7 +76,7 @@ contains
   pure subroutine share_weighted(contact, table, halves, memory)
     type(contact_t), intent(in) :: contact
     type(piece_table_t), intent(in) :: table
-    real(wp), intent(in) :: halves(:) !! (table%n) m
+    real(wp), intent(in) :: halves(table%n) !! m
     type(contact_state_t), intent(inout) :: memory
     real(wp), dimension(table%n) :: to_first, to_last
     real(wp) :: low, high
@@ -97,7 +97,7 @@ contains
   pure subroutine share_halves(contact, table, to_first, to_last, memory)
     type(contact_t), intent(in) :: contact
     type(piece_table_t), intent(in) :: table
-    real(wp), intent(in) :: to_first(:), to_last(:) !! (table%n) where a piece starts, and ends
+    real(wp), intent(in), dimension(table%n) :: to_first, to_last !! where a piece starts, and ends
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t) :: cuts
     real(wp) :: areas(table%n), deepest
@@ -206,7 +206,7 @@ contains
   pure subroutine share_segment(table, first, last, to_first, to_last, memory, cuts, deepest)
     type(piece_table_t), intent(in) :: table
     integer, intent(in) :: first, last   !! pieces
-    real(wp), intent(in) :: to_first(:), to_last(:) !! of all pieces, m
+    real(wp), intent(in) :: to_first(*), to_last(*) !! of all pieces, m
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t), intent(inout) :: cuts
     real(wp), intent(out) :: deepest     !! smallest gap of its master nodes, m

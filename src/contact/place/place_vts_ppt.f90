@@ -25,15 +25,13 @@ module place_vts_ppt_m
     integer :: ends(2, n_block)   !! nodes of its slave segment
     integer :: nodes(2, n_block)  !! local numbers of those of its master segment
     integer :: master(n_block)    !! segment below it
-    real(wp) :: xi(n_block)       !! place of the virtual node on its slave segment
     real(wp) :: own(2, n_block)   !! vector of the slave segment, m
     real(wp) :: t(2, n_block)     !! vector of the master segment, m
-    real(wp) :: d(2, n_block)     !! from that one's first node to the middle of the half, m
+    real(wp) :: d(2, n_block)     !! from that one's first node to the virtual node, m
     real(wp) :: low(n_block)      !! where the later end is on it: the slave runs against the master
     real(wp) :: high(n_block)     !! where the earlier end is
     real(wp) :: length(n_block)   !! of the master segment, m
-    real(wp) :: half(n_block)     !! of the slave segment's length, m, in axisymmetry times the
-                                  !! radius of its middle
+    real(wp) :: half(n_block)     !! of the slave segment's length, m
   end type halves_t
 
 contains
@@ -47,24 +45,25 @@ contains
     integer :: first, n, k
 
     block%n = 0
+    if (contact%is_round) then
+      call place_by_radius(contact, memory, block)
+      return
+    end if
     do first = 1, memory%slave_tracking%n_touching, n_block
       n = min(n_block, memory%slave_tracking%n_touching - first + 1)
       halves%n = n
       halves%spot(:n) = memory%slave_tracking%touching(first:first + n - 1)
       call see_halves(n, halves%spot, memory%slave_tracking%segment, contact%slave%segments, &
-        contact%master%segments, memory%n_slave, memory%places, memory%spots, memory%spot_xi, &
-        halves)
-      if (contact%is_round) call lean_halves(memory, halves)
+        contact%master%segments, memory%n_slave, memory%places, memory%spots, halves)
       call project_ends(n, halves%own, halves%t, halves%d, halves%low, halves%high, halves%length, &
         halves%half)
-      if (contact%is_round) call weigh_halves(memory, halves)
       do k = 1, n
         if (block%n + 2 > n_block) &
           call append_points(block, memory%slave_penalty, memory%points)
         if (halves%low(k) >= -round_off .and. halves%high(k) <= 1.0_wp + round_off &
           .and. halves%high(k) > halves%low(k)) then
-          call put_portion(memory, halves, k, halves%nodes(:, k), &
-            [halves%low(k), halves%high(k)], halves%half(k), block)
+          call put_portion(memory, halves, k, halves%nodes(:, k), 0.5_wp*(halves%low(k) &
+            + halves%high(k)), halves%half(k), block)
         else
           call add_portions(contact, memory, halves, k, block)
         end if
@@ -73,14 +72,39 @@ contains
     call append_points(block, memory%slave_penalty, memory%points)
   end subroutine place_vts_ppt
 
+  !> The same in axisymmetry: weights by radius, virtual nodes and points of portions at centres by
+  !> radius.
+  pure subroutine place_by_radius(contact, memory, block)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(place_block_t), intent(inout) :: block
+    type(halves_t) :: halves
+    integer :: first, n, k
+
+    do first = 1, memory%slave_tracking%n_touching, n_block
+      n = min(n_block, memory%slave_tracking%n_touching - first + 1)
+      halves%n = n
+      halves%spot(:n) = memory%slave_tracking%touching(first:first + n - 1)
+      call see_halves(n, halves%spot, memory%slave_tracking%segment, contact%slave%segments, &
+        contact%master%segments, memory%n_slave, memory%places, memory%spots, halves)
+      do k = 1, n
+        associate (a => memory%places(:, halves%ends(1, k)), &
+          b => memory%places(:, halves%ends(2, k)))
+          halves%half(k) = 0.5_wp*segment_length(a, b) &
+            *radius_between(a, b, memory%spot_xi(2 - mod(halves%spot(k), 2)))
+        end associate
+        call walk_portions(contact, memory, halves, k, block)
+      end do
+    end do
+    call append_points(block, memory%slave_penalty, memory%points)
+  end subroutine place_by_radius
+
   !> Vectors of some halves.
-  pure subroutine see_halves(n, spot, segment, ends, segments, n_slave, places, spots, spot_xi, &
-      halves)
+  pure subroutine see_halves(n, spot, segment, ends, segments, n_slave, places, spots, halves)
     integer, intent(in) :: n, spot(n), segment(*)
     integer, intent(in) :: ends(2, *), segments(2, *) !! of the slave and of the master
     integer, intent(in) :: n_slave                    !! local number before the first master node
     real(wp), intent(in) :: places(4, *), spots(4, *)
-    real(wp), intent(in) :: spot_xi(2)
     type(halves_t), intent(inout) :: halves
     real(wp), dimension(4) :: own, t, d
     integer :: k, s, a, b
@@ -94,7 +118,6 @@ contains
       halves%ends(:, k) = ends(:, s)
       halves%nodes(1, k) = a
       halves%nodes(2, k) = b
-      halves%xi(k) = spot_xi(2 - iand(spot(k), 1))
       own = places(:, ends(2, s)) - places(:, ends(1, s))
       t = places(:, b) - places(:, a)
       d = spots(:, spot(k)) - places(:, a)
@@ -103,37 +126,6 @@ contains
       halves%d(:, k) = d(1:2) + d(3:4)
     end do
   end subroutine see_halves
-
-  !> In axisymmetry the virtual nodes are not in the middle of their halves: their places, and the
-  !> ways to the middles.
-  pure subroutine lean_halves(memory, halves)
-    type(contact_state_t), intent(in) :: memory
-    type(halves_t), intent(inout) :: halves
-    real(wp) :: middle
-    integer :: k
-
-    do k = 1, halves%n
-      middle = halves%xi(k)
-      associate (a => memory%places(:, halves%ends(1, k)), b => memory%places(:, halves%ends(2, k)))
-        halves%xi(k) = centroid(a, b, middle - 0.25_wp, middle + 0.25_wp)
-      end associate
-      halves%d(:, k) = halves%d(:, k) + (middle - halves%xi(k))*halves%own(:, k)
-    end do
-  end subroutine lean_halves
-
-  !> In axisymmetry halves weigh with the radius of their middle.
-  pure subroutine weigh_halves(memory, halves)
-    type(contact_state_t), intent(in) :: memory
-    type(halves_t), intent(inout) :: halves
-    integer :: k
-
-    do k = 1, halves%n
-      associate (a => memory%places(:, halves%ends(1, k)), b => memory%places(:, halves%ends(2, k)))
-        halves%half(k) = halves%half(k) &
-          *radius_between(a, b, memory%spot_xi(2 - iand(halves%spot(k), 1)))
-      end associate
-    end do
-  end subroutine weigh_halves
 
   !> Both ends of the halves on their master segments.
   pure subroutine project_ends(n, own, t, d, low, high, length, half)
@@ -163,7 +155,7 @@ contains
     type(halves_t), intent(in) :: halves
     integer, intent(in) :: k
     type(place_block_t), intent(inout) :: block
-    real(wp) :: low, high, share, rest
+    real(wp) :: low, high, share
     integer :: other, nodes(2)
     logical :: is_found
 
@@ -174,15 +166,11 @@ contains
       other = contact%master%previous(halves%master(k))
       if (other > 0) call see_other(contact, memory, halves, k, other, 1.0_wp, is_found, low, share)
       if (is_found) then
+        share = share/(share + high*halves%length(k))
         nodes = memory%n_slave + contact%master%segments(:, other)
-        rest = high*halves%length(k)
-        if (contact%is_round) then
-          share = share*middle_radius(memory, nodes, [low, 1.0_wp])
-          rest = rest*middle_radius(memory, halves%nodes(:, k), [0.0_wp, high])
-        end if
-        share = share/(share + rest)
-        call put_portion(memory, halves, k, nodes, [low, 1.0_wp], share*halves%half(k), block)
-        call put_portion(memory, halves, k, halves%nodes(:, k), [0.0_wp, high], &
+        call put_portion(memory, halves, k, nodes, 0.5_wp*(low + 1.0_wp), share*halves%half(k), &
+          block)
+        call put_portion(memory, halves, k, halves%nodes(:, k), 0.5_wp*high, &
           (1.0_wp - share)*halves%half(k), block)
       end if
     else if (high > 1.0_wp .and. low > 0.0_wp .and. low < 1.0_wp) then
@@ -190,31 +178,15 @@ contains
       if (other > 0) call see_other(contact, memory, halves, k, other, -1.0_wp, is_found, high, &
         share)
       if (is_found) then
+        share = share/(share + (1.0_wp - low)*halves%length(k))
         nodes = memory%n_slave + contact%master%segments(:, other)
-        rest = (1.0_wp - low)*halves%length(k)
-        if (contact%is_round) then
-          share = share*middle_radius(memory, nodes, [0.0_wp, high])
-          rest = rest*middle_radius(memory, halves%nodes(:, k), [low, 1.0_wp])
-        end if
-        share = share/(share + rest)
-        call put_portion(memory, halves, k, halves%nodes(:, k), [low, 1.0_wp], &
+        call put_portion(memory, halves, k, halves%nodes(:, k), 0.5_wp*(low + 1.0_wp), &
           (1.0_wp - share)*halves%half(k), block)
-        call put_portion(memory, halves, k, nodes, [0.0_wp, high], share*halves%half(k), block)
+        call put_portion(memory, halves, k, nodes, 0.5_wp*high, share*halves%half(k), block)
       end if
     end if
     if (.not. is_found) call walk_portions(contact, memory, halves, k, block)
   end subroutine add_portions
-
-  !> In axisymmetry: radius of the middle of a portion.
-  pure function middle_radius(memory, nodes, range) result(radius)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: nodes(2)   !! local numbers of those of the master segment
-    real(wp), intent(in) :: range(2)  !! of that
-    real(wp) :: radius
-
-    radius = radius_between(memory%places(:, nodes(1)), memory%places(:, nodes(2)), &
-      0.5_wp*sum(range))
-  end function middle_radius
 
   !> Where the end of a half beyond its master segment is on the neighbour of that.
   pure subroutine see_other(contact, memory, halves, k, other, way, is_found, xi, length)
@@ -252,7 +224,8 @@ contains
     length = merge(1.0_wp - part, part, way > 0.0_wp)*sqrt(square)
   end subroutine see_other
 
-  !> The portions from the mark of the later end to that of the earlier one.
+  !> The portions from the mark of the later end to that of the earlier one; in axisymmetry by
+  !> radius.
   pure subroutine walk_portions(contact, memory, halves, k, block)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -260,7 +233,7 @@ contains
     integer, intent(in) :: k
     type(place_block_t), intent(inout) :: block
     type(mark_t) :: marks(2)
-    real(wp) :: total, length, low, high, xi
+    real(wp) :: total, low, high, xi, length
     integer :: segment, i, i_pass, ends(2), nodes(2)
 
     associate (spot => halves%spot(k), chain => memory%places(:, memory%n_slave + 1:))
@@ -279,24 +252,53 @@ contains
           high = merge(marks(2)%xi, 1.0_wp, segment == marks(2)%segment)
           if (high > low) then
             nodes = memory%n_slave + contact%master%segments(:, segment)
+            xi = 0.5_wp*(low + high)
             length = (high - low)*segment_length(memory%places(:, nodes(1)), &
               memory%places(:, nodes(2)))
-            if (contact%is_round) length = length*middle_radius(memory, nodes, [low, high])
+            if (contact%is_round) call weigh_portion(memory, nodes, low, high, xi, length)
             if (i_pass == 1) total = total + length
-            if (i_pass == 2) call put_portion(memory, halves, k, nodes, [low, high], &
+            if (i_pass == 2) call put_portion(memory, halves, k, nodes, xi, &
               halves%half(k)*(length/total), block)
+            if (i_pass == 2 .and. contact%is_round) block%xi(block%n) = spot_xi(memory, spot, ends)
           end if
           segment = contact%master%next(segment)
           ! Marks of displacements beyond all bounds need not lie on one chain.
           if (segment == 0) exit
         end do
         if (total > 0.0_wp) cycle
-        call put_portion(memory, halves, k, halves%nodes(:, k), &
-          spread(memory%slave_tracking%xi(spot), 1, 2), halves%half(k), block)
+        call put_portion(memory, halves, k, halves%nodes(:, k), memory%slave_tracking%xi(spot), &
+          halves%half(k), block)
+        if (contact%is_round) block%xi(block%n) = spot_xi(memory, spot, ends)
         return
       end do
     end associate
   end subroutine walk_portions
+
+  !> In axisymmetry: weight of a portion, and its centre by radius.
+  pure subroutine weigh_portion(memory, nodes, low, high, xi, length)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: nodes(2)       !! local numbers of those of the master segment
+    real(wp), intent(in) :: low, high     !! range of that
+    real(wp), intent(inout) :: xi         !! in: its middle
+    real(wp), intent(inout) :: length     !! m, then m^2 per radian
+
+    associate (a => memory%places(:, nodes(1)), b => memory%places(:, nodes(2)))
+      length = length*radius_between(a, b, xi)
+      xi = centroid(a, b, low, high)
+    end associate
+  end subroutine weigh_portion
+
+  !> In axisymmetry: where a virtual node is on its slave segment.
+  pure function spot_xi(memory, spot, ends) result(xi)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: spot, ends(2)  !! nodes of its segment
+    real(wp) :: xi
+
+    associate (middle => memory%spot_xi(2 - mod(spot, 2)))
+      xi = centroid(memory%places(:, ends(1)), memory%places(:, ends(2)), &
+        end_of_half(middle, 2), end_of_half(middle, 1))
+    end associate
+  end function spot_xi
 
   !> Ends of a half segment, the later one first: the slave runs against the master.
   pure function end_of_half(xi, k)
@@ -308,12 +310,12 @@ contains
   end function end_of_half
 
   !> A point with the gap and the normal of the virtual node and a place of its own on the master.
-  pure subroutine put_portion(memory, halves, k, nodes, range, area, block)
+  pure subroutine put_portion(memory, halves, k, nodes, xi, area, block)
     type(contact_state_t), intent(inout) :: memory
     type(halves_t), intent(in) :: halves
     integer, intent(in) :: k
     integer, intent(in) :: nodes(2)        !! local numbers of those of the master segment
-    real(wp), intent(in) :: range(2)       !! of that: the point stands at its centre
+    real(wp), intent(in) :: xi             !! place on that
     real(wp), intent(in) :: area           !! m
     type(place_block_t), intent(inout) :: block
     integer :: n, spot
@@ -323,11 +325,9 @@ contains
     block%n = n
     spot = halves%spot(k)
     block%ends(:, n) = halves%ends(:, k)
-    block%xi(n) = halves%xi(k)
+    block%xi(n) = memory%spot_xi(2 - iand(spot, 1))
     block%nodes(:, n) = nodes
-    block%feet%xi(n) = 0.5_wp*(range(1) + range(2))
-    if (memory%spot_spread > 0.0_wp) block%feet%xi(n) = centroid(memory%places(:, nodes(1)), &
-      memory%places(:, nodes(2)), range(1), range(2))
+    block%feet%xi(n) = xi
     block%feet%gap(n) = memory%slave_tracking%gap(spot)
     block%feet%normal(1, n) = memory%slave_tracking%normal(1, spot)
     block%feet%normal(2, n) = memory%slave_tracking%normal(2, spot)
