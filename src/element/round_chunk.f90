@@ -9,81 +9,29 @@ module round_chunk_m
   use layout_m, only : chunk_size
   implicit none
   private
-  public :: round_chunk_t, n_round_reference, reference_sum, reference_mass, form_shape, &
+  public :: round_chunk_t, n_round_reference, reference_sum, reference_mass, &
     gather_round, scatter_round, node_volumes
 
   !> Streams of the reference shape: those of the plane, the sum of the radii, and per node
   !> density over mass.
   integer, parameter :: reference_sum = 7, reference_mass = 8, n_round_reference = 11
 
-  !> Patterns of a chunk of quads, areas, volumes, and the gradients of the volume: of it `rad` is
-  !> what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over A).
-  type :: round_shape_t
-    real(wp), dimension(chunk_size) :: s                  !! sum of the four radii
-    real(wp), dimension(chunk_size) :: ar, az, br, bz     !! diagonals
-    real(wp), dimension(chunk_size) :: hr, hz             !! h.x
-    real(wp), dimension(chunk_size) :: area, volume
-    real(wp), dimension(chunk_size) :: rad_a, rad_b, rad_h
-    real(wp), dimension(chunk_size) :: axi_a, axi_b, axi_h
-    real(wp), dimension(chunk_size) :: mean_a, mean_b, mean_s
-  end type round_shape_t
-
-  !> What a chunk of round quads has besides that of a plane one.
+  !> What a chunk of round quads has besides that of a plane one. Of the gradients of the volume `rad`
+  !> is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over A), each for
+  !> the patterns a, b, h (s: all four nodes).
   type :: round_chunk_t
     real(wp) :: us(2, chunk_size), vs(2, chunk_size) !! sums of u and of v, 0 in padding
     real(wp) :: hoop(2, chunk_size)     !! force on each of the four nodes, 0 in z
-    type(round_shape_t) :: shape        !! half a step ago, then now
-    real(wp), dimension(chunk_size) :: inverse_area, inverse_volume !! now
+    real(wp), dimension(chunk_size) :: volume, inverse_volume, area, inverse_area !! now
+    real(wp), dimension(chunk_size) :: span                !! a.a + b.b
+    real(wp), dimension(chunk_size) :: rad_a, rad_b, rad_h
+    real(wp), dimension(chunk_size) :: axi_a, axi_b, axi_h
+    real(wp), dimension(chunk_size) :: mean_a, mean_b, mean_s
+    real(wp), dimension(chunk_size) :: gamma_a, gamma_b    !! of the hourglass pattern; gamma_h = 1
     real(wp), dimension(chunk_size) :: resistance !! force over gamma.v, or over its integral
   end type round_chunk_t
 
 contains
-
-  !> Patterns of the shape `back` (a time) before the present one, its areas, volumes and gradients.
-  pure subroutine form_shape(back, reference, stride, chunk, round)
-    real(wp), intent(in) :: back
-    integer, intent(in) :: stride                !! length of one stream
-    real(wp), intent(in) :: reference(stride, *) !! first slot of this chunk
-    type(element_chunk_t), intent(in) :: chunk
-    type(round_chunk_t), intent(inout) :: round  !! shape out
-    real(wp), parameter :: part = 1.0_wp/24.0_wp
-    real(wp) :: s, ar, az, br, bz, hr, hz
-    integer :: i
-
-    associate (shape => round%shape)
-      !$omp simd private(s, ar, az, br, bz, hr, hz)
-      do i = 1, chunk_size
-        ar = reference(i, 1) + (chunk%u31(1, i) - back*chunk%v31(1, i))
-        az = reference(i, 2) + (chunk%u31(2, i) - back*chunk%v31(2, i))
-        br = reference(i, 3) + (chunk%u42(1, i) - back*chunk%v42(1, i))
-        bz = reference(i, 4) + (chunk%u42(2, i) - back*chunk%v42(2, i))
-        hr = reference(i, 5) + (chunk%hu(1, i) - back*chunk%hv(1, i))
-        hz = reference(i, 6) + (chunk%hu(2, i) - back*chunk%hv(2, i))
-        s = reference(i, reference_sum) + (round%us(1, i) - back*round%vs(1, i))
-        shape%ar(i) = ar
-        shape%az(i) = az
-        shape%br(i) = br
-        shape%bz(i) = bz
-        shape%hr(i) = hr
-        shape%hz(i) = hz
-        shape%s(i) = s
-        hr = part*hr
-        hz = part*hz
-        s = 0.125_wp*s
-        shape%area(i) = 0.5_wp*(ar*bz - br*az)
-        shape%rad_a(i) = s*bz - br*hz
-        shape%rad_b(i) = -(s*az + ar*hz)
-        shape%rad_h(i) = part*(ar*bz + br*az)
-        shape%axi_a(i) = -br*(s - hr)
-        shape%axi_b(i) = ar*(s + hr)
-        shape%axi_h(i) = -2.0_wp*part*ar*br
-        shape%mean_a(i) = hr*bz - hz*br
-        shape%mean_b(i) = hr*az - hz*ar
-        shape%mean_s(i) = 0.125_wp*(ar*bz - br*az)
-        shape%volume(i) = 8.0_wp*s*shape%mean_s(i) + (ar*shape%mean_a(i) + br*shape%mean_b(i))
-      end do
-    end associate
-  end subroutine form_shape
 
   !> Differences and sums of the nodal motion (as `gather_chunk`, of which this is the round form).
   !> All nodes of padding are one: it carries no strain.

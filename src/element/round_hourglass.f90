@@ -23,22 +23,19 @@ contains
     real(wp) :: factor
     integer :: i
 
-    associate (now => round%shape)
-      if (hourglass%form == hourglass_viscous) then
-        factor = 0.25_wp*hourglass%coefficient*material%density*material%sound_speed
-        !$omp simd
-        do i = 1, chunk_size
-          round%resistance(i) = factor*now%volume(i)*(round%inverse_area(i)*sqrt(now%area(i)))
-        end do
-      else
-        factor = 0.125_wp*hourglass%coefficient*(material%bulk + 4.0_wp*material%shear/3.0_wp)
-        !$omp simd
-        do i = 1, chunk_size
-          round%resistance(i) = factor*((now%ar(i)**2 + now%az(i)**2) + (now%br(i)**2 &
-            + now%bz(i)**2))*now%volume(i)*round%inverse_area(i)**2
-        end do
-      end if
-    end associate
+    if (hourglass%form == hourglass_viscous) then
+      factor = 0.25_wp*hourglass%coefficient*material%density*material%sound_speed
+      !$omp simd
+      do i = 1, chunk_size
+        round%resistance(i) = factor*round%volume(i)*(round%inverse_area(i)*sqrt(round%area(i)))
+      end do
+    else
+      factor = 0.125_wp*hourglass%coefficient*(material%bulk + 4.0_wp*material%shear/3.0_wp)
+      !$omp simd
+      do i = 1, chunk_size
+        round%resistance(i) = factor*round%span(i)*round%volume(i)*round%inverse_area(i)**2
+      end do
+    end if
   end subroutine form_resistance
 
   !> Viscous form.

@@ -8,10 +8,10 @@ module round_one_point_m
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
   use parts_m, only : hourglass_t, material_t, hourglass_viscous
-  use round_chunk_m, only : round_chunk_t, form_shape, gather_round, reference_mass
+  use round_chunk_m, only : round_chunk_t, gather_round, reference_mass
   use round_hourglass_m, only : form_resistance, resist_round_viscously, &
     resist_round_elastically
-  use round_kinematics_m, only : form_growth, form_round_increments, form_round_forces
+  use round_kinematics_m, only : form_round_shape, form_round_increments, form_round_forces
   use round_time_step_m, only : round_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use volumetric_m, only : volumetric_stress
@@ -40,8 +40,7 @@ contains
     first = (i_chunk - 1)*chunk_size + 1
     n_slot = size(elements%reference, 1)
     call gather_round(nodes, motion, chunk, round)
-    call form_shape(0.5_wp*dt, elements%reference(first, 1), n_slot, chunk, round)
-    call form_round_increments(dt, chunk, round, stress)
+    call form_round_increments(dt, elements%reference(first, 1), n_slot, chunk, round, stress)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk)))
@@ -51,8 +50,7 @@ contains
     call store_deviator(stress, n_slot, elements%deviator(first, 1))
     elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
       + work_of_deviator(stress%work, chunk%mid_area)
-    call form_shape(0.0_wp, elements%reference(first, 1), n_slot, chunk, round)
-    call form_growth(elements%reference(first, 1), n_slot, chunk, round)
+    call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
     call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
     call resist(i_chunk, material, hourglass, dt, stress, round, elements, chunk)
     call form_round_forces(stress, chunk, round)
@@ -74,7 +72,7 @@ contains
     integer :: first
 
     if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
-      chunk%area = round%shape%area
+      chunk%area = round%area
       call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
         material%sound_speed, dt, chunk, work)
       elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work

@@ -47,7 +47,7 @@ contains
       largest = max(largest, sums%strain(i))
       pattern = max(pattern, round%resistance(i)*sums%pattern(i))
       volume = min(volume, min(1.0_wp + chunk%stretch(i), &
-        sign(1.0e3_wp, round%shape%area(i))))
+        sign(1.0e3_wp, round%area(i))))
     end do
     pattern = max(pattern/material%density, tiny(1.0_wp))
     ! Resistances of the viscous form act on velocities, those of the stiffness form on their sum.
@@ -79,105 +79,100 @@ contains
     real(wp), intent(in) :: inverse_mass(stride, *)
     type(round_chunk_t), intent(in) :: round
     type(step_sums_t), intent(inout) :: sums
-    real(wp) :: p, q, o, t, u, w, gr, gz, gm, gg, r, z, m, g, v, vr, vz, vm, vg, both, wr, wz, ga, gb
+    real(wp) :: p, q, o, t, u, w, gr, gz, gm, gg, r, z, m, g, v, vr, vz, vm, vg, both, ga, gb
     integer :: i
 
-    associate (now => round%shape)
-      !$omp simd private(p, q, o, t, u, w, gr, gz, gm, gg, r, z, m, g, v, vr, vz, vm, vg, both, &
-      !$omp& wr, wz, ga, gb)
-      do i = 1, chunk_size
-        wr = 0.5_wp*round%inverse_area(i)
-        wz = now%hz(i)*wr
-        wr = now%hr(i)*wr
-        ga = wz*now%br(i) - wr*now%bz(i)
-        gb = wr*now%az(i) - wz*now%ar(i)
-        r = now%rad_h(i) - now%rad_a(i)
-        z = now%axi_h(i) - now%axi_a(i)
-        m = now%mean_s(i) - now%mean_a(i)
-        g = 1.0_wp - ga
-        v = inverse_mass(i, 1)
-        vr = v*r
-        vz = v*z
-        vm = v*m
-        vg = v*g
-        p = vr*r
-        q = vz*z
-        o = vr*z
-        t = vm*m
-        u = vr*m
-        w = vz*m
-        gr = vg*r
-        gz = vg*z
-        gm = vg*m
-        gg = vg*g
-        ! Node 2.
-        r = now%rad_h(i) + now%rad_b(i)
-        z = now%axi_h(i) + now%axi_b(i)
-        m = now%mean_b(i) - now%mean_s(i)
-        g = 1.0_wp + gb
-        v = inverse_mass(i, 2)
-        vr = v*r
-        vz = v*z
-        vm = v*m
-        vg = v*g
-        p = p + vr*r
-        q = q + vz*z
-        o = o + vr*z
-        t = t + vm*m
-        u = u + vr*m
-        w = w + vz*m
-        gr = gr + vg*r
-        gz = gz + vg*z
-        gm = gm + vg*m
-        gg = gg + vg*g
-        ! Node 3: of a triangle it has the place of node 4 too.
-        both = merge(1.0_wp, 0.0_wp, inverse_mass(i, 4) <= 0.0_wp)
-        r = (now%rad_h(i) + now%rad_a(i)) + both*(now%rad_b(i) - now%rad_h(i))
-        z = (now%axi_h(i) + now%axi_a(i)) + both*(now%axi_b(i) - now%axi_h(i))
-        m = (now%mean_s(i) + now%mean_a(i)) + both*(now%mean_s(i) + now%mean_b(i))
-        g = (1.0_wp + ga) + both*(gb - 1.0_wp)
-        v = inverse_mass(i, 3)
-        vr = v*r
-        vz = v*z
-        vm = v*m
-        vg = v*g
-        p = p + vr*r
-        q = q + vz*z
-        o = o + vr*z
-        t = t + vm*m
-        u = u + vr*m
-        w = w + vz*m
-        gr = gr + vg*r
-        gz = gz + vg*z
-        gm = gm + vg*m
-        gg = gg + vg*g
-        r = now%rad_b(i) - now%rad_h(i)
-        z = now%axi_b(i) - now%axi_h(i)
-        m = now%mean_s(i) + now%mean_b(i)
-        g = gb - 1.0_wp
-        v = inverse_mass(i, 4)
-        vr = v*r
-        vz = v*z
-        vm = v*m
-        vg = v*g
-        p = p + vr*r
-        q = q + vz*z
-        o = o + vr*z
-        t = t + vm*m
-        u = u + vr*m
-        w = w + vz*m
-        gr = gr + vg*r
-        gz = gz + vg*z
-        gm = gm + vg*m
-        gg = gg + vg*g
-        sums%dilation(i) = round%inverse_volume(i)*((p + q) + (t + 2.0_wp*u))
-        m = max(p + (abs(o) + abs(u)), q + (abs(o) + abs(w)), t + (abs(u) + abs(w)))
-        sums%strain(i) = round%inverse_volume(i)*shear*m + lame*sums%dilation(i)
-        sums%pattern(i) = gg
-        sums%coupling(i) = round%inverse_volume(i)*(shear*(1.5_wp*(gr*gr + gz*gz) + gm*gm) &
-          + lame*((gr + gm)**2 + gz*gz))
-      end do
-    end associate
+    !$omp simd private(p, q, o, t, u, w, gr, gz, gm, gg, r, z, m, g, v, vr, vz, vm, vg, both, &
+    !$omp& ga, gb)
+    do i = 1, chunk_size
+      ga = round%gamma_a(i)
+      gb = round%gamma_b(i)
+      r = round%rad_h(i) - round%rad_a(i)
+      z = round%axi_h(i) - round%axi_a(i)
+      m = round%mean_s(i) - round%mean_a(i)
+      g = 1.0_wp - ga
+      v = inverse_mass(i, 1)
+      vr = v*r
+      vz = v*z
+      vm = v*m
+      vg = v*g
+      p = vr*r
+      q = vz*z
+      o = vr*z
+      t = vm*m
+      u = vr*m
+      w = vz*m
+      gr = vg*r
+      gz = vg*z
+      gm = vg*m
+      gg = vg*g
+      ! Node 2.
+      r = round%rad_h(i) + round%rad_b(i)
+      z = round%axi_h(i) + round%axi_b(i)
+      m = round%mean_b(i) - round%mean_s(i)
+      g = 1.0_wp + gb
+      v = inverse_mass(i, 2)
+      vr = v*r
+      vz = v*z
+      vm = v*m
+      vg = v*g
+      p = p + vr*r
+      q = q + vz*z
+      o = o + vr*z
+      t = t + vm*m
+      u = u + vr*m
+      w = w + vz*m
+      gr = gr + vg*r
+      gz = gz + vg*z
+      gm = gm + vg*m
+      gg = gg + vg*g
+      ! Node 3: of a triangle it has the place of node 4 too.
+      both = merge(1.0_wp, 0.0_wp, inverse_mass(i, 4) <= 0.0_wp)
+      r = (round%rad_h(i) + round%rad_a(i)) + both*(round%rad_b(i) - round%rad_h(i))
+      z = (round%axi_h(i) + round%axi_a(i)) + both*(round%axi_b(i) - round%axi_h(i))
+      m = (round%mean_s(i) + round%mean_a(i)) + both*(round%mean_s(i) + round%mean_b(i))
+      g = (1.0_wp + ga) + both*(gb - 1.0_wp)
+      v = inverse_mass(i, 3)
+      vr = v*r
+      vz = v*z
+      vm = v*m
+      vg = v*g
+      p = p + vr*r
+      q = q + vz*z
+      o = o + vr*z
+      t = t + vm*m
+      u = u + vr*m
+      w = w + vz*m
+      gr = gr + vg*r
+      gz = gz + vg*z
+      gm = gm + vg*m
+      gg = gg + vg*g
+      r = round%rad_b(i) - round%rad_h(i)
+      z = round%axi_b(i) - round%axi_h(i)
+      m = round%mean_s(i) + round%mean_b(i)
+      g = gb - 1.0_wp
+      v = inverse_mass(i, 4)
+      vr = v*r
+      vz = v*z
+      vm = v*m
+      vg = v*g
+      p = p + vr*r
+      q = q + vz*z
+      o = o + vr*z
+      t = t + vm*m
+      u = u + vr*m
+      w = w + vz*m
+      gr = gr + vg*r
+      gz = gz + vg*z
+      gm = gm + vg*m
+      gg = gg + vg*g
+      sums%dilation(i) = round%inverse_volume(i)*((p + q) + (t + 2.0_wp*u))
+      m = max(p + (abs(o) + abs(u)), q + (abs(o) + abs(w)), t + (abs(u) + abs(w)))
+      sums%strain(i) = round%inverse_volume(i)*shear*m + lame*sums%dilation(i)
+      sums%pattern(i) = gg
+      sums%coupling(i) = round%inverse_volume(i)*(shear*(1.5_wp*(gr*gr + gz*gz) + gm*gm) &
+        + lame*((gr + gm)**2 + gz*gz))
+    end do
   end subroutine form_step_sums
 
   !> Bulk viscosity in compression has a rate of its own, which is added: x + y <= theta at a share

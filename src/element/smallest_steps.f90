@@ -13,10 +13,9 @@ module smallest_steps_m
   use parts_m, only : hourglass_t, material_t
   use quad_kinematics_m, only : form_present_shape, form_increments
   use quad_points_m, only : n_point, form_point
-  use round_chunk_m, only : round_chunk_t, form_shape, gather_round, n_round_reference, &
-    reference_mass
+  use round_chunk_m, only : round_chunk_t, gather_round, n_round_reference, reference_mass
   use round_hourglass_m, only : form_resistance
-  use round_kinematics_m, only : form_growth, form_round_increments
+  use round_kinematics_m, only : form_round_shape, form_round_increments
   use round_time_step_m, only : round_step
   use stress_chunk_m, only : stress_chunk_t
   implicit none
@@ -119,11 +118,11 @@ contains
     nodes = spread(model%layout%slot_nodes(:, i_slot), 2, chunk_size)
     shape = spread(reference, 1, chunk_size)
     call gather_round(nodes, motion, chunk, round)
-    call form_shape(0.0_wp, shape, chunk_size, chunk, round)
-    call form_round_increments(0.0_wp, chunk, round, unused)
-    call form_growth(shape, chunk_size, chunk, round)
+    call form_round_increments(0.0_wp, shape, chunk_size, chunk, round, unused)
+    call form_round_shape(shape, chunk_size, chunk, round)
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
       associate (material => model%materials(part%material))
+        chunk%area = round%area
         call form_resistance(material, part%hourglass, round)
         call round_step(material, part%hourglass, shape(1, reference_mass), chunk_size, chunk, &
           round, step, volume)
