@@ -23,6 +23,7 @@ module round_chunk_m
     real(wp) :: us(2, chunk_size), vs(2, chunk_size) !! sums of u and of v, 0 in padding
     real(wp) :: hoop(2, chunk_size)     !! force on each of the four nodes, 0 in z
     real(wp), dimension(chunk_size) :: volume, inverse_volume, area, inverse_area !! now
+    real(wp), dimension(chunk_size) :: s                   !! sum of the four radii, now
     real(wp), dimension(chunk_size) :: span                !! a.a + b.b
     real(wp), dimension(chunk_size) :: rad_a, rad_b, rad_h
     real(wp), dimension(chunk_size) :: axi_a, axi_b, axi_h

@@ -20,7 +20,7 @@ contains
   pure subroutine form_round_shape(reference, stride, chunk, round)
     integer, intent(in) :: stride                 !! length of one stream
     real(wp), intent(in) :: reference(stride, *)  !! first slot of this chunk, see round_chunk
-    type(element_chunk_t), intent(inout) :: chunk !! `stretch` out
+    type(element_chunk_t), intent(inout) :: chunk !! patterns and `stretch` out
     type(round_chunk_t), intent(inout) :: round
     real(wp) :: ar, az, br, bz, hr, hz, s, area, volume, start, start_area, growth, cross, &
       cross_growth, pair, pair_growth, area_growth, first, second, all
@@ -35,7 +35,15 @@ contains
       bz = reference(i, 4) + chunk%u42(2, i)
       hr = reference(i, 5) + chunk%hu(1, i)
       hz = reference(i, 6) + chunk%hu(2, i)
-      s = eighth*(reference(i, reference_sum) + round%us(1, i))
+      s = reference(i, reference_sum) + round%us(1, i)
+      chunk%x31(i) = ar
+      chunk%y31(i) = az
+      chunk%x42(i) = br
+      chunk%y42(i) = bz
+      chunk%hx(i) = hr
+      chunk%hy(i) = hz
+      round%s(i) = s
+      s = eighth*s
       first = reference(i, 1)*reference(i, 4)
       second = reference(i, 3)*reference(i, 2)
       start_area = 0.5_wp*(first - second)
@@ -80,10 +88,8 @@ contains
 
   !> Strain increments, spin and hourglass velocity of the step, from the shape half a step ago. The
   !> hoop rate is taken from both rates in the plane: laws see the same deviator, and their D_zz is 0.
-  pure subroutine form_round_increments(dt, reference, stride, chunk, round, stress)
+  pure subroutine form_round_increments(dt, chunk, round, stress)
     real(wp), intent(in) :: dt                    !! step that led here
-    integer, intent(in) :: stride                 !! length of one stream
-    real(wp), intent(in) :: reference(stride, *)  !! first slot of this chunk, see round_chunk
     type(element_chunk_t), intent(inout) :: chunk !! trace, gamma.v and mid-step volume out
     type(round_chunk_t), intent(in) :: round
     type(stress_chunk_t), intent(inout) :: stress !! increments and rotation out
@@ -99,13 +105,13 @@ contains
     !$omp& axi_h, mean_a, mean_b, inverse, lrr, lrz, lzr, lzz, ltt, turn, square, all, cosine, &
     !$omp& sine, mean, half, shear, grr, grz, gzr, gzz)
     do i = 1, chunk_size
-      ar = reference(i, 1) + (chunk%u31(1, i) - back*chunk%v31(1, i))
-      az = reference(i, 2) + (chunk%u31(2, i) - back*chunk%v31(2, i))
-      br = reference(i, 3) + (chunk%u42(1, i) - back*chunk%v42(1, i))
-      bz = reference(i, 4) + (chunk%u42(2, i) - back*chunk%v42(2, i))
-      hr = reference(i, 5) + (chunk%hu(1, i) - back*chunk%hv(1, i))
-      hz = reference(i, 6) + (chunk%hu(2, i) - back*chunk%hv(2, i))
-      s = eighth*(reference(i, reference_sum) + (round%us(1, i) - back*round%vs(1, i)))
+      ar = chunk%x31(i) - back*chunk%v31(1, i)
+      az = chunk%y31(i) - back*chunk%v31(2, i)
+      br = chunk%x42(i) - back*chunk%v42(1, i)
+      bz = chunk%y42(i) - back*chunk%v42(2, i)
+      hr = chunk%hx(i) - back*chunk%hv(1, i)
+      hz = chunk%hy(i) - back*chunk%hv(2, i)
+      s = eighth*(round%s(i) - back*round%vs(1, i))
       ! The gradients of `form_round_shape`.
       area = 0.5_wp*(ar*bz - br*az)
       rad_a = s*bz - part*br*hz

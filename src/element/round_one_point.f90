@@ -40,7 +40,8 @@ contains
     first = (i_chunk - 1)*chunk_size + 1
     n_slot = size(elements%reference, 1)
     call gather_round(nodes, motion, chunk, round)
-    call form_round_increments(dt, elements%reference(first, 1), n_slot, chunk, round, stress)
+    call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
+    call form_round_increments(dt, chunk, round, stress)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk)))
@@ -50,7 +51,6 @@ contains
     call store_deviator(stress, n_slot, elements%deviator(first, 1))
     elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
       + work_of_deviator(stress%work, chunk%mid_area)
-    call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
     call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
     call resist(i_chunk, material, hourglass, dt, stress, round, elements, chunk)
     call form_round_forces(stress, chunk, round)

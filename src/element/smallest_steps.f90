@@ -118,8 +118,8 @@ contains
     nodes = spread(model%layout%slot_nodes(:, i_slot), 2, chunk_size)
     shape = spread(reference, 1, chunk_size)
     call gather_round(nodes, motion, chunk, round)
-    call form_round_increments(0.0_wp, shape, chunk_size, chunk, round, unused)
     call form_round_shape(shape, chunk_size, chunk, round)
+    call form_round_increments(0.0_wp, chunk, round, unused)
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
       associate (material => model%materials(part%material))
         chunk%area = round%area
