@@ -47,6 +47,9 @@ def check_tube(run):
         centre = 0.5 * (r[:n] + r[1:n + 1])
         hoop = result.cells("stress")[-1][:n, 2] / PRESSURE
         errors.append(np.abs(hoop - (1.0 + (OUTER / centre) ** 2) / 3.0).max())
+        strain = result.cells("hoop_strain")[-1][:n]
+        run.check(f"tube of {n}: hoop strain of the elements", strain,
+                  0.5 * (exact[:n] + exact[1:n + 1]) / centre, 1e-7, source="mean displacement over mean radius")
     run.check("tube: error of the hoop stress in the elements", errors[-1], 0.0, 3e-3, "abs", "Lame (1852)")
     run.check("tube: order of the hoop stress", run.order(1.0 / np.array(sizes), errors), 2.0, 0.15, "abs",
               "second order")
