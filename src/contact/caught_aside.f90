@@ -8,7 +8,8 @@ module caught_aside_m
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use lengths_m, only : competence_length
+  use lengths_m, only : competence_area, mean_radius
+  use radii_m, only : radius_between
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -29,54 +30,84 @@ contains
     real(wp) :: stiffness
 
     energy = 0.0_wp
-    associate (n => memory%n_slave, law => memory%contact_law)
-      if (memory%slave_tracking%n_aside > 0) then
+    associate (n => memory%n_slave, tracking => memory%slave_tracking)
+      if (tracking%n_aside > 0) then
         stiffness = merge(memory%node_penalty, memory%slave_penalty, has_unit_area)
         if (allocated(memory%spots)) then
-          energy = energy_of(law, stiffness, memory%slave_tracking, contact%slave, has_unit_area, &
-            memory%places(:, :n), memory%spots, memory%spot_share)
+          energy = energy_of(memory%contact_law, stiffness, tracking, memory%spots, &
+            spot_areas(contact, memory))
         else
-          energy = energy_of(law, stiffness, memory%slave_tracking, contact%slave, has_unit_area, &
-            memory%places(:, :n), memory%places(:, :n))
+          energy = energy_of(memory%contact_law, stiffness, tracking, memory%places(:, :n), &
+            node_areas(contact%slave, memory%places(:, :n), tracking, contact%is_round, &
+            has_unit_area))
         end if
       end if
-      if (memory%master_tracking%n_aside > 0) energy = energy + energy_of(law, &
-        memory%master_penalty, memory%master_tracking, contact%master, has_unit_area, &
-        memory%places(:, n + 1:), memory%places(:, n + 1:))
+    end associate
+    associate (chain => memory%places(:, memory%n_slave + 1:), tracking => memory%master_tracking)
+      if (tracking%n_aside > 0) energy = energy + energy_of(memory%contact_law, &
+        memory%master_penalty, tracking, chain, node_areas(contact%master, chain, tracking, &
+        contact%is_round, has_unit_area))
     end associate
   end function energy_caught
 
   !> The same of the places of one tracking that lie along the face.
-  pure function energy_of(contact_law, stiffness, tracking, own, has_unit_area, places, spots, &
-    spot_share) result(total)
+  pure function energy_of(contact_law, stiffness, tracking, spots, areas) result(total)
     integer, intent(in) :: contact_law
     real(wp), intent(in) :: stiffness                  !! N/m^2 (N/m for unit areas)
     type(tracking_t), intent(in) :: tracking
-    type(surface_t), intent(in) :: own                 !! of the spots
-    logical, intent(in) :: has_unit_area
-    real(wp), intent(in), contiguous :: places(:, :)   !! (4, n_node) of this surface
     real(wp), intent(in), contiguous :: spots(:, :)    !! (4, n) places of the spots
-    real(wp), intent(in), optional :: spot_share(:)    !! where spots are no nodes
+    real(wp), intent(in) :: areas(:)                   !! (n_aside) m
     real(wp) :: total
-    real(wp) :: t(2), area
-    integer :: i, k, s
+    real(wp) :: t(2)
+    integer :: i, k
 
     total = 0.0_wp
     do k = 1, tracking%n_aside
       i = tracking%due(k)
       t = separation(spots(:, tracking%chord(2, i)), spots(:, tracking%chord(1, i)))
       if (t(2)*tracking%normal(1, i) - t(1)*tracking%normal(2, i) > -along*norm2(t)) cycle
-      if (has_unit_area) then
-        area = 1.0_wp
-      else if (present(spot_share)) then
-        s = 1 + (i - 1)/size(spot_share)
-        area = spot_share(i - (s - 1)*size(spot_share))*norm2(separation( &
-          places(:, own%segments(2, s)), places(:, own%segments(1, s))))
-      else
-        area = competence_length(own, places, i)
-      end if
-      total = total + area*density_of(contact_law, stiffness, tracking%gap(i))
+      total = total + areas(k)*density_of(contact_law, stiffness, tracking%gap(i))
     end do
   end function energy_of
+
+  !> Areas of the nodes that were caught, m.
+  pure function node_areas(own, places, tracking, is_round, has_unit_area) result(areas)
+    type(surface_t), intent(in) :: own
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    type(tracking_t), intent(in) :: tracking
+    logical, intent(in) :: is_round, has_unit_area
+    real(wp) :: areas(tracking%n_aside)
+    integer :: k
+
+    areas = 1.0_wp
+    do k = 1, tracking%n_aside
+      associate (i => tracking%due(k))
+        if (.not. has_unit_area) then
+          areas(k) = competence_area(own, places, is_round, i)
+        else if (is_round) then
+          areas(k) = mean_radius(own, places, i)
+        end if
+      end associate
+    end do
+  end function node_areas
+
+  !> The same of spots between the nodes of the slave.
+  pure function spot_areas(contact, memory) result(areas)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: areas(memory%slave_tracking%n_aside)
+    integer :: k, n, s, q
+
+    n = size(memory%spot_share)
+    do k = 1, size(areas)
+      s = 1 + (memory%slave_tracking%due(k) - 1)/n
+      q = memory%slave_tracking%due(k) - (s - 1)*n
+      associate (a => memory%places(:, contact%slave%segments(1, s)), &
+        b => memory%places(:, contact%slave%segments(2, s)))
+        areas(k) = memory%spot_share(q)*norm2(separation(b, a))
+        if (contact%is_round) areas(k) = areas(k)*radius_between(a, b, memory%spot_xi(q))
+      end associate
+    end do
+  end function spot_areas
 
 end module caught_aside_m

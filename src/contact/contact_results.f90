@@ -7,7 +7,7 @@ module contact_results_m
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use friction_state_m, only : is_open
-  use lengths_m, only : competence_length
+  use lengths_m, only : competence_area
   use snapshot_m, only : interface_result_t, slave_result_t, rubbed_t
   use surfaces_m, only : surface_t
   implicit none
@@ -44,7 +44,7 @@ contains
       call fill_arc_lengths(contact%slave, places, rows%arc_length)
       do i = 1, memory%n_slave
         if (.not. rows%length(i) > 0.0_wp) &
-          rows%length(i) = competence_length(contact%slave, places, i)
+          rows%length(i) = competence_area(contact%slave, places, contact%is_round, i)
       end do
     end associate
   end subroutine slave_rows
@@ -72,17 +72,18 @@ contains
     share = nodal_sums(memory, memory%points%pressure)
     do i = 1, memory%n_master
       rows%master_pressure(i) = share(n + i)/max(tiny(1.0_wp), &
-        competence_length(contact%master, places(:, n + 1:), i))
+        competence_area(contact%master, places(:, n + 1:), contact%is_round, i))
     end do
     do i = 1, n
-      rows%length(i) = competence_length(contact%slave, places(:, :n), i)
+      rows%length(i) = competence_area(contact%slave, places(:, :n), contact%is_round, i)
       rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
       rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
     if (.not. allocated(memory%friction%state)) return
     pull = nodal_sums(memory, memory%points%traction)
-    call fill_rubbed(contact%slave, 0, places(:, :n), pull(:n), memory, rows%rubbed(:n))
-    call fill_rubbed(contact%master, n, places(:, n + 1:), pull(n + 1:), memory, &
+    call fill_rubbed(contact%slave, 0, places(:, :n), contact%is_round, pull(:n), memory, &
+      rows%rubbed(:n))
+    call fill_rubbed(contact%master, n, places(:, n + 1:), contact%is_round, pull(n + 1:), memory, &
       rows%rubbed(n + 1:))
   end subroutine rows_between
 
@@ -104,17 +105,19 @@ contains
   end subroutine fill_arc_lengths
 
   !> Friction at the nodes of one surface.
-  pure subroutine fill_rubbed(surface, offset, places, force, memory, rubbed)
+  pure subroutine fill_rubbed(surface, offset, places, is_round, force, memory, rubbed)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: offset                    !! local number before the first of its nodes
     real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of these
+    logical, intent(in) :: is_round
     real(wp), intent(in) :: force(:)                 !! (n_node) N/m, along the chain
     type(contact_state_t), intent(in) :: memory
     type(rubbed_t), intent(inout) :: rubbed(:)       !! (n_node)
     integer :: i
 
     do i = 1, size(rubbed)
-      rubbed(i)%traction = force(i)/max(competence_length(surface, places, i), tiny(1.0_wp))
+      rubbed(i)%traction = force(i)/max(competence_area(surface, places, is_round, i), &
+        tiny(1.0_wp))
       call find_state(surface, offset, i, memory, rubbed(i)%slip, rubbed(i)%state)
     end do
   end subroutine fill_rubbed

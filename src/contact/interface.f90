@@ -44,6 +44,7 @@ contains
     type(log_t), intent(inout) :: log
     type(contact_state_t), intent(out) :: memory
     type(formulation_t) :: formulation
+    real(wp) :: origin(2)
     integer :: n_slave, n_master, n_each, i
 
     n_slave = contact%slave%n_node
@@ -53,14 +54,15 @@ contains
     memory%nodes = [contact%slave%nodes, contact%master%nodes]
     allocate (memory%force(2, n_slave + n_master), memory%places(4, n_slave + n_master), &
       source=0.0_wp)
+    origin = model%mesh%coordinates(:, memory%nodes(1))
+    if (contact%is_round) origin(1) = 0.0_wp
     do i = 1, size(memory%nodes)
-      memory%places(1:2, i) = model%mesh%coordinates(:, memory%nodes(i)) &
-        - model%mesh%coordinates(:, memory%nodes(1))
+      memory%places(1:2, i) = model%mesh%coordinates(:, memory%nodes(i)) - origin
     end do
     formulation = formulation_of(contact)
     memory%contact_law = formulation%contact_law
     call set_penalties(contact, model, memory)
-    call start_spots(formulation%spots, contact%n_gauss, contact%slave, memory)
+    call start_spots(formulation%spots, contact%n_gauss, contact%is_round, contact%slave, memory)
     call allocate_slave_tracking(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_tracking(contact, model, memory)
     if (formulation%covers_segments) call allocate_segments(contact, memory)
@@ -362,8 +364,8 @@ contains
       if (memory%facing%is_used) call rest_loose_nodes(contact%slave, contact%master, memory)
     end if
     call gather_places(motion, memory)
-    if (allocated(memory%spots)) &
-      call move_spots(contact%slave, memory%places, memory%spot_xi, memory%spots)
+    if (allocated(memory%spots)) call move_spots(contact%slave, memory%places, memory%spot_xi, &
+      memory%spot_spread, memory%spots, memory%travel)
   end subroutine gather_spots
 
   !> After a time without contact: take the present places and search all anew.

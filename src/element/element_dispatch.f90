@@ -6,9 +6,11 @@ module element_dispatch_m
   use element_chunk_m, only : element_chunk_t, scatter_chunk
   use layout_m, only : chunk_size, tile_t
   use model_m, only : model_t
-  use parts_m, only : section_t, form_one_point, form_full
+  use parts_m, only : section_t, form_one_point, form_full, form_round_one_point, form_round_full
   use quad_full_m, only : advance_full
   use quad_one_point_m, only : advance_one_point
+  use round_chunk_m, only : round_chunk_t, scatter_round
+  use round_one_point_m, only : advance_round_one_point
   implicit none
   private
   public :: add_tile_forces, point_count
@@ -21,7 +23,7 @@ contains
     integer :: n
 
     select case (section%element_form)
-    case (form_full)
+    case (form_full, form_round_full)
       n = 4
     case default
       n = 1
@@ -38,6 +40,7 @@ contains
     type(block_state_t), intent(inout) :: elements     !! only this tile's slots are touched
     real(wp), intent(inout) :: force(2, model%layout%n_local) !! set here
     type(element_chunk_t) :: chunk
+    type(round_chunk_t) :: round
     integer :: i_chunk, first
 
     force = 0.0_wp
@@ -52,6 +55,12 @@ contains
         case (form_full)
           call advance_full(i_chunk, model%layout%slot_nodes(1, first), motion, &
             model%materials(part%material), part%hourglass, dt, elements, chunk)
+        case (form_round_one_point)
+          call advance_round_one_point(i_chunk, model%layout%slot_nodes(1, first), motion, &
+            model%materials(part%material), part%hourglass, dt, elements, chunk, round)
+          call scatter_round(model%layout%chunk_elements(i_chunk), &
+            model%layout%slot_local(1, first), chunk, round, force)
+          cycle
         end select
         call scatter_chunk(model%layout%chunk_elements(i_chunk), &
           model%layout%slot_local(1, first), chunk, force)

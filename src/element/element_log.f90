@@ -3,6 +3,7 @@
 module element_log_m
   use element_dispatch_m, only : point_count
   use kinds_m, only : wp
+  use material_dispatch_m, only : history_size
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   use parts_m, only : part_t, hourglass_stiffness
@@ -31,16 +32,24 @@ contains
           cycle
         end if
         if (point_count(model%sections(part%section)) == 1) then
-          text = 'one-point quads, '//trim(merge('stiffness', 'viscous  ', &
+          text = trim(merge('round, volume weighted one-point quads', &
+            'one-point quads                       ', &
+            model%is_round))//', '//trim(merge('stiffness', 'viscous  ', &
             part%hourglass%form == hourglass_stiffness))//' hourglass control ' &
             //to_text(part%hourglass%coefficient)
         else
-          text = 'fully integrated quads (2x2 points), '//trim(merge('mean dilatation           ', &
+          text = trim(merge('round fully integrated quads', 'fully integrated quads      ', &
+            model%is_round))//' (2x2 points), '//trim(merge('mean dilatation           ', &
             'volumetric strain by point', has_mean_dilatation(model%materials(part%material))))
         end if
         call write_log(log, 'part '//to_text(part%id)//': '//text//', bulk viscosity Q1 ' &
           //to_text(part%hourglass%quadratic)//' Q2 '//to_text(part%hourglass%linear))
-        if (point_count(model%sections(part%section)) == 1) call warn_of_hourglass(part, log)
+        if (point_count(model%sections(part%section)) > 1) cycle
+        if (.not. model%is_round) call warn_of_hourglass(part, log)
+        if (model%is_round .and. part%hourglass%form == hourglass_stiffness &
+          .and. history_size(model%materials(part%material)) > 0) call warn(log, 'part ' &
+          //to_text(part%id)//': stiffness hourglass control makes round bodies too stiff in ' &
+          //'plastic flow; the viscous form (IHQ 1 to 3) does not')
       end associate
     end do
   end subroutine log_elements

@@ -10,6 +10,8 @@ module element_state_m
   use parts_m, only : hourglass_stiffness
   use quad_full_m, only : has_mean_dilatation
   use quad_points_m, only : n_point, point_ratios
+  use round_state_m, only : fill_round_reference, add_round_masses, round_ratios
+  use round_chunk_m, only : n_round_reference
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
@@ -26,7 +28,7 @@ contains
     integer :: n_slot, n_chunk, i_slot
 
     n_slot = model%layout%n_slot
-    allocate (elements%reference(n_slot, 6))
+    allocate (elements%reference(n_slot, merge(n_round_reference, 6, model%is_round)))
     allocate (elements%deviator(n_slot, 3), source=0.0_wp)
     ! Chunks of rigid parts come after these.
     n_chunk = model%layout%tiles(size(model%layout%tiles))%last_chunk
@@ -36,6 +38,7 @@ contains
     do i_slot = 1, n_slot
       call fill_reference(model, i_slot, elements%reference)
     end do
+    if (model%is_round) call fill_round_reference(model, elements%reference)
     call reserve_memories(model, elements)
   end subroutine start_elements
 
@@ -49,7 +52,7 @@ contains
     real(wp) :: x(2, 4)
 
     if (model%layout%slot_element(i_slot) == 0) then
-      reference(i_slot, :) = much*reference(i_slot - mod(i_slot - 1, chunk_size), :)
+      reference(i_slot, :6) = much*reference(i_slot - mod(i_slot - 1, chunk_size), :6)
       return
     end if
     x = model%mesh%coordinates(:, model%layout%slot_nodes(:, i_slot))
@@ -90,14 +93,19 @@ contains
       elements%point_deviator(n_deviator), source=0.0_wp)
   end subroutine reserve_memories
 
-  !> Lumped mass: a quarter of each quad, a third of each triangle to its nodes.
+  !> Lumped mass: a quarter of each quad, a third of each triangle to its nodes; in round bodies the
+  !> row sums of the consistent mass.
   subroutine lump_mass(model, mass)
     type(model_t), intent(in) :: model
-    real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of thickness
+    real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of thickness or per radian
     real(wp) :: x(2, 4), area
     integer :: i, corners
 
     allocate (mass(model%mesh%n_node), source=0.0_wp)
+    if (model%is_round) then
+      call add_round_masses(model, mass)
+      return
+    end if
     do i = 1, model%mesh%n_element
       associate (nodes => model%mesh%element_nodes(:, i), &
         material => model%materials(model%parts(model%mesh%element_part(i))%material))
@@ -110,7 +118,8 @@ contains
     end do
   end subroutine lump_mass
 
-  !> Cauchy stress of all elements in deck order: xx yy zz xy (yz and xz stay zero in plane strain);
+  !> Cauchy stress of all elements in deck order: xx yy zz xy (yz and xz stay zero; in round bodies
+  !> rr, zz, hoop and rz);
   !> the mean over the present volume where an element has several points. The slots are walked,
   !> whose streams and nodes lie side by side.
   subroutine element_stresses(model, motion, elements, stress)
@@ -166,7 +175,7 @@ contains
   end subroutine element_plastic_strains
 
   !> J - 1 where the volumetric stress of the element in a slot is formed: once for the element, or
-  !> at each of its points, and the initial area that each stands for.
+  !> at each of its points, and the initial area (or volume per radian) that each stands for.
   pure subroutine volume_ratios(model, motion, elements, slot, n, stretch, start)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
@@ -184,6 +193,11 @@ contains
     associate (nodes => model%layout%slot_nodes(:, slot), &
       material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
       n = 1
+      if (model%is_round) then
+        u = motion(1:2, nodes)
+        call round_ratios(model, slot, u, stretch(1), start(1))
+        return
+      end if
       if (elements%point_start(i_chunk) > 0 .and. .not. has_mean_dilatation(material)) n = n_point
       if (n > 1) then
         u = motion(1:2, nodes)

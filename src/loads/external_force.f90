@@ -31,20 +31,27 @@ contains
     end do
   end subroutine form_external_force
 
-  !> Pressure on one edge, half of it to each node: against the outward normal (t_y, -t_x).
+  !> Pressure on one edge, half of it to each node: against the outward normal (t_y, -t_x). On a round
+  !> body per radian: with the edge times (2 r_a + r_b)/6 to node a.
   subroutine add_pressure(model, load, motion, time, force)
     type(model_t), intent(in) :: model
     type(pressure_load_t), intent(in) :: load
     real(wp), intent(in) :: motion(:, :)
     real(wp), intent(in) :: time
     real(wp), intent(inout) :: force(:, :)
-    real(wp) :: edge(2), half(2)
+    real(wp) :: edge(2), half(2), radii(2)
 
     if (time < load%arrival) return
     edge = (model%mesh%coordinates(:, load%nodes(2)) - model%mesh%coordinates(:, load%nodes(1))) &
       + (motion(1:2, load%nodes(2)) - motion(1:2, load%nodes(1)))
     half = 0.5_wp*load%scale*curve_value(model%curves(load%curve), time - load%arrival) &
       *[-edge(2), edge(1)]
+    if (model%is_round) then
+      radii = model%mesh%coordinates(1, load%nodes) + motion(1, load%nodes)
+      force(:, load%nodes(1)) = force(:, load%nodes(1)) + half*(2.0_wp*radii(1) + radii(2))/3.0_wp
+      force(:, load%nodes(2)) = force(:, load%nodes(2)) + half*(radii(1) + 2.0_wp*radii(2))/3.0_wp
+      return
+    end if
     force(:, load%nodes(1)) = force(:, load%nodes(1)) + half
     force(:, load%nodes(2)) = force(:, load%nodes(2)) + half
   end subroutine add_pressure

@@ -155,6 +155,12 @@ contains
     do i = 1, chunk_size
       rate(i) = frequency*sqrt(chunk%dxx(i)**2 + chunk%dyy(i)**2 + 2.0_wp*chunk%dxy(i)**2)
     end do
+    if (.not. chunk%has_hoop) return
+    !$omp simd
+    do i = 1, chunk_size
+      rate(i) = frequency*sqrt((chunk%dxx(i) + chunk%hoop(i))**2 + (chunk%dyy(i) &
+        + chunk%hoop(i))**2 + chunk%hoop(i)**2 + 2.0_wp*chunk%dxy(i)**2)
+    end do
   end subroutine total_rate
 
   !> Between which rows of the table each slot's rate lies, and how far.

@@ -6,11 +6,12 @@ module parts_m
   implicit none
   private
   public :: part_t, section_t, material_t, hourglass_t, &
-    form_one_point, form_full, law_elastic, law_plastic, law_piecewise, &
+    form_one_point, form_full, form_round_one_point, form_round_full, law_elastic, law_plastic, law_piecewise, &
     hourglass_viscous, hourglass_stiffness
 
   !> Element forms. Only the element dispatcher asks for them.
-  integer, parameter :: form_one_point = 1, form_full = 2
+  integer, parameter :: form_one_point = 1, form_full = 2, form_round_one_point = 3, &
+    form_round_full = 4
   !> Material laws. Only the material dispatcher asks for them.
   integer, parameter :: law_elastic = 1, law_plastic = 2, law_piecewise = 3
   !> Hourglass control: viscous (IHQ 1 to 3 and blank) or stiffness (IHQ 4 and 5).
@@ -21,6 +22,7 @@ module parts_m
     integer :: id = 0                          !! user id
     integer :: element_form = form_one_point   !! one of the `form_` constants
     logical :: is_full = .false.               !! full integration, which the implicit method needs
+    logical :: is_round = .false.              !! axisymmetric
   end type section_t
 
   !> One material. Moduli follow from E and nu once, in the deck layer.

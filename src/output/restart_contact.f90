@@ -34,6 +34,7 @@ contains
     call keep(archive, 'spots', contact%spots)
     call keep(archive, 'spot_xi', contact%spot_xi)
     call keep(archive, 'spot_share', contact%spot_share)
+    call keep(archive, 'spot_spread', contact%spot_spread)
     call keep_tracking(archive, 'slave_tracking', contact%slave_tracking)
     call keep_tracking(archive, 'master_tracking', contact%master_tracking)
     call keep_segments(archive, 'segments', contact%segments)

@@ -11,6 +11,8 @@ module snapshot_filling_m
   use history_tables_m, only : table_matsum
   use layout_m, only : slot_part
   use model_m, only : model_t
+  use round_chunk_m, only : node_volumes
+  use round_state_m, only : hoop_strains
   use snapshot_m, only : snapshot_t, rubbed_t
   use state_m, only : state_t
   use support_forces_m, only : find_supports
@@ -46,6 +48,7 @@ contains
     allocate (snapshot%stress(6, n_element), source=0.0_wp)
     if (has_history) &
       allocate (snapshot%plastic_strain(n_element), source=0.0_wp)
+    if (model%is_round) allocate (snapshot%hoop_strain(n_element), source=0.0_wp)
     if (size(model%contacts) > 0) allocate (snapshot%contact_force(2, n_node), &
       snapshot%contact_pressure(n_node), snapshot%gap(n_node), source=0.0_wp)
     if (any(has_friction(model%contacts))) allocate (snapshot%contact_traction(n_node), &
@@ -215,7 +218,7 @@ contains
   subroutine fill_parts(model, snapshot)
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(inout) :: snapshot
-    real(wp) :: x(2, 4), share, v(2)
+    real(wp) :: x(2, 4), shares(4), v(2)
     integer :: i, k, corners, slot, i_part
 
     if (.not. allocated(snapshot%velocity)) return
@@ -230,13 +233,14 @@ contains
         material => model%materials(model%parts(i_part)%material))
         x = model%mesh%coordinates(:, nodes)
         corners = merge(3, 4, nodes(4) == nodes(3))
-        share = material%density/corners*0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
+        shares = material%density/corners*0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
           - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+        if (model%is_round) shares = material%density*node_volumes(x, corners == 3)
         do k = 1, corners
           v = snapshot%velocity(:, nodes(k))
-          part%kinetic = part%kinetic + 0.5_wp*share*(v(1)**2 + v(2)**2)
-          part%momentum = part%momentum + share*v
-          part%mass = part%mass + share
+          part%kinetic = part%kinetic + 0.5_wp*shares(k)*(v(1)**2 + v(2)**2)
+          part%momentum = part%momentum + shares(k)*v
+          part%mass = part%mass + shares(k)
         end do
       end associate
     end do
@@ -270,6 +274,7 @@ contains
     call element_stresses(model, state%motion, state%elements, snapshot%stress)
     if (allocated(snapshot%plastic_strain)) &
       call element_plastic_strains(model, state%elements, snapshot%plastic_strain)
+    if (model%is_round) call hoop_strains(model, state%motion, snapshot%hoop_strain)
     if (size(model%contacts) == 0) return
     snapshot%contact_force = 0.0_wp
     snapshot%contact_pressure = 0.0_wp

@@ -9,7 +9,8 @@
 !>
 !> Node numbers here are local to the interface: 1 .. n_slave for slave nodes, then
 !> n_slave + 1 .. n_slave + n_master for master nodes. A place is (X, Y, u_x, u_y), X and Y relative
-!> to the first slave node, so that places between nodes lose no digit far from the origin.
+!> to the first slave node, so that places between nodes lose no digit far from the origin; in
+!> axisymmetry X is the radius itself.
 !>
 !> A tracking follows spots (nodes of one surface, or places between them) over the chain of the
 !> other. It measures time in `travel`: the sum over all steps of a bound on how far any two nodes
@@ -137,6 +138,8 @@ module contact_state_m
     real(wp), allocatable :: spot_xi(:)     !! (spots of a segment) where on the segment they are
     real(wp), allocatable :: spot_share(:)  !! (spots of a segment) part of its length they stand
                                             !! for
+    real(wp) :: spot_spread = 0.0_wp        !! above 0: a spot stands at the centre, by radius, of
+                                            !! this part of its segment about its spot_xi
     type(tracking_t) :: slave_tracking      !! slave nodes, or `spots`, over the master chain
     type(tracking_t) :: master_tracking     !! master nodes over the slave chain; empty for one pass
     type(segment_memory_t) :: segments      !! of the slave surface

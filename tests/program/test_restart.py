@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from conftest import drop, numbers
 from meshes import Deck, grid
+from round_decks import rings
 from test_repeatability import large_drop
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
@@ -33,6 +34,7 @@ SCENES = {
     "collision with friction": (lambda kind: scenes.collision(1, ctype=kind), 200, 90, "fs=0.4", "fd=0.2", "dc=0.01"),
     "oblique with friction": (lambda kind: scenes.oblique(ctype=kind), 280, 155, "fs=0.3", "tfac=0.5"),
     "patch": (lambda kind: scenes.patch(ctype=kind), 300, 170),
+    "rings": (lambda kind: rings(kind, 16, end=0.03), 60, 20),
     "plate": (lambda kind: scenes.symmetric_plate(16, 8, True), 300, 170),
 }
 CASES = [(scene, kind) for scene in SCENES for kind in ALL_TYPES
@@ -241,7 +243,7 @@ def test_head_is_that_of_an_independent_program(slideline, tmp_path):
     assert slideline("d=a", deck=with_files(drop(), dump=100)).returncode == 0
     data = (tmp_path / "a" / "job.dump01.h5").read_bytes()
     lines = data[:HEAD].decode().splitlines()
-    assert lines[:3] == ["slideline restart 12", f"length {len(data) - HEAD}",
+    assert lines[:3] == ["slideline restart 13", f"length {len(data) - HEAD}",
                          f"checksum {zlib.crc32(data[HEAD:]):08X}"]
     with h5py.File(tmp_path / "a" / "job.dump01.h5") as stream:
         assert stream["state/cycle"][0] == 100

@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 import pytest
 from meshes import Deck, grid, rotate
+from round_decks import rings
 
 from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.scenes import block, collision, hertz, oblique, patch, patch_grids
@@ -94,6 +95,7 @@ SCENES = {
     "oblique with friction": (oblique, ("endtim=0.06", "fs=0.3")),
     "everything": (everything, ()),
     "anvil": (anvil, ()),
+    "rings": (rings, ()),
     "static_patch": (lambda kind: patch(kind, static=True), ()),
 }
 

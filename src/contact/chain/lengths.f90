@@ -3,10 +3,11 @@
 module lengths_m
   use geometry_m, only : segment_length
   use kinds_m, only : wp
+  use radii_m, only : radius_of, end_radius
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: competence_length, put_lengths
+  public :: competence_length, competence_area, mean_radius, put_lengths
 
   !> Most nodes of a list.
   integer, parameter :: n_room = 64
@@ -26,6 +27,42 @@ contains
     if (surface%outgoing(i_node) > 0) length = length + 0.5_wp*segment_length( &
       places(:, i_node), places(:, surface%segments(2, surface%outgoing(i_node))))
   end function competence_length
+
+  !> What a node of a surface stands for: its competence length, m; in axisymmetry the integral of
+  !> the radius by its hat function, l (2 r_i + r_j)/6 of each neighbouring segment, m^2 per radian.
+  pure function competence_area(surface, places, is_round, i_node) result(area)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    logical, intent(in) :: is_round
+    integer, intent(in) :: i_node
+    real(wp) :: area
+    integer :: k, s
+
+    if (.not. is_round) then
+      area = competence_length(surface, places, i_node)
+      return
+    end if
+    area = 0.0_wp
+    do k = 1, 2
+      s = merge(surface%incoming(i_node), surface%outgoing(i_node), k == 1)
+      if (s == 0) cycle
+      associate (own => places(:, i_node), other => places(:, surface%segments(k, s)))
+        area = area + 0.5_wp*segment_length(own, other) &
+          *end_radius(radius_of(own), radius_of(other))
+      end associate
+    end do
+  end function competence_area
+
+  !> The second over the first in axisymmetry, m.
+  pure function mean_radius(surface, places, i_node) result(radius)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    integer, intent(in) :: i_node
+    real(wp) :: radius
+
+    radius = competence_area(surface, places, .true., i_node) &
+      /max(competence_length(surface, places, i_node), tiny(1.0_wp))
+  end function mean_radius
 
   !> The same for some nodes, one after the other. A segment between two of
   !> them is measured once, and the roots of a list of segments are formed together: node by node it

@@ -8,7 +8,7 @@ module place_mortar_m
   use foot_m, only : foot_t, near_foot, facing_share, face_on
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use point_list_m, only : place_block_t, append_points, drop_places
+  use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
   implicit none
   private
   public :: place_mortar
@@ -48,6 +48,7 @@ contains
       s = s + max(1, n)
     end do
     call append_points(block, memory%slave_penalty, memory%points)
+    if (contact%is_round) call weigh_points(memory%places, memory%points)
     memory%scratch%point_at = 0
   end subroutine place_mortar
 

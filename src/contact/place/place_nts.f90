@@ -6,7 +6,7 @@ module place_nts_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use kinds_m, only : wp
-  use point_list_m, only : append_touching, set_lengths
+  use point_list_m, only : append_touching, set_lengths, weigh_nodes
   implicit none
   private
   public :: place_nts, place_nts_ar, place_two_pass_ar
@@ -20,7 +20,17 @@ contains
 
     call append_touching(memory%slave_tracking, contact%master, [0, memory%n_slave], 1.0_wp, &
       memory%node_penalty, memory%points)
+    if (contact%is_round) call weigh_slaves(contact, memory)
   end subroutine place_nts
+
+  !> In axisymmetry: the points at slave nodes, which are the first.
+  pure subroutine weigh_slaves(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+
+    call weigh_nodes(memory%slave_tracking, contact%slave, memory%places(:, :memory%n_slave), 1, &
+      memory%points)
+  end subroutine weigh_slaves
 
   !> Type 2: the competence length of the node as area.
   pure subroutine place_nts_ar(contact, memory)
@@ -31,6 +41,7 @@ contains
       memory%slave_penalty, memory%points)
     call set_lengths(memory%slave_tracking, contact%slave, memory%places(:, :memory%n_slave), 1, &
       memory%points)
+    if (contact%is_round) call weigh_slaves(contact, memory)
   end subroutine place_nts_ar
 
   !> Type 3: type 2, and again with the roles of slave and master exchanged; nothing is halved.
@@ -44,6 +55,8 @@ contains
     call append_touching(memory%master_tracking, contact%slave, [memory%n_slave, 0], 0.0_wp, &
       memory%master_penalty, memory%points)
     call set_lengths(memory%master_tracking, contact%master, &
+      memory%places(:, memory%n_slave + 1:), first, memory%points)
+    if (contact%is_round) call weigh_nodes(memory%master_tracking, contact%master, &
       memory%places(:, memory%n_slave + 1:), first, memory%points)
   end subroutine place_two_pass_ar
 

@@ -9,9 +9,10 @@ module place_nts_mar_m
   use foot_m, only : see_segment, facing_share
   use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal
   use kinds_m, only : wp
-  use lengths_m, only : competence_length
+  use lengths_m, only : competence_area
   use piece_table_m, only : piece_table_t, is_last_piece
   use pieces_m, only : clear_pieces, list_awake, cut_pieces
+  use radii_m, only : end_radius, radius_between
   use point_list_m, only : place_block_t, append_points, append_touching, add_length
   use sleep_m, only : all_asleep, keep_segment, judge_segment, note_next_wake
   use surfaces_m, only : surface_t
@@ -51,25 +52,60 @@ contains
   end subroutine place_nts_mar
 
   !> Divide the segments of a table among their ends and the master nodes that cut them: half of
-  !> each piece to either of its ends, as far as it counts. With the strict rule all of it counts.
+  !> each piece to either of its ends, as far as it counts; in axisymmetry weighted with the radius.
+  !> With the strict rule all of it counts.
   pure subroutine share_pieces(contact, table, memory)
     type(contact_t), intent(in) :: contact
     type(piece_table_t), intent(inout) :: table
+    type(contact_state_t), intent(inout) :: memory
+
+    call halve_pieces(table%n, table%low, table%high, table%length, table%half)
+    if (.not. contact%strict) table%half(:table%n) = table%half(:table%n)*table%share(:table%n)
+    if (contact%is_round) then
+      call share_weighted(contact, table, memory)
+    else
+      call share_halves(contact, table, table%half, table%half, memory)
+    end if
+  end subroutine share_pieces
+
+  !> The same in axisymmetry: what either end of a piece gets differs.
+  pure subroutine share_weighted(contact, table, memory)
+    type(contact_t), intent(in) :: contact
+    type(piece_table_t), intent(inout) :: table
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), dimension(table%n) :: to_first, to_last
+    real(wp) :: low, high
+    integer :: k
+
+    do k = 1, table%n
+      associate (a => memory%places(:, table%ends(1, k)), b => memory%places(:, table%ends(2, k)))
+        low = radius_between(a, b, table%low(k))
+        high = radius_between(a, b, table%high(k))
+      end associate
+      to_first(k) = table%half(k)*end_radius(low, high)
+      to_last(k) = table%half(k)*end_radius(high, low)
+    end do
+    call share_halves(contact, table, to_first, to_last, memory)
+  end subroutine share_weighted
+
+  !> Give the areas of all pieces to what stands at their ends.
+  pure subroutine share_halves(contact, table, to_first, to_last, memory)
+    type(contact_t), intent(in) :: contact
+    type(piece_table_t), intent(inout) :: table
+    real(wp), intent(in) :: to_first(*), to_last(*) !! where a piece starts, and where it ends
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t) :: cuts
     real(wp) :: deepest
     integer :: i, n_before, n_points, n
     logical :: counts
 
-    call halve_pieces(table%n, table%low, table%high, table%length, table%half)
-    if (.not. contact%strict) table%half(:table%n) = table%half(:table%n)*table%share(:table%n)
     n = 0
     cuts%n = 0
     do i = 1, table%n_segment
       associate (first => table%last(i - 1) + 1, last => table%last(i), s => table%slave(i))
-        if (table%touches(i) .and. is_plain(table%kind, table%half, first, last)) then
+        if (table%touches(i) .and. is_plain(table%kind, to_first, first, last)) then
           n_before = n
-          call share_plain(first, last, table%ends, table%half, table%node_gap, &
+          call share_plain(first, last, table%ends, to_first, to_last, table%node_gap, &
             memory%closed_gap, memory%scratch%point_at, memory%points%area, n, table%rows)
           call keep_segment(n > n_before, memory%travel, memory%segments%status(s), &
             memory%segments%wake(s))
@@ -79,7 +115,7 @@ contains
           call append_points(cuts, memory%slave_penalty, memory%points)
         n_before = cuts%n
         n_points = memory%points%n
-        call share_segment(table, first, last, table%half, memory, cuts, deepest)
+        call share_segment(table, first, last, to_first, to_last, memory, cuts, deepest)
         if (table%touches(i)) then
           call keep_segment(deepest < memory%closed_gap, memory%travel, memory%segments%status(s), &
             memory%segments%wake(s))
@@ -92,11 +128,11 @@ contains
     call append_points(cuts, memory%slave_penalty, memory%points)
     do i = 1, n, n_block
       cuts%n = min(n_block, n - i + 1)
-      call put_cuts(cuts%n, table%rows(i), table%half, table%ends, table%nodes, table%cut, &
+      call put_cuts(cuts%n, table%rows(i), to_first, to_last, table%ends, table%nodes, table%cut, &
         table%node_gap, table%normal, cuts)
       call append_points(cuts, memory%slave_penalty, memory%points)
     end do
-  end subroutine share_pieces
+  end subroutine share_halves
 
   !> Half the length of each piece, m.
   pure subroutine halve_pieces(n, low, high, length, half)
@@ -108,9 +144,9 @@ contains
   end subroutine halve_pieces
 
   !> Whether the pieces of a segment are listed from one end to the other, none of them empty.
-  pure function is_plain(kind, halves, first, last)
+  pure function is_plain(kind, areas, first, last)
     integer, intent(in) :: kind(*), first, last
-    real(wp), intent(in) :: halves(*)
+    real(wp), intent(in) :: areas(*)
     logical :: is_plain
     integer :: k
 
@@ -118,27 +154,27 @@ contains
     if (last < first) return
     if (kind(last) /= is_last_piece) return
     do k = first, last
-      if (.not. halves(k) > 0.0_wp) return
+      if (.not. areas(k) > 0.0_wp) return
     end do
     is_plain = .true.
   end function is_plain
 
   !> The pieces of such a segment with both ends in contact; master nodes in contact go on a list of
   !> pieces that end there.
-  pure subroutine share_plain(first, last, ends, halves, node_gap, closed_gap, point_at, area, n, &
-      rows)
+  pure subroutine share_plain(first, last, ends, to_first, to_last, node_gap, closed_gap, point_at, &
+      area, n, rows)
     integer, intent(in) :: first, last     !! pieces
     integer, intent(in) :: ends(2, *)      !! of all pieces, as all that follow
-    real(wp), intent(in) :: halves(*), node_gap(*), closed_gap !! m
+    real(wp), intent(in) :: to_first(*), to_last(*), node_gap(*), closed_gap !! m
     integer, intent(in) :: point_at(*)     !! at each slave node, 0: none
     real(wp), intent(inout) :: area(*)     !! of the points, m
     integer, intent(inout) :: n, rows(*)
     integer :: k, p
 
     p = point_at(ends(1, first))
-    if (p > 0) area(p) = area(p) + halves(first)
+    if (p > 0) area(p) = area(p) + to_first(first)
     p = point_at(ends(2, first))
-    if (p > 0) area(p) = area(p) + halves(last)
+    if (p > 0) area(p) = area(p) + to_last(last)
     do k = first, last - 1
       if (.not. node_gap(k) < closed_gap) cycle
       n = n + 1
@@ -147,9 +183,9 @@ contains
   end subroutine share_plain
 
   !> Points at the master nodes where some pieces end: these and the next pieces are halved there.
-  pure subroutine put_cuts(n, rows, halves, ends, nodes, cut, node_gap, normal, cuts)
+  pure subroutine put_cuts(n, rows, to_first, to_last, ends, nodes, cut, node_gap, normal, cuts)
     integer, intent(in) :: n, rows(n), ends(2, *), nodes(2, *)
-    real(wp), intent(in) :: halves(*), cut(*), node_gap(*), normal(2, *)
+    real(wp), intent(in) :: to_first(*), to_last(*), cut(*), node_gap(*), normal(2, *)
     type(place_block_t), intent(inout) :: cuts
     integer :: k, row
 
@@ -163,16 +199,16 @@ contains
       cuts%feet%xi(k) = 0.0_wp
       cuts%feet%gap(k) = node_gap(row)
       cuts%feet%normal(:, k) = -normal(:, row)
-      cuts%area(k) = halves(row) + halves(row + 1)
+      cuts%area(k) = to_last(row) + to_first(row + 1)
     end do
   end subroutine put_cuts
 
   !> The pieces of one segment. What stands at the end of a piece has half of it and half of the
   !> next; between two chains of the master two nodes may stand there.
-  pure subroutine share_segment(table, first, last, halves, memory, cuts, deepest)
+  pure subroutine share_segment(table, first, last, to_first, to_last, memory, cuts, deepest)
     type(piece_table_t), intent(in) :: table
     integer, intent(in) :: first, last   !! pieces
-    real(wp), intent(in) :: halves(:)    !! of all pieces, m
+    real(wp), intent(in) :: to_first(*), to_last(*) !! of all pieces, m
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t), intent(inout) :: cuts
     real(wp), intent(out) :: deepest     !! smallest gap of its master nodes, m
@@ -192,14 +228,14 @@ contains
         length = 0.0_wp
         before = 0
       end if
-      length = length + halves(k)
+      length = length + to_first(k)
       if (node > 0) then
         call add_cut(table, before, k, node, length, memory, cuts, deepest)
       else
         call add_length(memory%points, memory%scratch%point_at(table%ends(1, k)), length)
       end if
       node = table%last_cut(k)
-      length = halves(k)
+      length = to_last(k)
       before = k
     end do
     if (node > 0) then
@@ -268,7 +304,7 @@ contains
       if (memory%points%area(p) > 0.0_wp) cycle
       node = memory%points%slave_nodes(1, p)
       if (is_tip(contact%slave, memory, node)) call add_length(memory%points, p, &
-        competence_length(contact%slave, memory%places(:, :memory%n_slave), node))
+        competence_area(contact%slave, memory%places(:, :memory%n_slave), contact%is_round, node))
     end do
   end subroutine finish_nodes
 

@@ -9,7 +9,7 @@ module place_segmented_mortar_m
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, n_piece_block
   use pieces_m, only : clear_pieces, list_awake, list_segment, cut_pieces
-  use point_list_m, only : place_block_t, append_points, drop_places
+  use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
   use sleep_m, only : all_asleep, keep_segment, judge_segment, note_next_wake
   implicit none
   private
@@ -51,6 +51,7 @@ contains
       memory%points%n = 0
     end if
     call move_alloc(table, memory%scratch%pieces)
+    if (contact%is_round) call weigh_points(memory%places, memory%points)
   end subroutine place_segmented_mortar
 
   !> Neighbours of segments in contact that have not been placed.

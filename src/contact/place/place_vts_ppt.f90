@@ -12,6 +12,7 @@ module place_vts_ppt_m
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use point_list_m, only : place_block_t, append_points
+  use radii_m, only : centroid, radius_between
   implicit none
   private
   public :: place_vts_ppt, end_of_half
@@ -47,6 +48,10 @@ contains
     integer :: first, n, k
 
     block%n = 0
+    if (contact%is_round) then
+      call place_by_radius(contact, memory, block)
+      return
+    end if
     do first = 1, memory%slave_tracking%n_touching, n_block
       n = min(n_block, memory%slave_tracking%n_touching - first + 1)
       halves%n = n
@@ -72,6 +77,39 @@ contains
     end do
     call append_points(block, memory%slave_penalty, memory%points)
   end subroutine place_vts_ppt
+
+  !> The same in axisymmetry: weights by radius, virtual nodes and points of portions at centres by
+  !> radius.
+  pure subroutine place_by_radius(contact, memory, block)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(place_block_t), intent(inout) :: block
+    type(halves_t) :: halves
+    integer :: first, n, k
+
+    do first = 1, memory%slave_tracking%n_touching, n_block
+      n = min(n_block, memory%slave_tracking%n_touching - first + 1)
+      halves%n = n
+      halves%spot(:n) = memory%slave_tracking%touching(first:first + n - 1)
+      call see_halves(n, halves%spot, memory%slave_tracking%segment, contact%slave%segments, &
+        contact%master%segments, memory%n_slave, memory%places, memory%spots, halves)
+      associate (tracking => memory%slave_tracking)
+        call take_feet(n, halves%spot, tracking%gap, tracking%normal, memory%spot_xi, halves)
+      end associate
+      do k = 1, n
+        if (block%n + 2 > n_block) &
+          call append_points(block, memory%slave_penalty, memory%points)
+        halves%xi(k) = spot_xi(memory, halves%spot(k), halves%ends(:, k))
+        associate (a => memory%places(:, halves%ends(1, k)), &
+          b => memory%places(:, halves%ends(2, k)))
+          halves%half(k) = 0.5_wp*segment_length(a, b) &
+            *radius_between(a, b, memory%spot_xi(2 - mod(halves%spot(k), 2)))
+        end associate
+        call walk_portions(contact, memory, halves, k, block)
+      end do
+    end do
+    call append_points(block, memory%slave_penalty, memory%points)
+  end subroutine place_by_radius
 
   !> Vectors of some halves.
   pure subroutine see_halves(n, spot, segment, ends, segments, n_slave, places, spots, halves)
@@ -214,7 +252,8 @@ contains
     length = merge(1.0_wp - part, part, way > 0.0_wp)*sqrt(square)
   end subroutine see_other
 
-  !> The portions from the mark of the later end to that of the earlier one.
+  !> The portions from the mark of the later end to that of the earlier one; in axisymmetry by
+  !> radius.
   pure subroutine walk_portions(contact, memory, halves, k, block)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -222,8 +261,8 @@ contains
     integer, intent(in) :: k
     type(place_block_t), intent(inout) :: block
     type(mark_t) :: marks(2)
-    real(wp) :: total, low, high, xi
-    integer :: segment, i, i_pass, ends(2)
+    real(wp) :: total, low, high, xi, length
+    integer :: segment, i, i_pass, ends(2), nodes(2)
 
     associate (spot => halves%spot(k), chain => memory%places(:, memory%n_slave + 1:))
       ends = contact%slave%segments(:, (spot + 1)/2)
@@ -240,16 +279,16 @@ contains
           low = merge(marks(1)%xi, 0.0_wp, i == 0)
           high = merge(marks(2)%xi, 1.0_wp, segment == marks(2)%segment)
           if (high > low) then
-            associate (length => (high - low)*segment_length( &
-              chain(:, contact%master%segments(1, segment)), &
-              chain(:, contact%master%segments(2, segment))))
-              if (i_pass == 1) total = total + length
-              if (i_pass == 2 .and. block%n == n_block) &
-                call append_points(block, memory%slave_penalty, memory%points)
-              if (i_pass == 2) call put_portion(halves, k, memory%n_slave &
-                + contact%master%segments(:, segment), 0.5_wp*(low + high), &
-                halves%half(k)*(length/total), block)
-            end associate
+            nodes = memory%n_slave + contact%master%segments(:, segment)
+            xi = 0.5_wp*(low + high)
+            length = (high - low)*segment_length(memory%places(:, nodes(1)), &
+              memory%places(:, nodes(2)))
+            if (contact%is_round) call weigh_portion(memory, nodes, low, high, xi, length)
+            if (i_pass == 1) total = total + length
+            if (i_pass == 2 .and. block%n == n_block) &
+              call append_points(block, memory%slave_penalty, memory%points)
+            if (i_pass == 2) call put_portion(halves, k, nodes, xi, halves%half(k)*(length/total), &
+              block)
           end if
           segment = contact%master%next(segment)
           ! Marks of displacements beyond all bounds need not lie on one chain.
@@ -262,6 +301,32 @@ contains
       end do
     end associate
   end subroutine walk_portions
+
+  !> In axisymmetry: weight of a portion, and its centre by radius.
+  pure subroutine weigh_portion(memory, nodes, low, high, xi, length)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: nodes(2)       !! local numbers of those of the master segment
+    real(wp), intent(in) :: low, high     !! range of that
+    real(wp), intent(inout) :: xi         !! in: its middle
+    real(wp), intent(inout) :: length     !! m, then m^2 per radian
+
+    associate (a => memory%places(:, nodes(1)), b => memory%places(:, nodes(2)))
+      length = length*radius_between(a, b, xi)
+      xi = centroid(a, b, low, high)
+    end associate
+  end subroutine weigh_portion
+
+  !> In axisymmetry: where a virtual node is on its slave segment.
+  pure function spot_xi(memory, spot, ends) result(xi)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: spot, ends(2)  !! nodes of its segment
+    real(wp) :: xi
+
+    associate (middle => memory%spot_xi(2 - mod(spot, 2)))
+      xi = centroid(memory%places(:, ends(1)), memory%places(:, ends(2)), &
+        end_of_half(middle, 2), end_of_half(middle, 1))
+    end associate
+  end function spot_xi
 
   !> Ends of a half segment, the later one first: the slave runs against the master.
   pure function end_of_half(xi, k)

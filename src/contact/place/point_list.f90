@@ -5,12 +5,13 @@ module point_list_m
   use contact_state_m, only : contact_points_t, tracking_t, make_room, n_side
   use foot_block_m, only : foot_block_t, n_block
   use kinds_m, only : wp
-  use lengths_m, only : put_lengths
+  use lengths_m, only : put_lengths, mean_radius
+  use radii_m, only : radius_of
   use surfaces_m, only : surface_t
   implicit none
   private
   public :: place_block_t, append_points, drop_places, append_touching, set_lengths, &
-    add_length
+    add_length, weigh_nodes, weigh_points
 
   !> Places on slave segments that are to be points, with their feet on the master. Without default
   !> values, which would be written before each use.
@@ -121,6 +122,36 @@ contains
 
     if (p > 0) points%area(p) = points%area(p) + length
   end subroutine add_length
+
+  !> In axisymmetry: let the points of tracked nodes from one to the last weigh with the mean radius
+  !> of the lengths of their nodes.
+  pure subroutine weigh_nodes(tracking, own, places, first, points)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: own               !! of the tracked nodes
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of these
+    integer, intent(in) :: first                     !! of the points
+    type(contact_points_t), intent(inout) :: points
+    integer :: k, p
+
+    do k = 1, tracking%n_touching
+      p = first + k - 1
+      points%area(p) = points%area(p)*mean_radius(own, places, tracking%touching(k))
+    end do
+  end subroutine weigh_nodes
+
+  !> In axisymmetry: let all points weigh with the radius where they stand on the slave side.
+  pure subroutine weigh_points(places, points)
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of the interface
+    type(contact_points_t), intent(inout) :: points
+    integer :: p
+
+    do p = 1, points%n
+      associate (nodes => points%slave_nodes(:, p), weights => points%slave_weights(:, p))
+        points%area(p) = points%area(p)*(weights(1)*radius_of(places(:, nodes(1))) &
+          + weights(2)*radius_of(places(:, nodes(2))))
+      end associate
+    end do
+  end subroutine weigh_points
 
   !> Nodes and weights of one side of some points.
   pure subroutine put_side(n, nodes, xi, point_nodes, weights)

@@ -47,7 +47,7 @@ contains
       master => memory%master_tracking)
       if (allocated(memory%spots)) then
         spots = memory%spots(:, :slave%n)
-        call move_spots(contact%slave, places, memory%spot_xi, spots)
+        call move_spots(contact%slave, places, memory%spot_xi, memory%spot_spread, spots)
         crossings%slave = cross_chain(contact%master, places(:, n + 1:), memory%places(:, n + 1:), &
           spots, memory%spots(:, :slave%n), is_outside(slave), slave%chord)
       else

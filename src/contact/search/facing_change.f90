@@ -140,7 +140,7 @@ contains
             + memory%spot_xi(q)*memory%places(1:2, slave%segments(2, s))
         end do
       end do
-      call move_spots(slave, memory%places, memory%spot_xi, memory%spots)
+      call move_spots(slave, memory%places, memory%spot_xi, memory%spot_spread, memory%spots)
     end associate
   end subroutine place_spots
 

@@ -4,8 +4,10 @@
 !> segment) + position.
 module spots_m
   use contact_state_m, only : contact_state_t
+  use geometry_m, only : segment_length
   use kinds_m, only : wp
   use quadrature_m, only : gauss_rule
+  use radii_m, only : centroid
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -19,9 +21,10 @@ contains
 
   !> Places on each segment and the part of its length that each stands for; nothing is allocated
   !> for spots at nodes, which are in `memory%places` already.
-  pure subroutine start_spots(rule, n_gauss, slave, memory)
+  pure subroutine start_spots(rule, n_gauss, is_round, slave, memory)
     integer, intent(in) :: rule    !! one of the constants above
     integer, intent(in) :: n_gauss !! Gauss points of a segment
+    logical, intent(in) :: is_round
     type(surface_t), intent(in) :: slave
     type(contact_state_t), intent(inout) :: memory
     integer :: s, q, n
@@ -36,6 +39,7 @@ contains
     case (spots_at_quarters)
       memory%spot_xi(:) = [0.25_wp, 0.75_wp]
       memory%spot_share = 0.5_wp
+      if (is_round) memory%spot_spread = 0.5_wp
     case (spots_at_gauss_points)
       call gauss_rule(memory%spot_xi, memory%spot_share)
     end select
@@ -47,18 +51,54 @@ contains
         end do
       end associate
     end do
+    call move_spots(slave, memory%places, memory%spot_xi, memory%spot_spread, memory%spots)
   end subroutine start_spots
 
-  !> Displacements of the spots from those of the nodes.
-  pure subroutine move_spots(slave, places, spot_xi, spots)
+  !> Displacements of the spots from those of the nodes. Where they stand at centres by radius,
+  !> these move on their segments: how far at most is added to `travel`.
+  pure subroutine move_spots(slave, places, spot_xi, spot_spread, spots, travel)
     type(surface_t), intent(in) :: slave
     real(wp), intent(in), contiguous :: places(:, :)   !! (4, n_node) of the interface
     real(wp), intent(in), contiguous :: spot_xi(:)
+    real(wp), intent(in) :: spot_spread
     real(wp), intent(inout), contiguous :: spots(:, :) !! (4, n_spot)
+    real(wp), intent(inout), optional :: travel        !! m
+    real(wp) :: slid
 
-    call move_on_segments(slave%n_segment, slave%segments, size(spot_xi), spot_xi, places, &
-      spots)
+    if (spot_spread > 0.0_wp) then
+      call lean_on_segments(slave, places, spot_xi, spot_spread, spots, slid)
+      if (present(travel)) travel = travel + slid
+    else
+      call move_on_segments(slave%n_segment, slave%segments, size(spot_xi), spot_xi, places, &
+        spots)
+    end if
   end subroutine move_spots
+
+  !> Put the spots at the centres by radius of their parts of the segments.
+  pure subroutine lean_on_segments(slave, places, spot_xi, spot_spread, spots, slid)
+    type(surface_t), intent(in) :: slave
+    real(wp), intent(in), contiguous :: places(:, :), spot_xi(:)
+    real(wp), intent(in) :: spot_spread
+    real(wp), intent(inout), contiguous :: spots(:, :)
+    real(wp), intent(out) :: slid !! the longest way of one on its segment, m
+    real(wp) :: before(2), xi
+    integer :: s, q, i
+
+    slid = 0.0_wp
+    do s = 1, slave%n_segment
+      associate (a => places(:, slave%segments(1, s)), b => places(:, slave%segments(2, s)))
+        do q = 1, size(spot_xi)
+          i = (s - 1)*size(spot_xi) + q
+          xi = centroid(a, b, spot_xi(q) - 0.5_wp*spot_spread, spot_xi(q) + 0.5_wp*spot_spread)
+          before = spots(1:2, i)
+          spots(:, i) = (1.0_wp - xi)*a + xi*b
+          ! Of the reference, in which nodes rest; stretched as the segment is.
+          slid = max(slid, norm2(spots(1:2, i) - before)*segment_length(a, b) &
+            /max(norm2(b(1:2) - a(1:2)), tiny(1.0_wp)))
+        end do
+      end associate
+    end do
+  end subroutine lean_on_segments
 
   !> The same on arrays of known shape. Both components of a spot are formed together: vectors over
   !> the few spots of a segment take 2 to 4 % more of the contact of type 4.

@@ -14,7 +14,7 @@ module tangent_mortar_m
   use place_segmented_mortar_m, only : gauss_xi, least_cut
   use sparse_m, only : sparse_t
   use variation_m, only : varied_point_t, spot_foot, put_foot, length_between, take_piece, &
-    piece_ends, vary_share
+    piece_ends, vary_share, vary_radius
   implicit none
   private
   public :: add_mortar_tangent, add_segmented_mortar_tangent
@@ -40,6 +40,8 @@ contains
           points%gap(p), memory%closed_gap))
         point%area = length_between(memory%places, point%nodes, 1, 2) &
           *vary_share(memory%places, point%nodes, 1, point%normal)
+        if (contact%is_round) point%area = point%area &
+          *vary_radius(memory%places, point%nodes, 1, 2, point%slave_xi)
         point%area = (points%area(p)/point%area%value)*point%area
         call append_point(list, contact%slave%outgoing(point%nodes(1)), point)
       end associate
@@ -108,6 +110,8 @@ contains
       share = vary_share(memory%places, point%nodes, 1, point%normal)
       if (.not. share%value > 0.0_wp) cycle
       point%area = 0.5_wp*share*length
+      if (contact%is_round) point%area = point%area &
+        *vary_radius(memory%places, point%nodes, 1, 2, point%slave_xi)
       call append_point(list, s, point)
     end do
   end subroutine vary_piece

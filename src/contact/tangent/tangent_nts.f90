@@ -4,9 +4,10 @@
 module tangent_nts_m
   use assembly_m, only : add_pressed_point
   use contact_state_m, only : contact_state_t
-  use variation_m, only : varied_point_t, spot_foot, put_foot, length_between
+  use variation_m, only : varied_point_t, spot_foot, put_foot, length_between, &
+    vary_end_radius
   use contacts_m, only : contact_t
-  use dual_m, only : dual_t, constant, operator(+), operator(*)
+  use dual_m, only : dual_t, constant, operator(+), operator(*), operator(/)
   use kinds_m, only : wp
   use sparse_m, only : sparse_t
   use surfaces_m, only : surface_t
@@ -16,7 +17,8 @@ module tangent_nts_m
 
 contains
 
-  !> Type 1. A largest friction stress counts times the competence length, which changes.
+  !> Type 1. A largest friction stress counts times the competence length, which changes; in
+  !> axisymmetry so does the mean radius.
   pure subroutine add_nts_tangent(contact, memory, equations, matrix)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -30,10 +32,14 @@ contains
     do p = 1, memory%points%n
       if (.not. memory%points%gap(p) < memory%closed_gap) cycle
       point = vary_node(memory, p)
-      if (contact%friction%most > 0.0_wp) then
-        call vary_competence(contact%slave, 0, memory, point)
+      if (contact%friction%most > 0.0_wp .or. contact%is_round) then
+        call vary_competence(contact%slave, 0, .false., memory, point)
         length = point%area
         point%area = constant(1.0_wp)
+        if (contact%is_round) then
+          call vary_competence(contact%slave, 0, .true., memory, point)
+          point%area = point%area/length
+        end if
       end if
       call add_pressed_point(contact%friction, memory, point%nodes(1), point, &
         memory%points%stiffness(p), equations, matrix, length)
@@ -53,9 +59,9 @@ contains
       if (.not. memory%points%gap(p) < memory%closed_gap) cycle
       point = vary_node(memory, p)
       if (point%nodes(1) <= memory%n_slave) then
-        call vary_competence(contact%slave, 0, memory, point)
+        call vary_competence(contact%slave, 0, contact%is_round, memory, point)
       else
-        call vary_competence(contact%master, memory%n_slave, memory, point)
+        call vary_competence(contact%master, memory%n_slave, contact%is_round, memory, point)
       end if
       call add_pressed_point(contact%friction, memory, point%nodes(1), point, &
         memory%points%stiffness(p), equations, matrix)
@@ -76,13 +82,15 @@ contains
       memory%points%gap(p), memory%closed_gap))
   end function vary_node
 
-  !> Let the area of a point at a node be the node's competence length; its neighbours go into slots
-  !> 5 and 6.
-  pure subroutine vary_competence(surface, offset, memory, point)
+  !> Let the area of a point at a node be the node's competence length, weighted with the radius or
+  !> not; its neighbours go into slots 5 and 6.
+  pure subroutine vary_competence(surface, offset, by_radius, memory, point)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: offset !! local number before the first node of the surface
+    logical, intent(in) :: by_radius
     type(contact_state_t), intent(in) :: memory
     type(varied_point_t), intent(inout) :: point
+    type(dual_t) :: half
     integer :: segments(2), k
 
     segments = [surface%incoming(point%nodes(1) - offset), &
@@ -91,7 +99,10 @@ contains
     do k = 1, 2
       if (segments(k) == 0) cycle
       point%nodes(4 + k) = offset + surface%segments(k, segments(k))
-      point%area = point%area + 0.5_wp*length_between(memory%places, point%nodes, 1, 4 + k)
+      half = 0.5_wp*length_between(memory%places, point%nodes, 1, 4 + k)
+      if (by_radius) half = half*vary_end_radius(memory%places, point%nodes, 1, 4 + k, &
+        constant(0.0_wp), constant(1.0_wp))
+      point%area = point%area + half
     end do
   end subroutine vary_competence
 

@@ -14,7 +14,7 @@ module tangent_nts_mar_m
   use sparse_m, only : sparse_t
   use tangent_nts_m, only : vary_node, vary_competence
   use variation_m, only : varied_point_t, varied_foot_t, apart, length_between, project, &
-    spot_foot, put_foot, take_piece, piece_ends, vary_share
+    spot_foot, put_foot, take_piece, piece_ends, vary_share, vary_end_radius
   implicit none
   private
   public :: add_nts_mar_tangent
@@ -44,7 +44,7 @@ contains
       if (.not. is_tip(contact%slave, memory, memory%slave_tracking%touching(p))) cycle
       if (.not. memory%points%gap(p) < memory%closed_gap) cycle
       point = vary_node(memory, p)
-      call vary_competence(contact%slave, 0, memory, point)
+      call vary_competence(contact%slave, 0, contact%is_round, memory, point)
       call add_pressed_point(contact%friction, memory, point%nodes(1), point, &
         memory%slave_penalty, equations, matrix)
     end do
@@ -59,6 +59,8 @@ contains
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
     logical, intent(inout) :: has_area(:)
+    type(varied_point_t) :: point
+    type(dual_t) :: halves(2)
     integer :: k
 
     call clear_pieces(table)
@@ -66,38 +68,47 @@ contains
     call cut_pieces(contact, memory, table)
     do k = 1, table%n
       if (.not. table%high(k) > table%low(k)) cycle
-      if (contact%strict .or. table%share(k) > 0.0_wp) call add_both_ends(contact, memory, table, &
-        k, vary_half(contact, memory, table, k), equations, matrix, has_area)
+      if (.not. contact%strict .and. .not. table%share(k) > 0.0_wp) cycle
+      call vary_halves(contact, memory, table, k, point, halves)
+      call add_both_ends(contact, memory, table, k, point, halves, equations, matrix, has_area)
     end do
   end subroutine add_segment
 
-  !> Half of a piece as area: slave segment in slots 1, 2, cuts in slots 5, 6, and the master
+  !> Halves of a piece as areas: slave segment in slots 1, 2, cuts in slots 5, 6, and the master
   !> segment in slots 7, 8 where the share that faces it is not all of the piece.
-  pure function vary_half(contact, memory, table, k) result(point)
+  pure subroutine vary_halves(contact, memory, table, k, point, halves)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(piece_table_t), intent(in) :: table
     integer, intent(in) :: k
-    type(varied_point_t) :: point
-    type(dual_t) :: xi(2), t(2), length
+    type(varied_point_t), intent(out) :: point
+    type(dual_t), intent(out) :: halves(2) !! what its start gets, and its end
+    type(dual_t) :: xi(2), t(2), length, half
 
     call take_piece(memory, table, k, k == 1, point)
     xi = piece_ends(memory%places, point%nodes, [table%low(k), table%high(k)])
-    point%area = 0.5_wp*((xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2))
-    if (contact%strict .or. table%share(k) >= 1.0_wp) return
-    point%nodes(7:8) = memory%n_slave + contact%master%segments(:, table%master(k))
-    t = apart(memory%places, point%nodes, 8, 7)
-    length = sqrt(t(1)*t(1) + t(2)*t(2))
-    point%area = point%area*vary_share(memory%places, point%nodes, 1, [t(2)/length, -(t(1)/length)])
-  end function vary_half
+    half = 0.5_wp*((xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2))
+    if (.not. (contact%strict .or. table%share(k) >= 1.0_wp)) then
+      point%nodes(7:8) = memory%n_slave + contact%master%segments(:, table%master(k))
+      t = apart(memory%places, point%nodes, 8, 7)
+      length = sqrt(t(1)*t(1) + t(2)*t(2))
+      half = half*vary_share(memory%places, point%nodes, 1, [t(2)/length, -(t(1)/length)])
+    end if
+    halves = half
+    if (.not. contact%is_round) return
+    halves(1) = half*vary_end_radius(memory%places, point%nodes, 1, 2, xi(1), xi(2))
+    halves(2) = half*vary_end_radius(memory%places, point%nodes, 1, 2, xi(2), xi(1))
+  end subroutine vary_halves
 
-  !> Give the area of `origin` to whatever stands at either end of a piece.
-  pure subroutine add_both_ends(contact, memory, table, k, origin, equations, matrix, has_area)
+  !> Give its half to whatever stands at either end of a piece.
+  pure subroutine add_both_ends(contact, memory, table, k, origin, halves, equations, matrix, &
+      has_area)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(piece_table_t), intent(in) :: table
     integer, intent(in) :: k
     type(varied_point_t), intent(in) :: origin
+    type(dual_t), intent(in) :: halves(2)
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
     logical, intent(inout) :: has_area(:)
@@ -108,6 +119,7 @@ contains
     ends = table%ends(:, k)
     point = origin
     do i = 1, 2
+      point%area = halves(i)
       if (cuts(i) > 0) then
         if (memory%segments%status(table%slave(1)) /= is_touching) cycle
         place = memory%n_slave + cuts(i)

@@ -6,7 +6,7 @@ module tangent_vts_ppt_m
   use contact_law_m, only : vary_pressure
   use contact_state_m, only : contact_state_t
   use variation_m, only : varied_point_t, varied_foot_t, round_off, apart, length_between, &
-    project, see_from, spot_foot
+    project, see_from, spot_foot, vary_radius, vary_centroid
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
   use foot_m, only : mark_t, walk_to_mark
@@ -54,7 +54,7 @@ contains
 
     call start_point(contact, memory, spot, point)
     do k = 1, 2
-      associate (xi => end_of_half(point%slave_xi%value, k))
+      associate (xi => end_of_half(memory%spot_xi(2 - mod(spot, 2)), k))
         marks(k) = walk_to_mark(contact%master, memory%places(:, memory%n_slave + 1:), &
           (1.0_wp - xi)*memory%places(:, point%nodes(1)) + xi*memory%places(:, point%nodes(2)), &
           memory%slave_tracking%segment(spot))
@@ -68,13 +68,13 @@ contains
       is_last = segment == marks(2)%segment
       point%nodes(3:4) = memory%n_slave + contact%master%segments(:, segment)
       range = constant([0.0_wp, 1.0_wp])
-      if (is_first) range(1) = vary_mark(memory, point, 1, marks(1))
-      if (is_last) range(2) = vary_mark(memory, point, 2, marks(2))
+      if (is_first) range(1) = vary_mark(memory, spot, point, 1, marks(1))
+      if (is_last) range(2) = vary_mark(memory, spot, point, 2, marks(2))
       segment = contact%master%next(segment)
       if (.not. range(2)%value > range(1)%value) cycle
       n = n + 1
       portions(n) = point
-      call set_range(memory, range, portions(n))
+      call set_range(contact, memory, range, portions(n))
     end do
     if (n == 0) then
       n = 1
@@ -97,6 +97,9 @@ contains
       point%nodes(1:2) = contact%slave%segments(:, (spot + 1)/2)
       point%nodes(5:6) = memory%n_slave + contact%master%segments(:, tracking%segment(spot))
       point%slave_xi = constant(memory%spot_xi(2 - mod(spot, 2)))
+      if (contact%is_round) point%slave_xi = vary_centroid(memory%places, point%nodes, 1, 2, &
+        constant(end_of_half(point%slave_xi%value, 2)), &
+        constant(end_of_half(point%slave_xi%value, 1)))
       foot = spot_foot(memory%places, point, 5, tracking%xi(spot), tracking%gap(spot), &
         memory%closed_gap)
     end associate
@@ -106,8 +109,9 @@ contains
   end subroutine start_point
 
   !> The k-th mark on the segment in slots 3, 4; constant where it has been stopped at a node.
-  pure function vary_mark(memory, point, k, mark) result(xi)
+  pure function vary_mark(memory, spot, point, k, mark) result(xi)
     type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: spot
     type(varied_point_t), intent(in) :: point
     integer, intent(in) :: k
     type(mark_t), intent(in) :: mark
@@ -116,7 +120,7 @@ contains
     type(varied_foot_t) :: foot
 
     place = point
-    place%slave_xi = constant(end_of_half(point%slave_xi%value, k))
+    place%slave_xi = constant(end_of_half(memory%spot_xi(2 - mod(spot, 2)), k))
     foot = project(see_from(memory%places, place, 3), apart(memory%places, place%nodes, 4, 3))
     xi = foot%xi
     if (.not. mark%xi < 0.0_wp .and. xi%value < -round_off) xi = constant(0.0_wp)
@@ -124,13 +128,17 @@ contains
   end function vary_mark
 
   !> Let the portion be this range of the segment in slots 3, 4.
-  pure subroutine set_range(memory, range, point)
+  pure subroutine set_range(contact, memory, range, point)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(dual_t), intent(in) :: range(2)
     type(varied_point_t), intent(inout) :: point
 
     point%master_xi = 0.5_wp*(range(1) + range(2))
     point%area = (range(2) - range(1))*length_between(memory%places, point%nodes, 3, 4)
+    if (.not. contact%is_round) return
+    point%area = point%area*vary_radius(memory%places, point%nodes, 3, 4, point%master_xi)
+    point%master_xi = vary_centroid(memory%places, point%nodes, 3, 4, range(1), range(2))
   end subroutine set_range
 
   !> A virtual node without portions: all goes to its own foot.
@@ -166,6 +174,8 @@ contains
 
     total = sum(portions%area%value)
     half = 0.5_wp*length_between(memory%places, portions(1)%nodes, 1, 2)
+    if (contact%is_round) half = half*vary_radius(memory%places, portions(1)%nodes, 1, 2, &
+      constant(memory%spot_xi(2 - mod(spot, 2))))
     pressure = vary_pressure(memory%contact_law, memory%slave_penalty, portions(1)%gap)
     if (allocated(memory%friction%force)) grip = vary_grip(contact, memory, spot, portions(1), &
       pressure)

@@ -5,16 +5,18 @@
 !> dual numbers.
 module variation_m
   use contact_state_m, only : contact_state_t
-  use dual_m, only : dual_t, n_partial, constant, operator(+), operator(-), operator(*), &
+  use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
   use foot_m, only : side_on, face_on
   use geometry_m, only : sight_t, sight_of_segment, separation
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t
+  use radii_m, only : radius_of
   implicit none
   private
   public :: varied_point_t, varied_foot_t, n_slot, round_off, apart, length_between, project, &
-    spot_foot, put_foot, see_from, take_piece, piece_ends, vary_share
+    spot_foot, put_foot, see_from, take_piece, piece_ends, vary_share, vary_radius, &
+    vary_end_radius, vary_centroid
 
   !> Nodes that a point depends on, at most.
   integer, parameter :: n_slot = n_partial/2
@@ -200,5 +202,45 @@ contains
       share = share*share*(3.0_wp - 2.0_wp*share)
     end if
   end function vary_share
+
+  !> In axisymmetry: radius at xi of the segment in slots i, j.
+  pure function vary_radius(places, nodes, i, j, xi) result(radius)
+    real(wp), intent(in), contiguous :: places(:, :)
+    integer, intent(in) :: nodes(n_slot)
+    integer, intent(in) :: i, j
+    type(dual_t), intent(in) :: xi
+    type(dual_t) :: radius, t(2)
+
+    radius = variable(radius_of(places(:, nodes(i))), 2*i - 1)
+    t = apart(places, nodes, j, i)
+    radius = radius + xi*t(1)
+  end function vary_radius
+
+  !> Mean radius of a stretch of the segment in slots i, j as its end at `near` has it.
+  pure function vary_end_radius(places, nodes, i, j, near, far) result(radius)
+    real(wp), intent(in), contiguous :: places(:, :)
+    integer, intent(in) :: nodes(n_slot)
+    integer, intent(in) :: i, j
+    type(dual_t), intent(in) :: near, far !! places of its ends
+    type(dual_t) :: radius
+
+    radius = vary_radius(places, nodes, i, j, (1.0_wp/3.0_wp)*(2.0_wp*near + far))
+  end function vary_end_radius
+
+  !> Centre by radius of a stretch of the segment in slots i, j; the middle where nothing has
+  !> weight.
+  pure function vary_centroid(places, nodes, i, j, low, high) result(xi)
+    real(wp), intent(in), contiguous :: places(:, :)
+    integer, intent(in) :: nodes(n_slot)
+    integer, intent(in) :: i, j
+    type(dual_t), intent(in) :: low, high !! places of its ends
+    type(dual_t) :: xi, first, last
+
+    xi = 0.5_wp*(low + high)
+    first = vary_radius(places, nodes, i, j, low)
+    last = vary_radius(places, nodes, i, j, high)
+    if (first%value + last%value > tiny(1.0_wp)) &
+      xi = xi + (1.0_wp/6.0_wp)*((high - low)*(last - first)/(first + last))
+  end function vary_centroid
 
 end module variation_m

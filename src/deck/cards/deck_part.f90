@@ -5,7 +5,7 @@ module deck_part_m
   use text_m, only : read_integer, number_good
   use log_m, only : to_text
   use parts_m, only : section_t, hourglass_t, hourglass_viscous, hourglass_stiffness, &
-    form_one_point, form_full
+    form_one_point, form_full, form_round_one_point, form_round_full
   use deck_lines_m, only : deck_t, line_text, line_error, line_warning, flag_blank
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
@@ -102,7 +102,10 @@ contains
       call check_section(deck, cursor, card)
       section%id = integer_of(card, 'SECID')
       section%is_full = integer_of(card, 'NIP') == 4
+      section%is_round = integer_of(card, 'ELFORM') == 15
       section%element_form = merge(form_full, form_one_point, section%is_full)
+      if (section%is_round) section%element_form = merge(form_round_full, form_round_one_point, &
+        section%is_full)
       if (is_bad(card, 'SECID')) then
         raw%lost%sections = .true.
       else
@@ -123,21 +126,25 @@ contains
 
     call require_id(deck, cursor, card, 'SECID')
     select case (integer_of(card, 'ELFORM'))
-    case (13)
+    case (13, 15)
       continue
     case (12)
       call report_field(deck, cursor, card, 'ELFORM', 'is plane stress, which this version does ' &
-        //'not have; 13 (plane strain) is what it has')
-    case (14, 15)
-      call report_field(deck, cursor, card, 'ELFORM', 'is axisymmetric, which this version does ' &
-        //'not have; 13 (plane strain) is what it has')
+        //'not have; 13 (plane strain) and 15 (axisymmetric) are what it has')
+    case (14)
+      call report_field(deck, cursor, card, 'ELFORM', 'is axisymmetric and area weighted, which ' &
+        //'this version does not have; 15 (axisymmetric, volume weighted) is what it has')
     case default
-      call report_field(deck, cursor, card, 'ELFORM', &
-        'is not an element form for the plane; 13 (plane strain) is what this version has')
+      call report_field(deck, cursor, card, 'ELFORM', 'is not an element form for the plane; 13 ' &
+        //'(plane strain) and 15 (axisymmetric) are what this version has')
     end select
     select case (integer_of(card, 'NIP'))
-    case (0:2, 4)
+    case (0:2)
       continue
+    case (4)
+      if (integer_of(card, 'ELFORM') == 15) call report_field(deck, cursor, card, 'NIP', 'asks for ' &
+        //'full integration, which this version does not have with ELFORM 15 (0, 1, 2 or blank: ' &
+        //'one point)')
     case default
       call report_field(deck, cursor, card, 'NIP', 'is not a number of points (0, 1, 2 or blank: ' &
         //'one point; 4: two by two, full integration)')

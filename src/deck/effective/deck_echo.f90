@@ -25,7 +25,12 @@ contains
     call write_log(log, 'deck: '//path)
     call write_log(log, 'title: '//model%controls%title)
     call write_log(log, 'mesh: '//to_text(model%mesh%n_node)//' nodes, ' &
-      //to_text(model%mesh%n_element)//' elements, plane strain, unit depth')
+      //to_text(model%mesh%n_element)//' elements, '//trim(merge( &
+      'axisymmetric about x = 0, forces, masses and energies per radian', &
+      'plane strain, unit depth                                        ', model%is_round)))
+    if (model%is_round) call write_log(log, 'axis: ' &
+      //to_text(count(.not. model%mesh%coordinates(1, :) > 0.0_wp)) &
+      //' node(s) at r = 0 keep to it (u_r = 0); rigid bodies move along it alone')
     do i = 1, size(model%parts)
       call echo_part(model, i, log)
     end do

@@ -19,6 +19,8 @@ module deck_resolve_m
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
   use deck_resolve_rigids_m, only : resolve_rigids
+  use deck_resolve_round_m, only : settle_form, settle_axis, check_loads_of_round, &
+    check_velocities_of_round
   use deck_resolve_velocity_m, only : resolve_velocity
   use deck_resolve_contacts_m, only : resolve_contacts, check_references
   use deck_resolve_walls_m, only : resolve_walls
@@ -42,6 +44,11 @@ contains
           //'viscosity (*CONTROL_BULK_VISCOSITY or *HOURGLASS), which the implicit method ' &
           //'does not have')
         if (part%section == 0) cycle
+        if (model%sections(part%section)%is_round) then
+          call line_error(deck, raw%section_line(part%section), 'part '//to_text(part%id) &
+            //' is axisymmetric (ELFORM 15), which the implicit method does not have')
+          cycle
+        end if
         if (.not. model%sections(part%section)%is_full) call line_error(deck, &
           raw%section_line(part%section), 'part '//to_text(part%id)//' has one-point quads; the ' &
           //'implicit method needs fully integrated ones (NIP 4)')
@@ -126,8 +133,10 @@ contains
       raw%spectral_radius, model%controls%implicit)
     call check_scheme(deck, raw%newmark_line, model%controls%implicit)
     call resolve_parts(deck, raw, maps, model)
+    call settle_form(deck, raw, model)
     call resolve_hardenings(deck, raw, maps, model)
     call resolve_mesh(deck, raw, maps, model, sound)
+    call settle_axis(deck, raw, model)
     call resolve_sets(deck, raw, maps, model)
     call resolve_history(deck, raw, maps, model)
     if (raw%dt_curve > 0) call resolve_id(deck, maps%curves, raw%dt_curve, 'curve', &
@@ -143,11 +152,14 @@ contains
     call resolve_conditions(deck, raw, maps, model)
     call resolve_rigids(deck, raw, maps, model)
     call resolve_velocity(deck, raw, maps, model)
+    call check_loads_of_round(deck, raw, model)
+    call check_velocities_of_round(deck, raw, model)
     call resolve_walls(deck, raw, maps, model)
     allocate (model%mesh%deck_node(model%mesh%n_node))
     model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]
     if (sound) then
       call resolve_contacts(deck, raw, maps, model)
+      model%contacts%is_round = model%is_round
     else
       call check_references(deck, raw, maps)
       allocate (model%contacts(0))

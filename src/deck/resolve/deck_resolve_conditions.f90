@@ -9,6 +9,7 @@ module deck_resolve_conditions_m
   use deck_lines_m, only : deck_t, place_t, line_warning, line_error
   use deck_cards_m, only : reject_field
   use deck_maps_m, only : maps_t, resolve_id
+  use deck_resolve_round_m, only : mark_axis
   use deck_raw_m, only : raw_t, row_t, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
     row_load_node, row_load_set, row_body, row_damping, id_place
   implicit none
@@ -30,6 +31,7 @@ contains
     meshed = mark_meshed_nodes(model)
     if (raw%lost%elements .or. deck%incomplete) meshed = .true.
     call collect_fixed(deck, raw, maps, model, meshed, fixed)
+    where (mark_axis(model)) fixed(1, :) = .true.
     call collect_motions(deck, raw, maps, model, motion_rows)
     call check_motions(deck, raw, model, motion_rows, fixed, meshed)
     call collect_loads(deck, raw, maps, model, meshed)
@@ -194,6 +196,9 @@ contains
         if (rows(i) == told) cycle
         if (.not. meshed(motion%node)) then
           call complain(i, 'belongs to no element, so it has no mass to be moved')
+        else if (model%is_round .and. motion%direction == 1 &
+          .and. .not. model%mesh%coordinates(1, motion%node) > 0.0_wp) then
+          call complain(i, 'lies on the axis (x = 0) of an axisymmetric deck and can not move in r')
         else if (fixed(motion%direction, motion%node)) then
           call complain(i, 'is fixed in this direction and cannot be moved by this card too')
         end if

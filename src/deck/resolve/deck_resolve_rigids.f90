@@ -3,6 +3,7 @@
 !> may not be asked of them.
 module deck_resolve_rigids_m
   use conditions_m, only : prescribed_motion_t
+  use kinds_m, only : wp
   use log_m, only : to_text
   use mesh_m, only : mesh_t
   use model_m, only : model_t
@@ -16,6 +17,10 @@ module deck_resolve_rigids_m
   implicit none
   private
   public :: resolve_rigids
+
+  !> Why a rigid body of an axisymmetric deck does not go where it is told to.
+  character(*), parameter :: across_axis = 'asks a rigid body of an axisymmetric deck (ELFORM 15) ' &
+    //'to move in r or to turn; it moves along the axis alone'
 
 contains
 
@@ -35,6 +40,7 @@ contains
       model%rigids(i)%part = parts(i)
       model%rigids(i)%nodes = nodes_of_part(model%mesh, parts(i))
       model%rigids(i)%is_fixed = model%materials(model%parts(parts(i))%material)%is_fixed
+      if (model%is_round) model%rigids(i)%is_fixed([1, 3]) = .true.
     end do
     allocate (owner(model%mesh%n_node), source=0)
     call own_nodes(deck, raw, model, owner)
@@ -230,6 +236,9 @@ contains
         else
           model%rigids(body)%has_velocity = .true.
           model%rigids(body)%velocity = row%velocity
+          if (model%is_round .and. maxval(abs(row%velocity([1, 3]))) > 0.0_wp) call &
+            reject_field(deck, place_t(row%line, 1, trim(merge('VX ', 'VZR', &
+            abs(row%velocity(1)) > 0.0_wp))), across_axis)
         end if
       end associate
     end do
@@ -256,9 +265,12 @@ contains
     type(prescribed_motion_t), intent(in) :: motion
     integer :: i
 
-    if (model%rigids(motion%node)%is_fixed(motion%direction)) call reject_field(deck, &
-      place_t(line, 1, 'DOF'), 'is fixed by CON1 or CON2 of the part''s *MAT_RIGID and cannot be ' &
-      //'moved by this card too')
+    if (model%is_round .and. motion%direction /= 2) then
+      call reject_field(deck, place_t(line, 1, 'DOF'), across_axis)
+    else if (model%rigids(motion%node)%is_fixed(motion%direction)) then
+      call reject_field(deck, place_t(line, 1, 'DOF'), 'is fixed by CON1 or CON2 of the part''s ' &
+        //'*MAT_RIGID and cannot be moved by this card too')
+    end if
     do i = 1, size(lines)
       associate (other => model%conditions%rigid_motions(i))
         if (other%node /= motion%node .or. other%direction /= motion%direction) cycle

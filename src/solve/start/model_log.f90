@@ -4,6 +4,7 @@ module model_log_m
   use curves_m, only : curve_value
   use kinds_m, only : wp
   use layout_m, only : slot_part
+  use round_state_m, only : element_volume
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   use smallest_steps_m, only : find_smallest_steps
@@ -17,7 +18,7 @@ module model_log_m
 
 contains
 
-  !> Elements, mass and centre of mass of each part and of the whole, per unit depth.
+  !> Elements, mass and centre of mass of each part and of the whole, per unit depth or per radian.
   subroutine log_masses(model, log)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
@@ -34,6 +35,11 @@ contains
       associate (nodes => model%mesh%element_nodes(:, i))
         associate (x => model%mesh%coordinates(:, nodes), &
           corners => merge(3, 4, nodes(4) == nodes(3)))
+          if (model%is_round) then
+            sums(:, k) = sums(:, k) + model%materials(model%parts(k)%material)%density &
+              *element_volume(model%mesh, i)
+            cycle
+          end if
           share = 0.5_wp*model%materials(model%parts(k)%material)%density*((x(1, 3) - x(1, 1)) &
             *(x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
           sums(:, k) = sums(:, k) + share*[1.0_wp, sum(x(1, :corners))/corners, &

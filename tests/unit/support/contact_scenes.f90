@@ -56,12 +56,13 @@ contains
 
   !> Scene k for the i-th type, turned by an angle; start_contact is the caller's. Slave below y = 0 by
   !> `depth`, unevenly if `is_uneven`.
-  subroutine make_scene(problem, i, k, angle, is_uneven, n_gauss)
+  subroutine make_scene(problem, i, k, angle, is_uneven, n_gauss, radius)
     type(problem_t), intent(out) :: problem
     integer, intent(in) :: i, k
     real(wp), intent(in) :: angle
     logical, intent(in) :: is_uneven
     integer, intent(in), optional :: n_gauss
+    real(wp), intent(in), optional :: radius !! axisymmetric, so far from the axis
     real(wp), allocatable :: slave(:, :), master(:, :), u(:, :)
     real(wp) :: rotation(2, 2), turn
     integer :: n, j
@@ -89,7 +90,12 @@ contains
     master = matmul(rotation, master)
     if (k == 7) slave = slave + 1.0e6_wp
     if (k == 7) master = master + 1.0e6_wp
+    if (present(radius)) then
+      slave(1, :) = slave(1, :) + radius
+      master(1, :) = master(1, :) + radius
+    end if
     call make_problem(problem, slave, master, 0.3_wp)
+    problem%contact%is_round = present(radius)
     problem%motion(1:2, :size(u, 2)) = matmul(rotation, u)
     problem%contact%contact_type = types(1, i)
     problem%contact%penalty = penalty

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Nodal contact forces of all seven formulations against an independent brute-force reference."""
+import dataclasses
 import itertools
 import sys
 from pathlib import Path
@@ -19,6 +20,7 @@ TOLERANCE = 1.0e-10
 SEED = 20240607
 N_RANDOM, N_FAR, N_CLOSED, N_WEDGE = 40, 12, 12, 40
 N_TURN = 16
+RADII = (0.01, 0.3, 40.0)
 FAR = 1.0e6
 N_JUMP = 7  # slave segments
 APART = 1.0e-9  # on either side of a jump
@@ -140,15 +142,39 @@ def compare(run, name, scene, verdicts, key=lambda interface: label(interface.ru
     return found
 
 
-def one_interface_each(run, name, pairs, rules, what, least=0.8):
+def one_interface_each(run, name, pairs, rules, what, least=0.8, is_round=False):
     """Every rule on bodies of its own, all in one deck."""
-    scene = Scene(name)
+    scene = Scene(name, is_round=is_round)
     for pair in pairs:
         for rule in rules:
             scene.add(pair, rule)
     verdicts = Verdicts()
     compare(run, name, scene, verdicts)
     verdicts.judge(run, what, least)
+
+
+def beside_the_axis(pairs, distances):
+    """The same pairs, shifted so that their bodies begin at these distances from the axis x = 0."""
+    return [dataclasses.replace(pair, name=f"{pair.name}, r from {distance}", shift=(
+        pair.shift[0] + distance - min(np.min(rows[:, 0]) for body in pair.bodies() for rows in body), 0.0))
+        for pair, distance in zip(pairs, itertools.cycle(distances))]
+
+
+def axisymmetric(run):
+    """Designed and random pairs as bodies of revolution: forces per radian, weights by radius."""
+    # Not turned a closed pair is one of ties.
+    pairs = beside_the_axis([dataclasses.replace(pair, angle=0.0) for pair in designed_pairs()
+                             if not pair.closed], [0.0])
+    one_interface_each(run, "discs", pairs, RULES, "axisymmetric, from the axis on", is_round=True)
+    one_interface_each(run, "rings", beside_the_axis(designed_pairs(), RADII), RULES,
+                       "axisymmetric, rings", is_round=True)
+    rng = np.random.default_rng(SEED + 5)
+    pairs = beside_the_axis([random_pair(rng, number) for number in range(N_RANDOM)], RADII)
+    one_interface_each(run, "random_rings", pairs, RULES, "axisymmetric, random", is_round=True)
+    rng = np.random.default_rng(SEED + 6)
+    pairs = beside_the_axis([random_pair(rng, number, closed=True) for number in range(N_CLOSED)], RADII)
+    one_interface_each(run, "closed_rings", pairs, [rule for rule in MAIN_RULES if not rule.strict],
+                       "axisymmetric, closed chains", is_round=True)
 
 
 def penalty_units(run):
@@ -240,6 +266,7 @@ def check(run):
     # Types 4, 6 and 7 see nothing of a tip so short; types 1 and 2 not with the wedge as master.
     rules = [rule for rule in MAIN_RULES if rule.kind in (1, 2, 3, 5)]
     one_interface_each(run, "wedges", pairs, rules, "closed wedges", 0.4)
+    axisymmetric(run)
     penalty_units(run)
     shared_chains(run)
     sliding(run)

@@ -25,11 +25,13 @@ class Chain:
 
     `taken`: the segments that take part, of all; `cuts`: those of them that the one before does not
     go on to. Together they are runs: chains of their own, with the nodes of the whole.
+    `is_round`: axisymmetric, x is the radius: lengths weigh with it.
     """
 
-    def __init__(self, x, closed=False, taken=None, cuts=()):
+    def __init__(self, x, closed=False, taken=None, cuts=(), is_round=False):
         self.x = np.asarray(x, dtype=float)
         self.closed = closed
+        self.is_round = is_round
         n = len(self.x)
         first = np.arange(n if closed else n - 1)
         taken = first if taken is None else np.asarray(taken, dtype=int)
@@ -83,12 +85,37 @@ class Chain:
             np.add.at(chord, self.nodes[:, side], self.length[:, None] * self.tangent)
         return chord / np.maximum(np.hypot(chord[:, 0], chord[:, 1]), TINY)[:, None]
 
+    def radius(self, k, at):
+        """In axisymmetry; 1 in the plane."""
+        return self.start[k, 0] + at * self.length[k] * self.tangent[k, 0] if self.is_round else 1.0
+
+    def integral(self, k, left, right, values):
+        """Of values(at) over a stretch of a segment, by three Gauss points: exact for all that is asked."""
+        at, weight = gauss(3)
+        at = left + at * (right - left)
+        return (right - left) * self.length[k] * np.sum(weight * self.radius(k, at) * values(at))
+
+    def weight(self, k, left, right):
+        """Of a stretch of a segment."""
+        return self.integral(k, left, right, np.ones_like)
+
+    def centre(self, k, left, right):
+        """Of a stretch of a segment, by weight; on the axis, where there is none, the middle."""
+        weight = self.weight(k, left, right)
+        return self.integral(k, left, right, lambda at: at) / weight if weight else 0.5 * (left + right)
+
+    def shares(self, k, left, right):
+        """What either end of a stretch has of its weight: the integral by its hat function there."""
+        size = right - left
+        return (self.integral(k, left, right, lambda at: (right - at) / size),
+                self.integral(k, left, right, lambda at: (at - left) / size))
+
     def competence(self):
-        """Half of the segments on either side of each node."""
-        half = np.zeros(len(self.x))
-        for side in (0, 1):
-            np.add.at(half, self.nodes[:, side], 0.5 * self.length)
-        return half
+        """Shares of each node in the segments on either side."""
+        total = np.zeros(len(self.x))
+        for k, ends in enumerate(self.nodes):
+            total[ends] += self.shares(k, 0.0, 1.0)
+        return total
 
 
 @dataclass
@@ -207,7 +234,9 @@ def push_nodes(forces, side, stiffness):
 def nts(slave, master, penalty):
     """Type 1; penalty in N/m."""
     forces = Forces(slave, master)
-    push_nodes(forces, 0, np.full(len(slave.x), penalty))
+    plane = Chain(slave.x, slave.closed, slave.nodes[:, 0]).competence()
+    share = np.divide(slave.competence(), plane, out=np.ones_like(plane), where=plane > 0.0)
+    push_nodes(forces, 0, penalty * share)
     return forces.sides
 
 
@@ -232,13 +261,14 @@ def vts_ppt(slave, master, penalty):
     for k in range(len(slave)):
         def position(at, k=k):
             return slave.start[k] + at * slave.length[k] * slave.tangent[k]
-        for at in (0.25, 0.75):
+        for half in ((0.0, 0.5), (0.5, 1.0)):
+            at = slave.centre(k, *half)
             foot = project(position(at), master, slave.tangent[k])[0]
             if not foot or foot.gap >= 0.0:
                 continue
-            force = -penalty * 0.5 * slave.length[k] * foot.gap * foot.normal
+            force = -penalty * slave.weight(k, *half) * foot.gap * foot.normal
             forces.on_segment(0, k, at, force)
-            ends = [walk(position(end), foot.segment, master) for end in (at - 0.25, at + 0.25)]
+            ends = [walk(position(end), foot.segment, master) for end in half]
             parts = portions(master, *ends) or [(foot.segment, foot.at, 1.0)]
             total = sum(length for _, _, length in parts)
             for segment, centre, length in parts:
@@ -266,13 +296,13 @@ def walk(point, segment, chain):
 
 
 def portions(chain, one, two):
-    """(segment, centre, length) of the stretch between two places reached by walk()."""
+    """(segment, centre, weight) of the stretch between two places reached by walk()."""
     (steps, segment, at), (last, _, end) = sorted((one, two), key=lambda place: place[0] + place[2])
     found = []
     while steps <= last:
         stop = end if steps == last else 1.0
         if stop > at:
-            found.append((segment, 0.5 * (at + stop), (stop - at) * chain.length[segment]))
+            found.append((segment, chain.centre(segment, at, stop), chain.weight(segment, at, stop)))
         segment, at, steps = chain.next(segment, 1), 0.0, steps + 1
     return found
 
@@ -371,12 +401,12 @@ def nts_mar(slave, master, penalty, strict=False):
     for k in range(len(slave)):
         for left, right, left_node, right_node, segment in pieces(slave, master, k, feet, strict):
             share = 1.0 if strict else facing(slave.normal[k], master.normal[segment])
-            half = 0.5 * (right - left) * slave.length[k] * share
+            shares = slave.shares(k, left, right)
             for end, node in enumerate((left_node, right_node)):
                 if node is not None:
-                    extra[k, node] = extra.get((k, node), 0.0) + half
+                    extra[k, node] = extra.get((k, node), 0.0) + share * shares[end]
                 else:
-                    weight[slave.nodes[k, end]] += half
+                    weight[slave.nodes[k, end]] += share * shares[end]
     used = set(slave.used().tolist())
     for node, foot in enumerate(feet):
         if node not in used:
@@ -441,7 +471,7 @@ def nodal_pressure(slave, master, penalty, spots):
 
 def mortar(slave, master, penalty, n_gauss):
     """Type 6."""
-    spots = [(k, at, w * slave.length[k], None)
+    spots = [(k, at, w * slave.length[k] * slave.radius(k, at), None)
              for k in range(len(slave)) for at, w in zip(*gauss(n_gauss))]
     return nodal_pressure(slave, master, penalty, spots)
 
@@ -454,8 +484,8 @@ def segmented_mortar(slave, master, penalty):
         for left, right, _, _, segment in pieces(slave, master, k, feet):
             if facing(slave.normal[k], master.normal[segment]) > 0.0:
                 size = (right - left) * slave.length[k]
-                spots += [(k, left + at * (right - left), w * size, segment)
-                          for at, w in zip(*gauss(2))]
+                places = [(left + at * (right - left), w) for at, w in zip(*gauss(2))]
+                spots += [(k, at, w * size * slave.radius(k, at), segment) for at, w in places]
     return nodal_pressure(slave, master, penalty, spots)
 
 

@@ -90,7 +90,7 @@ def runs_of(chain, active):
     cuts = [s for s in active if chain.next(s, -1) in active
             and turns_sharply(chain, chain.next(s, -1), s)
             and cross(chain.tangent[chain.next(s, -1)], chain.tangent[s]) > 0.0]
-    return Chain(chain.x, True, sorted(active), cuts)
+    return Chain(chain.x, True, sorted(active), cuts, chain.is_round)
 
 
 def facing_runs(slave, master):

@@ -44,15 +44,16 @@ class Interface:
     slave: np.ndarray   # rows of the deck's node list, in walking order
     master: np.ndarray
     estimate: float
+    is_round: bool = False
 
     def chains(self, initial, displacement=None):
         """Slave and master chain at time zero and now."""
-        near = initial[self.slave[0]]
-        start = [Chain(initial[side] - near, self.pair.closed)
+        near = initial[self.slave[0]] * [0.0 if self.is_round else 1.0, 1.0]
+        start = [Chain(initial[side] - near, self.pair.closed, is_round=self.is_round)
                  for side in (self.slave, self.master)]
         now = start
         if displacement is not None:
-            now = [Chain(chain.x + displacement[side], self.pair.closed)
+            now = [Chain(chain.x + displacement[side], self.pair.closed, is_round=self.is_round)
                    for chain, side in zip(start, (self.slave, self.master))]
         if self.pair.closed:
             now = facing_runs(*(Outline(chain, thickness(first)) for chain, first in zip(now, start)))
@@ -81,10 +82,11 @@ def thickness(chain):
 class Scene:
     """A deck with many pairs, each with its own bodies and interface."""
 
-    def __init__(self, title, end=END, dt=None):
+    def __init__(self, title, end=END, dt=None, is_round=False):
         self.deck = Deck(title)
         self.deck.control(end, dt)
-        self.deck.add("*SECTION_SHELL", (1, 13), (1.0,))
+        self.is_round = is_round
+        self.deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
         self.deck.elastic(RHO, YOUNG, POISSON, 1)
         self.deck.output(plot=end)
         self.nodes = np.zeros((0, 2))
@@ -129,7 +131,7 @@ class Scene:
             sets.append(self.n_set if parts else -self.n_set)
         self.deck.add("*CONTACT_2D_SLIDELINE", (*sets, rule.kind, rule.gauss, rule.penalty),
                       (0.0, 1.0e20, rule.unit, rule.back or None, 0.0, int(rule.strict)))
-        self.interfaces.append(Interface(pair, rule, *chains, estimate()))
+        self.interfaces.append(Interface(pair, rule, *chains, estimate(), self.is_round))
         return chains, parts
 
 

@@ -1,0 +1,138 @@
+! SPDX-License-Identifier: MIT
+!> The volume of a chunk of round quads and its gradients, in closed form. A quad of four nodes is
+!> given by its diagonals a = x3 - x1, b = x4 - x2, by h = x1 - x2 + x3 - x4 and by the sum s of its
+!> radii; then the volume per radian is (METHODS 6 in these patterns, doc/theory/elements.md)
+!>   V = s A/4 + (h_r (a_r b_z + b_r a_z) - 2 a_r b_r h_z)/24,   A = (a_r b_z - b_r a_z)/2.
+module round_chunk_m
+  use kinds_m, only : wp
+  use element_chunk_m, only : element_chunk_t
+  use layout_m, only : chunk_size
+  implicit none
+  private
+  public :: round_chunk_t, n_round_reference, reference_sum, reference_mass, &
+    gather_round, scatter_round, node_volumes
+
+  !> Streams of the reference shape: those of the plane, the sum of the radii, and per node
+  !> density over mass.
+  integer, parameter :: reference_sum = 7, reference_mass = 8, n_round_reference = 11
+
+  !> What a chunk of round quads has besides that of a plane one. Of the gradients of the volume `rad`
+  !> is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over A), each for
+  !> the patterns a, b, h (s: all four nodes).
+  type :: round_chunk_t
+    real(wp) :: us(2, chunk_size), vs(2, chunk_size) !! sums of u and of v, 0 in padding
+    real(wp) :: hoop(2, chunk_size)     !! force on each of the four nodes, 0 in z
+    real(wp), dimension(chunk_size) :: volume, inverse_volume, area, inverse_area !! now
+    real(wp), dimension(chunk_size) :: s                   !! sum of the four radii, now
+    real(wp), dimension(chunk_size) :: span                !! a.a + b.b
+    real(wp), dimension(chunk_size) :: rad_a, rad_b, rad_h
+    real(wp), dimension(chunk_size) :: axi_a, axi_b, axi_h
+    real(wp), dimension(chunk_size) :: mean_a, mean_b, mean_s
+    real(wp), dimension(chunk_size) :: gamma_a, gamma_b    !! of the hourglass pattern; gamma_h = 1
+    real(wp), dimension(chunk_size) :: resistance !! force over gamma.v, or over its integral
+  end type round_chunk_t
+
+contains
+
+  !> Differences and sums of the nodal motion (as `gather_chunk`, of which this is the round form).
+  !> All nodes of padding are one: it carries no strain.
+  pure subroutine gather_round(nodes, motion, chunk, round)
+    integer, intent(in) :: nodes(4, chunk_size)
+    real(wp), intent(in) :: motion(4, *)   !! all nodes: u_r, u_z, v_r, v_z
+    type(element_chunk_t), intent(inout) :: chunk
+    type(round_chunk_t), intent(inout) :: round
+    real(wp) :: d31(4), d42(4), h(4), s(4)
+    integer :: i, k
+
+    !GCC$ NOVECTOR
+    do i = 1, chunk_size
+      do k = 1, 4
+        d31(k) = motion(k, nodes(3, i)) - motion(k, nodes(1, i))
+        d42(k) = motion(k, nodes(4, i)) - motion(k, nodes(2, i))
+        h(k) = (motion(k, nodes(1, i)) - motion(k, nodes(2, i))) &
+          + (motion(k, nodes(3, i)) - motion(k, nodes(4, i)))
+        s(k) = (motion(k, nodes(1, i)) + motion(k, nodes(2, i))) &
+          + (motion(k, nodes(3, i)) + motion(k, nodes(4, i)))
+      end do
+      chunk%u31(:, i) = d31(1:2)
+      chunk%v31(:, i) = d31(3:4)
+      chunk%u42(:, i) = d42(1:2)
+      chunk%v42(:, i) = d42(3:4)
+      chunk%hu(:, i) = h(1:2)
+      chunk%hv(:, i) = h(3:4)
+      round%us(:, i) = s(1:2)
+      round%vs(:, i) = s(3:4)
+    end do
+    do i = chunk_size, 1, -1
+      if (nodes(1, i) /= nodes(3, i)) exit
+      round%us(:, i) = 0.0_wp
+      round%vs(:, i) = 0.0_wp
+    end do
+  end subroutine gather_round
+
+  !> Add the nodal forces of a chunk to the tile's own nodes: as `scatter_chunk`, with the force of
+  !> the hoop stress on all four.
+  pure subroutine scatter_round(n_element, local, chunk, round, force)
+    integer, intent(in) :: n_element            !! elements, in the first slots
+    integer, intent(in) :: local(4, chunk_size) !! local numbers in the tile
+    type(element_chunk_t), intent(in) :: chunk
+    type(round_chunk_t), intent(in) :: round
+    real(wp), intent(inout) :: force(2, *)      !! internal force of the local nodes
+    integer :: i, k, n(4)
+
+    do i = 1, n_element
+      n = local(:, i)
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(1)) = force(k, n(1)) + ((round%hoop(k, i) + chunk%swing(k, i)) &
+          - chunk%force(k, i))
+      end do
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(2)) = force(k, n(2)) + ((round%hoop(k, i) - chunk%swing(k, i)) &
+          - chunk%force(k + 2, i))
+      end do
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(3)) = force(k, n(3)) + ((round%hoop(k, i) + chunk%swing(k, i)) &
+          + chunk%force(k, i))
+      end do
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(4)) = force(k, n(4)) + ((round%hoop(k, i) - chunk%swing(k, i)) &
+          + chunk%force(k + 2, i))
+      end do
+    end do
+  end subroutine scatter_round
+
+  !> Integrals of N_a r over one quad or triangle, per radian: its volume by nodes. 2x2 Gauss points
+  !> are exact. A triangle's third node gets the shares of both its places, its fourth none.
+  pure function node_volumes(x, is_triangle) result(volumes)
+    real(wp), intent(in) :: x(2, 4) !! corners, x(1, :) the radii
+    logical, intent(in) :: is_triangle
+    real(wp) :: volumes(4)
+    real(wp), parameter :: g = sqrt(1.0_wp/3.0_wp)
+    real(wp) :: shape(4), along(4), across(4), to_x(2), to_y(2), xi, eta
+    integer :: i, j
+
+    volumes = 0.0_wp
+    do i = -1, 1, 2
+      do j = -1, 1, 2
+        xi = i*g
+        eta = j*g
+        shape = 0.25_wp*[(1 - xi)*(1 - eta), (1 + xi)*(1 - eta), (1 + xi)*(1 + eta), &
+          (1 - xi)*(1 + eta)]
+        along = 0.25_wp*[-(1 - eta), 1 - eta, 1 + eta, -(1 + eta)]
+        across = 0.25_wp*[-(1 - xi), -(1 + xi), 1 + xi, 1 - xi]
+        to_x = matmul(x, along)
+        to_y = matmul(x, across)
+        volumes = volumes + shape*dot_product(shape, x(1, :)) &
+          *(to_x(1)*to_y(2) - to_x(2)*to_y(1))
+      end do
+    end do
+    if (.not. is_triangle) return
+    volumes(3) = volumes(3) + volumes(4)
+    volumes(4) = 0.0_wp
+  end function node_volumes
+
+end module round_chunk_m

@@ -1,0 +1,91 @@
+! SPDX-License-Identifier: MIT
+!> One chunk of one-point round quads: from nodal motion to nodal forces, stress updated on the way.
+module round_one_point_m
+  use kinds_m, only : wp
+  use block_state_m, only : block_state_t
+  use bulk_viscosity_m, only : add_bulk_viscosity
+  use element_chunk_m, only : element_chunk_t
+  use layout_m, only : chunk_size
+  use material_dispatch_m, only : update_stress
+  use parts_m, only : hourglass_t, material_t, hourglass_viscous
+  use round_chunk_m, only : round_chunk_t, gather_round, reference_mass
+  use round_hourglass_m, only : form_resistance, resist_round_viscously, &
+    resist_round_elastically
+  use round_kinematics_m, only : form_round_shape, form_round_increments, form_round_forces
+  use round_time_step_m, only : round_step
+  use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
+  use volumetric_m, only : volumetric_stress
+  implicit none
+  private
+  public :: advance_round_one_point
+
+contains
+
+  !> Advance one chunk by the step `dt` that led to the present motion (dt = 0: forces only) and
+  !> leave its forces, per radian, in `chunk` and `round`.
+  pure subroutine advance_round_one_point(i_chunk, nodes, motion, material, hourglass, dt, &
+    elements, chunk, round)
+    integer, intent(in) :: i_chunk
+    integer, intent(in) :: nodes(4, chunk_size)
+    real(wp), intent(in), contiguous :: motion(:, :)  !! (4, n_node)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    real(wp), intent(in) :: dt
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk     !! forces out
+    type(round_chunk_t), intent(inout) :: round       !! force of the hoop stress out
+    type(stress_chunk_t) :: stress
+    integer :: first, n_slot
+
+    first = (i_chunk - 1)*chunk_size + 1
+    n_slot = size(elements%reference, 1)
+    call gather_round(nodes, motion, chunk, round)
+    call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
+    call form_round_increments(dt, chunk, round, stress)
+    call load_deviator(elements%deviator(first, 1), n_slot, stress)
+    if (elements%history_start(i_chunk) > 0) then
+      call update_stress(material, stress, elements%history(elements%history_start(i_chunk)))
+    else
+      call update_stress(material, stress)
+    end if
+    call store_deviator(stress, n_slot, elements%deviator(first, 1))
+    elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
+      + work_of_deviator(stress%work, chunk%mid_area)
+    call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
+    call resist(i_chunk, material, hourglass, dt, stress, round, elements, chunk)
+    call form_round_forces(stress, chunk, round)
+    call round_step(material, hourglass, elements%reference(first, reference_mass), n_slot, chunk, &
+      round, elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
+  end subroutine advance_round_one_point
+
+  !> Bulk viscosity and hourglass control of one chunk, with their work.
+  pure subroutine resist(i_chunk, material, hourglass, dt, stress, round, elements, chunk)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    real(wp), intent(in) :: dt
+    type(stress_chunk_t), intent(in) :: stress
+    type(round_chunk_t), intent(inout) :: round
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk
+    real(wp) :: work
+    integer :: first
+
+    if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
+      chunk%area = round%area
+      call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
+        material%sound_speed, dt, chunk, work)
+      elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
+    end if
+    call form_resistance(material, hourglass, round)
+    if (hourglass%form == hourglass_viscous) then
+      call resist_round_viscously(dt, round, chunk, work)
+    else
+      first = elements%hourglass_start(i_chunk)
+      call resist_round_elastically(dt, stress, round, elements%hourglass_strain(first), &
+        elements%hourglass_strain(first + chunk_size), chunk, work)
+    end if
+    elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
+  end subroutine resist
+
+end module round_one_point_m
