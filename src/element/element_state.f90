@@ -98,7 +98,7 @@ contains
   !> row sums of the consistent mass.
   subroutine lump_mass(model, mass)
     type(model_t), intent(in) :: model
-    real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of thickness or per radian
+    real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of depth or per radian
     real(wp) :: x(2, 4), area
     integer :: i, corners
 

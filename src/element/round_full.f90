@@ -13,7 +13,7 @@ module round_full_m
   use quad_full_m, only : has_mean_dilatation
   use quad_kinematics_m, only : form_present_shape, form_increments, form_forces
   use quad_points_m, only : n_point, form_point, add_point_force
-  use round_chunk_m, only : round_chunk_t, gather_round, reference_sum, reference_mass
+  use round_chunk_m, only : round_chunk_t, gather_round, reference_mass
   use round_full_step_m, only : round_full_step
   use round_kinematics_m, only : form_round_shape, form_round_increments
   use round_points_m, only : round_point_t, form_radii, add_hoop_strain, add_hoop_force
@@ -26,10 +26,10 @@ module round_full_m
 contains
 
   !> Advance one chunk by the step `dt` that led to the present motion (dt = 0: forces only) and
-  !> leave its forces, per radian, in `chunk` and `round`. Of `hourglass` only the bulk viscosity
+  !> leave its forces, per radian, in `round`. Of `hourglass` only the bulk viscosity
   !> counts.
   pure subroutine advance_round_full(i_chunk, nodes, motion, material, hourglass, dt, elements, &
-    chunk, round)
+    round)
     integer, intent(in) :: i_chunk
     integer, intent(in) :: nodes(4, chunk_size)
     real(wp), intent(in), contiguous :: motion(:, :)  !! (4, n_node)
@@ -37,10 +37,9 @@ contains
     type(hourglass_t), intent(in) :: hourglass
     real(wp), intent(in) :: dt
     type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(inout) :: chunk     !! forces out
-    type(round_chunk_t), intent(inout) :: round       !! force of the hoop stress out
+    type(round_chunk_t), intent(inout) :: round       !! forces out
+    type(element_chunk_t) :: chunk
     type(round_point_t) :: points(n_point)
-    real(wp) :: deviator(chunk_size, 3)
     integer :: first, k, n_slot
 
     first = (i_chunk - 1)*chunk_size + 1
@@ -51,14 +50,13 @@ contains
     chunk%force = 0.0_wp
     chunk%swing = 0.0_wp
     round%hoop = 0.0_wp
-    deviator = 0.0_wp
     do k = 1, n_point
-      call advance_point(i_chunk, k, material, dt, n_slot, elements%reference(first, 1), elements, &
-        chunk, round, points(k), deviator)
+      call advance_point(i_chunk, k, material, dt, elements, chunk, round, points(k))
     end do
-    do k = 1, 3
-      elements%deviator(first:first + chunk_size - 1, k) = deviator(:, k)*round%inverse_volume
-    end do
+    round%force = chunk%force
+    round%swing = chunk%swing
+    call store_mean(points, round%inverse_volume, elements%point_deviator(elements%point_start( &
+      i_chunk)), n_slot, elements%deviator(first, 1))
     call round_full_step(material, hourglass, elements%reference(first, reference_mass), n_slot, &
       chunk, points, elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
   end subroutine advance_round_full
@@ -90,30 +88,28 @@ contains
   end subroutine form_mean_pressure
 
   !> Advance point `k` of a chunk and add its forces.
-  pure subroutine advance_point(i_chunk, k, material, dt, stride, reference, elements, chunk, round, &
-    place, deviator)
+  pure subroutine advance_point(i_chunk, k, material, dt, elements, chunk, round, place)
     integer, intent(in) :: i_chunk, k
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
-    integer, intent(in) :: stride
-    real(wp), intent(in) :: reference(stride, *)
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk
     type(round_chunk_t), intent(inout) :: round
     type(round_point_t), intent(inout) :: place
-    real(wp), intent(inout) :: deviator(chunk_size, 3) !! sum of deviator times volume
     type(element_chunk_t) :: point
     type(stress_chunk_t) :: stress
     real(wp) :: start(chunk_size, 6)
-    integer :: first
+    integer :: first, stride
 
+    first = (i_chunk - 1)*chunk_size + 1
+    stride = size(elements%reference, 1)
     point%hu = 0.0_wp
     point%hv = 0.0_wp
     point%qx = 0.0_wp
     point%qy = 0.0_wp
-    call form_point(k, stride, reference, chunk, start, point)
+    call form_point(k, stride, elements%reference(first, 1), chunk, start, point)
     call form_present_shape(start, chunk_size, point)
-    call form_radii(k, reference(1, reference_sum), reference, stride, chunk, round, point, place)
+    call form_radii(k, elements%reference(first, 1), stride, chunk, round, point, place)
     call form_increments(dt, point, stress)
     call add_hoop_strain(dt, place, point, stress)
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
@@ -127,9 +123,6 @@ contains
     call store_deviator(stress, chunk_size, elements%point_deviator(first))
     elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
       + work_of_deviator(stress%work, point%mid_area)
-    deviator(:, 1) = deviator(:, 1) + place%volume*stress%sxx
-    deviator(:, 2) = deviator(:, 2) + place%volume*stress%syy
-    deviator(:, 3) = deviator(:, 3) + place%volume*stress%sxy
     if (has_mean_dilatation(material)) then
       point%pressure = chunk%pressure
     else
@@ -140,5 +133,23 @@ contains
     call add_hoop_force(k, place, stress, point, chunk, round)
     call add_point_force(k, point, chunk)
   end subroutine advance_point
+
+  !> Mean deviator of the elements over their volume, for output.
+  pure subroutine store_mean(points, inverse_volume, deviators, stride, stream)
+    type(round_point_t), intent(in) :: points(n_point)
+    real(wp), intent(in) :: inverse_volume(chunk_size)
+    real(wp), intent(in) :: deviators(chunk_size, 3, n_point)
+    integer, intent(in) :: stride
+    real(wp), intent(inout) :: stream(stride, *)
+    integer :: i, j
+
+    do j = 1, 3
+      do i = 1, chunk_size
+        stream(i, j) = inverse_volume(i)*((points(1)%volume(i)*deviators(i, j, 1) &
+          + points(2)%volume(i)*deviators(i, j, 2)) + (points(3)%volume(i)*deviators(i, j, 3) &
+          + points(4)%volume(i)*deviators(i, j, 4)))
+      end do
+    end do
+  end subroutine store_mean
 
 end module round_full_m

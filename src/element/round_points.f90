@@ -6,7 +6,7 @@ module round_points_m
   use element_chunk_m, only : element_chunk_t
   use layout_m, only : chunk_size
   use quad_points_m, only : n_point, point_ratios, shape_at_points
-  use round_chunk_m, only : round_chunk_t
+  use round_chunk_m, only : round_chunk_t, reference_sum
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
@@ -29,11 +29,10 @@ module round_points_m
 contains
 
   !> Radius, volume and J - 1 of point `k`, whose plane shape is there.
-  pure subroutine form_radii(k, sum_of_radii, reference, stride, chunk, round, point, place)
+  pure subroutine form_radii(k, reference, stride, chunk, round, point, place)
     integer, intent(in) :: k
     integer, intent(in) :: stride
-    real(wp), intent(in) :: sum_of_radii(chunk_size)
-    real(wp), intent(in) :: reference(stride, *)
+    real(wp), intent(in) :: reference(stride, *) !! first slot of the chunk
     type(element_chunk_t), intent(in) :: chunk
     type(round_chunk_t), intent(in) :: round
     type(element_chunk_t), intent(in) :: point
@@ -43,8 +42,8 @@ contains
 
     !$omp simd private(start, growth, factor)
     do i = 1, chunk_size
-      start = 0.25_wp*sum_of_radii(i) + (along_a(k)*reference(i, 1) + along_b(k)*reference(i, 3) &
-        + along_h(k)*reference(i, 5))
+      start = 0.25_wp*reference(i, reference_sum) + (along_a(k)*reference(i, 1) &
+        + along_b(k)*reference(i, 3) + along_h(k)*reference(i, 5))
       growth = 0.25_wp*round%us(1, i) + (along_a(k)*chunk%u31(1, i) + along_b(k)*chunk%u42(1, i) &
         + along_h(k)*chunk%hu(1, i))
       place%radius(i) = start + growth

@@ -14,7 +14,7 @@ module smallest_steps_m
   use quad_kinematics_m, only : form_present_shape, form_increments
   use quad_points_m, only : n_point, form_point
   use round_chunk_m, only : round_chunk_t, gather_round, n_round_reference, &
-    reference_mass, reference_sum
+    reference_mass
   use round_full_step_m, only : round_full_step
   use round_hourglass_m, only : form_resistance
   use round_kinematics_m, only : form_round_shape, form_round_increments
@@ -138,8 +138,7 @@ contains
             point%hv = 0.0_wp
             call form_point(k, chunk_size, shape, chunk, point_shape, point)
             call form_present_shape(point_shape, chunk_size, point)
-            call form_radii(k, shape(1, reference_sum), shape, chunk_size, chunk, round, point, &
-              places(k))
+            call form_radii(k, shape, chunk_size, chunk, round, point, places(k))
           end do
           call round_full_step(material, part%hourglass, shape(1, reference_mass), chunk_size, &
             chunk, places, step, volume)
