@@ -16,10 +16,6 @@ module round_full_step_m
   private
   public :: round_full_step
 
-  !> Node patterns of d31, d42 and h.x.
-  real(wp), parameter :: d31_of(4) = [-1.0_wp, 0.0_wp, 1.0_wp, 0.0_wp], &
-    d42_of(4) = [0.0_wp, -1.0_wp, 0.0_wp, 1.0_wp], h_of(4) = [1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp]
-
 contains
 
   !> Smallest step of the chunk, and its smallest volume ratio at a point.
@@ -34,68 +30,101 @@ contains
     type(round_point_t), intent(in) :: points(n_point)
     real(wp), intent(out) :: limit                  !! s
     real(wp), intent(out) :: volume                 !! smallest J
-    real(wp) :: modulus, plane, hoop, squared, step, rate, length
+    real(wp) :: modulus, squared, rate, length, largest, step
+    real(wp), dimension(chunk_size) :: plane, hoop, both
     integer :: i, k
 
     modulus = material%bulk
     if (.not. has_mean_dilatation(material)) &
       modulus = max(0.0_wp, material%bulk - 2.0_wp*material%shear/3.0_wp)
-    limit = huge(1.0_wp)
+    call row_sums(inverse_mass, stride, points, plane, hoop)
     volume = huge(1.0_wp)
+    do k = 1, n_point
+      volume = min(volume, minval(points(k)%stretch) + 1.0_wp, &
+        sign(1.0e3_wp, minval(points(k)%radius)))
+    end do
+    largest = 0.0_wp
+    !$omp simd private(squared) reduction(max : largest)
     do i = 1, chunk_size
-      do k = 1, n_point
-        volume = min(volume, 1.0_wp + points(k)%stretch(i), sign(1.0e3_wp, points(k)%radius(i)))
-      end do
-      call row_sums(i, inverse_mass(i, 1), inverse_mass(i, 2), inverse_mass(i, 3), &
-        inverse_mass(i, 4), points, plane, hoop)
-      squared = (2.0_wp*material%shear*(plane + hoop) + modulus*(sqrt(2.0_wp*plane) &
-        + sqrt(hoop))**2)/material%density
-      step = 2.0_wp/sqrt(squared)
-      if (chunk%trace(i) < 0.0_wp) then
-        length = sqrt(abs(chunk%area(i)))
-        rate = length/(1.0_wp + chunk%stretch(i))*(viscosity%linear*material%sound_speed &
-          - viscosity%quadratic*length*chunk%trace(i))*(sqrt(2.0_wp*plane) + sqrt(hoop))**2
-        step = step/(1.0_wp + 0.5_wp*step*rate)
-      end if
-      limit = min(limit, step)
+      both(i) = 2.0_wp*plane(i) + hoop(i) + 2.0_wp*sqrt(2.0_wp*plane(i)*hoop(i))
+      squared = 2.0_wp*material%shear*(plane(i) + hoop(i)) + modulus*both(i)
+      largest = max(largest, squared)
+    end do
+    limit = 2.0_wp/sqrt(largest/material%density)
+    if (.not. (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp)) return
+    step = limit
+    do i = 1, chunk_size
+      if (.not. chunk%trace(i) < 0.0_wp) cycle
+      length = sqrt(abs(chunk%area(i)))
+      rate = length/(1.0_wp + chunk%stretch(i))*(viscosity%linear*material%sound_speed &
+        - viscosity%quadratic*length*chunk%trace(i))*both(i)
+      limit = min(limit, step/(1.0_wp + 0.5_wp*step*rate))
     end do
   end subroutine round_full_step
 
-  !> Largest row sums of H and T of element `i`, over the volumes of the nodes.
-  pure subroutine row_sums(i, w1, w2, w3, w4, points, plane, hoop)
-    integer, intent(in) :: i
-    real(wp), intent(in) :: w1, w2, w3, w4 !! density over mass
+  !> Largest row sums of H and T of the elements, over the volumes of the nodes. H is that of the
+  !> patterns (s11 s22 s12 s13 s23 s33), of which the nodes have (-1, 0, 1), (0, -1, -1), (1, 0, 1) and
+  !> (0, 1, -1); rows of T sum to the integral of N_a/r dA.
+  pure subroutine row_sums(inverse_mass, stride, points, plane, hoop)
+    integer, intent(in) :: stride
+    real(wp), intent(in) :: inverse_mass(stride, *)
     type(round_point_t), intent(in) :: points(n_point)
-    real(wp), intent(out) :: plane, hoop
-    real(wp) :: h(4, 4), t(4, 4), p(4), q(4), n(4), w(4)
-    integer :: b, k
+    real(wp), intent(out), dimension(chunk_size) :: plane, hoop
+    real(wp), dimension(chunk_size, 6) :: s
+    real(wp), dimension(chunk_size, 4) :: t
+    real(wp) :: v, h11, h22, h33, h44, h12, h13, h14, h23, h24, h34, w3, only
+    integer :: i, k
 
-    w = [w1, w2, w3, w4]
-    h = 0.0_wp
+    s = 0.0_wp
     t = 0.0_wp
     do k = 1, n_point
-      p = d31_of + shift(1, k)*h_of
-      q = d42_of + shift(2, k)*h_of
-      n = shape_at_points(:, k)
       associate (place => points(k))
-        do b = 1, 4
-          h(:, b) = h(:, b) + place%volume(i)*((place%c33(i)*p(b) + place%c34(i)*q(b))*p &
-            + (place%c34(i)*p(b) + place%c44(i)*q(b))*q)
-          t(:, b) = t(:, b) + place%volume(i)/place%radius(i)**2*n(b)*n
+        !$omp simd private(v)
+        do i = 1, chunk_size
+          v = place%volume(i)
+          s(i, 1) = s(i, 1) + v*place%c33(i)
+          s(i, 2) = s(i, 2) + v*place%c44(i)
+          s(i, 3) = s(i, 3) + v*place%c34(i)
+          s(i, 4) = s(i, 4) + v*(shift(1, k)*place%c33(i) + shift(2, k)*place%c34(i))
+          s(i, 5) = s(i, 5) + v*(shift(1, k)*place%c34(i) + shift(2, k)*place%c44(i))
+          s(i, 6) = s(i, 6) + v*(shift(1, k)**2*place%c33(i) + shift(2, k)**2*place%c44(i))
+          v = v/(place%radius(i)*place%radius(i))
+          t(i, 1) = t(i, 1) + v*shape_at_points(1, k)
+          t(i, 2) = t(i, 2) + v*shape_at_points(2, k)
+          t(i, 3) = t(i, 3) + v*shape_at_points(3, k)
+          t(i, 4) = t(i, 4) + v*shape_at_points(4, k)
         end do
       end associate
     end do
-    if (w4 <= 0.0_wp) then
-      ! The third node of a triangle has the place of the fourth too.
-      h(:, 3) = h(:, 3) + h(:, 4)
-      t(:, 3) = t(:, 3) + t(:, 4)
-      h(3, :) = h(3, :) + h(4, :)
-      t(3, :) = t(3, :) + t(4, :)
-      h(:, 4) = 0.0_wp
-      t(:, 4) = 0.0_wp
-    end if
-    plane = maxval(w*sum(abs(h), 2))
-    hoop = maxval(w*sum(t, 2))
+    !$omp simd private(h11, h22, h33, h44, h12, h13, h14, h23, h24, h34, w3, only)
+    do i = 1, chunk_size
+      h11 = s(i, 1) - 2.0_wp*s(i, 4) + s(i, 6)
+      h33 = s(i, 1) + 2.0_wp*s(i, 4) + s(i, 6)
+      h22 = s(i, 2) + 2.0_wp*s(i, 5) + s(i, 6)
+      h44 = s(i, 2) - 2.0_wp*s(i, 5) + s(i, 6)
+      h12 = (s(i, 3) + s(i, 4)) - (s(i, 5) + s(i, 6))
+      h13 = s(i, 6) - s(i, 1)
+      h14 = (s(i, 4) - s(i, 3)) + (s(i, 5) - s(i, 6))
+      h23 = -((s(i, 3) + s(i, 5)) + (s(i, 4) + s(i, 6)))
+      h24 = s(i, 6) - s(i, 2)
+      h34 = (s(i, 3) - s(i, 4)) + (s(i, 5) - s(i, 6))
+      w3 = inverse_mass(i, 3)
+      ! The third node of a triangle has the place of the fourth too, whose row and column go.
+      only = merge(1.0_wp, 0.0_wp, inverse_mass(i, 4) <= 0.0_wp)
+      t(i, 3) = t(i, 3) + only*t(i, 4)
+      h33 = h33 + only*(2.0_wp*h34 + h44)
+      h13 = h13 + only*h14
+      h23 = h23 + only*h24
+      h14 = (1.0_wp - only)*h14
+      h24 = (1.0_wp - only)*h24
+      h34 = (1.0_wp - only)*h34
+      plane(i) = max(inverse_mass(i, 1)*(h11 + abs(h12) + abs(h13) + abs(h14)), &
+        inverse_mass(i, 2)*(h22 + abs(h12) + abs(h23) + abs(h24)), &
+        w3*(h33 + abs(h13) + abs(h23) + abs(h34)), &
+        inverse_mass(i, 4)*(h44 + abs(h14) + abs(h24) + abs(h34)))
+      hoop(i) = max(inverse_mass(i, 1)*t(i, 1), inverse_mass(i, 2)*t(i, 2), w3*t(i, 3), &
+        inverse_mass(i, 4)*t(i, 4))
+    end do
   end subroutine row_sums
 
 end module round_full_step_m
