@@ -12,8 +12,8 @@ module contact_scatter_m
 
 contains
 
-  !> Add the forces of all points on the list to those of the interface's nodes, those of damping and
-  !> of friction to their own too, and count the points that carry any.
+  !> Add the forces of all points on the list to those of the interface's nodes, those of damping
+  !> and of friction to their own too, and count the points that carry any.
   pure subroutine scatter_forces(memory)
     type(contact_state_t), intent(inout) :: memory
 

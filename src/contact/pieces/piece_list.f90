@@ -28,8 +28,8 @@ contains
     may_list = master%n_segment > short_chain
   end function may_list
 
-  !> List the slave segments from s to the last with both ends in contact, until the table is full; s
-  !> is then the first that is of another kind, needs a walk, or has no room.
+  !> List the slave segments from s to the last with both ends in contact, until the table is full;
+  !> s is then the first that is of another kind, needs a walk, or has no room.
   pure subroutine list_kept(contact, memory, last, s, table)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory

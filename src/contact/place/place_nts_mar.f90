@@ -161,8 +161,8 @@ contains
 
   !> The pieces of such a segment with both ends in contact; master nodes in contact go on a list of
   !> pieces that end there.
-  pure subroutine share_plain(first, last, ends, to_first, to_last, node_gap, closed_gap, point_at, &
-      area, n, rows)
+  pure subroutine share_plain(first, last, ends, to_first, to_last, node_gap, closed_gap, &
+      point_at, area, n, rows)
     integer, intent(in) :: first, last     !! pieces
     integer, intent(in) :: ends(2, *)      !! of all pieces, as all that follow
     real(wp), intent(in) :: to_first(*), to_last(*), node_gap(*), closed_gap !! m

@@ -337,8 +337,8 @@ contains
     end_of_half = xi + (1.5_wp - k)*0.5_wp
   end function end_of_half
 
-  !> A point with the gap and the normal of the virtual node and a place of its own on the master, in
-  !> a block that has room for it.
+  !> A point with the gap and the normal of the virtual node and a place of its own on the master,
+  !> in a block that has room for it.
   pure subroutine put_portion(halves, k, nodes, xi, area, block)
     type(halves_t), intent(in) :: halves
     integer, intent(in) :: k
