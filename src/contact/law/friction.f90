@@ -9,6 +9,7 @@ module friction_m
   use law_friction_m, only : coefficient_of, return_traction
   use lengths_m, only : competence_length
   use nodal_average_m, only : average_values, share_out
+  use radii_m, only : centroid
   implicit none
   private
   public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, place_of_point
@@ -240,8 +241,11 @@ contains
           s = 1 + (i - 1)/size(xi)
           q = i - (s - 1)*size(xi)
           slave_nodes(:, k) = contact%slave%segments(:, s)
-          slave_weights(1, k) = 1.0_wp - xi(q)
           slave_weights(2, k) = xi(q)
+          if (memory%spot_spread > 0.0_wp) slave_weights(2, k) = centroid( &
+            memory%places(:, slave_nodes(1, k)), memory%places(:, slave_nodes(2, k)), &
+            xi(q) - 0.5_wp*memory%spot_spread, xi(q) + 0.5_wp*memory%spot_spread)
+          slave_weights(1, k) = 1.0_wp - slave_weights(2, k)
           master_nodes(:, k) = memory%n_slave + contact%master%segments(:, tracking%segment(i))
           master_weights(1, k) = 1.0_wp - tracking%xi(i)
           master_weights(2, k) = tracking%xi(i)
