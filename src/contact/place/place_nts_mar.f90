@@ -105,8 +105,9 @@ contains
       associate (first => table%last(i - 1) + 1, last => table%last(i), s => table%slave(i))
         if (table%touches(i) .and. is_plain(table%kind, to_first, first, last)) then
           n_before = n
-          call share_plain(first, last, table%ends, to_first, to_last, table%node_gap, &
-            memory%closed_gap, memory%scratch%point_at, memory%points%area, n, table%rows)
+          call add_ends(first, last, table%ends, to_first, to_last, memory%scratch%point_at, &
+            memory%points%area)
+          call list_cuts(first, last, table%node_gap, memory%closed_gap, n, table%rows)
           call keep_segment(n > n_before, memory%travel, memory%segments%status(s), &
             memory%segments%wake(s))
           cycle
@@ -159,28 +160,34 @@ contains
     is_plain = .true.
   end function is_plain
 
-  !> The pieces of such a segment with both ends in contact; master nodes in contact go on a list of
-  !> pieces that end there.
-  pure subroutine share_plain(first, last, ends, to_first, to_last, node_gap, closed_gap, &
-      point_at, area, n, rows)
+  !> The slave nodes at the ends of such a segment get their parts.
+  pure subroutine add_ends(first, last, ends, to_first, to_last, point_at, area)
     integer, intent(in) :: first, last     !! pieces
-    integer, intent(in) :: ends(2, *)      !! of all pieces, as all that follow
-    real(wp), intent(in) :: to_first(*), to_last(*), node_gap(*), closed_gap !! m
+    integer, intent(in) :: ends(2, *)      !! of all pieces, as those that follow
+    real(wp), intent(in) :: to_first(*), to_last(*) !! m
     integer, intent(in) :: point_at(*)     !! at each slave node, 0: none
     real(wp), intent(inout) :: area(*)     !! of the points, m
-    integer, intent(inout) :: n, rows(*)
-    integer :: k, p
+    integer :: p
 
     p = point_at(ends(1, first))
     if (p > 0) area(p) = area(p) + to_first(first)
     p = point_at(ends(2, first))
     if (p > 0) area(p) = area(p) + to_last(last)
+  end subroutine add_ends
+
+  !> Its master nodes in contact go on a list of pieces that end there.
+  pure subroutine list_cuts(first, last, node_gap, closed_gap, n, rows)
+    integer, intent(in) :: first, last     !! pieces
+    real(wp), intent(in) :: node_gap(*), closed_gap !! m
+    integer, intent(inout) :: n, rows(*)
+    integer :: k
+
     do k = first, last - 1
       if (.not. node_gap(k) < closed_gap) cycle
       n = n + 1
       rows(n) = k
     end do
-  end subroutine share_plain
+  end subroutine list_cuts
 
   !> Points at the master nodes where some pieces end: these and the next pieces are halved there.
   pure subroutine put_cuts(n, rows, to_first, to_last, ends, nodes, cut, node_gap, normal, cuts)

@@ -82,16 +82,14 @@ contains
           i = tracking%touching(first + k - 1)
           tracking%xi(i) = block%xi(k)
           tracking%gap(i) = block%gap(k)
-          tracking%normal(1, i) = block%normal(1, k)
-          tracking%normal(2, i) = block%normal(2, k)
+          tracking%normal(:, i) = block%normal(:, k)
         end do
       end if
       call take_moved(block, tracking%touching(first), tracking%segment, n_left, tracking%due)
     end do
   end subroutine keep_contacts
 
-  !> The segments of the spots of a block that were settled one by one. Those that have left theirs,
-  !> or need a decision, are listed.
+  !> The segments of the spots that were settled one by one; those that need a decision are listed.
   pure subroutine take_moved(block, touching, segment, n_left, due)
     type(foot_block_t), intent(in) :: block
     integer, intent(in) :: touching(*)   !! the spots
