@@ -4,19 +4,24 @@ module contact_log_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_penalty_m, only : mean_length, built_in_penalty
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, kind_text, penalty_share
+  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, kind_text, &
+    penalty_share
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   use runs_m, only : count_runs
-  use surfaces_m, only : surface_t
+  use surfaces_m, only : surface_t, has_closed_chain
+  use tied_interface_m, only : tie_reach
+  use ties_m, only : tied_nodes
   implicit none
   private
-  public :: log_contact, penalty_text, report_initial_contact, report_released
+  public :: log_contact, penalty_text, report_initial_contact, report_released, report_tie_step
 
   !> Part of the search reach below which a penetration at time zero is round-off, that of
   !> coordinates written with some eight digits included.
   real(wp), parameter :: round_off = 1.0e-6_wp
+  !> Nodes that a message names.
+  integer, parameter :: most_named = 5
 
 contains
 
@@ -55,9 +60,57 @@ contains
     if (memory%facing%is_used) call write_log(log, '  whole outlines: at the start ' &
       //runs_text(memory%facing%present%slave)//' of the slave and ' &
       //runs_text(memory%facing%present%master)//' of the master face each other')
-    call write_log(log, '  deepest first contact: '//to_text(minval( &
-      memory%slave_tracking%spot_depth))//' m or less')
+    if (is_tied(contact)) then
+      call log_ties(contact, model, memory, log)
+    else
+      call write_log(log, '  deepest first contact: '//to_text(minval( &
+        memory%slave_tracking%spot_depth))//' m or less')
+    end if
   end subroutine log_contact
+
+  !> How much is tied, and which slave nodes have nothing within reach. That is a warning where the
+  !> surface was given node by node; whole outlines have far sides.
+  subroutine log_ties(contact, model, memory, log)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(in) :: memory
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: names
+    logical :: is_held(memory%n_slave + memory%n_master)
+    integer :: i, n
+
+    is_held = tied_nodes(memory)
+    call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
+      //to_text(memory%n_slave)//' slave nodes, '//to_text(size(memory%ties%side)) &
+      //' springs of area '//to_text(sum(memory%points%area(:memory%points%n))) &
+      //', reach '//to_text(tie_reach(contact, model))//' m')
+    if (memory%points%n == 0 .or. all(is_held(:memory%n_slave))) return
+    if (has_closed_chain(contact%slave)) return
+    n = 0
+    names = ''
+    do i = 1, memory%n_slave
+      if (is_held(i)) cycle
+      n = n + 1
+      if (n <= most_named) names = names//' '//to_text(model%mesh%node_id(memory%nodes(i)))
+    end do
+    if (n > most_named) names = names//' and '//to_text(n - most_named)//' more'
+    call warn(log, 'interface '//to_text(contact%id)//': '//to_text(n)//' of ' &
+      //to_text(memory%n_slave)//' slave nodes have nothing within reach and are not tied:'//names)
+  end subroutine log_ties
+
+  !> What ties cost: the stable step of the elements alone, and with the springs.
+  subroutine report_tie_step(id, element_limit, limit, log)
+    integer, intent(in) :: id
+    real(wp), intent(in) :: element_limit, limit !! s
+    type(log_t), intent(inout) :: log
+    character(8) :: share
+
+    write (share, '(ss,f0.1)') 100.0_wp*(1.0_wp - limit/element_limit)
+    if (share(1:1) == '.') share = '0'//share
+    call write_log(log, 'interface '//to_text(id)//': with its ties the stable step is ' &
+      //to_text(limit)//', of the elements alone '//to_text(element_limit)//': the ties cost ' &
+      //trim(share)//' % of the step')
+  end subroutine report_tie_step
 
   !> The rule of friction.
   pure function friction_text(rule) result(text)

@@ -6,10 +6,12 @@ module contact_results_m
   use foot_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
   use geometry_m, only : segment_length
   use kinds_m, only : wp
-  use friction_state_m, only : is_open
+  use friction_state_m, only : is_open, is_held
   use lengths_m, only : competence_area
+  use nodal_average_m, only : average_gaps
   use snapshot_m, only : interface_result_t, slave_result_t, rubbed_t
   use surfaces_m, only : surface_t
+  use ties_m, only : tied_nodes
   implicit none
   private
   public :: interface_resultants, slave_rows
@@ -63,7 +65,7 @@ contains
       rows%node = contact%slave%nodes
       allocate (rows%arc_length(n), rows%gap(n), rows%pressure(n), rows%force(2, n), &
         rows%length(n), rows%master_pressure(memory%n_master))
-      if (allocated(memory%friction%state)) allocate (rows%rubbed(n + memory%n_master))
+      if (allocated(memory%points%traction)) allocate (rows%rubbed(n + memory%n_master))
     end if
     places = memory%places
     places(3:4, :) = motion(1:2, memory%nodes)
@@ -79,13 +81,29 @@ contains
       rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
       rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
-    if (.not. allocated(memory%friction%state)) return
+    if (.not. allocated(memory%points%traction)) return
     pull = nodal_sums(memory, memory%points%traction)
     call fill_rubbed(contact%slave, 0, places(:, :n), contact%is_round, pull(:n), memory, &
       rows%rubbed(:n))
     call fill_rubbed(contact%master, n, places(:, n + 1:), contact%is_round, pull(n + 1:), memory, &
       rows%rubbed(n + 1:))
+    if (allocated(memory%ties%side)) call fill_ties(memory, rows)
   end subroutine rows_between
+
+  !> What ties have besides: gaps of slave nodes as means of their springs, by area; states, and for
+  !> slips what the springs give along the surface.
+  pure subroutine fill_ties(memory, rows)
+    type(contact_state_t), intent(in) :: memory
+    type(slave_result_t), intent(inout) :: rows
+    real(wp) :: nodal(2, memory%n_slave + memory%n_master)
+
+    rows%gap = 0.0_wp
+    if (memory%points%n > 0) then
+      call average_gaps(memory%points, size(nodal, 2), nodal)
+      rows%gap = nodal(1, :memory%n_slave)
+    end if
+    rows%rubbed%state = merge(is_held, is_open, tied_nodes(memory))
+  end subroutine fill_ties
 
   !> Distance along each chain from its first node, in the present shape.
   pure subroutine fill_arc_lengths(surface, places, arc_length)
@@ -141,6 +159,11 @@ contains
       near = n*(i - 1) + 1
       if (surface%incoming(i) > 0) near(2) = n*surface%segments(1, surface%incoming(i))
       if (surface%outgoing(i) == 0) near(1) = near(2)
+    end if
+    if (.not. allocated(memory%friction%state)) then
+      slip = 0.0_wp
+      state = is_open
+      return
     end if
     ! Slips are those of the slave side along the master's chain, which runs the other way.
     slip = -0.5_wp*(memory%friction%slip(near(1)) + memory%friction%slip(near(2)))

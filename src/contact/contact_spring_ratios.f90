@@ -5,12 +5,13 @@
 module contact_spring_ratios_m
   use contact_dispatch_m, only : formulation_t, formulation_of, is_strict
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t
+  use contacts_m, only : contact_t, is_tied
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use lengths_m, only : competence_area, mean_radius
   use radii_m, only : radius_of, end_radius
   use surfaces_m, only : surface_t
+  use ties_m, only : stiffness_of_nodes
   implicit none
   private
   public :: spring_ratios
@@ -30,6 +31,10 @@ contains
     integer :: n
 
     n = memory%n_slave
+    if (is_tied(contact)) then
+      ratio = stiffness_of_nodes(memory)/mass(memory%nodes)
+      return
+    end if
     if (contact%is_round) then
       ratio = round_springs(contact, memory)/mass(memory%nodes)
       return

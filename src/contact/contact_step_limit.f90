@@ -16,7 +16,7 @@
 module contact_step_limit_m
   use contact_spring_ratios_m, only : spring_ratios
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t
+  use contacts_m, only : contact_t, is_tied
   use kinds_m, only : wp
   implicit none
   private
@@ -29,6 +29,7 @@ module contact_step_limit_m
     real(wp) :: rate = 0.0_wp     !! bound of omega^2, 1/s^2
     real(wp) :: damping = 0.0_wp  !! sum of damping fraction times omega, 1/s
     integer :: node = 0           !! where the bound is taken: index in the mesh
+    logical :: stays_closed = .false. !! ties: springs that never open
   end type spring_bound_t
 
   !> K/m of the nodes of one interface.
@@ -60,6 +61,7 @@ contains
       worst = [maxloc(ratios(i)%at(:n), 1), n + maxloc(ratios(i)%at(n + 1:), 1)]
       associate (most => ratios(i)%at(worst))
         bounds(i)%rate = sum(most)
+        bounds(i)%stays_closed = is_tied(contacts(i))
         bounds(i)%damping = contacts(i)%damping*sqrt(bounds(i)%rate)
         bounds(i)%node = memories(i)%nodes(worst(merge(1, 2, most(1) >= most(2))))
         if (all(most > 0.0_wp)) ratios(i)%c = most(2)/most(1)
@@ -168,7 +170,7 @@ contains
     real(wp) :: limit
 
     limit = huge(1.0_wp)
-    if (.not. bound%rate > 0.0_wp) return
+    if (bound%stays_closed .or. .not. bound%rate > 0.0_wp) return
     limit = 1.0_wp/(bound%damping + sqrt(bound%damping**2 + bound%rate))
   end function opening_step
 

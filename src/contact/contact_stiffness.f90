@@ -4,8 +4,9 @@
 module contact_stiffness_m
   use contact_dispatch_m, only : add_tangent
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t
+  use contacts_m, only : contact_t, is_tied
   use sparse_m, only : sparse_t
+  use tangent_ties_m, only : add_tie_tangent
   implicit none
   private
   public :: add_contact_stiffness
@@ -24,7 +25,9 @@ contains
 
     if (memory%points%n == 0) return
     equations = equation(:, memory%nodes)
-    if (memory%facing%is_used) then
+    if (is_tied(contact)) then
+      call add_tie_tangent(memory, equations, matrix)
+    else if (memory%facing%is_used) then
       call add_tangent(memory%facing%present, memory, equations, matrix)
     else
       call add_tangent(contact, memory, equations, matrix)

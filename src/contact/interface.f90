@@ -14,7 +14,7 @@ module interface_m
   use contact_work_m, only : take_apart, hand_over, count_work
   use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
     allocate_tractions, allocate_scratch, is_free
-  use contacts_m, only : contact_t, has_friction
+  use contacts_m, only : contact_t, has_friction, is_tied
   use crossing_m, only : crossings_t, find_crossings, catch_crossings
   use damping_m, only : damp_points
   use energy_limit_m, only : keep_former_springs, limit_forces, lend
@@ -30,6 +30,7 @@ module interface_m
   use log_m, only : log_t
   use model_m, only : model_t
   use spots_m, only : start_spots, move_spots
+  use tied_interface_m, only : start_ties, apply_ties, evaluate_ties
   use tracking_m, only : update_tracking, wake_all, forget_pairs
   implicit none
   private
@@ -75,7 +76,8 @@ contains
       call allocate_loads(memory%points)
       allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
     end if
-    if (.not. model%controls%implicit%is_on) call allocate_limit(memory%limit, n_slave + n_master)
+    if (.not. (model%controls%implicit%is_on .or. is_tied(contact))) &
+      call allocate_limit(memory%limit, n_slave + n_master)
     if (has_friction(contact)) then
       call allocate_tractions(memory%points)
       n_each = 1
@@ -83,6 +85,7 @@ contains
       call allocate_friction(memory%friction, n_each*n_slave + n_master, n_slave + n_master)
     end if
     call allocate_scratch(memory)
+    if (is_tied(contact)) call start_ties(contact, model, memory)
     call log_contact(contact, model, formulation%kind, memory, log)
   end subroutine start_contact
 
@@ -132,6 +135,8 @@ contains
 
     if (is_suspended(contact, time)) then
       call suspend_contact(motion, dt, memory)
+    else if (is_tied(contact)) then
+      call apply_ties(motion, dt, cycle, clock, memory, force)
     else if (memory%facing%is_used) then
       if (allocated(memory%friction%force)) call take_increments(motion, memory)
       call follow_runs(contact, motion, memory)
@@ -228,6 +233,11 @@ contains
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
     type(contact_t), allocatable :: present
 
+    if (is_tied(contact)) then
+      if (is_suspended(contact, time)) memory%points%n = 0
+      call evaluate_ties(motion, memory, force)
+      return
+    end if
     memory%is_stale = memory%is_stale .or. is_suspended(contact, time)
     if (memory%facing%is_used .and. .not. is_suspended(contact, time)) &
       call follow_runs_in_step(contact, motion, memory)

@@ -6,13 +6,20 @@ module contacts_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: contact_t, contact_kind_t, friction_rule_t, has_friction, kind_text, most_gauss, &
-    penalty_per_node, penalty_distributed, penalty_factor, penalty_share
+  public :: contact_t, contact_kind_t, friction_rule_t, has_friction, is_tied, has_shear, &
+    kind_text, most_gauss, penalty_per_node, penalty_distributed, penalty_factor, penalty_share, &
+    tie_none, tie_always, tie_factor
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
   !> share of the largest stable penalty.
   integer, parameter :: penalty_per_node = 0, penalty_distributed = 1, penalty_factor = 2, &
     penalty_share = 3
+
+  !> What holds the surfaces together (TIE): nothing, or springs that stay.
+  integer, parameter :: tie_none = 0, tie_always = 1
+  !> PEN of ties where the deck gives none, as a factor on the built-in estimate: 1 on K L/A with
+  !> the default of SLSFAC.
+  real(wp), parameter :: tie_factor = 10.0_wp
 
   !> Most Gauss points of a slave segment.
   integer, parameter :: most_gauss = 10
@@ -55,6 +62,9 @@ module contacts_m
     real(wp) :: search_depth = 0.0_wp      !! SRCH: deepest first contact that is caught; 0 =
                                            !! automatic
     type(friction_rule_t) :: friction
+    integer :: tie = tie_none              !! TIE, one of the `tie_` constants
+    real(wp) :: tie_reach = 0.0_wp         !! what is farther apart is not tied, m; below 0 per cent
+                                           !! of the mean master segment; 0 = 1 per cent
     logical :: is_round = .false.          !! axisymmetric: lengths weigh with their radius
   end type contact_t
 
@@ -67,6 +77,22 @@ contains
 
     has = max(contact%friction%at_rest, contact%friction%sliding) > 0.0_wp
   end function has_friction
+
+  !> Whether the surfaces of an interface are tied.
+  elemental function is_tied(contact) result(tied)
+    type(contact_t), intent(in) :: contact
+    logical :: tied
+
+    tied = contact%tie /= tie_none
+  end function is_tied
+
+  !> Whether an interface has tractions along its surfaces.
+  elemental function has_shear(contact) result(has)
+    type(contact_t), intent(in) :: contact
+    logical :: has
+
+    has = has_friction(contact) .or. is_tied(contact)
+  end function has_shear
 
   !> `name (type n)`.
   pure function kind_text(kind) result(text)

@@ -10,6 +10,7 @@ module restart_contact_m
   use energy_limit_state_m, only : energy_limit_t
   use friction_state_m, only : friction_memory_t
   use log_m, only : to_text
+  use tie_state_m, only : tie_memory_t
   implicit none
   private
   public :: keep_contact
@@ -49,6 +50,7 @@ contains
     call keep(archive, 'node_penalty', contact%node_penalty)
     call keep(archive, 'damping_force', contact%damping_force)
     call keep_friction(archive, 'friction', contact%friction)
+    call keep_ties(archive, 'ties', contact%ties)
     call keep(archive, 'energy', contact%energy)
     call keep(archive, 'damping_work', contact%damping_work)
     call keep_watch(archive, 'watch', contact%watch)
@@ -73,6 +75,22 @@ contains
     call keep(archive, 'stored', friction%stored)
     call leave(archive)
   end subroutine keep_friction
+
+  !> What a tied interface has frozen.
+  subroutine keep_ties(archive, name, ties)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(tie_memory_t), intent(inout) :: ties
+
+    call enter(archive, name)
+    call keep(archive, 'first', ties%first)
+    call keep(archive, 'owner', ties%owner)
+    call keep(archive, 'side', ties%side)
+    call keep(archive, 'lag', ties%lag)
+    call keep(archive, 'offset', ties%offset)
+    call keep(archive, 'traction', ties%traction)
+    call leave(archive)
+  end subroutine keep_ties
 
   !> What is known of its energy.
   subroutine keep_watch(archive, name, watch)

@@ -12,7 +12,7 @@ module results_file_m
   use hdf5, only : hid_t, H5F_SCOPE_LOCAL_F, H5_INTEGER_KIND, h5kind_to_type, h5gopen_f, &
     h5gclose_f, h5awrite_f, h5aclose_f, h5fflush_f, h5fclose_f, h5close_f
   use kinds_m, only : wp, long
-  use contacts_m, only : has_friction
+  use contacts_m, only : has_shear
   use errors_m, only : error_t, raise, status_files
   use file_facts_m, only : file_facts_t, facts_of_name, is_same_file
   use files_m, only : lengthen_file, remove_file, rename_file, unfinished
@@ -53,7 +53,7 @@ contains
     if (.not. goes_on) call remove_file(path, error)
     if (allocated(error)) return
     allocate (file%times(n_planned))
-    if (any(has_friction(model%contacts))) file%n_point_field = n_point_field
+    if (any(has_shear(model%contacts))) file%n_point_field = n_point_field
     if (model%is_round) file%n_cell_field = n_cell_field
     call create_file(file, error)
     if (allocated(error)) return

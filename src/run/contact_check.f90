@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> What the run says about its interfaces at its start and at its end.
 module contact_check_m
-  use contact_log_m, only : report_initial_contact, report_released
+  use contact_log_m, only : report_initial_contact, report_released, report_tie_step
+  use contacts_m, only : is_tied
   use contact_overhang_m, only : report_overhang
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
     opening_step, binding_bound, fitting_scale
@@ -36,6 +37,11 @@ contains
     if (limits_step) call bound_springs(model%contacts, &
       state%contact_mass, state%contacts, [(1.0_wp, i=1, size(bounds))], bounds)
     do i = 1, size(model%contacts)
+      if (is_tied(model%contacts(i))) then
+        if (limits_step) call report_tie_step(model%contacts(i)%id, element_limit, &
+          stable_step(element_limit, bounds(i)), log)
+        cycle
+      end if
       call report_initial_contact(model%contacts(i), model, state%contacts(i), log)
       call report_overhang(model%contacts(i), model, state%contacts(i), log)
       if (.not. limits_step) cycle

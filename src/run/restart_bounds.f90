@@ -63,6 +63,8 @@ contains
       'numbers that mean nothing')
     call check_points(memory, folder//'points/', archive)
     if (allocated(archive%error)) return
+    if (allocated(memory%ties%side)) call check_ties(memory, folder//'ties/', archive)
+    if (allocated(archive%error)) return
     n_segments = [contact%slave%n_segment, contact%master%n_segment]
     n_spot = memory%n_slave
     if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
@@ -154,6 +156,23 @@ contains
         .and. points%master_nodes <= n_local), 'numbers that no node of the interface has')
     end associate
   end subroutine check_points
+
+  !> Springs of ties: their points follow each other, and nodes are those of the interface.
+  subroutine check_ties(memory, folder, archive)
+    type(contact_state_t), intent(in) :: memory
+    character(*), intent(in) :: folder
+    type(archive_t), intent(inout) :: archive
+    integer :: n
+
+    associate (ties => memory%ties)
+      n = size(ties%side)
+      call require(archive, folder//'first', ties%first(1) == 1 &
+        .and. all(ties%first(2:) > ties%first(:n)) .and. (ties%first(n + 1) == memory%points%n + 1 &
+        .or. memory%points%n == 0), 'numbers that do not rise to the number of points')
+      call require(archive, folder//'owner', all(ties%owner >= 1 .and. ties%owner &
+        <= memory%n_slave + memory%n_master), 'numbers that no node of the interface has')
+    end associate
+  end subroutine check_ties
 
   !> Spots followed over a chain.
   subroutine check_tracking(tracking, n_spot, n_segment, folder, archive)

@@ -6,7 +6,7 @@ module snapshot_filling_m
   use constraints_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains
-  use contacts_m, only : has_friction
+  use contacts_m, only : has_shear
   use controls_m, only : is_asked
   use history_tables_m, only : table_matsum
   use layout_m, only : slot_part
@@ -51,7 +51,7 @@ contains
     if (model%is_round) allocate (snapshot%hoop_strain(n_element), source=0.0_wp)
     if (size(model%contacts) > 0) allocate (snapshot%contact_force(2, n_node), &
       snapshot%contact_pressure(n_node), snapshot%gap(n_node), source=0.0_wp)
-    if (any(has_friction(model%contacts))) allocate (snapshot%contact_traction(n_node), &
+    if (any(has_shear(model%contacts))) allocate (snapshot%contact_traction(n_node), &
       snapshot%contact_slip(n_node), snapshot%contact_state(n_node), source=0.0_wp)
   end subroutine start_snapshot
 

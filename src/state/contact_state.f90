@@ -23,6 +23,7 @@ module contact_state_m
   use friction_state_m, only : friction_memory_t
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
+  use tie_state_m, only : tie_memory_t
   implicit none
   private
   public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
@@ -49,12 +50,12 @@ module contact_state_m
     real(wp), allocatable :: gap(:)            !! m, negative = penetration
     real(wp), allocatable :: area(:)           !! m (1 for type 1)
     real(wp), allocatable :: stiffness(:)      !! N/m^2 (N/m for type 1)
-    real(wp), allocatable :: pressure(:)       !! N/m (N for type 1), >= 0: what acts
+    real(wp), allocatable :: pressure(:)       !! N/m (N for type 1): what acts; >= 0 but in ties
     real(wp), allocatable :: load(:, :)        !! (n_load, capacity) force on the slave side, and
                                                !! the part of it that damping has, N/m; only where
                                                !! there is damping
     real(wp), allocatable :: traction(:)       !! as pressure, along -(-n_y, n_x) on the slave side;
-                                               !! only where there is friction
+                                               !! only where there is friction or a tie
   end type contact_points_t
 
   !> Segments sorted into square cells by hashing; tells which segments are near a place.
@@ -160,6 +161,7 @@ module contact_state_m
     real(wp) :: energy = 0.0_wp             !! minus the accumulated work of the springs, J/m
     real(wp) :: damping_work = 0.0_wp       !! minus that of the damping forces
     type(friction_memory_t) :: friction     !! of places, and its forces
+    type(tie_memory_t) :: ties              !! springs of a tied interface
     type(contact_watch_t) :: watch          !! whether the springs give back what they take
     type(energy_limit_t) :: limit           !! that they give back no more
     integer :: n_active = 0                 !! points that carry pressure

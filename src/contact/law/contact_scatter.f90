@@ -213,7 +213,7 @@ contains
 
     associate (points => memory%points)
       do p = 1, points%n
-        if (.not. points%pressure(p) > 0.0_wp) cycle
+        if (.not. abs(points%pressure(p)) > 0.0_wp) cycle
         normal = abs(points%normal(:, p))
         node = points%master_nodes(1, p)
         force = points%stiffness(p)*points%area(p) &

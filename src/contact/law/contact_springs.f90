@@ -6,6 +6,7 @@ module contact_springs_m
   use contact_watch_m, only : contact_watch_t
   use kinds_m, only : wp
   use nodal_average_m, only : average_gaps
+  use ties_m, only : tie_energy
   implicit none
   private
   public :: begin_look, measure_springs, end_look
@@ -29,6 +30,10 @@ contains
 
     memory%watch%stored = 0.0_wp
     memory%watch%load = 0.0_wp
+    if (allocated(memory%ties%side)) then
+      call tie_energy(memory, memory%watch%stored, memory%watch%load, memory%watch%node)
+      return
+    end if
     associate (watch => memory%watch, points => memory%points, nodal => memory%scratch%nodal)
       if (allocated(memory%node_pressure)) then
         call average_gaps(points, memory%n_slave, nodal)

@@ -11,7 +11,7 @@ module assembly_m
   use sparse_m, only : sparse_t, add_block
   implicit none
   private
-  public :: add_varied_point, add_pressed_point, pattern_t, start_pattern, &
+  public :: add_varied_point, add_pressed_point, pattern_t, start_pattern, use_node, &
     add_to_row, add_to_column, add_product
 
   !> Scratch for a product of two vectors over the nodes of an interface of which few entries are

@@ -4,7 +4,7 @@
 module deck_contact_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : contact_kind_t, kind_text, penalty_factor
+  use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_always
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
@@ -15,6 +15,7 @@ module deck_contact_m
   use deck_contact_values_m, only : find_commanded, take_overrides, check_values, kind_names, &
     of_penalty, of_master_penalty
   use deck_friction_m, only : take_friction, take_stock_friction, take_penalty_friction
+  use deck_tie_m, only : take_tie, take_stock_tie, check_tie
   use deck_raw_m, only : raw_t, raw_contact_t
   use deck_overrides_m, only : overrides_t, contact_names
   implicit none
@@ -61,15 +62,23 @@ contains
     select case (deck%blocks(i_block)%name)
     case ('CONTACT_2D_SLIDELINE')
       call take_slideline(deck, cursor, cards, kinds, commanded, entry)
+      call take_tie(deck, cursor, cards, commanded(of_penalty), entry)
       call take_friction(deck, cursor, cards, overrides, entry)
     case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION')
       call take_penalty(deck, cursor, cards, commanded, entry)
       if (cursor%n_card > 2) call take_penalty_friction(deck, cursor, cards(3), overrides, entry)
+    case ('CONTACT_2D_TIED_SLIDING')
+      call take_penalty(deck, cursor, cards, commanded, entry)
+      call take_stock_tie(0.0_wp, entry)
+    case ('CONTACT_2D_AUTOMATIC_TIED', 'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY')
+      call take_automatic(deck, cursor, cards, commanded, entry)
+      call take_stock_tie(real_of(cards(3), 'TIEDGAP'), entry)
     case default
       call take_automatic(deck, cursor, cards, commanded, entry)
       call take_stock_friction(deck, cursor, cards, overrides, entry)
     end select
     call take_overrides(overrides, entry)
+    call check_tie(deck, deck%blocks(i_block)%keyword, entry)
     call check_values(deck, cursor, cards, kinds, overrides, commanded, entry)
     if (entry%contact%chosen_by_keyword) then
       if (.not. any(kinds%number == entry%contact%contact_type)) call line_error(deck, &
@@ -99,6 +108,9 @@ contains
     case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE', 'CONTACT_2D_PENALTY', &
         'CONTACT_2D_PENALTY_FRICTION')
       contact_type = 3
+    case ('CONTACT_2D_AUTOMATIC_TIED', 'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY', &
+        'CONTACT_2D_TIED_SLIDING')
+      contact_type = 5
     case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR')
       contact_type = 7
     case default
@@ -149,7 +161,8 @@ contains
         'is not 0 or 1'//strict_names(kinds))
       contact%strict = integer_of(cards(2), 'IPF') == 1
       call take_search(deck, cursor, cards(2), entry)
-      call refuse_negative(deck, cursor, cards(2), 'SRCH')
+      if (integer_of(cards(3), 'TIE') /= tie_always) &
+        call refuse_negative(deck, cursor, cards(2), 'SRCH')
       contact%search_depth = real_of(cards(2), 'SRCH')
     end associate
   end subroutine take_slideline

@@ -4,7 +4,7 @@
 module deck_friction_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : friction_rule_t, has_friction
+  use contacts_m, only : friction_rule_t, has_friction, is_tied
   use deck_lines_m, only : deck_t, deck_error, line_warning
   use deck_fields_m, only : card_t, smallest_value
   use deck_cards_m, only : cursor_t, report_field, warn_of_field
@@ -156,6 +156,7 @@ contains
     is_given = max(raw%friction%at_rest, raw%friction%sliding) > 0.0_wp
     do i = 1, size(raw%contacts)
       associate (entry => raw%contacts(i))
+        if (is_tied(entry%contact)) cycle
         if (is_given .and. entry%takes_default) then
           entry%contact%friction = raw%friction
           entry%friction_place = raw%friction_place

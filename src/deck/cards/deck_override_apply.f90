@@ -5,7 +5,7 @@ module deck_override_apply_m
   use text_m, only : exact_text
   use log_m, only : to_text
   use curves_m, only : curve_t
-  use contacts_m, only : friction_rule_t
+  use contacts_m, only : friction_rule_t, is_tied
   use deck_lines_m, only : deck_t, place_t, line_text, line_error, line_warning, layout_mark
   use deck_fields_m, only : card_t, cut_card, field_text
   use deck_cards_m, only : cursor_t, open_cursor, find_keyword_field
@@ -201,7 +201,7 @@ contains
         //exact_text(c%birth)//','//exact_text(c%death)//','//to_text(c%penalty_unit)//',' &
         //exact_text(c%master_penalty)//','//exact_text(entry%per_cent)//',' &
         //to_text(merge(1, 0, c%strict))//','//to_text(c%search_interval)//',' &
-        //exact_text(c%search_depth)//new_line('a')//friction(2)
+        //exact_text(merge(c%tie_reach, c%search_depth, is_tied(c)))//new_line('a')//friction(2)
     end associate
 
   contains
@@ -217,6 +217,8 @@ contains
         if (k == 1) then
           if (max(rule%at_rest, rule%sliding, rule%decay) > 0.0_wp) text = ',' &
             //exact_text(rule%at_rest)//','//exact_text(rule%sliding)//','//exact_text(rule%decay)
+        else if (is_tied(entry%contact)) then
+          text = '0,1,'//to_text(entry%contact%tie)//new_line('a')
         else if (rule%most > 0.0_wp .or. abs(rule%stiffness - default%stiffness) > 0.0_wp) then
           text = exact_text(rule%most)//','//exact_text(rule%stiffness)//new_line('a')
         end if

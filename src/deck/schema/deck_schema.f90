@@ -268,10 +268,11 @@ contains
       text = 'is a shear factor of friction, which this version does not have; leave it 0'
     case ('WVEL')
       text = 'asks for welding of nodes to the wall, which this version does not have; leave it 0'
-    case ('TIE')
-      text = 'asks for tied surfaces, which this version does not have; leave it 0'
+    case ('IGAPCL')
+      text = 'asks to move nodes onto the surface that they are tied to, which this version does ' &
+        //'not have; leave it 0 (a tie keeps its gap)'
     case ('NFLS', 'SFLS')
-      text = 'is a strength of tied surfaces, which this version does not have; leave it 0'
+      text = 'is a strength of ties that break, which this version does not have; leave it 0'
     case ('LCINT')
       text = 'asks for interference that a curve removes, which this version does not have; ' &
         //'leave it 0'

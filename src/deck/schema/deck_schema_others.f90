@@ -29,8 +29,6 @@ module deck_schema_others_m
     'RIGIDWALL_* this kind of rigid wall is', &
     'CONSTRAINED_* this constraint is', &
     'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE* self contact is', &
-    'CONTACT_2D_AUTOMATIC_TIED* tied contact is', &
-    'CONTACT_2D_TIED_SLIDING* tied contact is', &
     'CONTACT_2D_AUTOMATIC_SURFACE_IN_CONTINUUM* this kind of contact is', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_THERMAL* heat through contact is', &
     'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE_THERMAL* heat through contact is', &

@@ -5,7 +5,6 @@ module explicit_memory_m
   use archive_file_m, only : archive_t, enter, leave
   use clock_m, only : lap, phase_nodes, phase_output
   use contact_step_limit_m, only : spring_bound_t
-  use controls_m, only : contact_step_rules
   use errors_m, only : error_t
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -14,7 +13,7 @@ module explicit_memory_m
   use restart_file_m, only : close_restart
   use restart_m, only : begin_file, end_file
   use state_m, only : state_t
-  use time_step_m, only : step_plan_t, cycles_in
+  use time_step_m, only : step_plan_t, cycles_in, has_springs
   implicit none
   private
   public :: write_restarts, check_steps, take_up_steps
@@ -89,6 +88,7 @@ contains
       call keep(archive, 'rate', springs(i)%rate)
       call keep(archive, 'damping', springs(i)%damping)
       call keep(archive, 'node', springs(i)%node)
+      call keep(archive, 'stays_closed', springs(i)%stays_closed)
       call expect(archive, 'node', springs(i)%node >= 0 .and. springs(i)%node <= n_node, &
         'a number that no node has')
       call leave(archive)
@@ -119,7 +119,7 @@ contains
     real(wp), intent(inout) :: damping(2)
     real(wp), intent(inout) :: ratio
 
-    if (model%controls%contact_step == contact_step_rules) &
+    if (has_springs(model)) &
       allocate (steps%springs(size(model%contacts)))
     call keep_steps(source, size(state%motion, 2), state%cycle, steps, damping, ratio)
   end subroutine read_steps

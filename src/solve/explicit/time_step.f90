@@ -7,7 +7,8 @@
 module time_step_m
   use block_state_m, only : block_state_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
-  use controls_m, only : contact_step_rules
+  use contacts_m, only : is_tied
+  use controls_m, only : contact_step_rules, contact_step_free
   use curves_m, only : curve_value, curve_is_constant
   use errors_m, only : error_t, raise, status_input
   use kinds_m, only : wp
@@ -18,7 +19,7 @@ module time_step_m
   implicit none
   private
   public :: step_plan_t, start_steps, first_step, next_step, is_last, cycles_in, &
-    follow_springs
+    follow_springs, has_springs
 
   !> What a step must be allowed to rise by before it does.
   real(wp), parameter :: least_rise = 0.05_wp
@@ -37,7 +38,7 @@ module time_step_m
     real(wp) :: end_time = 0.0_wp
     logical :: warned = .false.      !! the cap has been found above the stable step
     type(spring_bound_t), allocatable :: springs(:) !! that the step must respect; none unless ECDT
-                                                    !! = 2
+                                                    !! = 2, or there are ties
   end type step_plan_t
 
 contains
@@ -179,19 +180,30 @@ contains
     if (steps%end_cycle > 0) last = last .or. cycle >= steps%end_cycle
   end function is_last
 
-  !> Where ECDT = 2 asks for it: find now and then what the springs at the present places
-  !> demand of the steps to come.
+  !> Where ECDT = 2 asks for it, and for ties unless ECDT = 1: find now and then what the springs at
+  !> the present places demand of the steps to come.
   pure subroutine follow_springs(model, state, bounds)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(spring_bound_t), allocatable, intent(inout) :: bounds(:)
-    integer :: i
+    logical :: counts(size(model%contacts))
 
-    if (model%controls%contact_step /= contact_step_rules) return
+    if (.not. has_springs(model)) return
     if (mod(state%cycle, refresh_interval) /= 0) return
+    counts = model%controls%contact_step == contact_step_rules .or. is_tied(model%contacts)
     if (.not. allocated(bounds)) allocate (bounds(size(model%contacts)))
     call bound_springs(model%contacts, state%contact_mass, state%contacts, &
-      [(1.0_wp, i=1, size(bounds))], bounds)
+      merge(1.0_wp, 0.0_wp, counts), bounds)
+    where (.not. counts) bounds%rate = 0.0_wp
   end subroutine follow_springs
+
+  !> Whether the step follows springs of interfaces.
+  pure function has_springs(model) result(has)
+    type(model_t), intent(in) :: model
+    logical :: has
+
+    has = model%controls%contact_step == contact_step_rules .or. (any(is_tied(model%contacts)) &
+      .and. model%controls%contact_step /= contact_step_free)
+  end function has_springs
 
 end module time_step_m

@@ -8,9 +8,10 @@ module start_m
   use contact_inertia_m, only : weigh_contacts
   use element_log_m, only : log_elements
   use element_state_m, only : start_elements, lump_mass
-  use errors_m, only : error_t
+  use contacts_m, only : is_tied
+  use errors_m, only : error_t, raise, status_input
   use initial_values_m, only : start_motion
-  use log_m, only : log_t
+  use log_m, only : log_t, to_text
   use model_log_m, only : log_masses
   use model_m, only : model_t
   use rigid_start_m, only : start_rigids
@@ -58,6 +59,11 @@ contains
     allocate (state%contacts(size(model%contacts)))
     do i = 1, size(model%contacts)
       call start_contact(model%contacts(i), model, log, state%contacts(i))
+      if (.not. is_tied(model%contacts(i)) .or. state%contacts(i)%points%n > 0) cycle
+      call raise(error, 'interface '//to_text(model%contacts(i)%id)//' ties nothing: none of its ' &
+        //to_text(state%contacts(i)%n_slave)//' slave nodes has the master within reach', &
+        status_input)
+      return
     end do
     call weigh_contacts(model, state)
     call set_automatic_penalties(model, state, log, error)

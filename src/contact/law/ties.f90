@@ -1,0 +1,353 @@
+! SPDX-License-Identifier: MIT
+!> Ties (METHODS 7; doc/theory/contact.md, section 6.3): springs of both signs along the current
+!> normal and tangent of a segment, between places that were frozen in the reference geometry. With
+!> d from the master place to the slave place, d0 and n0, t0 in the reference geometry, a = d.n -
+!> d0.n0, b = d.t - d0.t0, each spring stores k w (a^2 + b^2)/2, and its forces are the exact
+!> gradient: -k w (a n + b t) on the slave side, the opposite on the master side, and the couple
+!> k w (b d.n - a d.t) on the segment that n and t turn with, so that the net moment vanishes.
+module ties_m
+  use contact_state_m, only : contact_state_t, contact_points_t, n_side
+  use contacts_m, only : contact_t
+  use geometry_m, only : separation
+  use kinds_m, only : wp
+  use nodal_average_m, only : average_values, share_out
+  use tie_state_m, only : allocate_ties
+  implicit none
+  private
+  public :: tie_spring_t, freeze_ties, hold_ties, tie_energy, tie_spring, tie_stiffness, &
+    stiffness_of_nodes, tied_nodes
+
+  !> A spring as it stands.
+  type :: tie_spring_t
+    real(wp) :: n(2)    !! unit, from master to slave
+    real(wp) :: t(2)    !! (-n_y, n_x)
+    real(wp) :: d(2)    !! from the master place to the slave place, m
+    real(wp) :: length  !! of the segment, m
+  end type tie_spring_t
+
+contains
+
+  !> Make springs of the points on the list, which have been placed in the reference geometry.
+  !> Points farther apart than `reach` and those without area go.
+  pure subroutine freeze_ties(contact, reach, memory)
+    type(contact_t), intent(in) :: contact !! between which they were placed
+    real(wp), intent(in) :: reach          !! m
+    type(contact_state_t), intent(inout) :: memory
+    type(tie_spring_t) :: spring
+    integer :: s, n
+
+    call keep_points(reach, memory%points)
+    call allocate_ties(memory%ties, count_springs(memory))
+    n = 0
+    do s = 1, size(memory%ties%side)
+      memory%ties%first(s) = n + 1
+      n = n + 1
+      do while (n < memory%points%n)
+        if (.not. is_same_spring(memory, n)) exit
+        n = n + 1
+      end do
+      call find_owner(contact, s, memory)
+      memory%ties%lag(:, s) = 0.0_wp
+      memory%ties%first(s + 1) = n + 1
+      memory%ties%lag(:, s) = mean_separation(memory, s, 1)
+      spring = tie_spring(memory, s)
+      memory%ties%offset(:, s) = [dot_product(spring%d, spring%n), dot_product(spring%d, spring%t)]
+    end do
+    if (allocated(memory%node_pressure)) &
+      allocate (memory%ties%traction(memory%n_slave), source=0.0_wp)
+  end subroutine freeze_ties
+
+  !> Keep the points within reach that have an area.
+  pure subroutine keep_points(reach, points)
+    real(wp), intent(in) :: reach
+    type(contact_points_t), intent(inout) :: points
+    integer :: p, n
+
+    n = 0
+    do p = 1, points%n
+      if (abs(points%gap(p)) > reach .or. .not. points%area(p) > 0.0_wp) cycle
+      n = n + 1
+      points%slave_nodes(:, n) = points%slave_nodes(:, p)
+      points%slave_weights(:, n) = points%slave_weights(:, p)
+      points%master_nodes(:, n) = points%master_nodes(:, p)
+      points%master_weights(:, n) = points%master_weights(:, p)
+      points%normal(:, n) = points%normal(:, p)
+      points%gap(n) = points%gap(p)
+      points%area(n) = points%area(p)
+      points%stiffness(n) = points%stiffness(p)
+    end do
+    points%n = n
+  end subroutine keep_points
+
+  !> Springs of the points on the list.
+  pure function count_springs(memory) result(n)
+    type(contact_state_t), intent(in) :: memory
+    integer :: n, p
+
+    n = min(1, memory%points%n)
+    do p = 1, memory%points%n - 1
+      if (.not. is_same_spring(memory, p)) n = n + 1
+    end do
+  end function count_springs
+
+  !> Whether a point and the next one belong to one spring: portions of one virtual node.
+  pure function is_same_spring(memory, p) result(same)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: p
+    logical :: same
+
+    same = .false.
+    if (.not. has_virtual_nodes(memory)) return
+    associate (points => memory%points)
+      same = all(points%slave_nodes(:, p) == points%slave_nodes(:, p + 1)) .and. &
+        .not. abs(points%slave_weights(1, p) - points%slave_weights(1, p + 1)) > 0.0_wp
+    end associate
+  end function is_same_spring
+
+  !> Whether springs are those of virtual nodes, with several points each.
+  pure function has_virtual_nodes(memory) result(has)
+    type(contact_state_t), intent(in) :: memory
+    logical :: has
+
+    has = allocated(memory%spots) .and. .not. allocated(memory%node_pressure)
+  end function has_virtual_nodes
+
+  !> The segment that the normal of a spring belongs to: the master's, for a virtual node the one
+  !> below it, or the slave's where the master side is one node.
+  pure subroutine find_owner(contact, s, memory)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: s
+    type(contact_state_t), intent(inout) :: memory
+    integer :: p, n, q
+
+    p = memory%ties%first(s)
+    associate (owner => memory%ties%owner(:, s), points => memory%points)
+      memory%ties%side(s) = 1.0_wp
+      owner = points%master_nodes(:, p)
+      if (owner(1) == owner(2)) then
+        owner = points%slave_nodes(:, p)
+        memory%ties%side(s) = -1.0_wp
+      else if (has_virtual_nodes(memory)) then
+        n = size(memory%spot_xi)
+        q = minloc(abs(memory%spot_xi - points%slave_weights(2, p)), 1)
+        owner = memory%n_slave + contact%master%segments(:, memory%slave_tracking%segment( &
+          n*(contact%slave%outgoing(points%slave_nodes(1, p)) - 1) + q))
+      end if
+    end associate
+  end subroutine find_owner
+
+  !> Mean by area, over the points of a spring, of slave place minus master place: rows k and k + 1
+  !> of the places (1: in the reference geometry, 3: displacements), m.
+  pure function mean_separation(memory, s, k) result(d)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s, k
+    real(wp) :: d(2)
+    real(wp) :: total
+    integer :: p, i
+
+    d = 0.0_wp
+    total = 0.0_wp
+    associate (points => memory%points, places => memory%places)
+      do p = memory%ties%first(s), memory%ties%first(s + 1) - 1
+        do i = 1, n_side
+          d = d + points%area(p)*( &
+            points%slave_weights(i, p)*places(k:k + 1, points%slave_nodes(i, p)) &
+            - points%master_weights(i, p)*places(k:k + 1, points%master_nodes(i, p)))
+        end do
+        total = total + points%area(p)
+      end do
+    end associate
+    d = d/total
+  end function mean_separation
+
+  !> A spring at the places in the memory.
+  pure function tie_spring(memory, s) result(spring)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    type(tie_spring_t) :: spring
+    real(wp) :: way(2)
+
+    associate (ties => memory%ties, places => memory%places)
+      way = separation(places(:, ties%owner(2, s)), places(:, ties%owner(1, s)))
+      spring%length = max(sqrt(way(1)**2 + way(2)**2), tiny(1.0_wp))
+      spring%t = ties%side(s)/spring%length*way
+      spring%n = [spring%t(2), -spring%t(1)]
+      spring%d = ties%lag(:, s) + mean_separation(memory, s, 3)
+    end associate
+  end function tie_spring
+
+  !> Pressures, tractions and nodal forces of all springs at the places in the memory. Pressures
+  !> below zero are tension.
+  pure subroutine hold_ties(memory)
+    type(contact_state_t), intent(inout) :: memory
+    type(tie_spring_t) :: springs(size(memory%ties%side))
+    integer :: s, p
+
+    memory%n_active = memory%points%n
+    associate (points => memory%points, ties => memory%ties)
+      do s = 1, size(springs)
+        springs(s) = tie_spring(memory, s)
+        do p = ties%first(s), ties%first(s + 1) - 1
+          points%normal(:, p) = springs(s)%n
+          points%gap(p) = dot_product(springs(s)%d, springs(s)%n)
+          points%pressure(p) = points%gap(p) - ties%offset(1, s)
+          points%traction(p) = dot_product(springs(s)%d, springs(s)%t) - ties%offset(2, s)
+        end do
+      end do
+    end associate
+    call load_stretches(memory)
+    do s = 1, size(springs)
+      call scatter_spring(springs(s), s, memory)
+    end do
+  end subroutine hold_ties
+
+  !> From stretches along n and t, which stand for pressures and tractions of the points, to these.
+  pure subroutine load_stretches(memory)
+    type(contact_state_t), intent(inout) :: memory
+
+    associate (points => memory%points, nodal => memory%scratch%nodal, n => memory%n_slave)
+      if (.not. allocated(memory%node_pressure)) then
+        points%pressure(:points%n) = -points%stiffness(:points%n)*points%pressure(:points%n)
+        points%traction(:points%n) = points%stiffness(:points%n)*points%traction(:points%n)
+        return
+      end if
+      call average_values(points, points%pressure, n, nodal)
+      memory%node_pressure = -memory%slave_penalty*nodal(1, :n)
+      call average_values(points, points%traction, n, nodal)
+      memory%ties%traction = memory%slave_penalty*nodal(1, :n)
+      call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
+        points%pressure)
+      call share_out(points%n, points%slave_nodes, points%slave_weights, memory%ties%traction, &
+        points%traction)
+    end associate
+  end subroutine load_stretches
+
+  !> Forces of one spring: those of its points, and the couple.
+  pure subroutine scatter_spring(spring, s, memory)
+    type(tie_spring_t), intent(in) :: spring
+    integer, intent(in) :: s
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: load(2), total(2), couple(2)
+    integer :: p, k
+
+    total = 0.0_wp
+    associate (points => memory%points, ties => memory%ties, force => memory%force)
+      do p = ties%first(s), ties%first(s + 1) - 1
+        load = points%area(p)*(points%pressure(p)*spring%n - points%traction(p)*spring%t)
+        total = total + load
+        do k = 1, n_side
+          associate (i => points%slave_nodes(k, p), j => points%master_nodes(k, p))
+            force(:, i) = force(:, i) + points%slave_weights(k, p)*load
+            force(:, j) = force(:, j) - points%master_weights(k, p)*load
+          end associate
+        end do
+      end do
+      ! The moment of the pair of forces, d x load, is taken up by the segment.
+      couple = ties%side(s)*(spring%d(1)*total(2) - spring%d(2)*total(1))/spring%length*spring%n
+      force(:, ties%owner(1, s)) = force(:, ties%owner(1, s)) - couple
+      force(:, ties%owner(2, s)) = force(:, ties%owner(2, s)) + couple
+    end associate
+  end subroutine scatter_spring
+
+  !> What all springs store, J/m, and where the largest force is.
+  pure subroutine tie_energy(memory, energy, load, node)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(out) :: energy
+    real(wp), intent(out) :: load !! N/m
+    integer, intent(out) :: node  !! slave node next to it, by place in the mesh; 0: no load
+    real(wp) :: square, area(memory%n_slave)
+    integer :: p, i, k
+
+    energy = 0.0_wp
+    load = 0.0_wp
+    node = 0
+    area = 0.0_wp
+    associate (points => memory%points)
+      do p = 1, points%n
+        square = points%pressure(p)**2 + points%traction(p)**2
+        if (points%area(p)*sqrt(square) > load) then
+          load = points%area(p)*sqrt(square)
+          node = memory%nodes(points%slave_nodes(maxloc(points%slave_weights(:, p), 1), p))
+        end if
+        if (.not. allocated(memory%node_pressure)) then
+          energy = energy + points%area(p)*square/(2.0_wp*points%stiffness(p))
+          cycle
+        end if
+        do k = 1, n_side
+          i = points%slave_nodes(k, p)
+          area(i) = area(i) + points%slave_weights(k, p)*points%area(p)
+        end do
+      end do
+    end associate
+    if (allocated(memory%node_pressure)) energy = sum(area*(memory%node_pressure**2 &
+      + memory%ties%traction**2))/(2.0_wp*memory%slave_penalty)
+  end subroutine tie_energy
+
+  !> Stiffness times area of a spring, N/m.
+  pure function tie_stiffness(memory, s) result(stiffness)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    real(wp) :: stiffness
+
+    associate (last => memory%ties%first(s + 1) - 1, first => memory%ties%first(s))
+      stiffness = sum(memory%points%stiffness(first:last)*memory%points%area(first:last))
+    end associate
+  end function tie_stiffness
+
+  !> Most that the springs hold each node with, so that the sum over nodes of K u^2 bounds twice
+  !> their energy, slave and master side each for itself (contact_step_limit_m): (sum of |a| |u|)^2
+  !> <= sum of |a| times sum of |a| u^2, with a the weights and, on the nodes of the segment, what
+  !> its turn moves at the distance |d|. Averages over slave nodes only lower it.
+  pure function stiffness_of_nodes(memory) result(stiffness)
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: stiffness(memory%n_slave + memory%n_master) !! N/m
+    type(tie_spring_t) :: spring
+    real(wp) :: turn, sums(n_side), k, turning
+    integer :: s, p, i
+
+    stiffness = 0.0_wp
+    if (memory%points%n == 0) return
+    associate (points => memory%points, ties => memory%ties)
+      do s = 1, size(ties%side)
+        spring = tie_spring(memory, s)
+        turn = norm2(spring%d)/spring%length
+        do p = ties%first(s), ties%first(s + 1) - 1
+          k = points%stiffness(p)*points%area(p)
+          sums = [sum(abs(points%slave_weights(:, p))), sum(abs(points%master_weights(:, p)))]
+          i = merge(2, 1, ties%side(s) > 0.0_wp)
+          sums(i) = sums(i) + 2.0_wp*turn
+          turning = k*sums(i)*turn
+          do i = 1, n_side
+            associate (a => stiffness(points%slave_nodes(i, p)))
+              a = a + k*sums(1)*abs(points%slave_weights(i, p))
+            end associate
+            associate (b => stiffness(points%master_nodes(i, p)))
+              b = b + k*sums(2)*abs(points%master_weights(i, p))
+            end associate
+            associate (c => stiffness(ties%owner(i, s)))
+              c = c + turning
+            end associate
+          end do
+        end do
+      end do
+    end associate
+  end function stiffness_of_nodes
+
+  !> Which nodes of the interface a spring holds.
+  pure function tied_nodes(memory) result(is_tied)
+    type(contact_state_t), intent(in) :: memory
+    logical :: is_tied(memory%n_slave + memory%n_master)
+    integer :: p, k
+
+    is_tied = .false.
+    do p = 1, memory%points%n
+      do k = 1, n_side
+        if (memory%points%slave_weights(k, p) > 0.0_wp) &
+          is_tied(memory%points%slave_nodes(k, p)) = .true.
+        if (memory%points%master_weights(k, p) > 0.0_wp) &
+          is_tied(memory%points%master_nodes(k, p)) = .true.
+      end do
+    end do
+  end function tied_nodes
+
+end module ties_m

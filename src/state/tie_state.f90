@@ -1,0 +1,35 @@
+! SPDX-License-Identifier: MIT
+!> What a tied interface remembers (contact/law/ties): springs between places that were frozen in
+!> the reference geometry. Their points are on the list of the interface, one or several to a
+!> spring. Node numbers are local to the interface.
+module tie_state_m
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: tie_memory_t, allocate_ties
+
+  !> Arrays are allocated for tied interfaces alone.
+  type :: tie_memory_t
+    integer, allocatable :: first(:)     !! (n_spring + 1) first point of each, then the end
+    integer, allocatable :: owner(:, :)  !! (2, n_spring) nodes of the segment that n and t turn
+                                         !! with
+    real(wp), allocatable :: side(:)     !! (n_spring) 1: its outward normal points from master to
+                                         !! slave, -1: the other way
+    real(wp), allocatable :: lag(:, :)   !! (2, n_spring) from the master place to the slave place
+                                         !! in the reference geometry, m
+    real(wp), allocatable :: offset(:, :) !! (2, n_spring) parts of it along n and t there, m
+    real(wp), allocatable :: traction(:) !! (n_slave) where pressure is formed at slave nodes, N/m^2
+  end type tie_memory_t
+
+contains
+
+  !> Allocate for so many springs.
+  pure subroutine allocate_ties(ties, n_spring)
+    type(tie_memory_t), intent(inout) :: ties
+    integer, intent(in) :: n_spring
+
+    allocate (ties%first(n_spring + 1), ties%owner(2, n_spring), source=1)
+    allocate (ties%side(n_spring), ties%lag(2, n_spring), ties%offset(2, n_spring), source=0.0_wp)
+  end subroutine allocate_ties
+
+end module tie_state_m

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT
+"""Ties through the program: the same bits after a restart and at any number of threads, keywords and messages."""
+import pytest
+from conftest import numbers
+from meshes import Deck, grid
+from test_implicit import implicit
+from test_restart import assert_same, histories, part_of, with_files
+
+from slideline_tools.contact_types import ALL_TYPES
+
+
+def tied(kind, columns=(40, 28), keyword=None, whole=False, is_round=False, gap=0.0, static=None, overhang=0.0):
+    """Two blocks of 16 rows, unlike columns, `gap` apart, the upper one drawn up and aside by its top."""
+    deck = implicit(1.0, 0.1, dynamic=not static) if static is not None else Deck("tied blocks").control(0.03)
+    deck.hourglass(4, 0.05)
+    rows = 16 if static is None else 3
+    for part in (1, 2):
+        if is_round:
+            deck.add("*PART", f"part {part}", (part, 1, part))
+            deck.add("*SECTION_SHELL", (1, 15), (1.0,)) if part == 1 else None
+        else:
+            deck.part(part, points=4 if static is not None else None)
+        deck.elastic(1000.0, 1.0e6, 0.3, part)
+    upper = deck.mesh(*grid(columns[0], rows, 1.0 + overhang, 0.5, (0.0, gap)), part=1)
+    lower = deck.mesh(*grid(columns[1], rows, 1.0, 0.5, (0.0, -0.5)), part=2)
+    deck.node_set(1, upper[:columns[0] + 1]).node_set(2, lower[-columns[1] - 1:][::-1])
+    deck.add("*SET_PART_LIST", (1,), (1,)).add("*SET_PART_LIST", (2,), (2,))
+    sides = (1, 2) if whole or keyword == "*CONTACT_2D_TIED_SLIDING" else (-1, -2)
+    if keyword == "*CONTACT_2D_TIED_SLIDING":
+        deck.add(keyword, sides)
+    elif keyword:
+        deck.add(keyword, sides, (0.0,), (0.0, 10.0, 0, 0, 0, -20.0))
+    else:
+        deck.add("*CONTACT_2D_SLIDELINE", (*sides, kind, 3), (0.0, 1.0e20, 0, 0, 0, 0, 0, -20.0), (0.0, 1.0, 1))
+    deck.fix(lower[:columns[1] + 1], 1, 1)
+    deck.curve(1, [(0.0, 0.0), (0.02, 1.0), (1.0, 1.5)])
+    # by radius in rings, whose nodes on the axis stand for no area
+    deck.add("*LOAD_NODE_POINT", *[(int(n), dof, 1, 2.0e4 / columns[0] * (k / columns[0] if is_round else 1.0))
+                                   for k, n in enumerate(upper[-columns[0] - 1:]) if k > 0
+                                   for dof in ((2,) if is_round else (1, 2))])
+    deck.output(plot=0.01 if static is None else 0.2, glstat=1.0e-3, rcforc=1.0e-3)
+    return deck.add("*DATABASE_SLEOUT", (1.0e-3,)).text()
+
+
+SCENES = {
+    "blocks": {}, "with a gap": {"gap": 0.003}, "whole outlines": {"whole": True, "gap": 0.002},
+    "rings": {"is_round": True, "gap": 0.002},
+}
+
+
+CASES = [(scene, kind) for scene in SCENES for kind in ALL_TYPES if scene == "blocks" or kind in (4, 5, 7)]
+
+
+@pytest.mark.parametrize("scene, kind", CASES)
+def test_same_bits_after_a_restart_and_with_threads(slideline, tmp_path, scene, kind):
+    text = with_files(tied(kind, **SCENES[scene]), dump=60)
+    for threads in (1, 2, 4):
+        done = slideline(f"d=on{threads}", f"ncpu={threads}", "perthread=1", deck=text)
+        assert done.returncode == 0, done.stderr
+    one = tmp_path / "on1"
+    assert numbers(one / "job.sleout.csv", "energy")[-1] > 0.0
+    assert set(numbers(one / "job.contact.csv", "state")) <= {0.0, 3.0}
+    for threads in (2, 4):
+        assert histories(one) == histories(tmp_path / f"on{threads}")
+    rest = part_of(one, tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
+    done = slideline("r=rest/job.dump01.h5")
+    assert done.returncode == 0, done.stderr
+    assert_same(one, rest)
+    ratio = numbers(one / "job.glstat.csv", "energy_ratio")
+    assert max(abs(value - 1.0) for value in ratio) < 1.0e-3
+
+
+@pytest.mark.parametrize("static", (True, False))
+@pytest.mark.parametrize("kind", ALL_TYPES)
+def test_implicit_restart(slideline, tmp_path, kind, static):
+    text = with_files(tied(kind, columns=(7, 5), static=static, gap=0.002), dump=4)
+    done = slideline("d=whole", deck=text)
+    assert done.returncode == 0, done.stderr
+    rest = part_of(tmp_path / "whole", tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
+    done = slideline("r=rest/job.dump01.h5")
+    assert done.returncode == 0, done.stderr
+    assert_same(tmp_path / "whole", rest)
+
+
+@pytest.mark.parametrize("keyword", ("*CONTACT_2D_AUTOMATIC_TIED", "*CONTACT_2D_AUTOMATIC_TIED_ONE_WAY",
+                                     "*CONTACT_2D_TIED_SLIDING"))
+def test_stock_keywords_stand_for_type_5(slideline, tmp_path, keyword):
+    for folder, words in (("own", {}), ("stock", {"keyword": keyword})):
+        done = slideline(f"d={folder}", deck=tied(5, columns=(10, 7), **words))
+        assert done.returncode == 0, done.stderr
+    assert histories(tmp_path / "own") == histories(tmp_path / "stock")
+    # the deck with another type is our own card, and runs again to the same bits
+    done = slideline("d=other", "ctype=4", deck=tied(5, columns=(10, 7), keyword=keyword))
+    assert done.returncode == 0, done.stderr
+    text = (tmp_path / "other/job.effective.k").read_text()
+    assert "*CONTACT_2D_SLIDELINE" in text
+    done = slideline("d=again", deck=text)
+    assert done.returncode == 0, done.stderr
+    assert histories(tmp_path / "other") == histories(tmp_path / "again")
+
+
+def test_what_is_out_of_reach_is_named(slideline, tmp_path):
+    done = slideline("d=out", deck=tied(5, columns=(12, 10), overhang=0.3))
+    assert done.returncode == 0, done.stderr
+    # node 11 is beyond the master too, but its segment is tied in part
+    assert "interface 1: 2 of 13 slave nodes have nothing within reach and are not tied: 12 13" in done.stderr
+    assert "with its ties the stable step is" in (tmp_path / "out/job.log").read_text()
+
+
+def test_a_tie_of_nothing_is_an_error(slideline):
+    done = slideline("d=out", deck=tied(5, columns=(12, 10), gap=0.03))
+    assert done.returncode == 1
+    assert "interface 1 ties nothing: none of its 13 slave nodes has the master within reach" in done.stderr
+
+
+def test_step_obeys_ties(slideline, tmp_path):
+    """With matching meshes the step of the elements alone would be unstable; ECDT 1 takes it."""
+    text = tied(5, columns=(32, 32)).replace("*END", "*CONTROL_TERMINATION\n1.0,\n*END")
+    assert slideline("d=on", deck=text).returncode == 0
+    ratio = numbers(tmp_path / "on/job.glstat.csv", "energy_ratio")
+    assert max(abs(value - 1.0) for value in ratio) < 1.0e-3
+    free = slideline("d=free", deck=text.replace("*END", "*CONTROL_CONTACT\n0.1,\n0,0,0,0,0.0,0,1\n*END"))
+    assert numbers(tmp_path / "free/job.glstat.csv", "dt")[1] > 1.1 * numbers(tmp_path / "on/job.glstat.csv", "dt")[1]
+    assert free.returncode == 0, free.stderr
+    assert max(abs(value - 1.0) for value in numbers(tmp_path / "free/job.glstat.csv", "energy_ratio")) > 0.1

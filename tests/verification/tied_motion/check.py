@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""Ties in motion: a wave through a tie of unlike meshes, and a tied bar that vibrates, against the spring between bars."""
+import numpy as np
+
+from contact_types import TYPES
+from meshes import Deck, grid
+
+YOUNG, RHO, SPEED = 1.0e6, 1000.0, 1.0e-3
+SOUND = np.sqrt(YOUNG / RHO)
+#: Both halves of the bar, its height, rows of square elements of either half, and the length of the pulse.
+HALF, HEIGHT, ROWS, PULSE = 8.0, 0.4, (6, 4), 6.0
+#: K L/A of the coarser half, nu = 0.
+SPRING = YOUNG / 3.0 * ROWS[1] / HEIGHT
+
+
+def spring_of(kind):
+    """Stiffness of all springs over the height: type 1 has one of the same at each of the 7 nodes, type 3 two passes."""
+    return SPRING * {1: (ROWS[0] + 1.0) / ROWS[0], 3: 2.0}.get(kind, 1.0)
+
+
+def pulse(time):
+    """Velocity of the driven end over SPEED."""
+    duration = PULSE / SOUND
+    return np.where((time > 0.0) & (time < duration), 0.5 - 0.5 * np.cos(2.0 * np.pi * time / duration), 0.0)
+
+
+def bar(kind, end_time, is_driven):
+    """A bar in x of two tied halves, whole where kind is 0: its left end driven, or held with a first velocity like the
+    lowest mode of the whole. Returns the deck and the node half way to the tie."""
+    deck = Deck(f"tied bar, type {kind}")
+    deck.control(end_time, scale=0.8).hourglass(4, 0.05)
+    halves, places = [], []
+    for part, rows in enumerate(ROWS, 1):
+        if kind == 0 and part == 2:
+            break
+        deck.part(part).elastic(RHO, YOUNG, 0.0, part)
+        n, length = round(HALF * rows / HEIGHT), HALF
+        if kind == 0:
+            n, length = 2 * n, 2.0 * HALF
+        coordinates, quads = grid(n, rows, length, HEIGHT, (HALF * (part - 1), 0.0))
+        halves.append((deck.mesh(coordinates, quads, part=part), n))
+        places.append(coordinates[:, 0])
+    if kind:
+        (left, n), (right, m) = halves
+        deck.node_set(1, left[n::n + 1]).node_set(2, right[::m + 1][::-1])
+        deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 4), (0.0, 1.0e20), (0.0, 1.0, 1))
+    ids, n = halves[0]
+    if is_driven:
+        time = np.linspace(0.0, PULSE / SOUND, 401)
+        deck.curve(1, [*zip(time.tolist(), (SPEED * pulse(time)).tolist()), (1.0e3, 0.0)])
+        for node in ids[::n + 1]:
+            deck.prescribe(node, 1, 0, 1)
+    else:
+        deck.fix(ids[::n + 1], x=1)
+        every = np.concatenate([half[0] for half in halves])
+        deck.add("*INITIAL_VELOCITY_NODE", *[(int(node), SPEED * np.sin(np.pi * x / (4.0 * HALF)), 0.0)
+                                             for node, x in zip(every, np.concatenate(places))])
+    watch = ids[round(0.5 * HALF * ROWS[0] / HEIGHT)]
+    deck.output(glstat=0.1 / SOUND, nodout=0.05 / SOUND, nodes=[int(watch)])
+    return deck
+
+
+def reflected(kind, time):
+    """Velocity half way to the tie that comes back from a spring k between two half spaces, over SPEED: v_r = v_i - v_t
+    with v_t + tau dv_t/dt = v_i, tau = rho c/(2 k)."""
+    tau = RHO * SOUND / (2.0 * spring_of(kind))
+    fine = np.linspace(0.0, 3.0 * PULSE / SOUND, 60001)
+    step, decay = fine[1] - fine[0], np.exp(-(fine[1] - fine[0]) / tau)
+    came, gone = pulse(fine), np.zeros_like(fine)
+    for k in range(1, len(fine)):
+        gone[k] = decay * gone[k - 1] + (1.0 - decay) * 0.5 * (came[k] + came[k - 1])
+    return np.interp(time - 1.5 * HALF / SOUND, fine, came - gone, left=0.0)
+
+
+def check_wave(run):
+    """The velocity half way to the tie: first the pulse, later what comes back."""
+    for kind in (*TYPES, 0):
+        result = run.program(bar(kind, 2.4 * HALF / SOUND, True), name=f"wave_{kind}")
+        row = result.table("nodout")
+        later = row["time"] > (0.5 * HALF + PULSE + 1.0) / SOUND
+        time, found = row["time"][later], row["vx"][later] / SPEED
+        if kind == 0:
+            run.report("the whole bar: largest velocity behind the pulse", np.max(np.abs(found)), "dispersion")
+            continue
+        exact = reflected(kind, time)
+        run.check(f"type {kind}: wave that comes back, over the pulse", found, exact, 0.01, "abs",
+                  "a spring of K L/A between two bars")
+        came = 0.375 * PULSE / SOUND
+        run.check(f"type {kind}: energy that comes back over that of the pulse",
+                  np.trapezoid(found ** 2, time) / came, 0.01, 0.0, "max")
+        run.check(f"type {kind}: wave, energy ratio", result.table("glstat")["energy_ratio"][1:], 1.0, 1.0e-3, "abs")
+
+
+def check_bar(run):
+    """Longitudinal period of the bar held at one end, from the zero crossings of some 8 periods."""
+    periods = {}
+    for kind in (0, *TYPES):
+        row = run.program(bar(kind, 70.0 * HALF / SOUND, False), name=f"bar_{kind}").table("nodout")
+        time, v = row["time"], row["vx"]
+        k = np.nonzero(v[:-1] * v[1:] < 0.0)[0]
+        cross = time[k] - v[k] * (time[k + 1] - time[k]) / (v[k + 1] - v[k])
+        periods[kind] = 2.0 * (cross[-1] - cross[0]) / (len(cross) - 1)
+    run.check("whole bar: period c/(8 half)", periods[0] * SOUND / (8.0 * HALF), 1.0, 1.0e-3, "abs")
+    for kind in TYPES:
+        low, high = 0.5 * np.pi / (4.0 * HALF), np.pi / (4.0 * HALF)
+        for _ in range(60):  # tan(2 q half) = 2 k/(E q)
+            q = 0.5 * (low + high)
+            low, high = (q, high) if np.tan(2.0 * q * HALF) < 2.0 * spring_of(kind) / (YOUNG * q) else (low, q)
+        run.check(f"type {kind}: period tied over whole", periods[kind] / periods[0], np.pi / (4.0 * HALF) / q, 1.0e-3,
+                  source="tan(2 q l) = 2 k/(E q)")
+
+
+def check(run):
+    check_wave(run)
+    check_bar(run)
