@@ -9,7 +9,7 @@ module element_dispatch_m
   use parts_m, only : section_t, form_one_point, form_full, form_round_one_point, form_round_full
   use quad_full_m, only : advance_full
   use quad_one_point_m, only : advance_one_point
-  use round_chunk_m, only : round_chunk_t, scatter_hoop
+  use round_chunk_m, only : round_chunk_t, scatter_round
   use round_one_point_m, only : advance_round_one_point
   implicit none
   private
@@ -58,8 +58,9 @@ contains
         case (form_round_one_point)
           call advance_round_one_point(i_chunk, model%layout%slot_nodes(1, first), motion, &
             model%materials(part%material), part%hourglass, dt, elements, chunk, round)
-          call scatter_hoop(model%layout%chunk_elements(i_chunk), &
-            model%layout%slot_local(1, first), round, force)
+          call scatter_round(model%layout%chunk_elements(i_chunk), &
+            model%layout%slot_local(1, first), chunk, round, force)
+          cycle
         end select
         call scatter_chunk(model%layout%chunk_elements(i_chunk), &
           model%layout%slot_local(1, first), chunk, force)

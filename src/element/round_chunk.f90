@@ -5,100 +5,105 @@
 !>   V = s A/4 + (h_r (a_r b_z + b_r a_z) - 2 a_r b_r h_z)/24,   A = (a_r b_z - b_r a_z)/2.
 module round_chunk_m
   use kinds_m, only : wp
+  use element_chunk_m, only : element_chunk_t
   use layout_m, only : chunk_size
   implicit none
   private
-  public :: round_chunk_t, round_shape_t, n_round_reference, reference_sum, reference_mass, &
-    form_gradients, form_sums, scatter_hoop, node_volumes
+  public :: round_chunk_t, n_round_reference, reference_sum, reference_mass, &
+    gather_round, scatter_round, node_volumes
 
   !> Streams of the reference shape: those of the plane, the sum of the radii, and per node
   !> density over mass.
   integer, parameter :: reference_sum = 7, reference_mass = 8, n_round_reference = 11
 
-  !> Patterns of a chunk of quads, its areas and volumes, and the gradients of the volume: of it
-  !> `rad` is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over A).
-  type :: round_shape_t
-    real(wp), dimension(chunk_size) :: s                  !! sum of the four radii
-    real(wp), dimension(chunk_size) :: ar, az, br, bz     !! diagonals
-    real(wp), dimension(chunk_size) :: hr, hz             !! h.x
-    real(wp), dimension(chunk_size) :: area, volume
+  !> What a chunk of round quads has besides that of a plane one. Of the gradients of the volume `rad`
+  !> is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over A), each for
+  !> the patterns a, b, h (s: all four nodes).
+  type :: round_chunk_t
+    real(wp) :: us(2, chunk_size), vs(2, chunk_size) !! sums of u and of v, 0 in padding
+    real(wp) :: hoop(2, chunk_size)     !! force on each of the four nodes, 0 in z
+    real(wp), dimension(chunk_size) :: volume, inverse_volume, area, inverse_area !! now
+    real(wp), dimension(chunk_size) :: s                   !! sum of the four radii, now
+    real(wp), dimension(chunk_size) :: span                !! a.a + b.b
     real(wp), dimension(chunk_size) :: rad_a, rad_b, rad_h
     real(wp), dimension(chunk_size) :: axi_a, axi_b, axi_h
     real(wp), dimension(chunk_size) :: mean_a, mean_b, mean_s
-  end type round_shape_t
-
-  !> What a chunk of round quads has besides that of a plane one.
-  type :: round_chunk_t
-    real(wp), dimension(chunk_size) :: us, vs  !! sum of u_r and of v_r, 0 in padding
-    real(wp), dimension(chunk_size) :: hoop    !! force in r on each of the four nodes
-    type(round_shape_t) :: now
+    real(wp), dimension(chunk_size) :: gamma_a, gamma_b    !! of the hourglass pattern; gamma_h = 1
+    real(wp), dimension(chunk_size) :: resistance !! force over gamma.v, or over its integral
   end type round_chunk_t
 
 contains
 
-  !> Areas, volumes and gradients of shapes whose patterns are there.
-  pure subroutine form_gradients(shape)
-    type(round_shape_t), intent(inout) :: shape
-    real(wp), parameter :: part = 1.0_wp/24.0_wp
-    real(wp) :: s, ar, az, br, bz, hr, hz
-    integer :: i
-
-    !$omp simd private(s, ar, az, br, bz, hr, hz)
-    do i = 1, chunk_size
-      s = 0.125_wp*shape%s(i)
-      ar = shape%ar(i)
-      az = shape%az(i)
-      br = shape%br(i)
-      bz = shape%bz(i)
-      hr = part*shape%hr(i)
-      hz = part*shape%hz(i)
-      shape%area(i) = 0.5_wp*(ar*bz - br*az)
-      shape%rad_a(i) = s*bz - br*hz
-      shape%rad_b(i) = -(s*az + ar*hz)
-      shape%rad_h(i) = part*(ar*bz + br*az)
-      shape%axi_a(i) = -br*(s - hr)
-      shape%axi_b(i) = ar*(s + hr)
-      shape%axi_h(i) = -2.0_wp*part*ar*br
-      shape%mean_a(i) = hr*bz - hz*br
-      shape%mean_b(i) = hr*az - hz*ar
-      shape%mean_s(i) = 0.25_wp*shape%area(i)
-      shape%volume(i) = shape%s(i)*shape%mean_s(i) + (ar*shape%mean_a(i) + br*shape%mean_b(i))
-    end do
-  end subroutine form_gradients
-
-  !> Sums of u_r and v_r of the nodes; all nodes of padding are one, and it carries no strain.
-  pure subroutine form_sums(nodes, motion, round)
+  !> Differences and sums of the nodal motion (as `gather_chunk`, of which this is the round form).
+  !> All nodes of padding are one: it carries no strain.
+  pure subroutine gather_round(nodes, motion, chunk, round)
     integer, intent(in) :: nodes(4, chunk_size)
     real(wp), intent(in) :: motion(4, *)   !! all nodes: u_r, u_z, v_r, v_z
+    type(element_chunk_t), intent(inout) :: chunk
     type(round_chunk_t), intent(inout) :: round
-    integer :: i, n(4)
+    real(wp) :: d31(4), d42(4), h(4), s(4)
+    integer :: i, k
 
     !GCC$ NOVECTOR
     do i = 1, chunk_size
-      n = nodes(:, i)
-      round%us(i) = (motion(1, n(1)) + motion(1, n(2))) + (motion(1, n(3)) + motion(1, n(4)))
-      round%vs(i) = (motion(3, n(1)) + motion(3, n(2))) + (motion(3, n(3)) + motion(3, n(4)))
-      if (n(1) == n(3)) then
-        round%us(i) = 0.0_wp
-        round%vs(i) = 0.0_wp
-      end if
+      do k = 1, 4
+        d31(k) = motion(k, nodes(3, i)) - motion(k, nodes(1, i))
+        d42(k) = motion(k, nodes(4, i)) - motion(k, nodes(2, i))
+        h(k) = (motion(k, nodes(1, i)) - motion(k, nodes(2, i))) &
+          + (motion(k, nodes(3, i)) - motion(k, nodes(4, i)))
+        s(k) = (motion(k, nodes(1, i)) + motion(k, nodes(2, i))) &
+          + (motion(k, nodes(3, i)) + motion(k, nodes(4, i)))
+      end do
+      chunk%u31(:, i) = d31(1:2)
+      chunk%v31(:, i) = d31(3:4)
+      chunk%u42(:, i) = d42(1:2)
+      chunk%v42(:, i) = d42(3:4)
+      chunk%hu(:, i) = h(1:2)
+      chunk%hv(:, i) = h(3:4)
+      round%us(:, i) = s(1:2)
+      round%vs(:, i) = s(3:4)
     end do
-  end subroutine form_sums
+    do i = chunk_size, 1, -1
+      if (nodes(1, i) /= nodes(3, i)) exit
+      round%us(:, i) = 0.0_wp
+      round%vs(:, i) = 0.0_wp
+    end do
+  end subroutine gather_round
 
-  !> Add the part of the forces that all four nodes share: of the hoop stress, in r.
-  pure subroutine scatter_hoop(n_element, local, round, force)
+  !> Add the nodal forces of a chunk to the tile's own nodes: as `scatter_chunk`, with the force of
+  !> the hoop stress on all four.
+  pure subroutine scatter_round(n_element, local, chunk, round, force)
     integer, intent(in) :: n_element            !! elements, in the first slots
     integer, intent(in) :: local(4, chunk_size) !! local numbers in the tile
+    type(element_chunk_t), intent(in) :: chunk
     type(round_chunk_t), intent(in) :: round
     real(wp), intent(inout) :: force(2, *)      !! internal force of the local nodes
-    integer :: i, k
+    integer :: i, k, n(4)
 
     do i = 1, n_element
-      do k = 1, 4
-        force(1, local(k, i)) = force(1, local(k, i)) + round%hoop(i)
+      n = local(:, i)
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(1)) = force(k, n(1)) + ((round%hoop(k, i) + chunk%swing(k, i)) &
+          - chunk%force(k, i))
+      end do
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(2)) = force(k, n(2)) + ((round%hoop(k, i) - chunk%swing(k, i)) &
+          - chunk%force(k + 2, i))
+      end do
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(3)) = force(k, n(3)) + ((round%hoop(k, i) + chunk%swing(k, i)) &
+          + chunk%force(k, i))
+      end do
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(4)) = force(k, n(4)) + ((round%hoop(k, i) - chunk%swing(k, i)) &
+          + chunk%force(k + 2, i))
       end do
     end do
-  end subroutine scatter_hoop
+  end subroutine scatter_round
 
   !> Integrals of N_a r over one quad or triangle, per radian: its volume by nodes. 2x2 Gauss points
   !> are exact. A triangle's third node gets the shares of both its places, its fourth none.

@@ -4,12 +4,13 @@ module round_one_point_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
-  use element_chunk_m, only : element_chunk_t, gather_chunk
+  use element_chunk_m, only : element_chunk_t
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
   use parts_m, only : hourglass_t, material_t, hourglass_viscous
-  use round_chunk_m, only : round_chunk_t, form_sums
-  use round_hourglass_m, only : resist_round_viscously, resist_round_elastically
+  use round_chunk_m, only : round_chunk_t, gather_round, reference_mass
+  use round_hourglass_m, only : form_resistance, resist_round_viscously, &
+    resist_round_elastically
   use round_kinematics_m, only : form_round_shape, form_round_increments, form_round_forces
   use round_time_step_m, only : round_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
@@ -38,8 +39,7 @@ contains
 
     first = (i_chunk - 1)*chunk_size + 1
     n_slot = size(elements%reference, 1)
-    call gather_chunk(nodes, motion, chunk)
-    call form_sums(nodes, motion, round)
+    call gather_round(nodes, motion, chunk, round)
     call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
     call form_round_increments(dt, chunk, round, stress)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
@@ -54,8 +54,8 @@ contains
     call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
     call resist(i_chunk, material, hourglass, dt, stress, round, elements, chunk)
     call form_round_forces(stress, chunk, round)
-    call round_step(material, hourglass, elements%reference(first, 1), n_slot, chunk, round, &
-      elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
+    call round_step(material, hourglass, elements%reference(first, reference_mass), n_slot, chunk, &
+      round, elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
   end subroutine advance_round_one_point
 
   !> Bulk viscosity and hourglass control of one chunk, with their work.
@@ -65,24 +65,24 @@ contains
     type(hourglass_t), intent(in) :: hourglass
     real(wp), intent(in) :: dt
     type(stress_chunk_t), intent(in) :: stress
-    type(round_chunk_t), intent(in) :: round
+    type(round_chunk_t), intent(inout) :: round
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk
     real(wp) :: work
     integer :: first
 
     if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
+      chunk%area = round%area
       call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
         material%sound_speed, dt, chunk, work)
       elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
     end if
+    call form_resistance(material, hourglass, round)
     if (hourglass%form == hourglass_viscous) then
-      call resist_round_viscously(0.25_wp*hourglass%coefficient*material%density &
-        *material%sound_speed, dt, round, chunk, work)
+      call resist_round_viscously(dt, round, chunk, work)
     else
       first = elements%hourglass_start(i_chunk)
-      call resist_round_elastically(0.25_wp*hourglass%coefficient*(material%bulk &
-        + 4.0_wp*material%shear/3.0_wp), dt, stress, round, elements%hourglass_strain(first), &
+      call resist_round_elastically(dt, stress, round, elements%hourglass_strain(first), &
         elements%hourglass_strain(first + chunk_size), chunk, work)
     end if
     elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work

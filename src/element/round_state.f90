@@ -6,9 +6,11 @@ module round_state_m
   use mesh_m, only : mesh_t
   use model_m, only : model_t
   use round_chunk_m, only : node_volumes, reference_mass, reference_sum
+  use volumetric_m, only : log_ratio
   implicit none
   private
-  public :: fill_round_reference, add_round_masses, round_ratios, element_volume
+  public :: fill_round_reference, add_round_masses, round_ratios, element_volume, &
+    hoop_strains
 
 contains
 
@@ -75,6 +77,37 @@ contains
       - 2.0_wp*(a(1)*b(1)*dh(2) + (a(1)*db(1) + da(1)*(b(1) + db(1)))*(h(2) + dh(2))))/24.0_wp
     stretch = stretch/start
   end subroutine round_ratios
+
+  !> Logarithmic hoop strain of all elements in deck order: ln of the mean radius, over the initial
+  !> area, that the motion gives, over that of the start.
+  subroutine hoop_strains(model, motion, strain)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: motion(:, :)     !! (4, n_node)
+    real(wp), intent(inout) :: strain(:)     !! (n_element)
+    real(wp) :: x(2, 4), u(2, 4)
+    integer :: i, slot
+
+    do slot = 1, model%layout%n_slot
+      i = model%layout%slot_element(slot)
+      if (i == 0) cycle
+      x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
+      u = motion(1:2, model%layout%slot_nodes(:, slot))
+      strain(i) = log_ratio(area_integral(x, u)/area_integral(x, x))
+    end do
+  end subroutine hoop_strains
+
+  !> Integral over a quad of the bilinear field through the first components of `values`: the sum
+  !> of M_a times them.
+  pure real(wp) function area_integral(x, values)
+    real(wp), intent(in) :: x(2, 4)      !! corners
+    real(wp), intent(in) :: values(2, 4)
+    real(wp) :: a(2), b(2), h(2), da(2), db(2), dh(2), s, ds
+
+    call patterns(x, a, b, h, s)
+    call patterns(values, da, db, dh, ds)
+    area_integral = 0.25_wp*ds*area(a, b) + (da(1)*(h(1)*b(2) - h(2)*b(1)) &
+      + db(1)*(h(1)*a(2) - h(2)*a(1)))/24.0_wp
+  end function area_integral
 
   !> Diagonals, h and the sum of the first components.
   pure subroutine patterns(x, a, b, h, s)

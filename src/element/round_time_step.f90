@@ -7,224 +7,193 @@ module round_time_step_m
   use element_chunk_m, only : element_chunk_t
   use layout_m, only : chunk_size
   use parts_m, only : hourglass_t, material_t, hourglass_viscous
-  use round_chunk_m, only : round_chunk_t, reference_mass
+  use round_chunk_m, only : round_chunk_t
   implicit none
   private
-  public :: round_step, round_limits
+  public :: round_step
 
-  !> Of one chunk: squares of the frequency of strain and its part by volume, and what hourglass
-  !> control adds: gamma.gamma/m, and its coupling to strain.
+  !> Of one chunk, over the masses: bounds of omega^2 of strain and of its part by volume (over
+  !> lambda); of hourglass control gamma.gamma, and the square of its coupling to strain.
   type :: step_sums_t
     real(wp), dimension(chunk_size) :: strain, dilation, pattern, coupling
   end type step_sums_t
 
 contains
 
-  !> Smallest stable step of the chunk, and its smallest volume ratio.
-  pure subroutine round_step(material, hourglass, reference, stride, chunk, round, limit, volume)
+  !> Smallest stable step of the chunk, and its smallest volume ratio. With x = omega^2 dt^2/4 of
+  !> strain, y the same of hourglass control and z^2 the coupling, the element is stable where
+  !> (1 - x)(1 - y) >= z^2, and so where y <= 1/2 and x + 2 z^2 <= 1.
+  pure subroutine round_step(material, hourglass, inverse_mass, stride, chunk, round, limit, volume)
     type(material_t), intent(in) :: material
-    type(hourglass_t), intent(in) :: hourglass   !! bulk viscosity too
+    type(hourglass_t), intent(in) :: hourglass      !! bulk viscosity too
     integer, intent(in) :: stride
-    real(wp), intent(in) :: reference(stride, *) !! first slot of the chunk
+    real(wp), intent(in) :: inverse_mass(stride, *) !! density over mass, first slot of the chunk; 0
+                                                    !! at the fourth node of a triangle
     type(element_chunk_t), intent(in) :: chunk
-    type(round_chunk_t), intent(in) :: round
-    real(wp), intent(out) :: limit               !! s
-    real(wp), intent(out) :: volume              !! smallest V/V0; not above 0 where an area is not
-    real(wp) :: limits(chunk_size)
-    integer :: i
-
-    call round_limits(material, hourglass, reference(1, reference_mass), stride, chunk, round, &
-      limits)
-    limit = huge(1.0_wp)
-    volume = huge(1.0_wp)
-    !$omp simd reduction(min : limit, volume)
-    do i = 1, chunk_size
-      limit = min(limit, limits(i))
-      volume = min(volume, merge(1.0_wp + chunk%stretch(i), -1.0_wp, round%now%area(i) > 0.0_wp))
-    end do
-  end subroutine round_step
-
-  !> Stable step of each element of a chunk.
-  pure subroutine round_limits(material, hourglass, inverse_mass, stride, chunk, round, limits)
-    type(material_t), intent(in) :: material
-    type(hourglass_t), intent(in) :: hourglass
-    integer, intent(in) :: stride
-    real(wp), intent(in) :: inverse_mass(stride, 4) !! density over mass; 0 at the fourth node of a
-                                                    !! triangle
-    type(element_chunk_t), intent(in) :: chunk
-    type(round_chunk_t), intent(in) :: round
-    real(wp), intent(out) :: limits(chunk_size)
+    type(round_chunk_t), intent(in) :: round        !! present shape, resistance to hourglassing
+    real(wp), intent(out) :: limit                  !! s
+    real(wp), intent(out) :: volume                 !! smallest V/V0; below 0 where an area is
     type(step_sums_t) :: sums
+    real(wp) :: largest, pattern, coupled, factor
+    integer :: i
 
     call form_step_sums(max(0.0_wp, material%bulk - 2.0_wp*material%shear/3.0_wp) &
       /material%density, 2.0_wp*material%shear/material%density, inverse_mass, stride, round, sums)
+    largest = 0.0_wp
+    pattern = 0.0_wp
+    volume = huge(1.0_wp)
+    !$omp simd reduction(max : largest, pattern) reduction(min : volume)
+    do i = 1, chunk_size
+      largest = max(largest, sums%strain(i))
+      pattern = max(pattern, round%resistance(i)*sums%pattern(i))
+      volume = min(volume, min(1.0_wp + chunk%stretch(i), &
+        sign(1.0e3_wp, round%area(i))))
+    end do
+    pattern = max(pattern/material%density, tiny(1.0_wp))
+    ! Resistances of the viscous form act on velocities, those of the stiffness form on their sum.
     if (hourglass%form == hourglass_viscous) then
-      call limit_viscous(0.25_wp*hourglass%coefficient*material%sound_speed, round, sums, limits)
+      factor = 2.0_wp/(material%density*sqrt(largest))
     else
-      call limit_stiff(0.25_wp*hourglass%coefficient*material%sound_speed**2, round, sums, limits)
+      factor = 2.0_wp/(material%density*largest)
+    end if
+    coupled = 0.0_wp
+    !$omp simd reduction(max : coupled)
+    do i = 1, chunk_size
+      coupled = max(coupled, sums%strain(i) + factor*round%resistance(i)*sums%coupling(i))
+    end do
+    if (hourglass%form == hourglass_viscous) then
+      limit = min(2.0_wp/sqrt(coupled), 1.0_wp/pattern)
+    else
+      limit = 2.0_wp/sqrt(max(coupled, 2.0_wp*pattern))
     end if
     if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) &
-      call limit_bulk_viscosity(hourglass, material%sound_speed, chunk, sums, limits)
-  end subroutine round_limits
+      call limit_bulk_viscosity(hourglass, material%sound_speed, chunk, sums, limit)
+  end subroutine round_step
 
-  !> The sums over the nodes. With b_a the gradients over V, G their Gram matrix times V with 1/m
-  !> between: omega^2 <= 2G Lambda + lambda tr, Lambda the larger eigenvalue of [mu n; n t],
-  !> mu that of [p o; o q], n^2 = u^2 + w^2.
+  !> The sums over the nodes. With p, q, o, t, u, w the sums of b_r^2, b_z^2, b_r b_z, M^2, M b_r,
+  !> M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda <= max(p, q, t) +
+  !> |o| + |u| + |w| (Gershgorin) is a bound of the matrix [p o u; o q w; u w t].
   pure subroutine form_step_sums(lame, shear, inverse_mass, stride, round, sums)
-    real(wp), intent(in) :: lame, shear             !! lambda/rho and 2G/rho
+    real(wp), intent(in) :: lame, shear            !! lambda/rho and 2G/rho
     integer, intent(in) :: stride
-    real(wp), intent(in) :: inverse_mass(stride, 4)
+    real(wp), intent(in) :: inverse_mass(stride, *)
     type(round_chunk_t), intent(in) :: round
     type(step_sums_t), intent(inout) :: sums
-    real(wp) :: p, q, o, t, u, w, gr, gz, gm, gg, r, z, m, g, v, both, wr, wz, mu, inverse, ga, gb
+    real(wp) :: p, q, o, t, u, w, gr, gz, gm, gg, r, z, m, g, v, vr, vz, vm, vg, both, ga, gb
     integer :: i
 
-    associate (now => round%now)
-      !$omp simd private(p, q, o, t, u, w, gr, gz, gm, gg, r, z, m, g, v, both, wr, wz, mu, &
-      !$omp& inverse, ga, gb)
-      do i = 1, chunk_size
-        wr = 0.5_wp/now%area(i)
-        wz = now%hz(i)*wr
-        wr = now%hr(i)*wr
-        ga = wz*now%br(i) - wr*now%bz(i)
-        gb = wr*now%az(i) - wz*now%ar(i)
-        ! Node 1, and then 2, 3, 4 on top.
-        r = now%rad_h(i) - now%rad_a(i)
-        z = now%axi_h(i) - now%axi_a(i)
-        m = now%mean_s(i) - now%mean_a(i)
-        g = 1.0_wp - ga
-        v = inverse_mass(i, 1)
-        p = v*r*r
-        q = v*z*z
-        o = v*r*z
-        t = v*m*m
-        u = v*r*m
-        w = v*z*m
-        gr = v*g*r
-        gz = v*g*z
-        gm = v*g*m
-        gg = v*g*g
-        r = -(now%rad_h(i) + now%rad_b(i))
-        z = -(now%axi_h(i) + now%axi_b(i))
-        m = now%mean_s(i) - now%mean_b(i)
-        g = -(1.0_wp + gb)
-        v = inverse_mass(i, 2)
-        p = p + v*r*r
-        q = q + v*z*z
-        o = o + v*r*z
-        t = t + v*m*m
-        u = u + v*r*m
-        w = w + v*z*m
-        gr = gr + v*g*r
-        gz = gz + v*g*z
-        gm = gm + v*g*m
-        gg = gg + v*g*g
-        ! The third node of a triangle has both places.
-        both = merge(1.0_wp, 0.0_wp, inverse_mass(i, 4) <= 0.0_wp)
-        r = (now%rad_h(i) + now%rad_a(i)) + both*(now%rad_b(i) - now%rad_h(i))
-        z = (now%axi_h(i) + now%axi_a(i)) + both*(now%axi_b(i) - now%axi_h(i))
-        m = (now%mean_s(i) + now%mean_a(i)) + both*(now%mean_s(i) + now%mean_b(i))
-        g = (1.0_wp + ga) + both*(gb - 1.0_wp)
-        v = inverse_mass(i, 3)
-        p = p + v*r*r
-        q = q + v*z*z
-        o = o + v*r*z
-        t = t + v*m*m
-        u = u + v*r*m
-        w = w + v*z*m
-        gr = gr + v*g*r
-        gz = gz + v*g*z
-        gm = gm + v*g*m
-        gg = gg + v*g*g
-        r = now%rad_b(i) - now%rad_h(i)
-        z = now%axi_b(i) - now%axi_h(i)
-        m = now%mean_s(i) + now%mean_b(i)
-        g = gb - 1.0_wp
-        v = inverse_mass(i, 4)
-        p = p + v*r*r
-        q = q + v*z*z
-        o = o + v*r*z
-        t = t + v*m*m
-        u = u + v*r*m
-        w = w + v*z*m
-        gr = gr + v*g*r
-        gz = gz + v*g*z
-        gm = gm + v*g*m
-        gg = gg + v*g*g
-        inverse = 1.0_wp/now%volume(i)
-        mu = 0.5_wp*(p + q) + sqrt(0.25_wp*(p - q)**2 + o*o)
-        mu = 0.5_wp*(mu + t) + sqrt(0.25_wp*(mu - t)**2 + (u*u + w*w))
-        sums%dilation(i) = inverse*((p + q) + (t + 2.0_wp*u))
-        sums%strain(i) = inverse*shear*mu + lame*sums%dilation(i)
-        sums%pattern(i) = gg
-        sums%coupling(i) = inverse*(shear*(1.5_wp*(gr*gr + gz*gz) + gm*gm) &
-          + lame*((gr + gm)**2 + gz*gz))
-      end do
-    end associate
-  end subroutine form_step_sums
-
-  !> With viscous hourglass control k gamma gamma, the largest eigenvalue of dt^2 K/4 + dt C/2 (over
-  !> the masses) is at most 1 where (1 - x)(1 - y) >= z^2, x = (dt omega/2)^2, y = dt k gg/2, z^2 the
-  !> coupling, or where x + y <= 1: the larger of two steps that are sure to have it.
-  pure subroutine limit_viscous(factor, round, sums, limits)
-    real(wp), intent(in) :: factor   !! Q_h c/4
-    type(round_chunk_t), intent(in) :: round
-    type(step_sums_t), intent(in) :: sums
-    real(wp), intent(out) :: limits(chunk_size)
-    real(wp) :: k, omega, b, d, apart, together
-    integer :: i
-
-    !$omp simd private(k, omega, b, d, apart, together)
+    !$omp simd private(p, q, o, t, u, w, gr, gz, gm, gg, r, z, m, g, v, vr, vz, vm, vg, both, &
+    !$omp& ga, gb)
     do i = 1, chunk_size
-      k = factor*round%now%volume(i)/sqrt(round%now%area(i))
-      omega = sqrt(sums%strain(i))
-      b = k*sums%pattern(i)/omega
-      d = k*sums%coupling(i)/(omega*sums%strain(i))
-      together = sqrt(1.0_wp + 0.25_wp*b*b) - 0.5_wp*b
-      apart = sqrt(max(0.0_wp, 1.0_wp - d/max(1.0_wp - b, tiny(1.0_wp)**0.5_wp)))
-      limits(i) = 2.0_wp*max(together, apart)/omega
+      ga = round%gamma_a(i)
+      gb = round%gamma_b(i)
+      r = round%rad_h(i) - round%rad_a(i)
+      z = round%axi_h(i) - round%axi_a(i)
+      m = round%mean_s(i) - round%mean_a(i)
+      g = 1.0_wp - ga
+      v = inverse_mass(i, 1)
+      vr = v*r
+      vz = v*z
+      vm = v*m
+      vg = v*g
+      p = vr*r
+      q = vz*z
+      o = vr*z
+      t = vm*m
+      u = vr*m
+      w = vz*m
+      gr = vg*r
+      gz = vg*z
+      gm = vg*m
+      gg = vg*g
+      ! Node 2.
+      r = round%rad_h(i) + round%rad_b(i)
+      z = round%axi_h(i) + round%axi_b(i)
+      m = round%mean_b(i) - round%mean_s(i)
+      g = 1.0_wp + gb
+      v = inverse_mass(i, 2)
+      vr = v*r
+      vz = v*z
+      vm = v*m
+      vg = v*g
+      p = p + vr*r
+      q = q + vz*z
+      o = o + vr*z
+      t = t + vm*m
+      u = u + vr*m
+      w = w + vz*m
+      gr = gr + vg*r
+      gz = gz + vg*z
+      gm = gm + vg*m
+      gg = gg + vg*g
+      ! Node 3: of a triangle it has the place of node 4 too.
+      both = merge(1.0_wp, 0.0_wp, inverse_mass(i, 4) <= 0.0_wp)
+      r = (round%rad_h(i) + round%rad_a(i)) + both*(round%rad_b(i) - round%rad_h(i))
+      z = (round%axi_h(i) + round%axi_a(i)) + both*(round%axi_b(i) - round%axi_h(i))
+      m = (round%mean_s(i) + round%mean_a(i)) + both*(round%mean_s(i) + round%mean_b(i))
+      g = (1.0_wp + ga) + both*(gb - 1.0_wp)
+      v = inverse_mass(i, 3)
+      vr = v*r
+      vz = v*z
+      vm = v*m
+      vg = v*g
+      p = p + vr*r
+      q = q + vz*z
+      o = o + vr*z
+      t = t + vm*m
+      u = u + vr*m
+      w = w + vz*m
+      gr = gr + vg*r
+      gz = gz + vg*z
+      gm = gm + vg*m
+      gg = gg + vg*g
+      r = round%rad_b(i) - round%rad_h(i)
+      z = round%axi_b(i) - round%axi_h(i)
+      m = round%mean_s(i) + round%mean_b(i)
+      g = gb - 1.0_wp
+      v = inverse_mass(i, 4)
+      vr = v*r
+      vz = v*z
+      vm = v*m
+      vg = v*g
+      p = p + vr*r
+      q = q + vz*z
+      o = o + vr*z
+      t = t + vm*m
+      u = u + vr*m
+      w = w + vz*m
+      gr = gr + vg*r
+      gz = gz + vg*z
+      gm = gm + vg*m
+      gg = gg + vg*g
+      sums%dilation(i) = round%inverse_volume(i)*((p + q) + (t + 2.0_wp*u))
+      m = max(p + (abs(o) + abs(u)), q + (abs(o) + abs(w)), t + (abs(u) + abs(w)))
+      sums%strain(i) = round%inverse_volume(i)*shear*m + lame*sums%dilation(i)
+      sums%pattern(i) = gg
+      sums%coupling(i) = round%inverse_volume(i)*(shear*(1.5_wp*(gr*gr + gz*gz) + gm*gm) &
+        + lame*((gr + gm)**2 + gz*gz))
     end do
-  end subroutine limit_viscous
-
-  !> With stiff hourglass control: the larger eigenvalue of [omega^2 z; z k gg].
-  pure subroutine limit_stiff(factor, round, sums, limits)
-    real(wp), intent(in) :: factor   !! Q_h c^2/4
-    type(round_chunk_t), intent(in) :: round
-    type(step_sums_t), intent(in) :: sums
-    real(wp), intent(out) :: limits(chunk_size)
-    real(wp) :: k, own
-    integer :: i
-
-    associate (now => round%now)
-      !$omp simd private(k, own)
-      do i = 1, chunk_size
-        k = 0.5_wp*factor*((now%ar(i)**2 + now%az(i)**2) + (now%br(i)**2 + now%bz(i)**2)) &
-          *now%volume(i)/(now%area(i)*now%area(i))
-        own = k*sums%pattern(i)
-        limits(i) = 2.0_wp/sqrt(0.5_wp*(sums%strain(i) + own) &
-          + sqrt(0.25_wp*(sums%strain(i) - own)**2 + k*sums%coupling(i)))
-      end do
-    end associate
-  end subroutine limit_stiff
+  end subroutine form_step_sums
 
   !> Bulk viscosity in compression has a rate of its own, which is added: x + y <= theta at a share
   !> theta <= 1 of the step without it.
-  pure subroutine limit_bulk_viscosity(viscosity, sound_speed, chunk, sums, limits)
+  pure subroutine limit_bulk_viscosity(viscosity, sound_speed, chunk, sums, limit)
     type(hourglass_t), intent(in) :: viscosity
     real(wp), intent(in) :: sound_speed
     type(element_chunk_t), intent(in) :: chunk
     type(step_sums_t), intent(in) :: sums
-    real(wp), intent(inout) :: limits(chunk_size)
+    real(wp), intent(inout) :: limit
     real(wp) :: length, rate
     integer :: i
 
+    rate = 0.0_wp
     do i = 1, chunk_size
       if (.not. chunk%trace(i) < 0.0_wp) cycle
       length = sqrt(chunk%area(i))
-      rate = length/(1.0_wp + chunk%stretch(i))*(viscosity%linear*sound_speed &
-        - viscosity%quadratic*length*chunk%trace(i))*sums%dilation(i)
-      limits(i) = limits(i)/(1.0_wp + 0.5_wp*limits(i)*rate)
+      rate = max(rate, length/(1.0_wp + chunk%stretch(i))*(viscosity%linear*sound_speed &
+        - viscosity%quadratic*length*chunk%trace(i))*sums%dilation(i))
     end do
+    limit = limit/(1.0_wp + 0.5_wp*limit*rate)
   end subroutine limit_bulk_viscosity
 
 end module round_time_step_m

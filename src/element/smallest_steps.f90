@@ -13,9 +13,10 @@ module smallest_steps_m
   use parts_m, only : hourglass_t, material_t
   use quad_kinematics_m, only : form_present_shape, form_increments
   use quad_points_m, only : n_point, form_point
-  use round_chunk_m, only : round_chunk_t, form_sums, n_round_reference, reference_mass
+  use round_chunk_m, only : round_chunk_t, gather_round, n_round_reference, reference_mass
+  use round_hourglass_m, only : form_resistance
   use round_kinematics_m, only : form_round_shape, form_round_increments
-  use round_time_step_m, only : round_limits
+  use round_time_step_m, only : round_step
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
@@ -101,7 +102,7 @@ contains
     end associate
   end function step_of_slot
 
-  !> The same for round quads.
+  !> The same for round quads, with the hourglass control that has a share in their step.
   function round_step_of_slot(model, reference, i_slot, motion) result(step)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: reference(n_round_reference) !! its shape at time zero
@@ -111,20 +112,22 @@ contains
     type(element_chunk_t) :: chunk
     type(round_chunk_t) :: round
     type(stress_chunk_t) :: unused
-    real(wp) :: shape(chunk_size, n_round_reference), limits(chunk_size)
+    real(wp) :: shape(chunk_size, n_round_reference), volume
     integer :: nodes(4, chunk_size)
 
     nodes = spread(model%layout%slot_nodes(:, i_slot), 2, chunk_size)
     shape = spread(reference, 1, chunk_size)
-    call gather_chunk(nodes, motion, chunk)
-    call form_sums(nodes, motion, round)
+    call gather_round(nodes, motion, chunk, round)
     call form_round_shape(shape, chunk_size, chunk, round)
     call form_round_increments(0.0_wp, chunk, round, unused)
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
-      call round_limits(model%materials(part%material), part%hourglass, &
-        shape(1, reference_mass), chunk_size, chunk, round, limits)
+      associate (material => model%materials(part%material))
+        chunk%area = round%area
+        call form_resistance(material, part%hourglass, round)
+        call round_step(material, part%hourglass, shape(1, reference_mass), chunk_size, chunk, &
+          round, step, volume)
+      end associate
     end associate
-    step = limits(1)
   end function round_step_of_slot
 
   !> The same for full integration.

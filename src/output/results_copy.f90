@@ -12,7 +12,7 @@ module results_copy_m
   use hdf5_writing_m, only : append_rows, as_real, memory_type
   use kinds_m, only : wp, long
   use model_m, only : model_t
-  use results_arrays_m, only : results_file_t, n_cell_field, point_names, &
+  use results_arrays_m, only : results_file_t, point_names, &
     point_columns, cell_names, cell_columns
   use results_file_m, only : append_instant, take_name, note_failure
   implicit none
@@ -121,7 +121,7 @@ contains
       deallocate (rows)
     end do
     n = model%mesh%n_element
-    do i = 1, n_cell_field
+    do i = 1, file%n_cell_field
       allocate (rows(n*max(cell_columns(i), 1)))
       call read_rows(old, 'VTKHDF/CellData/'//trim(cell_names(i)), cell_columns(i), &
         (k - 1)*int(n, long), n, c_loc(rows), error)

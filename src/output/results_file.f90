@@ -54,6 +54,7 @@ contains
     if (allocated(error)) return
     allocate (file%times(n_planned))
     if (any(has_friction(model%contacts))) file%n_point_field = n_point_field
+    if (model%is_round) file%n_cell_field = n_cell_field
     call create_file(file, error)
     if (allocated(error)) return
     call make_group(file%id, 'VTKHDF', error)
@@ -182,7 +183,8 @@ contains
     if (allocated(values)) rows(:size(nodes)) = values(nodes)
   end subroutine gather_scalars
 
-  !> Append the fields of the elements: stress (xx yy zz xy yz xz), plastic strain, pressure, mises.
+  !> Append the fields of the elements: stress (xx yy zz xy yz xz), plastic strain, pressure,
+  !> mises, and of round bodies the hoop strain (zz is their hoop stress).
   subroutine append_cell_fields(file, snapshot, error)
     type(results_file_t), intent(inout), target :: file
     type(snapshot_t), intent(in), target :: snapshot
@@ -191,7 +193,7 @@ contains
 
     n_cell = size(snapshot%stress, 2)
     call append_rows(file%cell_fields(1), n_cell, c_loc(snapshot%stress), error)
-    do i = 2, n_cell_field
+    do i = 2, file%n_cell_field
       file%rows = 0.0_wp
       do first = 1, n_cell, block_rows
         n = min(block_rows, n_cell - first + 1)
@@ -204,6 +206,8 @@ contains
             file%rows(:n) = -sum(stress(:3, :), 1)/3.0_wp
           case (4)
             file%rows(:n) = mises_stress(stress(1, :), stress(2, :), stress(3, :), stress(4, :))
+          case (5)
+            file%rows(:n) = snapshot%hoop_strain(first:first + n - 1)
           end select
         end associate
         call append_rows(file%cell_fields(i), n, c_loc(file%rows), error)
@@ -310,7 +314,7 @@ contains
     do i = 1, file%n_point_field
       call close_growing(file%point_fields(i), error)
     end do
-    do i = 1, n_cell_field
+    do i = 1, file%n_cell_field
       call close_growing(file%cell_fields(i), error)
     end do
     do i = 1, n_step_array

@@ -12,6 +12,7 @@ module snapshot_filling_m
   use layout_m, only : slot_part
   use model_m, only : model_t
   use round_chunk_m, only : node_volumes
+  use round_state_m, only : hoop_strains
   use snapshot_m, only : snapshot_t, rubbed_t
   use state_m, only : state_t
   use support_forces_m, only : find_supports
@@ -47,6 +48,7 @@ contains
     allocate (snapshot%stress(6, n_element), source=0.0_wp)
     if (has_history) &
       allocate (snapshot%plastic_strain(n_element), source=0.0_wp)
+    if (model%is_round) allocate (snapshot%hoop_strain(n_element), source=0.0_wp)
     if (size(model%contacts) > 0) allocate (snapshot%contact_force(2, n_node), &
       snapshot%contact_pressure(n_node), snapshot%gap(n_node), source=0.0_wp)
     if (any(has_friction(model%contacts))) allocate (snapshot%contact_traction(n_node), &
@@ -272,6 +274,7 @@ contains
     call element_stresses(model, state%motion, state%elements, snapshot%stress)
     if (allocated(snapshot%plastic_strain)) &
       call element_plastic_strains(model, state%elements, snapshot%plastic_strain)
+    if (model%is_round) call hoop_strains(model, state%motion, snapshot%hoop_strain)
     if (size(model%contacts) == 0) return
     snapshot%contact_force = 0.0_wp
     snapshot%contact_pressure = 0.0_wp

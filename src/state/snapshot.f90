@@ -86,6 +86,7 @@ module snapshot_m
                                                  !! node
     real(wp), allocatable :: stress(:, :)        !! (6, n_element) xx yy zz xy yz xz
     real(wp), allocatable :: plastic_strain(:)   !! (n_element)
+    real(wp), allocatable :: hoop_strain(:)      !! (n_element) of round bodies
     type(interface_result_t), allocatable :: interfaces(:)
     type(part_result_t), allocatable :: parts(:)
     type(wall_result_t), allocatable :: walls(:) !! only where the deck has any

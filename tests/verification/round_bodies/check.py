@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: MIT
+"""Axisymmetric bodies: thick tube and sphere under pressure, a bar with radial inertia, the Taylor bar."""
+import pathlib
+import re
+
+import numpy as np
+
+from meshes import Deck, grid
+
+YOUNG, POISSON, RHO, INNER, OUTER = 1000.0, 0.3, 1.0, 1.0, 2.0
+#: So small that nothing but the linear part is left of the laws.
+PRESSURE = 1.0e-6
+TAYLOR = pathlib.Path(__file__).resolve().parents[3] / "input/taylor/taylor.k"
+
+
+def round_deck(title, end, dt=None):
+    deck = Deck(title)
+    deck.control(end, dt=dt)
+    deck.add("*PART", "body", (1, 1, 1))
+    return deck.add("*SECTION_SHELL", (1, 15, None, 1), (1.0,))
+
+
+def pressed(deck, ids, coordinates, quads, pairs, damping):
+    """Pressure on inner segments, damping near the critical one of breathing."""
+    deck.curve(1, [(0.0, 1.0), (1.0e9, 1.0)])
+    deck.add("*LOAD_SEGMENT", *[(1, PRESSURE, 0.0, *[int(ids[k]) for k in (a, b, b, b)]) for a, b in pairs])
+    return deck.add("*DAMPING_GLOBAL", (0, damping))
+
+
+def check_tube(run):
+    """Lame: the one-point form is exact at the nodes of a uniform mesh."""
+    errors, sizes = [], (5, 10, 20)
+    for n in sizes:
+        coordinates, quads = grid(n, 2, OUTER - INNER, 2.0 / n, (INNER, 0.0))
+        deck = round_deck("Lame's tube", 4.0)
+        deck.elastic(RHO, YOUNG, POISSON)
+        ids = deck.mesh(coordinates, quads)
+        deck.fix(ids, y=1)
+        # Walked round the body, which lies on the left.
+        pressed(deck, ids, coordinates, quads, [((j + 1) * (n + 1), j * (n + 1)) for j in range(2)], 42.0)
+        result = run.program(deck.output(plot=4.0), name=f"tube_{n}")
+        r = coordinates[:, 0]
+        exact = (1.0 + POISSON) / YOUNG * PRESSURE * INNER ** 2 / (OUTER ** 2 - INNER ** 2) * (
+            (1.0 - 2.0 * POISSON) * r + OUTER ** 2 / r)
+        found = result.points("displacement")[-1][:, 0]
+        run.check(f"tube of {n}: radial displacement of all nodes", found, exact, 1e-8, source="Lame (1852)")
+        centre = 0.5 * (r[:n] + r[1:n + 1])
+        hoop = result.cells("stress")[-1][:n, 2] / PRESSURE
+        errors.append(np.abs(hoop - (1.0 + (OUTER / centre) ** 2) / 3.0).max())
+        strain = result.cells("hoop_strain")[-1][:n]
+        run.check(f"tube of {n}: hoop strain of the elements", strain,
+                  0.5 * (exact[:n] + exact[1:n + 1]) / centre, 1e-7, source="mean displacement over mean radius")
+    run.check("tube: error of the hoop stress in the elements", errors[-1], 0.0, 3e-3, "abs", "Lame (1852)")
+    run.check("tube: order of the hoop stress", run.order(1.0 / np.array(sizes), errors), 2.0, 0.15, "abs",
+              "second order")
+
+
+def sphere(n):
+    """A quarter of the section of a hollow sphere, n by 2 n quads."""
+    radius = INNER + (OUTER - INNER) * np.arange(n + 1) / n
+    angle = 0.5 * np.pi * np.arange(2 * n + 1) / (2 * n)
+    coordinates = np.array([(a * np.cos(t), a * np.sin(t)) for t in angle for a in radius])
+    coordinates[np.abs(coordinates) < 1e-12] = 0.0
+    row = n + 1
+    quads = [(j * row + i, j * row + i + 1, (j + 1) * row + i + 1, (j + 1) * row + i)
+             for j in range(2 * n) for i in range(n)]
+    return coordinates, quads
+
+
+def check_sphere(run):
+    errors, sizes = [], (4, 8, 16)
+    for n in sizes:
+        coordinates, quads = sphere(n)
+        deck = round_deck("hollow sphere", 4.0)
+        deck.elastic(RHO, YOUNG, POISSON)
+        ids = deck.mesh(coordinates, quads)
+        deck.fix(ids[:n + 1], y=1)
+        pressed(deck, ids, coordinates, quads, [((j + 1) * (n + 1), j * (n + 1)) for j in range(2 * n)], 42.0)
+        result = run.program(deck.output(plot=4.0), name=f"sphere_{n}")
+        place = np.hypot(*coordinates.T)
+        exact = PRESSURE * INNER ** 3 / (YOUNG * (OUTER ** 3 - INNER ** 3)) * (
+            (1.0 - 2.0 * POISSON) * place + (1.0 + POISSON) * OUTER ** 3 / (2.0 * place ** 2))
+        found = result.points("displacement")[-1][:, :2]
+        radial = np.sum(found * coordinates, axis=1) / place
+        errors.append(np.abs(radial / exact - 1.0).max())
+        run.true(f"sphere of {n}: nodes on the axis keep to it", np.all(found[coordinates[:, 0] == 0.0, 0] == 0.0))
+    run.check("sphere: largest error of the radial displacement", errors[-1], 0.0, 5e-3, "abs", "Lame (1852)")
+    run.check("sphere: order", run.order(1.0 / np.array(sizes), errors), 2.0, 0.3, "abs", "second order")
+
+
+def phase_velocity(poisson, number):
+    """Of the lowest longitudinal wave of a round bar of radius 1 over sqrt(E/rho) (Pochhammer and Chree)."""
+    shear = 0.5 / (1.0 + poisson)
+    pressure = np.sqrt(poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)) + 2.0 * shear)
+    angle = (np.arange(2000) + 0.5) * np.pi / 2000
+
+    def bessel(order, x):
+        return np.mean(np.cos(order * angle - x * np.sin(angle)))
+
+    def equation(speed):
+        p, q = (np.sqrt(complex((speed / c) ** 2 - 1.0)) * number for c in (pressure, np.sqrt(shear)))
+        value = (2.0 * p * (q ** 2 + number ** 2) * bessel(1, p) * bessel(1, q)
+                 - (q ** 2 - number ** 2) ** 2 * bessel(0, p) * bessel(1, q)
+                 - 4.0 * number ** 2 * p * q * bessel(1, p) * bessel(0, q))
+        return value.real
+
+    low, high = 0.97, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if equation(low) * equation(middle) <= 0.0:
+            high = middle
+        else:
+            low = middle
+    return low
+
+
+def bar_frequency(run, n, number, guess):
+    """Of a standing wave, n quads over the radius: fitted to ten periods of its middle."""
+    length = np.pi / number
+    coordinates, quads = grid(n, int(round(length * n)), 1.0, length)
+    deck = round_deck("bar with radial inertia", 10.2 * 2.0 * np.pi / guess)
+    deck.elastic(RHO, YOUNG, POISSON)
+    ids = deck.mesh(coordinates, quads)
+    deck.fix([*ids[:n + 1], *ids[-n - 1:]], y=1)
+    small = 1.0e-6
+    deck.add("*INITIAL_VELOCITY_NODE",
+             *[(int(i), -POISSON * small * number * a * np.cos(number * b), small * np.sin(number * b))
+               for i, (a, b) in zip(ids, coordinates)])
+    middle = int(ids[(len(coordinates) // (n + 1) // 2) * (n + 1)])
+    interval = 2.0 * np.pi / guess / 100.0
+    result = run.program(deck.output(nodout=interval, glstat=interval, nodes=[middle]), name=f"bar_{n}")
+    energies = result.table("glstat")
+    run.check(f"bar of {n}: energy ratio", energies["energy_ratio"], np.ones_like(energies["time"]), 1e-4)
+    node = result.node(middle)
+
+    def rest(frequency):
+        waves = np.stack([np.cos(frequency * node["time"]), np.sin(frequency * node["time"])], -1)
+        return np.linalg.lstsq(waves, node["vy"], rcond=None)[1][0]
+
+    return min(guess * np.linspace(0.99, 1.01, 2001), key=rest)
+
+
+def check_bar(run):
+    """Radial inertia slows the wave: 0.59 % at this wave number."""
+    number, sizes = 0.5, (4, 8, 16)
+    expected = np.sqrt(YOUNG / RHO) * number * phase_velocity(POISSON, number)
+    run.check("bar: exact speed against Rayleigh's", phase_velocity(POISSON, number),
+              1.0 / np.sqrt(1.0 + 0.5 * (POISSON * number) ** 2), 5e-4, source="Love (1892)")
+    found = [bar_frequency(run, n, number, expected) for n in sizes]
+    run.check("bar: frequency", found[-1], expected, 1e-4, source="Pochhammer and Chree")
+    run.check("bar: order of the frequency", run.order(1.0 / np.array(sizes), expected - np.array(found)), 2.0, 0.3,
+              "abs", "second order")
+
+
+def volumes(places, quads):
+    """Volume per radian of each quad by Green's theorem."""
+    sides = [(places[quads[:, k]], places[quads[:, (k + 1) % 4]]) for k in range(4)]
+    return sum((b[:, 1] - a[:, 1]) * (a[:, 0] ** 2 + a[:, 0] * b[:, 0] + b[:, 0] ** 2) / 6.0 for a, b in sides)
+
+
+def check_taylor(run):
+    text = TAYLOR.read_text()
+    result = run.program(text, name="taylor")
+    edge, end = result.node(11), result.node(1101)
+    for time, radius, length in ((12.0, 5.38, 29.705), (40.0, 7.07, 24.564)):
+        run.check(f"Taylor bar: radius at {time:g} microseconds, mm",
+                  1e3 * np.interp(time * 1e-6, edge["time"], edge["x"]), radius, 0.02, "abs", "another program")
+        run.check(f"Taylor bar: length at {time:g} microseconds, mm",
+                  1e3 * np.interp(time * 1e-6, end["time"], end["y"]), length, 0.02, "abs", "another program")
+    run.check("Taylor bar: final radius, mm", 1e3 * edge["x"][-1], 7.16, 0.03, "abs",
+              "another program; converged codes 7.22 to 7.24")
+    run.check("Taylor bar: final length, mm", 1e3 * end["y"][-1], 21.425, 0.02, "abs",
+              "another program; converged codes 21.42 to 21.43")
+    run.check("Taylor bar: largest plastic strain", result.cells("plastic_strain")[-1].max(), 3.2, 0.15, "abs",
+              "another program")
+    _, quads = grid(10, 100)
+    quads = np.array(quads)
+    start = np.array([(3.2e-3 * i / 10, 32.4e-3 * j / 100) for j in range(101) for i in range(11)])
+    now = start + result.points("displacement")[-1][:, :2]
+    ratio = volumes(now, quads) / volumes(start, quads)
+    run.check("Taylor bar: volume of every element", ratio, np.ones(1000), 0.01, source="plastic flow keeps volume")
+    energies = result.table("glstat")
+    run.check("Taylor bar: energy ratio", energies["energy_ratio"], np.ones_like(energies["time"]), 1e-3)
+    mass = 8930.0 * 0.5 * 3.2e-3 ** 2 * 32.4e-3
+    run.check("Taylor bar: energy at the start, per radian",
+              energies["total"][0] + 0.5 * (mass / 200.0) * 227.0 ** 2, 0.5 * mass * 227.0 ** 2, 1e-9,
+              source="the row of nodes on the wall stands still")
+    free = re.sub(r"\*BOUNDARY_SPC_SET\n.*\n.*\n",
+                  "*RIGIDWALL_PLANAR\n         0\n       0.0       0.0       0.0       0.0       1.0       0.0\n", text)
+    let_go = run.program(free, name="wall")
+    run.report("Taylor bar on a wall that lets go: final radius, mm", 1e3 * let_go.node(11)["x"][-1],
+               "its edge lifts off")
+    run.report("Taylor bar on a wall that lets go: edge above the wall, mm", 1e3 * let_go.node(11)["y"][-1])
+    run.check("Taylor bar on a wall that lets go: nothing behind it", let_go.points("displacement")[-1][:11, 1].min(),
+              0.0, 1e-12, "min")
+
+
+def check(run):
+    check_tube(run)
+    check_sphere(run)
+    check_bar(run)
+    check_taylor(run)
