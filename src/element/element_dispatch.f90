@@ -10,6 +10,7 @@ module element_dispatch_m
   use quad_full_m, only : advance_full
   use quad_one_point_m, only : advance_one_point
   use round_chunk_m, only : round_chunk_t, scatter_round
+  use round_full_m, only : advance_round_full
   use round_one_point_m, only : advance_round_one_point
   implicit none
   private
@@ -57,9 +58,15 @@ contains
             model%materials(part%material), part%hourglass, dt, elements, chunk)
         case (form_round_one_point)
           call advance_round_one_point(i_chunk, model%layout%slot_nodes(1, first), motion, &
-            model%materials(part%material), part%hourglass, dt, elements, chunk, round)
+            model%materials(part%material), part%hourglass, dt, elements, round)
           call scatter_round(model%layout%chunk_elements(i_chunk), &
-            model%layout%slot_local(1, first), chunk, round, force)
+            model%layout%slot_local(1, first), round, force)
+          cycle
+        case (form_round_full)
+          call advance_round_full(i_chunk, model%layout%slot_nodes(1, first), motion, &
+            model%materials(part%material), part%hourglass, dt, elements, round)
+          call scatter_round(model%layout%chunk_elements(i_chunk), &
+            model%layout%slot_local(1, first), round, force)
           cycle
         end select
         call scatter_chunk(model%layout%chunk_elements(i_chunk), &

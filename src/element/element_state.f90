@@ -10,8 +10,9 @@ module element_state_m
   use parts_m, only : hourglass_stiffness
   use quad_full_m, only : has_mean_dilatation
   use quad_points_m, only : n_point, point_ratios
-  use round_state_m, only : fill_round_reference, add_round_masses, round_ratios
   use round_chunk_m, only : n_round_reference
+  use round_points_m, only : round_point_ratios
+  use round_state_m, only : fill_round_reference, add_round_masses, round_ratios
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
@@ -97,7 +98,7 @@ contains
   !> row sums of the consistent mass.
   subroutine lump_mass(model, mass)
     type(model_t), intent(in) :: model
-    real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of thickness or per radian
+    real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of depth or per radian
     real(wp) :: x(2, 4), area
     integer :: i, corners
 
@@ -150,7 +151,7 @@ contains
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout) :: plastic_strain(:) !! (n_element)
-    real(wp) :: reference(6), stretch(n_point), start(n_point)
+    real(wp) :: stretch(n_point), start(n_point)
     real(wp), parameter :: none(2, 4) = 0.0_wp
     integer :: i, k, slot, i_chunk, first, stride
 
@@ -163,8 +164,7 @@ contains
       if (elements%point_start(i_chunk) == 0) then
         plastic_strain(i) = elements%history(first)
       else
-        reference = elements%reference(slot, :)
-        call point_ratios(reference, none, stretch, start)
+        call ratios_of_points(model, elements, slot, none, stretch, start)
         associate (part => model%parts(model%layout%chunk_part(i_chunk)))
           stride = chunk_size*history_size(model%materials(part%material))
         end associate
@@ -187,21 +187,19 @@ contains
     real(wp) :: r(6), u(2, 4), d31(2), d42(2)
 
     i_chunk = (slot - 1)/chunk_size + 1
-    r = elements%reference(slot, :)
+    r = elements%reference(slot, :6)
     stretch = 0.0_wp
     start = 0.0_wp
     associate (nodes => model%layout%slot_nodes(:, slot), &
       material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
       n = 1
-      if (model%is_round) then
-        u = motion(1:2, nodes)
-        call round_ratios(model, slot, u, stretch(1), start(1))
-        return
-      end if
       if (elements%point_start(i_chunk) > 0 .and. .not. has_mean_dilatation(material)) n = n_point
       if (n > 1) then
         u = motion(1:2, nodes)
-        call point_ratios(r, u, stretch, start)
+        call ratios_of_points(model, elements, slot, u, stretch, start)
+      else if (model%is_round) then
+        u = motion(1:2, nodes)
+        call round_ratios(model, slot, u, stretch(1), start(1))
       else
         d31 = motion(1:2, nodes(3)) - motion(1:2, nodes(1))
         d42 = motion(1:2, nodes(4)) - motion(1:2, nodes(2))
@@ -212,6 +210,24 @@ contains
     end associate
   end subroutine volume_ratios
 
+  !> J - 1 at the points of the element in a slot, and the initial area or volume of each.
+  pure subroutine ratios_of_points(model, elements, slot, u, stretch, start)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: slot
+    real(wp), intent(in) :: u(2, 4)            !! displacement of the nodes
+    real(wp), intent(out) :: stretch(n_point), start(n_point)
+    real(wp) :: reference(6), x(2, 4)
+
+    if (model%is_round) then
+      x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
+      call round_point_ratios(x, u, stretch, start)
+    else
+      reference = elements%reference(slot, :6)
+      call point_ratios(reference, u, stretch, start)
+    end if
+  end subroutine ratios_of_points
+
   !> Smallest J of the element in a slot: of the element, and of its points where it has several.
   pure function smallest_ratio(model, motion, elements, slot) result(smallest)
     type(model_t), intent(in) :: model
@@ -219,15 +235,14 @@ contains
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
     real(wp) :: smallest
-    real(wp) :: reference(6), u(2, 4), stretch(n_point), start(n_point)
+    real(wp) :: u(2, 4), stretch(n_point), start(n_point)
     integer :: n
 
     call volume_ratios(model, motion, elements, slot, n, stretch, start)
     if (elements%point_start((slot - 1)/chunk_size + 1) > 0) then
       n = n_point
-      reference = elements%reference(slot, :)
       u = motion(1:2, model%layout%slot_nodes(:, slot))
-      call point_ratios(reference, u, stretch, start)
+      call ratios_of_points(model, elements, slot, u, stretch, start)
     end if
     smallest = 1.0_wp + minval(stretch(:n))
   end function smallest_ratio

@@ -16,12 +16,13 @@ module round_chunk_m
   !> density over mass.
   integer, parameter :: reference_sum = 7, reference_mass = 8, n_round_reference = 11
 
-  !> What a chunk of round quads has besides that of a plane one. Of the gradients of the volume `rad`
-  !> is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over A), each for
-  !> the patterns a, b, h (s: all four nodes).
+  !> What a chunk of round quads has besides that of a plane one. Of the gradients of the volume
+  !> `rad` is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over A), each
+  !> for the patterns a, b, h (s: all four nodes).
   type :: round_chunk_t
     real(wp) :: us(2, chunk_size), vs(2, chunk_size) !! sums of u and of v, 0 in padding
-    real(wp) :: hoop(2, chunk_size)     !! force on each of the four nodes, 0 in z
+    real(wp) :: force(4, chunk_size), swing(2, chunk_size) !! forces as in the plane chunk
+    real(wp) :: hoop(2, chunk_size)     !! and on each of the four nodes, 0 in z
     real(wp), dimension(chunk_size) :: volume, inverse_volume, area, inverse_area !! now
     real(wp), dimension(chunk_size) :: s                   !! sum of the four radii, now
     real(wp), dimension(chunk_size) :: span                !! a.a + b.b
@@ -72,10 +73,9 @@ contains
 
   !> Add the nodal forces of a chunk to the tile's own nodes: as `scatter_chunk`, with the force of
   !> the hoop stress on all four.
-  pure subroutine scatter_round(n_element, local, chunk, round, force)
+  pure subroutine scatter_round(n_element, local, round, force)
     integer, intent(in) :: n_element            !! elements, in the first slots
     integer, intent(in) :: local(4, chunk_size) !! local numbers in the tile
-    type(element_chunk_t), intent(in) :: chunk
     type(round_chunk_t), intent(in) :: round
     real(wp), intent(inout) :: force(2, *)      !! internal force of the local nodes
     integer :: i, k, n(4)
@@ -84,23 +84,23 @@ contains
       n = local(:, i)
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(1)) = force(k, n(1)) + ((round%hoop(k, i) + chunk%swing(k, i)) &
-          - chunk%force(k, i))
+        force(k, n(1)) = force(k, n(1)) + ((round%hoop(k, i) + round%swing(k, i)) &
+          - round%force(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(2)) = force(k, n(2)) + ((round%hoop(k, i) - chunk%swing(k, i)) &
-          - chunk%force(k + 2, i))
+        force(k, n(2)) = force(k, n(2)) + ((round%hoop(k, i) - round%swing(k, i)) &
+          - round%force(k + 2, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(3)) = force(k, n(3)) + ((round%hoop(k, i) + chunk%swing(k, i)) &
-          + chunk%force(k, i))
+        force(k, n(3)) = force(k, n(3)) + ((round%hoop(k, i) + round%swing(k, i)) &
+          + round%force(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(4)) = force(k, n(4)) + ((round%hoop(k, i) - chunk%swing(k, i)) &
-          + chunk%force(k + 2, i))
+        force(k, n(4)) = force(k, n(4)) + ((round%hoop(k, i) - round%swing(k, i)) &
+          + round%force(k + 2, i))
       end do
     end do
   end subroutine scatter_round

@@ -86,8 +86,9 @@ contains
     end do
   end subroutine form_round_shape
 
-  !> Strain increments, spin and hourglass velocity of the step, from the shape half a step ago. The
-  !> hoop rate is taken from both rates in the plane: laws see the same deviator, and their D_zz is 0.
+  !> Strain increments, spin and hourglass velocity of the step, from the shape half a step ago.
+  !> The hoop rate is taken from both rates in the plane: laws see the same deviator, their D_zz
+  !> is 0.
   pure subroutine form_round_increments(dt, chunk, round, stress)
     real(wp), intent(in) :: dt                    !! step that led here
     type(element_chunk_t), intent(inout) :: chunk !! trace, gamma.v and mid-step volume out
@@ -167,8 +168,8 @@ contains
   !> q gamma_a: the parts of the diagonals, of h, and that of all four nodes.
   pure subroutine form_round_forces(stress, chunk, round)
     type(stress_chunk_t), intent(in) :: stress
-    type(element_chunk_t), intent(inout) :: chunk !! `force` and `swing` out
-    type(round_chunk_t), intent(inout) :: round   !! `hoop` out
+    type(element_chunk_t), intent(in) :: chunk
+    type(round_chunk_t), intent(inout) :: round   !! forces out
     real(wp) :: rr, zz, rz, tt
     integer :: i
 
@@ -178,14 +179,14 @@ contains
       zz = stress%syy(i) + chunk%pressure(i)
       rz = stress%sxy(i)
       tt = chunk%pressure(i) - (stress%sxx(i) + stress%syy(i))
-      chunk%force(1, i) = round%rad_a(i)*rr + round%axi_a(i)*rz + round%mean_a(i)*tt &
+      round%force(1, i) = round%rad_a(i)*rr + round%axi_a(i)*rz + round%mean_a(i)*tt &
         + round%gamma_a(i)*chunk%qx(i)
-      chunk%force(2, i) = round%rad_a(i)*rz + round%axi_a(i)*zz + round%gamma_a(i)*chunk%qy(i)
-      chunk%force(3, i) = round%rad_b(i)*rr + round%axi_b(i)*rz + round%mean_b(i)*tt &
+      round%force(2, i) = round%rad_a(i)*rz + round%axi_a(i)*zz + round%gamma_a(i)*chunk%qy(i)
+      round%force(3, i) = round%rad_b(i)*rr + round%axi_b(i)*rz + round%mean_b(i)*tt &
         + round%gamma_b(i)*chunk%qx(i)
-      chunk%force(4, i) = round%rad_b(i)*rz + round%axi_b(i)*zz + round%gamma_b(i)*chunk%qy(i)
-      chunk%swing(1, i) = round%rad_h(i)*rr + round%axi_h(i)*rz + chunk%qx(i)
-      chunk%swing(2, i) = round%rad_h(i)*rz + round%axi_h(i)*zz + chunk%qy(i)
+      round%force(4, i) = round%rad_b(i)*rz + round%axi_b(i)*zz + round%gamma_b(i)*chunk%qy(i)
+      round%swing(1, i) = round%rad_h(i)*rr + round%axi_h(i)*rz + chunk%qx(i)
+      round%swing(2, i) = round%rad_h(i)*rz + round%axi_h(i)*zz + chunk%qy(i)
       round%hoop(1, i) = round%mean_s(i)*tt
       round%hoop(2, i) = 0.0_wp
     end do

@@ -22,9 +22,9 @@ module round_one_point_m
 contains
 
   !> Advance one chunk by the step `dt` that led to the present motion (dt = 0: forces only) and
-  !> leave its forces, per radian, in `chunk` and `round`.
+  !> leave its forces, per radian, in `round`.
   pure subroutine advance_round_one_point(i_chunk, nodes, motion, material, hourglass, dt, &
-    elements, chunk, round)
+    elements, round)
     integer, intent(in) :: i_chunk
     integer, intent(in) :: nodes(4, chunk_size)
     real(wp), intent(in), contiguous :: motion(:, :)  !! (4, n_node)
@@ -32,8 +32,8 @@ contains
     type(hourglass_t), intent(in) :: hourglass
     real(wp), intent(in) :: dt
     type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(inout) :: chunk     !! forces out
-    type(round_chunk_t), intent(inout) :: round       !! force of the hoop stress out
+    type(round_chunk_t), intent(inout) :: round       !! forces out
+    type(element_chunk_t) :: chunk
     type(stress_chunk_t) :: stress
     integer :: first, n_slot
 

@@ -34,11 +34,13 @@ contains
     real(wp), intent(out) :: limit                  !! s
     real(wp), intent(out) :: volume                 !! smallest V/V0; below 0 where an area is
     type(step_sums_t) :: sums
-    real(wp) :: largest, pattern, coupled, factor
+    real(wp) :: largest, pattern, coupled, factor, lame, shear
     integer :: i
 
-    call form_step_sums(max(0.0_wp, material%bulk - 2.0_wp*material%shear/3.0_wp) &
-      /material%density, 2.0_wp*material%shear/material%density, inverse_mass, stride, round, sums)
+    shear = 2.0_wp*material%shear/material%density
+    lame = max(0.0_wp, material%bulk/material%density - shear/3.0_wp)
+    call form_strain_sums(lame, shear, inverse_mass, stride, round, sums)
+    call form_pattern_sums(lame, shear, inverse_mass, stride, round, sums)
     largest = 0.0_wp
     pattern = 0.0_wp
     volume = huge(1.0_wp)
@@ -70,110 +72,129 @@ contains
       call limit_bulk_viscosity(hourglass, material%sound_speed, chunk, sums, limit)
   end subroutine round_step
 
-  !> The sums over the nodes. With p, q, o, t, u, w the sums of b_r^2, b_z^2, b_r b_z, M^2, M b_r,
-  !> M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda <= max(p, q, t) +
-  !> |o| + |u| + |w| (Gershgorin) is a bound of the matrix [p o u; o q w; u w t].
-  pure subroutine form_step_sums(lame, shear, inverse_mass, stride, round, sums)
+  !> The sums over the nodes for strain. With p, q, o, t, u, w the sums of b_r^2, b_z^2, b_r b_z,
+  !> M^2, M b_r, M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda is the
+  !> largest row sum (Gershgorin) of the matrix [p o u; o q w; u w t].
+  pure subroutine form_strain_sums(lame, shear, inverse_mass, stride, round, sums)
     real(wp), intent(in) :: lame, shear            !! lambda/rho and 2G/rho
     integer, intent(in) :: stride
     real(wp), intent(in) :: inverse_mass(stride, *)
     type(round_chunk_t), intent(in) :: round
-    type(step_sums_t), intent(inout) :: sums
-    real(wp) :: p, q, o, t, u, w, gr, gz, gm, gg, r, z, m, g, v, vr, vz, vm, vg, both, ga, gb
+    type(step_sums_t), intent(inout) :: sums       !! `strain` and `dilation` out
+    real(wp) :: p, q, o, t, u, w, r, z, m, vr, vz, both
     integer :: i
 
-    !$omp simd private(p, q, o, t, u, w, gr, gz, gm, gg, r, z, m, g, v, vr, vz, vm, vg, both, &
-    !$omp& ga, gb)
+    !$omp simd private(p, q, o, t, u, w, r, z, m, vr, vz, both)
     do i = 1, chunk_size
-      ga = round%gamma_a(i)
-      gb = round%gamma_b(i)
+      both = merge(1.0_wp, 0.0_wp, inverse_mass(i, 4) <= 0.0_wp)
       r = round%rad_h(i) - round%rad_a(i)
       z = round%axi_h(i) - round%axi_a(i)
       m = round%mean_s(i) - round%mean_a(i)
-      g = 1.0_wp - ga
-      v = inverse_mass(i, 1)
-      vr = v*r
-      vz = v*z
-      vm = v*m
-      vg = v*g
+      vr = inverse_mass(i, 1)*r
+      vz = inverse_mass(i, 1)*z
       p = vr*r
       q = vz*z
       o = vr*z
-      t = vm*m
       u = vr*m
       w = vz*m
+      t = inverse_mass(i, 1)*m*m
+      ! With signs that leave the sums as they are.
+      r = round%rad_h(i) + round%rad_b(i)
+      z = round%axi_h(i) + round%axi_b(i)
+      m = round%mean_b(i) - round%mean_s(i)
+      vr = inverse_mass(i, 2)*r
+      vz = inverse_mass(i, 2)*z
+      p = p + vr*r
+      q = q + vz*z
+      o = o + vr*z
+      u = u + vr*m
+      w = w + vz*m
+      t = t + inverse_mass(i, 2)*m*m
+      ! Node 4, and node 3, which in a triangle has the place of node 4 too.
+      r = round%rad_b(i) - round%rad_h(i)
+      z = round%axi_b(i) - round%axi_h(i)
+      m = round%mean_s(i) + round%mean_b(i)
+      vr = inverse_mass(i, 4)*r
+      vz = inverse_mass(i, 4)*z
+      p = p + vr*r
+      q = q + vz*z
+      o = o + vr*z
+      u = u + vr*m
+      w = w + vz*m
+      t = t + inverse_mass(i, 4)*m*m
+      r = (round%rad_h(i) + round%rad_a(i)) + both*r
+      z = (round%axi_h(i) + round%axi_a(i)) + both*z
+      m = (round%mean_s(i) + round%mean_a(i)) + both*m
+      vr = inverse_mass(i, 3)*r
+      vz = inverse_mass(i, 3)*z
+      p = p + vr*r
+      q = q + vz*z
+      o = o + vr*z
+      u = u + vr*m
+      w = w + vz*m
+      t = t + inverse_mass(i, 3)*m*m
+      sums%dilation(i) = round%inverse_volume(i)*((p + q) + (t + 2.0_wp*u))
+      m = max(p + (abs(o) + abs(u)), q + (abs(o) + abs(w)), t + (abs(u) + abs(w)))
+      sums%strain(i) = round%inverse_volume(i)*shear*m + lame*sums%dilation(i)
+    end do
+  end subroutine form_strain_sums
+
+  !> The same for hourglass control: gamma^2 over m, and the square of the coupling to strain.
+  pure subroutine form_pattern_sums(lame, shear, inverse_mass, stride, round, sums)
+    real(wp), intent(in) :: lame, shear            !! lambda/rho and 2G/rho
+    integer, intent(in) :: stride
+    real(wp), intent(in) :: inverse_mass(stride, *)
+    type(round_chunk_t), intent(in) :: round
+    type(step_sums_t), intent(inout) :: sums       !! `pattern` and `coupling` out
+    real(wp) :: gr, gz, gm, gg, r, z, m, g, vg, both
+    integer :: i
+
+    !$omp simd private(gr, gz, gm, gg, r, z, m, g, vg, both)
+    do i = 1, chunk_size
+      both = merge(1.0_wp, 0.0_wp, inverse_mass(i, 4) <= 0.0_wp)
+      r = round%rad_h(i) - round%rad_a(i)
+      z = round%axi_h(i) - round%axi_a(i)
+      m = round%mean_s(i) - round%mean_a(i)
+      g = 1.0_wp - round%gamma_a(i)
+      vg = inverse_mass(i, 1)*g
       gr = vg*r
       gz = vg*z
       gm = vg*m
       gg = vg*g
-      ! Node 2.
+      ! With signs that leave the sums as they are.
       r = round%rad_h(i) + round%rad_b(i)
       z = round%axi_h(i) + round%axi_b(i)
       m = round%mean_b(i) - round%mean_s(i)
-      g = 1.0_wp + gb
-      v = inverse_mass(i, 2)
-      vr = v*r
-      vz = v*z
-      vm = v*m
-      vg = v*g
-      p = p + vr*r
-      q = q + vz*z
-      o = o + vr*z
-      t = t + vm*m
-      u = u + vr*m
-      w = w + vz*m
+      g = 1.0_wp + round%gamma_b(i)
+      vg = inverse_mass(i, 2)*g
       gr = gr + vg*r
       gz = gz + vg*z
       gm = gm + vg*m
       gg = gg + vg*g
-      ! Node 3: of a triangle it has the place of node 4 too.
-      both = merge(1.0_wp, 0.0_wp, inverse_mass(i, 4) <= 0.0_wp)
-      r = (round%rad_h(i) + round%rad_a(i)) + both*(round%rad_b(i) - round%rad_h(i))
-      z = (round%axi_h(i) + round%axi_a(i)) + both*(round%axi_b(i) - round%axi_h(i))
-      m = (round%mean_s(i) + round%mean_a(i)) + both*(round%mean_s(i) + round%mean_b(i))
-      g = (1.0_wp + ga) + both*(gb - 1.0_wp)
-      v = inverse_mass(i, 3)
-      vr = v*r
-      vz = v*z
-      vm = v*m
-      vg = v*g
-      p = p + vr*r
-      q = q + vz*z
-      o = o + vr*z
-      t = t + vm*m
-      u = u + vr*m
-      w = w + vz*m
-      gr = gr + vg*r
-      gz = gz + vg*z
-      gm = gm + vg*m
-      gg = gg + vg*g
+      ! Node 4, and node 3, which in a triangle has the place of node 4 too.
       r = round%rad_b(i) - round%rad_h(i)
       z = round%axi_b(i) - round%axi_h(i)
       m = round%mean_s(i) + round%mean_b(i)
-      g = gb - 1.0_wp
-      v = inverse_mass(i, 4)
-      vr = v*r
-      vz = v*z
-      vm = v*m
-      vg = v*g
-      p = p + vr*r
-      q = q + vz*z
-      o = o + vr*z
-      t = t + vm*m
-      u = u + vr*m
-      w = w + vz*m
+      g = round%gamma_b(i) - 1.0_wp
+      vg = inverse_mass(i, 4)*g
       gr = gr + vg*r
       gz = gz + vg*z
       gm = gm + vg*m
       gg = gg + vg*g
-      sums%dilation(i) = round%inverse_volume(i)*((p + q) + (t + 2.0_wp*u))
-      m = max(p + (abs(o) + abs(u)), q + (abs(o) + abs(w)), t + (abs(u) + abs(w)))
-      sums%strain(i) = round%inverse_volume(i)*shear*m + lame*sums%dilation(i)
+      r = (round%rad_h(i) + round%rad_a(i)) + both*r
+      z = (round%axi_h(i) + round%axi_a(i)) + both*z
+      m = (round%mean_s(i) + round%mean_a(i)) + both*m
+      g = (1.0_wp + round%gamma_a(i)) + both*g
+      vg = inverse_mass(i, 3)*g
+      gr = gr + vg*r
+      gz = gz + vg*z
+      gm = gm + vg*m
+      gg = gg + vg*g
       sums%pattern(i) = gg
       sums%coupling(i) = round%inverse_volume(i)*(shear*(1.5_wp*(gr*gr + gz*gz) + gm*gm) &
         + lame*((gr + gm)**2 + gz*gz))
     end do
-  end subroutine form_step_sums
+  end subroutine form_pattern_sums
 
   !> Bulk viscosity in compression has a rate of its own, which is added: x + y <= theta at a share
   !> theta <= 1 of the step without it.

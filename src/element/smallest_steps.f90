@@ -13,9 +13,12 @@ module smallest_steps_m
   use parts_m, only : hourglass_t, material_t
   use quad_kinematics_m, only : form_present_shape, form_increments
   use quad_points_m, only : n_point, form_point
-  use round_chunk_m, only : round_chunk_t, gather_round, n_round_reference, reference_mass
+  use round_chunk_m, only : round_chunk_t, gather_round, n_round_reference, &
+    reference_mass
+  use round_full_step_m, only : round_full_step
   use round_hourglass_m, only : form_resistance
   use round_kinematics_m, only : form_round_shape, form_round_increments
+  use round_points_m, only : round_point_t, form_radii
   use round_time_step_m, only : round_step
   use stress_chunk_m, only : stress_chunk_t
   implicit none
@@ -110,10 +113,12 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)     !! (4, n_node)
     real(wp) :: step
     type(element_chunk_t) :: chunk
+    type(element_chunk_t) :: point
     type(round_chunk_t) :: round
+    type(round_point_t) :: places(n_point)
     type(stress_chunk_t) :: unused
-    real(wp) :: shape(chunk_size, n_round_reference), volume
-    integer :: nodes(4, chunk_size)
+    real(wp) :: shape(chunk_size, n_round_reference), point_shape(chunk_size, 6), volume
+    integer :: nodes(4, chunk_size), k
 
     nodes = spread(model%layout%slot_nodes(:, i_slot), 2, chunk_size)
     shape = spread(reference, 1, chunk_size)
@@ -123,9 +128,21 @@ contains
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
       associate (material => model%materials(part%material))
         chunk%area = round%area
-        call form_resistance(material, part%hourglass, round)
-        call round_step(material, part%hourglass, shape(1, reference_mass), chunk_size, chunk, &
-          round, step, volume)
+        if (point_count(model%sections(part%section)) == 1) then
+          call form_resistance(material, part%hourglass, round)
+          call round_step(material, part%hourglass, shape(1, reference_mass), chunk_size, chunk, &
+            round, step, volume)
+        else
+          do k = 1, n_point
+            point%hu = 0.0_wp
+            point%hv = 0.0_wp
+            call form_point(k, chunk_size, shape, chunk, point_shape, point)
+            call form_present_shape(point_shape, chunk_size, point)
+            call form_radii(k, shape, chunk_size, chunk, round, point, places(k))
+          end do
+          call round_full_step(material, part%hourglass, shape(1, reference_mass), chunk_size, &
+            chunk, places, step, volume)
+        end if
       end associate
     end associate
   end function round_step_of_slot

@@ -31,8 +31,8 @@ contains
     end do
   end subroutine form_external_force
 
-  !> Pressure on one edge, half of it to each node: against the outward normal (t_y, -t_x). On a round
-  !> body per radian: with the edge times (2 r_a + r_b)/6 to node a.
+  !> Pressure on one edge, half of it to each node: against the outward normal (t_y, -t_x). On a
+  !> round body per radian: with the edge times (2 r_a + r_b)/6 to node a.
   subroutine add_pressure(model, load, motion, time, force)
     type(model_t), intent(in) :: model
     type(pressure_load_t), intent(in) :: load

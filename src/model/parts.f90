@@ -6,7 +6,8 @@ module parts_m
   implicit none
   private
   public :: part_t, section_t, material_t, hourglass_t, &
-    form_one_point, form_full, form_round_one_point, form_round_full, law_elastic, law_plastic, law_piecewise, &
+    form_one_point, form_full, form_round_one_point, form_round_full, law_elastic, law_plastic, &
+    law_piecewise, &
     hourglass_viscous, hourglass_stiffness
 
   !> Element forms. Only the element dispatcher asks for them.

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/block.sh [TYPES]
-# Runs the block-to-block scene for every contact type (default "1 2 3 4 5 6 7") into
+# Runs the block-to-block scene for every contact type (default: all) into
 # results/batch/block and writes doc/studies/block_to_block.md with its picture; with arguments, the
 # page goes to results/batch/block/doc instead. A few seconds.
 set -eu
@@ -9,12 +9,13 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
-types=${1:-1 2 3 4 5 6 7}
+. "$root/tools/batch/lists.sh"
 out=$results/batch/block
 doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release
+types=${1:-$(all_types)}
 python=$root/build/venv/bin/python
 deck=$out/block.k
 "$root/build/venv/bin/slideline-tools" make-deck block --output "$deck"

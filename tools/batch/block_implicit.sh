@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/block_implicit.sh [TYPES]
 # Runs the block-to-block scene implicitly and explicitly for every contact type (default
-# "1 2 3 4 5 6 7") into results/batch/block_implicit and writes doc/studies/block_to_block_implicit.md
+# all) into results/batch/block_implicit and writes doc/studies/block_to_block_implicit.md
 # with its picture; with arguments, the page goes to results/batch/block_implicit/doc instead. Some seconds, and some
 # minutes for the retired instructions, which are counted where the machine can (tools/slideline_tools/counting.py).
 set -eu
@@ -10,12 +10,13 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
-types=${1:-1 2 3 4 5 6 7}
+. "$root/tools/batch/lists.sh"
 out=$results/batch/block_implicit
 doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release
+types=${1:-$(all_types)}
 tools=$root/build/venv/bin/slideline-tools
 python=$root/build/venv/bin/python
 counted=$("$python" -m slideline_tools.counting) || echo "instructions are not counted" >&2

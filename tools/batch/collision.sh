@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/collision.sh [LEVELS [TYPES]]
 # Runs the collision scene for every refinement level and contact type (default "1 2 3 4" and
-# "1 2 3 4 5 6 7") into results/batch/collision and writes doc/studies/collision.md with its
+# all) into results/batch/collision and writes doc/studies/collision.md with its
 # pictures; with arguments, the page goes to results/batch/collision/doc instead. Then prints a
 # table and compares it with the reference. RENEW=1 makes the table the new reference.
 set -eu
@@ -10,13 +10,14 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
+. "$root/tools/batch/lists.sh"
 levels=${1:-1 2 3 4}
-types=${2:-1 2 3 4 5 6 7}
 out=$results/batch/collision
 doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release
+types=${2:-$(all_types)}
 runs=
 for level in $levels; do
   suffix=

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/exchange.sh [TYPES]
 # Runs the patch test, block-to-block, sliding and collision (N_r = 1) and the oblique impact as they
-# are and with slave and master exchanged, for every contact type (default "1 2 3 4 5 6 7"), into
+# are and with slave and master exchanged, for every contact type (default: all), into
 # results/batch/exchange and writes doc/studies/exchange.md; with arguments, the page goes to
 # results/batch/exchange/doc instead. About two minutes.
 set -eu
@@ -10,12 +10,13 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
-types=${1:-1 2 3 4 5 6 7}
+. "$root/tools/batch/lists.sh"
 out=$results/batch/exchange
 doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release
+types=${1:-$(all_types)}
 python=$root/build/venv/bin/python
 mkdir -p "$out"
 "$python" -m slideline_tools.studies.exchange decks "$out" >"$out/list.txt"

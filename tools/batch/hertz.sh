@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/hertz.sh [LEVELS [TYPES]]
 # Runs the Hertz scene for every refinement level and contact type (default "1 2 4" and
-# "1 2 3 4 5 6 7"), with the cylinder and with the block as slave, into results/batch/hertz and
+# all), with the cylinder and with the block as slave, into results/batch/hertz and
 # writes doc/studies/hertz.md with its picture; with arguments, the page goes to
 # results/batch/hertz/doc instead. About two minutes.
 set -eu
@@ -10,8 +10,8 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
+. "$root/tools/batch/lists.sh"
 levels=${1:-1 2 4}
-types=${2:-1 2 3 4 5 6 7}
 out=$results/batch/hertz
 doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
@@ -27,6 +27,7 @@ run() {
 }
 
 "$root/tools/build.sh" release
+types=${2:-$(all_types)}
 for level in $levels; do
   for suffix in "" _exchanged; do
     deck=$out/hertz_$level$suffix.k

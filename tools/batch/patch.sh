@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/patch.sh [static] [TYPES]
 # Runs the contact patch test on several meshes and with penalties from 1e3 to 1e10 N/m for every
-# contact type (default "1 2 3 4 5 6 7"), explicitly damped to rest (about two minutes) or in one
+# contact type (default: all), explicitly damped to rest (about two minutes) or in one
 # static step (less than a minute), into results/batch/patch or patch_static, and writes
 # doc/studies/patch_test.md or patch_test_static.md with its pictures; with types, the page goes to
 # doc/ in the folder of the results instead.
@@ -11,17 +11,18 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
+. "$root/tools/batch/lists.sh"
 study=patch
 if [ "${1:-}" = static ]; then
   study=patch_static
   shift
 fi
-types=${1:-1 2 3 4 5 6 7}
 out=$results/batch/$study
 doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release
+types=${1:-$(all_types)}
 python=$root/build/venv/bin/python
 mkdir -p "$out"
 "$python" -m slideline_tools.studies.$study decks "$out" >"$out/list.txt"

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/sliding.sh [LEVELS [TYPES]]
 # Runs the sliding scene for every refinement level and contact type (default "1 2 3" and
-# "1 2 3 4 5 6 7") into results/batch/sliding and writes doc/studies/sliding.md with its pictures;
+# all) into results/batch/sliding and writes doc/studies/sliding.md with its pictures;
 # with arguments, the page goes to results/batch/sliding/doc instead.
 # The contact force is written every tenth step. About five minutes.
 set -eu
@@ -10,13 +10,14 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
+. "$root/tools/batch/lists.sh"
 levels=${1:-1 2 3}
-types=${2:-1 2 3 4 5 6 7}
 out=$results/batch/sliding
 doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
 
 "$root/tools/build.sh" release
+types=${2:-$(all_types)}
 for level in $levels; do
   deck=$out/sliding_$level.k
   interval=$(awk "BEGIN { printf \"%.17g\", 4.0e-7 / $level }")

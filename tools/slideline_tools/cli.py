@@ -47,9 +47,9 @@ def add_picture_options(parser):
 
 def add_plot(commands):
     parser = commands.add_parser(
-        "plot", help="draw a field, histories or the contact pressure",
-        description="Draw a picture of a results file. Without --field, --state, --history or "
-                    "--contact: a field above the energies and the contact force.")
+        "plot", help="draw a field, histories, the contact pressure or zones of stick and slip",
+        description="Draw a picture of a results file. Without --field, --state, --history, "
+                    "--contact or --zones: a field above the energies and the contact force.")
     add_picture_options(parser)
     parser.add_argument("--state", action="append",
                         help="number (-1 = last, 0 = first) or time; may be repeated")
@@ -58,6 +58,9 @@ def add_plot(commands):
                              "may be repeated")
     parser.add_argument("--contact", action="store_true",
                         help="contact pressure along the slave surface")
+    parser.add_argument("--zones", action="store_true",
+                        help="with friction: where the slave surface sticks and slips over time, and its "
+                             "traction beside mu p at the states")
     parser.add_argument("--output", "-o", required=True, help="picture (.png, .pdf, .svg)")
     parser.set_defaults(run=plot)
 
@@ -67,12 +70,15 @@ def plot(options):
     from slideline_tools.results import open_run
     results = open_run(options.results)
     states = options.state or ["-1"]
-    if options.history and options.contact:
-        raise ToolError("choose one of --history and --contact")
+    if sum(map(bool, (options.history, options.contact, options.zones))) > 1:
+        raise ToolError("choose one of --history, --contact and --zones")
     if options.history:
         figure = plots.history_figure(results, options.history)
     elif options.contact:
         figure = plots.contact_figure(results, states)
+    elif options.zones:
+        from slideline_tools import zones
+        figure = zones.zones_figure(results, states)
     elif options.field or options.state or options.zoom:
         figure = plots.field_figure(results, options.field, states, options.scale, options.zoom)
     else:

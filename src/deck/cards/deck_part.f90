@@ -139,12 +139,8 @@ contains
         //'(plane strain) and 15 (axisymmetric) are what this version has')
     end select
     select case (integer_of(card, 'NIP'))
-    case (0:2)
+    case (0:2, 4)
       continue
-    case (4)
-      if (integer_of(card, 'ELFORM') == 15) call report_field(deck, cursor, card, 'NIP', 'asks for ' &
-        //'full integration, which this version does not have with ELFORM 15 (0, 1, 2 or blank: ' &
-        //'one point)')
     case default
       call report_field(deck, cursor, card, 'NIP', 'is not a number of points (0, 1, 2 or blank: ' &
         //'one point; 4: two by two, full integration)')

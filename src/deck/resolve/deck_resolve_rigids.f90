@@ -19,8 +19,8 @@ module deck_resolve_rigids_m
   public :: resolve_rigids
 
   !> Why a rigid body of an axisymmetric deck does not go where it is told to.
-  character(*), parameter :: across_axis = 'asks a rigid body of an axisymmetric deck (ELFORM 15) ' &
-    //'to move in r or to turn; it moves along the axis alone'
+  character(*), parameter :: across_axis = 'asks a rigid body of an axisymmetric deck (ELFORM ' &
+    //'15) to move in r or to turn; it moves along the axis alone'
 
 contains
 

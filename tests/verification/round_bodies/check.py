@@ -13,36 +13,43 @@ PRESSURE = 1.0e-6
 TAYLOR = pathlib.Path(__file__).resolve().parents[3] / "input/taylor/taylor.k"
 
 
-def round_deck(title, end, dt=None):
+def round_deck(title, end, points=1):
     deck = Deck(title)
-    deck.control(end, dt=dt)
+    deck.control(end)
     deck.add("*PART", "body", (1, 1, 1))
-    return deck.add("*SECTION_SHELL", (1, 15, None, 1), (1.0,))
+    return deck.add("*SECTION_SHELL", (1, 15, None, points), (1.0,))
 
 
-def pressed(deck, ids, coordinates, quads, pairs, damping):
+def pressed(deck, ids, pairs, damping):
     """Pressure on inner segments, damping near the critical one of breathing."""
     deck.curve(1, [(0.0, 1.0), (1.0e9, 1.0)])
     deck.add("*LOAD_SEGMENT", *[(1, PRESSURE, 0.0, *[int(ids[k]) for k in (a, b, b, b)]) for a, b in pairs])
     return deck.add("*DAMPING_GLOBAL", (0, damping))
 
 
+def tube(run, n, points, form="quads"):
+    """A tube of n by 2 quads, damped to rest: radii, found and exact displacements, result."""
+    coordinates, quads = grid(n, 2, OUTER - INNER, 2.0 / n, (INNER, 0.0))
+    if form == "triangles":
+        quads = [three for a, b, c, d in quads for three in ((a, b, c, c), (a, c, d, d))]
+    deck = round_deck("Lame's tube", 4.0, points)
+    deck.elastic(RHO, YOUNG, POISSON)
+    ids = deck.mesh(coordinates, quads)
+    deck.fix(ids, y=1)
+    # Walked round the body, which lies on the left.
+    pressed(deck, ids, [((j + 1) * (n + 1), j * (n + 1)) for j in range(2)], 42.0)
+    result = run.program(deck.output(plot=4.0), name=f"tube_{n}_{points}_{form}")
+    r = coordinates[:, 0]
+    exact = (1.0 + POISSON) / YOUNG * PRESSURE * INNER ** 2 / (OUTER ** 2 - INNER ** 2) * (
+        (1.0 - 2.0 * POISSON) * r + OUTER ** 2 / r)
+    return r, result.points("displacement")[-1][:, 0], exact, result
+
+
 def check_tube(run):
-    """Lame: the one-point form is exact at the nodes of a uniform mesh."""
-    errors, sizes = [], (5, 10, 20)
+    """Lame: the one-point form is exact at the nodes of a uniform mesh, full integration of second order."""
+    errors, full, sizes = [], [], (5, 10, 20)
     for n in sizes:
-        coordinates, quads = grid(n, 2, OUTER - INNER, 2.0 / n, (INNER, 0.0))
-        deck = round_deck("Lame's tube", 4.0)
-        deck.elastic(RHO, YOUNG, POISSON)
-        ids = deck.mesh(coordinates, quads)
-        deck.fix(ids, y=1)
-        # Walked round the body, which lies on the left.
-        pressed(deck, ids, coordinates, quads, [((j + 1) * (n + 1), j * (n + 1)) for j in range(2)], 42.0)
-        result = run.program(deck.output(plot=4.0), name=f"tube_{n}")
-        r = coordinates[:, 0]
-        exact = (1.0 + POISSON) / YOUNG * PRESSURE * INNER ** 2 / (OUTER ** 2 - INNER ** 2) * (
-            (1.0 - 2.0 * POISSON) * r + OUTER ** 2 / r)
-        found = result.points("displacement")[-1][:, 0]
+        r, found, exact, result = tube(run, n, 1)
         run.check(f"tube of {n}: radial displacement of all nodes", found, exact, 1e-8, source="Lame (1852)")
         centre = 0.5 * (r[:n] + r[1:n + 1])
         hoop = result.cells("stress")[-1][:n, 2] / PRESSURE
@@ -50,9 +57,18 @@ def check_tube(run):
         strain = result.cells("hoop_strain")[-1][:n]
         run.check(f"tube of {n}: hoop strain of the elements", strain,
                   0.5 * (exact[:n] + exact[1:n + 1]) / centre, 1e-7, source="mean displacement over mean radius")
+        r, found, exact, result = tube(run, n, 4)
+        full.append(np.abs(found / exact - 1.0).max())
     run.check("tube: error of the hoop stress in the elements", errors[-1], 0.0, 3e-3, "abs", "Lame (1852)")
     run.check("tube: order of the hoop stress", run.order(1.0 / np.array(sizes), errors), 2.0, 0.15, "abs",
               "second order")
+    for points in (1, 4):
+        r, found, exact, result = tube(run, 20, points, "triangles")
+        run.check(f"tube of triangles, {points} point(s): radial displacement", found / exact, np.ones_like(exact), 2e-3,
+                  source="Lame (1852)")
+    run.check("tube, 2x2 points: radial displacement", full[-1], 0.0, 1e-3, "abs", "Lame (1852)")
+    run.check("tube, 2x2 points: order of the radial displacement", run.order(1.0 / np.array(sizes), full), 2.0, 0.15,
+              "abs", "second order")
 
 
 def sphere(n):
@@ -67,25 +83,26 @@ def sphere(n):
     return coordinates, quads
 
 
-def check_sphere(run):
+def check_sphere(run, points):
     errors, sizes = [], (4, 8, 16)
+    name = f"sphere, {points} point(s)"
     for n in sizes:
         coordinates, quads = sphere(n)
-        deck = round_deck("hollow sphere", 4.0)
+        deck = round_deck("hollow sphere", 4.0, points)
         deck.elastic(RHO, YOUNG, POISSON)
         ids = deck.mesh(coordinates, quads)
         deck.fix(ids[:n + 1], y=1)
-        pressed(deck, ids, coordinates, quads, [((j + 1) * (n + 1), j * (n + 1)) for j in range(2 * n)], 42.0)
-        result = run.program(deck.output(plot=4.0), name=f"sphere_{n}")
+        pressed(deck, ids, [((j + 1) * (n + 1), j * (n + 1)) for j in range(2 * n)], 42.0)
+        result = run.program(deck.output(plot=4.0), name=f"sphere_{n}_{points}")
         place = np.hypot(*coordinates.T)
         exact = PRESSURE * INNER ** 3 / (YOUNG * (OUTER ** 3 - INNER ** 3)) * (
             (1.0 - 2.0 * POISSON) * place + (1.0 + POISSON) * OUTER ** 3 / (2.0 * place ** 2))
         found = result.points("displacement")[-1][:, :2]
         radial = np.sum(found * coordinates, axis=1) / place
         errors.append(np.abs(radial / exact - 1.0).max())
-        run.true(f"sphere of {n}: nodes on the axis keep to it", np.all(found[coordinates[:, 0] == 0.0, 0] == 0.0))
-    run.check("sphere: largest error of the radial displacement", errors[-1], 0.0, 5e-3, "abs", "Lame (1852)")
-    run.check("sphere: order", run.order(1.0 / np.array(sizes), errors), 2.0, 0.3, "abs", "second order")
+        run.true(f"{name}: nodes on the axis keep to it, {n}", np.all(found[coordinates[:, 0] == 0.0, 0] == 0.0))
+    run.check(f"{name}: largest error of the radial displacement", errors[-1], 0.0, 5e-3, "abs", "Lame (1852)")
+    run.check(f"{name}: order", run.order(1.0 / np.array(sizes), errors), 2.0, 0.3, "abs", "second order")
 
 
 def phase_velocity(poisson, number):
@@ -197,6 +214,7 @@ def check_taylor(run):
 
 def check(run):
     check_tube(run)
-    check_sphere(run)
+    check_sphere(run, 1)
+    check_sphere(run, 4)
     check_bar(run)
     check_taylor(run)

@@ -5,15 +5,15 @@
     run, advice, notes = advise("results/collision")
 
 Every check says nothing unless the files of the run prove its point; its thresholds stand at the
-top of its module (bodies, touching, stepping, outputs; doc/studies/advise.md lists them).
+top of its module (bodies, touching, rubbing, stepping, outputs; doc/studies/advise.md lists them).
 """
 from __future__ import annotations
 
-from slideline_tools.advise import bodies, outputs, stepping, touching
+from slideline_tools.advise import bodies, outputs, rubbing, stepping, touching
 from slideline_tools.advise.finished import Finished, read_run
 from slideline_tools.advise.report import Advice
 
-CHECKS = bodies.CHECKS + touching.CHECKS + stepping.CHECKS + outputs.CHECKS
+CHECKS = bodies.CHECKS + touching.CHECKS + rubbing.CHECKS + stepping.CHECKS + outputs.CHECKS
 
 
 def advise(path) -> tuple[Finished, list[Advice], list[str]]:

@@ -38,6 +38,11 @@ class Interface:
     master_penalty: float = 0.0
     damping: float = 0.0
     is_automatic: bool = False   # penalty by the program from the step (PUNIT 3)
+    friction: float = 0.0        # coefficient at rest
+    sliding_friction: float = 0.0  # in fast sliding
+    decay: float = 0.0           # DC, s/m
+    most_friction: float = 0.0   # VC, N/m^2, 0 = no cap
+    dissipated: float | None = None  # by friction, at the end, J/m
 
     @property
     def label(self) -> str:
@@ -138,6 +143,9 @@ def read_interface(log: RunLog, line: str) -> None:
     if found := re.match(rf"interface (\d+): penalty {PENALTIES}", line):
         if interface := log.interfaces.get(int(found[1])):
             set_penalties(interface, found.groups()[1:])
+    if found := re.match(rf"interface (\d+): friction has dissipated {NUMBER} J/m", line):
+        if interface := log.interfaces.get(int(found[1])):
+            interface.dissipated = float(found[2])
     if not line.startswith("  ") or not log.interfaces:
         return
     last = list(log.interfaces.values())[-1]
@@ -147,6 +155,10 @@ def read_interface(log: RunLog, line: str) -> None:
         last.n_master, last.master_length = int(found[1]), float(found[2])
     elif found := re.match(rf"  penalty: {PENALTIES}", line):
         set_penalties(last, found.groups())
+    elif found := re.match(rf"  friction: coefficient {NUMBER}(?: at rest, {NUMBER} in fast sliding, decay {NUMBER} s/m)?"
+                           rf"(?:, stress at most {NUMBER} N/m\^2)?;", line):
+        last.friction, fast, last.decay, last.most_friction = (float(number or 0.0) for number in found.groups())
+        last.sliding_friction = fast if found[2] else last.friction
     elif re.match(rf"  penalty: {NUMBER} of the largest stable one", line):
         last.is_automatic = True
     elif found := re.match(rf"  damping: {NUMBER} of critical", line):

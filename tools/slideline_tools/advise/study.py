@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 from slideline_tools import UserError, counting
-from slideline_tools.advise import advise, bodies, outputs, report, stepping, study_decks, touching
+from slideline_tools.advise import advise, bodies, outputs, report, rubbing, stepping, study_decks, touching
 from slideline_tools.scenes import collision
 from slideline_tools.studies.common import markdown_table, write_page
 from slideline_tools.study.runner import processor
@@ -119,6 +119,11 @@ def thresholds() -> list[tuple]:
         ("long flight", f"first contact after {touching.LONG_FLIGHT:.0%} of the time, no loads, "
          f"energies constant to {touching.FREE_FLIGHT:g} until then, parts only translate"),
         ("dear type", f"type 6 or 7, contact at least {touching.CONTACT_MATTERS:.0%} of the run"),
+        ("needless friction", f"largest traction at most {rubbing.NO_TRACTION:.0%} of mu times the largest pressure at at least "
+         f"{rubbing.STATES_IN_CONTACT} states in contact, work of friction at most {rubbing.NO_WORK:g} of the largest energy"),
+        ("undamped sliding", f"explicit, no damping and no bulk viscosity; {rubbing.CHANGING:.0%} of the pressed nodes are in the other "
+         f"state, stick or slip, at the next plot state, and by [stability_friction](stability_friction.md) a small motion could have "
+         f"grown by {rubbing.GROWN:g} e-folds"),
         ("short steps", f"{stepping.SAFETY} of the limit of elements (smallest of all states) and "
          f"springs (the bound that the program warns by) is at least {stepping.LONGER_STEP} steps"),
         ("penalty rules the step", f"the elements allow {stepping.PENALTY_RULES} times the step "

@@ -19,6 +19,8 @@ LONG_FLIGHT, FREE_FLIGHT = 0.05, 1.0e-9
 # less, with what it saves (doc/studies/speed_accuracy.md: contact times, means over all scenes).
 CONTACT_MATTERS = 0.15
 CHEAPER = {6: (5, "NTS-mAR", 0.20), 7: (5, "NTS-mAR", 0.34)}
+# The same with friction (doc/studies/speed_accuracy_friction.md: ironing): type 6 costs what type 5 does.
+CHEAPER_WITH_FRICTION = {7: (5, "NTS-mAR", 0.20)}
 
 # Nodes of an interface are moved one by one: they take so much of the phase `nodes` at least.
 INTERFACE_NODES = 0.5
@@ -190,13 +192,14 @@ def flights(run, time: float) -> list[str]:
 
 def dear_type(run) -> list[Advice]:
     """Types 6 and 7 where contact is a large share of the run."""
-    dear = [one for one in run.log.interfaces.values() if one.ctype in CHEAPER]
+    dear = [(one, found) for one in run.log.interfaces.values()
+            if (found := (CHEAPER_WITH_FRICTION if one.friction else CHEAPER).get(one.ctype))]
     contact = run.seconds_of("contact")
     if run.is_implicit or contact < CONTACT_MATTERS * run.total:
         return []
     advice = []
-    for interface in dear:
-        number, name, saved = CHEAPER[interface.ctype]
+    for interface, (number, name, saved) in dear:
+        page = "speed_accuracy_friction" if interface.friction else "speed_accuracy"
         advice.append(Advice(
             "dear type", f"{interface.label} takes much of the run; {name} (type {number}) passes "
             "the patch test and usually costs less.",
@@ -204,7 +207,8 @@ def dear_type(run) -> list[Advice]:
             f"{interface.id} (command line: ctype.{interface.id}={number}), where the resultants "
             "matter more than a smooth pressure; compare both once",
             contact_seconds(run, interface) * saved,
-            "mean over the scenes of doc/studies/speed_accuracy.md, which differ"))
+            f"mean over the scenes of doc/studies/{page}.md, which differ"
+            + (", and where the forces of ironing are rougher with it" if interface.friction else "")))
     return advice
 
 

@@ -29,6 +29,7 @@ EXAMPLES = {
   slideline-tools plot {FILE} --history glstat:kinetic,internal \\
       --history rcforc:fy@side=slave -o x.svg
   slideline-tools plot {FILE} --contact --state 28 --state 30 -o x.png
+  slideline-tools plot {FILE} --zones --state 20 --state -1 -o x.png
 
 Fields: displacement, velocity, contact_force (with :x or :y, else the length), contact_pressure,
 gap, contact_traction, contact_slip, contact_state (with friction), stress:xx (yy, zz, xy),

@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from slideline_tools import plots
+from slideline_tools import zones as zone_pictures
 from slideline_tools.fields import ScalarField
 from slideline_tools.histories import History
 from slideline_tools.results import Results
@@ -82,6 +83,18 @@ def pressures(contact: History, times: list[float]):
     figure = lines(series, "contact pressure", "arc length along the slave surface", "o")
     figure.axes[0].set_ylim(bottom=0.0)
     return figure
+
+
+def zones(contact: History):
+    """Stick and slip along the slave surface over time, of one interface."""
+    chains = zone_pictures.chains_of(contact)
+    with plt.rc_context(STYLE):
+        figure, panels = plt.subplots(len(chains), 1, squeeze=False, layout="constrained",
+                                      figsize=(SIZE[0], SIZE[1] * min(3, len(chains))))
+        for axes, chain in zip(panels[:, 0], chains):
+            zone_pictures.draw_zones(axes, chain)
+        zone_pictures.add_legend(figure, contact)
+        return figure
 
 
 def nodes(nodout: History, column: str):

@@ -171,6 +171,9 @@ def one_interface(run: Gathered, number: int, states: list[int]) -> str:
         pictures += picture(charts.pressures(chain, times),
                             f"Contact pressure along the slave surface of interface {number}")
         rows += pressure_rows(chain)
+        if "state" in chain and np.any(chain["state"]):
+            pictures += picture(charts.zones(chain), f"Where interface {number} sticks and slips, over time")
+    rows += friction_rows(run, number)
     if not rows:
         return paragraph("Neither forces (*DATABASE_RCFORC) nor pressures (plot states) were written.")
     return f'<div class="grid">\n{pictures}</div>\n' + table(["", "value", "at time", ""], rows,
@@ -195,6 +198,20 @@ def force_rows(slave, master) -> list[list[str]]:
         rows.append(["largest sum of both sides over the largest force",
                      figures(float(rest / size[top]), 2), "", ""])
     return rows
+
+
+def friction_rows(run: Gathered, number: int) -> list[list[str]]:
+    """Work that friction of an interface has dissipated: at the end by the log, else by the last row of sleout; none
+    without friction."""
+    one, sleout = run.log.interfaces.get(number), run.rows("sleout")
+    if one is not None and not one.friction:
+        return []
+    if one is not None and one.dissipated is not None:
+        return [["frictional work", figures(one.dissipated, 6), figures(run.ending.time, 4), f"coefficient {one.friction:g}"]]
+    rows = sleout.where(interface=number) if sleout is not None and "friction" in sleout else ()
+    if not len(rows) or (one is None and not np.any(rows["friction"])):
+        return []
+    return [["frictional work", figures(float(rows["friction"][-1]), 6), figures(float(rows["time"][-1]), 4), ""]]
 
 
 def pressure_rows(chain) -> list[list[str]]:

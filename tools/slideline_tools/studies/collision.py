@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The collision scene with all contact types: contact episodes, force, plastic strain, energy.
 
-    python -m slideline_tools.studies.collision FOLDER DOC --levels 1 2 3 4 --types 1 2 3 4 5 6 7
+    python -m slideline_tools.studies.collision FOLDER DOC --levels 1 2 3 4
 
 FOLDER holds the runs as level_L_type_T/collision.*; the page goes to DOC/studies, its pictures
 to DOC/pictures.

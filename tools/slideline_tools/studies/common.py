@@ -85,7 +85,7 @@ def field_panels(results, name, limits, zoom, time=None):
 
 
 def study_main(text, write, arguments=None):
-    """Command line `FOLDER DOC --levels ... --types ...` of a study; returns the exit status.
+    """Command line `FOLDER DOC [--levels ...] [--types ...]` of a study; returns the exit status.
 
     A scene without refinement levels needs no --levels.
     `write(folder, doc, levels, types)` reads the runs below FOLDER and writes below DOC.
@@ -94,7 +94,8 @@ def study_main(text, write, arguments=None):
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("doc", type=pathlib.Path)
     parser.add_argument("--levels", type=int, nargs="+", default=[1])
-    parser.add_argument("--types", type=int, nargs="+", required=True, choices=TYPES)
+    parser.add_argument("--types", type=int, nargs="+", default=list(TYPES), choices=TYPES,
+                        help="contact types (all)")
     options = parser.parse_args(arguments)
     try:
         write(options.folder, options.doc, options.levels, options.types)
@@ -125,7 +126,7 @@ def decks_and_page_main(text, write_decks, write, arguments=None):
     """Command line of a study that writes its own decks; returns the exit status.
 
     `decks FOLDER`: write_decks(folder) writes decks and prints their names;
-    `page FOLDER DOC --types ...`: write(folder, doc, types) reads the runs and writes below DOC.
+    `page FOLDER DOC [--types ...]`: write(folder, doc, types) reads the runs and writes below DOC.
     """
     parser = argparse.ArgumentParser(description=text.splitlines()[0])
     commands = parser.add_subparsers(dest="command", required=True)
@@ -133,7 +134,8 @@ def decks_and_page_main(text, write_decks, write, arguments=None):
     page = commands.add_parser("page")
     page.add_argument("folder", type=pathlib.Path)
     page.add_argument("doc", type=pathlib.Path)
-    page.add_argument("--types", type=int, nargs="+", required=True, choices=TYPES)
+    page.add_argument("--types", type=int, nargs="+", default=list(TYPES), choices=TYPES,
+                      help="contact types (all)")
     options = parser.parse_args(arguments)
     try:
         if options.command == "decks":

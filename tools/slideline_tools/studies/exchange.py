@@ -2,7 +2,7 @@
 """Master and slave exchanged: how much the answer of each type changes, scene by scene.
 
     python -m slideline_tools.studies.exchange decks FOLDER
-    python -m slideline_tools.studies.exchange page FOLDER DOC --types 1 2 3 4 5 6 7
+    python -m slideline_tools.studies.exchange page FOLDER DOC
 
 `decks` writes the decks of all scenes as FOLDER/<scene>.k and FOLDER/<scene>_exchanged.k and prints
 for each its name and the penalties to run it with, of type 3 and of the others, so that the

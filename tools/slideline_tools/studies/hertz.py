@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Hertz line contact with all contact types: half width, peak pressure, profile, convergence.
 
-    python -m slideline_tools.studies.hertz FOLDER DOC --levels 1 2 4 --types 1 2 3 4 5 6 7
+    python -m slideline_tools.studies.hertz FOLDER DOC --levels 1 2 4
 
 FOLDER holds the runs as level_L_type_T/hertz.*, those with the block as slave as
 level_L_type_T_exchanged, and those with another penalty as penalty_F_type_T; the page

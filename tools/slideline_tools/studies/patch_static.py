@@ -2,7 +2,7 @@
 """The static contact patch test with all contact types: deviation from uniform pressure by penalty.
 
     python -m slideline_tools.studies.patch_static decks FOLDER
-    python -m slideline_tools.studies.patch_static page FOLDER DOC --types 1 2 3 4 5 6 7
+    python -m slideline_tools.studies.patch_static page FOLDER DOC
 
 `decks` writes FOLDER/<layout>_<penalty>.k and prints the names; `page` reads the runs
 FOLDER/<layout>_<penalty>_type_<n>/patch.* and writes DOC/studies/patch_test_static.md, its pictures

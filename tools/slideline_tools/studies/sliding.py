@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The sliding scene with all contact types: force histories, abrupt peaks, plastic strain.
 
-    python -m slideline_tools.studies.sliding FOLDER DOC --levels 1 2 3 --types 1 2 3 4 5 6 7
+    python -m slideline_tools.studies.sliding FOLDER DOC --levels 1 2 3
 
 FOLDER holds the runs as level_L_type_T/sliding.*; the page goes to DOC/studies, its pictures
 to DOC/pictures.

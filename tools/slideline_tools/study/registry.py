@@ -5,10 +5,13 @@ import importlib
 from slideline_tools import UserError
 
 STUDIES = {  # name on the command line: file of this package
+    "claims-friction": "claims_friction",
     "paper-tables": "paper_tables",
     "stability": "stability",
+    "stability-friction": "stability_friction",
     "stability-shapes": "stability_shapes",
     "speed-accuracy": "speed_accuracy",
+    "speed-accuracy-friction": "speed_accuracy_friction",
     "simplify": "simplify",
 }
 

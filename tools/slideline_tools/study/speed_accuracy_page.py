@@ -61,7 +61,8 @@ The cheapest types and mesh (types/N_r) by computing time that keep an error at 
 
 {counts}
 
-What each step of the contact costs, and how that compares with the paper: [paper_tables](paper_tables.md).
+What each step of the contact costs, and how that compares with the paper: [paper_tables](paper_tables.md). With friction:
+[speed_accuracy_friction](speed_accuracy_friction.md).
 """
 
 TEXTS = {

@@ -69,6 +69,7 @@ Smallest and largest penalty over `K L/A` for which all steps tried below the pr
   over the end of the other surface, loses its whole spring at once and gets it back when it returns at another depth. The contact makes energy that way, the more, the stiffer the spring. With a
   second pass (type 3), or without a place at the very end that carries a whole spring (types 4 to 7), nothing failed here. `stability_shapes.md` has places that start just beyond the end, where types 3, 4 and 6 make energy too.
 - Cells at a step of exactly `L/c` can be stable although the limit by eigenvalue lies one or two per cent below: so near to it growth takes longer than these runs.
+- All this is without friction, which has an instability of its own at any penalty and step: [stability_friction](stability_friction.md).
 - Between the two lines lies what the program gives away to be safe for all positions of the surfaces. (They are drawn straight between full decades.)
 
 The deck of every failing cell, named by cell and verdict, is in `results/study-stability/failing/`, ready to run; meshes that cells share are written once and included.

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""Axisymmetric decks: what the program settles and says by itself, the same bits at any number of threads and
+after a restart."""
+import pathlib
+import re
+import subprocess
+
+import h5py
+import numpy as np
+import pytest
+from conftest import numbers
+from meshes import Deck, grid
+
+TAYLOR = pathlib.Path(__file__).resolve().parents[2] / "input/taylor/taylor.k"
+
+
+def run(exe, folder, *words, status=0):
+    done = subprocess.run([exe, *words], cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == status, done.stderr
+    return done
+
+
+def tables(folder, job):
+    return {path.name.split(".", 1)[1]: path.read_bytes() for path in sorted(folder.glob(f"{job}.*.csv"))
+            if "timing" not in path.name}
+
+
+def fields(path):
+    with h5py.File(path) as stream:
+        group = stream["VTKHDF"]
+        return {f"{kind}/{name}": group[kind][name][()].tobytes() for kind in ("PointData", "CellData")
+                for name in group[kind]}
+
+
+def bar(points):
+    """The Taylor bar for 300 cycles or so, by one or four points, with restart files."""
+    text, count = re.subn(r"(?m)^(         1        15       1.0         )1$", rf"\g<1>{points}", TAYLOR.read_text())
+    assert count == 1
+    text = re.sub("(?m)^R endtim .*$", "R endtim      6.0E-6", text)
+    return text.replace("*END", "*DATABASE_BINARY_D3DUMP\n       100\n*END")
+
+
+@pytest.mark.parametrize("points", [1, 4])
+def test_same_bits_with_threads_and_after_a_restart(exe, tmp_path, points):
+    (tmp_path / "job.k").write_text(bar(points))
+    for n in (1, 2, 3):
+        run(exe, tmp_path, "i=job.k", f"d=t{n}", f"ncpu={n}")
+    for n in (2, 3):
+        assert tables(tmp_path / f"t{n}", "job") == tables(tmp_path / "t1", "job")
+        assert fields(tmp_path / f"t{n}/job.vtkhdf") == fields(tmp_path / "t1/job.vtkhdf")
+    (tmp_path / "again").mkdir()
+    run(exe, tmp_path, "r=t1/job.dump01.h5", "d=again", "ncpu=2")
+    whole, rest = (numbers(tmp_path / folder / "job.glstat.csv", "total") for folder in ("t1", "again"))
+    assert len(rest) and list(rest) == list(whole)[-len(rest):]
+    states = [fields(tmp_path / folder / "job.vtkhdf")["PointData/displacement"] for folder in ("t1", "again")]
+    assert states[0].endswith(states[1][-1111 * 24:])
+
+
+def two_rings():
+    """A deformable disc and a rigid ring above it."""
+    deck = Deck("disc and rigid ring")
+    deck.control(0.05)
+    deck.add("*PART", "disc", (1, 1, 1), "ring", (2, 1, 2)).add("*SECTION_SHELL", (1, 15, None, 1), (1.0,))
+    deck.elastic(1000.0, 1.0e6, 0.3)
+    deck.add("*MAT_RIGID", (2, 1000.0, 1.0e6, 0.3), (0.0,), (0.0,))
+    coordinates, quads = grid(4, 2, 1.0, 0.5)
+    coordinates[0, 0] = -1.0e-14
+    deck.mesh(coordinates, quads)
+    deck.mesh(*grid(4, 2, 1.0, 0.5, (0.5, 1.0)), part=2)
+    deck.add("*INITIAL_VELOCITY", (0,), (2.0, -3.0))
+    return deck.output(plot=0.05, glstat=0.01, matsum=0.01)
+
+
+def test_what_is_settled_is_told(exe, tmp_path):
+    (tmp_path / "job.k").write_text(two_rings().text())
+    done = run(exe, tmp_path, "i=job.k", "d=out")
+    log = (tmp_path / "out/job.log").read_text()
+    assert "per radian" in log
+    assert "3 node(s) at r = 0 keep to it" in log
+    assert "18 node(s) on the axis or of rigid bodies have an initial velocity in r" in done.stderr + log
+    with h5py.File(tmp_path / "out/job.vtkhdf") as stream:
+        moved = stream["VTKHDF/PointData/displacement"][-30:]
+        time = stream["VTKHDF/Steps/Values"][-1]
+        assert "hoop_strain" in stream["VTKHDF/CellData"]
+    on_axis = [0, 5, 10]
+    assert np.all(moved[on_axis, 0] == 0.0)
+    # The ring flies along the axis.
+    assert np.all(moved[15:, 0] == 0.0)
+    assert np.allclose(moved[15:, 1], -3.0 * time, rtol=1e-9)
+
+
+def test_masses_are_per_radian(exe, tmp_path):
+    (tmp_path / "job.k").write_text(two_rings().text())
+    run(exe, tmp_path, "i=job.k", "d=out")
+    mass = numbers(tmp_path / "out/job.matsum.csv", "mass")
+    assert np.allclose(mass[:2], [1000.0 * 0.5 * 0.5, 1000.0 * 0.5 * (1.5 ** 2 - 0.5 ** 2) * 0.5], rtol=1e-12)
+
+
+def test_plane_runs_have_no_hoop_strain(exe, tmp_path):
+    (tmp_path / "job.k").write_text(two_rings().text().replace("1,15,,1", "1,13,,1"))
+    run(exe, tmp_path, "i=job.k", "d=out")
+    with h5py.File(tmp_path / "out/job.vtkhdf") as stream:
+        assert "hoop_strain" not in stream["VTKHDF/CellData"]

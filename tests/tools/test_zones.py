@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: MIT
+"""Stick and slip over time: places and states of chains, what friction allows, pictures, the frictional work of reports."""
+import os
+import re
+import subprocess
+
+import h5py
+import numpy as np
+import pytest
+
+from conftest import ROOT
+from slideline_tools import zones
+from slideline_tools.advise.run_log import read_log
+from slideline_tools.histories import History, read_csv
+from slideline_tools.report import charts, write_report
+from slideline_tools.results import read
+from test_pictures import assert_picture
+
+EXAMPLE = ROOT / "doc/examples/contact_2d_slideline_friction.k"
+LOG = """interface 1: NTS-mAR (type 5)
+  friction: coefficient 3.000000E-01; tangential penalty 1.000000E+00 of the normal one
+interface 2: NTS-AR (type 2)
+  friction: coefficient 5.000000E-01 at rest, 2.000000E-01 in fast sliding, decay 2.000000E+00 s/m, stress at most 4.000000E+06 N/m^2; tangential penalty 1.000000E-01 of the normal one
+interface 3: mortar (type 6)
+interface 1: friction has dissipated 4.25E+01 J/m
+"""
+
+
+def table(states):
+    """A contact table at times 0, 1, 2: nodes 7, 3 and 5 of one chain, 8 and 2 of another."""
+    nodes, s = [7, 3, 5, 8, 2], [0.0, 1.0, 3.0, 0.0, 2.0]
+    return History("contact", {
+        "time": np.repeat([0.0, 1.0, 2.0], 5), "interface": np.ones(15, dtype=int), "node": np.tile(nodes, 3),
+        "s": np.tile(s, 3) * np.repeat([1.0, 1.1, 1.2], 5), "pressure": np.full(15, 10.0), "traction": np.full(15, -2.0),
+        "state": np.ravel(states).astype(float)})
+
+
+STATES = [[0, 0, 0, 0, 1], [1, 1, 0, 2, 1], [1, 2, 0, 2, 2]]
+
+
+def test_chains_places_and_states():
+    first, second = zones.chains_of(table(STATES))
+    times, places, states = zones.state_grid(first)
+    assert times.tolist() == [0.0, 1.0, 2.0] and places.tolist() == [0.0, 1.0, 3.0]
+    assert states.tolist() == [[0, 1, 1], [0, 1, 2], [0, 0, 0]]
+    assert zones.state_grid(second)[2].tolist() == [[0, 2, 2], [1, 1, 2]]
+    assert zones.edges(places).tolist() == [0.0, 0.5, 2.0, 3.0] and zones.edges(np.array([4.0])).tolist() == [3.5, 4.5]
+
+
+def test_a_time_that_lacks_rows_is_left_out():
+    """A killed run may have written a state in part."""
+    whole = table(STATES)
+    cut = whole.rows(np.arange(len(whole)) < 12)
+    assert zones.state_grid(zones.chains_of(cut)[0])[0].tolist() == [0.0, 1.0]
+
+
+def test_the_picture_has_the_states_as_shades():
+    figure = charts.zones(table(STATES))
+    quads = figure.axes[0].collections[0]
+    assert quads.get_array().reshape(3, 3).tolist() == [[0, 1, 1], [0, 1, 2], [0, 0, 0]]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["open", "stick", "slip"]
+    broken = np.where(np.array(STATES) == 2, 4, STATES)
+    assert charts.zones(table(broken)).legends[0].get_texts()[-1].get_text() == "broken"
+
+
+def test_friction_of_the_log():
+    log = read_log(LOG)
+    assert [one.friction for one in log.interfaces.values()] == [0.3, 0.5, 0.0]
+    assert log.interfaces[1].sliding_friction == 0.3 and log.interfaces[1].dissipated == 42.5
+    two = log.interfaces[2]
+    assert (two.sliding_friction, two.decay, two.most_friction, two.dissipated) == (0.2, 2.0, 4.0e6, None)
+
+
+def test_refused_without_friction(results_file, tool, tmp_path):
+    finished = tool("plot", results_file, "--zones", "--output", tmp_path / "x.png")
+    assert finished.returncode == 2 and "no slave node ever stuck or slipped" in finished.stderr
+    finished = tool("plot", results_file, "--zones", "--contact", "--output", tmp_path / "x.png")
+    assert finished.returncode == 2 and "choose one" in finished.stderr
+
+
+@pytest.fixture(scope="module")
+def sliding(tmp_path_factory):
+    """The block of the example that slides to a stop, with states and energies of its interface."""
+    if "SLIDELINE" not in os.environ:
+        pytest.skip("SLIDELINE is not set")
+    folder = tmp_path_factory.mktemp("sliding")
+    deck = folder / "block.k"
+    text = EXAMPLE.read_text()
+    text = re.sub(r"(\*DATABASE_BINARY_D3PLOT\n) *0\.05", r"\1      0.01", text)
+    deck.write_text(text.replace("*END", "*DATABASE_SLEOUT\n0.01,\n*DATABASE_RCFORC\n0.01,\n*END"))
+    done = subprocess.run([os.environ["SLIDELINE"], f"i={deck}", f"d={folder}"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+def test_results_have_traction_slip_and_state(sliding):
+    contact, results = read_csv(sliding / "block.contact.csv"), read(sliding / "block.vtkhdf")
+    last = contact.where(time=contact["time"][-1])
+    assert set(np.unique(contact["state"])) == {0.0, 1.0, 2.0}
+    assert np.all(np.abs(contact["traction"]) <= 0.5 * contact["pressure"] * (1.0 + 1.0e-12))
+    ids = results.point_field("node_id")[-1].tolist()
+    for name in ("traction", "slip", "state"):
+        field = results.point_field(f"contact_{name}")[-1]
+        assert [field[ids.index(node)] for node in last["node"]] == pytest.approx(last[name].tolist(), rel=1e-15)
+    with h5py.File(results.path) as stream:
+        assert {"traction", "slip", "state"} <= set(stream["history/contact"])
+
+
+def test_zones_of_a_run_that_slides_and_stops(sliding, tool, tmp_path):
+    path = tmp_path / "zones.png"
+    finished = tool("plot", sliding, "--zones", "--state", "5", "--state", "-1", "--output", path)
+    assert finished.returncode == 0, finished.stderr
+    assert_picture(path)
+    results = read(sliding / "block.vtkhdf")
+    assert zones.limit_of(results, 1) == (0.5, 0.0) and zones.limit_of(results, 2) is None
+    _, _, states = zones.state_grid(zones.chains_of(results.history("contact"))[0])
+    assert np.all(states[:, 3:9] == 2.0) and np.all(states[:, -1] == 1.0)  # it slides, then it stands
+
+
+def test_frictional_work_is_in_the_report_and_the_log(sliding, tmp_path):
+    """As glstat has it, and half m v^2: by the log, and by sleout where there is no log."""
+    work = read_csv(sliding / "block.glstat.csv")["friction"][-1]
+    assert work == pytest.approx(0.5 * 50.0 * 0.5 ** 2, rel=0.01)
+    assert f"{read_log((sliding / 'block.log').read_text()).interfaces[1].dissipated:.5e}" == f"{work:.5e}"
+
+    def told():
+        page = re.sub(r"<[^>]+>", " ", write_report(sliding, tmp_path / "r.html").read_text(encoding="utf-8"))
+        assert "Where interface 1 sticks and slips" in (tmp_path / "r.html").read_text(encoding="utf-8")
+        return float(re.search(r"frictional work\s+([-0-9.e+]+)", page)[1])
+
+    assert told() == pytest.approx(work, rel=1e-5)
+    log = sliding / "block.log"
+    words = log.read_text()
+    try:
+        log.write_text(words[:words.index("friction has dissipated")])
+        assert told() == pytest.approx(read_csv(sliding / "block.sleout.csv")["friction"][-1], rel=1e-5)
+    finally:
+        log.write_text(words)

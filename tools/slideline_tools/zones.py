@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: MIT
+"""Where a surface sticks and slips: places along the slave over time, and tractions beside what friction allows."""
+import numpy as np
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.patches import Patch
+
+from slideline_tools.advise.run_log import read_log
+from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt, run_title
+from slideline_tools.results import ResultsError
+
+#: Column `state` of the contact table: words and shade of 0, 1, ...
+STATES = (("open", "#f4f4f4"), ("stick", "#0b559f"), ("slip", "#f0a030"), ("tied", "#2e7d32"), ("broken", "#8c8c8c"))
+ALWAYS = 3  # open, stick and slip are always in the legend
+PANEL = 2.3
+
+
+def chains_of(contact):
+    """Rows of one interface, chain by chain: `s` begins anew with each chain of the slave."""
+    first = contact.where(time=contact["time"][0])
+    cuts = np.flatnonzero(np.diff(first["s"]) <= 0.0) + 1
+    return [contact.rows(np.isin(contact["node"], nodes)) for nodes in np.split(first["node"], cuts)]
+
+
+def edges(places):
+    """Borders half-way between increasing places, the outer ones at the places themselves."""
+    if len(places) == 1:
+        return np.array([places[0] - 0.5, places[0] + 0.5])
+    return np.concatenate([places[:1], 0.5 * (places[1:] + places[:-1]), places[-1:]])
+
+
+def state_grid(chain):
+    """Times, places of the nodes at the first of them, and states (node, time) of one chain; times at which rows
+    of some of its nodes are missing are left out."""
+    nodes = chain.where(time=chain["time"][0])["node"]
+    order, wanted = np.argsort(nodes), np.sort(nodes)
+    times, columns = [], []
+    for time in np.unique(chain["time"]):
+        rows = chain.where(time=time)
+        if np.array_equal(np.sort(rows["node"]), wanted):
+            times.append(time)
+            columns.append(rows["state"][np.argsort(rows["node"])][np.argsort(order)])
+    return np.array(times), chain.where(time=chain["time"][0])["s"], np.array(columns).T
+
+
+def draw_zones(axes, chain):
+    """The space-time diagram of one chain; each state holds half-way to the next."""
+    times, places, states = state_grid(chain)
+    norm = BoundaryNorm(np.arange(len(STATES) + 1) - 0.5, len(STATES))
+    axes.pcolormesh(edges(times), edges(places), states, cmap=ListedColormap([shade for _, shade in STATES]), norm=norm,
+                    shading="flat", rasterized=True)
+    axes.set_xlabel("time")
+    axes.set_ylabel("arc length s along the slave")
+
+
+def add_legend(figure, contact):
+    """The shades with their words; tied and broken where they occur."""
+    there = set(np.unique(contact["state"]).astype(int).tolist())
+    figure.legend([Patch(facecolor=shade, edgecolor="#555555", linewidth=0.4, label=words)
+                   for number, (words, shade) in enumerate(STATES) if number < ALWAYS or number in there],
+                  [words for number, (words, _) in enumerate(STATES) if number < ALWAYS or number in there],
+                  loc="outside lower center", ncols=len(STATES), frameon=False, fontsize=8)
+
+
+def limit_of(results, interface):
+    """(coefficient at rest, largest friction stress or 0) of an interface by the log beside the results; None where
+    nothing tells, and where the coefficient depends on the speed."""
+    log = results.path.with_suffix(".log")
+    if not log.exists():
+        return None
+    one = read_log(log.read_text(encoding="utf-8", errors="replace")).interfaces.get(int(interface))
+    if one is None or not one.friction or (one.decay and one.sliding_friction != one.friction):
+        return None
+    return one.friction, one.most_friction
+
+
+def draw_tractions(axes, results, chain, interface, states):
+    """|traction| along one chain at some states; mu p as a broken line where the coefficient is one number."""
+    limit, known = limit_of(results, interface), np.unique(chain["time"])
+    for count, state in enumerate(states):
+        time = known[np.argmin(np.abs(known - results.times[results.state_index(state)]))]
+        rows, colour = chain.where(time=time), COLOURS[count % len(COLOURS)]
+        axes.plot(rows["s"], np.abs(rows["traction"]), color=colour, marker="o", markersize=2.0, linewidth=1.0,
+                  label=f"t = {time:.4g}")
+        if limit:
+            most = limit[0] * rows["pressure"]
+            if limit[1]:
+                most = np.minimum(most, limit[1])
+            axes.plot(rows["s"], most, color=colour, linestyle="--", linewidth=0.8,
+                      label="what friction allows" if limit[1] else f"mu p, mu {limit[0]:g}")
+    axes.set_xlabel("arc length s along the slave")
+    axes.set_ylabel("|traction|")
+    axes.set_ylim(bottom=0.0)
+    axes.grid(True, linewidth=0.3, color="#bbbbbb")
+    axes.legend(fontsize=7)
+
+
+def zones_figure(results, states=("-1",)):
+    """One row for each chain of each interface with friction: stick and slip over time, tractions at the states."""
+    contact = results.history("contact")
+    if "state" not in contact or not np.any(contact["state"]):
+        raise ResultsError(f"{results.path}: no slave node ever stuck or slipped (its contact table tells of no friction)")
+    with_friction = [number for number in np.unique(contact["interface"]).tolist()
+                     if np.any(contact.where(interface=number)["state"])]
+    chains = [(number, chain) for number in with_friction for chain in chains_of(contact.where(interface=number))]
+    with plt.rc_context(STYLE):
+        figure, panels = plt.subplots(len(chains), 2, squeeze=False, layout="constrained",
+                                      figsize=(PAGE_WIDTH + 1.5, 0.6 + PANEL * len(chains)))
+        for (left, right), (number, chain) in zip(panels, chains):
+            draw_zones(left, chain)
+            left.set_title(f"interface {number}", loc="left")
+            draw_tractions(right, results, chain, number, states)
+        add_legend(figure, contact)
+        figure.suptitle(run_title(results), fontsize=9)
+        return figure
