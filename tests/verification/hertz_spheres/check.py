@@ -80,7 +80,7 @@ def check_pressed(run, kind, level, exchanged=False):
     scatter = 2.0 * found.scatter
     run.check(f"{name}: pressures add up to the force per radian", found.force, abs(force), 0.5 * (2.0 * a / RADIUS) ** 2,
               source="definition; normals up to 2a/R from the axis")
-    for source, radius, top in (("Hertz (1881)", 1.0, 1.0), ("Hertz with a layer of springs", *soft)):
+    for source, radius, top in (("Hertz (1881)", 1.0, 1.0), ("Hertz with a layer of springs", *soft[:2])):
         run.check(f"{name}: contact radius / {source}", found.radius / a / radius, 1.0,
                   mesh + (soft[0] - 1.0 if radius == 1.0 else 0.0), source=source)
         run.check(f"{name}: peak pressure / {source}", found.peak / peak / top, 1.0,
