@@ -17,8 +17,8 @@ module round_chunk_m
   integer, parameter :: reference_sum = 7, reference_mass = 8, n_round_reference = 11
 
   !> What a chunk of round quads has besides that of a plane one. Of the gradients of the volume
-  !> `rad` is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over A), each
-  !> for the patterns a, b, h (s: all four nodes).
+  !> `rad` is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over A),
+  !> each for the patterns a, b, h (s: all four nodes).
   type :: round_chunk_t
     real(wp) :: us(2, chunk_size), vs(2, chunk_size) !! sums of u and of v, 0 in padding
     real(wp) :: force(4, chunk_size), swing(2, chunk_size) !! forces as in the plane chunk

@@ -63,8 +63,8 @@ contains
   end subroutine round_full_step
 
   !> Largest row sums of H and T of the elements, over the volumes of the nodes. H is that of the
-  !> patterns (s11 s22 s12 s13 s23 s33), of which the nodes have (-1, 0, 1), (0, -1, -1), (1, 0, 1) and
-  !> (0, 1, -1); rows of T sum to the integral of N_a/r dA.
+  !> patterns (s11 s22 s12 s13 s23 s33), of which the nodes have (-1, 0, 1), (0, -1, -1), (1, 0, 1)
+  !> and (0, 1, -1); rows of T sum to the integral of N_a/r dA.
   pure subroutine row_sums(inverse_mass, stride, points, plane, hoop)
     integer, intent(in) :: stride
     real(wp), intent(in) :: inverse_mass(stride, *)

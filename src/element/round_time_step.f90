@@ -73,8 +73,8 @@ contains
   end subroutine round_step
 
   !> The sums over the nodes for strain. With p, q, o, t, u, w the sums of b_r^2, b_z^2, b_r b_z,
-  !> M^2, M b_r, M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda is the
-  !> largest row sum (Gershgorin) of the matrix [p o u; o q w; u w t].
+  !> M^2, M b_r, M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda is
+  !> the largest row sum (Gershgorin) of the matrix [p o u; o q w; u w t].
   pure subroutine form_strain_sums(lame, shear, inverse_mass, stride, round, sums)
     real(wp), intent(in) :: lame, shear            !! lambda/rho and 2G/rho
     integer, intent(in) :: stride
