@@ -86,7 +86,7 @@ def judge_fit(one, folder):
         def points(name):
             return results.points if name == "Points" else results.point_field(name)
 
-    expected = check.lame(check.SMALL, True, 2.0 if one.labels["type"] == 3 else 1.0)[0]
+    expected = check.lame(check.SMALL, True, check.springs_of(one.labels["type"], check.PENALTY))[0]
     return {f"error_{side}": float(np.max(np.abs(check.pressures(Fields, nodes) / expected - 1.0)))
             for side, nodes in (("slave", shaft[:, -1]), ("master", hub[:, 0]))}
 
