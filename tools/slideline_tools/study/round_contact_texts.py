@@ -20,15 +20,16 @@ pressure over its norm. Collision of two steel spheres (Hertz, likewise): contac
 
 {errors}
 
-The radius and the time err alike for all types: that is the mesh (`h^2.5` at the edge of contact) and, in the collision, that a sphere is
-not a half space. What tells the types apart is the pressure from node to node.
+Radius and time err alike for all types: that is the mesh (`h^2.5` at the edge of contact) and, in the collision, that a sphere is
+not a half space. The error of the pressure holds the edge too, where a node is in or out; what tells the types apart is the press fit and the peak.
 
 ![error of the pressure between spheres over contact time](../pictures/round_contact.png)
 
 ## Cost
 
 Contact time per cycle over that of type {base}, and the share of contact in the computing time (elements, nodes, contact). These scenes are small, with
-a tenth of their nodes in contact: no measure of large ones, for which see [speed](speed.md).
+a tenth of their nodes in contact: no measure of large ones, for which see [speed](speed.md). The quickest of the repeats; where the
+machine does other work beside it, they scatter by tens of per cent.
 
 {costs}
 """
