@@ -21,6 +21,7 @@ from slideline_tools.study.charts import save, styled
 from slideline_tools.study.job import Job, Study
 from slideline_tools.study.round_contact_texts import PAGE
 from slideline_tools.study.rules import COST_FACTOR, ERROR_FACTOR, least, names
+from slideline_tools.study.speed_accuracy_charts import plain_ticks
 from slideline_tools.study.table import finished
 
 VERIFICATION = pathlib.Path(__file__).resolve().parents[3] / "tests" / "verification"
@@ -179,7 +180,9 @@ def draw(rows):
     axes.set_xlabel("contact time per cycle, microseconds")
     axes.set_ylabel("pressure of spheres, L2 error")
     axes.grid(True, which="both", linewidth=0.3, color="#bbbbbb")
-    axes.legend(fontsize=7, ncols=2)
+    for axis in (axes.xaxis, axes.yaxis):
+        plain_ticks(axis)
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=7)
     return figure
 
 
