@@ -9,7 +9,7 @@ module interface_m
   use contact_law_m, only : pressed_at_slave_nodes, press_places
   use contact_log_m, only : log_contact
   use contact_penalty_m, only : set_penalties
-  use contact_scatter_m, only : scatter_forces, scatter_friction
+  use contact_scatter_m, only : scatter_forces
   use contact_springs_m, only : begin_look, measure_springs, end_look
   use contact_work_m, only : take_apart, hand_over, count_work
   use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
@@ -181,7 +181,6 @@ contains
       if (contact%damping > 0.0_wp) call damp_points(memory%points, contact%damping, &
         memory%nodes, motion, mass, memory%scratch%nodal)
       call scatter_forces(memory)
-      if (allocated(memory%friction%force)) call scatter_friction(memory)
       if (had_force .or. memory%n_active > 0) call limit_forces(motion, times(1), times(2), memory)
     end if
     if (memory%points%n > 0 .or. had_force) &
@@ -272,7 +271,6 @@ contains
     if (allocated(memory%friction%force)) &
       call rub_places(contact, formulation%has_unit_area, memory%scratch%dt, memory)
     call scatter_forces(memory)
-    if (allocated(memory%friction%force)) call scatter_friction(memory)
     do i = 1, size(memory%nodes)
       associate (node => memory%nodes(i))
         force(:, node) = force(:, node) + memory%force(:, i)

@@ -44,6 +44,8 @@ module piece_table_m
     real(wp), allocatable :: node_gap(:)  !! of the master segment's first node over the slave
                                           !! segment, m
     real(wp), allocatable :: share(:)     !! how much of it counts: 0 where the segments do not face
+    real(wp), allocatable :: half(:)      !! scratch: half its length as far as it counts, m
+    integer, allocatable :: rows(:)       !! scratch: some pieces
   end type piece_table_t
 
 contains
@@ -55,12 +57,12 @@ contains
 
     allocate (table%slave(capacity), table%last(0:capacity), table%master(capacity), &
       table%ends(2, capacity), table%nodes(2, capacity), table%first_cut(capacity), &
-      table%last_cut(capacity), table%kind(capacity), source=0)
+      table%last_cut(capacity), table%kind(capacity), table%rows(capacity), source=0)
     allocate (table%touches(capacity), source=.false.)
     allocate (table%own(2, capacity), table%other(2, capacity), table%way(2, capacity), &
       table%length(capacity), table%normal(2, capacity), table%cut(capacity), &
       table%low(capacity), table%high(capacity), &
-      table%node_gap(capacity), table%share(capacity), source=0.0_wp)
+      table%node_gap(capacity), table%share(capacity), table%half(capacity), source=0.0_wp)
   end subroutine allocate_pieces
 
   !> Double the room; what the filling has written stays.

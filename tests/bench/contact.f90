@@ -3,9 +3,10 @@
 !> that face each other, the slave sliding over the master by 1e-4 of a segment a step. `flat`: all slave nodes
 !> touch; `crown`: the slave is part of a circle that dips into a flat master, a third of its nodes touch.
 !> `match` and `shift`: two meshes of the same size that move by 1e-6 of a segment, their nodes 1e-7 off their places:
-!> nodes opposite nodes, and opposite a place between two.
-!> usage: bench_contact [SLAVE_NODES [TYPE, 0 for all [STEPS]]]. Prints a row per scene, size and
-!> type: the best and the median of interleaved rounds, ns per step, slave node and point.
+!> nodes opposite nodes, and opposite a place between two. `exact`: as `match`, to round-off and at rest.
+!> `slide` and `stick`: `flat` and `shift` with friction, of which all places slip and stick.
+!> usage: bench_contact [SLAVE_NODES [TYPE, 0 for all [STEPS [SCENE]]]]. Prints a row per scene, size
+!> and type: the best and the median of interleaved rounds, ns per step, slave node and point.
 program bench_contact
   use, intrinsic :: iso_fortran_env, only : output_unit
   use contact_factories_m, only : problem_t, make_problem, line
@@ -14,7 +15,9 @@ program bench_contact
   implicit none
 
   integer, parameter :: n_type = 7, n_round = 5, sizes(3) = [20, 1000, 100000]
-  character(5), parameter :: scenes(4) = [character(5) :: 'flat', 'crown', 'match', 'shift']
+  character(5), parameter :: scenes(7) = [character(5) :: 'flat', 'crown', 'match', 'shift', &
+    'exact', 'slide', 'stick']
+  real(wp), parameter :: friction_coefficient = 0.3_wp
   !> Steps times slave nodes of a round.
   integer, parameter :: n_work = 200000
   real(wp), parameter :: slip = 1.0e-4_wp
@@ -24,13 +27,16 @@ program bench_contact
   character(20) :: argument
 
   chosen = 0
-  do i_size = 1, command_argument_count()
+  do i_size = 1, min(size(chosen), command_argument_count())
     call get_command_argument(i_size, argument)
     read (argument, *) chosen(i_size)
   end do
+  argument = ''
+  if (command_argument_count() > size(chosen)) call get_command_argument(size(chosen) + 1, argument)
   write (output_unit, '(a)') 'scene,slave_nodes,type,points,active,ns_step,ns_step_median,' &
     //'ns_slave_node,ns_point,of_type_1'
   do i_scene = 1, size(scenes)
+    if (argument /= '' .and. argument /= scenes(i_scene)) cycle
     if (chosen(1) > 0) then
       call time_types(scenes(i_scene), chosen(1))
     else
@@ -54,15 +60,15 @@ contains
     times = huge(1.0_wp)
     do i_type = 1, n_type
       if (chosen(2) > 0 .and. chosen(2) /= i_type) cycle
-      call start_problem(problems(i_type), scene, n, i_type)
-      call take_steps(scene, problems(i_type), 3, best)
+      call start_problem(problems(i_type), bare(scene), n, i_type, bare(scene) /= scene)
+      call take_steps(bare(scene), problems(i_type), 3, best)
     end do
     n_step = max(20, n_work/n)
     if (chosen(3) > 0) n_step = chosen(3)
     do i_round = 1, n_round
       do i_type = 1, n_type
         if (chosen(2) > 0 .and. chosen(2) /= i_type) cycle
-        call take_steps(scene, problems(i_type), n_step, times(i_round, i_type))
+        call take_steps(bare(scene), problems(i_type), n_step, times(i_round, i_type))
       end do
     end do
     do i_type = 1, n_type
@@ -77,11 +83,22 @@ contains
     end do
   end subroutine time_types
 
+  !> The scene without friction.
+  pure function bare(scene)
+    character(*), intent(in) :: scene
+    character(5) :: bare
+
+    bare = scene
+    if (scene == 'slide') bare = 'flat'
+    if (scene == 'stick') bare = 'shift'
+  end function bare
+
   !> Chains of unit segments; where the slave slides, the master's are a little longer.
-  subroutine start_problem(problem, scene, n, i_type)
+  subroutine start_problem(problem, scene, n, i_type, rubs)
     type(problem_t), intent(out) :: problem
     character(*), intent(in) :: scene
     integer, intent(in) :: n, i_type
+    logical, intent(in) :: rubs
     real(wp), allocatable :: slave(:, :), master(:, :)
     integer :: n_master
 
@@ -96,6 +113,8 @@ contains
     call make_problem(problem, slave, master, 1.0_wp)
     problem%contact%contact_type = i_type
     problem%contact%n_gauss = 6
+    if (rubs) problem%contact%friction%at_rest = friction_coefficient
+    if (rubs) problem%contact%friction%sliding = friction_coefficient
     problem%clock%is_on = .false.
     call start_contact(problem%contact, problem%model, problem%log, problem%memory)
   end subroutine start_problem
@@ -145,6 +164,7 @@ contains
     problem%cycle = problem%cycle + 1
     shift = 2.0_wp*abs(1.0_wp - modulo(0.5_wp*slip*problem%cycle, 2.0_wp))
     if (scene == 'match' .or. scene == 'shift') shift = creep*(shift - 2.0_wp)
+    if (scene == 'exact') shift = 0.0_wp
     do i = 1, problem%contact%slave%n_node
       problem%motion(1, i) = shift
     end do

@@ -22,6 +22,7 @@ module foot_block_m
     integer :: n
     integer :: n_odd                !! places that need a decision yet
     integer :: n_moved              !! places that have been settled one by one
+    integer :: moved(n_block)       !! these
     integer :: segment(n_block)     !! of the chain
     real(wp) :: t(2, n_block)       !! vector of that segment, m
     real(wp) :: d(2, n_block)       !! from its first node to the place, m
@@ -80,7 +81,7 @@ contains
     real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node) places
     type(foot_block_t), intent(inout) :: block
     real(wp) :: beside(2, n_block)
-    integer :: k
+    integer :: i, k
 
     if (block%n_odd > n_alone) then
       call see_neighbours(block%n, block%segment, block%xi, surface%previous, surface%next, &
@@ -88,16 +89,31 @@ contains
       call keep_near_nodes(block%n, block%t, block%d, block%xi, beside, block%odd, block%n_odd)
       if (block%n_odd == 0) return
     end if
-    do k = 1, block%n
-      if (.not. block%odd(k) > 0.0_wp) cycle
-      block%n_moved = block%n_moved + 1
+    call list_odd(block%n, block%odd, block%n_moved, block%moved)
+    do i = 1, block%n_moved
+      k = block%moved(i)
       call settle(surface%segments, surface%previous(block%segment(k)), &
         surface%next(block%segment(k)), chain, k, block)
       if (.not. block%odd(k) > 0.0_wp) block%n_odd = block%n_odd - 1
     end do
   end subroutine settle_odd
 
-  !> The neighbour of each segment at the end next to the foot.
+  !> List the odd places of a block.
+  pure subroutine list_odd(n, odd, n_odd, list)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: odd(n)
+    integer, intent(out) :: n_odd
+    integer, intent(inout) :: list(n)
+    integer :: k
+
+    n_odd = 0
+    do k = 1, n
+      list(n_odd + 1) = k
+      n_odd = n_odd + merge(1, 0, odd(k) > 0.0_wp)
+    end do
+  end subroutine list_odd
+
+  !> The neighbour of each segment at the end next to the foot: first all numbers, then the vectors.
   pure subroutine see_neighbours(n, segment, xi, previous, next, ends, chain, beside)
     integer, intent(in) :: n, segment(n)
     real(wp), intent(in) :: xi(n)
@@ -105,16 +121,20 @@ contains
     real(wp), intent(in) :: chain(4, *)
     real(wp), intent(inout) :: beside(2, n) !! its vector, m; 0 where there is none
     real(wp) :: vector(4)
-    integer :: k, other
+    integer :: others(n_block), k, other
 
+    do k = 1, n
+      others(k) = merge(next(segment(k)), previous(segment(k)), xi(k) > 0.5_wp)
+    end do
     !GCC$ NOVECTOR
     do k = 1, n
-      other = previous(segment(k))
-      if (xi(k) > 0.5_wp) other = next(segment(k))
-      beside(:, k) = 0.0_wp
-      if (other == 0) cycle
-      vector = chain(:, ends(2, other)) - chain(:, ends(1, other))
-      beside(:, k) = vector(1:2) + vector(3:4)
+      other = others(k)
+      if (other > 0) then
+        vector = chain(:, ends(2, other)) - chain(:, ends(1, other))
+        beside(:, k) = vector(1:2) + vector(3:4)
+      else
+        beside(:, k) = 0.0_wp
+      end if
     end do
   end subroutine see_neighbours
 

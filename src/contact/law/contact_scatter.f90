@@ -5,17 +5,23 @@ module contact_scatter_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: scatter_forces, scatter_points, scatter_damped, scatter_friction, add_gap_round_off
+  public :: scatter_forces, scatter_points, scatter_damped, add_gap_round_off
+
+  !> Points whose loads are formed together.
+  integer, parameter :: n_block = 128
 
 contains
 
-  !> Add the forces of all points on the list to those of the interface's nodes, those of damping to
-  !> their own too.
+  !> Add the forces of all points on the list to those of the interface's nodes, those of damping
+  !> and of friction to their own too, and count the points that carry any.
   pure subroutine scatter_forces(memory)
     type(contact_state_t), intent(inout) :: memory
 
     if (allocated(memory%damping_force)) then
       call scatter_damped(memory%points, memory%force, memory%damping_force, memory%n_active)
+      if (allocated(memory%friction%force)) call scatter_rubbed(0.0_wp, memory)
+    else if (allocated(memory%friction%force)) then
+      call scatter_rubbed(1.0_wp, memory)
     else
       call scatter_points(memory%points, memory%force, memory%n_active)
     end if
@@ -48,25 +54,47 @@ contains
       points%master_weights, points%load, force, damping_force)
   end subroutine scatter_damped
 
-  !> Add the tractions of all points to the forces of the interface's nodes and to those of
-  !> friction, which are zero before. They act along -t = -(-n_y, n_x): the same sums as of the
-  !> pressures, each turned by a right angle. Damping may leave a point with a traction alone: it
-  !> counts too.
-  pure subroutine scatter_friction(memory)
+  !> Add pressures, unless they have been added, and tractions of all points to the forces of the
+  !> interface's nodes, and tractions to those of friction, which are zero before. They act along
+  !> -t = -(-n_y, n_x). Damping may leave a point with a traction alone: it counts too.
+  pure subroutine scatter_rubbed(part, memory)
+    real(wp), intent(in) :: part !! of the pressures: 1 or 0
     type(contact_state_t), intent(inout) :: memory
-    integer :: i
+    real(wp) :: load(n_load, n_block)
+    integer :: first, n
 
-    associate (points => memory%points, force => memory%friction%force)
-      call scatter_each(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
-        points%master_weights, points%normal, points%traction, points%area, force)
-      do i = 1, size(force, 2)
-        force(:, i) = [force(2, i), -force(1, i)]
+    associate (points => memory%points)
+      do first = 1, points%n, n_block
+        n = min(n_block, points%n - first + 1)
+        call form_loads(n, part, points%pressure(first), points%traction(first), &
+          points%area(first), points%normal(1, first), load)
+        call scatter_loads(n, points%slave_nodes(1, first), points%slave_weights(1, first), &
+          points%master_nodes(1, first), points%master_weights(1, first), load, memory%force, &
+          memory%friction%force)
       end do
-      memory%force = memory%force + force
       memory%n_active = count(points%pressure(:points%n) > 0.0_wp &
         .or. abs(points%traction(:points%n)) > 0.0_wp)
     end associate
-  end subroutine scatter_friction
+  end subroutine scatter_rubbed
+
+  !> Loads of points: of pressure and friction together, and of friction alone.
+  pure subroutine form_loads(n, part, pressure, traction, area, normal, load)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: part !! of the pressures
+    real(wp), intent(in) :: pressure(n), traction(n), area(n), normal(2, n)
+    real(wp), intent(inout) :: load(n_load, n)
+    real(wp) :: press, rub
+    integer :: p
+
+    do p = 1, n
+      press = part*pressure(p)*area(p)
+      rub = traction(p)*area(p)
+      load(3, p) = rub*normal(2, p)
+      load(4, p) = -rub*normal(1, p)
+      load(1, p) = press*normal(1, p) + load(3, p)
+      load(2, p) = press*normal(2, p) + load(4, p)
+    end do
+  end subroutine form_loads
 
   !> On arrays of known shape: through the list each access costs a multiplication by its stride. A
   !> point at a node has it at both ends of that side, and all of the force goes there. The forces

@@ -5,14 +5,17 @@ module friction_m
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contacts_m, only : contact_t, friction_rule_t
   use friction_state_m, only : is_open
-  use geometry_m, only : separation
   use kinds_m, only : wp
   use law_friction_m, only : coefficient_of, return_traction
   use lengths_m, only : competence_length
   use nodal_average_m, only : average_values, share_out
+  use radii_m, only : centroid
   implicit none
   private
   public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, place_of_point
+
+  !> Places whose slips are formed together.
+  integer, parameter :: n_block = 64
 
   !> A place in a step.
   type :: rub_t
@@ -30,18 +33,28 @@ contains
   pure subroutine take_increments(motion, memory)
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u(n), v(n-1/2)
     type(contact_state_t), intent(inout) :: memory
-    integer :: i
 
     associate (increment => memory%scratch%increment)
       if (memory%is_stale) then
         increment = 0.0_wp
       else
-        do i = 1, size(memory%nodes)
-          increment(:, i) = motion(1:2, memory%nodes(i)) - memory%places(3:4, i)
-        end do
+        call take_changes(size(memory%nodes), memory%nodes, motion, memory%places, increment)
       end if
     end associate
   end subroutine take_increments
+
+  !> On arrays of known shape.
+  pure subroutine take_changes(n, nodes, motion, places, increment)
+    integer, intent(in) :: n, nodes(n)
+    real(wp), intent(in) :: motion(4, *), places(4, n)
+    real(wp), intent(inout) :: increment(2, n)
+    integer :: i
+
+    !GCC$ NOVECTOR
+    do i = 1, n
+      increment(:, i) = motion(1:2, nodes(i)) - places(3:4, i)
+    end do
+  end subroutine take_changes
 
   !> Before the points of a trial of an implicit step are placed: friction goes on from the last
   !> converged step, with all motion since then.
@@ -61,8 +74,8 @@ contains
   pure subroutine set_tractions_aside(memory)
     type(contact_state_t), intent(inout) :: memory
 
-    memory%scratch%former_traction = memory%friction%traction
-    memory%scratch%former_state = memory%friction%state
+    memory%scratch%former_traction(:) = memory%friction%traction
+    memory%scratch%former_state(:) = memory%friction%state
     memory%friction%traction = 0.0_wp
     memory%friction%state = is_open
     memory%friction%stored = 0.0_wp
@@ -94,18 +107,17 @@ contains
     integer :: p, place
 
     memory%scratch%nodal(1, :) = 0.0_wp
+    rub%most = most_traction(contact%friction)
+    call find_point_slips(memory)
     do p = 1, memory%points%n
+      rub%slip = memory%points%traction(p)
       memory%points%traction(p) = 0.0_wp
       if (.not. memory%points%pressure(p) > 0.0_wp) cycle
       place = place_of_point(memory%points, p)
       associate (points => memory%points)
-        rub%slip = slip_of(memory, points%slave_nodes(:, p), points%slave_weights(:, p), &
-          points%master_nodes(:, p), points%master_weights(:, p), points%normal(:, p), &
-          points%gap(p))
         rub%former = former_traction(memory, p, place)
         rub%pressure = points%pressure(p)
         rub%stiffness = contact%friction%stiffness*points%stiffness(p)
-        rub%most = most_traction(contact%friction)
         if (has_unit_area .and. contact%friction%most > 0.0_wp) rub%most = contact%friction%most &
           *competence_length(contact%slave, memory%places(:, :memory%n_slave), place)
       end associate
@@ -172,24 +184,22 @@ contains
     real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
     type(rub_t) :: rub
-    integer :: p, n, q, place, spot
+    real(wp) :: slips(memory%slave_tracking%n)
+    integer :: p, n, q, place
 
     rub%most = most_traction(contact%friction)
     rub%stiffness = contact%friction%stiffness*memory%slave_penalty
     n = size(memory%spot_xi)
+    call find_spot_slips(contact, memory, slips)
     do p = 1, memory%points%n
       memory%points%traction(p) = 0.0_wp
       if (.not. memory%points%pressure(p) > 0.0_wp) cycle
       associate (friction => memory%friction, points => memory%points, &
-        tracking => memory%slave_tracking, first => memory%points%slave_nodes(1, p))
-        q = minloc(abs(memory%spot_xi - points%slave_weights(2, p)), 1)
+        first => memory%points%slave_nodes(1, p))
+        q = spot_at(points%slave_weights(2, p), memory%spot_xi)
         place = n*(first - 1) + q
         if (friction%state(place) == is_open) then
-          spot = n*(contact%slave%outgoing(first) - 1) + q
-          rub%slip = slip_of(memory, points%slave_nodes(:, p), points%slave_weights(:, p), &
-            memory%n_slave + contact%master%segments(:, tracking%segment(spot)), &
-            [1.0_wp - tracking%xi(spot), tracking%xi(spot)], tracking%normal(:, spot), &
-            tracking%gap(spot))
+          rub%slip = slips(n*(contact%slave%outgoing(first) - 1) + q)
           rub%former = memory%scratch%former_traction(place)
           rub%pressure = points%pressure(p)
           call rub_one(contact%friction, rub, dt, friction%traction(place), friction%state(place))
@@ -202,20 +212,65 @@ contains
     end do
   end subroutine rub_virtual_nodes
 
+  !> Which of the spots of a segment stands at xi.
+  pure function spot_at(xi, spot_xi) result(q)
+    real(wp), intent(in) :: xi, spot_xi(:)
+    integer :: q, i
+
+    q = 1
+    do i = 2, size(spot_xi)
+      if (abs(spot_xi(i) - xi) < abs(spot_xi(q) - xi)) q = i
+    end do
+  end function spot_at
+
+  !> Slips of the spots in contact, some at a time.
+  pure subroutine find_spot_slips(contact, memory, slips)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(inout) :: slips(:) !! of all spots, m
+    integer, dimension(n_side, n_block) :: slave_nodes, master_nodes
+    real(wp), dimension(n_side, n_block) :: slave_weights, master_weights
+    real(wp) :: normals(2, n_block), gaps(n_block), found(n_block)
+    integer :: first, n, k, i, s, q
+
+    associate (tracking => memory%slave_tracking, xi => memory%spot_xi)
+      do first = 1, tracking%n_touching, n_block
+        n = min(n_block, tracking%n_touching - first + 1)
+        do k = 1, n
+          i = tracking%touching(first + k - 1)
+          s = 1 + (i - 1)/size(xi)
+          q = i - (s - 1)*size(xi)
+          slave_nodes(:, k) = contact%slave%segments(:, s)
+          slave_weights(2, k) = xi(q)
+          if (memory%spot_spread > 0.0_wp) slave_weights(2, k) = centroid( &
+            memory%places(:, slave_nodes(1, k)), memory%places(:, slave_nodes(2, k)), &
+            xi(q) - 0.5_wp*memory%spot_spread, xi(q) + 0.5_wp*memory%spot_spread)
+          slave_weights(1, k) = 1.0_wp - slave_weights(2, k)
+          master_nodes(:, k) = memory%n_slave + contact%master%segments(:, tracking%segment(i))
+          master_weights(1, k) = 1.0_wp - tracking%xi(i)
+          master_weights(2, k) = tracking%xi(i)
+          normals(:, k) = tracking%normal(:, i)
+          gaps(k) = tracking%gap(i)
+        end do
+        call find_slips(n, slave_nodes, slave_weights, master_nodes, master_weights, normals, &
+          gaps, memory%scratch%increment, memory%places, found)
+        do k = 1, n
+          slips(tracking%touching(first + k - 1)) = found(k)
+        end do
+      end do
+    end associate
+  end subroutine find_spot_slips
+
   !> Types 6 and 7: slave nodes, with slips averaged as gaps are.
   pure subroutine rub_slave_nodes(rule, dt, memory)
     type(friction_rule_t), intent(in) :: rule
     real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
     type(rub_t) :: rub
-    integer :: p, i
+    integer :: i
 
     associate (friction => memory%friction, points => memory%points, nodal => memory%scratch%nodal)
-      do p = 1, points%n
-        points%traction(p) = slip_of(memory, points%slave_nodes(:, p), &
-          points%slave_weights(:, p), points%master_nodes(:, p), points%master_weights(:, p), &
-          points%normal(:, p), points%gap(p))
-      end do
+      call find_point_slips(memory)
       call average_values(points, points%traction, memory%n_slave, nodal)
       rub%stiffness = rule%stiffness*memory%slave_penalty
       rub%most = most_traction(rule)
@@ -234,32 +289,52 @@ contains
     end associate
   end subroutine rub_slave_nodes
 
-  !> Slip of a step of the slave side of a point over its master side, along t = (-n_y, n_x), m:
+  !> Slips of all points, into their tractions.
+  pure subroutine find_point_slips(memory)
+    type(contact_state_t), intent(inout) :: memory
+
+    associate (points => memory%points)
+      call find_slips(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
+        points%master_weights, points%normal, points%gap, memory%scratch%increment, &
+        memory%places, points%traction)
+    end associate
+  end subroutine find_point_slips
+
+  !> Slips of a step of the slave sides of places over their master sides, along t = (-n_y, n_x), m:
   !> the motion of the foot over the segment that has the normal, L d(xi)
   !> (doc/theory/contact.md, section 6.2). Its second term takes off what the turn of that segment
   !> moves at a distance; without it a rotation of all would slip. That segment is the master's, or
   !> the slave's where the master side is one node.
-  pure function slip_of(memory, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
-      gap) result(slip)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: slave_nodes(n_side), master_nodes(n_side)
-    real(wp), intent(in) :: slave_weights(n_side), master_weights(n_side)
-    real(wp), intent(in) :: normal(2), gap
-    real(wp) :: slip
-    real(wp) :: relative(2), t(2), turn(2)
-    integer :: owner(n_side)
+  pure subroutine find_slips(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
+      gap, du, places, slip)
+    integer, intent(in) :: n, slave_nodes(n_side, *), master_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
+    real(wp), intent(in) :: normal(2, *), gap(*)
+    real(wp), intent(in) :: du(2, *)      !! increments of the nodes, m
+    real(wp), intent(in) :: places(4, *)  !! of the nodes
+    real(wp), intent(inout) :: slip(*)
+    real(wp) :: relative(2), along(4), t(2), turn(2)
+    integer :: p, a, b, c, d
 
-    associate (du => memory%scratch%increment)
-      relative = slave_weights(1)*du(:, slave_nodes(1)) + slave_weights(2)*du(:, slave_nodes(2)) &
-        - master_weights(1)*du(:, master_nodes(1)) - master_weights(2)*du(:, master_nodes(2))
-      owner = master_nodes
-      if (owner(1) == owner(2)) owner = slave_nodes
-      t = separation(memory%places(:, owner(2)), memory%places(:, owner(1)))
-      turn = du(:, owner(2)) - du(:, owner(1))
-    end associate
-    slip = normal(1)*relative(2) - normal(2)*relative(1) &
-      + gap*(t(2)*turn(1) - t(1)*turn(2))/max(t(1)**2 + t(2)**2, tiny(1.0_wp))
-  end function slip_of
+    !GCC$ NOVECTOR
+    do p = 1, n
+      a = slave_nodes(1, p)
+      b = slave_nodes(2, p)
+      c = master_nodes(1, p)
+      d = master_nodes(2, p)
+      relative = slave_weights(1, p)*du(:, a) + slave_weights(2, p)*du(:, b) &
+        - master_weights(1, p)*du(:, c) - master_weights(2, p)*du(:, d)
+      if (c == d) then
+        c = a
+        d = b
+      end if
+      along = places(:, d) - places(:, c)
+      t = along(1:2) + along(3:4)
+      turn = du(:, d) - du(:, c)
+      slip(p) = normal(1, p)*relative(2) - normal(2, p)*relative(1) &
+        + gap(p)*(t(2)*turn(1) - t(1)*turn(2))/max(t(1)**2 + t(2)**2, tiny(1.0_wp))
+    end do
+  end subroutine find_slips
 
   !> Largest traction of a rule whatever the pressure.
   pure function most_traction(rule) result(most)

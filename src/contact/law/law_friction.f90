@@ -18,7 +18,10 @@ contains
     real(wp), intent(in) :: speed !! m/s, >= 0
     real(wp) :: coefficient
 
-    coefficient = rule%sliding + (rule%at_rest - rule%sliding)*exp(-rule%decay*speed)
+    coefficient = rule%sliding + (rule%at_rest - rule%sliding)
+    ! The exponential costs as much as all the rest.
+    if (rule%decay > 0.0_wp) coefficient = rule%sliding &
+      + (rule%at_rest - rule%sliding)*exp(-rule%decay*speed)
   end function coefficient_of
 
   !> Return of a trial traction to the limit.

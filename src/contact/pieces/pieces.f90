@@ -10,20 +10,14 @@ module pieces_m
   use contacts_m, only : contact_t
   use foot_block_m, only : project
   use foot_m, only : foot_t, nearest_foot, facing_share, face_on, round_off
-  use geometry_m, only : sight_t, sight_of_segment
   use kinds_m, only : wp
-  use piece_table_m, only : piece_table_t, is_listed_piece, is_last_piece, is_walked_piece
+  use piece_list_m, only : list_kept, list_run, note_segments, may_list, hair
+  use piece_table_m, only : piece_table_t, n_piece_block, is_last_piece, is_walked_piece
   use piece_walk_m, only : walk_pieces
   use sleep_m, only : is_asleep
   implicit none
   private
   public :: clear_pieces, list_awake, list_segment, cut_pieces, tracked_foot
-
-  !> Most pieces of a slave segment that are listed without a walk, and length of a closed master
-  !> chain up to which the way forwards may be the shorter one.
-  integer, parameter :: n_most = 6, short_chain = 2*n_most + 2
-  !> Part of a segment within which a foot is on its node where a list or a walk starts or ends.
-  real(wp), parameter :: hair = 1.0e-9_wp
 
 contains
 
@@ -50,55 +44,14 @@ contains
     type(piece_table_t), intent(inout) :: table
 
     do while (s <= contact%slave%n_segment .and. .not. table%is_full)
-      associate (tracking => memory%slave_tracking)
-        if (contact%master%n_segment > short_chain) call list_touching(contact%slave%n_segment, &
-          contact%slave%segments, tracking%status, tracking%segment, tracking%xi, &
-          contact%master%previous, s, table)
-      end associate
+      if (may_list(contact%master)) call list_kept(contact, memory, &
+        contact%slave%n_segment, s, table)
       if (s > contact%slave%n_segment .or. table%is_full) return
       if (.not. is_asleep(memory, s, contact%slave%segments(:, s))) &
         call list_segment(contact, memory, s, is_strict, table)
       s = s + 1
     end do
   end subroutine list_awake
-
-  !> List the slave segments from s on with both ends in contact and feet between master nodes; s is
-  !> then the first of another kind. On arrays of known shape: half of the work.
-  pure subroutine list_touching(n_segment, ends, status, segment, xi, previous, s, table)
-    integer, intent(in) :: n_segment, ends(2, n_segment)   !! of the slave
-    integer, intent(in) :: status(*), segment(*)           !! of the slave nodes
-    real(wp), intent(in) :: xi(*)
-    integer, intent(in) :: previous(*)                     !! of the master
-    integer, intent(inout) :: s
-    type(piece_table_t), intent(inout) :: table
-    integer :: one, two
-    logical :: is_listed
-
-    do while (s <= n_segment .and. .not. table%is_full)
-      one = ends(1, s)
-      two = ends(2, s)
-      if (status(one) /= is_touching .or. status(two) /= is_touching) return
-      if (min(xi(one), 1.0_wp - xi(one), xi(two), 1.0_wp - xi(two)) <= max(hair, &
-        table%least_cut)) return
-      call list_run(ends(1, s), segment(one), segment(two), previous, table, is_listed)
-      if (.not. is_listed) return
-      call end_segment(s, .true., table)
-      s = s + 1
-    end do
-  end subroutine list_touching
-
-  !> Note a slave segment whose pieces have been listed.
-  pure subroutine end_segment(s, touches, table)
-    integer, intent(in) :: s
-    logical, intent(in) :: touches !! both ends are in contact
-    type(piece_table_t), intent(inout) :: table
-
-    table%n_segment = table%n_segment + 1
-    table%slave(table%n_segment) = s
-    table%last(table%n_segment) = table%n
-    table%touches(table%n_segment) = touches
-    table%is_full = max(table%n + n_most, table%n_segment + 1) > size(table%master)
-  end subroutine end_segment
 
   !> List a slave segment. Ends in contact are where the tracking has them; others are looked for
   !> from the foot of the other end, so that both are on the same stretch of the chain.
@@ -109,36 +62,23 @@ contains
     logical, intent(in) :: is_strict
     type(piece_table_t), intent(inout) :: table
     type(foot_t) :: feet(2)
-    integer :: ends(2), first, last
+    integer :: ends(2), next
     logical :: touches, is_listed
 
     ends = contact%slave%segments(:, s)
-    associate (tracking => memory%slave_tracking)
-      touches = tracking%status(ends(1)) == is_touching .and. tracking%status(ends(2)) &
-        == is_touching
-      is_listed = .false.
-      if (touches) then
-        first = tracking%segment(ends(1))
-        last = tracking%segment(ends(2))
-        associate (xi => tracking%xi(ends), near_node => max(hair, table%least_cut))
-          if (min(xi(1), 1.0_wp - xi(1)) <= near_node) &
-            first = beside_node(contact, memory, ends, 1, table%least_cut)
-          if (min(xi(2), 1.0_wp - xi(2)) <= near_node) &
-            last = beside_node(contact, memory, ends, 2, table%least_cut)
-        end associate
-      else
-        call find_feet(contact, memory, ends, feet)
-        first = merge(feet(1)%segment, 0, feet(1)%is_on)
-        last = merge(feet(2)%segment, 0, feet(2)%is_on)
-      end if
-      if (min(first, last) > 0 .and. contact%master%n_segment > short_chain) &
-        call list_run(ends, first, last, contact%master%previous, table, is_listed)
-      if (.not. is_listed) then
-        if (touches) call find_feet(contact, memory, ends, feet)
-        call walk_pieces(contact, memory, ends, feet, is_strict, table)
-      end if
-    end associate
-    call end_segment(s, touches, table)
+    touches = all(memory%slave_tracking%status(ends) == is_touching)
+    if (touches .and. may_list(contact%master)) then
+      next = s
+      call list_kept(contact, memory, s, next, table)
+      if (next > s) return
+    end if
+    call find_feet(contact, memory, ends, feet)
+    is_listed = .false.
+    if (.not. touches .and. all(feet%is_on) .and. may_list(contact%master)) &
+      call list_run(ends, feet%segment, contact%master%previous, table, is_listed)
+    if (.not. is_listed) call walk_pieces(contact, memory, ends, feet, is_strict, table)
+    table%last(table%n_segment + 1) = table%n
+    call note_segments(s, 1, touches, table)
   end subroutine list_segment
 
   !> Feet of both ends of a slave segment; segment 0 where no master segment is near. A foot on a
@@ -218,86 +158,20 @@ contains
     foot%normal = normal
   end function tracked_foot
 
-  !> Master segment of the first or the last piece of a slave segment where the foot of that end is
-  !> a master node, or next to it. Of the two at that node the outer one has a piece only where the
-  !> node projects on the slave segment.
-  pure function beside_node(contact, memory, ends, k, least_cut) result(segment)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: ends(2)
-    integer, intent(in) :: k           !! which end
-    real(wp), intent(in) :: least_cut  !! of the table
-    integer :: segment                 !! 0: a walk has to tell
-    integer :: before, behind, node    !! the two, on the way along the slave segment
-    type(sight_t) :: sight
-    logical :: is_inside
-
-    associate (tracking => memory%slave_tracking, master => contact%master)
-      segment = tracking%segment(ends(k))
-      if (tracking%xi(ends(k)) < 0.5_wp) then
-        before = segment
-        behind = master%previous(segment)
-        node = master%segments(1, segment)
-      else
-        before = master%next(segment)
-        behind = segment
-        node = master%segments(2, segment)
-      end if
-      sight = sight_of_segment(memory%places(:, memory%n_slave + node), memory%places(:, ends(1)), &
-        memory%places(:, ends(2)))
-      ! From a node that far off the walk sees no more of the master.
-      if (sight%along < -sight%square .or. sight%along > 2.0_wp*sight%square) then
-        segment = 0
-        return
-      end if
-      if (k == 1) then
-        is_inside = sight%along > least_cut*sight%square
-      else
-        is_inside = sight%along < (1.0_wp - least_cut)*sight%square
-      end if
-      segment = merge(before, behind, is_inside .eqv. k == 1)
-      if (segment == 0) segment = tracking%segment(ends(k))
-    end associate
-  end function beside_node
-
-  !> List the pieces of a slave segment from the master segment below its first end back to that
-  !> below the second one, if these are not too many.
-  pure subroutine list_run(ends, first, last, previous, table, is_listed)
-    integer, intent(in) :: ends(2), first, last
-    integer, intent(in) :: previous(*)  !! of the master
-    type(piece_table_t), intent(inout) :: table
-    logical, intent(out) :: is_listed
-    integer :: segment, n, k
-
-    is_listed = .false.
-    segment = first
-    k = table%n
-    do n = 1, n_most
-      k = k + 1
-      table%ends(1, k) = ends(1)
-      table%ends(2, k) = ends(2)
-      table%master(k) = segment
-      table%kind(k) = is_listed_piece
-      if (segment == last) exit
-      segment = previous(segment)
-      if (segment == 0) return
-    end do
-    if (n > n_most) return
-    is_listed = .true.
-    table%kind(k) = is_last_piece
-    table%n = k
-  end subroutine list_run
-
   !> Cut all listed segments: where their pieces start and end, and how much of each counts.
   pure subroutine cut_pieces(contact, memory, table)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(piece_table_t), intent(inout) :: table
+    integer :: first, n
 
     call see_pieces(table%n, table%ends, table%master, contact%master%segments, memory%n_slave, &
       memory%places, table%nodes, table%own, table%other, table%way)
-    call project_nodes(table%n, table%own, table%way, table%cut, table%node_gap, table%normal, &
-      table%length)
+    do first = 1, table%n, n_piece_block
+      n = min(n_piece_block, table%n - first + 1)
+      call project_nodes(n, table%own(1, first), table%way(1, first), table%cut(first), &
+        table%node_gap(first), table%normal(1, first), table%length(first))
+    end do
     call order_pieces(table%n, contact%master%segments, table%master, table%kind, table%cut, &
       table%low, table%high, table%first_cut, table%last_cut)
     call find_shares(table%n, table%own, table%other, table%share)
@@ -330,15 +204,15 @@ contains
 
   !> Projections of the first nodes of the master segments on the slave segments.
   pure subroutine project_nodes(n, own, way, cut, node_gap, normal, length)
-    integer, intent(in) :: n
+    integer, intent(in) :: n !! at most n_piece_block
     real(wp), intent(in) :: own(2, n), way(2, n)
     real(wp), intent(inout) :: cut(n), node_gap(n), normal(2, n), length(n)
-    real(wp) :: odd(n), inverse(n), from_end(2, n)
+    real(wp) :: odd(n_piece_block), inverse(n_piece_block), from_end(2, n_piece_block)
     integer :: n_odd
 
-    from_end = -way
+    from_end(:, :n) = -way
     call project(n, own, from_end, cut, node_gap, normal, inverse, odd, n_odd)
-    length = 1.0_wp/inverse
+    length = 1.0_wp/inverse(:n)
   end subroutine project_nodes
 
   !> Where the pieces start and end. A node that projects behind the last cut, or beyond the end of

@@ -56,27 +56,22 @@ contains
   !> With the strict rule all of it counts.
   pure subroutine share_pieces(contact, table, memory)
     type(contact_t), intent(in) :: contact
-    type(piece_table_t), intent(in) :: table
+    type(piece_table_t), intent(inout) :: table
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: halves(table%n)
-    integer :: k
 
-    do k = 1, table%n
-      halves(k) = 0.5_wp*(table%high(k) - table%low(k))*table%length(k)
-    end do
-    if (.not. contact%strict) halves = halves*table%share(:table%n)
+    call halve_pieces(table%n, table%low, table%high, table%length, table%half)
+    if (.not. contact%strict) table%half(:table%n) = table%half(:table%n)*table%share(:table%n)
     if (contact%is_round) then
-      call share_weighted(contact, table, halves, memory)
+      call share_weighted(contact, table, memory)
     else
-      call share_halves(contact, table, halves, halves, memory)
+      call share_halves(contact, table, table%half, table%half, memory)
     end if
   end subroutine share_pieces
 
   !> The same in axisymmetry: what either end of a piece gets differs.
-  pure subroutine share_weighted(contact, table, halves, memory)
+  pure subroutine share_weighted(contact, table, memory)
     type(contact_t), intent(in) :: contact
-    type(piece_table_t), intent(in) :: table
-    real(wp), intent(in) :: halves(table%n) !! m
+    type(piece_table_t), intent(inout) :: table
     type(contact_state_t), intent(inout) :: memory
     real(wp), dimension(table%n) :: to_first, to_last
     real(wp) :: low, high
@@ -87,8 +82,8 @@ contains
         low = radius_between(a, b, table%low(k))
         high = radius_between(a, b, table%high(k))
       end associate
-      to_first(k) = halves(k)*end_radius(low, high)
-      to_last(k) = halves(k)*end_radius(high, low)
+      to_first(k) = table%half(k)*end_radius(low, high)
+      to_last(k) = table%half(k)*end_radius(high, low)
     end do
     call share_halves(contact, table, to_first, to_last, memory)
   end subroutine share_weighted
@@ -96,12 +91,12 @@ contains
   !> Give the areas of all pieces to what stands at their ends.
   pure subroutine share_halves(contact, table, to_first, to_last, memory)
     type(contact_t), intent(in) :: contact
-    type(piece_table_t), intent(in) :: table
-    real(wp), intent(in), dimension(table%n) :: to_first, to_last !! where a piece starts, and ends
+    type(piece_table_t), intent(inout) :: table
+    real(wp), intent(in) :: to_first(*), to_last(*) !! where a piece starts, and where it ends
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t) :: cuts
-    real(wp) :: areas(table%n), deepest
-    integer :: i, n_before, n_points, n, rows(table%n)
+    real(wp) :: deepest
+    integer :: i, n_before, n_points, n
     logical :: counts
 
     n = 0
@@ -109,7 +104,12 @@ contains
     do i = 1, table%n_segment
       associate (first => table%last(i - 1) + 1, last => table%last(i), s => table%slave(i))
         if (table%touches(i) .and. is_plain(table%kind, to_first, first, last)) then
-          call share_plain(table, i, to_first, to_last, memory, n, rows, areas)
+          n_before = n
+          call add_ends(first, last, table%ends, to_first, to_last, memory%scratch%point_at, &
+            memory%points%area)
+          call list_cuts(first, last, table%node_gap, memory%closed_gap, n, table%rows)
+          call keep_segment(n > n_before, memory%travel, memory%segments%status(s), &
+            memory%segments%wake(s))
           cycle
         end if
         if (cuts%n + last - first >= n_block) &
@@ -129,11 +129,20 @@ contains
     call append_points(cuts, memory%slave_penalty, memory%points)
     do i = 1, n, n_block
       cuts%n = min(n_block, n - i + 1)
-      call put_cuts(cuts%n, rows(i), areas(i), table%ends, table%nodes, table%cut, table%node_gap, &
-        table%normal, cuts)
+      call put_cuts(cuts%n, table%rows(i), to_first, to_last, table%ends, table%nodes, table%cut, &
+        table%node_gap, table%normal, cuts)
       call append_points(cuts, memory%slave_penalty, memory%points)
     end do
   end subroutine share_halves
+
+  !> Half the length of each piece, m.
+  pure subroutine halve_pieces(n, low, high, length, half)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: low(n), high(n), length(n)
+    real(wp), intent(inout) :: half(n)
+
+    half = 0.5_wp*(high - low)*length
+  end subroutine halve_pieces
 
   !> Whether the pieces of a segment are listed from one end to the other, none of them empty.
   pure function is_plain(kind, areas, first, last)
@@ -151,39 +160,39 @@ contains
     is_plain = .true.
   end function is_plain
 
-  !> The pieces of such a segment with both ends in contact; master nodes in contact go on a list of
-  !> pieces that end there.
-  pure subroutine share_plain(table, i, to_first, to_last, memory, n, rows, areas)
-    type(piece_table_t), intent(in) :: table
-    integer, intent(in) :: i !! segment of the table
-    real(wp), intent(in) :: to_first(*), to_last(*)
-    type(contact_state_t), intent(inout) :: memory
-    integer, intent(inout) :: n, rows(*)
-    real(wp), intent(inout) :: areas(*) !! m
-    integer :: k, n_before, first, last, s
+  !> The slave nodes at the ends of such a segment get their parts.
+  pure subroutine add_ends(first, last, ends, to_first, to_last, point_at, area)
+    integer, intent(in) :: first, last     !! pieces
+    integer, intent(in) :: ends(2, *)      !! of all pieces, as those that follow
+    real(wp), intent(in) :: to_first(*), to_last(*) !! m
+    integer, intent(in) :: point_at(*)     !! at each slave node, 0: none
+    real(wp), intent(inout) :: area(*)     !! of the points, m
+    integer :: p
 
-    s = table%slave(i)
-    first = table%last(i - 1) + 1
-    last = table%last(i)
-    associate (point_at => memory%scratch%point_at)
-      call add_length(memory%points, point_at(table%ends(1, first)), to_first(first))
-      call add_length(memory%points, point_at(table%ends(2, first)), to_last(last))
-    end associate
-    n_before = n
+    p = point_at(ends(1, first))
+    if (p > 0) area(p) = area(p) + to_first(first)
+    p = point_at(ends(2, first))
+    if (p > 0) area(p) = area(p) + to_last(last)
+  end subroutine add_ends
+
+  !> Its master nodes in contact go on a list of pieces that end there.
+  pure subroutine list_cuts(first, last, node_gap, closed_gap, n, rows)
+    integer, intent(in) :: first, last     !! pieces
+    real(wp), intent(in) :: node_gap(*), closed_gap !! m
+    integer, intent(inout) :: n, rows(*)
+    integer :: k
+
     do k = first, last - 1
-      if (.not. table%node_gap(k) < memory%closed_gap) cycle
+      if (.not. node_gap(k) < closed_gap) cycle
       n = n + 1
       rows(n) = k
-      areas(n) = to_last(k) + to_first(k + 1)
     end do
-    call keep_segment(n > n_before, memory%travel, memory%segments%status(s), &
-      memory%segments%wake(s))
-  end subroutine share_plain
+  end subroutine list_cuts
 
-  !> Points at the master nodes where some pieces end.
-  pure subroutine put_cuts(n, rows, areas, ends, nodes, cut, node_gap, normal, cuts)
+  !> Points at the master nodes where some pieces end: these and the next pieces are halved there.
+  pure subroutine put_cuts(n, rows, to_first, to_last, ends, nodes, cut, node_gap, normal, cuts)
     integer, intent(in) :: n, rows(n), ends(2, *), nodes(2, *)
-    real(wp), intent(in) :: areas(n), cut(*), node_gap(*), normal(2, *)
+    real(wp), intent(in) :: to_first(*), to_last(*), cut(*), node_gap(*), normal(2, *)
     type(place_block_t), intent(inout) :: cuts
     integer :: k, row
 
@@ -197,7 +206,7 @@ contains
       cuts%feet%xi(k) = 0.0_wp
       cuts%feet%gap(k) = node_gap(row)
       cuts%feet%normal(:, k) = -normal(:, row)
-      cuts%area(k) = areas(k)
+      cuts%area(k) = to_last(row) + to_first(row + 1)
     end do
   end subroutine put_cuts
 

@@ -32,6 +32,9 @@ module place_vts_ppt_m
     real(wp) :: high(n_block)     !! where the earlier end is
     real(wp) :: length(n_block)   !! of the master segment, m
     real(wp) :: half(n_block)     !! of the slave segment's length, m
+    real(wp) :: xi(n_block)       !! place of the virtual node on its slave segment
+    real(wp) :: gap(n_block)      !! its gap, m
+    real(wp) :: normal(2, n_block) !! its normal
   end type halves_t
 
 contains
@@ -55,6 +58,9 @@ contains
       halves%spot(:n) = memory%slave_tracking%touching(first:first + n - 1)
       call see_halves(n, halves%spot, memory%slave_tracking%segment, contact%slave%segments, &
         contact%master%segments, memory%n_slave, memory%places, memory%spots, halves)
+      associate (tracking => memory%slave_tracking)
+        call take_feet(n, halves%spot, tracking%gap, tracking%normal, memory%spot_xi, halves)
+      end associate
       call project_ends(n, halves%own, halves%t, halves%d, halves%low, halves%high, halves%length, &
         halves%half)
       do k = 1, n
@@ -62,7 +68,7 @@ contains
           call append_points(block, memory%slave_penalty, memory%points)
         if (halves%low(k) >= -round_off .and. halves%high(k) <= 1.0_wp + round_off &
           .and. halves%high(k) > halves%low(k)) then
-          call put_portion(memory, halves, k, halves%nodes(:, k), 0.5_wp*(halves%low(k) &
+          call put_portion(halves, k, halves%nodes(:, k), 0.5_wp*(halves%low(k) &
             + halves%high(k)), halves%half(k), block)
         else
           call add_portions(contact, memory, halves, k, block)
@@ -87,7 +93,13 @@ contains
       halves%spot(:n) = memory%slave_tracking%touching(first:first + n - 1)
       call see_halves(n, halves%spot, memory%slave_tracking%segment, contact%slave%segments, &
         contact%master%segments, memory%n_slave, memory%places, memory%spots, halves)
+      associate (tracking => memory%slave_tracking)
+        call take_feet(n, halves%spot, tracking%gap, tracking%normal, memory%spot_xi, halves)
+      end associate
       do k = 1, n
+        if (block%n + 2 > n_block) &
+          call append_points(block, memory%slave_penalty, memory%points)
+        halves%xi(k) = spot_xi(memory, halves%spot(k), halves%ends(:, k))
         associate (a => memory%places(:, halves%ends(1, k)), &
           b => memory%places(:, halves%ends(2, k)))
           halves%half(k) = 0.5_wp*segment_length(a, b) &
@@ -126,6 +138,22 @@ contains
       halves%d(:, k) = d(1:2) + d(3:4)
     end do
   end subroutine see_halves
+
+  !> Places, gaps and normals of the virtual nodes of some halves.
+  pure subroutine take_feet(n, spot, gap, normal, spot_xi, halves)
+    integer, intent(in) :: n, spot(n)
+    real(wp), intent(in) :: gap(*), normal(2, *) !! of all virtual nodes
+    real(wp), intent(in) :: spot_xi(2)           !! where they are on each slave segment
+    type(halves_t), intent(inout) :: halves
+    integer :: k
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      halves%xi(k) = spot_xi(2 - iand(spot(k), 1))
+      halves%gap(k) = gap(spot(k))
+      halves%normal(:, k) = normal(:, spot(k))
+    end do
+  end subroutine take_feet
 
   !> Both ends of the halves on their master segments.
   pure subroutine project_ends(n, own, t, d, low, high, length, half)
@@ -168,9 +196,9 @@ contains
       if (is_found) then
         share = share/(share + high*halves%length(k))
         nodes = memory%n_slave + contact%master%segments(:, other)
-        call put_portion(memory, halves, k, nodes, 0.5_wp*(low + 1.0_wp), share*halves%half(k), &
+        call put_portion(halves, k, nodes, 0.5_wp*(low + 1.0_wp), share*halves%half(k), &
           block)
-        call put_portion(memory, halves, k, halves%nodes(:, k), 0.5_wp*high, &
+        call put_portion(halves, k, halves%nodes(:, k), 0.5_wp*high, &
           (1.0_wp - share)*halves%half(k), block)
       end if
     else if (high > 1.0_wp .and. low > 0.0_wp .and. low < 1.0_wp) then
@@ -180,9 +208,9 @@ contains
       if (is_found) then
         share = share/(share + (1.0_wp - low)*halves%length(k))
         nodes = memory%n_slave + contact%master%segments(:, other)
-        call put_portion(memory, halves, k, halves%nodes(:, k), 0.5_wp*(low + 1.0_wp), &
+        call put_portion(halves, k, halves%nodes(:, k), 0.5_wp*(low + 1.0_wp), &
           (1.0_wp - share)*halves%half(k), block)
-        call put_portion(memory, halves, k, nodes, 0.5_wp*high, share*halves%half(k), block)
+        call put_portion(halves, k, nodes, 0.5_wp*high, share*halves%half(k), block)
       end if
     end if
     if (.not. is_found) call walk_portions(contact, memory, halves, k, block)
@@ -257,18 +285,18 @@ contains
               memory%places(:, nodes(2)))
             if (contact%is_round) call weigh_portion(memory, nodes, low, high, xi, length)
             if (i_pass == 1) total = total + length
-            if (i_pass == 2) call put_portion(memory, halves, k, nodes, xi, &
-              halves%half(k)*(length/total), block)
-            if (i_pass == 2 .and. contact%is_round) block%xi(block%n) = spot_xi(memory, spot, ends)
+            if (i_pass == 2 .and. block%n == n_block) &
+              call append_points(block, memory%slave_penalty, memory%points)
+            if (i_pass == 2) call put_portion(halves, k, nodes, xi, halves%half(k)*(length/total), &
+              block)
           end if
           segment = contact%master%next(segment)
           ! Marks of displacements beyond all bounds need not lie on one chain.
           if (segment == 0) exit
         end do
         if (total > 0.0_wp) cycle
-        call put_portion(memory, halves, k, halves%nodes(:, k), memory%slave_tracking%xi(spot), &
+        call put_portion(halves, k, halves%nodes(:, k), memory%slave_tracking%xi(spot), &
           halves%half(k), block)
-        if (contact%is_round) block%xi(block%n) = spot_xi(memory, spot, ends)
         return
       end do
     end associate
@@ -309,28 +337,25 @@ contains
     end_of_half = xi + (1.5_wp - k)*0.5_wp
   end function end_of_half
 
-  !> A point with the gap and the normal of the virtual node and a place of its own on the master.
-  pure subroutine put_portion(memory, halves, k, nodes, xi, area, block)
-    type(contact_state_t), intent(inout) :: memory
+  !> A point with the gap and the normal of the virtual node and a place of its own on the master,
+  !> in a block that has room for it.
+  pure subroutine put_portion(halves, k, nodes, xi, area, block)
     type(halves_t), intent(in) :: halves
     integer, intent(in) :: k
     integer, intent(in) :: nodes(2)        !! local numbers of those of the master segment
     real(wp), intent(in) :: xi             !! place on that
     real(wp), intent(in) :: area           !! m
     type(place_block_t), intent(inout) :: block
-    integer :: n, spot
+    integer :: n
 
-    if (block%n == n_block) call append_points(block, memory%slave_penalty, memory%points)
     n = block%n + 1
     block%n = n
-    spot = halves%spot(k)
     block%ends(:, n) = halves%ends(:, k)
-    block%xi(n) = memory%spot_xi(2 - iand(spot, 1))
+    block%xi(n) = halves%xi(k)
     block%nodes(:, n) = nodes
     block%feet%xi(n) = xi
-    block%feet%gap(n) = memory%slave_tracking%gap(spot)
-    block%feet%normal(1, n) = memory%slave_tracking%normal(1, spot)
-    block%feet%normal(2, n) = memory%slave_tracking%normal(2, spot)
+    block%feet%gap(n) = halves%gap(k)
+    block%feet%normal(:, n) = halves%normal(:, k)
     block%area(n) = area
   end subroutine put_portion
 

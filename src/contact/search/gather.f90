@@ -56,9 +56,17 @@ contains
     do i = size(nodes) - modulo(size(nodes), n_lane) + 1, size(nodes)
       lanes(1) = lanes(1) + (motion(3, nodes(i))*force(1, i) + motion(4, nodes(i))*force(2, i))
     end do
-    force(:, :size(nodes)) = 0.0_wp
+    call clear(2*size(nodes), force)
     power = sum(lanes)
   end subroutine take_force
+
+  !> Both components of all nodes in one loop: column by column it takes twenty times as long.
+  pure subroutine clear(n, values)
+    integer, intent(in) :: n
+    real(wp), intent(inout) :: values(n)
+
+    values = 0.0_wp
+  end subroutine clear
 
   !> The same for forces that stay.
   pure function power_of(nodes, motion, force) result(power)

@@ -64,7 +64,6 @@ contains
     real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
     integer, intent(out) :: n_left    !! spots that were not kept
     type(foot_block_t) :: block
-    logical :: has_odd
     integer :: first, i, k
 
     n_left = 0
@@ -73,16 +72,7 @@ contains
       call see_spots(block%n, tracking%touching(first), tracking%segment, surface%segments, chain, &
         spots, block%segment, block%t, block%d)
       call project_block(block)
-      has_odd = block%n_odd > 0
-      if (has_odd) then
-        call settle_odd(surface, chain, block)
-        has_odd = block%n_moved > 0
-      end if
-      if (has_odd) then
-        do k = 1, block%n
-          tracking%segment(tracking%touching(first + k - 1)) = block%segment(k)
-        end do
-      end if
+      if (block%n_odd > 0) call settle_odd(surface, chain, block)
       i = tracking%touching(first)
       if (tracking%touching(first + block%n - 1) == i + block%n - 1) then
         call store_run(block%n, block%xi, block%gap, block%normal, tracking%xi(i), &
@@ -92,18 +82,29 @@ contains
           i = tracking%touching(first + k - 1)
           tracking%xi(i) = block%xi(k)
           tracking%gap(i) = block%gap(k)
-          tracking%normal(1, i) = block%normal(1, k)
-          tracking%normal(2, i) = block%normal(2, k)
+          tracking%normal(:, i) = block%normal(:, k)
         end do
       end if
-      if (.not. has_odd) cycle
-      do k = 1, block%n
-        if (block%gap(k) < 0.0_wp .and. .not. block%odd(k) > 0.0_wp) cycle
-        n_left = n_left + 1
-        tracking%due(n_left) = tracking%touching(first + k - 1)
-      end do
+      call take_moved(block, tracking%touching(first), tracking%segment, n_left, tracking%due)
     end do
   end subroutine keep_contacts
+
+  !> The segments of the spots that were settled one by one; those that need a decision are listed.
+  pure subroutine take_moved(block, touching, segment, n_left, due)
+    type(foot_block_t), intent(in) :: block
+    integer, intent(in) :: touching(*)   !! the spots
+    integer, intent(inout) :: segment(*) !! of all spots
+    integer, intent(inout) :: n_left, due(*)
+    integer :: i, k
+
+    do i = 1, block%n_moved
+      k = block%moved(i)
+      segment(touching(k)) = block%segment(k)
+      if (block%gap(k) < 0.0_wp .and. .not. block%odd(k) > 0.0_wp) cycle
+      n_left = n_left + 1
+      due(n_left) = touching(k)
+    end do
+  end subroutine take_moved
 
   !> Vectors of a block of spots.
   pure subroutine see_spots(n, touching, segment, ends, chain, spots, on, t, d)
