@@ -43,6 +43,16 @@ def add_picture_options(parser):
     parser.add_argument("--scale", type=float, default=1.0, help="factor on the displacements")
     parser.add_argument("--zoom", type=float, nargs=4, metavar=("X0", "X1", "Y0", "Y1"),
                         help="window to show")
+    parser.add_argument("--mirror", action="store_true",
+                        help="with the image in x = 0: axisymmetric and half models as a whole")
+
+
+def opened(options):
+    """The results, with their image if it is asked for."""
+    from slideline_tools.mirrored import Mirrored
+    from slideline_tools.results import open_run
+    results = open_run(options.results)
+    return Mirrored(results) if options.mirror else results
 
 
 def add_plot(commands):
@@ -67,8 +77,7 @@ def add_plot(commands):
 
 def plot(options):
     from slideline_tools import plots
-    from slideline_tools.results import open_run
-    results = open_run(options.results)
+    results = opened(options)
     states = options.state or ["-1"]
     if sum(map(bool, (options.history, options.contact, options.zones))) > 1:
         raise ToolError("choose one of --history, --contact and --zones")
@@ -99,8 +108,7 @@ def add_animate(commands):
 
 def animate(options):
     from slideline_tools import animation
-    from slideline_tools.results import open_run
-    count = animation.animate(open_run(options.results), made_folder(options.output), options.field,
+    count = animation.animate(opened(options), made_folder(options.output), options.field,
                               options.scale, options.rate, options.zoom)
     print(f"wrote {options.output} ({count} states)")
     return OK

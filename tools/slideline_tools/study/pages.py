@@ -56,6 +56,7 @@ PAGES = {  # quick ones first
     "paper_tables": study("paper-tables"),
     "claims": batch("claims", after=("block_to_block", "sliding", "collision", "paper_tables")),
     "claims_friction": study("claims-friction"),
+    "round_contact": study("round-contact"),
     "stability_friction": study("stability-friction"),
     "stability_shapes": study("stability-shapes"),
     "stability": study("stability"),

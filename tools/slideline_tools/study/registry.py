@@ -7,6 +7,7 @@ from slideline_tools import UserError
 STUDIES = {  # name on the command line: file of this package
     "claims-friction": "claims_friction",
     "paper-tables": "paper_tables",
+    "round-contact": "round_contact",
     "stability": "stability",
     "stability-friction": "stability_friction",
     "stability-shapes": "stability_shapes",

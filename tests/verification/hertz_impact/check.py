@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""Two steel spheres collide: Hertz's contact time and largest force, all contact types."""
+import pathlib
+import sys
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent / "hertz_spheres"), str(HERE.parents[2] / "tools")]
+
+import spheres  # noqa: E402
+from contact_types import TYPES  # noqa: E402
+from meshes import Deck, grid_quads  # noqa: E402
+from slideline_tools.scenes.hertz import graded  # noqa: E402
+
+DENSITY, YOUNG, POISSON = 7850.0, 210.0e9, 0.3
+BALL, SPEED = 0.01, 1.0
+EDGE, RATIO = 0.07e-3, 1.2    # cell at the contact; those of the other sphere are as much smaller
+PENALTY = 2.0e15              # N/m^3
+MODULUS = YOUNG / (2.0 * (1.0 - POISSON ** 2))
+
+
+def line(cell, fine, size, grown):
+    """From 0: `fine` even cells, then growing ones up to `size`."""
+    start = np.arange(fine + 1) * cell
+    return np.concatenate([start, graded(start[-1], size, cell, grown, 1)[1:]])
+
+
+def ball(cell):
+    """A whole sphere with its lowest point at 0: a rectangle u in 0..1, v in -1..1 mapped on half of the disc, r = u
+    sqrt(1 - v^2/2), y = v sqrt(1 - u^2/2), with fine cells where v = -1 and u = 0; columns, rows too."""
+    fine = cell * np.sqrt(2.0) / BALL
+    u, v = line(fine, 9, 1.0, 12), line(fine, 4, 2.0, 16) - 1.0
+    points = np.array([(BALL * a * np.sqrt(1.0 - 0.5 * b * b), BALL * (1.0 + b * np.sqrt(1.0 - 0.5 * a * a)))
+                       for b in v for a in u])
+    points[np.abs(points) < 1e-15] = 0.0
+    return points, len(u), len(v)
+
+
+def collision(kind):
+    deck = Deck(f"two steel spheres collide, type {kind}")
+    deck.control(80.0e-6, scale=0.6)
+    deck.add("*SECTION_SHELL", (1, 15), (1.0,)).hourglass(4, 0.05)
+    ids, gap = [], 1.0e-9
+    for part, cell in ((1, EDGE), (2, EDGE / RATIO)):
+        deck.part(part, section=1).elastic(DENSITY, YOUNG, POISSON, part)
+        points, columns, rows = ball(cell)
+        quads = np.array(grid_quads(columns - 1, rows - 1))
+        if part == 2:
+            points, quads = points * [1.0, -1.0] - [0.0, gap], quads[:, ::-1]
+        ids.append(deck.mesh(points, quads, part=part).reshape(rows, columns))
+    deck.node_set(1, ids[0][0, :16]).node_set(2, ids[1][0, 15::-1])
+    deck.node_set(3, ids[0].ravel()).node_set(4, ids[1].ravel())
+    for nodes, sign in ((3, -1.0), (4, 1.0)):
+        deck.add("*INITIAL_VELOCITY", (nodes,), (0.0, sign * 0.5 * SPEED))
+    deck.contact(1, 2, kind, PENALTY, unit=1, gauss=4)
+    return deck.output(plot=40.0e-6, glstat=0.2e-6, rcforc=0.1e-6, matsum=20.0e-6)
+
+
+def check_collision(run, kind):
+    result = run.program(collision(kind), name=f"collision_{kind}")
+    name = f"{TYPES[kind]}, collision"
+    mass = 4.0 / 3.0 * np.pi * BALL ** 3 * DENSITY
+    duration, approach, largest = spheres.impact(0.5 * mass, 0.5 * BALL, MODULUS, SPEED)
+    side = result.table("rcforc").where(side="slave")
+    force = 2.0 * np.pi * side["fy"]
+    touched = np.flatnonzero(force > 1e-3 * largest)
+    # From the first touch to the last: the start and the end where the force passes a thousandth.
+    found = side["time"][touched[-1]] - side["time"][touched[0]]
+    soft = spheres.impact_on_springs(0.5 * mass, 0.5 * BALL, MODULUS, SPEED, PENALTY * (2.0 if kind == 3 else 1.0))
+    # The largest body is a sphere, not a half space: 0.73 a/R less approach at the same force (README.md).
+    a = np.sqrt(0.5 * BALL * approach)
+    sphere = 0.6 * 0.73 * a / BALL
+    mesh = (EDGE / a) ** 2 / 3.0
+    first_cell = 2.0 * (0.5 * EDGE) ** 2 / (0.5 * BALL) / SPEED / duration
+    for what, value, plain, sprung, start in (("contact time", found, duration, soft[0], first_cell),
+                                              ("largest force", force.max(), largest, soft[1], 0.0)):
+        run.check(f"{name}: {what} / Hertz", value / plain, 1.0, sphere + mesh + start + abs(sprung / plain - 1.0),
+                  source="Hertz (1881)")
+        run.check(f"{name}: {what} / Hertz with a layer of springs", value / sprung, 1.0, sphere + mesh + start,
+                  source="Hertz with the penalty as springs")
+    energy = result.table("glstat")
+    run.check(f"{name}: energy ratio", energy["energy_ratio"], np.ones_like(energy["time"]), 1e-6, source="balance")
+    run.check(f"{name}: hourglass / initial kinetic energy", energy["hourglass"].max() / energy["kinetic"][0], 0.0,
+              0.01, "abs")
+    run.check(f"{name}: kinetic energy after over before", energy["kinetic"][-1] / energy["kinetic"][0], 1.0, 1e-3,
+              source="no waves are left: contact lasts 15 times across a sphere")
+    run.check(f"{name}: force on both / largest", force[touched] + 2.0 * np.pi * result.table("rcforc").where(
+        side="master")["fy"][touched], 0.0, 1e-12 * largest, "abs", "third law")
+
+
+def check(run):
+    for kind in TYPES:
+        check_collision(run, kind)
