@@ -299,6 +299,65 @@ def check_cone(run, kind, body, size):
             run.report(f"{name}: max |p/p0 - 1| on the {side} side", error)
 
 
+def check_compound(run, kind):
+    """A solid shaft of radius 1 in a hub of radii 1 and 2, ends held, pressed from outside; the rows do not match."""
+    young, poisson, pressure, penalty = 1.0e6, 0.3, 1.0, 1.0e6
+    modulus, total = young / (1.0 - poisson ** 2), []
+    name = f"{TYPES[kind]}, shaft in a hub"
+    for n in (4, 8):
+        deck = round_deck("shaft in a hub", 1.0, 1.0, 2)
+        bodies = [deck.elastic(1000.0, young, poisson, k + 1).mesh(*grid(n, rows, 1.0, 1.0, (inner, 0.0)), part=k + 1)
+                  .reshape(-1, n + 1) for k, (rows, inner) in enumerate(((7, 0.0), (5, 1.0)))]
+        for body in bodies:
+            deck.fix(body[0], y=1).fix(body[-1], y=1)
+        slave, master, outer = bodies[0][:, -1], bodies[1][::-1, 0], bodies[1][:, -1]
+        deck.node_set(1, slave).node_set(2, master).curve(1, [(0.0, 0.0), (1.0, pressure)])
+        load_edges(deck, outer)
+        deck.output(plot=1.0, glstat=1.0, rcforc=1.0)
+        result = run.program(deck.contact(1, 2, kind, penalty, unit=1, gauss=4))
+        place, force = result.points("Points")[-1], result.points("contact_force")[-1]
+        sides = [sign * force[ids - 1, 0] / areas(place[ids - 1, :2]) for ids, sign in ((slave, -1.0), (master, 1.0))]
+        if kind not in PASS_PATCH:
+            run.report(f"{name}: max |p/mean - 1| on both sides", max(np.max(np.abs(p / np.mean(p) - 1.0)) for p in sides))
+            return
+        for side, found in zip(("slave", "master"), sides):
+            run.check(f"{name}, {n} quads: pressure on the {side} side over its mean", found, np.mean(found), 1e-9,
+                      source="uniform")
+        total.append(0.5 * (np.mean(sides[0]) + np.mean(sides[1])))
+    # u/r of the shaft: -(1 - 2 nu)(1 + nu) p/E; the hub's at its bore by Lame with p_c within and p outside.
+    ratio = poisson / (1.0 - poisson)
+    shaft = (1.0 - ratio) / modulus
+    bore = (5.0 / 3.0 + ratio) / modulus     # ((b^2 + a^2)/(b^2 - a^2) + nu')/E'
+    outside = (8.0 / 3.0) / modulus          # 2 b^2/(b^2 - a^2)/E'
+    wanted = outside * pressure / (shaft + bore + 1.0 / penalty)
+    errors = np.array(total) / wanted - 1.0
+    run.check(f"{name}: contact pressure", total[-1], wanted, 2e-3, source="Lame and the penetration")
+    run.check(f"{name}: order", run.order([1.0 / 4, 1.0 / 8], np.abs(errors)), 2.0, 0.2, "abs", "second order")
+
+
+def check_sinking(run, kind, friction):
+    """A conical ring is pushed down a cone and slides outwards on it: order of Newton's method."""
+    columns = lines(5, 0.2), lines(8, -0.2)
+    meshes = [inclined_block(columns[0], lambda x: -SLOPE * x, lambda x: 1.0 - SLOPE * x),
+              inclined_block(columns[1], lambda x: -1.0 + 0.0 * x, lambda x: -SLOPE * x)]
+    meshes[0][0][:, 0] = 0.3 + 0.4 * meshes[0][0][:, 0]
+    meshes[0][0][:, 1] = meshes[0][0][:, 1] * 0.4 - SLOPE * 0.3
+    deck, (upper, lower) = patch_deck("sinking", meshes, 0.3, 1.0, 0.2, columns)
+    position = deck.lines.index("*CONTROL_IMPLICIT_GENERAL") + 1
+    deck.lines[position] = "1,0.1"
+    deck.curve(2, [(0.0, 0.0), (1.0, -0.05)])
+    for node in upper[2]:
+        deck.prescribe(int(node), 2, 2, 2)
+    deck.node_set(1, upper[0]).node_set(2, lower[2]).fix(lower[0], x=1, y=1)
+    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 4, 1.0e6, friction), (0.0, 1.0e20, 0))
+    result = run.program(deck)
+    orders = [np.log(b) / np.log(a) for ratios in energy_ratios(result) for a, b in zip(ratios, ratios[1:])
+              if 1e-10 < a < 1e-3 and b > 1e-26]
+    name = f"{TYPES[kind]}, ring on a cone, mu {friction}"
+    run.report(f"{name}: iterations", sum(len(one) for one in energy_ratios(result)))
+    run.check(f"{name}: order of Newton's method, median of {len(orders)}", np.median(orders), 1.7, 0.0, "min", "2")
+
+
 def check(run):
     for poisson in (POISSON, 0.4999):
         check_tube(run, poisson)
@@ -310,6 +369,9 @@ def check(run):
     check_drivers(run)
     for kind in TYPES:
         check_flat(run, kind)
+        check_compound(run, kind)
+        for friction in (0.0, 0.3):
+            check_sinking(run, kind, friction)
         for body in RADII:
             for size in (1.0, 0.1) if kind in PASS_PATCH else (1.0,):
                 check_cone(run, kind, body, size)
