@@ -13,7 +13,8 @@ module quad_tangent_m
   use volumetric_m, only : log_ratio
   implicit none
   private
-  public :: quad_tangent, point_pattern, differences, step_strain, area_gradient, add_geometric
+  public :: quad_tangent, d31_of, d42_of, h_of, differences, half_turned, area_gradient, &
+    add_geometric
 
   !> Node patterns of d31, d42 and h.x.
   real(wp), parameter :: d31_of(4) = [-1.0_wp, 0.0_wp, 1.0_wp, 0.0_wp], &
@@ -35,7 +36,8 @@ contains
     mean = has_mean_dilatation(material)
     matrix = 0.0_wp
     do k = 1, n_point
-      pattern = point_pattern(k)
+      pattern(:, 1) = d31_of + shift(1, k)*h_of
+      pattern(:, 2) = d42_of + shift(2, k)*h_of
       start(:, 1) = reference(1:2) + shift(1, k)*reference(5:6)
       start(:, 2) = reference(3:4) + shift(2, k)*reference(5:6)
       d31 = differences(u, pattern(:, 1))
@@ -54,15 +56,6 @@ contains
       differences(u, d42_of), small)
     call add_pattern(pattern, 1.0_wp, small, matrix)
   end subroutine quad_tangent
-
-  !> What d31 and d42 of point `k` are of the nodes.
-  pure function point_pattern(k) result(pattern)
-    integer, intent(in) :: k
-    real(wp) :: pattern(4, 2)
-
-    pattern(:, 1) = d31_of + shift(1, k)*h_of
-    pattern(:, 2) = d42_of + shift(2, k)*h_of
-  end function point_pattern
 
   !> Sum over the nodes; the pattern has no mean, so that it is a sum of differences.
   pure function differences(u, pattern) result(d)
@@ -103,30 +96,7 @@ contains
     real(wp), intent(in) :: step31(2), step42(2) !! their increments
     type(stress_point_t), intent(inout) :: point
     real(wp), intent(inout) :: small(4, 4)
-    real(wp) :: b(4), rates(4, 4), s(3)
-    integer :: j
-
-    call step_strain(d31, d42, step31, step42, point, rates)
-    call form_tangent(material, point)
-    b = area_gradient(d31, d42)
-    do j = 1, 4
-      s = matmul(point%tangent, rates(:, j))
-      small(:, j) = small(:, j) + [(s(1) + s(2))*b(1) + s(3)*b(2), s(3)*b(1) + (s(1) - s(2))*b(2), &
-        (s(1) + s(2))*b(3) + s(3)*b(4), s(3)*b(3) + (s(1) - s(2))*b(4)]
-    end do
-    call add_geometric(point%stress(1) + point%stress(2), point%stress(3), &
-      point%stress(1) - point%stress(2), small)
-  end subroutine add_deviatoric
-
-  !> Strain and rotation of the step at one point, and their derivatives with respect to the
-  !> present diagonals.
-  pure subroutine step_strain(d31, d42, step31, step42, point, rates)
-    real(wp), intent(in) :: d31(2), d42(2)       !! present diagonals
-    real(wp), intent(in) :: step31(2), step42(2) !! their increments
-    type(stress_point_t), intent(inout) :: point !! `strain` and rotation out
-    real(wp), intent(out) :: rates(4, 4)         !! rows as columns of `point%tangent`, columns d31
-                                                 !! x, y, d42 x, y
-    real(wp) :: g(4), gradient(2, 2), change(2, 2), cosine, sine, tan_half
+    real(wp) :: g(4), gradient(2, 2), change(2, 2), cosine, sine, tan_half, b(4), d(4), s(3)
     integer :: i, j, first
 
     ! Gradients and displacement gradient of the step in the mid-step shape.
@@ -141,6 +111,8 @@ contains
     point%cos2 = cosine**2 - sine**2
     point%sin2 = 2.0_wp*cosine*sine
     point%strain = half_turned(cosine, sine, gradient)
+    call form_tangent(material, point)
+    b = area_gradient(d31, d42)
     do j = 1, 4
       i = 2 - mod(j, 2)
       first = j - i + 1
@@ -149,11 +121,15 @@ contains
       change(i, :) = change(i, :) + 1.0_wp
       change(:, 1) = change(:, 1)*g(first)
       change(:, 2) = change(:, 2)*g(first + 1)
-      rates(4, j) = 0.5_wp*(change(2, 1) - change(1, 2))/(1.0_wp + tan_half**2)
-      rates(1:3, j) = half_turned(cosine, sine, change) &
-        + rates(4, j)*[0.0_wp, -point%strain(3), point%strain(2)]
+      d(4) = 0.5_wp*(change(2, 1) - change(1, 2))/(1.0_wp + tan_half**2)
+      d(1:3) = half_turned(cosine, sine, change) + d(4)*[0.0_wp, -point%strain(3), point%strain(2)]
+      s = matmul(point%tangent, d)
+      small(:, j) = small(:, j) + [(s(1) + s(2))*b(1) + s(3)*b(2), s(3)*b(1) + (s(1) - s(2))*b(2), &
+        (s(1) + s(2))*b(3) + s(3)*b(4), s(3)*b(3) + (s(1) - s(2))*b(4)]
     end do
-  end subroutine step_strain
+    call add_geometric(point%stress(1) + point%stress(2), point%stress(3), &
+      point%stress(1) - point%stress(2), small)
+  end subroutine add_deviatoric
 
   !> Strain (mean, half difference, shear) of a displacement gradient,
   !> turned by half of the rotation.
@@ -181,7 +157,7 @@ contains
   !> dB4 = (-y, x)/2 of that of d31.
   pure subroutine add_geometric(xx, xy, yy, small)
     real(wp), intent(in) :: xx, xy, yy
-    real(wp), intent(inout) :: small(:, :) !! (4, 4)
+    real(wp), intent(inout) :: small(4, 4)
     real(wp) :: corner(2, 2)
 
     corner = 0.5_wp*reshape([-xy, -yy, xx, xy], [2, 2])

@@ -63,7 +63,8 @@ contains
   pure function round_mass(x) result(mass)
     real(wp), intent(in) :: x(2, 4) !! corners, x(1, :) the radii
     real(wp) :: mass(4, 4)
-    real(wp), parameter :: outer = sqrt(0.15_wp), at(3) = [0.5_wp - outer, 0.5_wp, 0.5_wp + outer], &
+    real(wp), parameter :: outer = sqrt(0.15_wp)
+    real(wp), parameter :: at(3) = [0.5_wp - outer, 0.5_wp, 0.5_wp + outer], &
       weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/18.0_wp
     real(wp) :: shape(4), along(2), across(2), factor
     integer :: b, i, j

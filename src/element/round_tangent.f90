@@ -8,8 +8,9 @@ module round_tangent_m
   use material_dispatch_m, only : form_tangent
   use parts_m, only : material_t
   use quad_full_m, only : has_mean_dilatation
-  use quad_points_m, only : n_point, shape_at_points, signed_area
-  use quad_tangent_m, only : point_pattern, differences, step_strain, area_gradient, add_geometric
+  use quad_points_m, only : n_point, shape_at_points, shift, signed_area
+  use quad_tangent_m, only : d31_of, d42_of, h_of, differences, half_turned, area_gradient, &
+    add_geometric
   use stress_point_m, only : stress_point_t
   use volumetric_m, only : log_ratio
   implicit none
@@ -62,6 +63,15 @@ contains
     end do
     if (mean) call add_outer(modulus, slope, matrix)
   end subroutine round_tangent
+
+  !> What d31 and d42 of point `k` are of the nodes.
+  pure function point_pattern(k) result(pattern)
+    integer, intent(in) :: k
+    real(wp) :: pattern(4, 2)
+
+    pattern(:, 1) = d31_of + shift(1, k)*h_of
+    pattern(:, 2) = d42_of + shift(2, k)*h_of
+  end function point_pattern
 
   !> What q of point `k` is of r1 z1 r2 z2 ...
   pure function of_nodes(k) result(nodes)
@@ -155,12 +165,14 @@ contains
     type(place_t), intent(in) :: place
     real(wp), intent(in) :: stress(4)
     real(wp), intent(inout) :: small(5, 5)
-    real(wp) :: b(4)
+    real(wp) :: b(4), plane(4, 4)
 
     associate (q => place%start + place%u)
-      call add_geometric(q(5)*stress(1), q(5)*stress(2), q(5)*stress(3), small(:4, :4))
+      plane = 0.0_wp
+      call add_geometric(q(5)*stress(1), q(5)*stress(2), q(5)*stress(3), plane)
       b = area_gradient(q(1:2), q(3:4))
     end associate
+    small(:4, :4) = small(:4, :4) + plane
     small(:4, 5) = small(:4, 5) + traction(stress, b)
     small(5, :4) = small(5, :4) + stress(4)*b
   end subroutine add_stress
@@ -185,7 +197,7 @@ contains
     integer :: j
 
     q = place%start + place%u
-    call step_strain(q(1:2), q(3:4), place%du(1:2), place%du(3:4), point, rates(:, :4))
+    call step_strain(q(:4), place%du(:4), point, rates)
     radius = q(5) - 0.5_wp*place%du(5)
     hoop = place%du(5)/radius
     point%strain(1) = point%strain(1) - hoop
@@ -200,6 +212,41 @@ contains
     end do
     call add_stress(place, plane_and_hoop(point%stress), small)
   end subroutine add_deviator
+
+  !> Strain and rotation of the step in the plane, and their changes with the present d31 and d42:
+  !> as in `quad_tangent`, whose last bits change if it shares this (other products are fused).
+  pure subroutine step_strain(q, dq, point, rates)
+    real(wp), intent(in) :: q(4), dq(4)          !! diagonals, and their increments
+    type(stress_point_t), intent(inout) :: point !! `strain` and rotation out
+    real(wp), intent(inout) :: rates(4, 5)       !! rows as columns of `point%tangent`, the first
+                                                 !! four columns set here
+    real(wp) :: g(4), gradient(2, 2), change(2, 2), cosine, sine, tan_half
+    integer :: i, j, first
+
+    g = area_gradient(q(1:2) - 0.5_wp*dq(1:2), q(3:4) - 0.5_wp*dq(3:4)) &
+      /signed_area(q(1:2) - 0.5_wp*dq(1:2), q(3:4) - 0.5_wp*dq(3:4))
+    do j = 1, 2
+      gradient(:, j) = dq(1:2)*g(j) + dq(3:4)*g(j + 2)
+    end do
+    tan_half = 0.25_wp*(gradient(2, 1) - gradient(1, 2))
+    cosine = (1.0_wp - tan_half**2)/(1.0_wp + tan_half**2)
+    sine = 2.0_wp*tan_half/(1.0_wp + tan_half**2)
+    point%cos2 = cosine**2 - sine**2
+    point%sin2 = 2.0_wp*cosine*sine
+    point%strain = half_turned(cosine, sine, gradient)
+    do j = 1, 4
+      i = 2 - mod(j, 2)
+      first = j - i + 1
+      ! d(grad) = (1 - grad/2) L, L having row i alone.
+      change = -0.5_wp*spread(gradient(:, i), 2, 2)
+      change(i, :) = change(i, :) + 1.0_wp
+      change(:, 1) = change(:, 1)*g(first)
+      change(:, 2) = change(:, 2)*g(first + 1)
+      rates(4, j) = 0.5_wp*(change(2, 1) - change(1, 2))/(1.0_wp + tan_half**2)
+      rates(1:3, j) = half_turned(cosine, sine, change) &
+        + rates(4, j)*[0.0_wp, -point%strain(3), point%strain(2)]
+    end do
+  end subroutine step_strain
 
   !> xx xy yy and tt of a deviator given as (mean, half difference, shear).
   pure function plane_and_hoop(parts) result(stress)

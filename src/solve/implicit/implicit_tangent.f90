@@ -133,7 +133,8 @@ contains
     call add_block(matrix, rows, rows, block)
   end subroutine add_pressure_stiffness
 
-  !> The same of a round body: node 1 gets (2 r_1 + r_2)/3 of the plane half, node 2 (r_1 + 2 r_2)/3.
+  !> The same of a round body: node 1 gets (2 r_1 + r_2)/3 of the plane half, node 2
+  !> (r_1 + 2 r_2)/3.
   pure subroutine weigh_with_radius(half, x, block)
     real(wp), intent(in) :: half
     real(wp), intent(in) :: x(2, 2)         !! both nodes, now

@@ -318,7 +318,8 @@ def check_compound(run, kind):
         place, force = result.points("Points")[-1], result.points("contact_force")[-1]
         sides = [sign * force[ids - 1, 0] / areas(place[ids - 1, :2]) for ids, sign in ((slave, -1.0), (master, 1.0))]
         if kind not in PASS_PATCH:
-            run.report(f"{name}: max |p/mean - 1| on both sides", max(np.max(np.abs(p / np.mean(p) - 1.0)) for p in sides))
+            run.report(f"{name}: max |p/mean - 1| on both sides",
+                       max(np.max(np.abs(p / np.mean(p) - 1.0)) for p in sides))
             return
         for side, found in zip(("slave", "master"), sides):
             run.check(f"{name}, {n} quads: pressure on the {side} side over its mean", found, np.mean(found), 1e-9,
