@@ -1,10 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> Consistent mass: rho times the integral of N_a N_b over the initial shape, which 2x2 Gauss points
-!> integrate exactly for quads and triangles.
+!> integrate exactly for quads and triangles; of N_a N_b r in round bodies, of one degree more than
+!> 2x2 points hold: 3x3.
 module element_mass_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use quad_points_m, only : n_point, point_areas, shape_at_points
+  use round_state_m, only : round_mass
   use sparse_m, only : sparse_t, add_block
   implicit none
   private
@@ -55,7 +57,7 @@ contains
   pure subroutine sum_part_motion(model, velocity, kinetic, momentum)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: velocity(:, :)  !! (2, n_node)
-    real(wp), intent(out) :: kinetic(:)     !! (n_part) J/m
+    real(wp), intent(out) :: kinetic(:)     !! (n_part) J/m, or J per radian
     real(wp), intent(out) :: momentum(:, :) !! (2, n_part) kg/s
     real(wp) :: v(2, 4), p(2, 4)
     integer :: i, part
@@ -80,13 +82,17 @@ contains
     integer :: b, k
 
     x = model%mesh%coordinates(:, model%mesh%element_nodes(:, i))
-    areas = point_areas(x)
-    mass = 0.0_wp
-    do k = 1, n_point
-      do b = 1, 4
-        mass(:, b) = mass(:, b) + areas(k)*shape_at_points(b, k)*shape_at_points(:, k)
+    if (model%is_round) then
+      mass = round_mass(x)
+    else
+      areas = point_areas(x)
+      mass = 0.0_wp
+      do k = 1, n_point
+        do b = 1, 4
+          mass(:, b) = mass(:, b) + areas(k)*shape_at_points(b, k)*shape_at_points(:, k)
+        end do
       end do
-    end do
+    end if
     mass = model%materials(model%parts(model%mesh%element_part(i))%material)%density*mass
   end function element_mass
 

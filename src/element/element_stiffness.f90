@@ -8,6 +8,7 @@ module element_stiffness_m
   use model_m, only : model_t
   use quad_points_m, only : n_point
   use quad_tangent_m, only : quad_tangent
+  use round_tangent_m, only : round_tangent
   use sparse_m, only : sparse_t, add_block
   use stress_point_m, only : stress_point_t
   implicit none
@@ -27,7 +28,7 @@ contains
     integer, intent(in) :: equation(:, :)            !! (2, n_node) equation numbers, 0 = none
     type(sparse_t), intent(inout) :: matrix          !! started, not compressed
     type(stress_point_t) :: points(n_point)
-    real(wp) :: block(8, 8), reference(6), u(2, 4), du(2, 4)
+    real(wp) :: block(8, 8), reference(6), x(2, 4), u(2, 4), du(2, 4)
     integer :: equations(8), i_chunk, slot
 
     do i_chunk = 1, model%layout%n_chunk
@@ -40,10 +41,15 @@ contains
             if (all(equations == 0)) cycle
             call load_points(i_chunk, mod(slot - 1, chunk_size), history_size(material), &
               committed, points)
-            reference = committed%reference(slot, :)
             u = motion(1:2, nodes)
             du = dt*motion(3:4, nodes)
-            call quad_tangent(material, reference, u, du, points, block)
+            if (model%is_round) then
+              x = model%mesh%coordinates(:, nodes)
+              call round_tangent(material, x, u, du, points, block)
+            else
+              reference = committed%reference(slot, :6)
+              call quad_tangent(material, reference, u, du, points, block)
+            end if
             call add_block(matrix, equations, equations, block)
           end associate
         end do

@@ -13,7 +13,8 @@ module quad_tangent_m
   use volumetric_m, only : log_ratio
   implicit none
   private
-  public :: quad_tangent
+  public :: quad_tangent, d31_of, d42_of, h_of, differences, half_turned, area_gradient, &
+    add_geometric
 
   !> Node patterns of d31, d42 and h.x.
   real(wp), parameter :: d31_of(4) = [-1.0_wp, 0.0_wp, 1.0_wp, 0.0_wp], &

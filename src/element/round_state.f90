@@ -9,8 +9,8 @@ module round_state_m
   use volumetric_m, only : log_ratio
   implicit none
   private
-  public :: fill_round_reference, add_round_masses, round_ratios, element_volume, &
-    hoop_strains
+  public :: fill_round_reference, add_round_masses, round_mass, round_ratios, &
+    element_volume, hoop_strains
 
 contains
 
@@ -58,6 +58,32 @@ contains
       end associate
     end do
   end subroutine add_round_masses
+
+  !> Integrals of N_a N_b r over one quad or triangle, per radian: 3x3 Gauss points are exact.
+  pure function round_mass(x) result(mass)
+    real(wp), intent(in) :: x(2, 4) !! corners, x(1, :) the radii
+    real(wp) :: mass(4, 4)
+    real(wp), parameter :: outer = sqrt(0.15_wp)
+    real(wp), parameter :: at(3) = [0.5_wp - outer, 0.5_wp, 0.5_wp + outer], &
+      weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/18.0_wp
+    real(wp) :: shape(4), along(2), across(2), factor
+    integer :: b, i, j
+
+    mass = 0.0_wp
+    do i = 1, 3
+      do j = 1, 3
+        shape = [(1.0_wp - at(i))*(1.0_wp - at(j)), at(i)*(1.0_wp - at(j)), at(i)*at(j), &
+          (1.0_wp - at(i))*at(j)]
+        along = (1.0_wp - at(j))*(x(:, 2) - x(:, 1)) + at(j)*(x(:, 3) - x(:, 4))
+        across = (1.0_wp - at(i))*(x(:, 4) - x(:, 1)) + at(i)*(x(:, 3) - x(:, 2))
+        factor = weight(i)*weight(j)*dot_product(shape, x(1, :))*(along(1)*across(2) &
+          - along(2)*across(1))
+        do b = 1, 4
+          mass(:, b) = mass(:, b) + factor*shape(b)*shape
+        end do
+      end do
+    end do
+  end function round_mass
 
   !> V/V0 - 1 and V0 of the element in a slot, to the digits of the displacement.
   pure subroutine round_ratios(model, slot, u, stretch, start)

@@ -70,11 +70,20 @@ def with_friction(deck, rule):
     return deck
 
 
+def as_rings(deck):
+    """The same deck with x as the radius: the left side of the lower block is the axis."""
+    section = deck.lines.index("*SECTION_SHELL") + 1
+    assert deck.lines[section] == "1,13,,4"
+    deck.lines[section] = "1,15,,4"
+    return deck
+
+
 #: scene -> (deck of a contact type, steps between two restart files, what its log must show)
 SCENES = {"pressed": (pressed, 5, "no equilibrium"), "struck": (struck, 23, ""),
           "grown": (grown, 6, "no equilibrium"),
           "pressed with friction": (lambda kind: with_friction(pressed(kind, 15), "0.3"), 5, ""),
-          "struck with friction": (lambda kind: with_friction(struck(kind), "0.3,0.2,0.5"), 23, "")}
+          "struck with friction": (lambda kind: with_friction(struck(kind), "0.3,0.2,0.5"), 23, ""),
+          "rings struck with friction": (lambda kind: with_friction(as_rings(struck(kind)), "0.3,0.2,0.5"), 23, "")}
 
 
 def run_whole(slideline, deck, folder="whole", **files):

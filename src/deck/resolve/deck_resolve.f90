@@ -44,11 +44,6 @@ contains
           //'viscosity (*CONTROL_BULK_VISCOSITY or *HOURGLASS), which the implicit method ' &
           //'does not have')
         if (part%section == 0) cycle
-        if (model%sections(part%section)%is_round) then
-          call line_error(deck, raw%section_line(part%section), 'part '//to_text(part%id) &
-            //' is axisymmetric (ELFORM 15), which the implicit method does not have')
-          cycle
-        end if
         if (.not. model%sections(part%section)%is_full) call line_error(deck, &
           raw%section_line(part%section), 'part '//to_text(part%id)//' has one-point quads; the ' &
           //'implicit method needs fully integrated ones (NIP 4)')

@@ -98,8 +98,8 @@ contains
       call share_contact(clock, i)
     end do
     do i = 1, size(model%conditions%pressures)
-      call add_pressure_stiffness(model, model%conditions%pressures(i), step%time, step%equations, &
-        matrix)
+      call add_pressure_stiffness(model, model%conditions%pressures(i), trial%motion, step%time, &
+        step%equations, matrix)
     end do
     if (.not. step%is_dynamic) return
     matrix%values(:matrix%n_entry) = (1.0_wp - step%alpha_f)*matrix%values(:matrix%n_entry)
@@ -107,10 +107,12 @@ contains
       merge(step%equations%number, 0, step%equations%number <= step%equations%n_free), matrix)
   end subroutine assemble_tangent
 
-  !> Minus the derivative of a pressure, which turns and stretches with its edge.
-  subroutine add_pressure_stiffness(model, load, time, equations, matrix)
+  !> Minus the derivative of a pressure, which turns and stretches with its edge, and grows with its
+  !> radius on a round body.
+  subroutine add_pressure_stiffness(model, load, motion, time, equations, matrix)
     type(model_t), intent(in) :: model
     type(pressure_load_t), intent(in) :: load
+    real(wp), intent(in) :: motion(:, :) !! (4, n_node)
     real(wp), intent(in) :: time
     type(equations_t), intent(in) :: equations
     type(sparse_t), intent(inout) :: matrix
@@ -125,8 +127,31 @@ contains
     block([1, 3], 4) = half
     block([2, 4], 1) = half
     block([2, 4], 3) = -half
+    if (model%is_round) call weigh_with_radius(half, model%mesh%coordinates(:, load%nodes) &
+      + motion(1:2, load%nodes), block)
     rows = [equations%number(:, load%nodes(1)), equations%number(:, load%nodes(2))]
     call add_block(matrix, rows, rows, block)
   end subroutine add_pressure_stiffness
+
+  !> The same of a round body: node 1 gets (2 r_1 + r_2)/3 of the plane half, node 2
+  !> (r_1 + 2 r_2)/3.
+  pure subroutine weigh_with_radius(half, x, block)
+    real(wp), intent(in) :: half
+    real(wp), intent(in) :: x(2, 2)         !! both nodes, now
+    real(wp), intent(inout) :: block(4, 4)  !! of the plane
+    real(wp), parameter :: share(2, 2) = reshape([2.0_wp, 1.0_wp, 1.0_wp, 2.0_wp], [2, 2])/3.0_wp
+    real(wp) :: force(2)
+    integer :: a, b
+
+    force = half*[x(2, 1) - x(2, 2), x(1, 2) - x(1, 1)]
+    do a = 1, 2
+      associate (rows => block(2*a - 1:2*a, :))
+        rows = dot_product(share(:, a), x(1, :))*rows
+        do b = 1, 2
+          rows(:, 2*b - 1) = rows(:, 2*b - 1) - share(b, a)*force
+        end do
+      end associate
+    end do
+  end subroutine weigh_with_radius
 
 end module implicit_tangent_m
