@@ -128,6 +128,42 @@ def check_large(run):
         quadratic(run, f"tube at large strain, nu {poisson}", result)
         run.report(f"tube at large strain, nu {poisson}: radius within",
                    1.0 + result.points("displacement")[-1][0, 0])
+    # Incompressible: r^2 - R^2 is one number c, axes do not turn, so that s_t - s_r = 4 G ln(r/R) and
+    # p = integral of that over r.
+    poisson, pressure, errors, sizes = 0.4999, 0.12 * YOUNG, [], (5, 10, 20)
+    shear = 0.5 * YOUNG / (1.0 + poisson)
+
+    def held(bore):
+        r = np.linspace(bore, np.sqrt(OUTER ** 2 + bore ** 2 - INNER ** 2), 4001)
+        value = 4.0 * shear * np.log(r / np.sqrt(r ** 2 - bore ** 2 + INNER ** 2)) / r
+        return np.sum(0.5 * (value[1:] + value[:-1]) * np.diff(r))
+
+    low, high = INNER, 1.8 * INNER
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if held(middle) < pressure else (low, middle)
+    for n in sizes:
+        deck, r = tube_deck(n, poisson, pressure, 32)
+        result = run.program(deck.elastic(RHO, YOUNG, poisson), name=f"incompressible_{n}")
+        now = result.points("Points")[-1][:, 0]
+        errors.append(now[0] / low - 1.0)
+    run.check("incompressible tube: r^2 - R^2 of all nodes", now ** 2 - r ** 2, low ** 2 - INNER ** 2, 2e-3,
+              source="volume, to p/K")
+    run.check("incompressible tube: radius within", now[0], low, 1e-3, source="integral of 4 G ln(r/R)/r")
+    run.report("incompressible tube: order of that", run.order(1.0 / np.array(sizes), np.abs(errors)))
+
+
+def check_gravity(run):
+    """A column on the floor, nu 0: each node as far down as a rod's, though its load is that of a ring."""
+    height, n, pull = 2.0, 5, 1.0e-6
+    coordinates, quads = grid(3, n, 1.0, height)
+    deck = round_deck("column", 1.0, 1.0).elastic(RHO, YOUNG, 0.0)
+    ids = deck.mesh(coordinates, quads)
+    deck.fix(ids[:4], y=1).curve(1, [(0.0, 0.0), (1.0, pull)]).add("*LOAD_BODY_Y", (1, 1.0))
+    result = run.program(deck.output(plot=1.0, glstat=1.0), name="column")
+    z = coordinates[:, 1]
+    run.check("column under gravity: displacement of all nodes", result.points("displacement")[-1][:, 1],
+              -RHO * pull / YOUNG * (height * z - 0.5 * z ** 2), 1e-8, source="rod, nodes exact")
 
 
 def check_plastic(run):
@@ -365,6 +401,7 @@ def check(run):
     check_solid(run)
     check_sphere(run)
     check_large(run)
+    check_gravity(run)
     check_plastic(run)
     check_breathing(run)
     check_drivers(run)
