@@ -29,7 +29,7 @@ module contact_step_limit_m
     real(wp) :: rate = 0.0_wp     !! bound of omega^2, 1/s^2
     real(wp) :: damping = 0.0_wp  !! sum of damping fraction times omega, 1/s
     integer :: node = 0           !! where the bound is taken: index in the mesh
-    logical :: stays_closed = .false. !! ties: springs that never open
+    real(wp) :: closed_rate = 0.0_wp !! the part of it of ties, which never open, 1/s^2
   end type spring_bound_t
 
   !> K/m of the nodes of one interface.
@@ -61,23 +61,25 @@ contains
       worst = [maxloc(ratios(i)%at(:n), 1), n + maxloc(ratios(i)%at(n + 1:), 1)]
       associate (most => ratios(i)%at(worst))
         bounds(i)%rate = sum(most)
-        bounds(i)%stays_closed = is_tied(contacts(i))
+        if (is_tied(contacts(i))) bounds(i)%closed_rate = bounds(i)%rate
         bounds(i)%damping = contacts(i)%damping*sqrt(bounds(i)%rate)
         bounds(i)%node = memories(i)%nodes(worst(merge(1, 2, most(1) >= most(2))))
         if (all(most > 0.0_wp)) ratios(i)%c = most(2)/most(1)
       end associate
       users(memories(i)%nodes) = users(memories(i)%nodes) + 1
     end do
-    if (any(users > 1)) call join_interfaces(memories, ratios, bounds, size(mass))
+    if (any(users > 1)) &
+      call join_interfaces(is_tied(contacts), memories, ratios, bounds, size(mass))
   end subroutine bound_springs
 
   !> Interfaces that share nodes: the c of each in turn evens out its sides, as the others stand.
-  pure subroutine join_interfaces(memories, ratios, bounds, n_node)
+  pure subroutine join_interfaces(is_tie, memories, ratios, bounds, n_node)
+    logical, intent(in) :: is_tie(:) !! (n_interface)
     type(contact_state_t), intent(in) :: memories(:)
     type(ratios_t), intent(inout) :: ratios(:)
     type(spring_bound_t), intent(inout) :: bounds(:)
     integer, intent(in) :: n_node
-    real(wp) :: total(n_node), damping(n_node)
+    real(wp) :: total(n_node), opening(n_node), damping(n_node)
     integer :: i, round
 
     total = 0.0_wp
@@ -97,9 +99,16 @@ contains
         end associate
       end do
     end do
+    opening = total
+    do i = 1, size(memories)
+      if (is_tie(i)) opening(memories(i)%nodes) = opening(memories(i)%nodes) &
+        - weighted(ratios(i), memories(i)%n_slave, ratios(i)%c)
+    end do
     do i = 1, size(memories)
       associate (nodes => memories(i)%nodes)
         bounds(i)%rate = maxval(total(nodes))
+        bounds(i)%closed_rate = merge(bounds(i)%rate, bounds(i)%rate - maxval(opening(nodes)), &
+          is_tie(i))
         bounds(i)%node = nodes(maxloc(total(nodes), 1))
         bounds(i)%damping = maxval(damping(nodes))
       end associate
@@ -170,8 +179,8 @@ contains
     real(wp) :: limit
 
     limit = huge(1.0_wp)
-    if (bound%stays_closed .or. .not. bound%rate > 0.0_wp) return
-    limit = 1.0_wp/(bound%damping + sqrt(bound%damping**2 + bound%rate))
+    if (.not. bound%rate - bound%closed_rate > 0.0_wp) return
+    limit = 1.0_wp/(bound%damping + sqrt(bound%damping**2 + (bound%rate - bound%closed_rate)))
   end function opening_step
 
   !> Which of the two bounds is the smaller step, for messages.

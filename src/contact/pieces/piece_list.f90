@@ -40,7 +40,8 @@ contains
 
     do while (s <= last .and. .not. table%is_full)
       ! Of most segments there are two pieces.
-      n = min(n_piece_block, (size(table%master) - table%n + 1)/2, last - s + 1)
+      n = min(n_piece_block, (size(table%master) - table%n + 1)/2, &
+        size(table%slave) - table%n_segment, last - s + 1)
       associate (tracking => memory%slave_tracking)
         call find_ends(contact%slave%segments(1, s), tracking%status, tracking%segment, &
           tracking%xi, table%least_cut, contact%master, memory%n_slave, memory%places, n, feet)

@@ -9,7 +9,7 @@ module first_search_m
   use spots_m, only : list_owners, list_chords
   use contact_state_m, only : contact_state_t, tracking_t, bucket_grid_t, allocate_tracking, &
     is_free, is_touching
-  use contacts_m, only : contact_t
+  use contacts_m, only : contact_t, is_tied
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
   use geometry_m, only : closest_distance
   use kinds_m, only : wp
@@ -175,6 +175,12 @@ contains
       tracking%segment_depth = contact%search_depth
     end if
     tracking%reach = max(longest, 2.0_wp*maxval(tracking%segment_depth))
+    if (is_tied(contact)) then
+      ! What is tied its reach says alone, at whatever depth.
+      tracking%reach = max(tracking%reach, contact%tie_reach, -0.01_wp*contact%tie_reach*longest)
+      tracking%spot_depth = tracking%reach
+      tracking%segment_depth = tracking%reach
+    end if
     tracking%grid%least_cell = least_cell*tracking%reach
 
   contains

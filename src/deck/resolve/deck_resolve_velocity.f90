@@ -2,6 +2,7 @@
 !> Initial velocities: *INITIAL_VELOCITY and _NODE in deck order, then _GENERATION in deck order.
 module deck_resolve_velocity_m
   use kinds_m, only : wp
+  use deck_cards_m, only : reject_field
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t
   use deck_maps_m, only : maps_t, resolve_id
@@ -77,6 +78,9 @@ contains
     logical, allocatable :: chosen(:)
     integer :: found, i
 
+    if (model%is_round .and. abs(row%spin) > 0.0_wp) call reject_field(deck, &
+      place_t(row%line, 1, 'OMEGA'), 'turns bodies of revolution out of their plane: ' &
+      //'axisymmetric parts take no spin')
     allocate (chosen(model%mesh%n_node), source=row%id == 0)
     if (row%id > 0) then
       call resolve_id(deck, maps%node_sets, row%id, 'node set', id_place(row), found)
@@ -107,6 +111,9 @@ contains
     logical, allocatable :: chosen(:), chosen_part(:)
     integer :: found, i, k
 
+    if (model%is_round .and. abs(row%spin) > 0.0_wp) call reject_field(deck, &
+      place_t(row%line, 1, 'OMEGA'), 'turns bodies of revolution out of their plane: ' &
+      //'axisymmetric parts take no spin')
     allocate (chosen(model%mesh%n_node), source=row%id == 0)
     allocate (chosen_part(0:size(model%parts)), source=.false.)
     if (row%id > 0) then

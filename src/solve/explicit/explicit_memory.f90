@@ -88,7 +88,7 @@ contains
       call keep(archive, 'rate', springs(i)%rate)
       call keep(archive, 'damping', springs(i)%damping)
       call keep(archive, 'node', springs(i)%node)
-      call keep(archive, 'stays_closed', springs(i)%stays_closed)
+      call keep(archive, 'closed_rate', springs(i)%closed_rate)
       call expect(archive, 'node', springs(i)%node >= 0 .and. springs(i)%node <= n_node, &
         'a number that no node has')
       call leave(archive)

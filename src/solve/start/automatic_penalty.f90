@@ -1,14 +1,15 @@
 ! SPDX-License-Identifier: MIT
 !> Penalties that the deck gives as a share of the largest one for which the step is stable (PUNIT
 !> 3), by the bound of springs that stay closed and by that of springs that open and close. The step
-!> is the one that the elements alone would have (TSSFAC times the smallest L/c, or the
+!> is the one that the elements, and ties, alone would have (TSSFAC times the smallest L/c, or the
 !> curve LCTM). Each such interface may take what that step leaves beside the elements; where
 !> interfaces share nodes, all automatic ones are lowered by the same factor until their sum fits.
 module automatic_penalty_m
   use contact_log_m, only : penalty_text
-  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, binding_bound, &
-    fitting_scale
-  use contacts_m, only : penalty_share
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
+    binding_bound, fitting_scale
+  use contacts_m, only : is_tied, penalty_share
+  use controls_m, only : contact_step_free
   use element_dispatch_m, only : add_tile_forces
   use errors_m, only : error_t, raise, status_input
   use kinds_m, only : wp
@@ -39,7 +40,7 @@ contains
     if (all(model%contacts%penalty_unit /= penalty_share)) return
     call find_element_limits(model, state)
     limit = minval(state%elements%time_limit)
-    dt = scaled_step(model, limit, state%time)
+    dt = scaled_step(model, limit_with_ties(model, state, limit), state%time)
     if (.not. dt < limit) then
       call raise(error, 'an automatic penalty (PUNIT 3) finds no room: the time step ' &
         //to_text(dt)//' is not below the stable step of the elements '//to_text(limit) &
@@ -70,6 +71,22 @@ contains
       end associate
     end do
   end subroutine set_automatic_penalties
+
+  !> The stable step of the elements, or what ties that lower it leave of it.
+  pure function limit_with_ties(model, state, element_limit) result(limit)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: element_limit !! s
+    real(wp) :: limit
+    type(spring_bound_t) :: bounds(size(model%contacts))
+
+    limit = element_limit
+    if (model%controls%contact_step == contact_step_free) return
+    if (.not. any(is_tied(model%contacts))) return
+    call bound_springs(model%contacts, state%contact_mass, state%contacts, &
+      merge(1.0_wp, 0.0_wp, is_tied(model%contacts)), bounds)
+    limit = minval(closed_step(element_limit, bounds))
+  end function limit_with_ties
 
   !> One pass over the elements at rest, which leaves their stable steps behind.
   subroutine find_element_limits(model, state)
