@@ -3,9 +3,9 @@
 !> (doc/theory/contact.md, section 6.4). The tie tells it its places before each call.
 module behind_ties_m
   use contact_law_m, only : density_of
-  use contact_state_m, only : contact_state_t
+  use contact_state_m, only : contact_state_t, n_side
   use friction_m, only : place_at
-  use friction_state_m, only : is_held
+  use friction_state_m, only : is_held, is_broken
   use kinds_m, only : wp
   use nodal_average_m, only : average_gaps, share_out
   implicit none
@@ -18,17 +18,47 @@ contains
   pure subroutine hear_tie(tie, memory)
     type(contact_state_t), intent(in) :: tie
     type(contact_state_t), intent(inout) :: memory
+    logical :: is_first
 
-    associate (scratch => memory%scratch, state => tie%ties%state)
-      if (.not. allocated(scratch%is_left)) then
-        allocate (scratch%is_left(size(state)), scratch%is_freed(size(state)))
-        scratch%is_left = state == is_held
+    associate (scratch => memory%scratch, n_held => count(tie%ties%state == is_held))
+      is_first = .not. allocated(scratch%is_left)
+      if (is_first) then
+        allocate (scratch%is_left(size(tie%ties%state)), scratch%is_freed(size(tie%ties%state)))
+      else if (n_held == scratch%n_held) then
+        if (scratch%has_freed) scratch%is_freed = .false.
+        scratch%has_freed = .false.
+        return
       end if
-      scratch%is_freed = scratch%is_left .and. state /= is_held
-      scratch%is_left = state == is_held
-      scratch%taken = 0.0_wp
+      scratch%n_held = n_held
+      scratch%is_freed = scratch%is_left .and. .not. is_first
+      scratch%is_left = held_places(tie)
+      scratch%is_freed = scratch%is_freed .and. .not. scratch%is_left
+      scratch%has_freed = any(scratch%is_freed)
     end associate
   end subroutine hear_tie
+
+  !> The places that a tie holds. Where slave and master nodes lie upon each other type 5 has one
+  !> place of the two: the other, never tied itself, goes with it.
+  pure function held_places(tie) result(is_left)
+    type(contact_state_t), intent(in) :: tie
+    logical :: is_left(size(tie%ties%state))
+    integer :: s, p, k
+
+    is_left = tie%ties%state == is_held
+    if (allocated(tie%spots) .or. allocated(tie%node_pressure)) return
+    associate (ties => tie%ties, points => tie%points)
+      do s = 1, size(ties%side)
+        if (ties%state(ties%place(s)) /= is_held) cycle
+        p = ties%first(s)
+        do k = 1, n_side
+          associate (a => points%slave_nodes(k, p), b => points%master_nodes(k, p))
+            if (points%slave_weights(k, p) > 0.5_wp) is_left(a) = ties%state(a) /= is_broken
+            if (points%master_weights(k, p) > 0.5_wp) is_left(b) = ties%state(b) /= is_broken
+          end associate
+        end do
+      end do
+    end associate
+  end function held_places
 
   !> After all places have been pressed: those that the tie holds are not.
   pure subroutine leave_to_tie(memory)
@@ -56,7 +86,7 @@ contains
     integer :: p
 
     associate (scratch => memory%scratch, points => memory%points)
-      if (.not. any(scratch%is_freed)) return
+      if (.not. scratch%has_freed) return
       if (allocated(memory%node_pressure)) then
         call average_gaps(points, memory%n_slave, nodal)
         do p = 1, memory%n_slave

@@ -2,7 +2,7 @@
 """Ties that break, explicit and implicit, against what springs with a strength must do."""
 import numpy as np
 
-from contact_types import TYPES
+from contact_types import PASS_PATCH, TYPES
 from meshes import Deck, grid
 
 YOUNG, RHO = 1.0e6, 1000.0
@@ -31,8 +31,9 @@ def led(run, kind, way, name):
     for part in (1, 2):
         deck.part(part).elastic(RHO, YOUNG, 0.0, part)
     upper = deck.mesh(*grid(7, 1), part=1)
-    lower = deck.mesh(*grid(5, 1, 3.0, 1.0, (-1.0, -1.0)), part=2)
-    tie(deck, kind, upper[:8], lower[:-7:-1], FRICTION)
+    # five nodes of the lower block stand for the width of the upper one
+    lower = deck.mesh(*grid(14, 1, 2.8, 1.0, (-0.9, -1.0)), part=2)
+    tie(deck, kind, upper[:8], lower[:14:-1], FRICTION)
     deck.fix(lower, 1, 1)
     for dof in (1, 2):
         rows = [(row[0], row[dof]) for row in way]
@@ -87,7 +88,7 @@ def check_again(run, kind):
     slipped = way_along - FRICTION * depth
     run.check(f"type {kind}: dissipated", result.table("sleout")["friction"][-1], FRICTION * k * depth * slipped, 0.011)
     rows = result.table("contact").where(time=result.times[-1])
-    run.check(f"type {kind}: slip since the start", rows["slip"], -way_along, 1.0e-9, "rel")
+    run.check(f"type {kind}: slip since the start", rows["slip"], way_along, 1.0e-9, "rel")
     run.check(f"type {kind}: still broken", rows["state"], 4.0, 0.0, "abs")
     run.check(f"type {kind}: energy ratio", result.table("glstat")["energy_ratio"][2:], 1.0, 1.0e-2, "abs")
 
@@ -109,10 +110,137 @@ def check_pressed(run, kind):
               0.5 * k * (reach ** 2 + depth ** 2) + grip, 0.011)
 
 
+#: A bar of two halves, its height, rows of square elements of either half; drive of its end, m/s over s.
+HALF, HEIGHT, ROWS = 8.0, 0.4, (6, 4)
+SOUND = np.sqrt(YOUNG / RHO)
+RISE = 1.0e-2
+
+
+def check_wave(run, kind):
+    """The left end of a bar drawn away ever faster: what comes through the tie is known until it breaks."""
+    k = 5.0 * YOUNG
+    tau = RHO * SOUND / (2.0 * k * (2.0 if kind == 3 else 1.0))
+    rate, wait = RHO * SOUND * RISE, HALF / SOUND
+    broken_at = 4.0 / SOUND
+    strength = rate * (broken_at - tau * (1.0 - np.exp(-broken_at / tau)))
+    deck = Deck(f"tie that breaks, wave, type {kind}")
+    deck.control(wait + 1.8 * broken_at, scale=0.8).hourglass(4, 0.05)
+    sides = []
+    for part, rows in enumerate(ROWS, 1):
+        deck.part(part).elastic(RHO, YOUNG, 0.0, part)
+        n = round(HALF * rows / HEIGHT)
+        sides.append((deck.mesh(*grid(n, rows, HALF, HEIGHT, (HALF * (part - 1), 0.0)), part=part), n))
+    (left, n), (right, m) = sides
+    tie(deck, kind, left[n::n + 1], right[::m + 1][::-1], penalty=k, strength=(strength, 1.0e3 * strength))
+    deck.curve(1, [(0.0, 0.0), (1.0, -RISE)])
+    for node in left[::n + 1]:
+        deck.prescribe(node, 1, 0, 1)
+    deck.output(glstat=0.05 / SOUND, rcforc=0.05 / SOUND)
+    deck.add("*DATABASE_SLEOUT", (0.05 / SOUND,))
+    result = run.program(deck, name=f"wave_{kind}")
+    row = result.table("rcforc").where(side="slave")
+    since = np.maximum(0.0, row["time"] - wait)
+    exact = HEIGHT * rate * (since - tau * (1.0 - np.exp(-since / tau)))
+    before = since < 0.98 * broken_at
+    last = row["time"][np.nonzero(row["fx"])[0][-1]]
+    run.check(f"type {kind}: wave, force up to the break", row["fx"][before], exact[before], 0.01, "rel",
+              "a spring between two bars")
+    run.check(f"type {kind}: wave, time of the break", last - wait, broken_at, 0.015)
+    spent = HEIGHT * strength ** 2 / (2.0 * k * (2.0 if kind == 3 else 1.0))
+    run.check(f"type {kind}: wave, energy that stays in contact", result.table("sleout")["energy"][-1], spent, 0.03)
+    run.check(f"type {kind}: wave, energy ratio", result.table("glstat")["energy_ratio"][2:], 1.0, 1.0e-3, "abs")
+
+
+def implicit(deck, steps):
+    return deck.add("*CONTROL_TERMINATION", (float(steps),)).add("*CONTROL_IMPLICIT_GENERAL", (1, 1.0))
+
+
+def check_static(run, kind, dof):
+    """Two unit columns drawn apart (dof 2) or along (1) by the top, step by step, and pressed together again: in the
+    step in which it would be too much it breaks."""
+    series = 1.0 / (2.0 * (1.0 / YOUNG if dof == 2 else 2.0 / YOUNG) + 1.0 / spring_of(kind))
+    reach, n = STRENGTH[2 - dof] / series, 8
+    motion = [0.0] + [reach * (step + 0.5) / n for step in range(n + 2)] + [0.0, -0.5 * reach]
+    deck = implicit(Deck(f"tie that breaks, static, type {kind}"), len(motion) - 1)
+    for part in (1, 2):
+        deck.part(part, points=4).elastic(RHO, YOUNG, 0.0, part)
+    upper = deck.mesh(*grid(7, 2), part=1)
+    lower = deck.mesh(*grid(5, 2, 1.0, 1.0, (0.0, -1.0)), part=2)
+    tie(deck, kind, upper[:8], lower[:-7:-1])
+    deck.fix(lower[:6], 1, 1)
+    deck.fix(np.concatenate([upper[:16], lower[6:]]), *((1, 0) if dof == 2 else (0, 1)))
+    deck.curve(1, [*enumerate(motion), (1.0e3, motion[-1])])
+    for node in upper[16:]:
+        deck.prescribe(node, dof, 2, 1)
+        deck.fix([node], *((1, 0) if dof == 2 else (0, 1)))
+    deck.output(plot=1.0, rcforc=1.0)
+    result = run.program(deck, name=f"static_{kind}_{dof}")
+    found = result.table("rcforc").where(side="slave")["fx fy".split()[dof - 1]]
+    exact = np.array([-series * u if i <= n and (i < n or (n - 0.5) / n < 1.0) else 0.0 for i, u in enumerate(motion)])
+    if dof == 2:
+        exact[-1] = -series * motion[-1]
+    run.check(f"type {kind}: static, {'tension' if dof == 2 else 'shear'}, force of each step", found, exact, 2.0e-3, "rel",
+              "springs in series (strains of 2e-3), then none" + (", then contact" if dof == 2 else ""))
+    run.check(f"type {kind}: static, all places are broken", result.table("contact").where(time=float(len(motion) - 1))["state"],
+              4.0, 0.0, "abs")
+
+
+#: Peel: two arms, their height and length, the crack at the start, elements over the height.
+ARM, LENGTH, CRACK, N_ARM = 0.5, 12.0, 3.0, 4
+PEEL_SPRING, PEEL_STRENGTH = 1.0e5, 500.0
+
+
+def peel_force(length, opening):
+    """Force at the end of two beams on elastic foundation opened by so much, and the traction at the tip of the crack."""
+    stiffness, foundation = YOUNG * ARM ** 3 / 12.0, 2.0 * PEEL_SPRING
+    root = (foundation / (4.0 * stiffness)) ** 0.25
+    unit = length ** 3 / (3.0 * stiffness) + (2.0 * root ** 2 * (1.0 + 2.0 * root * length) * length
+                                             + 2.0 * root * (1.0 + root * length)) / foundation
+    force = 0.5 * opening / unit
+    return force, PEEL_SPRING * 2.0 * force * 2.0 * root * (1.0 + root * length) / foundation
+
+
+def check_peel(run, kind):
+    """Two arms drawn apart at their ends: the crack grows as far as the tip of beams on an elastic foundation holds."""
+    opening, n = 0.4, 40
+    deck = implicit(Deck(f"peel, type {kind}"), n)
+    for part in (1, 2):
+        deck.part(part, points=4).elastic(RHO, YOUNG, 0.0, part)
+    columns = round(LENGTH * N_ARM / ARM)
+    upper = deck.mesh(*grid(columns, N_ARM, LENGTH, ARM), part=1)
+    lower = deck.mesh(*grid(columns, N_ARM, LENGTH, ARM, (0.0, -ARM)), part=2)
+    first = round(CRACK * N_ARM / ARM)
+    tie(deck, kind, upper[first:columns + 1], lower[-1:-1 - columns - 1 + first:-1], penalty=PEEL_SPRING,
+        strength=(PEEL_STRENGTH, PEEL_STRENGTH))
+    deck.curve(1, [(0.0, 0.0), (float(n), 0.5 * opening)])
+    middle = (columns + 1) * (N_ARM // 2)
+    for ids, factor in ((upper, 1.0), (lower, -1.0)):
+        deck.prescribe(ids[middle], 2, 2, 1, factor)
+    deck.fix([upper[middle + columns], lower[middle + columns]], 1, 0)
+    deck.output(plot=float(n), rcforc=1.0)
+    deck.add("*DATABASE_SPCFORC", (1.0,))
+    result = run.program(deck, name=f"peel_{kind}")
+    rows = result.table("contact").where(time=float(n))
+    broken = rows["state"] == 4
+    low, high = CRACK, LENGTH
+    for _ in range(60):
+        length = 0.5 * (low + high)
+        low, high = (length, high) if peel_force(length, opening)[1] > PEEL_STRENGTH else (low, length)
+    run.true(f"type {kind}: peel, broken from the crack on and nowhere else", not np.any(np.diff(broken.astype(int)) > 0))
+    run.check(f"type {kind}: peel, length of the crack", CRACK + ARM / N_ARM * np.sum(broken), length, 0.05, "rel",
+              "beams on an elastic foundation")
+
+
 def check(run):
     for kind in TYPES:
+        for dof in (1, 2):
+            if kind != 1:
+                check_static(run, kind, dof)
         if kind == 1:
             continue
         check_ellipse(run, kind)
         check_again(run, kind)
         check_pressed(run, kind)
+        if kind in PASS_PATCH:
+            check_wave(run, kind)
+            check_peel(run, kind)
