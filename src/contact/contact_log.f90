@@ -81,9 +81,12 @@ contains
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
 
-    text = '  behind the ties of interface '//to_text(contact%id)//': contact, under the same penalty'
-    if (contact%damping > 0.0_wp) text = text//', damping '//to_text(contact%damping)//' of critical'
-    if (allocated(memory%friction%state)) text = text//', friction '//friction_text(contact%friction)
+    text = '  behind the ties of interface '//to_text(contact%id) &
+      //': contact under the same penalty'
+    if (contact%damping > 0.0_wp) text = text//', damping '//to_text(contact%damping) &
+      //' of critical'
+    if (allocated(memory%friction%state)) text = text//', friction ' &
+      //friction_text(contact%friction)
     call write_log(log, text)
   end subroutine log_behind
 
@@ -225,7 +228,7 @@ contains
     else
       call write_log(log, 'interface '//to_text(contact%id)//': of its ties '//to_text(n)//' of ' &
         //to_text(count(memory%ties%state /= is_open))//' places have broken, from time ' &
-        //to_text(memory%ties%broke_at(1))//' to '//to_text(memory%ties%broke_at(2)) &
+        //to_text(memory%ties%first_break)//' to '//to_text(memory%ties%last_break) &
         //'; what they held, '//to_text(memory%ties%spent)//' J/m, stays in the energy of contact')
     end if
   end subroutine report_broken

@@ -7,7 +7,8 @@ module contacts_m
   implicit none
   private
   public :: contact_t, contact_kind_t, friction_rule_t, has_friction, is_tied, breaks, &
-    has_shear, n_told, told_as, kind_text, most_gauss, penalty_per_node, penalty_distributed, penalty_factor, penalty_share, &
+    has_shear, n_told, told_as, kind_text, most_gauss, penalty_per_node, penalty_distributed, &
+    penalty_factor, penalty_share, &
     tie_none, tie_always, tie_breaks, tie_factor
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,

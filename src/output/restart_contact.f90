@@ -93,8 +93,8 @@ contains
     call keep(archive, 'place', ties%place)
     call keep(archive, 'to_stress', ties%to_stress)
     call keep(archive, 'spent', ties%spent)
-    call keep(archive, 'first_break', ties%broke_at(1))
-    call keep(archive, 'last_break', ties%broke_at(2))
+    call keep(archive, 'first_break', ties%first_break)
+    call keep(archive, 'last_break', ties%last_break)
     call leave(archive)
   end subroutine keep_ties
 

@@ -168,7 +168,8 @@ contains
     associate (ties => memory%ties)
       n = size(ties%side)
       fits = allocated(ties%first) .and. allocated(ties%owner) .and. allocated(ties%lag) .and. &
-        allocated(ties%offset) .and. (allocated(ties%traction) .eqv. allocated(memory%node_pressure))
+        allocated(ties%offset) .and. &
+        (allocated(ties%traction) .eqv. allocated(memory%node_pressure))
       if (fits) fits = size(ties%first) == n + 1 .and. all(shape(ties%owner) == [2, n]) .and. &
         all(shape(ties%lag) == [2, n]) .and. all(shape(ties%offset) == [2, n])
       if (fits .and. allocated(ties%traction)) fits = size(ties%traction) == memory%n_slave

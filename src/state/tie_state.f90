@@ -27,7 +27,8 @@ module tie_state_m
                                          !! types 1 and 3
     real(wp) :: spent = 0.0_wp           !! what springs held that have broken, less what contact
                                          !! behind them took over, J/m
-    real(wp) :: broke_at(2) = 0.0_wp     !! times of the first and of the last break, s
+    real(wp) :: first_break = 0.0_wp     !! its time, s
+    real(wp) :: last_break = 0.0_wp      !! likewise
   end type tie_memory_t
 
 contains

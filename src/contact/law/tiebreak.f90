@@ -15,8 +15,9 @@ module tiebreak_m
 
 contains
 
-  !> All places that springs hold, and what makes their pressures stresses of the bond: those of type
-  !> 1 are forces, and two passes share it by their penalties. Places are in the reference geometry.
+  !> All places that springs hold, and what makes their pressures stresses of the bond: those of
+  !> type 1 are forces, and two passes share it by their penalties. Places are in the reference
+  !> geometry.
   pure subroutine start_breaking(contact, has_unit_area, has_two_passes, memory)
     type(contact_t), intent(in) :: contact
     logical, intent(in) :: has_unit_area, has_two_passes !! of the formulation
@@ -66,8 +67,8 @@ contains
         end do
       end if
       if (n_new == 0) return
-      if (.not. ties%broke_at(1) > 0.0_wp) ties%broke_at(1) = time
-      ties%broke_at(2) = time
+      if (.not. ties%first_break > 0.0_wp) ties%first_break = time
+      ties%last_break = time
     end associate
   end subroutine mark_breaks
 

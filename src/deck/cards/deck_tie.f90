@@ -26,8 +26,8 @@ contains
     logical, intent(in) :: commanded(:) !! values that the command line gives
     type(raw_contact_t), intent(inout) :: entry
 
-    call refuse_outside(deck, cursor, cards(3), 'TIE', tie_none, tie_breaks, 'is not 0 (contact), ' &
-      //'1 (tied) or 2 (tied until it breaks)')
+    call refuse_outside(deck, cursor, cards(3), 'TIE', tie_none, tie_breaks, 'is not 0 ' &
+      //'(contact), 1 (tied) or 2 (tied until it breaks)')
     call take_strength(deck, cursor, cards(3), entry)
     associate (contact => entry%contact)
       if (.not. any(integer_of(cards(3), 'TIE') == [tie_always, tie_breaks])) return
