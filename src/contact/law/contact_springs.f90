@@ -23,7 +23,7 @@ contains
   end subroutine begin_look
 
   !> What all springs on the list store, without what damping adds to their pressure, and where the
-  !> largest force is.
+  !> largest force is. What broken ties held counts as theirs.
   pure subroutine measure_springs(memory)
     type(contact_state_t), intent(inout) :: memory
     integer :: i
@@ -32,17 +32,20 @@ contains
     memory%watch%load = 0.0_wp
     if (allocated(memory%ties%side)) then
       call tie_energy(memory, memory%watch%stored, memory%watch%load, memory%watch%node)
+      memory%watch%stored = memory%watch%stored + memory%ties%spent
       return
     end if
     associate (watch => memory%watch, points => memory%points, nodal => memory%scratch%nodal)
       if (allocated(memory%node_pressure)) then
         call average_gaps(points, memory%n_slave, nodal)
         do i = 1, memory%n_slave
+          if (.not. memory%node_pressure(i) > 0.0_wp) cycle
           call add_spring(nodal(2, i)*density_of(memory%contact_law, memory%slave_penalty, &
             nodal(1, i)), nodal(2, i)*memory%node_pressure(i), memory%nodes(i), watch)
         end do
       else
         do i = 1, points%n
+          if (.not. points%pressure(i) > 0.0_wp) cycle
           call add_spring(points%area(i)*density_of(memory%contact_law, points%stiffness(i), &
             points%gap(i)), points%area(i)*points%pressure(i), &
             memory%nodes(points%slave_nodes(maxloc(points%slave_weights(:, i), 1), i)), watch)
