@@ -203,8 +203,8 @@ contains
       call read_nodes(deck, parameters, i, raw)
     case ('ELEMENT_SHELL')
       call read_elements(deck, parameters, i, raw)
-    case ('SET_NODE_LIST', 'SET_NODE_LIST_GENERATE', 'SET_PART_LIST', 'SET_PART_LIST_GENERATE', &
-        'SET_SEGMENT')
+    case ('SET_NODE_LIST', 'SET_NODE_LIST_GENERATE', 'SET_NODE_GENERAL', 'SET_PART_LIST', &
+        'SET_PART_LIST_GENERATE', 'SET_SEGMENT', 'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
       call read_set(deck, parameters, i, raw)
     case ('PART')
       call read_part(deck, parameters, i, raw)

@@ -64,7 +64,7 @@ contains
       call take_slideline(deck, cursor, cards, kinds, commanded, entry)
       call take_tie(deck, cursor, cards, commanded(of_penalty), entry)
       call take_friction(deck, cursor, cards, overrides, entry)
-    case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION')
+    case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS')
       call take_penalty(deck, cursor, cards, commanded, entry)
       if (cursor%n_card > 2) call take_penalty_friction(deck, cursor, cards(3), overrides, entry)
     case ('CONTACT_2D_TIED_SLIDING')
@@ -106,7 +106,7 @@ contains
     case ('CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE')
       contact_type = 2
     case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE', 'CONTACT_2D_PENALTY', &
-        'CONTACT_2D_PENALTY_FRICTION')
+        'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS')
       contact_type = 3
     case ('CONTACT_2D_AUTOMATIC_TIED', 'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY', &
         'CONTACT_2D_TIED_SLIDING')
