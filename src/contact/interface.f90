@@ -26,6 +26,8 @@ module interface_m
   use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
     start_slave_tracking, start_master_tracking, start_segments
   use gather_m, only : gather_places, take_force, keep_former
+  use interference_m, only : begin_growth, take_overlaps, gather_moment
+  use interference_state_m, only : allocate_interference
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
@@ -46,7 +48,7 @@ contains
     type(contact_state_t), intent(out) :: memory
     type(formulation_t) :: formulation
     real(wp) :: origin(2)
-    integer :: n_slave, n_master, n_each, i
+    integer :: n_slave, n_master, i
 
     n_slave = contact%slave%n_node
     n_master = contact%master%n_node
@@ -80,14 +82,24 @@ contains
       call allocate_limit(memory%limit, n_slave + n_master)
     if (has_friction(contact)) then
       call allocate_tractions(memory%points)
-      n_each = 1
-      if (allocated(memory%spots)) n_each = size(memory%spot_xi)
-      call allocate_friction(memory%friction, n_each*n_slave + n_master, n_slave + n_master)
+      call allocate_friction(memory%friction, places_of_segment(memory)*n_slave + n_master, &
+        n_slave + n_master)
     end if
+    if (allocated(contact%interference)) call allocate_interference(memory%interference, &
+      places_of_segment(memory)*n_slave, n_master)
     call allocate_scratch(memory)
     if (is_tied(contact)) call start_ties(contact, model, memory)
     call log_contact(contact, model, formulation%kind, memory, log)
   end subroutine start_contact
+
+  !> Places of a slave segment that have a memory of their own.
+  pure function places_of_segment(memory) result(n)
+    type(contact_state_t), intent(in) :: memory
+    integer :: n
+
+    n = 1
+    if (allocated(memory%spots)) n = size(memory%spot_xi)
+  end function places_of_segment
 
   !> Who touches whom at time zero, between whole surfaces or between runs of them.
   subroutine start_search(contact, model, memory)
@@ -133,6 +145,7 @@ contains
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     type(contact_t), allocatable :: present
 
+    if (allocated(memory%interference%depth)) call begin_growth(contact, time, memory)
     if (is_suspended(contact, time)) then
       call suspend_contact(motion, dt, memory)
     else if (is_tied(contact)) then
@@ -173,7 +186,7 @@ contains
     call place_points(contact, memory)
     call lap(clock, phase_contact_pairing)
     if (memory%points%n > 0) then
-      call press_places(memory%contact_law, formulation%where_pressed, memory)
+      call press(formulation, memory)
       call look_at_springs(cycle, memory)
       ! Springs born or caught loaded make what they hold: that is told, and may be returned.
       if (is_born) then
@@ -193,6 +206,20 @@ contains
     call end_look(had_force, memory%n_active > 0, memory%watch)
     call lap(clock, phase_contact_force)
   end subroutine apply_between
+
+  !> Pressures of the points that have been placed.
+  pure subroutine press(formulation, memory)
+    type(formulation_t), intent(in) :: formulation
+    type(contact_state_t), intent(inout) :: memory
+
+    if (allocated(memory%interference%depth)) then
+      if (memory%scratch%is_start) call take_overlaps(memory)
+      call press_places(memory%contact_law, formulation%where_pressed, memory)
+      call gather_moment(memory)
+    else
+      call press_places(memory%contact_law, formulation%where_pressed, memory)
+    end if
+  end subroutine press
 
   !> Before the points are placed: the forces of the last call stand aside, for their half of the
   !> work of the step.
@@ -238,6 +265,7 @@ contains
       call evaluate_ties(motion, memory, force)
       return
     end if
+    if (allocated(memory%interference%depth)) call begin_growth(contact, time, memory)
     memory%is_stale = memory%is_stale .or. is_suspended(contact, time)
     if (memory%facing%is_used .and. .not. is_suspended(contact, time)) &
       call follow_runs_in_step(contact, motion, memory)
@@ -277,7 +305,7 @@ contains
     if (is_first) call close_contacts(contact, closed_gap_of(contact, memory), memory)
     call place_points(contact, memory)
     if (memory%points%n == 0) return
-    call press_places(memory%contact_law, formulation%where_pressed, memory)
+    call press(formulation, memory)
     if (allocated(memory%friction%force)) &
       call rub_places(contact, formulation%has_unit_area, memory%scratch%dt, memory)
     call scatter_forces(memory)

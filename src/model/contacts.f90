@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Contact interfaces as the deck describes them.
 module contacts_m
+  use curves_m, only : curve_t
   use kinds_m, only : wp
   use log_m, only : to_text
   use surfaces_m, only : surface_t
@@ -65,6 +66,8 @@ module contacts_m
     integer :: tie = tie_none              !! TIE, one of the `tie_` constants
     real(wp) :: tie_reach = 0.0_wp         !! what is farther apart is not tied, m; below 0 per cent
                                            !! of the mean master segment; 0 = 1 per cent
+    type(curve_t), allocatable :: interference !! LCINT: the part of an initial overlap that acts,
+                                           !! from 0 to 1
     logical :: is_round = .false.          !! axisymmetric: lengths weigh with their radius
   end type contact_t
 

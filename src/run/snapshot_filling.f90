@@ -169,7 +169,7 @@ contains
       if (allocated(state%walls)) energies%friction = energies%friction &
         + sum(state%walls%dissipated)
       energies%made = sum(max(0.0_wp, -state%contacts%watch%balance))
-      energies%external_work = state%external_work
+      energies%external_work = state%external_work + sum(state%contacts%interference%work)
       energies%initial = state%initial_energy
     end associate
   end subroutine fill_energies

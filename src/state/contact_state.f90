@@ -21,6 +21,7 @@ module contact_state_m
   use energy_limit_state_m, only : energy_limit_t
   use facing_state_m, only : facing_t
   use friction_state_m, only : friction_memory_t
+  use interference_state_m, only : interference_memory_t
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
   use tie_state_m, only : tie_memory_t
@@ -121,6 +122,9 @@ module contact_state_m
     real(wp) :: dt = 0.0_wp                 !! step that made them, s; only in implicit runs
     real(wp), allocatable :: former_traction(:) !! (n_place) of the call before
     integer, allocatable :: former_state(:) !! (n_place) the same
+    real(wp) :: growth = 0.0_wp             !! of an initial overlap in this step, as a part of it
+    logical :: is_start = .false.           !! this call is that of time zero; both only where such
+                                            !! overlaps grow
     integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps
     logical, allocatable :: is_placed(:)    !! (slave segments) have their points
     type(piece_table_t), allocatable :: pieces !! lent to the placement while it works
@@ -161,6 +165,7 @@ module contact_state_m
     real(wp) :: energy = 0.0_wp             !! minus the accumulated work of the springs, J/m
     real(wp) :: damping_work = 0.0_wp       !! minus that of the damping forces
     type(friction_memory_t) :: friction     !! of places, and its forces
+    type(interference_memory_t) :: interference !! initial overlaps that grow
     type(tie_memory_t) :: ties              !! springs of a tied interface
     type(contact_watch_t) :: watch          !! whether the springs give back what they take
     type(energy_limit_t) :: limit           !! that they give back no more

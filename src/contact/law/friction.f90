@@ -12,7 +12,8 @@ module friction_m
   use radii_m, only : centroid
   implicit none
   private
-  public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, place_of_point
+  public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, place_of_point, &
+    spot_at
 
   !> Places whose slips are formed together.
   integer, parameter :: n_block = 64

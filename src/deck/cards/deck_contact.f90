@@ -4,7 +4,7 @@
 module deck_contact_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_always
+  use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_none, tie_always
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
@@ -165,7 +165,26 @@ contains
         call refuse_negative(deck, cursor, cards(2), 'SRCH')
       contact%search_depth = real_of(cards(2), 'SRCH')
     end associate
+    call take_interference(deck, cursor, cards(3), entry)
   end subroutine take_slideline
+
+  !> LCINT: the curve by which an initial overlap grows.
+  subroutine take_interference(deck, cursor, card, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_contact_t), intent(inout) :: entry
+
+    call refuse_negative(deck, cursor, card, 'LCINT')
+    if (integer_of(card, 'LCINT') == 0) return
+    if (integer_of(card, 'TIE') /= tie_none) call report_field(deck, cursor, card, 'LCINT', &
+      'asks for an overlap that grows, which a tie does not have (it keeps its gaps)')
+    if (entry%contact%birth > 0.0_wp) call report_field(deck, cursor, card, 'LCINT', &
+      'asks for the overlap of time zero to grow; the interface must act from then on (TBIRTH 0)')
+    if (is_bad(card, 'LCINT')) return
+    entry%interference = integer_of(card, 'LCINT')
+    entry%interference_place = place_of(card, 'LCINT')
+  end subroutine take_interference
 
   !> What IPF = 1 asks for: `: the strict rule of name (type n)`.
   pure function strict_names(kinds) result(text)

@@ -93,6 +93,8 @@ module deck_raw_m
     real(wp) :: per_cent = 0.0_wp       !! VDC as given
     integer :: sides(2) = 0             !! SURFA, SURFB as in the deck: > 0 part set, < 0 node set
     type(place_t) :: places(2)
+    integer :: interference = 0         !! LCINT, user id of the curve
+    type(place_t) :: interference_place
     type(place_t) :: search_place       !! FREQ, where it is given
     type(place_t) :: unit_place         !! PUNIT; line 0 where the command line gives it
     type(place_t) :: friction_place     !! FS, or what stands for it; line 0 as before

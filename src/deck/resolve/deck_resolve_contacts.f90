@@ -12,6 +12,7 @@ module deck_resolve_contacts_m
   use deck_maps_m, only : maps_t, resolve_id
   use deck_resolve_sides_m, only : find_side, require_side, resolve_side, side_nodes, &
     side_segments
+  use deck_interference_m, only : resolve_interference, find_curve
   use deck_raw_m, only : raw_t, row_t, raw_contact_t, row_pressure, row_pressure_set, &
     id_fields, id_place
   implicit none
@@ -48,6 +49,7 @@ contains
       model%contacts(i) = raw%contacts(i)%contact
       model%contacts(i)%slave = sides(1)
       model%contacts(i)%master = sides(2)
+      call resolve_interference(deck, raw%contacts(i), maps, model, model%contacts(i))
       call check_common_nodes(deck, raw%contacts(i), sides, model)
       if (deck%report%n_error == n_error) call check_overlap(deck, raw%contacts(i), sides, model)
     end do
@@ -64,6 +66,7 @@ contains
       do k = 1, 2
         call require_side(deck, raw%contacts(i), k, maps, kind, found)
       end do
+      call find_curve(deck, raw%contacts(i), maps, found)
     end do
     do i = 1, raw%n_row
       associate (row => raw%rows(i))

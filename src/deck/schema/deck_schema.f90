@@ -273,9 +273,6 @@ contains
         //'not have; leave it 0 (a tie keeps its gap)'
     case ('NFLS', 'SFLS')
       text = 'is a strength of ties that break, which this version does not have; leave it 0'
-    case ('LCINT')
-      text = 'asks for interference that a curve removes, which this version does not have; ' &
-        //'leave it 0'
     case ('CID', 'ICID', 'VID')
       text = 'is a local coordinate system, which this version does not have; leave it 0'
     case ('SRC', 'SRP')
