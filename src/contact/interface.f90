@@ -13,7 +13,7 @@ module interface_m
   use contact_springs_m, only : begin_look, measure_springs, end_look
   use contact_work_m, only : take_apart, hand_over, count_work
   use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
-    allocate_tractions, allocate_scratch, is_free
+    allocate_tractions, allocate_scratch, places_of_segment, is_free
   use contacts_m, only : contact_t, has_friction, is_tied
   use crossing_m, only : crossings_t, find_crossings, catch_crossings
   use damping_m, only : damp_points
@@ -26,7 +26,7 @@ module interface_m
   use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
     start_slave_tracking, start_master_tracking, start_segments
   use gather_m, only : gather_places, take_force, keep_former
-  use interference_m, only : begin_growth, take_overlaps, gather_moment
+  use interference_m, only : begin_growth
   use interference_state_m, only : allocate_interference
   use kinds_m, only : wp
   use log_m, only : log_t
@@ -91,15 +91,6 @@ contains
     if (is_tied(contact)) call start_ties(contact, model, memory)
     call log_contact(contact, model, formulation%kind, memory, log)
   end subroutine start_contact
-
-  !> Places of a slave segment that have a memory of their own.
-  pure function places_of_segment(memory) result(n)
-    type(contact_state_t), intent(in) :: memory
-    integer :: n
-
-    n = 1
-    if (allocated(memory%spots)) n = size(memory%spot_xi)
-  end function places_of_segment
 
   !> Who touches whom at time zero, between whole surfaces or between runs of them.
   subroutine start_search(contact, model, memory)
@@ -186,7 +177,7 @@ contains
     call place_points(contact, memory)
     call lap(clock, phase_contact_pairing)
     if (memory%points%n > 0) then
-      call press(formulation, memory)
+      call press_places(memory%contact_law, formulation%where_pressed, memory)
       call look_at_springs(cycle, memory)
       ! Springs born or caught loaded make what they hold: that is told, and may be returned.
       if (is_born) then
@@ -206,20 +197,6 @@ contains
     call end_look(had_force, memory%n_active > 0, memory%watch)
     call lap(clock, phase_contact_force)
   end subroutine apply_between
-
-  !> Pressures of the points that have been placed.
-  pure subroutine press(formulation, memory)
-    type(formulation_t), intent(in) :: formulation
-    type(contact_state_t), intent(inout) :: memory
-
-    if (allocated(memory%interference%depth)) then
-      if (memory%scratch%is_start) call take_overlaps(memory)
-      call press_places(memory%contact_law, formulation%where_pressed, memory)
-      call gather_moment(memory)
-    else
-      call press_places(memory%contact_law, formulation%where_pressed, memory)
-    end if
-  end subroutine press
 
   !> Before the points are placed: the forces of the last call stand aside, for their half of the
   !> work of the step.
@@ -305,7 +282,7 @@ contains
     if (is_first) call close_contacts(contact, closed_gap_of(contact, memory), memory)
     call place_points(contact, memory)
     if (memory%points%n == 0) return
-    call press(formulation, memory)
+    call press_places(memory%contact_law, formulation%where_pressed, memory)
     if (allocated(memory%friction%force)) &
       call rub_places(contact, formulation%has_unit_area, memory%scratch%dt, memory)
     call scatter_forces(memory)

@@ -30,6 +30,7 @@ module deck_m
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control, check_step
   use deck_output_m, only : read_database
+  use deck_transducer_m, only : read_transducer
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : settle_friction
   use deck_wall_m, only : read_wall
@@ -254,7 +255,11 @@ contains
     case ('DATABASE_')
       call read_database(deck, parameters, i, raw)
     case ('CONTACT_')
-      call read_contact(deck, parameters, i, kinds, overrides, raw)
+      if (deck%blocks(i)%name == 'CONTACT_2D_FORCE_TRANSDUCER') then
+        call read_transducer(deck, parameters, i, raw)
+      else
+        call read_contact(deck, parameters, i, kinds, overrides, raw)
+      end if
     case ('BOUNDARY_', 'INITIAL_', 'LOAD_', 'DAMPING_')
       call read_condition(deck, parameters, i, raw)
     end select

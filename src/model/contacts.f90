@@ -7,9 +7,9 @@ module contacts_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: contact_t, contact_kind_t, friction_rule_t, has_friction, is_tied, has_shear, &
-    kind_text, most_gauss, penalty_per_node, penalty_distributed, penalty_factor, penalty_share, &
-    tie_none, tie_always, tie_factor
+  public :: contact_t, contact_kind_t, transducer_t, friction_rule_t, has_friction, is_tied, &
+    has_shear, kind_text, most_gauss, penalty_per_node, penalty_distributed, penalty_factor, &
+    penalty_share, tie_none, tie_always, tie_factor
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
   !> share of the largest stable penalty.
@@ -70,6 +70,13 @@ module contacts_m
                                            !! from 0 to 1
     logical :: is_round = .false.          !! axisymmetric: lengths weigh with their radius
   end type contact_t
+
+  !> A surface on which the forces of all interfaces are added up.
+  type :: transducer_t
+    integer :: id = 0
+    character(:), allocatable :: title
+    integer, allocatable :: nodes(:) !! those of its surface that interfaces have
+  end type transducer_t
 
 contains
 

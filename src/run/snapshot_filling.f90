@@ -6,14 +6,14 @@ module snapshot_filling_m
   use constraints_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains
-  use contacts_m, only : has_shear
+  use contacts_m, only : transducer_t, has_shear
   use controls_m, only : is_asked
   use history_tables_m, only : table_matsum
   use layout_m, only : slot_part
   use model_m, only : model_t
   use round_chunk_m, only : node_volumes
   use round_state_m, only : hoop_strains
-  use snapshot_m, only : snapshot_t, rubbed_t
+  use snapshot_m, only : snapshot_t, interface_result_t, rubbed_t
   use state_m, only : state_t
   use support_forces_m, only : find_supports
   implicit none
@@ -42,6 +42,7 @@ contains
       allocate (snapshot%velocity(2, n_node), source=0.0_wp)
     allocate (snapshot%parts(size(model%parts)))
     if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
+    if (allocated(model%transducers)) allocate (snapshot%transducers(size(model%transducers)))
     allocate (snapshot%interfaces(size(model%contacts)), snapshot%slaves(size(model%contacts)))
     call find_supports(model, snapshot)
     if (.not. is_asked(model%controls%output%plot)) return
@@ -262,7 +263,33 @@ contains
         snapshot%interfaces(i)%stored = state%contacts(i)%watch%stored + friction%stored
       end associate
     end do
+    if (.not. allocated(model%transducers)) return
+    do i = 1, size(model%transducers)
+      call add_up_forces(model%transducers(i), state, snapshot%transducers(i))
+    end do
   end subroutine fill_interfaces
+
+  !> What all interfaces do to the surface of a transducer, and how many of its nodes carry force.
+  subroutine add_up_forces(transducer, state, resultants)
+    type(transducer_t), intent(in) :: transducer
+    type(state_t), intent(in) :: state
+    type(interface_result_t), intent(out) :: resultants
+    logical, allocatable :: is_on(:), is_loaded(:)
+    integer :: i, k
+
+    allocate (is_on(size(state%mass)), is_loaded(size(state%mass)), source=.false.)
+    is_on(transducer%nodes) = .true.
+    do i = 1, size(state%contacts)
+      associate (memory => state%contacts(i))
+        do k = 1, size(memory%nodes)
+          if (.not. is_on(memory%nodes(k))) cycle
+          resultants%slave_force = resultants%slave_force + memory%force(:, k)
+          if (any(abs(memory%force(:, k)) > 0.0_wp)) is_loaded(memory%nodes(k)) = .true.
+        end do
+      end associate
+    end do
+    resultants%n_active = count(is_loaded)
+  end subroutine add_up_forces
 
   !> Fields of a plot state and the rows of slave nodes.
   subroutine fill_plot(model, state, snapshot)

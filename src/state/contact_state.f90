@@ -30,7 +30,7 @@ module contact_state_m
   public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
     segment_memory_t, contact_scratch_t, allocate_points, allocate_loads, &
     allocate_tractions, make_room, allocate_tracking, allocate_grid, allocate_scratch, n_side, &
-    n_load, is_free, is_in_front, is_touching, is_behind
+    n_load, places_of_segment, is_free, is_in_front, is_touching, is_behind
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
@@ -284,5 +284,14 @@ contains
       call allocate_pieces(scratch%pieces, n_piece_block)
     end associate
   end subroutine allocate_scratch
+
+  !> Places of a slave segment that have a memory of their own.
+  pure function places_of_segment(memory) result(n)
+    type(contact_state_t), intent(in) :: memory
+    integer :: n
+
+    n = 1
+    if (allocated(memory%spots)) n = size(memory%spot_xi)
+  end function places_of_segment
 
 end module contact_state_m

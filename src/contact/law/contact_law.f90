@@ -6,7 +6,7 @@
 module contact_law_m
   use contact_state_m, only : contact_state_t
   use dual_m, only : dual_t
-  use interference_m, only : ease_gaps, ease_nodes
+  use interference_m, only : take_overlaps, ease_gaps, ease_nodes, gather_moment
   use kinds_m, only : wp
   use law_penalty_m, only : press_penalty, vary_penalty, energy_penalty
   use nodal_average_m, only : average_gaps, share_out
@@ -39,6 +39,8 @@ contains
     type(contact_state_t), intent(inout) :: memory
     integer :: n
 
+    if (allocated(memory%interference%depth) .and. memory%scratch%is_start) &
+      call take_overlaps(memory)
     associate (points => memory%points, nodal => memory%scratch%nodal)
       select case (where_pressed)
       case (pressed_at_points)
@@ -56,6 +58,7 @@ contains
           points%pressure)
       end select
     end associate
+    if (allocated(memory%interference%depth)) call gather_moment(memory)
   end subroutine press_places
 
   !> Pressures of all points where an initial overlap grows.

@@ -83,7 +83,8 @@ contains
         grip%slip = moments(node)/areas(node)
         grip%traction = vary_traction(contact%friction, &
           constant(memory%scratch%former_traction(node)), variable(grip%slip, 2), &
-          vary_pressure(memory%contact_law, memory%slave_penalty, variable(eased(node)/areas(node), 1)), &
+          vary_pressure(memory%contact_law, memory%slave_penalty, &
+          variable(eased(node)/areas(node), 1)), &
           contact%friction%stiffness*memory%slave_penalty, largest_grip(contact%friction), &
           memory%scratch%dt)
       end associate

@@ -16,6 +16,7 @@ module deck_contact_m
     of_penalty, of_master_penalty
   use deck_friction_m, only : take_friction, take_stock_friction, take_penalty_friction
   use deck_tie_m, only : take_tie, take_stock_tie, check_tie
+  use deck_transducer_m, only : settle_number
   use deck_raw_m, only : raw_t, raw_contact_t
   use deck_overrides_m, only : overrides_t, contact_names
   implicit none
@@ -47,16 +48,13 @@ contains
     entry%contact%title = ''
     if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%contact%id, &
       entry%contact%title)
-    if (entry%contact%id == 0) entry%contact%id = size(raw%contacts) + 1
-    if (any(raw%contacts%contact%id == entry%contact%id)) call line_error(deck, &
-      deck%blocks(i_block)%keyword, 'the interface number '//to_text(entry%contact%id) &
-      //' belongs to an earlier interface (without a number it is the position in the deck)')
+    entry%block = i_block
+    call settle_number(deck, raw, entry)
     do k = 1, cursor%n_card
       call next_card(deck, parameters, cursor, k, cards(k))
     end do
     call check_rest(deck, cursor)
     call take_sides(deck, cursor, cards(1), entry)
-    entry%block = i_block
     commanded = find_commanded(overrides, entry%contact%id)
     entry%contact%contact_type = stock_type(trim(deck%blocks(i_block)%name))
     select case (deck%blocks(i_block)%name)

@@ -68,6 +68,9 @@ contains
       end do
       call find_curve(deck, raw%contacts(i), maps, found)
     end do
+    do i = 1, size(raw%transducers)
+      call require_side(deck, raw%transducers(i), 1, maps, kind, found)
+    end do
     do i = 1, raw%n_row
       associate (row => raw%rows(i))
         if (row%kind == row_pressure) then

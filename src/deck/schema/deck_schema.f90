@@ -273,6 +273,9 @@ contains
         //'not have; leave it 0 (a tie keeps its gap)'
     case ('NFLS', 'SFLS')
       text = 'is a strength of ties that break, which this version does not have; leave it 0'
+    case ('SURFB')
+      text = 'asks for the forces between two surfaces, which this version does not have; leave ' &
+        //'it 0 (a transducer adds up all forces on SURFA)'
     case ('CID', 'ICID', 'VID')
       text = 'is a local coordinate system, which this version does not have; leave it 0'
     case ('SRC', 'SRP')

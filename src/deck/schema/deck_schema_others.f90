@@ -30,7 +30,6 @@ module deck_schema_others_m
     'CONTACT_2D_AUTOMATIC_SURFACE_IN_CONTINUUM* this kind of contact is', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_THERMAL* heat through contact is', &
     'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE_THERMAL* heat through contact is', &
-    'CONTACT_2D_FORCE_TRANSDUCER* this kind of contact is', &
     'CONTACT_2D_NODE_TO_SOLID* this kind of contact is', &
     'CONTACT_2D_SLIDING_ONLY* surfaces that slide and may not separate are', &
     'CONTACT_2D_* unknown', &

@@ -94,11 +94,12 @@ def round_pressure(result, nodes):
 
 
 def check_growth(run, name, result, pressure, interference, area, tol):
-    """Nothing at the start; the curve has done half of pressure times interference at the end, and energies balance."""
+    """Nothing at the start; at the end half of pressure times interference is what bodies and springs hold, damping has
+    the rest of what the curve has done, and energies balance."""
     energy = result.table("glstat")
     run.check(f"{name}: forces at the start", result.points("contact_force")[0], 0.0, 0.0, "abs", "the overlap is eased")
-    run.check(f"{name}: work of the curve", energy["external_work"][-1], 0.5 * pressure * interference * area, tol,
-              source="half of pressure times interference")
+    run.check(f"{name}: work of the curve but for damping", energy["external_work"][-1] - energy["damping"][-1],
+              0.5 * pressure * interference * area, tol, source="half of pressure times interference")
     run.check(f"{name}: energy balance", energy["total"][-1], energy["external_work"][-1], 2e-3, source="conservation")
 
 
@@ -116,7 +117,7 @@ def check_round(run, kind, steps, held=True, penalty=PENALTY):
             run.report(f"{name}: largest |p/p_Lame - 1| on the {side}", np.max(np.abs(pressure / wanted - 1.0)))
     mean = np.mean(sides["shaft"])
     run.check(f"{name}: mean pressure", mean, wanted, 2e-2, source="Lame")
-    check_growth(run, name, result, wanted, SMALL, 1.0, 2e-2)
+    check_growth(run, name, result, wanted, SMALL, 1.0, 5e-3)
     if not steps:
         force = np.abs(result.table("rcforc").where(side="slave")["fx"])
         run.report(f"{name}: largest force on the way over that at the end", force.max() / force[-1])
@@ -125,19 +126,29 @@ def check_round(run, kind, steps, held=True, penalty=PENALTY):
 
 
 def check_plane(run, kind, columns, steps=10, outlines=False, interference=1.0e-6):
+    matching = columns[0] == columns[1]
+    # Where chords of both rings do not fall together, gaps vary by their height.
+    tol = 1e-2 if matching else (1.0 - np.cos(0.25 * np.pi / min(columns))) / interference
     name = (f"plane, {TYPES[kind]}, {columns[0]}/{columns[1]}, {'static' if steps else 'explicit'}"
             + (", whole outlines" if outlines else ""))
     results = {}
-    for grows in (True, False) if steps else (True,):
+    for grows in (True, False) if steps and matching else (True,):
         deck, shaft, hub = plane_fit(kind, columns, interference, grows, steps, outlines=outlines)
         results[grows] = run.program(deck)
-    wanted = lame(interference, bore=BORE, springs=springs_of(kind))
+    # The circles that enclose as much as the chords do.
+    radii = [np.sqrt(np.sin(0.5 * np.pi / n) / (0.5 * np.pi / n)) for n in columns]
+    overlap = (1.0 + interference) * radii[0] - radii[1]
+    wanted = lame(overlap, bore=BORE, springs=springs_of(kind))
     result = results[True]
     force = result.points("contact_force")[-1, shaft - 1]
     found = np.sum(np.abs(force[:, 0]))
-    run.check(f"{name}: sum of forces", found, wanted, 1e-2, source="Lame, pressure times projected length")
-    check_growth(run, name, result, wanted, interference, 0.5 * np.pi, 1e-2)
-    if steps:
+    run.check(f"{name}: sum of forces", found, wanted, tol, source="Lame, pressure times projected length")
+    check_growth(run, name, result, wanted, overlap, 0.5 * np.pi, tol)
+    if steps and kind == 3:
+        # Nodes of the hub stand under the corners of the shaft: round-off says which of two normals they have.
+        a, b = (results[grows].points("contact_force")[-1] for grows in (True, False))
+        run.report(f"{name}: difference of forces to the overlap there from the start", np.abs(a - b).max() / np.abs(b).max())
+    elif steps and matching:
         for field in ("displacement", "contact_force"):
             run.check(f"{name}: {field} at the end", result.points(field)[-1], results[False].points(field)[-1], 1e-8,
                       source="the overlap there from the start")
@@ -149,6 +160,7 @@ def check(run):
         check_round(run, kind, 10)
         check_round(run, kind, 0, held=False)
         check_plane(run, kind, (16, 16))
-    check_plane(run, 5, (16, 12))
+    for kind in sorted(PASS_PATCH):
+        check_plane(run, kind, (64, 48), interference=3.0e-3)
     check_plane(run, 5, (16, 16), steps=0)
     check_plane(run, 7, (16, 16), steps=0, outlines=True)
