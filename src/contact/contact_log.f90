@@ -198,20 +198,30 @@ contains
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
     real(wp) :: depth !! that counts, m
     integer :: p, k
 
+    if (memory%points%n == 0 .and. allocated(contact%interference)) call warn(log, 'interface ' &
+      //to_text(contact%id)//': its curve of interference (LCINT) has no effect, for nothing ' &
+      //'overlaps at the start')
     if (memory%points%n == 0) return
     p = minloc(memory%points%gap(:memory%points%n), 1)
     depth = round_off*memory%slave_tracking%reach
     if (-memory%points%gap(p) <= depth) return
     k = maxloc(memory%points%slave_weights(:, p), 1)
-    call warn(log, 'interface '//to_text(contact%id)//': initial penetration at ' &
-      //to_text(count(memory%points%gap(:memory%points%n) < -depth))//' points, deepest at node ' &
-      //to_text(model%mesh%node_id(memory%nodes(memory%points%slave_nodes(k, p))))//': ' &
-      //to_text(-memory%points%gap(p))//' m, force of that point ' &
-      //to_text(memory%points%pressure(p)*memory%points%area(p))//' N/m; it is kept, so that the ' &
-      //'run starts with these forces')
+    text = ' at '//to_text(count(memory%points%gap(:memory%points%n) < -depth)) &
+      //' points, deepest at node '//to_text(model%mesh%node_id(memory%nodes( &
+      memory%points%slave_nodes(k, p))))//': '//to_text(-memory%points%gap(p))//' m'
+    if (allocated(contact%interference)) then
+      call write_log(log, 'interface '//to_text(contact%id)//': interference'//text//'; it grows ' &
+        //'from 0 to that by curve '//to_text(contact%interference%id)//' until ' &
+        //to_text(contact%interference%abscissa(size(contact%interference%abscissa)))//' s')
+      return
+    end if
+    call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', force of ' &
+      //'that point '//to_text(memory%points%pressure(p)*memory%points%area(p))//' N/m; it is ' &
+      //'kept, so that the run starts with these forces')
   end subroutine report_initial_contact
 
   !> How much of a tie has broken, at the end of the run.
