@@ -66,6 +66,7 @@ module contacts_m
     real(wp) :: tie_reach = 0.0_wp         !! what is farther apart is not tied, m; below 0 per cent
                                            !! of the mean master segment; 0 = 1 per cent
     logical :: is_round = .false.          !! axisymmetric: lengths weigh with their radius
+    logical :: is_self = .false.           !! SURFB 0: one surface with itself; both sides are it
   end type contact_t
 
 contains

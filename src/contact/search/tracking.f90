@@ -9,6 +9,7 @@ module tracking_m
   use geometry_m, only : sight_t, separation
   use grid_m, only : nearest_t, fill_grid, slip_limit, box_distance, find_nearest
   use kinds_m, only : wp
+  use self_search_m, only : find_nearest_other
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -177,7 +178,7 @@ contains
         return
       end if
     end select
-    call find_foot(tracking, surface, chain, spots(:, i), i, travel, foot)
+    call find_foot(tracking, surface, chain, spots, i, travel, foot)
     if (foot%segment > 0 .and. foot%is_on .and. foot%gap < 0.0_wp &
       .and. .not. may_begin(tracking, spots, i, foot, only_faced)) then
       tracking%status(i) = is_free
@@ -189,17 +190,18 @@ contains
 
   !> Closest foot of a spot that is not in contact: by walking where that is safe, else by the
   !> global search. foot%segment = 0: none within reach.
-  pure subroutine find_foot(tracking, surface, chain, spot, i, travel, foot)
+  pure subroutine find_foot(tracking, surface, chain, spots, i, travel, foot)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :)
-    real(wp), intent(in) :: spot(4)
+    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
     integer, intent(in) :: i
     real(wp), intent(in) :: travel
     type(foot_t), intent(out) :: foot
     type(nearest_t) :: nearest
+    real(wp) :: spot(4)
     integer :: segment
 
+    spot = spots(:, i)
     segment = tracking%segment(i)
     if (segment > 0 .and. travel < tracking%recheck(i) .and. tracking%status(i) /= is_touching) then
       if (walk_to_closest(surface, chain, spot, segment) == segment) then
@@ -214,7 +216,11 @@ contains
       call fill_grid(tracking%grid, surface, chain, travel)
     foot%distance = box_distance(tracking%grid, chain, spot, travel)
     if (foot%distance > tracking%reach) return
-    call find_nearest(tracking%grid, surface, chain, spot, travel, tracking%reach, nearest)
+    if (tracking%own_spots < 0) then
+      call find_nearest(tracking%grid, surface, chain, spot, travel, tracking%reach, nearest)
+    else
+      call find_nearest_other(tracking, surface, chain, spots, i, travel, .false., nearest)
+    end if
     foot%distance = nearest%distance
     if (nearest%segment == 0) return
     foot = closest_foot(surface, chain, spot, nearest%segment)
