@@ -6,14 +6,14 @@
 module self_search_m
   use contact_state_m, only : tracking_t
   use facing_m, only : is_own
-  use foot_m, only : face_on, side_on, see_segment
-  use geometry_m, only : sight_t, sight_gap, sight_normal, closest_distance, separation
+  use foot_m, only : foot_t, face_on, side_on, see_segment, closest_foot
+  use geometry_m, only : sight_normal, closest_distance, separation
   use grid_m, only : nearest_t, kept_t, cell_of, bucket_of, keep_nearest, conclude
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: find_nearest_other, may_meet
+  public :: find_nearest_other
 
   !> Deepest place of a spot behind a segment, by the depth that is caught there: deeper ones stand
   !> before the far side of something.
@@ -87,17 +87,6 @@ contains
     end do
   end subroutine look_into_bucket
 
-  !> Whether a spot may meet a segment as the bodies stand.
-  pure function may_meet(tracking, surface, chain, spots, i, segment) result(may)
-    type(tracking_t), intent(in) :: tracking
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
-    integer, intent(in) :: i, segment
-    logical :: may
-
-    may = role_of(tracking, surface, chain, spots, i, segment, .false.) == is_met
-  end function may_meet
-
   !> What a segment is to a spot.
   pure function role_of(tracking, surface, chain, spots, i, segment, any_depth) result(role)
     type(tracking_t), intent(in) :: tracking
@@ -107,7 +96,7 @@ contains
     logical, intent(in) :: any_depth
     integer :: role
     integer :: beside(2), k
-    type(sight_t) :: sight
+    type(foot_t) :: foot
     real(wp) :: t(2), least
 
     beside = segments_of(tracking, surface, i)
@@ -117,13 +106,13 @@ contains
       if (surface%chain(beside(k)) == surface%chain(segment)) return
     end do
     role = is_averted
-    sight = see_segment(surface, chain, spots(:, i), segment)
-    if (sight_gap(sight) < -behind*tracking%segment_depth(segment) .and. .not. any_depth) return
+    foot = closest_foot(surface, chain, spots(:, i), segment)
+    if (foot%gap < -behind*tracking%segment_depth(segment) .and. .not. any_depth) return
     if (is_own(surface, chain, beside, segment)) return
     least = side_on
     if (shares_node(surface, beside, segment)) least = face_on
     t = separation(spots(:, tracking%chord(2, i)), spots(:, tracking%chord(1, i)))
-    associate (normal => sight_normal(sight))
+    associate (normal => sight_normal(see_segment(surface, chain, spots(:, i), segment)))
       if (t(2)*normal(1) - t(1)*normal(2) > least*norm2(t)) return
     end associate
     role = is_met
