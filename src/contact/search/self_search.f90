@@ -13,7 +13,7 @@ module self_search_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: find_nearest_other
+  public :: find_nearest_other, is_elsewhere
 
   !> Deepest place of a spot behind a segment, by the depth that is caught there: deeper ones stand
   !> before the far side of something.
@@ -86,6 +86,24 @@ contains
       end select
     end do
   end subroutine look_into_bucket
+
+  !> Whether a segment belongs to neither the run nor the wall that a spot is on.
+  pure function is_elsewhere(tracking, surface, chain, i, segment) result(elsewhere)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node) places
+    integer, intent(in) :: i, segment
+    logical :: elsewhere
+    integer :: beside(2), k
+
+    beside = segments_of(tracking, surface, i)
+    elsewhere = .false.
+    do k = 1, 2
+      if (beside(k) == 0) cycle
+      if (surface%chain(beside(k)) == surface%chain(segment)) return
+    end do
+    elsewhere = .not. is_own(surface, chain, beside, segment)
+  end function is_elsewhere
 
   !> What a segment is to a spot.
   pure function role_of(tracking, surface, chain, spots, i, segment, any_depth) result(role)
