@@ -44,7 +44,7 @@ def forks(kind, friction=0.0, keyword=None):
 
 def folded(kind):
     """A ring of elements round a slit, pressed together step by step: static."""
-    deck = implicit(1.0, 0.1).part(points=4).elastic(1000.0, 1.0e6, 0.3)
+    deck = implicit(1.0, 0.1, automatic=(1.0e-4, 0.1)).part(points=4).elastic(1000.0, 1.0e6, 0.3)
     x, quads = grid(8, 5, 1.6, 0.42)
     x[:, 1] = np.array([0.0, 0.1, 0.2, 0.22, 0.32, 0.42])[np.arange(len(x)) // 9]
     quads = np.array(grid_quads(8, 5))
