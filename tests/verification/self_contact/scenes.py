@@ -96,7 +96,7 @@ def ring(kind, columns=64, layers=2):
         deck.node_set(part, ids).fix(ids, x=1).curve(part, [(0.0, 0.0), (end, 0.88 if part == 3 else -0.88)])
         deck.add("*BOUNDARY_PRESCRIBED_MOTION_SET", (part, 2, 2, part, 1.0))
         meshes.append((y, q))
-    return with_itself(deck, (1, 2, 3), kind, 1.0, 2).output(plot=0.1, glstat=0.01), *stacked(meshes)
+    return with_itself(deck, (1, 2, 3), kind, 10.0, 2).output(plot=0.1, glstat=0.01), *stacked(meshes)
 
 
 def tube(kind, is_round, crushed=0.6, speed=40.0, rows=60, layers=2):
