@@ -99,7 +99,7 @@ def ring(kind, columns=64, layers=2):
     return with_itself(deck, (1, 2, 3), kind, 10.0, 2).output(plot=0.1, glstat=0.01), *stacked(meshes)
 
 
-def tube(kind, is_round, crushed=0.6, speed=40.0, rows=60, layers=2):
+def tube(kind, is_round, crushed=0.55, speed=60.0, rows=48, layers=2):
     """Mild steel in mm, ms, N: a tube of radius 20 and thickness 1 (or a strip clamped at its ends), crushed between two
     plates; its upper end goes with the plate."""
     radius, length, end = 20.0, 40.0, crushed * 40.0 / speed
