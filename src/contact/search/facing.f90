@@ -61,8 +61,8 @@ contains
       end associate
     end do
     faces = faces .or. by_place
-    call find_facing_corners(own, own_view, target, view, capture, is_same, by_place, faces, faced, &
-      opposite)
+    call find_facing_corners(own, own_view, target, view, capture, is_same, by_place, faces, &
+      faced, opposite)
   end subroutine find_facing
 
   !> Sharp convex corners neither side of which faces by its places: by the normals between those of
