@@ -45,12 +45,13 @@ contains
     if (len(title) > 0) title = ' "'//title//'"'
     call write_log(log, 'interface '//to_text(contact%id)//title//': '//kind_text(kind) &
       //trim(merge(', chosen by keyword', '                   ', contact%chosen_by_keyword)))
-    call write_log(log, '  slave: '//to_text(contact%slave%n_node)//' nodes, ' &
-      //to_text(contact%slave%n_segment)//' segments of mean length ' &
-      //to_text(mean_length(contact%slave, model))//' m')
-    call write_log(log, '  master: '//to_text(contact%master%n_node)//' nodes, ' &
-      //to_text(contact%master%n_segment)//' segments of mean length ' &
-      //to_text(mean_length(contact%master, model))//' m')
+    if (contact%is_self) then
+      call write_log(log, '  a surface with itself: '//surface_text(contact%slave, model) &
+        //', met from either side by '//self_share_text(contact)//' of the penalty')
+    else
+      call write_log(log, '  slave: '//surface_text(contact%slave, model))
+      call write_log(log, '  master: '//surface_text(contact%master, model))
+    end if
     if (contact%penalty_unit == penalty_share) then
       call write_log(log, '  penalty: '//to_text(contact%penalty)//' of the largest stable one')
     else
@@ -63,9 +64,14 @@ contains
       //to_text(contact%damping)//' of critical')
     if (allocated(memory%friction%state)) call write_log(log, '  friction: ' &
       //friction_text(contact%friction))
-    if (memory%facing%is_used) call write_log(log, '  whole outlines: at the start ' &
-      //runs_text(memory%facing%present%slave)//' of the slave and ' &
-      //runs_text(memory%facing%present%master)//' of the master face each other')
+    if (memory%facing%is_used) then
+      associate (present => memory%facing%present)
+        title = runs_text(present%slave)
+        if (.not. contact%is_self) title = title//' of the slave and '//runs_text(present%master) &
+          //' of the master'
+      end associate
+      call write_log(log, '  whole outlines: at the start '//title//' face each other')
+    end if
     if (is_tied(contact)) then
       call log_ties(contact, model, memory, log)
     else
@@ -89,6 +95,26 @@ contains
       //friction_text(contact%friction)
     call write_log(log, text)
   end subroutine log_behind
+
+  !> `n nodes, m segments of mean length l m`.
+  pure function surface_text(surface, model) result(text)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    character(:), allocatable :: text
+
+    text = to_text(surface%n_node)//' nodes, '//to_text(surface%n_segment) &
+      //' segments of mean length '//to_text(mean_length(surface, model))//' m'
+  end function surface_text
+
+  !> Part of the penalty that either pass of a surface with itself has.
+  pure function self_share_text(contact) result(text)
+    type(contact_t), intent(in) :: contact
+    character(:), allocatable :: text
+    type(formulation_t) :: formulation
+
+    formulation = formulation_of(contact)
+    text = to_text(formulation%self_share)
+  end function self_share_text
 
   !> How much is tied, and which slave nodes have nothing within reach. That is a warning where the
   !> surface was given node by node; whole outlines have far sides.
