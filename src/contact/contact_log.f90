@@ -164,6 +164,8 @@ contains
       factor = factor//' and '//to_text(memory%master_penalty/estimate)
     end if
     text = text//'; '//factor//' times the built-in estimate'
+    if (model%is_round) text = text &
+      //' (per metre of the circumference: times the radius, per radian)'
   end function penalty_text
 
   !> Warn of the deepest penetration at time zero, with the node next to it and the force that it
@@ -185,8 +187,9 @@ contains
       //to_text(count(memory%points%gap(:memory%points%n) < -depth))//' points, deepest at node ' &
       //to_text(model%mesh%node_id(memory%nodes(memory%points%slave_nodes(k, p))))//': ' &
       //to_text(-memory%points%gap(p))//' m, force of that point ' &
-      //to_text(memory%points%pressure(p)*memory%points%area(p))//' N/m; it is kept, so that the ' &
-      //'run starts with these forces')
+      //to_text(memory%points%pressure(p)*memory%points%area(p)) &
+      //trim(merge(' N per radian', ' N/m         ', model%is_round)) &
+      //'; it is kept, so that the run starts with these forces')
   end subroutine report_initial_contact
 
   !> Warn of first contacts that were too deep and were let go, at the end of the run.

@@ -8,7 +8,8 @@ module deck_resolve_round_m
   use rigids_m, only : mark_rigid_nodes
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
-  use deck_raw_m, only : raw_t, row_body, row_velocity, row_velocity_generation, id_place
+  use deck_raw_m, only : raw_t, row_body, row_velocity, row_velocity_generation, &
+    row_load_node, row_load_set, id_place
   implicit none
   private
   public :: settle_form, settle_axis, mark_axis, check_loads_of_round, check_velocities_of_round
@@ -83,7 +84,7 @@ contains
     if (model%is_round) is_there = .not. model%mesh%coordinates(1, :) > 0.0_wp
   end function mark_axis
 
-  !> A body load across the axis has no meaning.
+  !> A body load across the axis has no meaning; a force in r on nodes of the axis does nothing.
   subroutine check_loads_of_round(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
@@ -96,7 +97,32 @@ contains
         id_place(raw%rows(i)), ': *LOAD_BODY_X acts across the axis of an axisymmetric deck; ' &
         //'*LOAD_BODY_Y acts along it')
     end do
+    if (allocated(model%conditions%nodal_loads)) call warn_of_axis_loads(deck, raw, model)
   end subroutine check_loads_of_round
+
+  !> Warn of forces in r on nodes of the axis, at the first card with a force in r.
+  subroutine warn_of_axis_loads(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+    logical :: is_there(model%mesh%n_node), is_lost(size(model%conditions%nodal_loads))
+    integer :: i, line
+
+    is_there = mark_axis(model)
+    associate (loads => model%conditions%nodal_loads)
+      is_lost = is_there(loads%node) .and. loads%direction == 1
+      if (.not. any(is_lost)) return
+      line = 0
+      do i = raw%n_row, 1, -1
+        if (any(raw%rows(i)%kind == [row_load_node, row_load_set]) &
+          .and. raw%rows(i)%direction == 1) line = raw%rows(i)%line
+      end do
+      call line_warning(deck, line, 'radial load', to_text(count(is_lost)) &
+        //' load(s) in r act on nodes on the axis (x = 0), which do not move in r: they do ' &
+        //'nothing; the first is on node ' &
+        //to_text(model%mesh%node_id(loads(findloc(is_lost, .true., dim=1))%node)))
+    end associate
+  end subroutine warn_of_axis_loads
 
   !> Initial velocities across the axis where there can be none.
   subroutine check_velocities_of_round(deck, raw, model)
