@@ -20,6 +20,8 @@ module contact_log_m
   !> Part of the search reach below which a penetration at time zero is round-off, that of
   !> coordinates written with some eight digits included.
   real(wp), parameter :: round_off = 1.0e-6_wp
+  !> Share of the step of the elements below which the step with ties is worth a warning.
+  real(wp), parameter :: dear_share = 0.5_wp
   !> Nodes that a message names.
   integer, parameter :: most_named = 5
 
@@ -98,18 +100,25 @@ contains
       //to_text(memory%n_slave)//' slave nodes have nothing within reach and are not tied:'//names)
   end subroutine log_ties
 
-  !> What ties cost: the stable step of the elements alone, and with the springs.
+  !> What ties cost: the stable step of the elements alone, and with the springs. A warning where
+  !> they cost most of it: no run was meant to take so much longer.
   subroutine report_tie_step(id, element_limit, limit, log)
     integer, intent(in) :: id
     real(wp), intent(in) :: element_limit, limit !! s
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
     character(8) :: share
 
     write (share, '(ss,f0.1)') 100.0_wp*(1.0_wp - limit/element_limit)
     if (share(1:1) == '.') share = '0'//share
-    call write_log(log, 'interface '//to_text(id)//': with its ties the stable step is ' &
-      //to_text(limit)//', of the elements alone '//to_text(element_limit)//': the ties cost ' &
-      //trim(share)//' % of the step')
+    text = 'interface '//to_text(id)//': with its ties the stable step is '//to_text(limit) &
+      //', of the elements alone '//to_text(element_limit)//': the ties cost '//trim(share) &
+      //' % of the step'
+    if (limit < dear_share*element_limit) then
+      call warn(log, text//'; a softer tie (PEN, SFACT) costs less')
+    else
+      call write_log(log, text)
+    end if
   end subroutine report_tie_step
 
   !> The rule of friction.

@@ -123,3 +123,15 @@ def test_step_obeys_ties(slideline, tmp_path):
     assert numbers(tmp_path / "free/job.glstat.csv", "dt")[1] > 1.1 * numbers(tmp_path / "on/job.glstat.csv", "dt")[1]
     assert free.returncode == 0, free.stderr
     assert max(abs(value - 1.0) for value in numbers(tmp_path / "free/job.glstat.csv", "energy_ratio")) > 0.1
+
+
+@pytest.mark.parametrize("penalty, dear", [(None, False), (1.0e4, True)])
+def test_ties_that_cost_most_of_the_step_warn(slideline, penalty, dear):
+    """PEN is a factor on K L/A, 10 where it is blank."""
+    text = tied(5)
+    if penalty:
+        assert "\n-1,-2,5,3\n" in text
+        text = text.replace("\n-1,-2,5,3\n", f"\n-1,-2,5,3,{penalty}\n").replace("\n0.0,1e+20,0,0,0,", "\n0.0,1e+20,2,0,0,")
+    done = slideline("d=out", "endtim=1.0e-5", deck=text)
+    assert done.returncode == 0, done.stderr
+    assert ("the ties cost 9" in done.stderr) == dear, done.stderr
