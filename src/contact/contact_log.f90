@@ -22,6 +22,8 @@ module contact_log_m
   real(wp), parameter :: round_off = 1.0e-6_wp
   !> Share of the step of the elements below which the step with ties is worth a warning.
   real(wp), parameter :: dear_share = 0.5_wp
+  !> Share of the built-in penalty, which is that of ten elements, below which a tie holds little.
+  real(wp), parameter :: soft_tie = 0.1_wp
   !> Nodes that a message names.
   integer, parameter :: most_named = 5
 
@@ -81,6 +83,11 @@ contains
     logical :: is_held(memory%n_slave + memory%n_master)
     integer :: i, n
 
+    if (memory%slave_penalty < soft_tie*built_in_penalty(contact, model)) call warn(log, &
+      'interface '//to_text(contact%id)//': its ties are as soft as ' &
+      //to_text(10.0_wp*built_in_penalty(contact, model)/memory%slave_penalty)//' elements of ' &
+      //'its surfaces, so what they hold moves apart; PEN 10 with PUNIT 2, the default, is as ' &
+      //'stiff as one')
     is_held = tied_nodes(memory)
     call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
       //to_text(memory%n_slave)//' slave nodes, '//to_text(size(memory%ties%side)) &
