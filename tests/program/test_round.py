@@ -162,3 +162,15 @@ def test_units_of_contact_are_per_radian(exe, tmp_path):
         log = (tmp_path / "out/job.log").read_text()
         assert all(text in log for text in right), log
         assert not any(text in log for text in wrong), log
+
+
+def test_nodes_next_to_the_axis_are_told(exe, tmp_path):
+    for shift, held, told in ((1.0e-9, False, True), (1.0e-9, True, False), (1.0e-3, False, False), (1.0e-12, False, False)):
+        deck = Deck("disc beside its axis").control(1.0e-3)
+        deck.add("*PART", "disc", (1, 1, 1)).add("*SECTION_SHELL", (1, 15), (1.0,)).elastic(1000.0, 1.0e6, 0.3)
+        ids = deck.mesh(*grid(3, 3, origin=(shift, 0.0)))
+        if held:
+            deck.fix(ids[::4], x=1)
+        (tmp_path / "job.k").write_text(deck.text())
+        said = run(exe, tmp_path, "check", "job.k").stderr
+        assert ("4 node(s) lie next to the axis but not on it" in said) == told, said
