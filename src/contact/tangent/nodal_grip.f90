@@ -10,7 +10,7 @@ module nodal_grip_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, variable, operator(-), operator(+), operator(*)
-  use friction_tangent_m, only : vary_slip, largest_grip
+  use friction_tangent_m, only : vary_slip, largest_grip, goes_on
   use kinds_m, only : wp
   use law_friction_m, only : vary_traction
   use nodal_tangent_m, only : varied_list_t, average, nodal_share
@@ -84,7 +84,7 @@ contains
           constant(memory%scratch%former_traction(node)), variable(grip%slip, 2), &
           vary_pressure(memory%contact_law, memory%slave_penalty, variable(grip%gap, 1)), &
           contact%friction%stiffness*memory%slave_penalty, largest_grip(contact%friction), &
-          memory%scratch%dt)
+          memory%scratch%dt, goes_on(memory, node))
       end associate
     end do
   end subroutine grip_nodes

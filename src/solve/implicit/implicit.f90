@@ -10,6 +10,7 @@ module implicit_m
   use energies_m, only : energy_ratio
   use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
+  use friction_m, only : has_slipped
   use implicit_forces_m, only : trial_t, start_trial, net_force
   use implicit_memory_m, only : implicit_memory_t, write_restarts
   use implicit_prescribed_m, only : prescribe_step
@@ -142,7 +143,8 @@ contains
     call lap(monitor%clock, phase_nodes)
   end subroutine take_step
 
-  !> A step to `time`: full iterations or searched ones, as the step before, then the other kind.
+  !> A step to `time`. What slipped in the step before slips on in its first iteration; if that finds
+  !> no equilibrium, or leaves a body free, all sticks first.
   subroutine try_step(model, state, monitor, time, step, attempt, outcome)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -151,22 +153,38 @@ contains
     type(step_t), intent(inout) :: step
     type(trial_t), intent(inout) :: attempt
     type(outcome_t), intent(out) :: outcome
-    integer :: i
 
     step%time = time
     step%dt = time - state%time
     call number_equations(model, state, 0.5_wp*(state%time + time), step%equations)
     call prescribe_step(model, state, time, step%equations, step%prescribed)
+    step%slips_on = has_slipped(state%contacts)
+    call try_kinds(model, state, monitor, step, attempt, outcome)
+    if (outcome%converged .or. .not. step%slips_on) return
+    step%slips_on = .false.
+    call try_kinds(model, state, monitor, step, attempt, outcome)
+  end subroutine try_step
+
+  !> Full iterations or searched ones, as the step before, then the other kind.
+  subroutine try_kinds(model, state, monitor, step, attempt, outcome)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(step_t), intent(inout) :: step
+    type(trial_t), intent(inout) :: attempt
+    type(outcome_t), intent(out) :: outcome
+    integer :: i
+
     do i = 1, 2
       call start_trial(model, state, attempt)
       call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
       if (outcome%converged) return
-      call write_log(monitor%log, 'step to '//to_text(time)//': '//outcome%reason)
+      call write_log(monitor%log, 'step to '//to_text(step%time)//': '//outcome%reason)
       ! The first iteration is not searched: one that fails there fails again.
       if (outcome%iterations <= 1) return
       step%searches = .not. step%searches
     end do
-  end subroutine try_step
+  end subroutine try_kinds
 
   !> The trial becomes the state; works of contact, loads and prescribed
   !> motion by the trapezoidal rule.
