@@ -144,7 +144,8 @@ contains
   end subroutine take_step
 
   !> A step to `time`. What slipped in the step before slips on in its first iteration; if that finds
-  !> no equilibrium, or leaves a body free, all sticks first.
+  !> no equilibrium, or leaves a body free, all sticks first: full iterations or searched ones, as
+  !> in the step before, then the other kind.
   subroutine try_step(model, state, monitor, time, step, attempt, outcome)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -153,38 +154,40 @@ contains
     type(step_t), intent(inout) :: step
     type(trial_t), intent(inout) :: attempt
     type(outcome_t), intent(out) :: outcome
+    integer :: i
 
     step%time = time
     step%dt = time - state%time
     call number_equations(model, state, 0.5_wp*(state%time + time), step%equations)
     call prescribe_step(model, state, time, step%equations, step%prescribed)
     step%slips_on = has_slipped(state%contacts)
-    call try_kinds(model, state, monitor, step, attempt, outcome)
-    if (outcome%converged .or. .not. step%slips_on) return
-    step%slips_on = .false.
-    call try_kinds(model, state, monitor, step, attempt, outcome)
+    if (step%slips_on) then
+      call try_once(model, state, monitor, step, attempt, outcome)
+      if (outcome%converged) return
+      step%slips_on = .false.
+    end if
+    do i = 1, 2
+      call try_once(model, state, monitor, step, attempt, outcome)
+      ! The first iteration is not searched: one that fails there fails again.
+      if (outcome%converged .or. outcome%iterations <= 1) return
+      step%searches = .not. step%searches
+    end do
   end subroutine try_step
 
-  !> Full iterations or searched ones, as the step before, then the other kind.
-  subroutine try_kinds(model, state, monitor, step, attempt, outcome)
+  !> One attempt at a step; the log tells why it failed.
+  subroutine try_once(model, state, monitor, step, attempt, outcome)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(monitor_t), intent(inout) :: monitor
-    type(step_t), intent(inout) :: step
+    type(step_t), intent(in) :: step
     type(trial_t), intent(inout) :: attempt
     type(outcome_t), intent(out) :: outcome
-    integer :: i
 
-    do i = 1, 2
-      call start_trial(model, state, attempt)
-      call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
-      if (outcome%converged) return
+    call start_trial(model, state, attempt)
+    call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
+    if (.not. outcome%converged) &
       call write_log(monitor%log, 'step to '//to_text(step%time)//': '//outcome%reason)
-      ! The first iteration is not searched: one that fails there fails again.
-      if (outcome%iterations <= 1) return
-      step%searches = .not. step%searches
-    end do
-  end subroutine try_kinds
+  end subroutine try_once
 
   !> The trial becomes the state; works of contact, loads and prescribed
   !> motion by the trapezoidal rule.
