@@ -20,6 +20,7 @@ KEPT = {
         "changes": "kept one by one"}),
     "contact_change_t": ("state/contact_watch.f90", "output/restart_contact.f90", "change%", {}),
     "energy_limit_t": ("state/energy_limit_state.f90", "output/restart_contact.f90", "limit%", {}),
+    "interference_memory_t": ("state/interference_state.f90", "output/restart_contact.f90", "interference%", {}),
     "tie_memory_t": ("state/tie_state.f90", "output/restart_contact.f90", "ties%", {}),
     "friction_memory_t": ("state/friction_state.f90", "output/restart_contact.f90", "friction%", {}),
     "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {

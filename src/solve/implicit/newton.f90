@@ -5,9 +5,10 @@ module newton_m
   use kinds_m, only : wp
   use clock_m, only : clock_t, lap, phase_nodes, phase_solver
   use contact_scatter_m, only : add_gap_round_off
-  use friction_m, only : let_stick
+  use contacts_m, only : told_as
   use controls_m, only : implicit_t
   use equations_m, only : take_free, move_prescribed, find_equation
+  use friction_m, only : let_stick
   use implicit_forces_m, only : trial_t, assemble_forces, trouble_of
   use implicit_tangent_m, only : step_t, assemble_tangent, assemble_residual
   use line_search_m, only : way_t, move_nodes
@@ -108,6 +109,7 @@ contains
 
     words = ''
     do i = 1, size(model%contacts)
+      if (told_as(model%contacts, i) < i) cycle
       associate (contact => model%contacts(i))
         if (any(contact%slave%nodes == node)) words = words//', a slave node of interface ' &
           //to_text(contact%id)
