@@ -149,9 +149,9 @@ contains
     call lap(monitor%clock, phase_nodes)
   end subroutine take_step
 
-  !> A step to `time`. What slipped in the step before slips on in its first iteration; if that finds
-  !> no equilibrium, or leaves a body free, all sticks first: full iterations or searched ones, as
-  !> in the step before, then the other kind.
+  !> A step to `time`. What slipped in the step before slips on in its first iteration; if that
+  !> finds no equilibrium, or leaves a body free, all sticks first: full iterations or searched
+  !> ones, as in the step before, then the other kind.
   subroutine try_step(model, state, monitor, time, step, attempt, outcome)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state !! what breaks in the step
