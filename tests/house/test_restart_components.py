@@ -60,7 +60,7 @@ KEPT = {
     "step_t": ("solve/implicit/implicit_tangent.f90", "solve/implicit/implicit_memory.f90", "step%", {
         "time": "set in each step", "dt": "set in each step", "is_dynamic": "from the deck",
         "alpha_m": "from the deck", "alpha_f": "from the deck", "gamma": "from the deck", "beta": "from the deck",
-        "old_force": "formed from those of trial_t", "equations": "numbered in each step",
+        "old_force": "formed from those of trial_t", "equations": "numbered in each step", "slips_on": "set in each step",
         "prescribed": "found in each step"}),
     "trial_t": ("solve/implicit/implicit_forces.f90", "solve/implicit/implicit_memory.f90", "trial%", {
         "motion": "of the step that is over", "elements": "those of the state", "contacts": "those of the state",

@@ -12,8 +12,8 @@ module friction_m
   use radii_m, only : centroid
   implicit none
   private
-  public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, &
-    place_of_point, place_at, spot_at, has_slipped, let_stick
+  public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, place_of_point, &
+    place_at, spot_at, has_slipped, let_stick
 
   !> Places whose slips are formed together.
   integer, parameter :: n_block = 64

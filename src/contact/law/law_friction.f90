@@ -64,7 +64,8 @@ contains
     end if
     limit = coefficient*pressure
     if (most%value < limit%value) limit = most
-    if (abs(traction%value) > limit%value .or. goes_on) traction = sign(1.0_wp, traction%value)*limit
+    if (abs(traction%value) > limit%value .or. goes_on) &
+      traction = sign(1.0_wp, traction%value)*limit
   end function vary_traction
 
 end module law_friction_m

@@ -6,9 +6,9 @@ module newton_m
   use clock_m, only : clock_t, lap, phase_nodes, phase_solver
   use contact_scatter_m, only : add_gap_round_off
   use contacts_m, only : told_as
-  use friction_m, only : let_stick
   use controls_m, only : implicit_t
   use equations_m, only : take_free, move_prescribed, find_equation
+  use friction_m, only : let_stick
   use implicit_forces_m, only : trial_t, assemble_forces, trouble_of
   use implicit_tangent_m, only : step_t, assemble_tangent, assemble_residual
   use line_search_m, only : way_t, move_nodes
