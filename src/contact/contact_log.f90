@@ -4,8 +4,9 @@ module contact_log_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_penalty_m, only : mean_length, built_in_penalty
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, kind_text, &
+  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, breaks, kind_text, &
     penalty_share
+  use friction_state_m, only : is_open, is_broken
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
@@ -15,7 +16,8 @@ module contact_log_m
   use ties_m, only : tied_nodes
   implicit none
   private
-  public :: log_contact, penalty_text, report_initial_contact, report_released, report_tie_step
+  public :: log_contact, penalty_text, report_initial_contact, report_released, report_tie_step, &
+    report_broken
 
   !> Part of the search reach below which a penetration at time zero is round-off, that of
   !> coordinates written with some eight digits included.
@@ -34,6 +36,10 @@ contains
     type(log_t), intent(inout) :: log
     character(:), allocatable :: title
 
+    if (contact%behind > 0) then
+      call log_behind(contact, memory, log)
+      return
+    end if
     title = ''
     if (allocated(contact%title)) title = contact%title
     if (len(title) > 0) title = ' "'//title//'"'
@@ -68,6 +74,22 @@ contains
     end if
   end subroutine log_contact
 
+  !> Contact of what ties have let go; the rest has been told of the tie.
+  subroutine log_behind(contact, memory, log)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
+
+    text = '  behind the ties of interface '//to_text(contact%id) &
+      //': contact under the same penalty'
+    if (contact%damping > 0.0_wp) text = text//', damping '//to_text(contact%damping) &
+      //' of critical'
+    if (allocated(memory%friction%state)) text = text//', friction ' &
+      //friction_text(contact%friction)
+    call write_log(log, text)
+  end subroutine log_behind
+
   !> How much is tied, and which slave nodes have nothing within reach. That is a warning where the
   !> surface was given node by node; whole outlines have far sides.
   subroutine log_ties(contact, model, memory, log)
@@ -79,11 +101,14 @@ contains
     logical :: is_held(memory%n_slave + memory%n_master)
     integer :: i, n
 
-    is_held = tied_nodes(memory)
+    is_held = tied_nodes(memory, .true.)
     call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
       //to_text(memory%n_slave)//' slave nodes, '//to_text(size(memory%ties%side)) &
       //' springs of area '//to_text(sum(memory%points%area(:memory%points%n))) &
       //', reach '//to_text(tie_reach(contact, model))//' m')
+    if (breaks(contact)) call write_log(log, '  breaks at a tension of ' &
+      //to_text(contact%strength(1))//' or a shear of '//to_text(contact%strength(2)) &
+      //' N/m^2, together on an ellipse')
     if (memory%points%n == 0 .or. all(is_held(:memory%n_slave))) return
     if (has_closed_chain(contact%slave)) return
     n = 0
@@ -198,6 +223,25 @@ contains
       //'that point '//to_text(memory%points%pressure(p)*memory%points%area(p))//' N/m; it is ' &
       //'kept, so that the run starts with these forces')
   end subroutine report_initial_contact
+
+  !> How much of a tie has broken, at the end of the run.
+  subroutine report_broken(contact, memory, log)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(log_t), intent(inout) :: log
+    integer :: n
+
+    if (.not. breaks(contact)) return
+    n = count(memory%ties%state == is_broken)
+    if (n == 0) then
+      call write_log(log, 'interface '//to_text(contact%id)//': nothing of its ties has broken')
+    else
+      call write_log(log, 'interface '//to_text(contact%id)//': of its ties '//to_text(n)//' of ' &
+        //to_text(count(memory%ties%state /= is_open))//' places have broken, from time ' &
+        //to_text(memory%ties%first_break)//' to '//to_text(memory%ties%last_break) &
+        //'; what they held, '//to_text(memory%ties%spent)//' J/m, stays in the energy of contact')
+    end if
+  end subroutine report_broken
 
   !> Warn of first contacts that were too deep and were let go, at the end of the run.
   subroutine report_released(contact, memory, log)

@@ -6,6 +6,7 @@ module interface_m
   use caught_aside_m, only : energy_caught
   use closing_m, only : close_contacts, closed_gap_of
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
+  use behind_ties_m, only : leave_to_tie, take_over
   use contact_law_m, only : pressed_at_slave_nodes, press_places
   use contact_log_m, only : log_contact
   use contact_penalty_m, only : set_penalties
@@ -140,7 +141,7 @@ contains
     if (is_suspended(contact, time)) then
       call suspend_contact(motion, dt, memory)
     else if (is_tied(contact)) then
-      call apply_ties(motion, dt, cycle, clock, memory, force)
+      call apply_ties(contact, motion, [time, dt], cycle, clock, memory, force)
     else if (memory%facing%is_used) then
       if (allocated(memory%friction%force)) call take_increments(motion, memory)
       call follow_runs(contact, motion, memory)
@@ -178,6 +179,10 @@ contains
     call lap(clock, phase_contact_pairing)
     if (memory%points%n > 0) then
       call press_places(memory%contact_law, formulation%where_pressed, memory)
+      if (contact%behind > 0) then
+        call leave_to_tie(memory)
+        call take_over(memory)
+      end if
       call look_at_springs(cycle, memory)
       ! Springs born or caught loaded make what they hold: that is told, and may be returned.
       if (is_born) then
@@ -283,6 +288,7 @@ contains
     call place_points(contact, memory)
     if (memory%points%n == 0) return
     call press_places(memory%contact_law, formulation%where_pressed, memory)
+    if (contact%behind > 0) call leave_to_tie(memory)
     if (allocated(memory%friction%force)) &
       call rub_places(contact, formulation%has_unit_area, memory%scratch%dt, memory)
     call scatter_forces(memory)

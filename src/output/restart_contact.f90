@@ -105,6 +105,12 @@ contains
     call keep(archive, 'lag', ties%lag)
     call keep(archive, 'offset', ties%offset)
     call keep(archive, 'traction', ties%traction)
+    call keep(archive, 'state', ties%state)
+    call keep(archive, 'place', ties%place)
+    call keep(archive, 'to_stress', ties%to_stress)
+    call keep(archive, 'spent', ties%spent)
+    call keep(archive, 'first_break', ties%first_break)
+    call keep(archive, 'last_break', ties%last_break)
     call leave(archive)
   end subroutine keep_ties
 

@@ -4,9 +4,9 @@
 module snapshot_filling_m
   use kinds_m, only : wp
   use constraints_m, only : is_active
-  use contact_results_m, only : interface_resultants, slave_rows
+  use contact_results_m, only : interface_resultants, slave_rows, join_rows
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains
-  use contacts_m, only : transducer_t, has_shear
+  use contacts_m, only : transducer_t, has_shear, n_told, told_as
   use controls_m, only : is_asked
   use history_tables_m, only : table_matsum
   use layout_m, only : slot_part
@@ -43,7 +43,7 @@ contains
     allocate (snapshot%parts(size(model%parts)))
     if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
     if (allocated(model%transducers)) allocate (snapshot%transducers(size(model%transducers)))
-    allocate (snapshot%interfaces(size(model%contacts)), snapshot%slaves(size(model%contacts)))
+    allocate (snapshot%interfaces(n_told(model%contacts)), snapshot%slaves(size(model%contacts)))
     call find_supports(model, snapshot)
     if (.not. is_asked(model%controls%output%plot)) return
     allocate (snapshot%stress(6, n_element), source=0.0_wp)
@@ -252,22 +252,42 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
+    type(interface_result_t) :: result
     integer :: i
 
     do i = 1, size(model%contacts)
-      call interface_resultants(state%contacts(i), snapshot%interfaces(i))
-      associate (friction => state%contacts(i)%friction)
-        snapshot%interfaces(i)%energy = state%contacts(i)%energy + friction%stored
-        snapshot%interfaces(i)%friction = friction%work - friction%stored
-        snapshot%interfaces(i)%damping = state%contacts(i)%damping_work
-        snapshot%interfaces(i)%stored = state%contacts(i)%watch%stored + friction%stored
+      associate (contact => state%contacts(i), friction => state%contacts(i)%friction)
+        call interface_resultants(contact, result)
+        result%energy = contact%energy + friction%stored
+        result%friction = friction%work - friction%stored
+        result%damping = contact%damping_work
+        result%stored = contact%watch%stored - contact%ties%spent + friction%stored
       end associate
+      if (told_as(model%contacts, i) == i) then
+        snapshot%interfaces(i) = result
+      else
+        call add_result(result, snapshot%interfaces(told_as(model%contacts, i)))
+      end if
     end do
     if (.not. allocated(model%transducers)) return
     do i = 1, size(model%transducers)
       call add_up_forces(model%transducers(i), state, snapshot%transducers(i))
     end do
   end subroutine fill_interfaces
+
+  !> Contact behind ties, to what these have.
+  pure subroutine add_result(part, total)
+    type(interface_result_t), intent(in) :: part
+    type(interface_result_t), intent(inout) :: total
+
+    total%slave_force = total%slave_force + part%slave_force
+    total%master_force = total%master_force + part%master_force
+    total%n_active = total%n_active + part%n_active
+    total%energy = total%energy + part%energy
+    total%friction = total%friction + part%friction
+    total%damping = total%damping + part%damping
+    total%stored = total%stored + part%stored
+  end subroutine add_result
 
   !> What all interfaces do to the surface of a transducer, and how many of its nodes carry force.
   subroutine add_up_forces(transducer, state, resultants)
@@ -333,6 +353,9 @@ contains
         end do
         if (allocated(rows%rubbed)) call fill_friction(memory%nodes, rows%rubbed, snapshot)
       end associate
+    end do
+    do i = n_told(model%contacts) + 1, size(model%contacts)
+      call join_rows(snapshot%slaves(i), snapshot%slaves(told_as(model%contacts, i)))
     end do
   end subroutine fill_plot
 

@@ -127,6 +127,12 @@ module contact_state_m
                                             !! overlaps grow
     integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps
     logical, allocatable :: is_placed(:)    !! (slave segments) have their points
+    logical, allocatable :: is_left(:)      !! (n_place) to the tie that holds it; this and the next
+                                            !! four only of contact behind a tie
+    logical, allocatable :: is_freed(:)     !! (n_place) it has broken in this cycle
+    logical :: has_freed = .false.          !! any
+    integer :: n_held = 0                   !! places that the tie holds
+    real(wp) :: taken = 0.0_wp              !! what springs hold that were freed pressed, J/m
     type(piece_table_t), allocatable :: pieces !! lent to the placement while it works
   end type contact_scratch_t
 

@@ -13,7 +13,7 @@ module friction_m
   implicit none
   private
   public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, place_of_point, &
-    spot_at
+    place_at, spot_at
 
   !> Places whose slips are formed together.
   integer, parameter :: n_block = 64
@@ -177,6 +177,19 @@ contains
     place = points%slave_nodes(1, p)
     if (place /= points%slave_nodes(2, p)) place = points%master_nodes(1, p)
   end function place_of_point
+
+  !> The place of a point at a node or at a virtual node.
+  pure function place_at(memory, p) result(place)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: p
+    integer :: place
+
+    place = place_of_point(memory%points, p)
+    if (.not. allocated(memory%spots)) return
+    associate (n => size(memory%spot_xi), points => memory%points)
+      place = n*(points%slave_nodes(1, p) - 1) + spot_at(points%slave_weights(2, p), memory%spot_xi)
+    end associate
+  end function place_at
 
   !> Type 4, and whatever presses at spots between nodes: virtual nodes, with the foot of each; all
   !> its portions have its traction.

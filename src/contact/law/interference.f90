@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Interference (LCINT; doc/theory/contact.md, section 6.4): a place that overlaps by d at time zero
+!> Interference (LCINT; doc/theory/contact.md, section 6.5): a place that overlaps by d at time zero
 !> has the gap g + (1 - s) d, where the curve s leads from 0 to 1. So a press fit starts without
 !> force, and at the end the overlap acts as it is. What the curve does is external work.
 module interference_m

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> From varied points to the tangent of an interface, K = -dF/du (doc/theory/contact.md, section 9).
 module assembly_m
+  use behind_ties_m, only : is_left_to_tie
   use variation_m, only : varied_point_t, n_slot
   use contact_law_m, only : vary_pressure
   use contact_state_m, only : contact_state_t
@@ -79,6 +80,7 @@ contains
     type(dual_t), intent(in), optional :: length !! competence length where the area is 1, m
     type(dual_t) :: pressure, gap
 
+    if (is_left_to_tie(memory, place)) return
     gap = point%gap
     if (allocated(memory%interference%depth)) then
       gap = gap + vary_left(memory, place, point)

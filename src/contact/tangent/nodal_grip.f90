@@ -4,6 +4,7 @@
 !> for each loaded slave node one product of the force of unit traction and the gradient of the
 !> traction.
 module nodal_grip_m
+  use behind_ties_m, only : is_left_to_tie
   use assembly_m, only : add_varied_point, pattern_t, start_pattern, add_to_row, add_to_column, &
     add_product
   use contact_law_m, only : vary_pressure
@@ -78,6 +79,7 @@ contains
       associate (grip => grips(node))
         grip%traction = constant(0.0_wp)
         if (.not. eased(node) < memory%closed_gap*areas(node)) cycle
+        if (is_left_to_tie(memory, node)) cycle
         grip%area = areas(node)
         grip%gap = gaps(node)/areas(node)
         grip%slip = moments(node)/areas(node)

@@ -5,6 +5,7 @@
 module nodal_tangent_m
   use assembly_m, only : add_varied_point, pattern_t, start_pattern, add_to_row, &
     add_to_column, add_product
+  use behind_ties_m, only : is_left_to_tie
   use contact_law_m, only : vary_pressure
   use contact_state_m, only : contact_state_t, n_side
   use variation_m, only : varied_point_t
@@ -77,7 +78,8 @@ contains
     do node = 1, memory%n_slave
       gap%value = eased(node)/max(content(node), tiny(1.0_wp))
       pressed = vary_pressure(memory%contact_law, memory%slave_penalty, gap)
-      if (eased(node) < 0.0_wp) pressure(node) = pressed%value
+      if (eased(node) < 0.0_wp .and. .not. is_left_to_tie(memory, node)) &
+        pressure(node) = pressed%value
       stiffness(node) = -pressed%slope(1)
     end do
     do p = 1, list%n
@@ -91,6 +93,7 @@ contains
     call start_pattern(pattern, size(equations, 2))
     do node = 1, memory%n_slave
       if (.not. eased(node) < memory%closed_gap*content(node)) cycle
+      if (is_left_to_tie(memory, node)) cycle
       call fill_pattern(contact, list, node, moment(node)/content(node), pattern)
       call add_product(pattern, stiffness(node)/content(node), equations, matrix)
     end do

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Tangent of type 4 (doc/theory/contact.md, section 9.3).
 module tangent_vts_ppt_m
+  use behind_ties_m, only : is_left_to_tie
   use assembly_m, only : add_varied_point, pattern_t, start_pattern, add_to_row, &
     add_to_column, add_product
   use contact_law_m, only : vary_pressure
@@ -36,10 +37,20 @@ contains
       spot = memory%slave_tracking%touching(k)
       if (.not. memory%slave_tracking%gap(spot) + left_at(contact, memory, spot) &
         < memory%closed_gap) cycle
+      if (is_left_to_tie(memory, place_of_spot(contact, spot))) cycle
       call vary_portions(contact, memory, spot, portions)
       call add_portions(contact, spot, portions, memory, pattern, equations, matrix)
     end do
   end subroutine add_vts_ppt_tangent
+
+  !> The place of a virtual node in what friction and ties remember.
+  pure function place_of_spot(contact, spot) result(place)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: spot
+    integer :: place
+
+    place = 2*contact%slave%segments(1, (spot + 1)/2) - mod(spot, 2)
+  end function place_of_spot
 
   !> The portions of a virtual node, each with its own length on the master as area.
   pure subroutine vary_portions(contact, memory, spot, portions)

@@ -4,7 +4,8 @@
 module deck_contact_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_none, tie_always
+  use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_none, tie_always, &
+    tie_breaks
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
@@ -40,7 +41,7 @@ contains
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
     type(card_t) :: cards(4)
-    type(raw_contact_t) :: entry
+    type(raw_contact_t) :: entry, before
     logical :: commanded(size(contact_names))
     integer :: k
 
@@ -60,7 +61,7 @@ contains
     select case (deck%blocks(i_block)%name)
     case ('CONTACT_2D_SLIDELINE')
       call take_slideline(deck, cursor, cards, kinds, commanded, entry)
-      call take_tie(deck, cursor, cards, commanded(of_penalty), entry)
+      call take_tie(deck, cursor, cards, commanded, entry)
       call take_friction(deck, cursor, cards, overrides, entry)
     case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS')
       call take_penalty(deck, cursor, cards, commanded, entry)
@@ -75,8 +76,9 @@ contains
       call take_automatic(deck, cursor, cards, commanded, entry)
       call take_stock_friction(deck, cursor, cards, overrides, entry)
     end select
+    before = entry
     call take_overrides(overrides, entry)
-    call check_tie(deck, deck%blocks(i_block)%keyword, entry)
+    call check_tie(deck, deck%blocks(i_block)%keyword, commanded, before, entry)
     call check_values(deck, cursor, cards, kinds, overrides, commanded, entry)
     if (entry%contact%chosen_by_keyword) then
       if (.not. any(kinds%number == entry%contact%contact_type)) call line_error(deck, &
@@ -159,7 +161,7 @@ contains
         'is not 0 or 1'//strict_names(kinds))
       contact%strict = integer_of(cards(2), 'IPF') == 1
       call take_search(deck, cursor, cards(2), entry)
-      if (integer_of(cards(3), 'TIE') /= tie_always) &
+      if (.not. any(integer_of(cards(3), 'TIE') == [tie_always, tie_breaks])) &
         call refuse_negative(deck, cursor, cards(2), 'SRCH')
       contact%search_depth = real_of(cards(2), 'SRCH')
     end associate

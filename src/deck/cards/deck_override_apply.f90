@@ -5,7 +5,7 @@ module deck_override_apply_m
   use text_m, only : exact_text
   use log_m, only : to_text
   use curves_m, only : curve_t
-  use contacts_m, only : friction_rule_t, is_tied
+  use contacts_m, only : friction_rule_t, is_tied, breaks
   use deck_lines_m, only : deck_t, place_t, line_text, line_error, line_warning, layout_mark
   use deck_fields_m, only : card_t, cut_card, field_text
   use deck_cards_m, only : cursor_t, open_cursor, find_keyword_field
@@ -217,6 +217,10 @@ contains
         if (k == 1) then
           if (max(rule%at_rest, rule%sliding, rule%decay) > 0.0_wp) text = ',' &
             //exact_text(rule%at_rest)//','//exact_text(rule%sliding)//','//exact_text(rule%decay)
+        else if (breaks(entry%contact)) then
+          text = exact_text(rule%most)//','//exact_text(rule%stiffness)//',' &
+            //to_text(entry%contact%tie)//','//exact_text(entry%contact%strength(1))//',' &
+            //exact_text(entry%contact%strength(2))//new_line('a')
         else if (is_tied(entry%contact)) then
           text = '0,1,'//to_text(entry%contact%tie)//new_line('a')
         else if (rule%most > 0.0_wp .or. abs(rule%stiffness - default%stiffness) > 0.0_wp &

@@ -1,7 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Surfaces of the interfaces and edges of the pressure loads. Called for sound meshes only.
 module deck_resolve_contacts_m
+  use kinds_m, only : wp
   use log_m, only : to_text
+  use contacts_m, only : contact_t, friction_rule_t, breaks, tie_none
   use surfaces_m, only : surface_t
   use conditions_m, only : pressure_load_t
   use model_m, only : model_t
@@ -53,7 +55,27 @@ contains
       call check_common_nodes(deck, raw%contacts(i), sides, model)
       if (deck%report%n_error == n_error) call check_overlap(deck, raw%contacts(i), sides, model)
     end do
+    call append_behind(model%contacts)
   end subroutine resolve_contacts
+
+  !> Contact behind each tie that breaks, with what the tie has no use for.
+  subroutine append_behind(contacts)
+    type(contact_t), allocatable, intent(inout) :: contacts(:)
+    type(contact_t) :: behind
+    integer :: i
+
+    do i = 1, size(contacts)
+      if (.not. breaks(contacts(i))) cycle
+      behind = contacts(i)
+      behind%behind = i
+      behind%tie = tie_none
+      behind%tie_reach = 0.0_wp
+      contacts(i)%friction = friction_rule_t()
+      contacts(i)%damping = 0.0_wp
+      contacts(i)%search_interval = 0
+      contacts = [contacts, behind]
+    end do
+  end subroutine append_behind
 
   !> What `resolve_contacts` would find of wrong ids, for a mesh that it can not be called for.
   subroutine check_references(deck, raw, maps)

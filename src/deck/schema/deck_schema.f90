@@ -271,8 +271,6 @@ contains
     case ('IGAPCL')
       text = 'asks to move nodes onto the surface that they are tied to, which this version does ' &
         //'not have; leave it 0 (a tie keeps its gap)'
-    case ('NFLS', 'SFLS')
-      text = 'is a strength of ties that break, which this version does not have; leave it 0'
     case ('SURFB')
       text = 'asks for the forces between two surfaces, which this version does not have; leave ' &
         //'it 0 (a transducer adds up all forces on SURFA)'

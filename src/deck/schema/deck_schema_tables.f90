@@ -173,7 +173,7 @@ module deck_schema_tables_m
     'CONTACT_2D_SLIDELINE t', &
     ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2 PEN:f FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 PUNIT:i PENT:f VDC:f IPF:i FREQ:i SRCH:f', &
-    ' VC:f TFAC:f=1 TIE:i NFLS:fr SFLS:fr LCINT:i', &
+    ' VC:f TFAC:f=1 TIE:i NFLS:f SFLS:f LCINT:i', &
     'CONTACT_2D_PENALTY t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
     ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
@@ -211,12 +211,12 @@ module deck_schema_tables_m
     ' SURFA:i SURFB:ir SFACT:fs=1 FREQ:is FS:fs FD:fs DC:fs', &
     ' TBIRTH:fw TDEATH:fw=1e20 SOA:fs=1 SOB:fs=1 NDA:is NDB:is COF:is INIT:is', &
     'CONTACT_2D_AUTOMATIC_TIED t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fw FD:fw DC:fw', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:iw FS:fw FD:fw DC:fw', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:fw VDC:fw=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:f IGAPCL:ir TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fw FD:fw DC:fw', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:iw FS:fw FD:fw DC:fw', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:fw VDC:fw=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:f IGAPCL:ir TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
