@@ -10,7 +10,7 @@ module interface_m
   use contact_law_m, only : pressed_at_slave_nodes, press_places
   use contact_log_m, only : log_contact
   use contact_penalty_m, only : set_penalties
-  use contact_scatter_m, only : scatter_forces
+  use contact_scatter_m, only : scatter_forces, join_passes
   use contact_springs_m, only : begin_look, measure_springs, end_look
   use contact_work_m, only : take_apart, hand_over, count_work
   use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
@@ -65,7 +65,7 @@ contains
     end do
     formulation = formulation_of(contact)
     memory%contact_law = formulation%contact_law
-    call set_penalties(contact, model, memory)
+    call set_penalties(contact, model, formulation%self_share, memory)
     call start_spots(formulation%spots, contact%n_gauss, contact%is_round, contact%slave, memory)
     call allocate_slave_tracking(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_tracking(contact, model, memory)
@@ -193,8 +193,9 @@ contains
       if (allocated(memory%friction%force)) &
         call rub_places(contact, formulation%has_unit_area, times(2), memory)
       if (contact%damping > 0.0_wp) call damp_points(memory%points, contact%damping, &
-        memory%nodes, motion, mass, memory%scratch%nodal)
+        memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
       call scatter_forces(memory)
+      if (contact%is_self) call join_passes(memory)
       if (had_force .or. memory%n_active > 0) call limit_forces(motion, times(1), times(2), memory)
     end if
     if (memory%points%n > 0 .or. had_force) &
@@ -292,6 +293,7 @@ contains
     if (allocated(memory%friction%force)) &
       call rub_places(contact, formulation%has_unit_area, memory%scratch%dt, memory)
     call scatter_forces(memory)
+    if (contact%is_self) call join_passes(memory)
     do i = 1, size(memory%nodes)
       associate (node => memory%nodes(i))
         force(:, node) = force(:, node) + memory%force(:, i)

@@ -74,6 +74,7 @@ module contacts_m
     type(curve_t), allocatable :: interference !! LCINT: the part of an initial overlap that acts,
                                            !! from 0 to 1
     logical :: is_round = .false.          !! axisymmetric: lengths weigh with their radius
+    logical :: is_self = .false.           !! SURFB 0: one surface with itself; both sides are it
   end type contact_t
 
   !> A surface on which the forces of all interfaces are added up.

@@ -55,7 +55,8 @@ contains
       call next_card(deck, parameters, cursor, k, cards(k))
     end do
     call check_rest(deck, cursor)
-    call take_sides(deck, cursor, cards(1), entry)
+    call take_sides(deck, cursor, cards(1), trim(deck%blocks(i_block)%name), entry)
+    entry%block = i_block
     commanded = find_commanded(overrides, entry%contact%id)
     entry%contact%contact_type = stock_type(trim(deck%blocks(i_block)%name))
     select case (deck%blocks(i_block)%name)
@@ -111,28 +112,57 @@ contains
     case ('CONTACT_2D_AUTOMATIC_TIED', 'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY', &
         'CONTACT_2D_TIED_SLIDING')
       contact_type = 5
-    case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR')
+    case ('CONTACT_2D_AUTOMATIC_SINGLE_SURFACE')
+      contact_type = 5
+    case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR', &
+        'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE_MORTAR')
       contact_type = 7
     case default
       contact_type = 0
     end select
   end function stock_type
 
-  !> SURFA and SURFB.
-  subroutine take_sides(deck, cursor, card, entry)
+  !> SURFA and SURFB. A surface with itself is a part set: our keyword says so by SURFB 0, those of
+  !> a single surface by their name.
+  subroutine take_sides(deck, cursor, card, name, entry)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
+    character(*), intent(in) :: name !! of the keyword
     type(raw_contact_t), intent(inout) :: entry
+    logical :: is_single
     integer :: k
 
+    is_single = index(name, '_SINGLE_SURFACE') > 0
+    entry%contact%is_self = is_single
+    if (name == 'CONTACT_2D_SLIDELINE') entry%contact%is_self = integer_of(card, 'SURFA') > 0 &
+      .and. integer_of(card, 'SURFB') == 0 .and. .not. is_bad(card, 'SURFB')
+    if (is_single .and. integer_of(card, 'SURFA') < 0) call report_field(deck, cursor, card, &
+      'SURFA', 'is not a part set (more than 0): contact of a surface with itself is that of ' &
+      //'whole outlines')
     do k = 1, 2
+      if (k == 2 .and. entry%contact%is_self) then
+        entry%places(k) = entry%places(1)
+        return
+      end if
       if (integer_of(card, side_fields(k)) == 0) call report_field(deck, cursor, card, &
-        side_fields(k), 'is not a surface (more than 0: part set, less than 0: node set)')
+        side_fields(k), 'is not a surface (more than 0: part set, less than 0: node set)' &
+        //of_itself(k, name))
       entry%places(k) = place_of(card, side_fields(k))
       if (.not. is_bad(card, side_fields(k))) entry%sides(k) = integer_of(card, side_fields(k))
     end do
   end subroutine take_sides
+
+  !> What SURFB 0 needs.
+  pure function of_itself(side, name) result(text)
+    integer, intent(in) :: side
+    character(*), intent(in) :: name !! of the keyword
+    character(:), allocatable :: text
+
+    text = ''
+    if (side == 2 .and. name == 'CONTACT_2D_SLIDELINE') text = '; SURFA with itself (0) only ' &
+      //'where that is a part set'
+  end function of_itself
 
   !> *CONTACT_2D_SLIDELINE.
   subroutine take_slideline(deck, cursor, cards, kinds, commanded, entry)

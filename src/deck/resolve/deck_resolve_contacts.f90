@@ -45,14 +45,16 @@ contains
     allocate (model%contacts(size(raw%contacts)))
     do i = 1, size(raw%contacts)
       n_error = deck%report%n_error
-      do k = 1, 2
+      do k = 1, merge(1, 2, raw%contacts(i)%contact%is_self)
         call resolve_side(deck, raw%contacts(i), k, maps, outside, model, sides(k))
       end do
+      if (raw%contacts(i)%contact%is_self) sides(2) = sides(1)
       model%contacts(i) = raw%contacts(i)%contact
       model%contacts(i)%slave = sides(1)
       model%contacts(i)%master = sides(2)
       call resolve_interference(deck, raw%contacts(i), maps, model, model%contacts(i))
-      call check_common_nodes(deck, raw%contacts(i), sides, model)
+      if (.not. raw%contacts(i)%contact%is_self) &
+        call check_common_nodes(deck, raw%contacts(i), sides, model)
       if (deck%report%n_error == n_error) call check_overlap(deck, raw%contacts(i), sides, model)
     end do
     call append_behind(model%contacts)

@@ -26,7 +26,7 @@ module deck_schema_others_m
     'RIGIDWALL_PLANAR_* this option of a planar rigid wall is', &
     'RIGIDWALL_* this kind of rigid wall is', &
     'CONSTRAINED_* this constraint is', &
-    'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE* self contact is', &
+    'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE_THERMAL* heat through contact is', &
     'CONTACT_2D_AUTOMATIC_SURFACE_IN_CONTINUUM* this kind of contact is', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_THERMAL* heat through contact is', &
     'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE_THERMAL* heat through contact is', &

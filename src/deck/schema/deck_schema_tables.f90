@@ -202,6 +202,16 @@ module deck_schema_tables_m
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
+    'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE t', &
+    ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
+    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
+    'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE_MORTAR t', &
+    ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
+    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE t', &
     ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &

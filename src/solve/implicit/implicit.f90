@@ -11,6 +11,7 @@ module implicit_m
   use energies_m, only : energy_ratio
   use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
+  use friction_m, only : has_slipped
   use implicit_forces_m, only : trial_t, start_trial, net_force
   use implicit_memory_m, only : implicit_memory_t, write_restarts
   use implicit_prescribed_m, only : prescribe_step
@@ -148,7 +149,9 @@ contains
     call lap(monitor%clock, phase_nodes)
   end subroutine take_step
 
-  !> A step to `time`: full iterations or searched ones, as the step before, then the other kind.
+  !> A step to `time`. What slipped in the step before slips on in its first iteration; if that finds
+  !> no equilibrium, or leaves a body free, all sticks first: full iterations or searched ones, as
+  !> in the step before, then the other kind.
   subroutine try_step(model, state, monitor, time, step, attempt, outcome)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state !! what breaks in the step
@@ -158,28 +161,44 @@ contains
     type(trial_t), intent(inout) :: attempt
     type(outcome_t), intent(out) :: outcome
     integer :: i
-    logical :: broke
 
     step%time = time
     step%dt = time - state%time
     call number_equations(model, state, 0.5_wp*(state%time + time), step%equations)
     call prescribe_step(model, state, time, step%equations, step%prescribed)
-    i = 1
-    do while (i <= 2)
-      call start_trial(model, state, attempt)
-      call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
-      if (outcome%converged) then
-        call break_ties_of_step(model, time, attempt, state, broke)
-        if (.not. broke) return
-        cycle
-      end if
-      call write_log(monitor%log, 'step to '//to_text(time)//': '//outcome%reason)
+    step%slips_on = has_slipped(state%contacts)
+    if (step%slips_on) then
+      call try_once(model, state, monitor, step, attempt, outcome)
+      if (outcome%converged) return
+      step%slips_on = .false.
+    end if
+    do i = 1, 2
+      call try_once(model, state, monitor, step, attempt, outcome)
       ! The first iteration is not searched: one that fails there fails again.
-      if (outcome%iterations <= 1) return
+      if (outcome%converged .or. outcome%iterations <= 1) return
       step%searches = .not. step%searches
-      i = i + 1
     end do
   end subroutine try_step
+
+  !> One attempt at a step, until nothing more breaks; the log tells why it failed.
+  subroutine try_once(model, state, monitor, step, attempt, outcome)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(step_t), intent(in) :: step
+    type(trial_t), intent(inout) :: attempt
+    type(outcome_t), intent(out) :: outcome
+    logical :: broke
+
+    do
+      call start_trial(model, state, attempt)
+      call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
+      if (.not. outcome%converged) exit
+      call break_ties_of_step(model, step%time, attempt, state, broke)
+      if (.not. broke) return
+    end do
+    call write_log(monitor%log, 'step to '//to_text(step%time)//': '//outcome%reason)
+  end subroutine try_once
 
   !> What equilibrium breaks stays broken in the equilibrium that is then looked for, of the same
   !> step: there are only so many places.

@@ -443,6 +443,8 @@ def read_interface(model: Model, card: Card) -> None:
     sides = [row.integer(0), row.integer(1)]
     if card.name.startswith(("CONTACT_2D_PENALTY", "CONTACT_2D_SLIDING", "CONTACT_2D_TIED_SLIDING")):
         sides = [-abs(side) for side in sides]
+    elif sides[1] == 0 or "SINGLE_SURFACE" in card.name:
+        sides[1] = sides[0]
     ctype = row.integer(2) if card.name.startswith("CONTACT_2D_SLIDELINE") else None
     slave, master = (find_surface(model, side) for side in sides)
     model.interfaces.append(Interface(len(model.interfaces) + 1, card.name, card.title, slave,
