@@ -79,6 +79,24 @@ def test_boundaries_of_parts_are_those_of_part_sets(slideline, tmp_path, keyword
         assert histories(tmp_path / folder) == histories(tmp_path / "parts")
 
 
+def test_a_surface_with_itself(slideline, tmp_path):
+    """Both bodies in one set: by part set and by the boundary of that; an open chain is no outline."""
+    def parts(deck, *_):
+        deck.add("*SET_PART_LIST", (1,), (1, 2))
+
+    def boundary(deck, *_):
+        deck.add("*SET_PART_LIST", (5,), (1, 2)).add("*SET_2D_SEGMENT_SET", (11,), (5,))
+
+    for folder, sets, number in (("parts", parts, 1), ("boundary", boundary, 11)):
+        done = slideline(f"d={folder}", deck=deck_of("AUTOMATIC_SINGLE_SURFACE", sets, (number, 0)))
+        assert done.returncode == 0, done.stderr
+    assert histories(tmp_path / "parts") == histories(tmp_path / "boundary")
+    assert numbers(tmp_path / "parts/job.glstat.csv", "contact").max() > 0.0
+    done = slideline("d=open", deck=deck_of("AUTOMATIC_SINGLE_SURFACE", segments, (1, 0)))
+    assert done.returncode == 1
+    assert "is a segment set with an open chain; contact of a surface with itself is that of whole outlines" in done.stderr
+
+
 def test_pressure_on_the_boundary_of_a_part(slideline, tmp_path):
     """It presses from all sides: no resultant, and the block keeps its momentum."""
     def sets(deck, face, seat, *_):
