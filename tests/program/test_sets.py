@@ -79,6 +79,24 @@ def test_boundaries_of_parts_are_those_of_part_sets(slideline, tmp_path, keyword
         assert histories(tmp_path / folder) == histories(tmp_path / "parts")
 
 
+def test_a_surface_with_itself(slideline, tmp_path):
+    """Both bodies in one set: by part set and by the boundary of that; an open chain is no outline."""
+    def parts(deck, *_):
+        deck.add("*SET_PART_LIST", (1,), (1, 2))
+
+    def boundary(deck, *_):
+        deck.add("*SET_PART_LIST", (5,), (1, 2)).add("*SET_2D_SEGMENT_SET", (11,), (5,))
+
+    for folder, sets, number in (("parts", parts, 1), ("boundary", boundary, 11)):
+        done = slideline(f"d={folder}", deck=deck_of("AUTOMATIC_SINGLE_SURFACE", sets, (number, 0)))
+        assert done.returncode == 0, done.stderr
+    assert histories(tmp_path / "parts") == histories(tmp_path / "boundary")
+    assert numbers(tmp_path / "parts/job.glstat.csv", "contact").max() > 0.0
+    done = slideline("d=open", deck=deck_of("AUTOMATIC_SINGLE_SURFACE", segments, (1, 0)))
+    assert done.returncode == 1
+    assert "is a segment set with an open chain; contact of a surface with itself is that of whole outlines" in done.stderr
+
+
 def test_pressure_on_the_boundary_of_a_part(slideline, tmp_path):
     """It presses from all sides: no resultant, and the block keeps its momentum."""
     def sets(deck, face, seat, *_):
@@ -93,8 +111,9 @@ def test_pressure_on_the_boundary_of_a_part(slideline, tmp_path):
     assert energy[0] != energy[1]
 
 
-def transduced(n_dump=None):
-    """A block between two plates, with an interface to each; transducers on the block, on a plate, and on nothing."""
+def transduced(tie=0):
+    """A block between two plates, with an interface to each, one of which may be tied (1) or tied until it breaks (2);
+    transducers on the block, on a plate, and on nothing."""
     deck = Deck("transducers").control(0.012).hourglass(4, 0.1)
     for part in (1, 2, 3):
         deck.part(part).elastic(1000.0, 1.0e6, 0.3, part)
@@ -106,7 +125,8 @@ def transduced(n_dump=None):
     deck.node_set(5, lower[:8])
     deck.add("*SET_PART_LIST", (1,), (1,)).add("*SET_2D_SEGMENT", (6,), (2,))
     deck.add("*INITIAL_VELOCITY", (1,), (0.3, -1.0))
-    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, 5, 2, 1.0e6, 0.2))
+    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, 5, 2, 1.0e6, 0.2), (0.0, 0.0),
+             (0.0, 1.0, tie, *((3.0e3, 3.0e3) if tie == 2 else ())))
     deck.add("*CONTACT_2D_FORCE_TRANSDUCER", (1, 0), (0.0, 0.0))
     deck.add("*CONTACT_2D_SLIDELINE", (-3, -4, 4, 2, 1.0e6))
     deck.add("*CONTACT_2D_FORCE_TRANSDUCER_TITLE", "        10the lower plate", (6, 0))
@@ -115,8 +135,9 @@ def transduced(n_dump=None):
     return deck.add("*DATABASE_RCFORC", (1.0e-3, 1)).text()
 
 
-def test_a_transducer_adds_up_all_interfaces(slideline, tmp_path):
-    done = slideline("d=out", deck=transduced())
+@pytest.mark.parametrize("tie", (0, 1, 2))
+def test_a_transducer_adds_up_all_interfaces(slideline, tmp_path, tie):
+    done = slideline("d=out", deck=transduced(tie))
     assert done.returncode == 0, done.stderr
     assert "no interface has nodes of the surface of transducer 5: it measures nothing" in done.stdout + done.stderr
     table = columns(tmp_path / "out/job.rcforc.csv")
@@ -127,7 +148,7 @@ def test_a_transducer_adds_up_all_interfaces(slideline, tmp_path):
 
     both = force(1, "slave") + force(3, "slave")
     largest = np.abs(both[:, :2]).max()
-    assert largest > 1.0 and np.abs(force(3, "slave")[:, 1]).max() > 1.0
+    assert largest > 1.0 and (tie or np.abs(force(3, "slave")[:, 1]).max() > 1.0)
     np.testing.assert_allclose(force(2, "slave")[:, :2], both[:, :2], rtol=0, atol=1e-12 * largest)
     np.testing.assert_allclose(force(10, "slave")[:, :2], force(1, "master")[:, :2], rtol=0, atol=1e-12 * largest)
     assert force(2, "slave")[:, 2].max() == 12 and not np.any(force(5, "slave"))

@@ -86,6 +86,11 @@ contains
       else
         call surface_of_segments(deck, model%segment_sets(found), entry%places(side), outside, &
           model, surface)
+        if (entry%contact%is_self .and. allocated(surface%previous)) then
+          if (any(surface%previous == 0)) call reject_field(deck, entry%places(side), 'is a ' &
+            //'segment set with an open chain; contact of a surface with itself is that of whole ' &
+            //'outlines')
+        end if
       end if
     end select
     if (.not. allocated(surface%nodes)) &

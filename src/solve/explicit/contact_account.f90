@@ -37,7 +37,7 @@ contains
 
     if (size(state%contacts) == 0) return
     if (state%cycle > 0) state%largest_energy = max(state%largest_energy, &
-      abs(state%initial_energy + state%external_work))
+      abs(state%initial_energy + (state%external_work + sum(state%contacts%interference%work))))
     if (writes .or. mod(state%cycle, look_interval) == 0) state%contacts%watch%is_due = .true.
     state%contacts%limit%loan = lent_share*state%largest_energy/size(state%contacts)
     ! What is led takes from its guide what it needs; not so the folds of a surface with itself.
@@ -78,6 +78,8 @@ contains
       sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
       if (watch%changes(sign_of)%warned .or. &
         abs(watch%balance) <= noticed_share*state%largest_energy) return
+      ! While an overlap grows there is nothing yet to hold it against.
+      if (allocated(contact%interference%depth) .and. contact%interference%left > 0.0_wp) return
       watch%changes(sign_of)%warned = .true.
       call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
         //to_text(state%cycle)//', time '//to_text(state%time)//', the contact springs have ' &

@@ -100,6 +100,7 @@ def check_growth(run, name, result, pressure, interference, area, tol):
     run.check(f"{name}: forces at the start", result.points("contact_force")[0], 0.0, 0.0, "abs", "the overlap is eased")
     run.check(f"{name}: work of the curve but for damping", energy["external_work"][-1] - energy["damping"][-1],
               0.5 * pressure * interference * area, tol, source="half of pressure times interference")
+    run.true(f"{name}: no warning", "warning" not in (result.folder / f"{result.job}.log").read_text(), "nothing is wrong")
     run.check(f"{name}: energy balance", energy["total"][-1], energy["external_work"][-1], 2e-3, source="conservation")
 
 
