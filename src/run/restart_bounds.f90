@@ -157,8 +157,8 @@ contains
     end associate
   end subroutine check_points
 
-  !> Springs of ties, as many as the deck makes: their points follow each other, nodes and places are
-  !> those of the interface.
+  !> Springs of ties, as many as the deck makes: their points follow each other, nodes and places
+  !> are those of the interface.
   subroutine check_ties(memory, folder, archive)
     type(contact_state_t), intent(in) :: memory
     character(*), intent(in) :: folder
