@@ -6,6 +6,7 @@ module contact_dispatch_m
   use contact_law_m, only : law_penalty, pressed_at_points, pressed_at_slave_nodes
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, contact_kind_t, kind_text
+  use kinds_m, only : wp
   use place_mortar_m, only : place_mortar
   use place_nts_m, only : place_nts, place_nts_ar, place_two_pass_ar
   use place_nts_mar_m, only : place_nts_mar
@@ -33,6 +34,8 @@ module contact_dispatch_m
     integer :: contact_law = law_penalty  !! from the gap there to the pressure
     integer :: points_per_slave = 1       !! usual most of points for each spot, for the allocation
     integer :: points_per_master = 0      !! and for each master node
+    real(wp) :: self_share = 0.5_wp       !! part of the penalty that either pass of a surface with
+                                          !! itself has
   end type formulation_t
 
   integer, parameter :: type_nts = 1, type_nts_ar = 2, type_two_pass_ar = 3, type_vts_ppt = 4, &
@@ -43,7 +46,7 @@ module contact_dispatch_m
     formulation_t(contact_kind_t(type_nts, 'classical NTS'), has_unit_area=.true.), &
     formulation_t(contact_kind_t(type_nts_ar, 'NTS-AR')), &
     formulation_t(contact_kind_t(type_two_pass_ar, 'NTS-AR two-pass'), has_two_passes=.true., &
-      points_per_master=1), &
+      points_per_master=1, self_share=1.0_wp), &
     formulation_t(contact_kind_t(type_vts_ppt, 'VTS-PPT'), spots=spots_at_quarters, &
       points_per_master=1), &
     formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR', has_strict_rule=.true.), &
@@ -68,6 +71,8 @@ contains
     do i = 1, size(formulations)
       if (formulations(i)%kind%number == contact%contact_type) formulation = formulations(i)
     end do
+    ! A surface with itself is slave and master in one pass.
+    if (contact%is_self) formulation%has_two_passes = .false.
   end function formulation_of
 
   !> Whether a contact follows the strict rule at the ends of the master, which not all kinds have.

@@ -22,6 +22,10 @@ module contact_log_m
   !> Part of the search reach below which a penetration at time zero is round-off, that of
   !> coordinates written with some eight digits included.
   real(wp), parameter :: round_off = 1.0e-6_wp
+  !> Share of the step of the elements below which the step with ties is worth a warning.
+  real(wp), parameter :: dear_share = 0.5_wp
+  !> Share of the built-in penalty, which is that of ten elements, below which a tie holds little.
+  real(wp), parameter :: soft_tie = 0.1_wp
   !> Nodes that a message names.
   integer, parameter :: most_named = 5
 
@@ -45,12 +49,13 @@ contains
     if (len(title) > 0) title = ' "'//title//'"'
     call write_log(log, 'interface '//to_text(contact%id)//title//': '//kind_text(kind) &
       //trim(merge(', chosen by keyword', '                   ', contact%chosen_by_keyword)))
-    call write_log(log, '  slave: '//to_text(contact%slave%n_node)//' nodes, ' &
-      //to_text(contact%slave%n_segment)//' segments of mean length ' &
-      //to_text(mean_length(contact%slave, model))//' m')
-    call write_log(log, '  master: '//to_text(contact%master%n_node)//' nodes, ' &
-      //to_text(contact%master%n_segment)//' segments of mean length ' &
-      //to_text(mean_length(contact%master, model))//' m')
+    if (contact%is_self) then
+      call write_log(log, '  a surface with itself: '//surface_text(contact%slave, model) &
+        //', met from either side by '//self_share_text(contact)//' of the penalty')
+    else
+      call write_log(log, '  slave: '//surface_text(contact%slave, model))
+      call write_log(log, '  master: '//surface_text(contact%master, model))
+    end if
     if (contact%penalty_unit == penalty_share) then
       call write_log(log, '  penalty: '//to_text(contact%penalty)//' of the largest stable one')
     else
@@ -63,9 +68,14 @@ contains
       //to_text(contact%damping)//' of critical')
     if (allocated(memory%friction%state)) call write_log(log, '  friction: ' &
       //friction_text(contact%friction))
-    if (memory%facing%is_used) call write_log(log, '  whole outlines: at the start ' &
-      //runs_text(memory%facing%present%slave)//' of the slave and ' &
-      //runs_text(memory%facing%present%master)//' of the master face each other')
+    if (memory%facing%is_used) then
+      associate (present => memory%facing%present)
+        title = runs_text(present%slave)
+        if (.not. contact%is_self) title = title//' of the slave and '//runs_text(present%master) &
+          //' of the master'
+      end associate
+      call write_log(log, '  whole outlines: at the start '//title//' face each other')
+    end if
     if (is_tied(contact)) then
       call log_ties(contact, model, memory, log)
     else
@@ -90,6 +100,26 @@ contains
     call write_log(log, text)
   end subroutine log_behind
 
+  !> `n nodes, m segments of mean length l m`.
+  pure function surface_text(surface, model) result(text)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    character(:), allocatable :: text
+
+    text = to_text(surface%n_node)//' nodes, '//to_text(surface%n_segment) &
+      //' segments of mean length '//to_text(mean_length(surface, model))//' m'
+  end function surface_text
+
+  !> Part of the penalty that either pass of a surface with itself has.
+  pure function self_share_text(contact) result(text)
+    type(contact_t), intent(in) :: contact
+    character(:), allocatable :: text
+    type(formulation_t) :: formulation
+
+    formulation = formulation_of(contact)
+    text = to_text(formulation%self_share)
+  end function self_share_text
+
   !> How much is tied, and which slave nodes have nothing within reach. That is a warning where the
   !> surface was given node by node; whole outlines have far sides.
   subroutine log_ties(contact, model, memory, log)
@@ -101,6 +131,11 @@ contains
     logical :: is_held(memory%n_slave + memory%n_master)
     integer :: i, n
 
+    if (memory%slave_penalty < soft_tie*built_in_penalty(contact, model)) call warn(log, &
+      'interface '//to_text(contact%id)//': its ties are as soft as ' &
+      //to_text(10.0_wp*built_in_penalty(contact, model)/memory%slave_penalty)//' elements of ' &
+      //'its surfaces, so what they hold moves apart; PEN 10 with PUNIT 2, the default, is as ' &
+      //'stiff as one')
     is_held = tied_nodes(memory, .true.)
     call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
       //to_text(memory%n_slave)//' slave nodes, '//to_text(size(memory%ties%side)) &
@@ -123,18 +158,25 @@ contains
       //to_text(memory%n_slave)//' slave nodes have nothing within reach and are not tied:'//names)
   end subroutine log_ties
 
-  !> What ties cost: the stable step of the elements alone, and with the springs.
+  !> What ties cost: the stable step of the elements alone, and with the springs. A warning where
+  !> they cost most of it: no run was meant to take so much longer.
   subroutine report_tie_step(id, element_limit, limit, log)
     integer, intent(in) :: id
     real(wp), intent(in) :: element_limit, limit !! s
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
     character(8) :: share
 
     write (share, '(ss,f0.1)') 100.0_wp*(1.0_wp - limit/element_limit)
     if (share(1:1) == '.') share = '0'//share
-    call write_log(log, 'interface '//to_text(id)//': with its ties the stable step is ' &
-      //to_text(limit)//', of the elements alone '//to_text(element_limit)//': the ties cost ' &
-      //trim(share)//' % of the step')
+    text = 'interface '//to_text(id)//': with its ties the stable step is '//to_text(limit) &
+      //', of the elements alone '//to_text(element_limit)//': the ties cost '//trim(share) &
+      //' % of the step'
+    if (limit < dear_share*element_limit) then
+      call warn(log, text//'; a softer tie (PEN, SFACT) costs less')
+    else
+      call write_log(log, text)
+    end if
   end subroutine report_tie_step
 
   !> The rule of friction.
@@ -189,6 +231,8 @@ contains
       factor = factor//' and '//to_text(memory%master_penalty/estimate)
     end if
     text = text//'; '//factor//' times the built-in estimate'
+    if (model%is_round) text = text &
+      //' (per metre of the circumference: times the radius, per radian)'
   end function penalty_text
 
   !> Warn of the deepest penetration at time zero, with the node next to it and the force that it
@@ -198,20 +242,31 @@ contains
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
     real(wp) :: depth !! that counts, m
     integer :: p, k
 
+    if (memory%points%n == 0 .and. allocated(contact%interference)) call warn(log, 'interface ' &
+      //to_text(contact%id)//': its curve of interference (LCINT) has no effect, for nothing ' &
+      //'overlaps at the start')
     if (memory%points%n == 0) return
     p = minloc(memory%points%gap(:memory%points%n), 1)
     depth = round_off*memory%slave_tracking%reach
     if (-memory%points%gap(p) <= depth) return
     k = maxloc(memory%points%slave_weights(:, p), 1)
-    call warn(log, 'interface '//to_text(contact%id)//': initial penetration at ' &
-      //to_text(count(memory%points%gap(:memory%points%n) < -depth))//' points, deepest at node ' &
-      //to_text(model%mesh%node_id(memory%nodes(memory%points%slave_nodes(k, p))))//': ' &
-      //to_text(-memory%points%gap(p))//' m, force of that point ' &
-      //to_text(memory%points%pressure(p)*memory%points%area(p))//' N/m; it is kept, so that the ' &
-      //'run starts with these forces')
+    text = ' at '//to_text(count(memory%points%gap(:memory%points%n) < -depth)) &
+      //' points, deepest at node '//to_text(model%mesh%node_id(memory%nodes( &
+      memory%points%slave_nodes(k, p))))//': '//to_text(-memory%points%gap(p))//' m'
+    if (allocated(contact%interference)) then
+      call write_log(log, 'interface '//to_text(contact%id)//': interference'//text//'; it grows ' &
+        //'from 0 to that by curve '//to_text(contact%interference%id)//' until ' &
+        //to_text(contact%interference%abscissa(size(contact%interference%abscissa)))//' s')
+      return
+    end if
+    call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', force of ' &
+      //'that point '//to_text(memory%points%pressure(p)*memory%points%area(p)) &
+      //trim(merge(' N per radian', ' N/m         ', model%is_round)) &
+      //'; it is kept, so that the run starts with these forces')
   end subroutine report_initial_contact
 
   !> How much of a tie has broken, at the end of the run.

@@ -71,7 +71,7 @@ contains
     places(3:4, :) = motion(1:2, memory%nodes)
     rows%force = memory%force(:, :n)
     call fill_arc_lengths(contact%slave, places(:, :n), rows%arc_length)
-    share = nodal_sums(memory, memory%points%pressure)
+    share = nodal_sums(contact%is_self, memory, memory%points%pressure)
     do i = 1, memory%n_master
       rows%master_pressure(i) = share(n + i)/max(tiny(1.0_wp), &
         competence_area(contact%master, places(:, n + 1:), contact%is_round, i))
@@ -82,7 +82,7 @@ contains
       rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
     if (.not. allocated(memory%points%traction)) return
-    pull = nodal_sums(memory, memory%points%traction)
+    pull = nodal_sums(contact%is_self, memory, memory%points%traction)
     call fill_rubbed(contact%slave, 0, places(:, :n), contact%is_round, pull(:n), memory, &
       rows%rubbed(:n))
     call fill_rubbed(contact%master, n, places(:, n + 1:), contact%is_round, pull(n + 1:), memory, &
@@ -240,8 +240,10 @@ contains
   end subroutine find_state
 
   !> Values of points times their areas, shared out to the nodes on both sides: the normal forces on
-  !> them of pressures, N/m, forces along their chains of tractions.
-  pure function nodal_sums(memory, values) result(share)
+  !> them of pressures, N/m, forces along their chains of tractions. All of a surface with itself is
+  !> on the slave.
+  pure function nodal_sums(is_self, memory, values) result(share)
+    logical, intent(in) :: is_self
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(in), contiguous :: values(:) !! of the points, N/m^2
     real(wp) :: share(memory%n_slave + memory%n_master)
@@ -259,6 +261,11 @@ contains
             + points%master_weights(k, p)*total
         end do
       end do
+    end associate
+    if (.not. is_self) return
+    associate (n => memory%n_slave)
+      share(:n) = share(:n) + share(n + 1:)
+      share(n + 1:) = 0.0_wp
     end associate
   end function nodal_sums
 

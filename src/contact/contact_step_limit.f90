@@ -62,19 +62,23 @@ contains
       associate (most => ratios(i)%at(worst))
         bounds(i)%rate = sum(most)
         if (is_tied(contacts(i))) bounds(i)%closed_rate = bounds(i)%rate
-        bounds(i)%damping = contacts(i)%damping*sqrt(bounds(i)%rate)
+        bounds(i)%damping = contacts(i)%damping*sqrt(bounds(i)%rate*merge(2.0_wp, 1.0_wp, &
+          contacts(i)%is_self))
         bounds(i)%node = memories(i)%nodes(worst(merge(1, 2, most(1) >= most(2))))
-        if (all(most > 0.0_wp)) ratios(i)%c = most(2)/most(1)
+        if (all(most > 0.0_wp) .and. .not. contacts(i)%is_self) ratios(i)%c = most(2)/most(1)
       end associate
-      users(memories(i)%nodes) = users(memories(i)%nodes) + 1
+      users(memories(i)%nodes(:n)) = users(memories(i)%nodes(:n)) + 1
+      users(memories(i)%nodes(n + 1:)) = users(memories(i)%nodes(n + 1:)) + 1
     end do
     if (any(users > 1)) &
-      call join_interfaces(is_tied(contacts), memories, ratios, bounds, size(mass))
+      call join_interfaces(is_tied(contacts), contacts%is_self, memories, ratios, bounds, &
+      size(mass))
   end subroutine bound_springs
 
   !> Interfaces that share nodes: the c of each in turn evens out its sides, as the others stand.
-  pure subroutine join_interfaces(is_tie, memories, ratios, bounds, n_node)
-    logical, intent(in) :: is_tie(:) !! (n_interface)
+  !> A surface with itself has each node on both sides, evenly.
+  pure subroutine join_interfaces(is_tie, is_self, memories, ratios, bounds, n_node)
+    logical, intent(in) :: is_tie(:), is_self(:) !! (n_interface)
     type(contact_state_t), intent(in) :: memories(:)
     type(ratios_t), intent(inout) :: ratios(:)
     type(spring_bound_t), intent(inout) :: bounds(:)
@@ -85,24 +89,21 @@ contains
     total = 0.0_wp
     damping = 0.0_wp
     do i = 1, size(memories)
-      associate (nodes => memories(i)%nodes)
-        total(nodes) = total(nodes) + weighted(ratios(i), memories(i)%n_slave, ratios(i)%c)
-        damping(nodes) = damping(nodes) + bounds(i)%damping
-      end associate
+      call add_sides(memories(i), 1.0_wp, ratios(i), total)
+      call add_damping(memories(i)%nodes, bounds(i)%damping, damping)
     end do
     do round = 1, n_round
       do i = 1, size(memories)
-        associate (nodes => memories(i)%nodes, n => memories(i)%n_slave)
-          total(nodes) = total(nodes) - weighted(ratios(i), n, ratios(i)%c)
-          ratios(i)%c = even_share(ratios(i), n, max(total(nodes), 0.0_wp))
-          total(nodes) = total(nodes) + weighted(ratios(i), n, ratios(i)%c)
-        end associate
+        if (is_self(i)) cycle
+        call add_sides(memories(i), -1.0_wp, ratios(i), total)
+        ratios(i)%c = even_share(ratios(i), memories(i)%n_slave, &
+          max(total(memories(i)%nodes), 0.0_wp))
+        call add_sides(memories(i), 1.0_wp, ratios(i), total)
       end do
     end do
     opening = total
     do i = 1, size(memories)
-      if (is_tie(i)) opening(memories(i)%nodes) = opening(memories(i)%nodes) &
-        - weighted(ratios(i), memories(i)%n_slave, ratios(i)%c)
+      if (is_tie(i)) call add_sides(memories(i), -1.0_wp, ratios(i), opening)
     end do
     do i = 1, size(memories)
       associate (nodes => memories(i)%nodes)
@@ -114,6 +115,36 @@ contains
       end associate
     end do
   end subroutine join_interfaces
+
+  !> What an interface puts on its nodes, times `sign`.
+  pure subroutine add_sides(memory, sign, ratios, total)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in) :: sign
+    type(ratios_t), intent(in) :: ratios
+    real(wp), intent(inout) :: total(:) !! by node of the mesh
+    real(wp) :: load(size(memory%nodes))
+    integer :: k
+
+    load = weighted(ratios, memory%n_slave, ratios%c)
+    do k = 1, size(memory%nodes)
+      total(memory%nodes(k)) = total(memory%nodes(k)) + sign*load(k)
+    end do
+  end subroutine add_sides
+
+  !> The damping of an interface on each of its nodes, once.
+  pure subroutine add_damping(nodes, damping, total)
+    integer, intent(in) :: nodes(:)
+    real(wp), intent(in) :: damping
+    real(wp), intent(inout) :: total(:) !! by node of the mesh
+    logical :: is_done(size(total))
+    integer :: k
+
+    is_done = .false.
+    do k = 1, size(nodes)
+      if (.not. is_done(nodes(k))) total(nodes(k)) = total(nodes(k)) + damping
+      is_done(nodes(k)) = .true.
+    end do
+  end subroutine add_damping
 
   !> (1 + c) K/m of slave nodes and (1 + 1/c) K/m of master nodes.
   pure function weighted(ratios, n_slave, c)

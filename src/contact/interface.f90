@@ -10,11 +10,11 @@ module interface_m
   use contact_law_m, only : pressed_at_slave_nodes, press_places
   use contact_log_m, only : log_contact
   use contact_penalty_m, only : set_penalties
-  use contact_scatter_m, only : scatter_forces
+  use contact_scatter_m, only : scatter_forces, join_passes
   use contact_springs_m, only : begin_look, measure_springs, end_look
   use contact_work_m, only : take_apart, hand_over, count_work
   use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
-    allocate_tractions, allocate_scratch, is_free
+    allocate_tractions, allocate_scratch, places_of_segment, is_free
   use contacts_m, only : contact_t, has_friction, is_tied
   use crossing_m, only : crossings_t, find_crossings, catch_crossings
   use damping_m, only : damp_points
@@ -27,6 +27,8 @@ module interface_m
   use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
     start_slave_tracking, start_master_tracking, start_segments
   use gather_m, only : gather_places, take_force, keep_former
+  use interference_m, only : begin_growth
+  use interference_state_m, only : allocate_interference
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
@@ -47,7 +49,7 @@ contains
     type(contact_state_t), intent(out) :: memory
     type(formulation_t) :: formulation
     real(wp) :: origin(2)
-    integer :: n_slave, n_master, n_each, i
+    integer :: n_slave, n_master, i
 
     n_slave = contact%slave%n_node
     n_master = contact%master%n_node
@@ -63,7 +65,7 @@ contains
     end do
     formulation = formulation_of(contact)
     memory%contact_law = formulation%contact_law
-    call set_penalties(contact, model, memory)
+    call set_penalties(contact, model, formulation%self_share, memory)
     call start_spots(formulation%spots, contact%n_gauss, contact%is_round, contact%slave, memory)
     call allocate_slave_tracking(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_tracking(contact, model, memory)
@@ -81,10 +83,11 @@ contains
       call allocate_limit(memory%limit, n_slave + n_master)
     if (has_friction(contact)) then
       call allocate_tractions(memory%points)
-      n_each = 1
-      if (allocated(memory%spots)) n_each = size(memory%spot_xi)
-      call allocate_friction(memory%friction, n_each*n_slave + n_master, n_slave + n_master)
+      call allocate_friction(memory%friction, places_of_segment(memory)*n_slave + n_master, &
+        n_slave + n_master)
     end if
+    if (allocated(contact%interference)) call allocate_interference(memory%interference, &
+      places_of_segment(memory)*n_slave, n_master)
     call allocate_scratch(memory)
     if (is_tied(contact)) call start_ties(contact, model, memory)
     call log_contact(contact, model, formulation%kind, memory, log)
@@ -134,6 +137,7 @@ contains
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     type(contact_t), allocatable :: present
 
+    if (allocated(memory%interference%depth)) call begin_growth(contact, time, memory)
     if (is_suspended(contact, time)) then
       call suspend_contact(motion, dt, memory)
     else if (is_tied(contact)) then
@@ -189,8 +193,9 @@ contains
       if (allocated(memory%friction%force)) &
         call rub_places(contact, formulation%has_unit_area, times(2), memory)
       if (contact%damping > 0.0_wp) call damp_points(memory%points, contact%damping, &
-        memory%nodes, motion, mass, memory%scratch%nodal)
+        memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
       call scatter_forces(memory)
+      if (contact%is_self) call join_passes(memory)
       if (had_force .or. memory%n_active > 0) call limit_forces(motion, times(1), times(2), memory)
     end if
     if (memory%points%n > 0 .or. had_force) &
@@ -243,6 +248,7 @@ contains
       call evaluate_ties(motion, memory, force)
       return
     end if
+    if (allocated(memory%interference%depth)) call begin_growth(contact, time, memory)
     memory%is_stale = memory%is_stale .or. is_suspended(contact, time)
     if (memory%facing%is_used .and. .not. is_suspended(contact, time)) &
       call follow_runs_in_step(contact, motion, memory)
@@ -287,6 +293,7 @@ contains
     if (allocated(memory%friction%force)) &
       call rub_places(contact, formulation%has_unit_area, memory%scratch%dt, memory)
     call scatter_forces(memory)
+    if (contact%is_self) call join_passes(memory)
     do i = 1, size(memory%nodes)
       associate (node => memory%nodes(i))
         force(:, node) = force(:, node) + memory%force(:, i)

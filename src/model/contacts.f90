@@ -1,15 +1,15 @@
 ! SPDX-License-Identifier: MIT
 !> Contact interfaces as the deck describes them.
 module contacts_m
+  use curves_m, only : curve_t
   use kinds_m, only : wp
   use log_m, only : to_text
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: contact_t, contact_kind_t, friction_rule_t, has_friction, is_tied, breaks, &
-    has_shear, n_told, told_as, kind_text, most_gauss, penalty_per_node, penalty_distributed, &
-    penalty_factor, penalty_share, &
-    tie_none, tie_always, tie_breaks, tie_factor
+  public :: contact_t, contact_kind_t, transducer_t, friction_rule_t, has_friction, is_tied, &
+    breaks, has_shear, n_told, told_as, kind_text, most_gauss, penalty_per_node, &
+    penalty_distributed, penalty_factor, penalty_share, tie_none, tie_always, tie_breaks, tie_factor
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
   !> share of the largest stable penalty.
@@ -71,8 +71,18 @@ module contacts_m
     integer :: behind = 0                  !! above 0: contact behind the tie with that place in the
                                            !! list, of places that the tie does not hold. Interfaces
                                            !! of the deck come first
+    type(curve_t), allocatable :: interference !! LCINT: the part of an initial overlap that acts,
+                                           !! from 0 to 1
     logical :: is_round = .false.          !! axisymmetric: lengths weigh with their radius
+    logical :: is_self = .false.           !! SURFB 0: one surface with itself; both sides are it
   end type contact_t
+
+  !> A surface on which the forces of all interfaces are added up.
+  type :: transducer_t
+    integer :: id = 0
+    character(:), allocatable :: title
+    integer, allocatable :: nodes(:) !! those of its surface that interfaces have
+  end type transducer_t
 
 contains
 

@@ -113,6 +113,12 @@ contains
       do i = 1, n_told(model%contacts)
         call put_entity(text, has_legend, model%contacts(i)%id, text_of(model%contacts(i)%title))
       end do
+      if (allocated(model%transducers)) then
+        do i = 1, size(model%transducers)
+          call put_entity(text, has_legend, model%transducers(i)%id, &
+            text_of(model%transducers(i)%title))
+        end do
+      end if
     case (table_nodout)
       do i = 1, size(model%controls%output%history_nodes)
         call put_entity(text, has_legend, &

@@ -126,6 +126,12 @@ contains
         end select
       end associate
     end do
+    if (i_table /= table_rcforc .or. .not. allocated(model%transducers)) return
+    do i = 1, size(model%transducers)
+      call put_rcforc(row, snapshot%time, model%transducers(i)%id, side_slave, &
+        snapshot%transducers(i))
+      call take(table, row)
+    end do
   end subroutine append_interfaces
 
   !> Hand a row to its table and begin the next.

@@ -111,7 +111,8 @@ contains
       associate (friction => state%contacts(i)%friction)
         if (abs(friction%work) > 0.0_wp) call write_log(log, 'interface ' &
           //to_text(model%contacts(i)%id)//': friction has dissipated ' &
-          //to_text(friction%work - friction%stored)//' J/m')
+          //to_text(friction%work - friction%stored) &
+          //trim(merge(' J per radian', ' J/m         ', model%is_round)))
       end associate
     end do
   end subroutine report_contact_end

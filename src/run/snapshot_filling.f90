@@ -6,7 +6,7 @@ module snapshot_filling_m
   use constraints_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows, join_rows
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains
-  use contacts_m, only : has_shear, n_told, told_as
+  use contacts_m, only : transducer_t, has_shear, n_told, told_as
   use controls_m, only : is_asked
   use history_tables_m, only : table_matsum
   use layout_m, only : slot_part
@@ -42,6 +42,7 @@ contains
       allocate (snapshot%velocity(2, n_node), source=0.0_wp)
     allocate (snapshot%parts(size(model%parts)))
     if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
+    if (allocated(model%transducers)) allocate (snapshot%transducers(size(model%transducers)))
     allocate (snapshot%interfaces(n_told(model%contacts)), snapshot%slaves(size(model%contacts)))
     call find_supports(model, snapshot)
     if (.not. is_asked(model%controls%output%plot)) return
@@ -169,7 +170,7 @@ contains
       if (allocated(state%walls)) energies%friction = energies%friction &
         + sum(state%walls%dissipated)
       energies%made = sum(max(0.0_wp, -state%contacts%watch%balance))
-      energies%external_work = state%external_work
+      energies%external_work = state%external_work + sum(state%contacts%interference%work)
       energies%initial = state%initial_energy
     end associate
   end subroutine fill_energies
@@ -268,6 +269,10 @@ contains
         call add_result(result, snapshot%interfaces(told_as(model%contacts, i)))
       end if
     end do
+    if (.not. allocated(model%transducers)) return
+    do i = 1, size(model%transducers)
+      call add_up_forces(model%transducers(i), state, snapshot%transducers(i))
+    end do
   end subroutine fill_interfaces
 
   !> Contact behind ties, to what these have.
@@ -283,6 +288,28 @@ contains
     total%damping = total%damping + part%damping
     total%stored = total%stored + part%stored
   end subroutine add_result
+
+  !> What all interfaces do to the surface of a transducer, and how many of its nodes carry force.
+  subroutine add_up_forces(transducer, state, resultants)
+    type(transducer_t), intent(in) :: transducer
+    type(state_t), intent(in) :: state
+    type(interface_result_t), intent(out) :: resultants
+    logical, allocatable :: is_on(:), is_loaded(:)
+    integer :: i, k
+
+    allocate (is_on(size(state%mass)), is_loaded(size(state%mass)), source=.false.)
+    is_on(transducer%nodes) = .true.
+    do i = 1, size(state%contacts)
+      associate (memory => state%contacts(i))
+        do k = 1, size(memory%nodes)
+          if (.not. is_on(memory%nodes(k))) cycle
+          resultants%slave_force = resultants%slave_force + memory%force(:, k)
+          if (any(abs(memory%force(:, k)) > 0.0_wp)) is_loaded(memory%nodes(k)) = .true.
+        end do
+      end associate
+    end do
+    resultants%n_active = count(is_loaded)
+  end subroutine add_up_forces
 
   !> Fields of a plot state and the rows of slave nodes.
   subroutine fill_plot(model, state, snapshot)

@@ -88,6 +88,8 @@ module snapshot_m
     real(wp), allocatable :: plastic_strain(:)   !! (n_element)
     real(wp), allocatable :: hoop_strain(:)      !! (n_element) of round bodies
     type(interface_result_t), allocatable :: interfaces(:)
+    type(interface_result_t), allocatable :: transducers(:) !! forces alone; only where the deck has
+                                                 !! any
     type(part_result_t), allocatable :: parts(:)
     type(wall_result_t), allocatable :: walls(:) !! only where the deck has any
     type(slave_result_t), allocatable :: slaves(:) !! one per interface, then per contact behind a

@@ -242,3 +242,16 @@ def test_step_obeys_ties(slideline, tmp_path):
     assert free.returncode == 0, free.stderr
     assert "interface 1: with its ties the stable step is" in free.stderr and "(ECDT 1 of *CONTROL_CONTACT" in free.stderr
     assert max(abs(value - 1.0) for value in numbers(tmp_path / "free/job.glstat.csv", "energy_ratio")) > 0.1
+
+
+@pytest.mark.parametrize("penalty, unit, told", [(None, 0, ""), (1.0, 2, ""), (1.0e4, 2, "the ties cost 9"), (5.0, 0, "as soft as")])
+def test_ties_of_unlikely_penalties_are_told(slideline, penalty, unit, told):
+    """Springs that cost most of the step, and springs that hold next to nothing. PUNIT 2 is a factor on a tenth of K L/A."""
+    text = tied(5)
+    if penalty:
+        assert text.count("\n-1,-2,5,3\n") == text.count("\n0.0,1e+20,0,0,0,") == 1
+        text = text.replace("\n-1,-2,5,3\n", f"\n-1,-2,5,3,{penalty}\n").replace("\n0.0,1e+20,0,0,0,", f"\n0.0,1e+20,{unit},0,0,")
+    done = slideline("d=out", "endtim=1.0e-5", deck=text)
+    assert done.returncode == 0, done.stderr
+    for words in ("the ties cost 9", "as soft as"):
+        assert (words in done.stderr) == (words == told), done.stderr

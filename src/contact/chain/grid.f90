@@ -10,8 +10,8 @@ module grid_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: nearest_t, fill_grid, slip_limit, box_distance, find_nearest, &
-    distance_to_others, cell_of, bucket_of
+  public :: nearest_t, kept_t, fill_grid, slip_limit, box_distance, find_nearest, &
+    distance_to_others, cell_of, bucket_of, keep_nearest, conclude
 
   !> Segments kept by a search: the nearest, its two neighbours and the next one after these.
   integer, parameter :: n_kept = 4
@@ -239,25 +239,34 @@ contains
     integer, intent(in) :: bucket
     type(kept_t), intent(inout) :: kept
     real(wp) :: square
-    integer :: i, k, segment
+    integer :: i, segment
 
     do i = grid%first(bucket) + 1, grid%first(bucket + 1)
       segment = grid%items(i)
       if (any(kept%segment == segment)) cycle
       square = closest_distance(sight_of_segment(spot, chain(:, surface%segments(1, segment)), &
         chain(:, surface%segments(2, segment))))
-      if (.not. square < kept%square(n_kept)) cycle
-      k = n_kept
-      do while (k > 1)
-        if (kept%square(k - 1) <= square) exit
-        kept%square(k) = kept%square(k - 1)
-        kept%segment(k) = kept%segment(k - 1)
-        k = k - 1
-      end do
-      kept%square(k) = square
-      kept%segment(k) = segment
+      if (square < kept%square(n_kept)) call keep_nearest(segment, square, kept)
     end do
   end subroutine look_into_bucket
+
+  !> Keep a segment that is nearer than the last of those kept.
+  pure subroutine keep_nearest(segment, square, kept)
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: square !! of its distance, m^2
+    type(kept_t), intent(inout) :: kept
+    integer :: k
+
+    k = n_kept
+    do while (k > 1)
+      if (kept%square(k - 1) <= square) exit
+      kept%square(k) = kept%square(k - 1)
+      kept%segment(k) = kept%segment(k - 1)
+      k = k - 1
+    end do
+    kept%square(k) = square
+    kept%segment(k) = segment
+  end subroutine keep_nearest
 
   !> Turn what was kept into the answer; `bound` holds for all segments not looked at.
   pure subroutine conclude(surface, kept, bound, reach, nearest)

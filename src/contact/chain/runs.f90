@@ -87,13 +87,14 @@ contains
 
   !> List active segments, and where a run is cut although the one before is active: at sharp convex
   !> corners. In a sharp valley a place may be behind both faces, which only a chain can tell.
-  pure subroutine list_runs(surface, places, is_active, n, segments, is_cut)
+  pure subroutine list_runs(surface, places, is_active, n, segments, is_cut, is_parted)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node)
     logical, intent(in) :: is_active(:)              !! (n_segment)
     integer, intent(out) :: n
     integer, intent(inout) :: segments(:)            !! (n_segment)
     logical, intent(inout) :: is_cut(:)              !! (n_segment)
+    logical, intent(in), optional :: is_parted(:)    !! (n_segment) cut before it in any case
     type(turn_t) :: turn
     integer :: s
 
@@ -109,6 +110,7 @@ contains
         if (.not. is_active(before)) cycle
         turn = turn_at(surface, places, before, s)
         is_cut(n) = turn%is_sharp .and. turn%is_convex
+        if (present(is_parted)) is_cut(n) = is_cut(n) .or. is_parted(s)
       end associate
     end do
   end subroutine list_runs

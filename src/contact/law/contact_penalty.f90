@@ -17,9 +17,10 @@ contains
   !> segment length of the initial mesh converts; l is that of the slave surface for eps_hat of the
   !> slave pass and for eps of type 1, that of the master surface for eps_hat of the master pass. A
   !> share of the largest stable penalty stands as it is until the step is known.
-  pure subroutine set_penalties(contact, model, memory)
+  pure subroutine set_penalties(contact, model, self_share, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
+    real(wp), intent(in) :: self_share !! part that either pass of a surface with itself has
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: master_value, estimate
 
@@ -37,6 +38,8 @@ contains
       memory%slave_penalty = contact%penalty*estimate
       memory%master_penalty = master_value*estimate
     end select
+    ! Each pair of runs meets twice, either one being the slave once.
+    if (contact%is_self) memory%slave_penalty = self_share*memory%slave_penalty
     memory%node_penalty = memory%slave_penalty*mean_length(contact%slave, model)
   end subroutine set_penalties
 

@@ -5,7 +5,7 @@ module contact_scatter_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: scatter_forces, scatter_points, scatter_damped, add_gap_round_off
+  public :: scatter_forces, scatter_points, scatter_damped, join_passes, add_gap_round_off
 
   !> Points whose loads are formed together.
   integer, parameter :: n_block = 128
@@ -202,6 +202,28 @@ contains
     force = total
     part = 0.0_wp
   end subroutine give
+
+  !> A surface with itself has each node as slave and as master: all of its force to the slave.
+  pure subroutine join_passes(memory)
+    type(contact_state_t), intent(inout) :: memory
+
+    call join(memory%force)
+    if (allocated(memory%damping_force)) call join(memory%damping_force)
+    if (allocated(memory%friction%force)) call join(memory%friction%force)
+
+  contains
+
+    !> One list of forces.
+    pure subroutine join(force)
+      real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_slave + n_master)
+
+      associate (n => memory%n_slave)
+        force(:, :n) = force(:, :n) + force(:, n + 1:)
+        force(:, n + 1:) = 0.0_wp
+      end associate
+    end subroutine join
+
+  end subroutine join_passes
 
   !> What the rounding of places, one part in 1/epsilon of them, makes of the nodal forces of all
   !> pressed points: a gap along n is known to n_x X and n_y Y. Times epsilon it is a force.

@@ -13,17 +13,24 @@ contains
   !> omega^2 = sum of w K/m over the nodes of both sides, where K is the sum of all springs at a
   !> node. For two masses and one spring it is the fraction of critical, and it does not depend on
   !> how many points share a node's spring. The total never pulls. What is added is kept as well.
-  pure subroutine damp_points(points, fraction, nodes, motion, mass, nodal)
+  pure subroutine damp_points(points, fraction, nodes, motion, mass, is_self, nodal)
     type(contact_points_t), intent(inout) :: points
     real(wp), intent(in) :: fraction
     integer, intent(in), contiguous :: nodes(:)      !! mesh index of each local node
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u and v
     real(wp), intent(in), contiguous :: mass(:)      !! (n_node) kg/m
+    logical, intent(in) :: is_self !! each node is slave and master
     real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, local nodes) scratch
     real(wp) :: rate, square, weight, damped
     integer :: p, k, local
 
     call sum_springs(points, nodal)
+    if (is_self) then
+      associate (n => size(nodal, 2)/2)
+        nodal(1, :n) = nodal(1, :n) + nodal(1, n + 1:)
+        nodal(1, n + 1:) = nodal(1, :n)
+      end associate
+    end if
     points%load(:, :points%n) = 0.0_wp
     do p = 1, points%n
       if (.not. points%pressure(p)*points%area(p) > 0.0_wp) cycle

@@ -13,7 +13,7 @@ module friction_m
   implicit none
   private
   public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, place_of_point, &
-    place_at
+    place_at, spot_at
 
   !> Places whose slips are formed together.
   integer, parameter :: n_block = 64

@@ -11,6 +11,7 @@ module crossing_m
   use contacts_m, only : contact_t
   use geometry_m, only : sight_t, sight_of_segment, separation
   use kinds_m, only : wp
+  use self_search_m, only : is_elsewhere
   use surfaces_m, only : surface_t
   use tracking_m, only : list_touching
   implicit none
@@ -49,17 +50,17 @@ contains
         spots = memory%spots(:, :slave%n)
         call move_spots(contact%slave, places, memory%spot_xi, memory%spot_spread, spots)
         crossings%slave = cross_chain(contact%master, places(:, n + 1:), memory%places(:, n + 1:), &
-          spots, memory%spots(:, :slave%n), is_outside(slave), slave%chord)
+          spots, memory%spots(:, :slave%n), is_outside(slave), slave, slave%chord)
       else
         crossings%slave = cross_chain(contact%master, places(:, n + 1:), memory%places(:, n + 1:), &
-          places(:, :n), memory%places(:, :n), is_outside(slave), slave%chord)
+          places(:, :n), memory%places(:, :n), is_outside(slave), slave, slave%chord)
       end if
       if (master%n > 0) then
         crossings%master = cross_chain(contact%slave, places(:, :n), memory%places(:, :n), &
-          places(:, n + 1:), memory%places(:, n + 1:), is_outside(master), master%chord)
+          places(:, n + 1:), memory%places(:, n + 1:), is_outside(master), master, master%chord)
       else if (allocated(memory%segments%status)) then
         crossings%master = cross_chain(contact%slave, places(:, :n), memory%places(:, :n), &
-          places(:, n + 1:), memory%places(:, n + 1:), spread(.true., 1, memory%n_master))
+          places(:, n + 1:), memory%places(:, n + 1:), spread(.true., 1, memory%n_master), slave)
       end if
     end associate
   end subroutine find_crossings
@@ -173,12 +174,13 @@ contains
 
   !> The segment of a chain that each spot goes through first, from outside to inside, while chain
   !> and spots move evenly from old to new places.
-  pure function cross_chain(surface, old_chain, chain, old_spots, spots, may_cross, &
+  pure function cross_chain(surface, old_chain, chain, old_spots, spots, may_cross, tracking, &
       chord) result(crossed)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: old_chain(:, :), chain(:, :) !! (4, n_node)
     real(wp), intent(in), contiguous :: old_spots(:, :), spots(:, :) !! (4, n_spot)
     logical, intent(in) :: may_cross(:)
+    type(tracking_t), intent(in) :: tracking !! says whether the chain is the spots' own surface
     integer, intent(in), optional :: chord(:, :) !! (2, n_spot) direction of the spots' own surface
     integer :: crossed(size(spots, 2))
     real(wp) :: boxes(4, surface%n_segment), box(4), time, first
@@ -196,6 +198,9 @@ contains
       first = huge(1.0_wp)
       do k = 1, surface%n_segment
         if (any(box([1, 2]) > boxes([3, 4], k)) .or. any(box([3, 4]) < boxes([1, 2], k))) cycle
+        if (tracking%own_spots >= 0) then
+          if (.not. is_elsewhere(tracking, surface, old_chain, i, k)) cycle
+        end if
         associate (a => surface%segments(1, k), b => surface%segments(2, k))
           time = crossing_time(sight_of_segment(old_spots(:, i), old_chain(:, a), &
             old_chain(:, b)), sight_of_segment(spots(:, i), chain(:, a), chain(:, b)), &

@@ -13,7 +13,7 @@ module facing_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: side_view_t, find_facing
+  public :: side_view_t, find_facing, is_own
 
   !> Sine of the angle by which a direction lies between two others (10 degrees).
   real(wp), parameter :: well_between = 0.17_wp
@@ -31,13 +31,15 @@ contains
 
   !> Note all segments of one surface that face the other, and those that they face: of each place
   !> the nearest one. A sharp corner faces by its node where no side of it does.
-  pure subroutine find_facing(own, own_view, target, view, capture, is_same, faces, faced)
+  pure subroutine find_facing(own, own_view, target, view, capture, is_same, faces, faced, opposite)
     type(surface_t), intent(in) :: own, target
     type(side_view_t), intent(in) :: own_view, view
     real(wp), intent(in) :: capture      !! m
-    logical, intent(in) :: is_same       !! both are one surface: neighbours never face
+    logical, intent(in) :: is_same       !! both are one surface
     logical, intent(inout) :: faces(:)   !! (segments of `own`)
     logical, intent(inout) :: faced(:)   !! (segments of `target`)
+    integer, intent(inout), optional :: opposite(:, :) !! (4, segments of `own`) what each of their
+                                         !! places faces, and the corner behind, 0: nothing
     logical, allocatable :: by_place(:) !! what the other surface has found says nothing of corners
     real(wp) :: place(4), normal(2)
     integer :: s, k, found
@@ -50,8 +52,8 @@ contains
         normal = normal_of(own, own_view%places, s)
         do k = 1, size(looked_at)
           place = (1.0_wp - looked_at(k))*a + looked_at(k)*b
-          found = nearest_faced(target, view, place, normal, normal, capture, &
-            own%segments(:, s), is_same)
+          found = nearest_faced(target, view, place, normal, normal, capture, [s, s], is_same)
+          if (present(opposite)) opposite(k, s) = found
           if (found == 0) cycle
           by_place(s) = .true.
           faced(found) = .true.
@@ -59,19 +61,21 @@ contains
       end associate
     end do
     faces = faces .or. by_place
-    call find_facing_corners(own, own_view, target, view, capture, is_same, by_place, faces, faced)
+    call find_facing_corners(own, own_view, target, view, capture, is_same, by_place, faces, &
+      faced, opposite)
   end subroutine find_facing
 
   !> Sharp convex corners neither side of which faces by its places: by the normals between those of
   !> the sides. Of these count those within 60 degrees of the target, or both where none is.
   pure subroutine find_facing_corners(own, own_view, target, view, capture, is_same, by_place, &
-      faces, faced)
+      faces, faced, opposite)
     type(surface_t), intent(in) :: own, target
     type(side_view_t), intent(in) :: own_view, view
     real(wp), intent(in) :: capture
     logical, intent(in) :: is_same
     logical, intent(in) :: by_place(:)           !! segments that face by their own places
     logical, intent(inout) :: faces(:), faced(:)
+    integer, intent(inout), optional :: opposite(:, :)
     type(turn_t) :: turn
     real(wp) :: cosines(2)
     integer :: s, next, node, found
@@ -86,8 +90,9 @@ contains
       associate (place => own_view%places(:, node), one => normal_of(own, own_view%places, s), &
         two => normal_of(own, own_view%places, next))
         if (.not. is_near(view, place, place, capture)) cycle
-        found = nearest_faced(target, view, place, one, two, capture, [node, node], is_same)
+        found = nearest_faced(target, view, place, one, two, capture, [s, next], is_same)
       end associate
+      if (present(opposite)) opposite(size(looked_at) + 1, s) = found
       if (found == 0) cycle
       faced(found) = .true.
       cosines = [dot_product(normal_of(own, own_view%places, s), normal_of(target, view%places, &
@@ -124,12 +129,12 @@ contains
 
   !> The segment of a surface that a place faces, of several the one whose line is nearest; 0: none.
   !> The normals from `first` on to `last`, counter-clockwise, are those of the place.
-  pure function nearest_faced(target, view, place, first, last, capture, nodes, &
+  pure function nearest_faced(target, view, place, first, last, capture, beside, &
       is_same) result(found)
     type(surface_t), intent(in) :: target
     type(side_view_t), intent(in) :: view
     real(wp), intent(in) :: place(4), first(2), last(2), capture
-    integer, intent(in) :: nodes(2)  !! that the place belongs to, of the same surface or another
+    integer, intent(in) :: beside(2) !! segments that the place is on, of this surface or another
     logical, intent(in) :: is_same
     integer :: found
     real(wp) :: gap, nearest
@@ -147,12 +152,16 @@ contains
           bucket = bucket_of(grid, ix, iy)
           do i = grid%first(bucket) + 1, grid%first(bucket + 1)
             associate (t => grid%items(i))
-              if (is_same .and. (any(ends(1, t) == nodes) .or. any(ends(2, t) == nodes))) cycle
               sight = sight_of_segment(place, view%places(:, ends(1, t)), &
                 view%places(:, ends(2, t)))
               if (.not. is_over_segment(sight)) cycle
               gap = sight_gap(sight)
               if (gap >= capture .or. gap <= -view%depth(t) .or. abs(gap) >= nearest) cycle
+              if (is_same) then
+                if (is_own(target, view%places, beside, t)) cycle
+                if (beside(1) /= beside(2) .and. any(ends(:, t) == ends(1, beside(1)) &
+                  .or. ends(:, t) == ends(2, beside(2)))) cycle
+              end if
               if (.not. is_against(first, last, sight_normal(sight))) cycle
               found = t
               nearest = abs(gap)
@@ -162,6 +171,35 @@ contains
       end do
     end associate
   end function nearest_faced
+
+  !> Whether a segment is part of the same side of the body as a place, or its back. A segment that
+  !> shares a node with it is its own unless the side folds there, and none may be met before that;
+  !> what has the same element behind it is the far side of a thin wall.
+  pure function is_own(surface, places, beside, segment) result(own)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node)
+    integer, intent(in) :: beside(2) !! segments that the place is on, 0: none
+    integer, intent(in) :: segment
+    logical :: own
+    type(turn_t) :: turn
+    integer :: k
+
+    own = any(beside == segment)
+    associate (ends => surface%segments, element => surface%segment_element)
+      do k = 1, 2
+        if (beside(k) == 0 .or. own) cycle
+        if (ends(2, beside(k)) == ends(1, segment)) then
+          turn = turn_at(surface, places, beside(k), segment)
+        else if (ends(1, beside(k)) == ends(2, segment)) then
+          turn = turn_at(surface, places, segment, beside(k))
+        else
+          own = element(beside(k)) == element(segment)
+          cycle
+        end if
+        own = turn%is_convex
+      end do
+    end associate
+  end function is_own
 
   !> Whether the opposite of a normal lies within 60 degrees of that of a segment, or well between
   !> those of the two at a corner. Next to one of these the side lies along the target, and faces

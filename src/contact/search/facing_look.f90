@@ -14,6 +14,7 @@ module facing_look_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use runs_m, only : extend_runs, list_runs, take_runs
+  use self_runs_m, only : part_runs
   use surfaces_m, only : surface_t, has_closed_chain
   implicit none
   private
@@ -88,6 +89,10 @@ contains
     memory%facing%next_look = memory%travel + margin
     memory%facing%n_look = memory%facing%n_look + 1
     margin = margin + beyond
+    if (contact%is_self) then
+      call look_at_itself(contact, margin, is_forced, memory)
+      return
+    end if
     associate (capture => memory%slave_tracking%reach + margin)
       call view_side(contact%slave, memory%places(:, :memory%n_slave), &
         memory%facing%slave%depth, capture, slave)
@@ -103,6 +108,75 @@ contains
     call extend_runs(contact%master, master%places, 2.0_wp*margin, master_active)
     call take_over(contact, slave, master, slave_active, master_active, is_forced, memory)
   end subroutine look_at_facing
+
+  !> The same of a surface with itself: the same runs on both sides, none of which faces itself.
+  pure subroutine look_at_itself(contact, margin, is_forced, memory)
+    type(contact_t), intent(in) :: contact !! of the deck
+    real(wp), intent(in) :: margin         !! m
+    logical, intent(in) :: is_forced
+    type(contact_state_t), intent(inout) :: memory
+    type(side_view_t) :: view
+    logical :: is_active(contact%slave%n_segment), was_met(contact%slave%n_segment), &
+      is_parted(contact%slave%n_segment)
+    integer :: opposite(4, contact%slave%n_segment)
+    integer, allocatable :: pairs(:, :)
+
+    is_active = .false.
+    was_met = .false.
+    opposite = 0
+    associate (capture => memory%slave_tracking%reach + margin)
+      call view_side(contact%slave, memory%places(:, :memory%n_slave), &
+        memory%facing%slave%depth, capture, view)
+      call find_facing(contact%slave, view, contact%slave, view, capture, .true., is_active, &
+        was_met, opposite)
+    end associate
+    call keep_pressed(contact, memory, is_active, was_met)
+    is_active = is_active .or. was_met
+    call extend_runs(contact%slave, view%places, 2.0_wp*margin, is_active)
+    call list_pairs(contact%slave, memory, opposite, pairs)
+    call part_runs(contact%slave, view%places, is_active, pairs, is_parted)
+    call take_over(contact, view, view, is_active, is_active, is_forced, memory, is_parted)
+  end subroutine look_at_itself
+
+  !> Segments that face each other, or press on each other.
+  pure subroutine list_pairs(surface, memory, opposite, pairs)
+    type(surface_t), intent(in) :: surface
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: opposite(:, :)            !! (4, n_segment) see find_facing
+    integer, allocatable, intent(out) :: pairs(:, :) !! (2, n)
+    integer :: s, k, n, p
+
+    allocate (pairs(2, count(opposite > 0) + count(opposite(4, :) > 0) + memory%points%n))
+    n = 0
+    do s = 1, surface%n_segment
+      do k = 1, 4
+        if (opposite(k, s) == 0) cycle
+        n = n + 1
+        pairs(:, n) = [s, opposite(k, s)]
+        if (k < 4) cycle
+        n = n + 1
+        pairs(:, n) = [surface%next(s), opposite(k, s)]
+      end do
+    end do
+    do p = 1, memory%points%n
+      if (.not. memory%points%pressure(p) > 0.0_wp) cycle
+      n = n + 1
+      pairs(:, n) = [segment_at(memory%points%slave_nodes(1, p)), &
+        segment_at(memory%points%master_nodes(1, p))]
+    end do
+    pairs = pairs(:, :n)
+
+  contains
+
+    !> The segment behind a node of a point.
+    pure function segment_at(node) result(segment)
+      integer, intent(in) :: node
+      integer :: segment
+
+      segment = surface%outgoing(1 + modulo(node - 1, memory%n_slave))
+    end function segment_at
+
+  end subroutine list_pairs
 
   !> Places and grid of a surface.
   pure subroutine view_side(surface, places, depth, capture, view)
@@ -197,19 +271,20 @@ contains
   !> Make the present interface of the runs if they are others than before, or if the memory knows
   !> nothing.
   pure subroutine take_over(contact, slave, master, slave_active, master_active, is_forced, &
-      memory)
+      memory, is_parted)
     type(contact_t), intent(in) :: contact
     type(side_view_t), intent(in) :: slave, master
     logical, intent(in) :: slave_active(:), master_active(:)
     logical, intent(in) :: is_forced
     type(contact_state_t), intent(inout) :: memory
+    logical, intent(in), optional :: is_parted(:) !! runs of a surface with itself
     integer, allocatable :: former_slave(:), former_master(:)
     logical :: has_changed, is_other
 
     call list_side(contact%slave, slave, slave_active, memory%facing%slave, former_slave, &
-      has_changed)
+      has_changed, is_parted)
     call list_side(contact%master, master, master_active, memory%facing%master, former_master, &
-      is_other)
+      is_other, is_parted)
     has_changed = has_changed .or. is_other .or. .not. allocated(memory%facing%present)
     if (.not. (has_changed .or. is_forced)) return
     if (has_changed) memory%facing%n_change = memory%facing%n_change + 1
@@ -218,18 +293,20 @@ contains
   end subroutine take_over
 
   !> The runs of one side.
-  pure subroutine list_side(surface, view, is_active, side, former, has_changed)
+  pure subroutine list_side(surface, view, is_active, side, former, has_changed, is_parted)
     type(surface_t), intent(in) :: surface
     type(side_view_t), intent(in) :: view
     logical, intent(in) :: is_active(:)
     type(facing_side_t), intent(inout) :: side
     integer, allocatable, intent(out) :: former(:) !! segments of the runs before
     logical, intent(out) :: has_changed
+    logical, intent(in), optional :: is_parted(:)
     logical, allocatable :: was_cut(:)
 
     allocate (former, source=side%segments(:side%n))
     allocate (was_cut, source=side%is_cut)
-    call list_runs(surface, view%places, is_active, side%n, side%segments, side%is_cut)
+    call list_runs(surface, view%places, is_active, side%n, side%segments, side%is_cut, &
+      is_parted)
     has_changed = side%n /= size(former)
     if (.not. has_changed) has_changed = any(side%segments(:side%n) /= former) .or. &
       any(side%is_cut .neqv. was_cut)

@@ -14,6 +14,7 @@ module first_search_m
   use geometry_m, only : closest_distance
   use kinds_m, only : wp
   use model_m, only : model_t
+  use self_search_m, only : find_nearest_other
   use surfaces_m, only : surface_t
   use tracking_m, only : update_tracking, list_touching, most_facing, begin_contact
   implicit none
@@ -42,6 +43,7 @@ contains
       call allocate_tracking(memory%slave_tracking, size(owners, 2), contact%master%n_segment)
       call set_depths(memory%slave_tracking, contact, model, contact%slave, contact%master, owners)
     end associate
+    if (contact%is_self) memory%slave_tracking%own_spots = n
   end subroutine allocate_slave_tracking
 
   !> The same for master nodes.
@@ -111,8 +113,14 @@ contains
       associate (node => contact%master%nodes(i))
         if (.not. is_inside_body(finder, model, model%mesh%coordinates(:, node), [node])) cycle
       end associate
-      segment = nearest_segment(scratch%grid, contact%slave, memory%places(:, :memory%n_slave), &
-        memory%places(:, memory%n_slave + i))
+      if (contact%is_self) then
+        segment = nearest_other(memory%slave_tracking, contact%slave, &
+          memory%places(:, :memory%n_slave), memory%places(:, :memory%n_slave), i)
+        if (segment == 0) cycle
+      else
+        segment = nearest_segment(scratch%grid, contact%slave, memory%places(:, :memory%n_slave), &
+          memory%places(:, memory%n_slave + i))
+      end if
       memory%segments%status(segment) = is_touching
     end do
   end subroutine start_segments
@@ -228,7 +236,7 @@ contains
     integer, intent(in) :: owners(:, :)
     type(element_finder_t) :: finder
     type(foot_t) :: foot
-    integer :: i
+    integer :: i, nearest
 
     call start_finder(model, surface%segment_element, finder)
     call fill_grid(tracking%grid, surface, chain, 0.0_wp)
@@ -236,8 +244,13 @@ contains
       if (tracking%status(i) == is_touching .or. maxval(owners(:, i)) == 0) cycle
       if (.not. is_inside_body(finder, model, model%mesh%coordinates(:, surface%nodes(1)) &
         + (spots(1:2, i) - chain(1:2, 1)), own%nodes(own_nodes(own, owners(:, i))))) cycle
-      foot = closest_foot(surface, chain, spots(:, i), &
-        nearest_segment(tracking%grid, surface, chain, spots(:, i)))
+      if (tracking%own_spots < 0) then
+        nearest = nearest_segment(tracking%grid, surface, chain, spots(:, i))
+      else
+        nearest = nearest_other(tracking, surface, chain, spots, i)
+        if (nearest == 0) cycle
+      end if
+      foot = closest_foot(surface, chain, spots(:, i), nearest)
       if (.not. foot%is_on .or. foot%gap >= 0.0_wp) cycle
       tracking%segment(i) = foot%segment
       tracking%status(i) = is_touching
@@ -259,6 +272,19 @@ contains
       nodes = own%segments(1, owners(2))
     end if
   end function own_nodes
+
+  !> Segment that a spot inside of its own surface's bodies has come behind, 0: none within reach.
+  pure function nearest_other(tracking, surface, chain, spots, i) result(segment)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
+    integer, intent(in) :: i
+    integer :: segment
+    type(nearest_t) :: found
+
+    call find_nearest_other(tracking, surface, chain, spots, i, 0.0_wp, .true., found)
+    segment = found%segment
+  end function nearest_other
 
   !> Segment of a surface that is nearest to a place, the first of equally near neighbours: by the
   !> grid, or by looking at all where none is near.

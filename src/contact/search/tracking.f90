@@ -9,14 +9,12 @@ module tracking_m
   use geometry_m, only : sight_t, separation
   use grid_m, only : nearest_t, fill_grid, slip_limit, box_distance, find_nearest
   use kinds_m, only : wp
+  use self_search_m, only : find_nearest_other
   use surfaces_m, only : surface_t
+  use waking_m, only : list_waking
   implicit none
   private
-  public :: update_tracking, wake_all, forget_pairs, list_touching, list_waking, most_facing, &
-    begin_contact
-
-  !> Spots passed at a time.
-  integer, parameter :: n_passed = 32
+  public :: update_tracking, wake_all, forget_pairs, list_touching, most_facing, begin_contact
 
 contains
 
@@ -177,7 +175,7 @@ contains
         return
       end if
     end select
-    call find_foot(tracking, surface, chain, spots(:, i), i, travel, foot)
+    call find_foot(tracking, surface, chain, spots, i, travel, foot)
     if (foot%segment > 0 .and. foot%is_on .and. foot%gap < 0.0_wp &
       .and. .not. may_begin(tracking, spots, i, foot, only_faced)) then
       tracking%status(i) = is_free
@@ -189,17 +187,18 @@ contains
 
   !> Closest foot of a spot that is not in contact: by walking where that is safe, else by the
   !> global search. foot%segment = 0: none within reach.
-  pure subroutine find_foot(tracking, surface, chain, spot, i, travel, foot)
+  pure subroutine find_foot(tracking, surface, chain, spots, i, travel, foot)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :)
-    real(wp), intent(in) :: spot(4)
+    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
     integer, intent(in) :: i
     real(wp), intent(in) :: travel
     type(foot_t), intent(out) :: foot
     type(nearest_t) :: nearest
+    real(wp) :: spot(4)
     integer :: segment
 
+    spot = spots(:, i)
     segment = tracking%segment(i)
     if (segment > 0 .and. travel < tracking%recheck(i) .and. tracking%status(i) /= is_touching) then
       if (walk_to_closest(surface, chain, spot, segment) == segment) then
@@ -214,7 +213,11 @@ contains
       call fill_grid(tracking%grid, surface, chain, travel)
     foot%distance = box_distance(tracking%grid, chain, spot, travel)
     if (foot%distance > tracking%reach) return
-    call find_nearest(tracking%grid, surface, chain, spot, travel, tracking%reach, nearest)
+    if (tracking%own_spots < 0) then
+      call find_nearest(tracking%grid, surface, chain, spot, travel, tracking%reach, nearest)
+    else
+      call find_nearest_other(tracking, surface, chain, spots, i, travel, .false., nearest)
+    end if
     foot%distance = nearest%distance
     if (nearest%segment == 0) return
     foot = closest_foot(surface, chain, spot, nearest%segment)
@@ -378,73 +381,5 @@ contains
       tracking%touching(tracking%n_touching) = i
     end do
   end subroutine list_touching
-
-  !> List the spots that are not in contact and do not sleep any more: those before, between and
-  !> behind the runs of spots in contact.
-  pure subroutine list_waking(n_touching, touching, n, wake, travel, next_wake, due, n_due)
-    integer, intent(in) :: n_touching, touching(n_touching)
-    integer, intent(in) :: n                !! spots
-    real(wp), intent(in) :: wake(n), travel
-    real(wp), intent(out) :: next_wake      !! of those that sleep
-    integer, intent(inout) :: due(n), n_due
-    integer :: k, last
-
-    next_wake = huge(1.0_wp)
-    last = 0
-    k = 0
-    do while (k < n_touching)
-      call pass_sleeping(last + 1, touching(k + 1) - 1, wake, travel, next_wake, due, n_due)
-      k = end_of_run(n_touching, touching, k + 1)
-      last = touching(k)
-    end do
-    call pass_sleeping(last + 1, n, wake, travel, next_wake, due, n_due)
-  end subroutine list_waking
-
-  !> The same for spots none of which is in contact. Many that sleep are passed at a time.
-  pure subroutine pass_sleeping(first, last, wake, travel, next_wake, due, n_due)
-    integer, intent(in) :: first, last
-    real(wp), intent(in) :: wake(*), travel
-    real(wp), intent(inout) :: next_wake
-    integer, intent(inout) :: due(*), n_due
-    real(wp) :: least
-    integer :: from, to, i
-
-    do from = first, last, n_passed
-      to = min(last, from + n_passed - 1)
-      least = huge(1.0_wp)
-      !$omp simd reduction(min: least)
-      do i = from, to
-        least = min(least, wake(i))
-      end do
-      if (travel < least) then
-        next_wake = min(next_wake, least)
-        cycle
-      end if
-      do i = from, to
-        if (travel < wake(i)) then
-          next_wake = min(next_wake, wake(i))
-        else
-          n_due = n_due + 1
-          due(n_due) = i
-        end if
-      end do
-    end do
-  end subroutine pass_sleeping
-
-  !> Where a run of spots that follow each other ends on their list.
-  pure function end_of_run(n, list, start) result(k)
-    integer, intent(in) :: n, list(n), start
-    integer :: k
-
-    k = start
-    do while (k + n_passed <= n)
-      if (list(k + n_passed) /= list(k) + n_passed) exit
-      k = k + n_passed
-    end do
-    do while (k < n)
-      if (list(k + 1) /= list(k) + 1) exit
-      k = k + 1
-    end do
-  end function end_of_run
 
 end module tracking_m

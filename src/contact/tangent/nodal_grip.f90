@@ -14,7 +14,7 @@ module nodal_grip_m
   use friction_tangent_m, only : vary_slip, largest_grip
   use kinds_m, only : wp
   use law_friction_m, only : vary_traction
-  use nodal_tangent_m, only : varied_list_t, average, nodal_share
+  use nodal_tangent_m, only : varied_list_t, average, nodal_share, eased_moment
   use sparse_m, only : sparse_t
   implicit none
   private
@@ -69,22 +69,24 @@ contains
     type(varied_list_t), intent(in) :: list
     real(wp), intent(in) :: slips(:) !! (list%n) m
     type(grip_t), intent(out) :: grips(:) !! (n_slave)
-    real(wp), dimension(memory%n_slave) :: gaps, moments, areas
+    real(wp), dimension(memory%n_slave) :: gaps, eased, moments, areas
     integer :: node
 
     call average(memory, list, list%points(:list%n)%gap%value, gaps, areas)
+    eased = eased_moment(memory, gaps, areas)
     call average(memory, list, slips, moments, areas)
     do node = 1, memory%n_slave
       associate (grip => grips(node))
         grip%traction = constant(0.0_wp)
-        if (.not. gaps(node) < memory%closed_gap*areas(node)) cycle
+        if (.not. eased(node) < memory%closed_gap*areas(node)) cycle
         if (is_left_to_tie(memory, node)) cycle
         grip%area = areas(node)
         grip%gap = gaps(node)/areas(node)
         grip%slip = moments(node)/areas(node)
         grip%traction = vary_traction(contact%friction, &
           constant(memory%scratch%former_traction(node)), variable(grip%slip, 2), &
-          vary_pressure(memory%contact_law, memory%slave_penalty, variable(grip%gap, 1)), &
+          vary_pressure(memory%contact_law, memory%slave_penalty, &
+          variable(eased(node)/areas(node), 1)), &
           contact%friction%stiffness*memory%slave_penalty, largest_grip(contact%friction), &
           memory%scratch%dt)
       end associate

@@ -35,7 +35,8 @@ contains
     call start_pattern(pattern, size(equations, 2))
     do k = 1, memory%slave_tracking%n_touching
       spot = memory%slave_tracking%touching(k)
-      if (.not. memory%slave_tracking%gap(spot) < memory%closed_gap) cycle
+      if (.not. memory%slave_tracking%gap(spot) + left_at(contact, memory, spot) &
+        < memory%closed_gap) cycle
       if (is_left_to_tie(memory, place_of_spot(contact, spot))) cycle
       call vary_portions(contact, memory, spot, portions)
       call add_portions(contact, spot, portions, memory, pattern, equations, matrix)
@@ -187,7 +188,8 @@ contains
     half = 0.5_wp*length_between(memory%places, portions(1)%nodes, 1, 2)
     if (contact%is_round) half = half*vary_radius(memory%places, portions(1)%nodes, 1, 2, &
       constant(memory%spot_xi(2 - mod(spot, 2))))
-    pressure = vary_pressure(memory%contact_law, memory%slave_penalty, portions(1)%gap)
+    pressure = vary_pressure(memory%contact_law, memory%slave_penalty, portions(1)%gap &
+      + left_at(contact, memory, spot))
     if (allocated(memory%friction%force)) grip = vary_grip(contact, memory, spot, portions(1), &
       pressure)
     do k = 1, size(portions)
@@ -204,6 +206,19 @@ contains
     end do
     call add_product(pattern, 1.0_wp/total, equations, matrix)
   end subroutine add_portions
+
+  !> The part of its initial overlap that does not act yet.
+  pure function left_at(contact, memory, spot) result(left)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: spot
+    real(wp) :: left
+
+    left = 0.0_wp
+    if (.not. allocated(memory%interference%depth)) return
+    left = memory%interference%left*memory%interference%depth(2*contact%slave%segments(1, &
+      1 + (spot - 1)/2) - mod(spot, 2))
+  end function left_at
 
   !> Traction of a virtual node, which slips at its own foot.
   pure function vary_grip(contact, memory, spot, point, pressure) result(traction)

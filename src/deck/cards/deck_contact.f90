@@ -4,7 +4,7 @@
 module deck_contact_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_always, &
+  use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_none, tie_always, &
     tie_breaks
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
@@ -17,6 +17,7 @@ module deck_contact_m
     of_penalty, of_master_penalty
   use deck_friction_m, only : take_friction, take_stock_friction, take_penalty_friction
   use deck_tie_m, only : take_tie, take_stock_tie, check_tie
+  use deck_transducer_m, only : settle_number
   use deck_raw_m, only : raw_t, raw_contact_t
   use deck_overrides_m, only : overrides_t, contact_names
   implicit none
@@ -48,15 +49,13 @@ contains
     entry%contact%title = ''
     if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%contact%id, &
       entry%contact%title)
-    if (entry%contact%id == 0) entry%contact%id = size(raw%contacts) + 1
-    if (any(raw%contacts%contact%id == entry%contact%id)) call line_error(deck, &
-      deck%blocks(i_block)%keyword, 'the interface number '//to_text(entry%contact%id) &
-      //' belongs to an earlier interface (without a number it is the position in the deck)')
+    entry%block = i_block
+    call settle_number(deck, raw, entry)
     do k = 1, cursor%n_card
       call next_card(deck, parameters, cursor, k, cards(k))
     end do
     call check_rest(deck, cursor)
-    call take_sides(deck, cursor, cards(1), entry)
+    call take_sides(deck, cursor, cards(1), trim(deck%blocks(i_block)%name), entry)
     entry%block = i_block
     commanded = find_commanded(overrides, entry%contact%id)
     entry%contact%contact_type = stock_type(trim(deck%blocks(i_block)%name))
@@ -65,7 +64,7 @@ contains
       call take_slideline(deck, cursor, cards, kinds, commanded, entry)
       call take_tie(deck, cursor, cards, commanded, entry)
       call take_friction(deck, cursor, cards, overrides, entry)
-    case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION')
+    case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS')
       call take_penalty(deck, cursor, cards, commanded, entry)
       if (cursor%n_card > 2) call take_penalty_friction(deck, cursor, cards(3), overrides, entry)
     case ('CONTACT_2D_TIED_SLIDING')
@@ -108,33 +107,62 @@ contains
     case ('CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE')
       contact_type = 2
     case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE', 'CONTACT_2D_PENALTY', &
-        'CONTACT_2D_PENALTY_FRICTION')
+        'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS')
       contact_type = 3
     case ('CONTACT_2D_AUTOMATIC_TIED', 'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY', &
         'CONTACT_2D_TIED_SLIDING')
       contact_type = 5
-    case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR')
+    case ('CONTACT_2D_AUTOMATIC_SINGLE_SURFACE')
+      contact_type = 5
+    case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR', &
+        'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE_MORTAR')
       contact_type = 7
     case default
       contact_type = 0
     end select
   end function stock_type
 
-  !> SURFA and SURFB.
-  subroutine take_sides(deck, cursor, card, entry)
+  !> SURFA and SURFB. A surface with itself is a part set: our keyword says so by SURFB 0, those of
+  !> a single surface by their name.
+  subroutine take_sides(deck, cursor, card, name, entry)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
+    character(*), intent(in) :: name !! of the keyword
     type(raw_contact_t), intent(inout) :: entry
+    logical :: is_single
     integer :: k
 
+    is_single = index(name, '_SINGLE_SURFACE') > 0
+    entry%contact%is_self = is_single
+    if (name == 'CONTACT_2D_SLIDELINE') entry%contact%is_self = integer_of(card, 'SURFA') > 0 &
+      .and. integer_of(card, 'SURFB') == 0 .and. .not. is_bad(card, 'SURFB')
+    if (is_single .and. integer_of(card, 'SURFA') < 0) call report_field(deck, cursor, card, &
+      'SURFA', 'is not a part set (more than 0): contact of a surface with itself is that of ' &
+      //'whole outlines')
     do k = 1, 2
+      if (k == 2 .and. entry%contact%is_self) then
+        entry%places(k) = entry%places(1)
+        return
+      end if
       if (integer_of(card, side_fields(k)) == 0) call report_field(deck, cursor, card, &
-        side_fields(k), 'is not a surface (more than 0: part set, less than 0: node set)')
+        side_fields(k), 'is not a surface (more than 0: part set, less than 0: node set)' &
+        //of_itself(k, name))
       entry%places(k) = place_of(card, side_fields(k))
       if (.not. is_bad(card, side_fields(k))) entry%sides(k) = integer_of(card, side_fields(k))
     end do
   end subroutine take_sides
+
+  !> What SURFB 0 needs.
+  pure function of_itself(side, name) result(text)
+    integer, intent(in) :: side
+    character(*), intent(in) :: name !! of the keyword
+    character(:), allocatable :: text
+
+    text = ''
+    if (side == 2 .and. name == 'CONTACT_2D_SLIDELINE') text = '; SURFA with itself (0) only ' &
+      //'where that is a part set'
+  end function of_itself
 
   !> *CONTACT_2D_SLIDELINE.
   subroutine take_slideline(deck, cursor, cards, kinds, commanded, entry)
@@ -167,7 +195,26 @@ contains
         call refuse_negative(deck, cursor, cards(2), 'SRCH')
       contact%search_depth = real_of(cards(2), 'SRCH')
     end associate
+    call take_interference(deck, cursor, cards(3), entry)
   end subroutine take_slideline
+
+  !> LCINT: the curve by which an initial overlap grows.
+  subroutine take_interference(deck, cursor, card, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_contact_t), intent(inout) :: entry
+
+    call refuse_negative(deck, cursor, card, 'LCINT')
+    if (integer_of(card, 'LCINT') == 0) return
+    if (integer_of(card, 'TIE') /= tie_none) call report_field(deck, cursor, card, 'LCINT', &
+      'asks for an overlap that grows, which a tie does not have (it keeps its gaps)')
+    if (entry%contact%birth > 0.0_wp) call report_field(deck, cursor, card, 'LCINT', &
+      'asks for the overlap of time zero to grow; the interface must act from then on (TBIRTH 0)')
+    if (is_bad(card, 'LCINT')) return
+    entry%interference = integer_of(card, 'LCINT')
+    entry%interference_place = place_of(card, 'LCINT')
+  end subroutine take_interference
 
   !> What IPF = 1 asks for: `: the strict rule of name (type n)`.
   pure function strict_names(kinds) result(text)

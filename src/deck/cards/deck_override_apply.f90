@@ -111,7 +111,7 @@ contains
     integer, allocatable :: used(:)
 
     used = [raw%curves%id, raw%tables%id, raw%outputs%curve, raw%hardenings%curve, &
-      raw%hardenings%rate_curve, raw%rows(:raw%n_row)%curve]
+      raw%hardenings%rate_curve, raw%contacts%interference, raw%rows(:raw%n_row)%curve]
     number = min(max(high, maxval(used)), huge(number) - 1) + 1
     do while (any(used == number))
       number = number - 1
@@ -223,8 +223,11 @@ contains
             //exact_text(entry%contact%strength(2))//new_line('a')
         else if (is_tied(entry%contact)) then
           text = '0,1,'//to_text(entry%contact%tie)//new_line('a')
-        else if (rule%most > 0.0_wp .or. abs(rule%stiffness - default%stiffness) > 0.0_wp) then
-          text = exact_text(rule%most)//','//exact_text(rule%stiffness)//new_line('a')
+        else if (rule%most > 0.0_wp .or. abs(rule%stiffness - default%stiffness) > 0.0_wp &
+          .or. entry%interference > 0) then
+          text = exact_text(rule%most)//','//exact_text(rule%stiffness)
+          if (entry%interference > 0) text = text//',0,,,'//to_text(entry%interference)
+          text = text//new_line('a')
         end if
       end associate
     end function friction

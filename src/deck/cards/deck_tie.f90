@@ -107,6 +107,8 @@ contains
 
     if (.not. is_tied(entry%contact)) return
     what = 'interface '//to_text(entry%contact%id)//' is tied'
+    if (entry%contact%is_self) call line_error(deck, line, what &
+      //': a surface can not be tied to itself (SURFB 0)')
     associate (contact => entry%contact)
       if (commanded(of_unit) .and. contact%penalty_unit == penalty_share) then
         call pass_by('PUNIT 3', 'its penalty can not be a share of the largest stable one')

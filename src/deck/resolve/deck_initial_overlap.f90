@@ -26,12 +26,13 @@ contains
     type(model_t), intent(in) :: model
     type(body_view_t) :: views(2)
     type(overlap_t) :: found
-    integer :: k, pair(2)
+    integer :: k, n_side, pair(2)
     logical :: crosses
 
     if (min(sides(1)%n_segment, sides(2)%n_segment) == 0) return
     crosses = .false.
-    do k = 1, 2
+    n_side = merge(1, 2, entry%contact%is_self)
+    do k = 1, n_side
       call view_body(model, sides(k), views(k))
       call find_crossing(model, sides(k), views(k), pair)
       if (pair(1) == 0) cycle
@@ -42,12 +43,12 @@ contains
     end do
     if (crosses .or. entry%contact%birth > 0.0_wp) return
     if (.not. (has_closed_chain(sides(1)) .or. has_closed_chain(sides(2)))) return
-    do k = 1, 2
+    do k = 1, n_side
       call find_overlap(model, sides(k), sides(k), views(k), .true., found)
       if (found%segment > 0) call reject_field(deck, entry%places(k), 'is a surface that ' &
         //'overlaps itself: '//depth_text(model, sides(k), found))
     end do
-    call check_between(deck, entry, sides, views, model)
+    if (n_side == 2) call check_between(deck, entry, sides, views, model)
   end subroutine check_overlap
 
   !> Either side in the bodies of the other: the deeper one by the depth allowed is told.

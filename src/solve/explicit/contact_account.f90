@@ -40,9 +40,10 @@ contains
       abs(state%initial_energy + state%external_work))
     if (writes .or. mod(state%cycle, look_interval) == 0) state%contacts%watch%is_due = .true.
     state%contacts%limit%loan = lent_share*state%largest_energy/size(state%contacts)
-    ! What is led takes from its guide what it needs.
-    if (size(model%conditions%motions) + size(model%conditions%rigid_motions) > 0) &
-      state%contacts%limit%loan = huge(1.0_wp)
+    ! What is led takes from its guide what it needs; not so the folds of a surface with itself.
+    if (size(model%conditions%motions) + size(model%conditions%rigid_motions) > 0) then
+      where (.not. model%contacts%is_self) state%contacts%limit%loan = huge(1.0_wp)
+    end if
     ! The step of cycle zero is not known yet.
     state%contacts%limit%coming_step = merge(state%dt, 0.0_wp, state%cycle > 0)
   end subroutine plan_looks

@@ -18,7 +18,7 @@ module explicit_cycle_m
   use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
     table_sleout, table_spcforc
   use health_m, only : tile_check_t, are_sound, check_elements, check_step, check_cycle, &
-    check_energy, made_by_springs
+    check_energy, check_radii, made_by_springs
   use interface_m, only : apply_contact
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
@@ -202,6 +202,7 @@ contains
       monitor%clock, state%cycle, state%time, state%dt, cycle%ratio, 'write vtkhdf state')
     if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) &
       call check_energy(model%controls, monitor%snapshot%energies, made_by_springs, cycle%error)
+    call check_radii(model, state, monitor%told_radii, monitor%log)
     cycle%finished = cycle%last .or. allocated(cycle%error)
   end subroutine report_cycle
 

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: MIT
+"""Contact of part sets with themselves: all types, plane and round, explicit and static."""
+import sys
+
+import numpy as np
+
+sys.path.insert(0, __file__.rsplit("/", 1)[0])
+import scenes  # noqa: E402
+import static_patch  # noqa: E402
+from contact_types import MOMENT_FREE, PASS_PATCH, TYPES  # noqa: E402
+from meshes import angular_momentum, lumped_mass  # noqa: E402
+from patch_layouts import MESHES  # noqa: E402
+
+STEP = 2.0e-4
+
+
+def as_two_interfaces(kind, bodies, end, friction):
+    """The same bodies with the interfaces (1, 2) and (2, 1) at half the penalty, type 3 once at all of it."""
+    deck = scenes.free_bodies(bodies, end, STEP)
+    for slave, master in ((1, 2), (2, 1))[:1 if kind == 3 else 2]:
+        half = scenes.PENALTY * (1.0 if kind == 3 else 0.5)
+        deck.add("*CONTACT_2D_SLIDELINE", (slave, master, kind, 3, half, friction), (0.0, 1.0e20, 0 if kind == 1 else 1))
+    return deck
+
+
+def check_two_bodies(run, kind):
+    bodies, end = scenes.octagons(1, 2, 2, cells=3), 0.15
+    for friction in (0.0, 0.3):
+        pair = run.program(as_two_interfaces(kind, bodies, end, friction))
+        deck = scenes.with_itself(scenes.free_bodies(bodies, end, STEP), (1, 2), kind, scenes.PENALTY,
+                                  0 if kind == 1 else 1, friction)
+        both = run.program(deck)
+        name = f"type {kind}, two bodies, friction {friction}"
+        run.check(f"{name}: energy in the springs, most / initial", np.max(both.table("glstat")["contact"])
+                  / both.table("glstat")["total"][0], 0.01, 0.0, "min", "so that the next check means something")
+        run.check(f"{name}: velocities", both.points("velocity"), pair.points("velocity"), 1.0e-11, "rel",
+                  "the interfaces (1, 2) and (2, 1) at half the penalty (type 3: (1, 2))")
+
+
+def check_names(run, kind):
+    """Nine bodies named and numbered otherwise, begun elsewhere, and in the mirror; until the first bounces are over."""
+    order, end = [4, 8, 0, 5, 2, 7, 1, 3, 6], 0.08
+    found = []
+    for words in ({}, {"order": order}, {"mirrored": True}):
+        bodies = scenes.octagons(3, 3, 1, **words)
+        deck = scenes.with_itself(scenes.free_bodies(bodies, end, STEP), range(1, 10), kind, scenes.PENALTY, 1)
+        result = run.program(deck)
+        found.append(result.points("velocity")[-1, :, :2].reshape(9, -1, 2))
+    run.check(f"type {kind}, nine bodies: energy in the springs at the end",
+              result.table("glstat")["contact"][-1], 1.0, 0.0, "min", "so that the next checks mean something")
+    run.check(f"type {kind}, nine bodies: in another order", found[1], found[0][order], 1.0e-9, "rel", "order is no force")
+    run.check(f"type {kind}, nine bodies: mirrored", found[2] * [-1.0, 1.0], found[0], 1.0e-9, "rel", "mirror image")
+
+
+def check_patch(run, kind):
+    for layout in list(MESHES)[:3:2]:
+        blocks = static_patch.Blocks(*MESHES[layout][:2], scenes.YOUNG, MESHES[layout][2])
+        for friction in (0.0, 0.5):
+            pressure = 1.0e-4
+            result = run.program(scenes.pressed_blocks(kind, blocks, friction, pressure))
+            error = scenes.patch_error(result, blocks, pressure, 0.3 * pressure if friction else 0.0)
+            name = f"type {kind}, patch {layout}, friction {friction}: tractions of both sides"
+            if kind in PASS_PATCH:
+                run.check(name, error, 0.0, 1.0e-9, "abs", "uniform")
+            else:
+                run.report(name, error)
+
+
+def check_energy(run, name, result, most=0.01):
+    table = result.table("glstat")
+    run.check(f"{name}: energy ratio", table["energy_ratio"], 1.0, most, "abs", "balance")
+    return table
+
+
+def check_fork(run, kind):
+    deck, x, _ = scenes.fork(kind)
+    result = run.program(deck)
+    name = f"type {kind}, U"
+    table = check_energy(run, name, result)
+    run.check(f"{name}: most energy in the springs / initial", np.max(table["contact"]) / table["total"][0], 0.05, 0.0, "min",
+              "the arms meet")
+    run.check(f"{name}: energy in the springs at the end / most", table["contact"][-1] / np.max(table["contact"]), 0.0, 0.05,
+              "abs", "given back")
+    partner = np.array([np.argmin(np.abs(x - [0.9 - a, b]).sum(axis=1)) for a, b in x])
+    moved = result.points("displacement")[..., :2]
+    run.check(f"{name}: arm against arm", moved[:, partner] * [-1.0, 1.0], moved, 1.0e-12, "rel", "mirror image")
+
+
+def check_ring(run, kind):
+    deck, x, quads = scenes.ring(kind)
+    result = run.program(deck)
+    name = f"type {kind}, ring pressed flat"
+    check_energy(run, name, result)
+    moved = result.points("displacement")[..., :2]
+    deep = scenes.deepest(x + moved[-1], quads)
+    run.check(f"{name}: deepest node / element", deep / 0.05, 0.0, 0.15, "abs", "none behind a face: springs give")
+    turn = np.array([np.argmin(np.abs(x + a).sum(axis=1)) for a in x])
+    inner = np.linalg.norm(result.points("contact_force")[-1, :64], axis=1)
+    run.check(f"{name}: largest force on the inner side", np.max(inner), 1.0, 0.0, "min", "it has closed on itself")
+    error = np.max(np.abs(moved + moved[:, turn]), axis=(1, 2))
+    run.check(f"{name}: turned by half a turn, until it lies flat", error[:10], 0.0, 1.0e-12, "abs", "symmetric to round-off")
+    run.report(f"{name}: turned by half a turn, at the end", error[-1], "m; round-off decides which of two like faces counts")
+
+
+def check_tube(run, kind, is_round):
+    deck, x, quads = scenes.tube(kind, is_round)
+    result = run.program(deck)
+    name = f"type {kind}, folding {'tube' if is_round else 'strip'}"
+    table = check_energy(run, name, result)
+    run.true(f"{name}: ends normally", "N o r m a l" in result.stdout, "TSSFAC 0.9")
+    run.check(f"{name}: contact makes no energy, over the work done", table["contact"] / np.max(table["external_work"]), -0.01,
+              0.0, "min", "section 6.1")
+    deep = scenes.deepest(x + result.points("displacement")[-1, :, :2], quads)
+    run.check(f"{name}: deepest node / element", deep / 0.5, 0.0, 0.3, "abs", "none behind a face: springs give")
+
+
+def check_tumbling(run, kind):
+    deck, x, quads = scenes.tumbling_ring(kind)
+    result = run.program(deck)
+    name = f"type {kind}, tumbling ring one element thick"
+    check_energy(run, name, result)
+    run.check(f"{name}: contact force", result.points("contact_force"), 0.0, 0.0, "abs", "nothing touches")
+
+
+def check_many(run, kind):
+    bodies = scenes.octagons(7, 7, 1)
+    deck = scenes.with_itself(scenes.free_bodies(bodies, 0.15, STEP), range(1, 50), kind, scenes.PENALTY, 1)
+    result = run.program(deck)
+    name = f"type {kind}, 49 bodies"
+    check_energy(run, name, result, 1.0e-3)
+    mass = np.concatenate([lumped_mass(x, q, scenes.RHO) for x, q, _ in bodies])
+    position, velocity = result.points("Points")[..., :2], result.points("velocity")[..., :2]
+    momentum = np.einsum("n,tnk->tk", mass, velocity)
+    size = np.sum(mass * np.linalg.norm(velocity[0], axis=1))
+    run.check(f"{name}: momentum, drift / sum |p|", (momentum - momentum[0]) / size, 0.0, 1.0e-12, "abs", "no outer load")
+    turning = angular_momentum(mass, position, velocity)
+    if kind in MOMENT_FREE:
+        run.check(f"{name}: angular momentum, drift / (sum |p| x 1 m)", (turning - turning[0]) / size, 0.0, 1.0e-11, "abs",
+                  "no outer moment")
+
+
+def check(run):
+    for kind in TYPES:
+        check_two_bodies(run, kind)
+        check_names(run, kind)
+        check_patch(run, kind)
+        check_fork(run, kind)
+        check_ring(run, kind)
+        check_tumbling(run, kind)
+        check_tube(run, kind, True)
+    check_tube(run, 5, False)
+    for kind in (1, 5, 7):
+        check_many(run, kind)
