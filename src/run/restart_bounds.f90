@@ -157,32 +157,19 @@ contains
     end associate
   end subroutine check_points
 
-  !> Springs of ties: their points follow each other, and nodes are those of the interface.
+  !> Springs of ties, as many as the deck makes: their points follow each other, nodes and places
+  !> are those of the interface.
   subroutine check_ties(memory, folder, archive)
     type(contact_state_t), intent(in) :: memory
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
-    logical :: fits
     integer :: n, n_place
 
     associate (ties => memory%ties)
       n = size(ties%side)
-      fits = allocated(ties%first) .and. allocated(ties%owner) .and. allocated(ties%lag) .and. &
-        allocated(ties%offset) .and. &
-        (allocated(ties%traction) .eqv. allocated(memory%node_pressure))
-      if (fits) fits = size(ties%first) == n + 1 .and. all(shape(ties%owner) == [2, n]) .and. &
-        all(shape(ties%lag) == [2, n]) .and. all(shape(ties%offset) == [2, n])
-      if (fits .and. allocated(ties%traction)) fits = size(ties%traction) == memory%n_slave
-      call require(archive, folder//'side', fits, 'not as many values as the arrays beside it')
-      if (allocated(archive%error)) return
       n_place = memory%n_master + memory%n_slave
       if (allocated(memory%spots)) n_place = memory%n_master + size(memory%spot_xi)*memory%n_slave
       if (allocated(ties%state)) then
-        fits = allocated(ties%place) .and. allocated(ties%to_stress)
-        if (fits) fits = size(ties%state) == n_place .and. size(ties%place) == n .and. &
-          size(ties%to_stress) == n
-        call require(archive, folder//'state', fits, 'not as many values as the arrays beside it')
-        if (allocated(archive%error)) return
         call require(archive, folder//'state', all(ties%state == is_open .or. ties%state &
           == is_held .or. ties%state == is_broken), 'numbers that mean nothing')
         call require(archive, folder//'place', all(ties%place >= merge(0, 1, &

@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Ties through the program: the same bits after a restart and at any number of threads, keywords and messages."""
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
 import pytest
 from conftest import numbers
 from meshes import Deck, grid
@@ -7,6 +12,9 @@ from test_implicit import implicit
 from test_restart import assert_same, histories, part_of, with_files
 
 from slideline_tools.contact_types import ALL_TYPES
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "fuzz"))
+import fuzz_restarts  # noqa: E402
 
 
 def tied(kind, columns=(40, 28), keyword=None, whole=False, is_round=False, gap=0.0, static=None, overhang=0.0,
@@ -113,6 +121,34 @@ def test_implicit_break_and_restart(slideline, tmp_path, kind):
     done = slideline("r=rest/job.dump01.h5")
     assert done.returncode == 0, done.stderr
     assert_same(tmp_path / "whole", rest)
+
+
+#: dataset of a tie -> (new content, word of the message)
+LIES = {
+    "side": (lambda old: old[:-1].copy(), "expected here"),
+    "first": (lambda old: old[:-1].copy(), "expected here"),
+    "lag": (lambda old: old[:, :-1].copy(), "expected here"),
+    "offset": (lambda old: old[:-1].copy(), "expected here"),
+    "state": (lambda old: old * 0 + 2, "mean nothing"),
+    "place": (lambda old: old * 0 + 10**6, "no place"),
+    "to_stress": (lambda old: np.append(old, 1.0), "expected here"),
+    "owner": (lambda old: old * 0 - 1, "no node"),
+}
+
+
+def test_lies_of_a_tie_are_named(slideline, tmp_path):
+    text = with_files(tied(5, columns=(12, 9), strength=(8.0e3, 8.0e3)), dump=20)
+    assert slideline("d=out", deck=text).returncode == 0
+    for name, (change, word) in LIES.items():
+        path = tmp_path / "lie.h5"
+        path.write_bytes((tmp_path / "out/job.dump01.h5").read_bytes())
+        with h5py.File(path, "r+") as stream:
+            where = f"state/contacts/1/ties/{name}"
+            fuzz_restarts.replace(stream, where, change(stream[where][()]))
+        fuzz_restarts.mend(path)
+        done = slideline("r=lie.h5", "d=again")
+        assert done.returncode == 1, (name, done.returncode, done.stderr)
+        assert "state/contacts/1/ties" in done.stderr and word in done.stderr, (name, done.stderr)
 
 
 def test_a_deck_written_back_breaks_alike(slideline, tmp_path):

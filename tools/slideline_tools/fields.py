@@ -17,7 +17,7 @@ LABELS = {
     "gap": ("contact gap", True),
     "contact_traction": ("friction traction", True),
     "contact_slip": ("slip", True),
-    "contact_state": ("0 open, 1 stick, 2 slip", False),
+    "contact_state": ("0 open, 1 stick, 2 slip, 3 tied, 4 broken", False),
 }
 
 

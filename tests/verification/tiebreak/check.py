@@ -237,7 +237,18 @@ def check_peel(run, kind):
               "beams on an elastic foundation")
 
 
+def check_nodes(run):
+    """Type 1: as many springs as nodes, so that those of the ends, which stand for half a length, break first."""
+    way = [(0.0, 0.0, 0.0), (125.0 * STEP, 0.0, 1.25 * STRENGTH[0] / SPRING)]
+    _, row, (_, uy) = led(run, 1, way, "nodes")
+    share = SPRING * uy / STRENGTH[0]
+    clear = np.min(np.abs(share[:, None] - [0.5, 1.0]), axis=1) > 0.011
+    exact = -SPRING / 7.0 * uy * np.where(share < 0.5, 8.0, np.where(share < 1.0, 6.0, 0.0))
+    run.check("type 1: eight springs, then six, then none", row["fy"][clear], exact[clear], 1.0e-9, "rel")
+
+
 def check(run):
+    check_nodes(run)
     for kind in TYPES:
         for dof in (1, 2):
             if kind != 1:
