@@ -66,6 +66,18 @@ def check_patch(run, kind):
                 run.report(name, error)
 
 
+def check_discs(run, kind):
+    for layout in list(MESHES)[:3:2]:
+        blocks = static_patch.Blocks(*MESHES[layout][:2], scenes.YOUNG, MESHES[layout][2])
+        result = run.program(scenes.pressed_discs(kind, blocks, 1.0e-4))
+        error = scenes.disc_error(result, blocks, 1.0e-4)
+        name = f"type {kind}, patch of discs {layout}: axial tractions of both sides"
+        if kind in PASS_PATCH:
+            run.check(name, error, 0.0, 1.0e-9, "abs", "uniform")
+        else:
+            run.report(name, error)
+
+
 def check_energy(run, name, result, most=0.01):
     table = result.table("glstat")
     run.check(f"{name}: energy ratio", table["energy_ratio"], 1.0, most, "abs", "balance")
@@ -142,13 +154,14 @@ def check_many(run, kind):
 def check(run):
     for kind in TYPES:
         check_two_bodies(run, kind)
-        check_names(run, kind)
         check_patch(run, kind)
+        check_discs(run, kind)
         check_fork(run, kind)
         check_ring(run, kind)
         check_tumbling(run, kind)
         check_tube(run, kind, True)
     for kind, is_round in ((5, False), (5, True), (7, False)):
         check_tube(run, kind, is_round, " one element thick, crushed by 0.9", layers=1, points=4, crushed=0.9)
-    for kind in (1, 5, 7):
-        check_many(run, kind)
+    for kind in (1, 3, 5, 7):
+        check_names(run, kind)
+    check_many(run, 5)
