@@ -2,6 +2,7 @@
 !> `slideline check`: all that is wrong or strange in a deck, and what a run would say at its start,
 !> without a run and without a file.
 module check_m
+  use contacts_m, only : n_told
   use arguments_m, only : arguments_t
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
@@ -53,7 +54,7 @@ contains
       if (allocated(failure)) call raise(error, failure%message, status_files)
     else if (.not. allocated(error)) then
       call show(arguments%deck//': accepted, '//to_text(model%mesh%n_element)//' elements, ' &
-        //to_text(model%mesh%n_node)//' nodes, '//to_text(size(model%contacts))//' interfaces, ' &
+        //to_text(model%mesh%n_node)//' nodes, '//to_text(n_told(model%contacts))//' interfaces, ' &
         //to_text(monitor%log%n_warning)//' warnings')
     end if
   end subroutine check_deck

@@ -2,6 +2,7 @@
 !> One run: deck, model, state, driver, files.
 module run_m
   use, intrinsic :: iso_fortran_env, only : output_unit
+  use contacts_m, only : n_told
   use arguments_m, only : arguments_t, file_stem, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
@@ -66,7 +67,7 @@ contains
     if (allocated(error)) return
     if (allocated(request%text)) deallocate (request%text)
     if (arguments%timing == timing_by_interface) &
-      call split_contact(monitor%clock, size(model%contacts))
+      call split_contact(monitor%clock, n_told(model%contacts))
     call renumber_model(model)
     prefix = join_path(arguments%directory, arguments%job)
     if (monitor%restarts%goes_on) then
@@ -293,7 +294,8 @@ contains
 
     call lap(monitor%clock, phase_output)
     call look_at_clock(monitor%clock)
-    interfaces = model%contacts%id
+    allocate (interfaces(0))
+    if (allocated(model%contacts)) interfaces = model%contacts(:n_told(model%contacts))%id
     call write_timing(prefix//'.timing.csv', monitor%clock, interfaces, problem)
     if (.not. allocated(error) .and. allocated(problem)) call move_alloc(problem, error)
     if (.not. allocated(error) .and. allocated(monitor%log%trouble)) error = monitor%log%trouble

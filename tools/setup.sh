@@ -60,12 +60,14 @@ lacking() {
   fi
 }
 
-# useful: as `lacking`, for what the program is better with but does without.
+# useful [test]: as `lacking`, for what the program, or its tests, are better with but do without.
 useful() {
-  if command -v gfortran >/dev/null && echo end | gfortran -x f95 - -lumfpack -o /dev/null 2>/dev/null; then
-    return 0
+  if ! command -v gfortran >/dev/null || ! echo end | gfortran -x f95 - -lumfpack -o /dev/null 2>/dev/null; then
+    echo "libsuitesparse-dev: UMFPACK, for large implicit systems"
   fi
-  echo "libsuitesparse-dev: UMFPACK, for large implicit systems"
+  if [ "${1:-}" = test ] && ! command -v ccx >/dev/null; then
+    echo "calculix-ccx: CalculiX, which friction is compared with"
+  fi
 }
 
 cmake_is_new() {
@@ -90,12 +92,12 @@ package_names() {
   printf '%s\n' "$1" | sed 's/:.*//' | tr '\n' ' ' | sed 's/ $//'
 }
 
-# Install the system packages that are missing, then those that are only useful.
+# install_packages [test]: the system packages that are missing, then those that are only useful.
 install_packages() {
   local missing as_root
   missing=$(lacking)
   if [ -z "$missing" ]; then
-    install_useful
+    install_useful "$@"
     return 0
   fi
   command -v apt-get >/dev/null || give_up "Something is missing and there is no apt-get here." "$missing"
@@ -114,22 +116,22 @@ install_packages() {
   fi
   missing=$(lacking)
   [ -z "$missing" ] || give_up "Still missing after apt-get:" "$missing"
-  install_useful
+  install_useful "$@"
 }
 
-# Install what the program does without: once, where that needs no questions; a failure is no error.
+# Install what is done without: once, where that needs no questions; a failure is no error.
 install_useful() {
-  local extra as_root
-  [ ! -e "$root/build/useful.log" ] || return 0
-  extra=$(useful)
+  local extra as_root log=useful${1:+-$1}.log
+  [ ! -e "$root/build/$log" ] || return 0
+  extra=$(useful "$@")
   [ -n "$extra" ] && command -v apt-get >/dev/null || return 0
   as_root=()
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null && sudo -n true 2>/dev/null || return 0
     as_root=(sudo)
   fi
-  apt_install useful.log "$extra" ||
-    complain "apt-get failed (build/useful.log); going on without $(package_names "$extra")"
+  apt_install "$log" "$extra" ||
+    complain "apt-get failed (build/$log); going on without $(package_names "$extra")"
 }
 
 # apt_install LOG LINES: install the packages of these lines, as the words of `as_root` say.

@@ -9,7 +9,7 @@ set -uo pipefail
 help_or_go_on "$@"
 
 lock
-install_packages
+install_packages test
 install_tools test
 failed=0
 

@@ -4,8 +4,9 @@ module contact_log_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_penalty_m, only : mean_length, built_in_penalty
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, kind_text, &
+  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, breaks, kind_text, &
     penalty_share
+  use friction_state_m, only : is_open, is_broken
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
@@ -15,11 +16,16 @@ module contact_log_m
   use ties_m, only : tied_nodes
   implicit none
   private
-  public :: log_contact, penalty_text, report_initial_contact, report_released, report_tie_step
+  public :: log_contact, penalty_text, report_initial_contact, report_released, report_tie_step, &
+    report_broken
 
   !> Part of the search reach below which a penetration at time zero is round-off, that of
   !> coordinates written with some eight digits included.
   real(wp), parameter :: round_off = 1.0e-6_wp
+  !> Share of the step of the elements below which the step with ties is worth a warning.
+  real(wp), parameter :: dear_share = 0.5_wp
+  !> Share of the built-in penalty, which is that of ten elements, below which a tie holds little.
+  real(wp), parameter :: soft_tie = 0.1_wp
   !> Nodes that a message names.
   integer, parameter :: most_named = 5
 
@@ -34,6 +40,10 @@ contains
     type(log_t), intent(inout) :: log
     character(:), allocatable :: title
 
+    if (contact%behind > 0) then
+      call log_behind(contact, memory, log)
+      return
+    end if
     title = ''
     if (allocated(contact%title)) title = contact%title
     if (len(title) > 0) title = ' "'//title//'"'
@@ -74,6 +84,22 @@ contains
     end if
   end subroutine log_contact
 
+  !> Contact of what ties have let go; the rest has been told of the tie.
+  subroutine log_behind(contact, memory, log)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
+
+    text = '  behind the ties of interface '//to_text(contact%id) &
+      //': contact under the same penalty'
+    if (contact%damping > 0.0_wp) text = text//', damping '//to_text(contact%damping) &
+      //' of critical'
+    if (allocated(memory%friction%state)) text = text//', friction ' &
+      //friction_text(contact%friction)
+    call write_log(log, text)
+  end subroutine log_behind
+
   !> `n nodes, m segments of mean length l m`.
   pure function surface_text(surface, model) result(text)
     type(surface_t), intent(in) :: surface
@@ -105,11 +131,19 @@ contains
     logical :: is_held(memory%n_slave + memory%n_master)
     integer :: i, n
 
-    is_held = tied_nodes(memory)
+    if (memory%slave_penalty < soft_tie*built_in_penalty(contact, model)) call warn(log, &
+      'interface '//to_text(contact%id)//': its ties are as soft as ' &
+      //to_text(10.0_wp*built_in_penalty(contact, model)/memory%slave_penalty)//' elements of ' &
+      //'its surfaces, so what they hold moves apart; PEN 10 with PUNIT 2, the default, is as ' &
+      //'stiff as one')
+    is_held = tied_nodes(memory, .true.)
     call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
       //to_text(memory%n_slave)//' slave nodes, '//to_text(size(memory%ties%side)) &
       //' springs of area '//to_text(sum(memory%points%area(:memory%points%n))) &
       //', reach '//to_text(tie_reach(contact, model))//' m')
+    if (breaks(contact)) call write_log(log, '  breaks at a tension of ' &
+      //to_text(contact%strength(1))//' or a shear of '//to_text(contact%strength(2)) &
+      //' N/m^2, together on an ellipse')
     if (memory%points%n == 0 .or. all(is_held(:memory%n_slave))) return
     if (has_closed_chain(contact%slave)) return
     n = 0
@@ -124,18 +158,25 @@ contains
       //to_text(memory%n_slave)//' slave nodes have nothing within reach and are not tied:'//names)
   end subroutine log_ties
 
-  !> What ties cost: the stable step of the elements alone, and with the springs.
+  !> What ties cost: the stable step of the elements alone, and with the springs. A warning where
+  !> they cost most of it: no run was meant to take so much longer.
   subroutine report_tie_step(id, element_limit, limit, log)
     integer, intent(in) :: id
     real(wp), intent(in) :: element_limit, limit !! s
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
     character(8) :: share
 
     write (share, '(ss,f0.1)') 100.0_wp*(1.0_wp - limit/element_limit)
     if (share(1:1) == '.') share = '0'//share
-    call write_log(log, 'interface '//to_text(id)//': with its ties the stable step is ' &
-      //to_text(limit)//', of the elements alone '//to_text(element_limit)//': the ties cost ' &
-      //trim(share)//' % of the step')
+    text = 'interface '//to_text(id)//': with its ties the stable step is '//to_text(limit) &
+      //', of the elements alone '//to_text(element_limit)//': the ties cost '//trim(share) &
+      //' % of the step'
+    if (limit < dear_share*element_limit) then
+      call warn(log, text//'; a softer tie (PEN, SFACT) costs less')
+    else
+      call write_log(log, text)
+    end if
   end subroutine report_tie_step
 
   !> The rule of friction.
@@ -190,6 +231,8 @@ contains
       factor = factor//' and '//to_text(memory%master_penalty/estimate)
     end if
     text = text//'; '//factor//' times the built-in estimate'
+    if (model%is_round) text = text &
+      //' (per metre of the circumference: times the radius, per radian)'
   end function penalty_text
 
   !> Warn of the deepest penetration at time zero, with the node next to it and the force that it
@@ -199,21 +242,51 @@ contains
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
     real(wp) :: depth !! that counts, m
     integer :: p, k
 
+    if (memory%points%n == 0 .and. allocated(contact%interference)) call warn(log, 'interface ' &
+      //to_text(contact%id)//': its curve of interference (LCINT) has no effect, for nothing ' &
+      //'overlaps at the start')
     if (memory%points%n == 0) return
     p = minloc(memory%points%gap(:memory%points%n), 1)
     depth = round_off*memory%slave_tracking%reach
     if (-memory%points%gap(p) <= depth) return
     k = maxloc(memory%points%slave_weights(:, p), 1)
-    call warn(log, 'interface '//to_text(contact%id)//': initial penetration at ' &
-      //to_text(count(memory%points%gap(:memory%points%n) < -depth))//' points, deepest at node ' &
-      //to_text(model%mesh%node_id(memory%nodes(memory%points%slave_nodes(k, p))))//': ' &
-      //to_text(-memory%points%gap(p))//' m, force of that point ' &
-      //to_text(memory%points%pressure(p)*memory%points%area(p))//' N/m; it is kept, so that the ' &
-      //'run starts with these forces')
+    text = ' at '//to_text(count(memory%points%gap(:memory%points%n) < -depth)) &
+      //' points, deepest at node '//to_text(model%mesh%node_id(memory%nodes( &
+      memory%points%slave_nodes(k, p))))//': '//to_text(-memory%points%gap(p))//' m'
+    if (allocated(contact%interference)) then
+      call write_log(log, 'interface '//to_text(contact%id)//': interference'//text//'; it grows ' &
+        //'from 0 to that by curve '//to_text(contact%interference%id)//' until ' &
+        //to_text(contact%interference%abscissa(size(contact%interference%abscissa)))//' s')
+      return
+    end if
+    call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', force of ' &
+      //'that point '//to_text(memory%points%pressure(p)*memory%points%area(p)) &
+      //trim(merge(' N per radian', ' N/m         ', model%is_round)) &
+      //'; it is kept, so that the run starts with these forces')
   end subroutine report_initial_contact
+
+  !> How much of a tie has broken, at the end of the run.
+  subroutine report_broken(contact, memory, log)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(log_t), intent(inout) :: log
+    integer :: n
+
+    if (.not. breaks(contact)) return
+    n = count(memory%ties%state == is_broken)
+    if (n == 0) then
+      call write_log(log, 'interface '//to_text(contact%id)//': nothing of its ties has broken')
+    else
+      call write_log(log, 'interface '//to_text(contact%id)//': of its ties '//to_text(n)//' of ' &
+        //to_text(count(memory%ties%state /= is_open))//' places have broken, from time ' &
+        //to_text(memory%ties%first_break)//' to '//to_text(memory%ties%last_break) &
+        //'; what they held, '//to_text(memory%ties%spent)//' J/m, stays in the energy of contact')
+    end if
+  end subroutine report_broken
 
   !> Warn of first contacts that were too deep and were let go, at the end of the run.
   subroutine report_released(contact, memory, log)

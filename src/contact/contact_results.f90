@@ -6,15 +6,15 @@ module contact_results_m
   use foot_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
   use geometry_m, only : segment_length
   use kinds_m, only : wp
-  use friction_state_m, only : is_open, is_held
+  use friction_state_m, only : is_open, is_held, is_broken
   use lengths_m, only : competence_area
   use nodal_average_m, only : average_gaps
   use snapshot_m, only : interface_result_t, slave_result_t, rubbed_t
   use surfaces_m, only : surface_t
-  use ties_m, only : tied_nodes
+  use ties_m, only : tie_spring_t, tie_spring, tied_nodes
   implicit none
   private
-  public :: interface_resultants, slave_rows
+  public :: interface_resultants, slave_rows, join_rows
 
 contains
 
@@ -90,20 +90,89 @@ contains
     if (allocated(memory%ties%side)) call fill_ties(memory, rows)
   end subroutine rows_between
 
-  !> What ties have besides: gaps of slave nodes as means of their springs, by area; states, and for
-  !> slips what the springs give along the surface.
+  !> What ties have besides: gaps and slips of nodes as means of their springs, by area, and states.
   pure subroutine fill_ties(memory, rows)
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
     real(wp) :: nodal(2, memory%n_slave + memory%n_master)
+    integer :: i
 
     rows%gap = 0.0_wp
     if (memory%points%n > 0) then
       call average_gaps(memory%points, size(nodal, 2), nodal)
       rows%gap = nodal(1, :memory%n_slave)
     end if
-    rows%rubbed%state = merge(is_held, is_open, tied_nodes(memory))
+    rows%rubbed%slip = mean_slips(memory)
+    rows%rubbed%state = merge(is_broken, is_open, tied_nodes(memory, .false.))
+    associate (still => tied_nodes(memory, .true.))
+      do i = 1, size(still)
+        if (still(i)) rows%rubbed(i)%state = is_held
+      end do
+    end associate
   end subroutine fill_ties
+
+  !> How far nodes have moved along their chains over the other side, against the reference geometry
+  !> and whether they still are held or not, m. Springs measure the slave along the master's chain,
+  !> which runs the other way.
+  pure function mean_slips(memory) result(slip)
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: slip(memory%n_slave + memory%n_master)
+    real(wp) :: area(memory%n_slave + memory%n_master), along
+    type(tie_spring_t) :: spring
+    integer :: s, p, k
+
+    slip = 0.0_wp
+    area = 0.0_wp
+    if (memory%points%n == 0) return
+    associate (points => memory%points)
+      do s = 1, size(memory%ties%side)
+        spring = tie_spring(memory, s)
+        along = memory%ties%offset(2, s) - dot_product(spring%d, spring%t)
+        do p = memory%ties%first(s), memory%ties%first(s + 1) - 1
+          do k = 1, n_side
+            call add_weighted(points%slave_weights(k, p)*points%area(p), along, &
+              slip(points%slave_nodes(k, p)), area(points%slave_nodes(k, p)))
+            call add_weighted(points%master_weights(k, p)*points%area(p), along, &
+              slip(points%master_nodes(k, p)), area(points%master_nodes(k, p)))
+          end do
+        end do
+      end do
+    end associate
+    where (area > 0.0_wp) slip = slip/area
+  end function mean_slips
+
+  !> Add a value and its weight to two sums.
+  pure subroutine add_weighted(weight, value, total, weights)
+    real(wp), intent(in) :: weight, value
+    real(wp), intent(inout) :: total, weights
+
+    total = total + weight*value
+    weights = weights + weight
+  end subroutine add_weighted
+
+  !> The rows of a tie with those of the contact behind it: sums of forces; where the tie does not
+  !> hold, the gap of contact and, if it never did, slip and state of contact.
+  pure subroutine join_rows(behind, rows)
+    type(slave_result_t), intent(in) :: behind
+    type(slave_result_t), intent(inout) :: rows
+    integer :: i
+
+    rows%pressure = rows%pressure + behind%pressure
+    rows%force = rows%force + behind%force
+    rows%master_pressure = rows%master_pressure + behind%master_pressure
+    do i = 1, size(rows%node)
+      if (rows%rubbed(i)%state /= is_held) rows%gap(i) = behind%gap(i)
+    end do
+    if (.not. allocated(behind%rubbed)) return
+    do i = 1, size(rows%rubbed)
+      associate (rub => rows%rubbed(i), other => behind%rubbed(i))
+        rub%traction = rub%traction + other%traction
+        if (rub%state /= is_open) cycle
+        rub%slip = other%slip
+        rub%state = other%state
+      end associate
+    end do
+  end subroutine join_rows
 
   !> Distance along each chain from its first node, in the present shape.
   pure subroutine fill_arc_lengths(surface, places, arc_length)

@@ -71,7 +71,8 @@ contains
     rubbed = 0.0_wp
     if (allocated(after%friction%force)) rubbed = sum((before%friction%force &
       + after%friction%force)*motion(3:4, after%nodes))
-    after%energy = before%energy - 0.5_wp*(work - rubbed)
+    after%energy = before%energy + (after%interference%work - before%interference%work) &
+      - 0.5_wp*(work - rubbed)
     after%friction%work = before%friction%work - 0.5_wp*rubbed
   end subroutine count_step
 

@@ -6,6 +6,7 @@ module interface_m
   use caught_aside_m, only : energy_caught
   use closing_m, only : close_contacts, closed_gap_of
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
+  use behind_ties_m, only : leave_to_tie, take_over
   use contact_law_m, only : pressed_at_slave_nodes, press_places
   use contact_log_m, only : log_contact
   use contact_penalty_m, only : set_penalties
@@ -13,7 +14,7 @@ module interface_m
   use contact_springs_m, only : begin_look, measure_springs, end_look
   use contact_work_m, only : take_apart, hand_over, count_work
   use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
-    allocate_tractions, allocate_scratch, is_free
+    allocate_tractions, allocate_scratch, places_of_segment, is_free
   use contacts_m, only : contact_t, has_friction, is_tied
   use crossing_m, only : crossings_t, find_crossings, catch_crossings
   use damping_m, only : damp_points
@@ -26,6 +27,8 @@ module interface_m
   use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
     start_slave_tracking, start_master_tracking, start_segments
   use gather_m, only : gather_places, take_force, keep_former
+  use interference_m, only : begin_growth
+  use interference_state_m, only : allocate_interference
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
@@ -46,7 +49,7 @@ contains
     type(contact_state_t), intent(out) :: memory
     type(formulation_t) :: formulation
     real(wp) :: origin(2)
-    integer :: n_slave, n_master, n_each, i
+    integer :: n_slave, n_master, i
 
     n_slave = contact%slave%n_node
     n_master = contact%master%n_node
@@ -80,10 +83,11 @@ contains
       call allocate_limit(memory%limit, n_slave + n_master)
     if (has_friction(contact)) then
       call allocate_tractions(memory%points)
-      n_each = 1
-      if (allocated(memory%spots)) n_each = size(memory%spot_xi)
-      call allocate_friction(memory%friction, n_each*n_slave + n_master, n_slave + n_master)
+      call allocate_friction(memory%friction, places_of_segment(memory)*n_slave + n_master, &
+        n_slave + n_master)
     end if
+    if (allocated(contact%interference)) call allocate_interference(memory%interference, &
+      places_of_segment(memory)*n_slave, n_master)
     call allocate_scratch(memory)
     if (is_tied(contact)) call start_ties(contact, model, memory)
     call log_contact(contact, model, formulation%kind, memory, log)
@@ -133,10 +137,11 @@ contains
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     type(contact_t), allocatable :: present
 
+    if (allocated(memory%interference%depth)) call begin_growth(contact, time, memory)
     if (is_suspended(contact, time)) then
       call suspend_contact(motion, dt, memory)
     else if (is_tied(contact)) then
-      call apply_ties(motion, dt, cycle, clock, memory, force)
+      call apply_ties(contact, motion, [time, dt], cycle, clock, memory, force)
     else if (memory%facing%is_used) then
       if (allocated(memory%friction%force)) call take_increments(motion, memory)
       call follow_runs(contact, motion, memory)
@@ -174,6 +179,10 @@ contains
     call lap(clock, phase_contact_pairing)
     if (memory%points%n > 0) then
       call press_places(memory%contact_law, formulation%where_pressed, memory)
+      if (contact%behind > 0) then
+        call leave_to_tie(memory)
+        call take_over(memory)
+      end if
       call look_at_springs(cycle, memory)
       ! Springs born or caught loaded make what they hold: that is told, and may be returned.
       if (is_born) then
@@ -239,6 +248,7 @@ contains
       call evaluate_ties(motion, memory, force)
       return
     end if
+    if (allocated(memory%interference%depth)) call begin_growth(contact, time, memory)
     memory%is_stale = memory%is_stale .or. is_suspended(contact, time)
     if (memory%facing%is_used .and. .not. is_suspended(contact, time)) &
       call follow_runs_in_step(contact, motion, memory)
@@ -279,6 +289,7 @@ contains
     call place_points(contact, memory)
     if (memory%points%n == 0) return
     call press_places(memory%contact_law, formulation%where_pressed, memory)
+    if (contact%behind > 0) call leave_to_tie(memory)
     if (allocated(memory%friction%force)) &
       call rub_places(contact, formulation%has_unit_area, memory%scratch%dt, memory)
     call scatter_forces(memory)

@@ -30,6 +30,7 @@ module deck_m
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control, check_step
   use deck_output_m, only : read_database
+  use deck_transducer_m, only : read_transducer
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : settle_friction
   use deck_wall_m, only : read_wall
@@ -203,8 +204,8 @@ contains
       call read_nodes(deck, parameters, i, raw)
     case ('ELEMENT_SHELL')
       call read_elements(deck, parameters, i, raw)
-    case ('SET_NODE_LIST', 'SET_NODE_LIST_GENERATE', 'SET_PART_LIST', 'SET_PART_LIST_GENERATE', &
-        'SET_SEGMENT')
+    case ('SET_NODE_LIST', 'SET_NODE_LIST_GENERATE', 'SET_NODE_GENERAL', 'SET_PART_LIST', &
+        'SET_PART_LIST_GENERATE', 'SET_SEGMENT', 'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
       call read_set(deck, parameters, i, raw)
     case ('PART')
       call read_part(deck, parameters, i, raw)
@@ -254,7 +255,11 @@ contains
     case ('DATABASE_')
       call read_database(deck, parameters, i, raw)
     case ('CONTACT_')
-      call read_contact(deck, parameters, i, kinds, overrides, raw)
+      if (deck%blocks(i)%name == 'CONTACT_2D_FORCE_TRANSDUCER') then
+        call read_transducer(deck, parameters, i, raw)
+      else
+        call read_contact(deck, parameters, i, kinds, overrides, raw)
+      end if
     case ('BOUNDARY_', 'INITIAL_', 'LOAD_', 'DAMPING_')
       call read_condition(deck, parameters, i, raw)
     end select

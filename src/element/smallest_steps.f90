@@ -37,7 +37,7 @@ contains
     integer, allocatable, intent(out) :: found(:)     !! element indices
     real(wp), allocatable, intent(out) :: steps(:)    !! s
     logical, allocatable :: seen(:)
-    real(wp) :: step, reference(6)
+    real(wp) :: step, reference(6), round_reference(n_round_reference)
     integer :: i, i_chunk, i_slot
 
     allocate (found(0), steps(0))
@@ -47,10 +47,11 @@ contains
       seen(i_chunk) = .true.
       do i_slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
         if (model%layout%slot_element(i_slot) == 0) cycle
-        reference = elements%reference(i_slot, :6)
         if (model%is_round) then
-          step = round_step_of_slot(model, elements%reference(i_slot, :), i_slot, motion)
+          round_reference = elements%reference(i_slot, :)
+          step = round_step_of_slot(model, round_reference, i_slot, motion)
         else
+          reference = elements%reference(i_slot, :6)
           step = step_of_slot(model, reference, i_slot, motion)
         end if
         call insert(n, model%layout%slot_element(i_slot), step, found, steps)

@@ -1,22 +1,24 @@
 ! SPDX-License-Identifier: MIT
 !> Contact interfaces as the deck describes them.
 module contacts_m
+  use curves_m, only : curve_t
   use kinds_m, only : wp
   use log_m, only : to_text
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: contact_t, contact_kind_t, friction_rule_t, has_friction, is_tied, has_shear, &
-    kind_text, most_gauss, penalty_per_node, penalty_distributed, penalty_factor, penalty_share, &
-    tie_none, tie_always, tie_factor
+  public :: contact_t, contact_kind_t, transducer_t, friction_rule_t, has_friction, is_tied, &
+    breaks, has_shear, n_told, told_as, kind_text, most_gauss, penalty_per_node, &
+    penalty_distributed, penalty_factor, penalty_share, tie_none, tie_always, tie_breaks, tie_factor
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
   !> share of the largest stable penalty.
   integer, parameter :: penalty_per_node = 0, penalty_distributed = 1, penalty_factor = 2, &
     penalty_share = 3
 
-  !> What holds the surfaces together (TIE): nothing, or springs that stay.
-  integer, parameter :: tie_none = 0, tie_always = 1
+  !> What holds the surfaces together (TIE): nothing, springs that stay, or springs that break at
+  !> their strengths.
+  integer, parameter :: tie_none = 0, tie_always = 1, tie_breaks = 2
   !> PEN of ties where the deck gives none, as a factor on the built-in estimate: 1 on K L/A with
   !> the default of SLSFAC.
   real(wp), parameter :: tie_factor = 10.0_wp
@@ -65,9 +67,22 @@ module contacts_m
     integer :: tie = tie_none              !! TIE, one of the `tie_` constants
     real(wp) :: tie_reach = 0.0_wp         !! what is farther apart is not tied, m; below 0 per cent
                                            !! of the mean master segment; 0 = 1 per cent
+    real(wp) :: strength(2) = 0.0_wp       !! NFLS, SFLS of a tie that breaks, N/m^2
+    integer :: behind = 0                  !! above 0: contact behind the tie with that place in the
+                                           !! list, of places that the tie does not hold. Interfaces
+                                           !! of the deck come first
+    type(curve_t), allocatable :: interference !! LCINT: the part of an initial overlap that acts,
+                                           !! from 0 to 1
     logical :: is_round = .false.          !! axisymmetric: lengths weigh with their radius
     logical :: is_self = .false.           !! SURFB 0: one surface with itself; both sides are it
   end type contact_t
+
+  !> A surface on which the forces of all interfaces are added up.
+  type :: transducer_t
+    integer :: id = 0
+    character(:), allocatable :: title
+    integer, allocatable :: nodes(:) !! those of its surface that interfaces have
+  end type transducer_t
 
 contains
 
@@ -86,6 +101,32 @@ contains
 
     tied = contact%tie /= tie_none
   end function is_tied
+
+  !> Whether the ties of an interface break.
+  elemental function breaks(contact)
+    type(contact_t), intent(in) :: contact
+    logical :: breaks
+
+    breaks = contact%tie == tie_breaks
+  end function breaks
+
+  !> Interfaces of the deck, which results tell of: the first ones of the list.
+  pure function n_told(contacts) result(n)
+    type(contact_t), intent(in) :: contacts(:)
+    integer :: n
+
+    n = count(contacts%behind == 0)
+  end function n_told
+
+  !> The place of the interface that the i-th one is told as.
+  pure function told_as(contacts, i) result(told)
+    type(contact_t), intent(in) :: contacts(:)
+    integer, intent(in) :: i
+    integer :: told
+
+    told = i
+    if (contacts(i)%behind > 0) told = contacts(i)%behind
+  end function told_as
 
   !> Whether an interface has tractions along its surfaces.
   elemental function has_shear(contact) result(has)

@@ -13,7 +13,7 @@ module model_m
   use layout_m, only : layout_t
   use sets_m, only : node_set_t, segment_set_t, part_set_t
   use conditions_m, only : conditions_t
-  use contacts_m, only : contact_t
+  use contacts_m, only : contact_t, transducer_t
   use rigids_m, only : rigid_t
   use walls_m, only : wall_t
   use controls_m, only : controls_t
@@ -34,6 +34,7 @@ module model_m
     type(part_set_t), allocatable :: part_sets(:)
     type(conditions_t) :: conditions
     type(contact_t), allocatable :: contacts(:)
+    type(transducer_t), allocatable :: transducers(:) !! only where the deck has any
     type(rigid_t), allocatable :: rigids(:)
     type(wall_t), allocatable :: walls(:)       !! only where the deck has any
     type(controls_t) :: controls

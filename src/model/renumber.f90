@@ -37,6 +37,11 @@ contains
     call renumber_mesh(model, order, new_index)
     call renumber_conditions(model, order, new_index)
     call renumber_surfaces(model, new_index)
+    if (allocated(model%transducers)) then
+      do i = 1, size(model%transducers)
+        model%transducers(i)%nodes = new_index(model%transducers(i)%nodes)
+      end do
+    end if
     call renumber_rigids(model, new_index)
     if (allocated(model%walls)) call renumber_walls(model, new_index)
     call build_local_numbers(model%mesh, model%layout)

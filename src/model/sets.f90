@@ -11,10 +11,12 @@ module sets_m
     integer, allocatable :: nodes(:) !! node indices
   end type node_set_t
 
-  !> *SET_SEGMENT: edges by their two nodes.
+  !> *SET_SEGMENT, *SET_2D_SEGMENT: edges by their two nodes.
   type :: segment_set_t
     integer :: id = 0
     integer, allocatable :: nodes(:, :) !! (2, n) node indices
+    integer, allocatable :: parts(:)    !! indices of the parts whose boundary they are, where they
+                                        !! are one
   end type segment_set_t
 
   !> *SET_PART.

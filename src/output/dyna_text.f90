@@ -3,6 +3,7 @@
 !> history table. The rows of an instant are kept until they are complete; their lines wait in a
 !> buffer of whole lines and reach the file like those of the table.
 module dyna_text_m
+  use contacts_m, only : n_told
   use build_info_m, only : version
   use dyna_layouts_m, only : line_size, columns_of, n_line_of, form_block
   use errors_m, only : error_t
@@ -109,9 +110,15 @@ contains
         call put_entity(text, has_legend, model%parts(i)%id, text_of(model%parts(i)%title))
       end do
     case (table_rcforc)
-      do i = 1, size(model%contacts)
+      do i = 1, n_told(model%contacts)
         call put_entity(text, has_legend, model%contacts(i)%id, text_of(model%contacts(i)%title))
       end do
+      if (allocated(model%transducers)) then
+        do i = 1, size(model%transducers)
+          call put_entity(text, has_legend, model%transducers(i)%id, &
+            text_of(model%transducers(i)%title))
+        end do
+      end if
     case (table_nodout)
       do i = 1, size(model%controls%output%history_nodes)
         call put_entity(text, has_legend, &

@@ -2,6 +2,7 @@
 !> The histories: one CSV table per quantity, and DYNA's text file beside it where the deck asks for
 !> it. A table whose output was not asked for is not made.
 module history_file_m
+  use contacts_m, only : n_told
   use errors_m, only : error_t
   use model_m, only : model_t
   use controls_m, only : is_asked
@@ -118,7 +119,7 @@ contains
     case (each_run)
       n = 1
     case (each_contact)
-      if (allocated(model%contacts)) n = size(model%contacts)
+      if (allocated(model%contacts)) n = n_told(model%contacts)
     case (each_history_node)
       if (allocated(model%controls%output%history_nodes)) &
         n = size(model%controls%output%history_nodes)

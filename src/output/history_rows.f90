@@ -3,6 +3,7 @@
 !> Rows for a table that is not open are ignored, so that a driver may hand every snapshot to every
 !> table that is due.
 module history_rows_m
+  use contacts_m, only : n_told
   use csv_table_m, only : csv_table_t, add_row
   use energies_m, only : total_energy, energy_ratio
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_contact, &
@@ -103,7 +104,7 @@ contains
     type(row_t) :: row
     integer :: i, k, i_node
 
-    do i = 1, size(model%contacts)
+    do i = 1, n_told(model%contacts)
       associate (id => model%contacts(i)%id, result => snapshot%interfaces(i), &
         slave => snapshot%slaves(i))
         select case (i_table)
@@ -124,6 +125,12 @@ contains
           end do
         end select
       end associate
+    end do
+    if (i_table /= table_rcforc .or. .not. allocated(model%transducers)) return
+    do i = 1, size(model%transducers)
+      call put_rcforc(row, snapshot%time, model%transducers(i)%id, side_slave, &
+        snapshot%transducers(i))
+      call take(table, row)
     end do
   end subroutine append_interfaces
 

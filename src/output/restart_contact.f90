@@ -9,6 +9,7 @@ module restart_contact_m
   use contact_watch_m, only : contact_watch_t, contact_change_t
   use energy_limit_state_m, only : energy_limit_t
   use friction_state_m, only : friction_memory_t
+  use interference_state_m, only : interference_memory_t
   use log_m, only : to_text
   use tie_state_m, only : tie_memory_t
   implicit none
@@ -50,6 +51,7 @@ contains
     call keep(archive, 'node_penalty', contact%node_penalty)
     call keep(archive, 'damping_force', contact%damping_force)
     call keep_friction(archive, 'friction', contact%friction)
+    call keep_interference(archive, 'interference', contact%interference)
     call keep_ties(archive, 'ties', contact%ties)
     call keep(archive, 'energy', contact%energy)
     call keep(archive, 'damping_work', contact%damping_work)
@@ -76,6 +78,20 @@ contains
     call leave(archive)
   end subroutine keep_friction
 
+  !> What it remembers of an initial overlap that grows.
+  subroutine keep_interference(archive, name, interference)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(interference_memory_t), intent(inout) :: interference
+
+    call enter(archive, name)
+    call keep(archive, 'depth', interference%depth)
+    call keep(archive, 'left', interference%left)
+    call keep(archive, 'moment', interference%moment)
+    call keep(archive, 'work', interference%work)
+    call leave(archive)
+  end subroutine keep_interference
+
   !> What a tied interface has frozen.
   subroutine keep_ties(archive, name, ties)
     type(archive_t), intent(inout) :: archive
@@ -89,6 +105,12 @@ contains
     call keep(archive, 'lag', ties%lag)
     call keep(archive, 'offset', ties%offset)
     call keep(archive, 'traction', ties%traction)
+    call keep(archive, 'state', ties%state)
+    call keep(archive, 'place', ties%place)
+    call keep(archive, 'to_stress', ties%to_stress)
+    call keep(archive, 'spent', ties%spent)
+    call keep(archive, 'first_break', ties%first_break)
+    call keep(archive, 'last_break', ties%last_break)
     call leave(archive)
   end subroutine keep_ties
 

@@ -15,7 +15,8 @@ module health_m
   implicit none
   private
   public :: tile_check_t, check_tile, are_sound, check_elements, check_step, check_cycle, &
-    check_energy, judge_energies, judge_ratio, judge_contact, made_by_springs, made_by_forces
+    check_energy, check_radii, judge_energies, judge_ratio, judge_contact, made_by_springs, &
+    made_by_forces
 
   !> Work beyond this means nothing any more; it is found before numbers overflow, which a
   !> checked build would stop at.
@@ -224,6 +225,33 @@ contains
         //' per cent (ENDENG); the penalty or the time step is too large', status_run)
     end if
   end subroutine check_energy
+
+  !> Warn of nodes of an axisymmetric run that have passed the axis, once.
+  subroutine check_radii(model, state, told, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    logical, intent(inout) :: told
+    type(log_t), intent(inout) :: log
+    integer :: i, n, last
+    real(wp) :: radius, least
+
+    if (told .or. .not. model%is_round) return
+    n = 0
+    last = 1
+    least = 0.0_wp
+    do i = 1, model%mesh%n_node
+      radius = model%mesh%coordinates(1, i) + state%motion(1, i)
+      if (radius >= 0.0_wp) cycle
+      n = n + 1
+      if (radius < least) last = i
+      least = min(least, radius)
+    end do
+    told = n > 0
+    if (told) call warn(log, to_text(n)//' node(s) have passed through the axis by cycle ' &
+      //to_text(state%cycle)//', time '//to_text(state%time)//', node ' &
+      //to_text(model%mesh%node_id(last))//' to the radius '//to_text(least) &
+      //': no body of revolution does that, what follows means nothing')
+  end subroutine check_radii
 
   !> The largest of what came in and what is stored, to measure others by.
   pure function largest_energy(energies) result(largest)

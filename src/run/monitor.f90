@@ -40,6 +40,7 @@ module monitor_m
     type(progress_t) :: progress
     type(restarts_t) :: restarts
     logical :: has_plot = .false. !! the deck asks for plot states
+    logical :: told_radii = .false. !! the log tells of nodes beyond the axis
     logical :: only_checks = .false. !! the state at time zero is made, and no file
   end type monitor_t
 

@@ -8,7 +8,7 @@ module restart_bounds_m
     is_free, is_touching, is_behind
   use contacts_m, only : contact_t
   use facing_state_m, only : facing_t, facing_side_t
-  use friction_state_m, only : is_open, slips
+  use friction_state_m, only : is_open, slips, is_held, is_broken
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
@@ -162,10 +162,33 @@ contains
     type(contact_state_t), intent(in) :: memory
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
-    integer :: n
+    logical :: fits
+    integer :: n, n_place
 
     associate (ties => memory%ties)
       n = size(ties%side)
+      fits = allocated(ties%first) .and. allocated(ties%owner) .and. allocated(ties%lag) .and. &
+        allocated(ties%offset) .and. &
+        (allocated(ties%traction) .eqv. allocated(memory%node_pressure))
+      if (fits) fits = size(ties%first) == n + 1 .and. all(shape(ties%owner) == [2, n]) .and. &
+        all(shape(ties%lag) == [2, n]) .and. all(shape(ties%offset) == [2, n])
+      if (fits .and. allocated(ties%traction)) fits = size(ties%traction) == memory%n_slave
+      call require(archive, folder//'side', fits, 'not as many values as the arrays beside it')
+      if (allocated(archive%error)) return
+      n_place = memory%n_master + memory%n_slave
+      if (allocated(memory%spots)) n_place = memory%n_master + size(memory%spot_xi)*memory%n_slave
+      if (allocated(ties%state)) then
+        fits = allocated(ties%place) .and. allocated(ties%to_stress)
+        if (fits) fits = size(ties%state) == n_place .and. size(ties%place) == n .and. &
+          size(ties%to_stress) == n
+        call require(archive, folder//'state', fits, 'not as many values as the arrays beside it')
+        if (allocated(archive%error)) return
+        call require(archive, folder//'state', all(ties%state == is_open .or. ties%state &
+          == is_held .or. ties%state == is_broken), 'numbers that mean nothing')
+        call require(archive, folder//'place', all(ties%place >= merge(0, 1, &
+          allocated(memory%node_pressure)) .and. ties%place <= n_place), &
+          'numbers that no place of the interface has')
+      end if
       call require(archive, folder//'first', ties%first(1) == 1 &
         .and. all(ties%first(2:) > ties%first(:n)) .and. (ties%first(n + 1) == memory%points%n + 1 &
         .or. memory%points%n == 0), 'numbers that do not rise to the number of points')

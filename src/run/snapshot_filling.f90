@@ -4,16 +4,16 @@
 module snapshot_filling_m
   use kinds_m, only : wp
   use constraints_m, only : is_active
-  use contact_results_m, only : interface_resultants, slave_rows
+  use contact_results_m, only : interface_resultants, slave_rows, join_rows
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains
-  use contacts_m, only : has_shear
+  use contacts_m, only : transducer_t, has_shear, n_told, told_as
   use controls_m, only : is_asked
   use history_tables_m, only : table_matsum
   use layout_m, only : slot_part
   use model_m, only : model_t
   use round_chunk_m, only : node_volumes
   use round_state_m, only : hoop_strains
-  use snapshot_m, only : snapshot_t, rubbed_t
+  use snapshot_m, only : snapshot_t, interface_result_t, rubbed_t
   use state_m, only : state_t
   use support_forces_m, only : find_supports
   implicit none
@@ -42,7 +42,8 @@ contains
       allocate (snapshot%velocity(2, n_node), source=0.0_wp)
     allocate (snapshot%parts(size(model%parts)))
     if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
-    allocate (snapshot%interfaces(size(model%contacts)), snapshot%slaves(size(model%contacts)))
+    if (allocated(model%transducers)) allocate (snapshot%transducers(size(model%transducers)))
+    allocate (snapshot%interfaces(n_told(model%contacts)), snapshot%slaves(size(model%contacts)))
     call find_supports(model, snapshot)
     if (.not. is_asked(model%controls%output%plot)) return
     allocate (snapshot%stress(6, n_element), source=0.0_wp)
@@ -169,7 +170,7 @@ contains
       if (allocated(state%walls)) energies%friction = energies%friction &
         + sum(state%walls%dissipated)
       energies%made = sum(max(0.0_wp, -state%contacts%watch%balance))
-      energies%external_work = state%external_work
+      energies%external_work = state%external_work + sum(state%contacts%interference%work)
       energies%initial = state%initial_energy
     end associate
   end subroutine fill_energies
@@ -251,18 +252,64 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
+    type(interface_result_t) :: result
     integer :: i
 
     do i = 1, size(model%contacts)
-      call interface_resultants(state%contacts(i), snapshot%interfaces(i))
-      associate (friction => state%contacts(i)%friction)
-        snapshot%interfaces(i)%energy = state%contacts(i)%energy + friction%stored
-        snapshot%interfaces(i)%friction = friction%work - friction%stored
-        snapshot%interfaces(i)%damping = state%contacts(i)%damping_work
-        snapshot%interfaces(i)%stored = state%contacts(i)%watch%stored + friction%stored
+      associate (contact => state%contacts(i), friction => state%contacts(i)%friction)
+        call interface_resultants(contact, result)
+        result%energy = contact%energy + friction%stored
+        result%friction = friction%work - friction%stored
+        result%damping = contact%damping_work
+        result%stored = contact%watch%stored - contact%ties%spent + friction%stored
       end associate
+      if (told_as(model%contacts, i) == i) then
+        snapshot%interfaces(i) = result
+      else
+        call add_result(result, snapshot%interfaces(told_as(model%contacts, i)))
+      end if
+    end do
+    if (.not. allocated(model%transducers)) return
+    do i = 1, size(model%transducers)
+      call add_up_forces(model%transducers(i), state, snapshot%transducers(i))
     end do
   end subroutine fill_interfaces
+
+  !> Contact behind ties, to what these have.
+  pure subroutine add_result(part, total)
+    type(interface_result_t), intent(in) :: part
+    type(interface_result_t), intent(inout) :: total
+
+    total%slave_force = total%slave_force + part%slave_force
+    total%master_force = total%master_force + part%master_force
+    total%n_active = total%n_active + part%n_active
+    total%energy = total%energy + part%energy
+    total%friction = total%friction + part%friction
+    total%damping = total%damping + part%damping
+    total%stored = total%stored + part%stored
+  end subroutine add_result
+
+  !> What all interfaces do to the surface of a transducer, and how many of its nodes carry force.
+  subroutine add_up_forces(transducer, state, resultants)
+    type(transducer_t), intent(in) :: transducer
+    type(state_t), intent(in) :: state
+    type(interface_result_t), intent(out) :: resultants
+    logical, allocatable :: is_on(:), is_loaded(:)
+    integer :: i, k
+
+    allocate (is_on(size(state%mass)), is_loaded(size(state%mass)), source=.false.)
+    is_on(transducer%nodes) = .true.
+    do i = 1, size(state%contacts)
+      associate (memory => state%contacts(i))
+        do k = 1, size(memory%nodes)
+          if (.not. is_on(memory%nodes(k))) cycle
+          resultants%slave_force = resultants%slave_force + memory%force(:, k)
+          if (any(abs(memory%force(:, k)) > 0.0_wp)) is_loaded(memory%nodes(k)) = .true.
+        end do
+      end associate
+    end do
+    resultants%n_active = count(is_loaded)
+  end subroutine add_up_forces
 
   !> Fields of a plot state and the rows of slave nodes.
   subroutine fill_plot(model, state, snapshot)
@@ -306,6 +353,9 @@ contains
         end do
         if (allocated(rows%rubbed)) call fill_friction(memory%nodes, rows%rubbed, snapshot)
       end associate
+    end do
+    do i = n_told(model%contacts) + 1, size(model%contacts)
+      call join_rows(snapshot%slaves(i), snapshot%slaves(told_as(model%contacts, i)))
     end do
   end subroutine fill_plot
 

@@ -21,6 +21,7 @@ module contact_state_m
   use energy_limit_state_m, only : energy_limit_t
   use facing_state_m, only : facing_t
   use friction_state_m, only : friction_memory_t
+  use interference_state_m, only : interference_memory_t
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
   use tie_state_m, only : tie_memory_t
@@ -29,7 +30,7 @@ module contact_state_m
   public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
     segment_memory_t, contact_scratch_t, allocate_points, allocate_loads, &
     allocate_tractions, make_room, allocate_tracking, allocate_grid, allocate_scratch, n_side, &
-    n_load, is_free, is_in_front, is_touching, is_behind
+    n_load, places_of_segment, is_free, is_in_front, is_touching, is_behind
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
@@ -123,8 +124,17 @@ module contact_state_m
     real(wp) :: dt = 0.0_wp                 !! step that made them, s; only in implicit runs
     real(wp), allocatable :: former_traction(:) !! (n_place) of the call before
     integer, allocatable :: former_state(:) !! (n_place) the same
+    real(wp) :: growth = 0.0_wp             !! of an initial overlap in this step, as a part of it
+    logical :: is_start = .false.           !! this call is that of time zero; both only where such
+                                            !! overlaps grow
     integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps
     logical, allocatable :: is_placed(:)    !! (slave segments) have their points
+    logical, allocatable :: is_left(:)      !! (n_place) to the tie that holds it; this and the next
+                                            !! four only of contact behind a tie
+    logical, allocatable :: is_freed(:)     !! (n_place) it has broken in this cycle
+    logical :: has_freed = .false.          !! any
+    integer :: n_held = 0                   !! places that the tie holds
+    real(wp) :: taken = 0.0_wp              !! what springs hold that were freed pressed, J/m
     type(piece_table_t), allocatable :: pieces !! lent to the placement while it works
   end type contact_scratch_t
 
@@ -163,6 +173,7 @@ module contact_state_m
     real(wp) :: energy = 0.0_wp             !! minus the accumulated work of the springs, J/m
     real(wp) :: damping_work = 0.0_wp       !! minus that of the damping forces
     type(friction_memory_t) :: friction     !! of places, and its forces
+    type(interference_memory_t) :: interference !! initial overlaps that grow
     type(tie_memory_t) :: ties              !! springs of a tied interface
     type(contact_watch_t) :: watch          !! whether the springs give back what they take
     type(energy_limit_t) :: limit           !! that they give back no more
@@ -281,5 +292,14 @@ contains
       call allocate_pieces(scratch%pieces, n_piece_block)
     end associate
   end subroutine allocate_scratch
+
+  !> Places of a slave segment that have a memory of their own.
+  pure function places_of_segment(memory) result(n)
+    type(contact_state_t), intent(in) :: memory
+    integer :: n
+
+    n = 1
+    if (allocated(memory%spots)) n = size(memory%spot_xi)
+  end function places_of_segment
 
 end module contact_state_m

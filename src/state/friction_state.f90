@@ -7,12 +7,13 @@ module friction_state_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: friction_memory_t, allocate_friction, is_open, sticks, slips, is_held
+  public :: friction_memory_t, allocate_friction, is_open, sticks, slips, &
+    is_held, is_broken
 
   !> What a place is doing.
   integer, parameter :: is_open = 0, sticks = 1, slips = 2
-  !> What a tie makes it in results.
-  integer, parameter :: is_held = 3
+  !> What a tie makes of it.
+  integer, parameter :: is_held = 3, is_broken = 4
 
   !> Arrays are allocated for interfaces with friction alone.
   type :: friction_memory_t

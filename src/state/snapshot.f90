@@ -45,7 +45,7 @@ module snapshot_m
   type :: rubbed_t
     real(wp) :: traction = 0.0_wp !! on the node, along the walking direction of its chain
     real(wp) :: slip = 0.0_wp     !! of the node over the other side, along that, of the whole run
-    integer :: state = 0          !! 0 open, 1 stick, 2 slip
+    integer :: state = 0          !! 0 open, 1 stick, 2 slip, 3 tied, 4 broken
   end type rubbed_t
 
   !> Slave nodes of one interface in walking order; all arrays (n_slave) but the last two.
@@ -88,9 +88,12 @@ module snapshot_m
     real(wp), allocatable :: plastic_strain(:)   !! (n_element)
     real(wp), allocatable :: hoop_strain(:)      !! (n_element) of round bodies
     type(interface_result_t), allocatable :: interfaces(:)
+    type(interface_result_t), allocatable :: transducers(:) !! forces alone; only where the deck has
+                                                 !! any
     type(part_result_t), allocatable :: parts(:)
     type(wall_result_t), allocatable :: walls(:) !! only where the deck has any
-    type(slave_result_t), allocatable :: slaves(:) !! one per interface
+    type(slave_result_t), allocatable :: slaves(:) !! one per interface, then per contact behind a
+                                                 !! tie
   end type snapshot_t
 
 end module snapshot_m

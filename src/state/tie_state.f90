@@ -19,6 +19,16 @@ module tie_state_m
                                          !! in the reference geometry, m
     real(wp), allocatable :: offset(:, :) !! (2, n_spring) parts of it along n and t there, m
     real(wp), allocatable :: traction(:) !! (n_slave) where pressure is formed at slave nodes, N/m^2
+    integer, allocatable :: state(:)     !! (n_place) of each place of friction_state_m: open, held
+                                         !! or broken; this and the next two only where ties break
+    integer, allocatable :: place(:)     !! (n_spring) of each spring; of types 6 and 7, whose
+                                         !! places are slave nodes, 0
+    real(wp), allocatable :: to_stress(:) !! (n_spring) stress of the bond over pressure: 1 but for
+                                         !! types 1 and 3
+    real(wp) :: spent = 0.0_wp           !! what springs held that have broken, less what contact
+                                         !! behind them took over, J/m
+    real(wp) :: first_break = 0.0_wp     !! its time, s
+    real(wp) :: last_break = 0.0_wp      !! likewise
   end type tie_memory_t
 
 contains

@@ -20,6 +20,7 @@ KEPT = {
         "changes": "kept one by one"}),
     "contact_change_t": ("state/contact_watch.f90", "output/restart_contact.f90", "change%", {}),
     "energy_limit_t": ("state/energy_limit_state.f90", "output/restart_contact.f90", "limit%", {}),
+    "interference_memory_t": ("state/interference_state.f90", "output/restart_contact.f90", "interference%", {}),
     "tie_memory_t": ("state/tie_state.f90", "output/restart_contact.f90", "ties%", {}),
     "friction_memory_t": ("state/friction_state.f90", "output/restart_contact.f90", "friction%", {}),
     "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {
@@ -39,7 +40,7 @@ KEPT = {
         "tables": "kept one by one"}),
     "monitor_t": ("run/monitor.f90", "run/restart_run.f90", "monitor%", {
         "results": "times of its states are kept", "snapshot": "filled anew before it is written",
-        "log": "of each run", "clock": "of each run", "progress": "of each run",
+        "log": "of each run", "told_radii": "of its log", "clock": "of each run", "progress": "of each run",
         "restarts": "n_dump is kept", "has_plot": "from the deck", "only_checks": "of a check",
         "tables": "kept one by one"}),
     "explicit_cycle_t": ("solve/explicit/explicit_cycle.f90", "solve/explicit/explicit_memory.f90", "", {

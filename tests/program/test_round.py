@@ -101,3 +101,76 @@ def test_plane_runs_have_no_hoop_strain(exe, tmp_path):
     run(exe, tmp_path, "i=job.k", "d=out")
     with h5py.File(tmp_path / "out/job.vtkhdf") as stream:
         assert "hoop_strain" not in stream["VTKHDF/CellData"]
+
+
+def hollow(way, points, implicit=False):
+    """A ring of bore 0.01 m that flies inward at `way` m/s, or whose bore is led inward by `way` m in a static run."""
+    deck = Deck("ring that goes through its axis")
+    if implicit:
+        deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 0.1))
+    else:
+        deck.control(0.03)
+    deck.add("*PART", "ring", (1, 1, 1)).add("*SECTION_SHELL", (1, 15, None, points), (1.0,)).elastic(1000.0, 1.0e6, 0.3)
+    ids = deck.mesh(*grid(4, 4, 0.3, 0.3, (0.01, 0.0)))
+    if implicit:
+        deck.curve(1, [(0.0, 0.0), (1.0, 1.0)]).fix(ids[4::5], 1, 1)
+        deck.add("*BOUNDARY_PRESCRIBED_MOTION_NODE", *[(int(node), 1, 2, 1, way) for node in ids[::5]])
+    else:
+        deck.add("*INITIAL_VELOCITY", (0,), (way, 0.0))
+    return deck.output(glstat=1.0e-3 if not implicit else 0.1).text()
+
+
+@pytest.mark.parametrize("scene", [{"way": -8.0, "points": 1}, {"way": -0.011, "points": 4, "implicit": True}])
+def test_nodes_beyond_the_axis_are_told_once(exe, tmp_path, scene):
+    (tmp_path / "job.k").write_text(hollow(**scene))
+    done = run(exe, tmp_path, "i=job.k", "d=out")
+    assert done.stderr.count("have passed through the axis") == 1
+    (tmp_path / "job.k").write_text(hollow(**(scene | {"way": 0.1 * scene["way"]})))
+    assert "through the axis" not in run(exe, tmp_path, "i=job.k", "d=out").stderr
+
+
+def test_radial_loads_on_the_axis_are_told(exe, tmp_path):
+    def disc(form):
+        deck = Deck("loads on the axis").control(1.0e-3)
+        deck.add("*PART", "disc", (1, 1, 1)).add("*SECTION_SHELL", (1, form), (1.0,)).elastic(1000.0, 1.0e6, 0.3)
+        deck.node_set(1, deck.mesh(*grid(3, 3))).curve(1, [(0.0, 1.0)])
+        deck.add("*LOAD_NODE_SET", (1, 1, 1, 5.0), (1, 2, 1, 5.0)).add("*LOAD_NODE_POINT", (1, 1, 1), (2, 1, 1))
+        return deck.text()
+
+    for form, told in ((15, True), (13, False)):
+        (tmp_path / "job.k").write_text(disc(form))
+        said = run(exe, tmp_path, "check", "job.k").stderr
+        assert ("*LOAD_NODE_SET: 5 load(s) in r act on nodes on the axis" in said) == told, said
+
+
+def test_units_of_contact_are_per_radian(exe, tmp_path):
+    def rubbing(form):
+        deck = Deck("rings that overlap and rub").control(0.01)
+        for part in (1, 2):
+            deck.add("*PART", f"part {part}", (part, 1, part)).elastic(1000.0, 1.0e6, 0.3, part)
+        deck.add("*SECTION_SHELL", (1, form), (1.0,))
+        lower = deck.mesh(*grid(4, 2, 1.0, 0.5, (0.5, 0.0)))
+        upper = deck.mesh(*grid(4, 2, 1.0, 0.5, (0.5, 0.499)), part=2)
+        deck.node_set(1, upper[:5]).node_set(2, lower[10:][::-1]).node_set(3, upper)
+        deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, 5, 2, 1.0, 0.3), (0.0, 1.0e20, 2))
+        return deck.add("*INITIAL_VELOCITY", (3,), (1.0, 0.0)).output(glstat=1.0e-3).text()
+
+    for form, right, wrong in ((15, ("J per radian", "N per radian; it is kept", "times the radius, per radian"), ("J/m", "N/m;")),
+                               (13, ("J/m", "N/m; it is kept"), ("radian",))):
+        (tmp_path / "job.k").write_text(rubbing(form))
+        run(exe, tmp_path, "i=job.k", "d=out")
+        log = (tmp_path / "out/job.log").read_text()
+        assert all(text in log for text in right), log
+        assert not any(text in log for text in wrong), log
+
+
+def test_nodes_next_to_the_axis_are_told(exe, tmp_path):
+    for shift, held, told in ((1.0e-9, False, True), (1.0e-9, True, False), (1.0e-3, False, False), (1.0e-12, False, False)):
+        deck = Deck("disc beside its axis").control(1.0e-3)
+        deck.add("*PART", "disc", (1, 1, 1)).add("*SECTION_SHELL", (1, 15), (1.0,)).elastic(1000.0, 1.0e6, 0.3)
+        ids = deck.mesh(*grid(3, 3, origin=(shift, 0.0)))
+        if held:
+            deck.fix(ids[::4], x=1)
+        (tmp_path / "job.k").write_text(deck.text())
+        said = run(exe, tmp_path, "check", "job.k").stderr
+        assert ("4 node(s) lie next to the axis but not on it" in said) == told, said

@@ -9,8 +9,10 @@ from test_restart import assert_same, histories, part_of, with_files
 from slideline_tools.contact_types import ALL_TYPES
 
 
-def tied(kind, columns=(40, 28), keyword=None, whole=False, is_round=False, gap=0.0, static=None, overhang=0.0):
-    """Two blocks of 16 rows, unlike columns, `gap` apart, the upper one drawn up and aside by its top."""
+def tied(kind, columns=(40, 28), keyword=None, whole=False, is_round=False, gap=0.0, static=None, overhang=0.0,
+         strength=None):
+    """Two blocks of 16 rows, unlike columns, `gap` apart, the upper one drawn up and aside by its top;
+    with a strength (NFLS, SFLS) the tie breaks, with friction behind it."""
     deck = implicit(1.0, 0.1, dynamic=not static) if static is not None else Deck("tied blocks").control(0.03)
     deck.hourglass(4, 0.05)
     rows = 16 if static is None else 3
@@ -31,7 +33,8 @@ def tied(kind, columns=(40, 28), keyword=None, whole=False, is_round=False, gap=
     elif keyword:
         deck.add(keyword, sides, (0.0,), (0.0, 10.0, 0, 0, 0, -20.0))
     else:
-        deck.add("*CONTACT_2D_SLIDELINE", (*sides, kind, 3), (0.0, 1.0e20, 0, 0, 0, 0, 0, -20.0), (0.0, 1.0, 1))
+        deck.add("*CONTACT_2D_SLIDELINE", (*sides, kind, 3, 0.0, 0.3 if strength else 0.0),
+                 (0.0, 1.0e20, 0, 0, 0, 0, 0, -20.0), (0.0, 1.0, 2 if strength else 1, *(strength or ())))
     deck.fix(lower[:columns[1] + 1], 1, 1)
     deck.curve(1, [(0.0, 0.0), (0.02, 1.0), (1.0, 1.5)])
     # by radius in rings, whose nodes on the axis stand for no area
@@ -60,6 +63,7 @@ def test_same_bits_after_a_restart_and_with_threads(slideline, tmp_path, scene, 
     one = tmp_path / "on1"
     assert numbers(one / "job.sleout.csv", "energy")[-1] > 0.0
     assert set(numbers(one / "job.contact.csv", "state")) <= {0.0, 3.0}
+    assert max(map(abs, numbers(one / "job.contact.csv", "slip"))) > 0.0
     for threads in (2, 4):
         assert histories(one) == histories(tmp_path / f"on{threads}")
     rest = part_of(one, tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
@@ -68,6 +72,84 @@ def test_same_bits_after_a_restart_and_with_threads(slideline, tmp_path, scene, 
     assert_same(one, rest)
     ratio = numbers(one / "job.glstat.csv", "energy_ratio")
     assert max(abs(value - 1.0) for value in ratio) < 1.0e-3
+
+
+BREAKING = [("blocks", kind) for kind in ALL_TYPES] + [("whole outlines", 5), ("rings", 4), ("rings", 5), ("rings", 7)]
+
+
+@pytest.mark.parametrize("scene, kind", BREAKING)
+def test_what_breaks_stays_broken(slideline, tmp_path, scene, kind):
+    """The tie breaks from one side on; goes on from the middle of that, and at any number of threads, to the same bits."""
+    text = with_files(tied(kind, **SCENES[scene], strength=(8.0e3, 8.0e3)), dump=48)
+    for threads in (1, 2, 4):
+        done = slideline(f"d=on{threads}", f"ncpu={threads}", "perthread=1", deck=text)
+        assert done.returncode == 0, done.stderr
+    one = tmp_path / "on1"
+    for threads in (2, 4):
+        assert histories(one) == histories(tmp_path / f"on{threads}")
+    rest = part_of(one, tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
+    done = slideline("r=rest/job.dump01.h5")
+    assert done.returncode == 0, done.stderr
+    assert_same(one, rest)
+    time, node, state = (numbers(one / "job.contact.csv", name) for name in ("time", "node", "state"))
+    broken = [{n for n, t, s in zip(node, time, state) if t == at and s == 4.0} for at in sorted(set(time))]
+    assert not broken[0] and broken[-1]
+    assert all(before <= after for before, after in zip(broken, broken[1:]))
+    assert "places have broken, from time" in (one / "job.log").read_text()
+    ratio = numbers(one / "job.glstat.csv", "energy_ratio")
+    assert max(abs(value - 1.0) for value in ratio) < 2.0e-3
+    # contact behind the ties is told as part of the interface
+    assert set(numbers(one / "job.rcforc.csv", "interface")) == {1.0}
+
+
+@pytest.mark.parametrize("kind", ALL_TYPES)
+def test_implicit_break_and_restart(slideline, tmp_path, kind):
+    """In dynamics, that what has come loose is held."""
+    text = with_files(tied(kind, columns=(7, 5), static=False, gap=0.002, strength=(2.0e4, 2.0e4)), dump=4)
+    done = slideline("d=whole", deck=text)
+    assert done.returncode == 0, done.stderr
+    assert set(numbers(tmp_path / "whole/job.contact.csv", "state")) >= {3.0, 4.0}
+    rest = part_of(tmp_path / "whole", tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
+    done = slideline("r=rest/job.dump01.h5")
+    assert done.returncode == 0, done.stderr
+    assert_same(tmp_path / "whole", rest)
+
+
+def test_a_deck_written_back_breaks_alike(slideline, tmp_path):
+    done = slideline("d=first", "fs=0.2", deck=tied(5, columns=(10, 7), strength=(8.0e3, 9.0e3)))
+    assert done.returncode == 0, done.stderr
+    text = (tmp_path / "first/job.effective.k").read_text()
+    done = slideline("d=again", deck=text)
+    assert done.returncode == 0, done.stderr
+    assert histories(tmp_path / "first") == histories(tmp_path / "again")
+
+
+def test_the_command_line_passes_ties_by(slideline, tmp_path):
+    for folder, words in (("plain", ()), ("led", ("vdc=20", "punit=3", "pen=0.5", "fs=0.1"))):
+        done = slideline(f"d={folder}", *words, deck=tied(5, columns=(10, 7)))
+        assert done.returncode == 0, done.stderr
+    for text in ("interface 1 is tied: its penalty can not be a share", "interface 1 is tied: ties have no contact damping",
+                 "interface 1 is tied: FS on the command line has no effect"):
+        assert text in done.stderr
+    assert histories(tmp_path / "plain") == histories(tmp_path / "led")
+
+
+def test_fields_without_effect_are_named(slideline):
+    text = tied(5, columns=(10, 7)).replace("0.0,1.0,1\n", "3.0,0.5,1,5.0\n").replace(",0,0,0,0,0,-20.0", ",0,0,0,0,30,-20.0")
+    done = slideline("d=out", deck=text)
+    assert done.returncode == 0, done.stderr
+    assert "interface 1 is tied: VC, TFAC, FREQ of contact that opens has no effect" in done.stderr
+    assert '(NFLS): "5.0" has no effect: only ties that break (TIE 2) have strengths' in done.stderr
+
+
+def test_master_penalty_beside_a_blank_one(slideline, tmp_path):
+    """PENT with PUNIT 2 is kept beside the default of PEN."""
+    for folder, card in (("default", "0,0"), ("given", "2,20.0")):
+        text = tied(3, columns=(10, 7)).replace("0.0,1e+20,0,0", f"0.0,1e+20,{card}")
+        assert slideline(f"d={folder}", deck=text).returncode == 0
+    last = [line for folder in ("default", "given") for line in (tmp_path / folder / "job.log").read_text().splitlines()
+            if "times the built-in estimate" in line]
+    assert "1.000000E+01 and 1.000000E+01 times" in last[0] and "1.000000E+01 and 2.000000E+01 times" in last[1]
 
 
 @pytest.mark.parametrize("static", (True, False))
@@ -122,4 +204,18 @@ def test_step_obeys_ties(slideline, tmp_path):
     free = slideline("d=free", deck=text.replace("*END", "*CONTROL_CONTACT\n0.1,\n0,0,0,0,0.0,0,1\n*END"))
     assert numbers(tmp_path / "free/job.glstat.csv", "dt")[1] > 1.1 * numbers(tmp_path / "on/job.glstat.csv", "dt")[1]
     assert free.returncode == 0, free.stderr
+    assert "interface 1: with its ties the stable step is" in free.stderr and "(ECDT 1 of *CONTROL_CONTACT" in free.stderr
     assert max(abs(value - 1.0) for value in numbers(tmp_path / "free/job.glstat.csv", "energy_ratio")) > 0.1
+
+
+@pytest.mark.parametrize("penalty, unit, told", [(None, 0, ""), (1.0, 2, ""), (1.0e4, 2, "the ties cost 9"), (5.0, 0, "as soft as")])
+def test_ties_of_unlikely_penalties_are_told(slideline, penalty, unit, told):
+    """Springs that cost most of the step, and springs that hold next to nothing. PUNIT 2 is a factor on a tenth of K L/A."""
+    text = tied(5)
+    if penalty:
+        assert text.count("\n-1,-2,5,3\n") == text.count("\n0.0,1e+20,0,0,0,") == 1
+        text = text.replace("\n-1,-2,5,3\n", f"\n-1,-2,5,3,{penalty}\n").replace("\n0.0,1e+20,0,0,0,", f"\n0.0,1e+20,{unit},0,0,")
+    done = slideline("d=out", "endtim=1.0e-5", deck=text)
+    assert done.returncode == 0, done.stderr
+    for words in ("the ties cost 9", "as soft as"):
+        assert (words in done.stderr) == (words == told), done.stderr

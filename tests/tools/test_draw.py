@@ -16,6 +16,8 @@ from slideline_tools.draw.model import ModelError, read_model
 from slideline_tools.histories import read_csv
 from slideline_tools.results import read
 
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "doc/examples"
+
 # A ring of eight quads (part 1) with a block of two quads and a triangle (part 2) above it; numbers
 # run against the order of the deck.
 RING = [(x, y) for y in range(4) for x in range(4)]
@@ -198,6 +200,27 @@ def test_surfaces_of_part_sets(model):
     inside = np.all(np.abs(middle - 1.5) < 0.6, axis=1)
     toward = np.sum(outward * (middle - 1.5), axis=1)
     assert inside.sum() == 4 and np.all(toward[inside] < 0.0) and np.all(toward[~inside] > 0.0)
+
+
+@pytest.mark.parametrize("name", ["set_2d_segment", "set_node_general", "contact_2d_force_transducer",
+                                  "contact_2d_sliding_voids"])
+def test_surfaces_by_other_sets_are_those_of_the_program(tmp_path, slideline, name):
+    """Both surfaces against the slave rows of contact.csv; there is no interface for what only measures."""
+    def run(path, job):
+        done = subprocess.run([slideline, f"i={path}", f"d={tmp_path}", f"jobid={job}", "endtim=1e-9"],
+                              capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return (tmp_path / f"{job}.effective.k").read_text()
+
+    deck = run(EXAMPLES / f"{name}.k", "first").replace("*DATABASE_GLSTAT", "*DATABASE_BINARY_D3PLOT\n       1.0\n*DATABASE_GLSTAT")
+    deck = deck.replace("*CONTACT_2D", "*SET_SEGMENT\n        77\n        21        42\n*CONTACT_2D", 1)
+    for k, text in enumerate((deck, deck.replace("         1         2\n*", "        77         2\n*"))):
+        (tmp_path / f"deck{k}.k").write_text(text)
+        model = read_model(run(tmp_path / f"deck{k}.k", f"job{k}"))
+        assert len(model.interfaces) == 1 and not model.unread
+        rows = read_csv(tmp_path / f"job{k}.contact.csv").where(time=0.0)
+        walked, drawn = rows["node"].astype(int).tolist(), numbers(model, model.interfaces[0].slave.nodes)
+        assert from_lowest(walked) == from_lowest(drawn)
 
 
 @pytest.mark.parametrize("swap", [False, True])

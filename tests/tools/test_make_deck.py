@@ -49,6 +49,7 @@ def test_make_deck_of_the_other_scenes(tmp_path, tool, scene):
     ("symmetric_plate", "symmetric_plate/plate_8x4_elastic.k"),
     ("symmetric_plate --nx 16 --ny 8 --elastoplastic",
      "symmetric_plate/plate_16x8_elastoplastic.k"),
+    ("taylor", "taylor/taylor.k"),
 ])
 def test_make_deck_writes_the_committed_deck(tmp_path, tool, words, deck):
     path = tmp_path / "new" / "x.k"

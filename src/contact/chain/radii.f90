@@ -9,12 +9,12 @@ module radii_m
 
 contains
 
-  !> Radius of a place, m: 0 beyond the axis, where nothing has weight.
+  !> Radius of a place, m.
   pure function radius_of(place) result(radius)
     real(wp), intent(in) :: place(4)
     real(wp) :: radius
 
-    radius = max(0.0_wp, place(1) + place(3))
+    radius = place(1) + place(3)
   end function radius_of
 
   !> Mean radius of a straight stretch as one of its ends has it: with l/2 the integral of r over
@@ -31,7 +31,7 @@ contains
     real(wp), intent(in) :: a(4), b(4), xi
     real(wp) :: radius
 
-    radius = max(0.0_wp, (a(1) + a(3)) + xi*((b(1) - a(1)) + (b(3) - a(3))))
+    radius = radius_of(a) + xi*((b(1) - a(1)) + (b(3) - a(3)))
   end function radius_between
 
   !> Where the centre of a stretch of the segment a-b is when its parts weigh with their radius. On

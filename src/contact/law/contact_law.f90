@@ -6,6 +6,7 @@
 module contact_law_m
   use contact_state_m, only : contact_state_t
   use dual_m, only : dual_t
+  use interference_m, only : take_overlaps, ease_gaps, ease_nodes, gather_moment
   use kinds_m, only : wp
   use law_penalty_m, only : press_penalty, vary_penalty, energy_penalty
   use nodal_average_m, only : average_gaps, share_out
@@ -38,19 +39,39 @@ contains
     type(contact_state_t), intent(inout) :: memory
     integer :: n
 
+    if (allocated(memory%interference%depth) .and. memory%scratch%is_start) &
+      call take_overlaps(memory)
     associate (points => memory%points, nodal => memory%scratch%nodal)
       select case (where_pressed)
       case (pressed_at_points)
-        call press(contact_law, points%n, points%stiffness, points%gap, points%pressure)
+        if (allocated(memory%interference%depth)) then
+          call press_eased(contact_law, memory)
+        else
+          call press(contact_law, points%n, points%stiffness, points%gap, points%pressure)
+        end if
       case (pressed_at_slave_nodes)
         n = memory%n_slave
         call average_gaps(points, n, nodal)
+        if (allocated(memory%interference%depth)) call ease_nodes(memory%interference, n, nodal)
         call press_nodes(contact_law, n, memory%slave_penalty, nodal, memory%node_pressure)
         call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
           points%pressure)
       end select
     end associate
+    if (allocated(memory%interference%depth)) call gather_moment(memory)
   end subroutine press_places
+
+  !> Pressures of all points where an initial overlap grows.
+  pure subroutine press_eased(contact_law, memory)
+    integer, intent(in) :: contact_law
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: gaps(memory%points%n)
+
+    call ease_gaps(memory, gaps)
+    associate (points => memory%points)
+      call press(contact_law, points%n, points%stiffness, gaps, points%pressure)
+    end associate
+  end subroutine press_eased
 
   !> Pressures of slave nodes, which have one stiffness.
   pure subroutine press_nodes(contact_law, n, stiffness, nodal, pressure)

@@ -1,9 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> Energy of the springs of an interface, of those whose points are on the list.
 module contact_springs_m
+  use behind_ties_m, only : is_left_to_tie
   use contact_law_m, only : density_of
   use contact_state_m, only : contact_state_t
   use contact_watch_m, only : contact_watch_t
+  use friction_m, only : place_at
+  use interference_m, only : eased_gap, ease_nodes
   use kinds_m, only : wp
   use nodal_average_m, only : average_gaps
   use ties_m, only : tie_energy
@@ -23,28 +26,38 @@ contains
   end subroutine begin_look
 
   !> What all springs on the list store, without what damping adds to their pressure, and where the
-  !> largest force is.
+  !> largest force is. What broken ties held counts as theirs.
   pure subroutine measure_springs(memory)
     type(contact_state_t), intent(inout) :: memory
+    real(wp) :: gap
     integer :: i
 
     memory%watch%stored = 0.0_wp
     memory%watch%load = 0.0_wp
     if (allocated(memory%ties%side)) then
       call tie_energy(memory, memory%watch%stored, memory%watch%load, memory%watch%node)
+      memory%watch%stored = memory%watch%stored + memory%ties%spent
       return
     end if
     associate (watch => memory%watch, points => memory%points, nodal => memory%scratch%nodal)
       if (allocated(memory%node_pressure)) then
         call average_gaps(points, memory%n_slave, nodal)
+        if (allocated(memory%interference%depth)) &
+          call ease_nodes(memory%interference, memory%n_slave, nodal)
         do i = 1, memory%n_slave
+          if (is_left_to_tie(memory, i)) cycle
           call add_spring(nodal(2, i)*density_of(memory%contact_law, memory%slave_penalty, &
             nodal(1, i)), nodal(2, i)*memory%node_pressure(i), memory%nodes(i), watch)
         end do
       else
         do i = 1, points%n
+          if (allocated(memory%scratch%is_left)) then
+            if (memory%scratch%is_left(place_at(memory, i))) cycle
+          end if
+          gap = points%gap(i)
+          if (allocated(memory%interference%depth)) gap = eased_gap(memory, i)
           call add_spring(points%area(i)*density_of(memory%contact_law, points%stiffness(i), &
-            points%gap(i)), points%area(i)*points%pressure(i), &
+            gap), points%area(i)*points%pressure(i), &
             memory%nodes(points%slave_nodes(maxloc(points%slave_weights(:, i), 1), i)), watch)
         end do
       end if

@@ -6,6 +6,7 @@
 module energy_limit_m
   use contact_state_m, only : contact_state_t
   use energy_limit_state_m, only : energy_limit_t
+  use interference_m, only : limit_moment
   use kinds_m, only : wp
   implicit none
   private
@@ -111,7 +112,9 @@ contains
       call move_alloc(spare, scratch%velocity)
       call count_cycle(factor, time, limit)
     end associate
-    if (factor < 1.0_wp) call scale_forces(factor, memory)
+    if (.not. factor < 1.0_wp) return
+    call scale_forces(factor, memory)
+    if (allocated(memory%interference%depth)) call limit_moment(factor, memory)
   end subroutine limit_forces
 
   !> The factor of this cycle. The sums that are formed in each cycle bound what may be returned;

@@ -4,7 +4,7 @@
 module friction_m
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contacts_m, only : contact_t, friction_rule_t
-  use friction_state_m, only : is_open
+  use friction_state_m, only : is_open, sticks, slips
   use kinds_m, only : wp
   use law_friction_m, only : coefficient_of, return_traction
   use lengths_m, only : competence_length
@@ -12,7 +12,8 @@ module friction_m
   use radii_m, only : centroid
   implicit none
   private
-  public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, place_of_point
+  public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, &
+    place_of_point, place_at, spot_at, has_slipped, let_stick
 
   !> Places whose slips are formed together.
   integer, parameter :: n_block = 64
@@ -69,6 +70,32 @@ contains
     memory%friction%force = 0.0_wp
     call set_tractions_aside(memory)
   end subroutine start_trial_slip
+
+  !> Whether any place slipped at the end of the last step.
+  pure function has_slipped(contacts)
+    type(contact_state_t), intent(in) :: contacts(:)
+    logical :: has_slipped
+    integer :: i
+
+    has_slipped = .false.
+    do i = 1, size(contacts)
+      if (allocated(contacts(i)%friction%state)) &
+        has_slipped = has_slipped .or. any(contacts(i)%friction%state == slips)
+    end do
+  end function has_slipped
+
+  !> All places that slipped stick in the first tangent of a step.
+  pure subroutine let_stick(contacts)
+    type(contact_state_t), intent(inout) :: contacts(:)
+    integer :: i
+
+    do i = 1, size(contacts)
+      if (.not. allocated(contacts(i)%scratch%former_state)) cycle
+      associate (state => contacts(i)%scratch%former_state)
+        where (state == slips) state = sticks
+      end associate
+    end do
+  end subroutine let_stick
 
   !> Before the points are placed: all places are open until they are found to be pressed.
   pure subroutine set_tractions_aside(memory)
@@ -176,6 +203,19 @@ contains
     place = points%slave_nodes(1, p)
     if (place /= points%slave_nodes(2, p)) place = points%master_nodes(1, p)
   end function place_of_point
+
+  !> The place of a point at a node or at a virtual node.
+  pure function place_at(memory, p) result(place)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: p
+    integer :: place
+
+    place = place_of_point(memory%points, p)
+    if (.not. allocated(memory%spots)) return
+    associate (n => size(memory%spot_xi), points => memory%points)
+      place = n*(points%slave_nodes(1, p) - 1) + spot_at(points%slave_weights(2, p), memory%spot_xi)
+    end associate
+  end function place_at
 
   !> Type 4, and whatever presses at spots between nodes: virtual nodes, with the foot of each; all
   !> its portions have its traction.

@@ -37,7 +37,8 @@ contains
 
   !> The traction of a place in contact with its derivatives. One that touches without pressure has
   !> none yet, and sticks.
-  pure function vary_traction(rule, former, slip, pressure, stiffness, most, dt) result(traction)
+  pure function vary_traction(rule, former, slip, pressure, stiffness, most, dt, goes_on) &
+      result(traction)
     type(friction_rule_t), intent(in) :: rule
     type(dual_t), intent(in) :: former   !! traction before, N/m^2
     type(dual_t), intent(in) :: slip     !! of the step, m
@@ -45,6 +46,7 @@ contains
     real(wp), intent(in) :: stiffness    !! tangential, N/m^3
     type(dual_t), intent(in) :: most     !! largest traction whatever the pressure, N/m^2
     real(wp), intent(in) :: dt           !! step that made the slip, s
+    logical, intent(in) :: goes_on       !! at the limit, wherever the trial is
     type(dual_t) :: traction
     type(dual_t) :: coefficient, limit
 
@@ -62,7 +64,7 @@ contains
     end if
     limit = coefficient*pressure
     if (most%value < limit%value) limit = most
-    if (abs(traction%value) > limit%value) traction = sign(1.0_wp, traction%value)*limit
+    if (abs(traction%value) > limit%value .or. goes_on) traction = sign(1.0_wp, traction%value)*limit
   end function vary_traction
 
 end module law_friction_m

@@ -12,10 +12,11 @@ module ties_m
   use kinds_m, only : wp
   use nodal_average_m, only : average_values, share_out
   use tie_state_m, only : allocate_ties
+  use tiebreak_m, only : mark_breaks, let_go, holds
   implicit none
   private
   public :: tie_spring_t, freeze_ties, hold_ties, tie_energy, tie_spring, tie_stiffness, &
-    stiffness_of_nodes, tied_nodes
+    stiffness_of_nodes, tied_nodes, break_ties
 
   !> A spring as it stands.
   type :: tie_spring_t
@@ -177,13 +178,14 @@ contains
   end function tie_spring
 
   !> Pressures, tractions and nodal forces of all springs at the places in the memory. Pressures
-  !> below zero are tension.
-  pure subroutine hold_ties(memory)
+  !> below zero are tension. Springs that reach their strengths break, where any are given.
+  pure subroutine hold_ties(memory, strength, time)
     type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(in) :: strength(2) !! NFLS, SFLS, N/m^2; 0 = nothing breaks now
+    real(wp), intent(in) :: time        !! s
     type(tie_spring_t) :: springs(size(memory%ties%side))
-    integer :: s, p
+    integer :: s, p, n_new
 
-    memory%n_active = memory%points%n
     associate (points => memory%points, ties => memory%ties)
       do s = 1, size(springs)
         springs(s) = tie_spring(memory, s)
@@ -196,12 +198,39 @@ contains
       end do
     end associate
     call load_stretches(memory)
+    if (allocated(memory%ties%state)) then
+      if (strength(1) > 0.0_wp) call break_ties(strength, time, memory, n_new)
+      call let_go(memory)
+    end if
+    call share_nodal(memory)
+    memory%n_active = 0
     do s = 1, size(springs)
+      if (.not. holds(memory, s)) cycle
+      memory%n_active = memory%n_active + memory%ties%first(s + 1) - memory%ties%first(s)
       call scatter_spring(springs(s), s, memory)
     end do
   end subroutine hold_ties
 
-  !> From stretches along n and t, which stand for pressures and tractions of the points, to these.
+  !> Break what reaches its strength under the loads in the memory; what its springs hold is spent.
+  pure subroutine break_ties(strength, time, memory, n_new)
+    real(wp), intent(in) :: strength(2) !! NFLS, SFLS, N/m^2
+    real(wp), intent(in) :: time        !! s
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(out) :: n_new       !! places that have broken
+    real(wp) :: before, after, load
+    integer :: node
+
+    call let_go(memory)
+    call tie_energy(memory, before, load, node)
+    call mark_breaks(strength, time, memory, n_new)
+    if (n_new == 0) return
+    call let_go(memory)
+    call tie_energy(memory, after, load, node)
+    memory%ties%spent = memory%ties%spent + (before - after)
+  end subroutine break_ties
+
+  !> From stretches along n and t, which stand for pressures and tractions of the points, to these,
+  !> or to those of slave nodes.
   pure subroutine load_stretches(memory)
     type(contact_state_t), intent(inout) :: memory
 
@@ -215,12 +244,21 @@ contains
       memory%node_pressure = -memory%slave_penalty*nodal(1, :n)
       call average_values(points, points%traction, n, nodal)
       memory%ties%traction = memory%slave_penalty*nodal(1, :n)
+    end associate
+  end subroutine load_stretches
+
+  !> Pressures and tractions of the points from those of slave nodes.
+  pure subroutine share_nodal(memory)
+    type(contact_state_t), intent(inout) :: memory
+
+    if (.not. allocated(memory%node_pressure)) return
+    associate (points => memory%points)
       call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
         points%pressure)
       call share_out(points%n, points%slave_nodes, points%slave_weights, memory%ties%traction, &
         points%traction)
     end associate
-  end subroutine load_stretches
+  end subroutine share_nodal
 
   !> Forces of one spring: those of its points, and the couple.
   pure subroutine scatter_spring(spring, s, memory)
@@ -309,6 +347,7 @@ contains
     if (memory%points%n == 0) return
     associate (points => memory%points, ties => memory%ties)
       do s = 1, size(ties%side)
+        if (.not. holds(memory, s)) cycle
         spring = tie_spring(memory, s)
         turn = norm2(spring%d)/spring%length
         do p = ties%first(s), ties%first(s + 1) - 1
@@ -333,19 +372,24 @@ contains
     end associate
   end function stiffness_of_nodes
 
-  !> Which nodes of the interface a spring holds.
-  pure function tied_nodes(memory) result(is_tied)
+  !> Which nodes of the interface a spring holds or held.
+  pure function tied_nodes(memory, still) result(is_tied)
     type(contact_state_t), intent(in) :: memory
+    logical, intent(in) :: still !! those that have not broken alone
     logical :: is_tied(memory%n_slave + memory%n_master)
-    integer :: p, k
+    integer :: s, p, k
 
     is_tied = .false.
-    do p = 1, memory%points%n
-      do k = 1, n_side
-        if (memory%points%slave_weights(k, p) > 0.0_wp) &
-          is_tied(memory%points%slave_nodes(k, p)) = .true.
-        if (memory%points%master_weights(k, p) > 0.0_wp) &
-          is_tied(memory%points%master_nodes(k, p)) = .true.
+    if (memory%points%n == 0) return
+    do s = 1, size(memory%ties%side)
+      if (still .and. .not. holds(memory, s)) cycle
+      do p = memory%ties%first(s), memory%ties%first(s + 1) - 1
+        do k = 1, n_side
+          if (memory%points%slave_weights(k, p) > 0.0_wp) &
+            is_tied(memory%points%slave_nodes(k, p)) = .true.
+          if (memory%points%master_weights(k, p) > 0.0_wp) &
+            is_tied(memory%points%master_nodes(k, p)) = .true.
+        end do
       end do
     end do
   end function tied_nodes

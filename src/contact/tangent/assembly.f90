@@ -1,11 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> From varied points to the tangent of an interface, K = -dF/du (doc/theory/contact.md, section 9).
 module assembly_m
+  use behind_ties_m, only : is_left_to_tie
   use variation_m, only : varied_point_t, n_slot
   use contact_law_m, only : vary_pressure
   use contact_state_m, only : contact_state_t
   use contacts_m, only : friction_rule_t
-  use dual_m, only : dual_t, n_partial, operator(+), operator(-), operator(*)
+  use dual_m, only : dual_t, constant, n_partial, operator(+), operator(-), operator(*)
   use friction_tangent_m, only : vary_grip
   use kinds_m, only : wp
   use sparse_m, only : sparse_t, add_block
@@ -77,9 +78,15 @@ contains
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
     type(dual_t), intent(in), optional :: length !! competence length where the area is 1, m
-    type(dual_t) :: pressure
+    type(dual_t) :: pressure, gap
 
-    pressure = vary_pressure(memory%contact_law, stiffness, point%gap)
+    if (is_left_to_tie(memory, place)) return
+    gap = point%gap
+    if (allocated(memory%interference%depth)) then
+      gap = gap + vary_left(memory, place, point)
+      if (.not. gap%value < memory%closed_gap) return
+    end if
+    pressure = vary_pressure(memory%contact_law, stiffness, gap)
     if (allocated(memory%friction%force)) then
       call add_varied_point(point, pressure*point%area, equations, matrix, &
         vary_grip(rule, memory, place, point, pressure, stiffness, length)*point%area)
@@ -87,6 +94,24 @@ contains
       call add_varied_point(point, pressure*point%area, equations, matrix)
     end if
   end subroutine add_pressed_point
+
+  !> The part of a place's initial overlap that does not act yet. A master node that was no place
+  !> at time zero goes by the ends of its slave segment.
+  pure function vary_left(memory, place, point) result(left)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: place
+    type(varied_point_t), intent(in) :: point
+    type(dual_t) :: left
+    real(wp) :: ends(2)
+
+    associate (interference => memory%interference)
+      left = constant(interference%left*max(0.0_wp, interference%depth(place)))
+      if (interference%depth(place) >= 0.0_wp .or. point%nodes(2) == 0) return
+      ends = interference%left*max(0.0_wp, interference%depth(point%nodes(:2)))
+      left = (ends(2) - ends(1))*point%slave_xi
+      left = left + ends(1)
+    end associate
+  end function vary_left
 
   !> Scratch for an interface of n nodes.
   pure subroutine start_pattern(pattern, n)

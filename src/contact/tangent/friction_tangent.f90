@@ -5,13 +5,13 @@ module friction_tangent_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : friction_rule_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/)
-  use friction_state_m, only : is_open
+  use friction_state_m, only : is_open, slips
   use kinds_m, only : wp
   use law_friction_m, only : vary_traction
   use variation_m, only : varied_point_t, apart
   implicit none
   private
-  public :: vary_slip, vary_grip, largest_grip
+  public :: vary_slip, vary_grip, largest_grip, goes_on
 
 contains
 
@@ -75,8 +75,18 @@ contains
     most = largest_grip(rule)
     if (present(length) .and. rule%most > 0.0_wp) most = rule%most*length
     traction = vary_traction(rule, former, vary_slip(memory, point, 3, point%master_xi), pressure, &
-      rule%stiffness*stiffness, most, memory%scratch%dt)
+      rule%stiffness*stiffness, most, memory%scratch%dt, goes_on(memory, place))
   end function vary_grip
+
+  !> Whether a place slips on in the first tangent of a step, in which nothing has moved yet, since
+  !> it slipped at the end of the step before.
+  pure function goes_on(memory, place)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: place
+    logical :: goes_on
+
+    goes_on = memory%closed_gap > 0.0_wp .and. memory%scratch%former_state(place) == slips
+  end function goes_on
 
   !> Largest traction whatever the pressure.
   pure function largest_grip(rule) result(most)

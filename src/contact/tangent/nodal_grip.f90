@@ -4,16 +4,17 @@
 !> for each loaded slave node one product of the force of unit traction and the gradient of the
 !> traction.
 module nodal_grip_m
+  use behind_ties_m, only : is_left_to_tie
   use assembly_m, only : add_varied_point, pattern_t, start_pattern, add_to_row, add_to_column, &
     add_product
   use contact_law_m, only : vary_pressure
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, variable, operator(-), operator(+), operator(*)
-  use friction_tangent_m, only : vary_slip, largest_grip
+  use friction_tangent_m, only : vary_slip, largest_grip, goes_on
   use kinds_m, only : wp
   use law_friction_m, only : vary_traction
-  use nodal_tangent_m, only : varied_list_t, average, nodal_share
+  use nodal_tangent_m, only : varied_list_t, average, nodal_share, eased_moment
   use sparse_m, only : sparse_t
   implicit none
   private
@@ -68,23 +69,26 @@ contains
     type(varied_list_t), intent(in) :: list
     real(wp), intent(in) :: slips(:) !! (list%n) m
     type(grip_t), intent(out) :: grips(:) !! (n_slave)
-    real(wp), dimension(memory%n_slave) :: gaps, moments, areas
+    real(wp), dimension(memory%n_slave) :: gaps, eased, moments, areas
     integer :: node
 
     call average(memory, list, list%points(:list%n)%gap%value, gaps, areas)
+    eased = eased_moment(memory, gaps, areas)
     call average(memory, list, slips, moments, areas)
     do node = 1, memory%n_slave
       associate (grip => grips(node))
         grip%traction = constant(0.0_wp)
-        if (.not. gaps(node) < memory%closed_gap*areas(node)) cycle
+        if (.not. eased(node) < memory%closed_gap*areas(node)) cycle
+        if (is_left_to_tie(memory, node)) cycle
         grip%area = areas(node)
         grip%gap = gaps(node)/areas(node)
         grip%slip = moments(node)/areas(node)
         grip%traction = vary_traction(contact%friction, &
           constant(memory%scratch%former_traction(node)), variable(grip%slip, 2), &
-          vary_pressure(memory%contact_law, memory%slave_penalty, variable(grip%gap, 1)), &
+          vary_pressure(memory%contact_law, memory%slave_penalty, &
+          variable(eased(node)/areas(node), 1)), &
           contact%friction%stiffness*memory%slave_penalty, largest_grip(contact%friction), &
-          memory%scratch%dt)
+          memory%scratch%dt, goes_on(memory, node))
       end associate
     end do
   end subroutine grip_nodes

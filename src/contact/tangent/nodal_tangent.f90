@@ -5,6 +5,7 @@
 module nodal_tangent_m
   use assembly_m, only : add_varied_point, pattern_t, start_pattern, add_to_row, &
     add_to_column, add_product
+  use behind_ties_m, only : is_left_to_tie
   use contact_law_m, only : vary_pressure
   use contact_state_m, only : contact_state_t, n_side
   use variation_m, only : varied_point_t
@@ -14,7 +15,8 @@ module nodal_tangent_m
   use sparse_m, only : sparse_t
   implicit none
   private
-  public :: varied_list_t, start_list, append_point, add_nodal_tangent, average, nodal_share
+  public :: varied_list_t, start_list, append_point, add_nodal_tangent, average, nodal_share, &
+    eased_moment
 
   !> Points segment by segment.
   type :: varied_list_t
@@ -65,17 +67,19 @@ contains
     type(pattern_t) :: pattern
     type(dual_t) :: load
     type(dual_t) :: gap, pressed
-    real(wp), dimension(memory%n_slave) :: moment, content, pressure, stiffness
+    real(wp), dimension(memory%n_slave) :: moment, content, eased, pressure, stiffness
     integer :: p, node
 
     call average(memory, list, list%points(:list%n)%gap%value, moment, content)
+    eased = eased_moment(memory, moment, content)
     pressure = 0.0_wp
     gap%slope = 0.0_wp
     gap%slope(1) = 1.0_wp
     do node = 1, memory%n_slave
-      gap%value = moment(node)/max(content(node), tiny(1.0_wp))
+      gap%value = eased(node)/max(content(node), tiny(1.0_wp))
       pressed = vary_pressure(memory%contact_law, memory%slave_penalty, gap)
-      if (moment(node) < 0.0_wp) pressure(node) = pressed%value
+      if (eased(node) < 0.0_wp .and. .not. is_left_to_tie(memory, node)) &
+        pressure(node) = pressed%value
       stiffness(node) = -pressed%slope(1)
     end do
     do p = 1, list%n
@@ -88,11 +92,23 @@ contains
     end do
     call start_pattern(pattern, size(equations, 2))
     do node = 1, memory%n_slave
-      if (.not. moment(node) < memory%closed_gap*content(node)) cycle
+      if (.not. eased(node) < memory%closed_gap*content(node)) cycle
+      if (is_left_to_tie(memory, node)) cycle
       call fill_pattern(contact, list, node, moment(node)/content(node), pattern)
       call add_product(pattern, stiffness(node)/content(node), equations, matrix)
     end do
   end subroutine add_nodal_tangent
+
+  !> Sums of N_A a g as the springs feel it, where initial overlaps grow.
+  pure function eased_moment(memory, moment, content) result(eased)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in) :: moment(:), content(:) !! (n_slave) of N_A a g, and of N_A a
+    real(wp) :: eased(size(moment))
+
+    eased = moment
+    if (allocated(memory%interference%depth)) eased = moment + memory%interference%left &
+      *memory%interference%depth(:size(moment))*content
+  end function eased_moment
 
   !> Sums of N_A a g and N_A a of all slave nodes, g a value of points.
   pure subroutine average(memory, list, values, moment, content)

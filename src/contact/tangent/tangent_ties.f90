@@ -1,11 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> Tangent of ties: the second derivative of what their springs store (doc/theory/contact.md,
-!> section 9.7).
+!> section 9.9).
 module tangent_ties_m
   use assembly_m, only : pattern_t, start_pattern, use_node, add_product
   use contact_state_m, only : contact_state_t, n_side
   use kinds_m, only : wp
   use sparse_m, only : sparse_t
+  use tiebreak_m, only : holds, holds_node
   use ties_m, only : tie_spring_t, tie_spring, tie_stiffness
   implicit none
   private
@@ -27,7 +28,7 @@ contains
     call start_pattern(pattern, memory%n_slave + memory%n_master)
     do s = 1, size(memory%ties%side)
       call add_turns(memory, s, pattern, equations, matrix)
-      if (allocated(memory%node_pressure)) cycle
+      if (allocated(memory%node_pressure) .or. .not. holds(memory, s)) cycle
       call add_stretches(memory, s, pattern, equations, matrix)
     end do
     if (allocated(memory%node_pressure)) call add_nodal(memory, pattern, equations, matrix)
@@ -60,26 +61,21 @@ contains
     type(sparse_t), intent(inout) :: matrix
     type(tie_spring_t) :: spring
     real(wp) :: area(memory%n_slave), share
-    integer :: s, i, j, k
+    integer :: first(memory%n_slave + 1), at(n_side*memory%points%n)
+    integer :: i, j, k, m
 
-    area = 0.0_wp
+    call list_by_node(memory, first, at, area)
     associate (points => memory%points)
-      do s = 1, points%n
-        do k = 1, n_side
-          i = points%slave_nodes(k, s)
-          area(i) = area(i) + points%slave_weights(k, s)*points%area(s)
-        end do
-      end do
       do i = 1, memory%n_slave
-        if (.not. area(i) > 0.0_wp) cycle
+        if (.not. area(i) > 0.0_wp .or. .not. holds_node(memory, i)) cycle
         do j = 1, 2
-          do s = 1, points%n
-            share = sum(points%slave_weights(:, s), points%slave_nodes(:, s) == i) &
-              *points%area(s)/area(i)
+          do m = first(i), first(i + 1) - 1
+            share = sum(points%slave_weights(:, at(m)), points%slave_nodes(:, at(m)) == i) &
+              *points%area(at(m))/area(i)
             if (.not. abs(share) > 0.0_wp) cycle
-            spring = tie_spring(memory, s)
+            spring = tie_spring(memory, at(m))
             do k = to_row, to_column
-              call add_stretch(memory, spring, s, j, share, k, pattern)
+              call add_stretch(memory, spring, at(m), j, share, k, pattern)
             end do
           end do
           call add_product(pattern, memory%slave_penalty*area(i), equations, matrix)
@@ -87,6 +83,40 @@ contains
       end do
     end associate
   end subroutine add_nodal
+
+  !> The points at each slave node, once each and in their order, and the area of the node.
+  pure subroutine list_by_node(memory, first, at, area)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(out) :: first(:) !! (n_slave + 1) where each node starts in ...
+    integer, intent(out) :: at(:)    !! ... this list of points
+    real(wp), intent(out) :: area(:) !! (n_slave) m
+    integer :: next(memory%n_slave), n(memory%n_slave), p, k, i
+
+    n = 0
+    area = 0.0_wp
+    associate (points => memory%points)
+      do p = 1, points%n
+        do k = 1, n_side
+          i = points%slave_nodes(k, p)
+          area(i) = area(i) + points%slave_weights(k, p)*points%area(p)
+          if (k == 1 .or. i /= points%slave_nodes(1, p)) n(i) = n(i) + 1
+        end do
+      end do
+      first(1) = 1
+      do i = 1, memory%n_slave
+        first(i + 1) = first(i) + n(i)
+      end do
+      next = first(:memory%n_slave)
+      do p = 1, points%n
+        do k = 1, n_side
+          i = points%slave_nodes(k, p)
+          if (k > 1 .and. i == points%slave_nodes(1, p)) cycle
+          at(next(i)) = p
+          next(i) = next(i) + 1
+        end do
+      end do
+    end associate
+  end subroutine list_by_node
 
   !> What the springs' loads make of the turn of the segment: with theta its angle, grad grad of
   !> fn a + fs b is grad theta h^T + h grad theta^T with h = fn grad(d.t) - fs grad(d.n)

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Tangent of type 4 (doc/theory/contact.md, section 9.3).
 module tangent_vts_ppt_m
+  use behind_ties_m, only : is_left_to_tie
   use assembly_m, only : add_varied_point, pattern_t, start_pattern, add_to_row, &
     add_to_column, add_product
   use contact_law_m, only : vary_pressure
@@ -10,7 +11,7 @@ module tangent_vts_ppt_m
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
   use foot_m, only : mark_t, walk_to_mark
-  use friction_tangent_m, only : vary_slip, largest_grip
+  use friction_tangent_m, only : vary_slip, largest_grip, goes_on
   use kinds_m, only : wp
   use law_friction_m, only : vary_traction
   use place_vts_ppt_m, only : end_of_half
@@ -34,11 +35,22 @@ contains
     call start_pattern(pattern, size(equations, 2))
     do k = 1, memory%slave_tracking%n_touching
       spot = memory%slave_tracking%touching(k)
-      if (.not. memory%slave_tracking%gap(spot) < memory%closed_gap) cycle
+      if (.not. memory%slave_tracking%gap(spot) + left_at(contact, memory, spot) &
+        < memory%closed_gap) cycle
+      if (is_left_to_tie(memory, place_of_spot(contact, spot))) cycle
       call vary_portions(contact, memory, spot, portions)
       call add_portions(contact, spot, portions, memory, pattern, equations, matrix)
     end do
   end subroutine add_vts_ppt_tangent
+
+  !> The place of a virtual node in what friction and ties remember.
+  pure function place_of_spot(contact, spot) result(place)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: spot
+    integer :: place
+
+    place = 2*contact%slave%segments(1, (spot + 1)/2) - mod(spot, 2)
+  end function place_of_spot
 
   !> The portions of a virtual node, each with its own length on the master as area.
   pure subroutine vary_portions(contact, memory, spot, portions)
@@ -176,7 +188,8 @@ contains
     half = 0.5_wp*length_between(memory%places, portions(1)%nodes, 1, 2)
     if (contact%is_round) half = half*vary_radius(memory%places, portions(1)%nodes, 1, 2, &
       constant(memory%spot_xi(2 - mod(spot, 2))))
-    pressure = vary_pressure(memory%contact_law, memory%slave_penalty, portions(1)%gap)
+    pressure = vary_pressure(memory%contact_law, memory%slave_penalty, portions(1)%gap &
+      + left_at(contact, memory, spot))
     if (allocated(memory%friction%force)) grip = vary_grip(contact, memory, spot, portions(1), &
       pressure)
     do k = 1, size(portions)
@@ -193,6 +206,19 @@ contains
     end do
     call add_product(pattern, 1.0_wp/total, equations, matrix)
   end subroutine add_portions
+
+  !> The part of its initial overlap that does not act yet.
+  pure function left_at(contact, memory, spot) result(left)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: spot
+    real(wp) :: left
+
+    left = 0.0_wp
+    if (.not. allocated(memory%interference%depth)) return
+    left = memory%interference%left*memory%interference%depth(2*contact%slave%segments(1, &
+      1 + (spot - 1)/2) - mod(spot, 2))
+  end function left_at
 
   !> Traction of a virtual node, which slips at its own foot.
   pure function vary_grip(contact, memory, spot, point, pressure) result(traction)
@@ -213,7 +239,7 @@ contains
     traction = vary_traction(contact%friction, &
       constant(memory%scratch%former_traction(place)), vary_slip(memory, point, 5, foot%xi), &
       pressure, contact%friction%stiffness*memory%slave_penalty, &
-      largest_grip(contact%friction), memory%scratch%dt)
+      largest_grip(contact%friction), memory%scratch%dt, goes_on(memory, place))
   end function vary_grip
 
 end module tangent_vts_ppt_m

@@ -4,7 +4,8 @@
 module deck_contact_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_always
+  use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_none, tie_always, &
+    tie_breaks
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
@@ -16,6 +17,7 @@ module deck_contact_m
     of_penalty, of_master_penalty
   use deck_friction_m, only : take_friction, take_stock_friction, take_penalty_friction
   use deck_tie_m, only : take_tie, take_stock_tie, check_tie
+  use deck_transducer_m, only : settle_number
   use deck_raw_m, only : raw_t, raw_contact_t
   use deck_overrides_m, only : overrides_t, contact_names
   implicit none
@@ -39,7 +41,7 @@ contains
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
     type(card_t) :: cards(4)
-    type(raw_contact_t) :: entry
+    type(raw_contact_t) :: entry, before
     logical :: commanded(size(contact_names))
     integer :: k
 
@@ -47,10 +49,8 @@ contains
     entry%contact%title = ''
     if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%contact%id, &
       entry%contact%title)
-    if (entry%contact%id == 0) entry%contact%id = size(raw%contacts) + 1
-    if (any(raw%contacts%contact%id == entry%contact%id)) call line_error(deck, &
-      deck%blocks(i_block)%keyword, 'the interface number '//to_text(entry%contact%id) &
-      //' belongs to an earlier interface (without a number it is the position in the deck)')
+    entry%block = i_block
+    call settle_number(deck, raw, entry)
     do k = 1, cursor%n_card
       call next_card(deck, parameters, cursor, k, cards(k))
     end do
@@ -62,9 +62,9 @@ contains
     select case (deck%blocks(i_block)%name)
     case ('CONTACT_2D_SLIDELINE')
       call take_slideline(deck, cursor, cards, kinds, commanded, entry)
-      call take_tie(deck, cursor, cards, commanded(of_penalty), entry)
+      call take_tie(deck, cursor, cards, commanded, entry)
       call take_friction(deck, cursor, cards, overrides, entry)
-    case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION')
+    case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS')
       call take_penalty(deck, cursor, cards, commanded, entry)
       if (cursor%n_card > 2) call take_penalty_friction(deck, cursor, cards(3), overrides, entry)
     case ('CONTACT_2D_TIED_SLIDING')
@@ -77,8 +77,9 @@ contains
       call take_automatic(deck, cursor, cards, commanded, entry)
       call take_stock_friction(deck, cursor, cards, overrides, entry)
     end select
+    before = entry
     call take_overrides(overrides, entry)
-    call check_tie(deck, deck%blocks(i_block)%keyword, entry)
+    call check_tie(deck, deck%blocks(i_block)%keyword, commanded, before, entry)
     call check_values(deck, cursor, cards, kinds, overrides, commanded, entry)
     if (entry%contact%chosen_by_keyword) then
       if (.not. any(kinds%number == entry%contact%contact_type)) call line_error(deck, &
@@ -106,7 +107,7 @@ contains
     case ('CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE')
       contact_type = 2
     case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE', 'CONTACT_2D_PENALTY', &
-        'CONTACT_2D_PENALTY_FRICTION')
+        'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS')
       contact_type = 3
     case ('CONTACT_2D_AUTOMATIC_TIED', 'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY', &
         'CONTACT_2D_TIED_SLIDING')
@@ -190,11 +191,30 @@ contains
         'is not 0 or 1'//strict_names(kinds))
       contact%strict = integer_of(cards(2), 'IPF') == 1
       call take_search(deck, cursor, cards(2), entry)
-      if (integer_of(cards(3), 'TIE') /= tie_always) &
+      if (.not. any(integer_of(cards(3), 'TIE') == [tie_always, tie_breaks])) &
         call refuse_negative(deck, cursor, cards(2), 'SRCH')
       contact%search_depth = real_of(cards(2), 'SRCH')
     end associate
+    call take_interference(deck, cursor, cards(3), entry)
   end subroutine take_slideline
+
+  !> LCINT: the curve by which an initial overlap grows.
+  subroutine take_interference(deck, cursor, card, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_contact_t), intent(inout) :: entry
+
+    call refuse_negative(deck, cursor, card, 'LCINT')
+    if (integer_of(card, 'LCINT') == 0) return
+    if (integer_of(card, 'TIE') /= tie_none) call report_field(deck, cursor, card, 'LCINT', &
+      'asks for an overlap that grows, which a tie does not have (it keeps its gaps)')
+    if (entry%contact%birth > 0.0_wp) call report_field(deck, cursor, card, 'LCINT', &
+      'asks for the overlap of time zero to grow; the interface must act from then on (TBIRTH 0)')
+    if (is_bad(card, 'LCINT')) return
+    entry%interference = integer_of(card, 'LCINT')
+    entry%interference_place = place_of(card, 'LCINT')
+  end subroutine take_interference
 
   !> What IPF = 1 asks for: `: the strict rule of name (type n)`.
   pure function strict_names(kinds) result(text)

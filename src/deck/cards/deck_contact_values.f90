@@ -14,7 +14,8 @@ module deck_contact_values_m
   use deck_raw_m, only : raw_contact_t
   implicit none
   private
-  public :: find_commanded, take_overrides, check_values, kind_names, of_penalty, of_master_penalty
+  public :: find_commanded, take_overrides, check_values, kind_names, of_penalty, &
+    of_unit, of_master_penalty, of_damping
 
   !> Values by their place in `contact_names`.
   integer, parameter :: of_type = 1, of_gauss = 2, of_penalty = 3, of_unit = 4, &

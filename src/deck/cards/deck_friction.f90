@@ -4,7 +4,7 @@
 module deck_friction_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : friction_rule_t, has_friction, is_tied
+  use contacts_m, only : friction_rule_t, has_friction, is_tied, breaks
   use deck_lines_m, only : deck_t, deck_error, line_warning
   use deck_fields_m, only : card_t, smallest_value
   use deck_cards_m, only : cursor_t, report_field, warn_of_field
@@ -156,7 +156,10 @@ contains
     is_given = max(raw%friction%at_rest, raw%friction%sliding) > 0.0_wp
     do i = 1, size(raw%contacts)
       associate (entry => raw%contacts(i))
-        if (is_tied(entry%contact)) cycle
+        if (is_tied(entry%contact) .and. .not. breaks(entry%contact)) then
+          call warn_of_tie(deck, overrides, entry)
+          cycle
+        end if
         if (is_given .and. entry%takes_default) then
           entry%contact%friction = raw%friction
           entry%friction_place = raw%friction_place
@@ -169,6 +172,22 @@ contains
       raw%friction_place, 'has no effect here: it is the friction of *CONTACT_2D_AUTOMATIC_ ' &
       //'cards that have none (FS, FD, DC and VC 0)')
   end subroutine settle_friction
+
+  !> Friction on the command line passes ties by.
+  subroutine warn_of_tie(deck, overrides, entry)
+    type(deck_t), intent(inout) :: deck
+    type(overrides_t), intent(in) :: overrides
+    type(raw_contact_t), intent(in) :: entry
+    character(4), parameter :: names(5) = ['FS  ', 'FD  ', 'DC  ', 'VC  ', 'TFAC']
+    integer :: i
+
+    do i = 1, size(names)
+      if (is_commanded(overrides, trim(names(i)), entry)) call line_warning(deck, &
+        deck%blocks(entry%block)%keyword, 'override '//names(i)//' of a tie' &
+        //to_text(entry%contact%id), 'interface '//to_text(entry%contact%id)//' is tied: ' &
+        //trim(names(i))//' on the command line has no effect on it')
+    end do
+  end subroutine warn_of_tie
 
   !> The values of the command line. FD follows FS where the deck makes them the same, and is FS
   !> where the command line gives 0.

@@ -4,13 +4,15 @@ module deck_mesh_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use deck_lines_m, only : deck_t
-  use deck_fields_m, only : card_t
+  use deck_fields_m, only : card_t, field_text
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field, &
     find_field
   use deck_values_m, only : integer_of, is_bad
   use deck_raw_m, only : raw_t, reserve_nodes, reserve_elements
-  use deck_raw_sets_m, only : raw_set_t, append_set, append_member
+  use deck_raw_sets_m, only : raw_set_t, append_set, append_member, add_all, add_nodes, add_parts, &
+    of_part, of_part_set
+  use text_m, only : upper_case
   implicit none
   private
   public :: read_nodes, read_elements, read_set, read_history_ids
@@ -107,8 +109,7 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: head, card
     type(raw_set_t) :: set
-    logical :: found, is_segment
-    integer :: first
+    logical :: found
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
@@ -117,22 +118,25 @@ contains
     if (set%id < 1) call report_field(deck, cursor, head, 'SID', 'is not a set number (1 or more)')
     set%line = head%line
     set%generate = index(deck%blocks(i_block)%name, '_GENERATE') > 0
-    is_segment = deck%blocks(i_block)%name == 'SET_SEGMENT'
-    if (is_segment) first = find_field(cursor, 2, 'N1')
     do
       call next_row(deck, parameters, cursor, 2, card, found)
       if (.not. found) exit
-      if (is_segment) then
-        call take_segment(deck, cursor, card, first, set)
-      else
+      select case (deck%blocks(i_block)%name)
+      case ('SET_SEGMENT')
+        call take_segment(deck, cursor, card, find_field(cursor, 2, 'N1'), set)
+      case ('SET_NODE_GENERAL')
+        call take_action(deck, cursor, card, set)
+      case default
         call take_members(deck, cursor, card, set)
-      end if
+      end select
       set%damaged = set%damaged .or. any(card%bad)
     end do
     if (is_bad(head, 'SID')) raw%lost%sets = .true.
     if (is_bad(head, 'SID')) return
     select case (deck%blocks(i_block)%name)
-    case ('SET_SEGMENT')
+    case ('SET_SEGMENT', 'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
+      if (deck%blocks(i_block)%name == 'SET_2D_SEGMENT') set%boundary = of_part
+      if (deck%blocks(i_block)%name == 'SET_2D_SEGMENT_SET') set%boundary = of_part_set
       call append_set(raw%segment_sets, raw%n_segment_set, set)
     case ('SET_PART_LIST', 'SET_PART_LIST_GENERATE')
       call append_set(raw%part_sets, raw%n_part_set, set)
@@ -169,6 +173,40 @@ contains
       if (card%i(k) > 0) call append_member(set, card%i(k), card%line, k)
     end do
   end subroutine take_members
+
+  !> A row of a general set: what it does, and with which nodes or parts.
+  subroutine take_action(deck, cursor, card, set)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_set_t), intent(inout) :: set
+    integer :: action, k, n
+
+    n = cursor%specs(card%number)%n
+    select case (upper_case(field_text(deck, card, 1)))
+    case ('ALL')
+      call append_member(set, 0, card%line, 1, add_all)
+      return
+    case ('NODE')
+      action = add_nodes
+    case ('DNODE')
+      action = -add_nodes
+    case ('PART')
+      action = add_parts
+    case ('DPART')
+      action = -add_parts
+    case default
+      call report_field(deck, cursor, card, 'OPTION', 'is not ALL, NODE, DNODE, PART or DPART ' &
+        //'(boxes are not part of this version)')
+      return
+    end select
+    if (all(card%i(2:n) == 0)) call report_field(deck, cursor, card, 'E1', &
+      'is not a number of 1 or more')
+    do k = 2, n
+      if (card%i(k) < 0) call report_field(deck, cursor, card, k, 'is not a number of 1 or more')
+      if (card%i(k) > 0) call append_member(set, card%i(k), card%line, k, action)
+    end do
+  end subroutine take_action
 
   !> One edge: N3 and N4 may repeat N2 or be zero.
   subroutine take_segment(deck, cursor, card, first, set)

@@ -5,7 +5,7 @@ module deck_override_apply_m
   use text_m, only : exact_text
   use log_m, only : to_text
   use curves_m, only : curve_t
-  use contacts_m, only : friction_rule_t, is_tied
+  use contacts_m, only : friction_rule_t, is_tied, breaks
   use deck_lines_m, only : deck_t, place_t, line_text, line_error, line_warning, layout_mark
   use deck_fields_m, only : card_t, cut_card, field_text
   use deck_cards_m, only : cursor_t, open_cursor, find_keyword_field
@@ -111,7 +111,7 @@ contains
     integer, allocatable :: used(:)
 
     used = [raw%curves%id, raw%tables%id, raw%outputs%curve, raw%hardenings%curve, &
-      raw%hardenings%rate_curve, raw%rows(:raw%n_row)%curve]
+      raw%hardenings%rate_curve, raw%contacts%interference, raw%rows(:raw%n_row)%curve]
     number = min(max(high, maxval(used)), huge(number) - 1) + 1
     do while (any(used == number))
       number = number - 1
@@ -217,10 +217,17 @@ contains
         if (k == 1) then
           if (max(rule%at_rest, rule%sliding, rule%decay) > 0.0_wp) text = ',' &
             //exact_text(rule%at_rest)//','//exact_text(rule%sliding)//','//exact_text(rule%decay)
+        else if (breaks(entry%contact)) then
+          text = exact_text(rule%most)//','//exact_text(rule%stiffness)//',' &
+            //to_text(entry%contact%tie)//','//exact_text(entry%contact%strength(1))//',' &
+            //exact_text(entry%contact%strength(2))//new_line('a')
         else if (is_tied(entry%contact)) then
           text = '0,1,'//to_text(entry%contact%tie)//new_line('a')
-        else if (rule%most > 0.0_wp .or. abs(rule%stiffness - default%stiffness) > 0.0_wp) then
-          text = exact_text(rule%most)//','//exact_text(rule%stiffness)//new_line('a')
+        else if (rule%most > 0.0_wp .or. abs(rule%stiffness - default%stiffness) > 0.0_wp &
+          .or. entry%interference > 0) then
+          text = exact_text(rule%most)//','//exact_text(rule%stiffness)
+          if (entry%interference > 0) text = text//',0,,,'//to_text(entry%interference)
+          text = text//new_line('a')
         end if
       end associate
     end function friction

@@ -93,6 +93,8 @@ module deck_raw_m
     real(wp) :: per_cent = 0.0_wp       !! VDC as given
     integer :: sides(2) = 0             !! SURFA, SURFB as in the deck: > 0 part set, < 0 node set
     type(place_t) :: places(2)
+    integer :: interference = 0         !! LCINT, user id of the curve
+    type(place_t) :: interference_place
     type(place_t) :: search_place       !! FREQ, where it is given
     type(place_t) :: unit_place         !! PUNIT; line 0 where the command line gives it
     type(place_t) :: friction_place     !! FS, or what stands for it; line 0 as before
@@ -154,6 +156,7 @@ module deck_raw_m
     type(node_velocity_t), allocatable :: node_velocities(:)
     integer :: n_node_velocity = 0
     type(raw_contact_t), allocatable :: contacts(:)
+    type(raw_contact_t), allocatable :: transducers(:) !! with one side
     type(raw_wall_t), allocatable :: walls(:)
     type(controls_t) :: controls
     type(friction_rule_t) :: friction          !! of *CONTROL_CONTACT
@@ -182,7 +185,8 @@ contains
     allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%materials(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
       raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%tables(0), raw%contacts(0), &
-      raw%walls(0), raw%rows(64), raw%node_velocities(0), raw%node_sets(16), raw%part_sets(16), &
+      raw%transducers(0), raw%walls(0), raw%rows(64), raw%node_velocities(0), &
+      raw%node_sets(16), raw%part_sets(16), &
       raw%segment_sets(16), raw%explicit_only(0))
     call reserve_nodes(raw, 0)
     call reserve_elements(raw, 0)

@@ -3,7 +3,13 @@
 module deck_raw_sets_m
   implicit none
   private
-  public :: raw_set_t, append_set, append_member, lengthen
+  public :: raw_set_t, append_set, append_member, lengthen, add_all, add_nodes, add_parts, &
+    of_part, of_part_set
+
+  !> What a row of a general node set does with its members; with a minus it takes them out.
+  integer, parameter :: add_all = 1, add_nodes = 2, add_parts = 3
+  !> Whose boundary a segment set is: that of a part, or of a part set.
+  integer, parameter :: of_part = 1, of_part_set = 2
 
   !> One set: user ids, and of each the line and field it stands in. In a generated set
   !> they come as pairs first, last. In a segment set they come as pairs of nodes.
@@ -13,7 +19,9 @@ module deck_raw_sets_m
     logical :: generate = .false.
     logical :: damaged = .false.        !! some of its cards were refused
     integer :: n = 0
+    integer :: boundary = 0             !! of a segment set: `of_part`, `of_part_set`, or its edges
     integer, allocatable :: members(:), lines(:), fields(:)
+    integer, allocatable :: actions(:)  !! of general node sets alone: `add_all` and so on
   end type raw_set_t
 
 contains
@@ -46,23 +54,31 @@ contains
     to%line = from%line
     to%generate = from%generate
     to%damaged = from%damaged
+    to%boundary = from%boundary
     to%n = from%n
     if (.not. allocated(from%members)) return
     call move_alloc(from%members, to%members)
     call move_alloc(from%lines, to%lines)
     call move_alloc(from%fields, to%fields)
+    if (allocated(from%actions)) call move_alloc(from%actions, to%actions)
   end subroutine move_set
 
   !> One more member of a set.
-  subroutine append_member(set, member, line, field)
+  subroutine append_member(set, member, line, field, action)
     type(raw_set_t), intent(inout) :: set
     integer, intent(in) :: member, line, field
+    integer, intent(in), optional :: action !! of all members of a set or of none
 
     if (.not. allocated(set%members)) allocate (set%members(64), set%lines(64), set%fields(64))
     if (set%n == size(set%members)) then
       call lengthen(set%members, 2*set%n)
       call lengthen(set%lines, 2*set%n)
       call lengthen(set%fields, 2*set%n)
+      if (present(action)) call lengthen(set%actions, 2*set%n)
+    end if
+    if (present(action)) then
+      if (.not. allocated(set%actions)) allocate (set%actions(size(set%members)))
+      set%actions(set%n + 1) = action
     end if
     set%n = set%n + 1
     set%members(set%n) = member

@@ -23,6 +23,7 @@ module deck_resolve_m
     check_velocities_of_round
   use deck_resolve_velocity_m, only : resolve_velocity
   use deck_resolve_contacts_m, only : resolve_contacts, check_references
+  use deck_resolve_transducers_m, only : resolve_transducers
   use deck_resolve_walls_m, only : resolve_walls
   implicit none
   private
@@ -154,6 +155,7 @@ contains
     model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]
     if (sound) then
       call resolve_contacts(deck, raw, maps, model)
+      call resolve_transducers(deck, raw, maps, model)
       model%contacts%is_round = model%is_round
     else
       call check_references(deck, raw, maps)

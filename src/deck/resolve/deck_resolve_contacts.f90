@@ -1,25 +1,26 @@
 ! SPDX-License-Identifier: MIT
 !> Surfaces of the interfaces and edges of the pressure loads. Called for sound meshes only.
 module deck_resolve_contacts_m
+  use kinds_m, only : wp
   use log_m, only : to_text
+  use contacts_m, only : contact_t, friction_rule_t, breaks, tie_none
   use surfaces_m, only : surface_t
   use conditions_m, only : pressure_load_t
   use model_m, only : model_t
   use boundary_m, only : boundary_t, find_boundary, find_edge
-  use surface_building_m, only : boundary_surface, chain_surface, chain_turned, chain_ordered, &
-    chain_broken, chain_repeated, chain_short
-  use deck_lines_m, only : deck_t, place_t, line_warning
+  use deck_lines_m, only : deck_t, place_t
   use deck_cards_m, only : reject_field
   use deck_initial_overlap_m, only : check_overlap
   use deck_maps_m, only : maps_t, resolve_id
+  use deck_resolve_sides_m, only : find_side, require_side, resolve_side, side_nodes, &
+    side_segments
+  use deck_interference_m, only : resolve_interference, find_curve
   use deck_raw_m, only : raw_t, row_t, raw_contact_t, row_pressure, row_pressure_set, &
     id_fields, id_place
   implicit none
   private
   public :: resolve_contacts, check_references
 
-  !> Names of the two sides in messages.
-  character(6), parameter :: side_names(2) = ['slave ', 'master']
   !> Fields of the ends of an edge.
   character(2), parameter :: node_fields(2) = ['N1', 'N2']
 
@@ -51,28 +52,48 @@ contains
       model%contacts(i) = raw%contacts(i)%contact
       model%contacts(i)%slave = sides(1)
       model%contacts(i)%master = sides(2)
+      call resolve_interference(deck, raw%contacts(i), maps, model, model%contacts(i))
       if (.not. raw%contacts(i)%contact%is_self) &
         call check_common_nodes(deck, raw%contacts(i), sides, model)
       if (deck%report%n_error == n_error) call check_overlap(deck, raw%contacts(i), sides, model)
     end do
+    call append_behind(model%contacts)
   end subroutine resolve_contacts
+
+  !> Contact behind each tie that breaks, with what the tie has no use for.
+  subroutine append_behind(contacts)
+    type(contact_t), allocatable, intent(inout) :: contacts(:)
+    type(contact_t) :: behind
+    integer :: i
+
+    do i = 1, size(contacts)
+      if (.not. breaks(contacts(i))) cycle
+      behind = contacts(i)
+      behind%behind = i
+      behind%tie = tie_none
+      behind%tie_reach = 0.0_wp
+      contacts(i)%friction = friction_rule_t()
+      contacts(i)%damping = 0.0_wp
+      contacts(i)%search_interval = 0
+      contacts = [contacts, behind]
+    end do
+  end subroutine append_behind
 
   !> What `resolve_contacts` would find of wrong ids, for a mesh that it can not be called for.
   subroutine check_references(deck, raw, maps)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
-    integer :: i, k, found
+    integer :: i, k, kind, found
 
     do i = 1, size(raw%contacts)
-      associate (sides => raw%contacts(i)%sides, places => raw%contacts(i)%places)
-        do k = 1, 2
-          if (sides(k) > 0) call resolve_id(deck, maps%part_sets, sides(k), 'part set', &
-            places(k), found)
-          if (sides(k) < 0) call resolve_id(deck, maps%node_sets, -sides(k), 'node set', &
-            places(k), found)
-        end do
-      end associate
+      do k = 1, 2
+        call require_side(deck, raw%contacts(i), k, maps, kind, found)
+      end do
+      call find_curve(deck, raw%contacts(i), maps, found)
+    end do
+    do i = 1, size(raw%transducers)
+      call require_side(deck, raw%transducers(i), 1, maps, kind, found)
     end do
     do i = 1, raw%n_row
       associate (row => raw%rows(i))
@@ -91,20 +112,24 @@ contains
     end do
   end subroutine check_references
 
-  !> Nodes of contact node sets and of pressure edges: only their edges are looked for.
+  !> Nodes of contact node and segment sets and of pressure edges: only their edges are looked for.
   subroutine mark_nodes(raw, maps, model, among)
     use deck_ids_m, only : index_of
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
     type(model_t), intent(in) :: model
     logical, intent(inout) :: among(:)
-    integer :: i, k, found
+    integer :: i, k, kind, found
 
     do i = 1, size(raw%contacts)
       do k = 1, 2
-        if (raw%contacts(i)%sides(k) >= 0) cycle
-        found = index_of(maps%node_sets, -raw%contacts(i)%sides(k))
-        if (found > 0) among(model%node_sets(found)%nodes) = .true.
+        call find_side(raw%contacts(i), k, maps, kind, found)
+        if (kind == side_nodes) then
+          among(model%node_sets(found)%nodes) = .true.
+        else if (kind == side_segments) then
+          among(model%segment_sets(found)%nodes(1, :)) = .true.
+          among(model%segment_sets(found)%nodes(2, :)) = .true.
+        end if
       end do
     end do
     do i = 1, raw%n_row
@@ -188,91 +213,6 @@ contains
       loads(n) = load
     end do
   end subroutine add_pressures
-
-  !> The surface of one side of an interface.
-  subroutine resolve_side(deck, entry, side, maps, outside, model, surface)
-    type(deck_t), intent(inout) :: deck
-    type(raw_contact_t), intent(in) :: entry
-    integer, intent(in) :: side
-    type(maps_t), intent(in) :: maps
-    type(boundary_t), intent(in) :: outside
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(out) :: surface
-    integer :: found
-
-    if (entry%sides(side) > 0) then
-      call resolve_id(deck, maps%part_sets, entry%sides(side), 'part set', entry%places(side), &
-        found)
-      if (found > 0) call surface_of_parts(deck, model%part_sets(found)%parts, entry%places(side), &
-        model, surface)
-    else if (entry%sides(side) < 0) then
-      call resolve_id(deck, maps%node_sets, -entry%sides(side), 'node set', entry%places(side), &
-        found)
-      if (found > 0) call surface_of_nodes(deck, model%node_sets(found)%nodes, side, &
-        entry%places(side), outside, model, surface)
-    end if
-    if (.not. allocated(surface%nodes)) &
-      allocate (surface%nodes(0), surface%segments(2, 0), surface%segment_element(0))
-  end subroutine resolve_side
-
-  !> Exterior boundary of a set of parts.
-  subroutine surface_of_parts(deck, parts, place, model, surface)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: parts(:)
-    type(place_t), intent(in) :: place
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(out) :: surface
-    type(boundary_t) :: boundary
-    logical, allocatable :: chosen_part(:), all_nodes(:)
-    integer :: crossing
-
-    allocate (chosen_part(size(model%parts)), source=.false.)
-    allocate (all_nodes(model%mesh%n_node), source=.true.)
-    chosen_part(parts) = .true.
-    call find_boundary(model%mesh%element_nodes, chosen_part(model%mesh%element_part), all_nodes, &
-      boundary)
-    if (boundary%n_edge == 0) then
-      call reject_field(deck, place, 'has no boundary: its parts have no elements')
-      return
-    end if
-    call boundary_surface(boundary, surface, crossing)
-    if (crossing > 0) call reject_field(deck, place, 'has a boundary that touches itself at node ' &
-      //to_text(model%mesh%node_id(crossing))//'; give the surface as a node set')
-  end subroutine surface_of_parts
-
-  !> Chain of a node set.
-  subroutine surface_of_nodes(deck, nodes, side, place, outside, model, surface)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: nodes(:)
-    integer, intent(in) :: side
-    type(place_t), intent(in) :: place
-    type(boundary_t), intent(in) :: outside
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(out) :: surface
-    integer :: outcome, trouble(2)
-
-    call chain_surface(outside, nodes, surface, outcome, trouble)
-    select case (outcome)
-    case (chain_turned)
-      call line_warning(deck, place%line, 'turned'//to_text(place%line)//side_names(side), &
-        'the '//trim(side_names(side))//' surface was walked clockwise round its body and ' &
-        //'has been turned')
-    case (chain_ordered)
-      call line_warning(deck, place%line, 'ordered'//to_text(place%line)//side_names(side), &
-        'the nodes of the '//trim(side_names(side))//' surface were not in walking order and ' &
-        //'have been put in order')
-    case (chain_short)
-      call reject_field(deck, place, 'is a set with fewer than two nodes, which is no surface')
-    case (chain_repeated)
-      call reject_field(deck, place, 'is a set with node ' &
-        //to_text(model%mesh%node_id(trouble(1)))//' in it twice')
-    case (chain_broken)
-      call reject_field(deck, place, 'is a set whose nodes do not follow an outer edge of the ' &
-        //'mesh: the first break is between nodes ' &
-        //to_text(model%mesh%node_id(trouble(1)))//' and ' &
-        //to_text(model%mesh%node_id(trouble(2))))
-    end select
-  end subroutine surface_of_nodes
 
   !> A node may stand on one side of an interface only.
   subroutine check_common_nodes(deck, entry, sides, model)

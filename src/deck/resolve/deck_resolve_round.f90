@@ -8,13 +8,16 @@ module deck_resolve_round_m
   use rigids_m, only : mark_rigid_nodes
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
-  use deck_raw_m, only : raw_t, row_body, row_velocity, row_velocity_generation, id_place
+  use deck_raw_m, only : raw_t, row_body, row_velocity, row_velocity_generation, &
+    row_load_node, row_load_set, id_place
   implicit none
   private
   public :: settle_form, settle_axis, mark_axis, check_loads_of_round, check_velocities_of_round
 
   !> Radii below this share of the mesh are the axis.
   real(wp), parameter :: axis_share = 1.0e-10_wp
+  !> No bore is that narrow: nodes that were meant to be on the axis.
+  real(wp), parameter :: bore_share = 1.0e-6_wp
 
 contains
 
@@ -60,8 +63,8 @@ contains
     integer :: i
 
     if (.not. model%is_round .or. model%mesh%n_node == 0) return
+    reach = axis_share*extent(model)
     associate (x => model%mesh%coordinates)
-      reach = axis_share*max(maxval(x(1, :)) - minval(x(1, :)), maxval(x(2, :)) - minval(x(2, :)))
       do i = 1, model%mesh%n_node
         if (x(1, i) < -reach) then
           call reject_field(deck, place_t(raw%node_line(i), 1, 'X'), ': node ' &
@@ -74,6 +77,14 @@ contains
     end associate
   end subroutine settle_axis
 
+  !> The longer side of the mesh, m.
+  pure function extent(model) result(length)
+    type(model_t), intent(in) :: model
+    real(wp) :: length
+
+    length = maxval(maxval(model%mesh%coordinates, 2) - minval(model%mesh%coordinates, 2))
+  end function extent
+
   !> (n_node) nodes on the axis of an axisymmetric deck.
   pure function mark_axis(model) result(is_there)
     type(model_t), intent(in) :: model
@@ -83,7 +94,8 @@ contains
     if (model%is_round) is_there = .not. model%mesh%coordinates(1, :) > 0.0_wp
   end function mark_axis
 
-  !> A body load across the axis has no meaning.
+  !> A body load across the axis has no meaning; a force in r on nodes of the axis does nothing;
+  !> nodes next to the axis are the rim of a bore.
   subroutine check_loads_of_round(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
@@ -96,7 +108,56 @@ contains
         id_place(raw%rows(i)), ': *LOAD_BODY_X acts across the axis of an axisymmetric deck; ' &
         //'*LOAD_BODY_Y acts along it')
     end do
+    if (allocated(model%conditions%nodal_loads)) call warn_of_axis_loads(deck, raw, model)
+    if (allocated(model%conditions%fixed_nodes)) call warn_of_bores(deck, raw, model)
   end subroutine check_loads_of_round
+
+  !> Warn of free nodes next to the axis: the hoop stress at the rim of a bore is not that of a body
+  !> without one, however narrow it is.
+  subroutine warn_of_bores(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+    logical :: is_rim(model%mesh%n_node)
+    integer :: first
+
+    if (model%mesh%n_node == 0) return
+    associate (radius => model%mesh%coordinates(1, :), conditions => model%conditions)
+      is_rim = radius > 0.0_wp .and. radius < bore_share*extent(model) &
+        .and. .not. mark_rigid_nodes(model%rigids, model%mesh%n_node)
+      is_rim(pack(conditions%fixed_nodes, conditions%fixed_directions == 1)) = .false.
+      if (.not. any(is_rim)) return
+      first = findloc(is_rim, .true., dim=1)
+      call line_warning(deck, raw%node_line(first), 'bore', to_text(count(is_rim)) &
+        //' node(s) lie next to the axis but not on it, and move in r as the rim of a bore; the ' &
+        //'first is '//to_text(model%mesh%node_id(first))//' at the radius ' &
+        //to_text(radius(first))//'; give them x = 0, or hold them')
+    end associate
+  end subroutine warn_of_bores
+
+  !> Warn of forces in r on nodes of the axis, at the first card with a force in r.
+  subroutine warn_of_axis_loads(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+    logical :: is_there(model%mesh%n_node), is_lost(size(model%conditions%nodal_loads))
+    integer :: i, line
+
+    is_there = mark_axis(model)
+    associate (loads => model%conditions%nodal_loads)
+      is_lost = is_there(loads%node) .and. loads%direction == 1
+      if (.not. any(is_lost)) return
+      line = 0
+      do i = raw%n_row, 1, -1
+        if (any(raw%rows(i)%kind == [row_load_node, row_load_set]) &
+          .and. raw%rows(i)%direction == 1) line = raw%rows(i)%line
+      end do
+      call line_warning(deck, line, 'radial load', to_text(count(is_lost)) &
+        //' load(s) in r act on nodes on the axis (x = 0), which do not move in r: they do ' &
+        //'nothing; the first is on node ' &
+        //to_text(model%mesh%node_id(loads(findloc(is_lost, .true., dim=1))%node)))
+    end associate
+  end subroutine warn_of_axis_loads
 
   !> Initial velocities across the axis where there can be none.
   subroutine check_velocities_of_round(deck, raw, model)

@@ -1,14 +1,18 @@
 ! SPDX-License-Identifier: MIT
 !> Sets with indices in place of ids.
 module deck_resolve_sets_m
+  use kinds_m, only : long
   use log_m, only : to_text
+  use sets_m, only : segment_set_t
+  use sorting_m, only : sorted_order
+  use boundary_m, only : boundary_t, find_boundary
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t, line_error
   use deck_ids_m, only : id_map_t, ids_between
   use deck_maps_m, only : maps_t, resolve_id
   use deck_cards_m, only : reject_field
   use deck_raw_m, only : raw_t
-  use deck_raw_sets_m, only : raw_set_t
+  use deck_raw_sets_m, only : raw_set_t, add_all, add_parts, of_part, of_part_set
   implicit none
   private
   public :: resolve_sets, resolve_history
@@ -21,15 +25,18 @@ contains
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
-    integer, allocatable :: members(:)
     integer :: i
 
     allocate (model%node_sets(raw%n_node_set), model%part_sets(raw%n_part_set), &
       model%segment_sets(raw%n_segment_set))
     do i = 1, raw%n_node_set
       model%node_sets(i)%id = raw%node_sets(i)%id
-      call resolve_members(deck, raw%node_sets(i), maps%nodes, 'node', 2, &
-        model%node_sets(i)%nodes)
+      if (allocated(raw%node_sets(i)%actions)) then
+        call resolve_general(deck, raw%node_sets(i), maps, model, model%node_sets(i)%nodes)
+      else
+        call resolve_members(deck, raw%node_sets(i), maps%nodes, 'node', 2, &
+          model%node_sets(i)%nodes)
+      end if
     end do
     do i = 1, raw%n_part_set
       model%part_sets(i)%id = raw%part_sets(i)%id
@@ -38,11 +45,115 @@ contains
     end do
     do i = 1, raw%n_segment_set
       model%segment_sets(i)%id = raw%segment_sets(i)%id
-      call resolve_members(deck, raw%segment_sets(i), maps%nodes, 'node', 2, members)
-      if (size(members) /= raw%segment_sets(i)%n) members = members(:0)
-      model%segment_sets(i)%nodes = reshape(members, [2, size(members)/2])
+      call resolve_segments(deck, raw%segment_sets(i), maps, model, model%segment_sets(i))
     end do
   end subroutine resolve_sets
+
+  !> Edges of one segment set: those of its cards, or the boundary of its parts.
+  subroutine resolve_segments(deck, set, maps, model, segments)
+    type(deck_t), intent(inout) :: deck
+    type(raw_set_t), intent(in) :: set
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(in) :: model
+    type(segment_set_t), intent(inout) :: segments
+    integer, allocatable :: members(:)
+    integer :: i
+
+    select case (set%boundary)
+    case (of_part)
+      call resolve_members(deck, set, maps%parts, 'part', 2, segments%parts)
+    case (of_part_set)
+      call resolve_members(deck, set, maps%part_sets, 'part set', 2, members)
+      allocate (segments%parts(0))
+      do i = 1, size(members)
+        segments%parts = [segments%parts, model%part_sets(members(i))%parts]
+      end do
+    case default
+      call resolve_members(deck, set, maps%nodes, 'node', 2, members)
+      if (size(members) /= set%n) members = members(:0)
+      segments%nodes = reshape(members, [2, size(members)/2])
+      return
+    end select
+    call bound_parts(model, segments)
+  end subroutine resolve_segments
+
+  !> The boundary of the parts of a segment set.
+  subroutine bound_parts(model, segments)
+    type(model_t), intent(in) :: model
+    type(segment_set_t), intent(inout) :: segments
+    type(boundary_t) :: boundary
+    logical, allocatable :: is_chosen(:), all_nodes(:)
+    integer :: i
+
+    allocate (segments%nodes(2, 0))
+    ! Of a mesh with mistakes only these are told.
+    if (any(model%mesh%element_nodes < 1)) return
+    allocate (is_chosen(model%mesh%n_element), source=.false.)
+    do i = 1, model%mesh%n_element
+      is_chosen(i) = any(segments%parts == model%mesh%element_part(i))
+    end do
+    allocate (all_nodes(model%mesh%n_node), source=.true.)
+    call find_boundary(model%mesh%element_nodes, is_chosen, all_nodes, boundary)
+    segments%nodes = boundary%nodes
+  end subroutine bound_parts
+
+  !> A general set: its rows add nodes and take them out, one after the other. Each node stands in
+  !> it once, where it was added.
+  subroutine resolve_general(deck, set, maps, model, nodes)
+    type(deck_t), intent(inout) :: deck
+    type(raw_set_t), intent(in) :: set
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(in) :: model
+    integer, allocatable, intent(out) :: nodes(:)
+    integer, allocatable :: place(:), order(:)
+    integer :: i, k, n, found, clock
+
+    allocate (place(model%mesh%n_node), source=0)
+    clock = 0
+    do i = 1, set%n
+      if (set%actions(i) == add_all) then
+        do k = 1, model%mesh%n_node
+          call take(k, .true.)
+        end do
+      else if (abs(set%actions(i)) == add_parts) then
+        call resolve_id(deck, maps%parts, set%members(i), 'part', &
+          place_t(set%lines(i), 2, field=set%fields(i)), found)
+        if (found == 0) cycle
+        do k = 1, model%mesh%n_element
+          if (model%mesh%element_part(k) /= found) cycle
+          do n = 1, 4
+            call take(model%mesh%element_nodes(n, k), set%actions(i) > 0)
+          end do
+        end do
+      else
+        call resolve_id(deck, maps%nodes, set%members(i), 'node', &
+          place_t(set%lines(i), 2, field=set%fields(i)), found)
+        call take(found, set%actions(i) > 0)
+      end if
+    end do
+    nodes = pack([(i, i=1, size(place))], place > 0)
+    order = sorted_order(int(place(nodes), long))
+    nodes = nodes(order)
+    if (size(nodes) == 0 .and. .not. set%damaged .and. model%mesh%n_node > 0) &
+      call line_error(deck, set%line, 'the set is empty')
+
+  contains
+
+    !> Add a node that is not there, or take it out.
+    subroutine take(node, adds)
+      integer, intent(in) :: node !! 0: none
+      logical, intent(in) :: adds
+
+      if (node < 1) return
+      if (.not. adds) then
+        place(node) = 0
+      else if (place(node) == 0) then
+        clock = clock + 1
+        place(node) = clock
+      end if
+    end subroutine take
+
+  end subroutine resolve_general
 
   !> Members of one set; those that do not exist are errors and left out.
   subroutine resolve_members(deck, set, map, what, card, members)

@@ -271,11 +271,9 @@ contains
     case ('IGAPCL')
       text = 'asks to move nodes onto the surface that they are tied to, which this version does ' &
         //'not have; leave it 0 (a tie keeps its gap)'
-    case ('NFLS', 'SFLS')
-      text = 'is a strength of ties that break, which this version does not have; leave it 0'
-    case ('LCINT')
-      text = 'asks for interference that a curve removes, which this version does not have; ' &
-        //'leave it 0'
+    case ('SURFB')
+      text = 'asks for the forces between two surfaces, which this version does not have; leave ' &
+        //'it 0 (a transducer adds up all forces on SURFA)'
     case ('CID', 'ICID', 'VID')
       text = 'is a local coordinate system, which this version does not have; leave it 0'
     case ('SRC', 'SRP')

@@ -15,8 +15,6 @@ module deck_schema_others_m
     'ELEMENT_SHELL_* shells with thickness or offset are', &
     'ELEMENT_* this element is', &
     'SECTION_* this kind of section is', &
-    'SET_NODE_GENERAL* general node sets are', &
-    'SET_2D_SEGMENT* boundary sets of parts are', &
     'SET_* this kind of set is', &
     'BOUNDARY_PRESCRIBED_MOTION_RIGID* axes of bodies are', &
     'BOUNDARY_* this condition is', &
@@ -32,10 +30,8 @@ module deck_schema_others_m
     'CONTACT_2D_AUTOMATIC_SURFACE_IN_CONTINUUM* this kind of contact is', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_THERMAL* heat through contact is', &
     'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE_THERMAL* heat through contact is', &
-    'CONTACT_2D_FORCE_TRANSDUCER* this kind of contact is', &
     'CONTACT_2D_NODE_TO_SOLID* this kind of contact is', &
-    'CONTACT_2D_SLIDING_ONLY* this kind of contact is', &
-    'CONTACT_2D_SLIDING_VOIDS* this kind of contact is', &
+    'CONTACT_2D_SLIDING_ONLY* surfaces that slide and may not separate are', &
     'CONTACT_2D_* unknown', &
     'CONTACT_* three-dimensional contact is', &
     'DEFINE_* this definition is', &

@@ -108,6 +108,9 @@ module deck_schema_tables_m
     'SET_NODE_LIST_GENERATE t', &
     ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
     ' B1BEG:i B1END:i B2BEG:i B2END:i B3BEG:i B3END:i B4BEG:i B4END:i', &
+    'SET_NODE_GENERAL t', &
+    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
+    ' OPTION:a E1:i E2:i E3:i E4:i E5:i E6:i E7:i', &
     'SET_PART_LIST t', &
     ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as', &
     ' PID1:i PID2:i PID3:i PID4:i PID5:i PID6:i PID7:i PID8:i', &
@@ -116,7 +119,13 @@ module deck_schema_tables_m
     ' B1BEG:i B1END:i B2BEG:i B2END:i B3BEG:i B3END:i B4BEG:i B4END:i', &
     'SET_SEGMENT t', &
     ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
-    ' N1:i N2:i N3:i N4:i A1:fs A2:fs A3:fs A4:fs']
+    ' N1:i N2:i N3:i N4:i A1:fs A2:fs A3:fs A4:fs', &
+    'SET_2D_SEGMENT t', &
+    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs', &
+    ' PID:i', &
+    'SET_2D_SEGMENT_SET t', &
+    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs', &
+    ' PSID:i']
 
   !> Constraints, loads, initial values.
   character(69), parameter :: table_conditions(*) = [character(69) :: &
@@ -164,8 +173,12 @@ module deck_schema_tables_m
     'CONTACT_2D_SLIDELINE t', &
     ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2 PEN:f FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 PUNIT:i PENT:f VDC:f IPF:i FREQ:i SRCH:f', &
-    ' VC:f TFAC:f=1 TIE:i NFLS:fr SFLS:fr LCINT:ir', &
+    ' VC:f TFAC:f=1 TIE:i NFLS:f SFLS:f LCINT:i', &
     'CONTACT_2D_PENALTY t', &
+    ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
+    //' FRCSCL:fw=0.1 ONEWAY:fr', &
+    'CONTACT_2D_SLIDING_VOIDS t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
     ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
     //' FRCSCL:fw=0.1 ONEWAY:fr', &
@@ -204,13 +217,16 @@ module deck_schema_tables_m
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
+    'CONTACT_2D_FORCE_TRANSDUCER t', &
+    ' SURFA:i SURFB:ir SFACT:fs=1 FREQ:is FS:fs FD:fs DC:fs', &
+    ' TBIRTH:fw TDEATH:fw=1e20 SOA:fs=1 SOB:fs=1 NDA:is NDB:is COF:is INIT:is', &
     'CONTACT_2D_AUTOMATIC_TIED t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fw FD:fw DC:fw', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:iw FS:fw FD:fw DC:fw', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:fw VDC:fw=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:f IGAPCL:ir TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:fw FD:fw DC:fw', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:iw FS:fw FD:fw DC:fw', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:fw VDC:fw=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:f IGAPCL:ir TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &

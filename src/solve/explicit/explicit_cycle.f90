@@ -6,17 +6,19 @@ module explicit_cycle_m
   use constraints_m, only : fix_nodes, update_activity, is_active
   use contact_account_m, only : plan_looks, follow_contact
   use contact_check_m, only : report_contact_start
+  use behind_ties_m, only : hear_tie, settle_with_tie
   use contact_inertia_m, only : weigh_contacts
   use cycle_loads_m, only : apply_loads
   use energies_m, only : energy_ratio, total_energy
   use errors_m, only : error_t
   use explicit_memory_m, only : write_restarts, take_up_steps
+  use contacts_m, only : told_as
   use explicit_prescribed_m, only : find_prescribed_velocities, start_prescribed, &
     impose_prescribed, prescribed_work
   use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
     table_sleout, table_spcforc
   use health_m, only : tile_check_t, are_sound, check_elements, check_step, check_cycle, &
-    check_energy, made_by_springs
+    check_energy, check_radii, made_by_springs
   use interface_m, only : apply_contact
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
@@ -89,7 +91,7 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    integer :: i
+    integer :: i, k
 
     cycle%last = is_last(cycle%steps, state%cycle, state%time) .or. cycle%last .or. &
       monitor%only_checks
@@ -102,10 +104,13 @@ contains
     if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
     call plan_looks(model, cycle%writes, state)
     do i = 1, size(model%contacts)
+      k = told_as(model%contacts, i)
+      if (k < i) call hear_tie(state%contacts(k), state%contacts(i))
       call apply_contact(model%contacts(i), state%motion, state%contact_mass, &
         state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
         state%force_special)
-      call share_contact(monitor%clock, i)
+      if (k < i) call settle_with_tie(state%contacts(i), state%contacts(k))
+      call share_contact(monitor%clock, k)
       call follow_contact(model, i, state, monitor%log)
     end do
     if (state%cycle > 0) call prepare_leap(model, state, cycle)
@@ -197,6 +202,7 @@ contains
       monitor%clock, state%cycle, state%time, state%dt, cycle%ratio, 'write vtkhdf state')
     if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) &
       call check_energy(model%controls, monitor%snapshot%energies, made_by_springs, cycle%error)
+    call check_radii(model, state, monitor%told_radii, monitor%log)
     cycle%finished = cycle%last .or. allocated(cycle%error)
   end subroutine report_cycle
 

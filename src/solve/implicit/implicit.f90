@@ -6,10 +6,12 @@ module implicit_m
   use clock_m, only : lap, phase_nodes
   use contact_check_m, only : report_contact_end
   use contact_springs_m, only : measure_springs
+  use contacts_m, only : breaks
   use contact_work_m, only : count_step
   use energies_m, only : energy_ratio
   use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
+  use friction_m, only : has_slipped
   use implicit_forces_m, only : trial_t, start_trial, net_force
   use implicit_memory_m, only : implicit_memory_t, write_restarts
   use implicit_prescribed_m, only : prescribe_step
@@ -24,6 +26,8 @@ module implicit_m
   use requests_m, only : requests_t, take_requests
   use restart_plan_m, only : wanted_files
   use state_m, only : state_t
+  use tie_state_m, only : tie_memory_t
+  use tied_interface_m, only : break_at_end
   use step_control_m, only : step_control_t, plan_step, grow_step, cut_step
   implicit none
   private
@@ -122,9 +126,12 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(outcome_t) :: outcome
     type(trial_t) :: attempt
+    type(tie_memory_t), allocatable :: ties(:) !! as the step finds them
     logical :: may_retry
 
+    if (any(breaks(model%contacts))) ties = state%contacts%ties
     do
+      if (allocated(ties)) state%contacts%ties = ties
       call try_step(model, state, monitor, control%next, step, attempt, outcome)
       if (outcome%converged) exit
       may_retry = .false.
@@ -142,10 +149,12 @@ contains
     call lap(monitor%clock, phase_nodes)
   end subroutine take_step
 
-  !> A step to `time`: full iterations or searched ones, as the step before, then the other kind.
+  !> A step to `time`. What slipped in the step before slips on in its first iteration; if that finds
+  !> no equilibrium, or leaves a body free, all sticks first: full iterations or searched ones, as
+  !> in the step before, then the other kind.
   subroutine try_step(model, state, monitor, time, step, attempt, outcome)
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
+    type(state_t), intent(inout) :: state !! what breaks in the step
     type(monitor_t), intent(inout) :: monitor
     real(wp), intent(in) :: time
     type(step_t), intent(inout) :: step
@@ -157,16 +166,58 @@ contains
     step%dt = time - state%time
     call number_equations(model, state, 0.5_wp*(state%time + time), step%equations)
     call prescribe_step(model, state, time, step%equations, step%prescribed)
-    do i = 1, 2
-      call start_trial(model, state, attempt)
-      call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
+    step%slips_on = has_slipped(state%contacts)
+    if (step%slips_on) then
+      call try_once(model, state, monitor, step, attempt, outcome)
       if (outcome%converged) return
-      call write_log(monitor%log, 'step to '//to_text(time)//': '//outcome%reason)
+      step%slips_on = .false.
+    end if
+    do i = 1, 2
+      call try_once(model, state, monitor, step, attempt, outcome)
       ! The first iteration is not searched: one that fails there fails again.
-      if (outcome%iterations <= 1) return
+      if (outcome%converged .or. outcome%iterations <= 1) return
       step%searches = .not. step%searches
     end do
   end subroutine try_step
+
+  !> One attempt at a step, until nothing more breaks; the log tells why it failed.
+  subroutine try_once(model, state, monitor, step, attempt, outcome)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(step_t), intent(in) :: step
+    type(trial_t), intent(inout) :: attempt
+    type(outcome_t), intent(out) :: outcome
+    logical :: broke
+
+    do
+      call start_trial(model, state, attempt)
+      call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
+      if (.not. outcome%converged) exit
+      call break_ties_of_step(model, step%time, attempt, state, broke)
+      if (.not. broke) return
+    end do
+    call write_log(monitor%log, 'step to '//to_text(step%time)//': '//outcome%reason)
+  end subroutine try_once
+
+  !> What equilibrium breaks stays broken in the equilibrium that is then looked for, of the same
+  !> step: there are only so many places.
+  subroutine break_ties_of_step(model, time, attempt, state, broke)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: time
+    type(trial_t), intent(inout) :: attempt
+    type(state_t), intent(inout) :: state
+    logical, intent(out) :: broke
+    integer :: i, n_new
+
+    broke = .false.
+    do i = 1, size(model%contacts)
+      call break_at_end(model%contacts(i), time, attempt%contacts(i), n_new)
+      if (n_new == 0) cycle
+      broke = .true.
+      state%contacts(i)%ties = attempt%contacts(i)%ties
+    end do
+  end subroutine break_ties_of_step
 
   !> The trial becomes the state; works of contact, loads and prescribed
   !> motion by the trapezoidal rule.

@@ -2,6 +2,8 @@
 !> All nodal forces of one instant for the implicit driver: the explicit kernels from a committed
 !> state to a trial displacement (doc/theory/implicit.md, section 1).
 module implicit_forces_m
+  use behind_ties_m, only : hear_tie
+  use contacts_m, only : told_as
   use interface_m, only : evaluate_contact
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
@@ -52,7 +54,7 @@ contains
     type(clock_t), intent(inout) :: clock
     type(trial_t), intent(inout) :: trial
     real(wp) :: body(2)
-    integer :: i
+    integer :: i, k
 
     trial%motion(3:4, :) = trial%motion(1:2, :) - state%motion(1:2, :)
     call assemble_internal(model, state, trial)
@@ -60,10 +62,12 @@ contains
     trial%contact = 0.0_wp
     trial%contacts = state%contacts
     do i = 1, size(model%contacts)
+      k = told_as(model%contacts, i)
+      if (k < i) call hear_tie(trial%contacts(k), trial%contacts(i))
       call evaluate_contact(model%contacts(i), trial%motion, time, time - state%time, is_first, &
         trial%contacts(i), trial%contact)
       call lap(clock, phase_contact_force)
-      call share_contact(clock, i)
+      call share_contact(clock, k)
     end do
     trial%external = 0.0_wp
     call form_external_force(model, trial%motion, time, trial%external)

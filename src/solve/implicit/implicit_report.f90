@@ -9,7 +9,7 @@ module implicit_report_m
   use energies_m, only : energy_ratio, total_energy
   use equations_m, only : equations_t
   use errors_m, only : error_t
-  use health_m, only : check_energy, judge_energies, judge_contact, made_by_forces
+  use health_m, only : check_energy, check_radii, judge_energies, judge_contact, made_by_forces
   use implicit_forces_m, only : trial_t
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
@@ -70,6 +70,7 @@ contains
         energy_ratio(shot%energies), 'write vtkhdf state')
       if (.not. allocated(error)) call check_energy(model%controls, shot%energies, made_by_forces, &
         error)
+      call check_radii(model, state, monitor%told_radii, monitor%log)
       if (last .and. .not. allocated(error)) then
         call judge_contact(shot%energies, monitor%log)
         call judge_energies(shot%energies, monitor%log)

@@ -4,6 +4,7 @@ module implicit_tangent_m
   use kinds_m, only : wp
   use clock_m, only : clock_t, lap, share_contact, phase_elements, phase_contact_force
   use conditions_m, only : pressure_load_t
+  use contacts_m, only : told_as
   use contact_stiffness_m, only : add_contact_stiffness
   use curves_m, only : curve_value
   use element_mass_m, only : add_mass, mass_times
@@ -27,6 +28,7 @@ module implicit_tangent_m
     real(wp), allocatable :: old_force(:, :) !! (2, n_node) f_int - f_contact - f_ext at its start
     type(equations_t) :: equations
     logical :: searches = .false.      !! iterations that go too far are shortened
+    logical :: slips_on = .true.       !! what slipped before does so in the first iteration
     type(prescribed_step_t) :: prescribed    !! what the curves ask for
   end type step_t
 
@@ -95,7 +97,7 @@ contains
       call add_contact_stiffness(model%contacts(i), trial%contacts(i), step%equations%number, &
         matrix)
       call lap(clock, phase_contact_force)
-      call share_contact(clock, i)
+      call share_contact(clock, told_as(model%contacts, i))
     end do
     do i = 1, size(model%conditions%pressures)
       call add_pressure_stiffness(model, model%conditions%pressures(i), trial%motion, step%time, &

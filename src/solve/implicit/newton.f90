@@ -5,6 +5,8 @@ module newton_m
   use kinds_m, only : wp
   use clock_m, only : clock_t, lap, phase_nodes, phase_solver
   use contact_scatter_m, only : add_gap_round_off
+  use contacts_m, only : told_as
+  use friction_m, only : let_stick
   use controls_m, only : implicit_t
   use equations_m, only : take_free, move_prescribed, find_equation
   use implicit_forces_m, only : trial_t, assemble_forces, trouble_of
@@ -69,6 +71,7 @@ contains
     call assemble_forces(model, state, step%time, .true., clock, trial)
     outcome%reason = trouble_of(trial)
     if (len(outcome%reason) > 0) return
+    if (.not. step%slips_on) call let_stick(trial%contacts)
     do iteration = 1, model%controls%implicit%max_iteration
       outcome%iterations = iteration
       way%moved = step%prescribed%increment
@@ -106,6 +109,7 @@ contains
 
     words = ''
     do i = 1, size(model%contacts)
+      if (told_as(model%contacts, i) < i) cycle
       associate (contact => model%contacts(i))
         if (any(contact%slave%nodes == node)) words = words//', a slave node of interface ' &
           //to_text(contact%id)

@@ -3,12 +3,13 @@
 module start_m
   use interface_m, only : start_contact, resume_contact
   use kinds_m, only : wp
+  use behind_ties_m, only : hear_tie
   use automatic_penalty_m, only : set_automatic_penalties
   use constraints_m, only : fix_nodes, update_activity
   use contact_inertia_m, only : weigh_contacts
   use element_log_m, only : log_elements
   use element_state_m, only : start_elements, lump_mass
-  use contacts_m, only : is_tied
+  use contacts_m, only : is_tied, told_as
   use errors_m, only : error_t, raise, status_input
   use initial_values_m, only : start_motion
   use log_m, only : log_t, to_text
@@ -90,10 +91,12 @@ contains
   pure subroutine resume_contacts(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    integer :: i
+    integer :: i, k
 
     do i = 1, size(state%contacts)
       call resume_contact(model%contacts(i), state%contacts(i))
+      k = told_as(model%contacts, i)
+      if (k < i) call hear_tie(state%contacts(k), state%contacts(i))
     end do
   end subroutine resume_contacts
 

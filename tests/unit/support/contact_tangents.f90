@@ -25,6 +25,8 @@ contains
     integer :: n, i
 
     down = 0.02_wp
+    ! gfortran looks at the bounds of what it is to allocate anew: these are numbers.
+    allocate (slave(2, 0), master(2, 0))
     select case (places(k))
     case ('valley')
       slave = reshape([0.0_wp, 0.15_wp, 0.25_wp, 0.075_wp, 0.4985_wp, 0.003_wp, 0.509_wp, 0.0036_wp, &

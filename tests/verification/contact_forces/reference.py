@@ -8,6 +8,7 @@ point near the interface, so that they carry no large common part.
 A surface is walked with its body on the left; the outward normal of a segment is (t_y, -t_x).
 Whole outlines are in contact by runs of segments that face each other (runs.py).
 """
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -214,6 +215,7 @@ class Forces:
         self.sides[side][second] += at * force
 
 
+@functools.cache
 def gauss(n):
     """Points and weights over 0 to 1."""
     points, weights = np.polynomial.legendre.leggauss(n)

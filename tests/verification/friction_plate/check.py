@@ -8,7 +8,7 @@ from meshes import Deck, grid_quads
 YOUNG, POISSON, RHO, FRICTION = 1.3e11, 0.2, 7800.0, 1.0
 SIDE, CELLS = 0.04, 32
 ABOVE, ASIDE = 5.0e7, 15.0e7
-KINDS = tuple(TYPES)
+KINDS, STIFF_KINDS = tuple(TYPES), (4, 6, 7)
 #: N/m per contact node: a strip of SIDE/100 of the plate's own material.
 PENALTY = 1.0e2 * YOUNG / CELLS
 #: Places on the contact side, m, and u_x there, m: mean of codes as GRECO gives it, and code_aster's own values.
@@ -24,7 +24,7 @@ def edge_forces(pressure):
     return force
 
 
-def plate(kind, steps=20):
+def plate(kind, steps=20, stiffer=1.0):
     """(deck, contact nodes from left to right): the plane is a row of quads all of whose nodes are held."""
     deck = Deck(f"GRECO's plate, type {kind}")
     deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 1.0 / steps))
@@ -38,17 +38,17 @@ def plate(kind, steps=20):
     deck.curve(1, [(0.0, 0.0), (1.0, 1.0)])
     deck.add("*LOAD_NODE_POINT", *[(node, 2, 1, -force) for node, force in zip(ids[-1].tolist(), edge_forces(ABOVE))],
              *[(node, 1, 1, force) for node, force in zip(ids[:, 0].tolist(), edge_forces(ASIDE))])
-    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 4, PENALTY, FRICTION))
+    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 4, stiffer * PENALTY, FRICTION))
     return deck.output(plot=1.0, glstat=1.0, rcforc=1.0), ids[0]
 
 
 def check(run):
-    for kind in KINDS:
-        deck, row = plate(kind)
+    for kind, stiffer in [(kind, 1.0) for kind in KINDS] + [(kind, 10.0) for kind in STIFF_KINDS]:
+        deck, row = plate(kind, stiffer=stiffer)
         result = run.program(deck)
         points = result.points("Points")
         moved = np.interp(PLACES, points[0, row - 1, 0], (points[-1] - points[0])[row - 1, 0])
-        name = TYPES[kind]
+        name = TYPES[kind] + (", stiff springs" if stiffer > 1.0 else "")
         run.check(f"{name}: u_x of the contact side", moved, CODES, 0.02, "rel", "mean of codes, GRECO (code_aster V6.04.128)")
         run.check(f"{name}: u_x of the contact side, one code", moved, ONE_CODE, 0.01, "rel", "code_aster V6.04.128")
         force = result.table("rcforc").where(side="slave")

@@ -43,6 +43,9 @@ def add(commands) -> None:
                        help="form of hourglass control (stiffness)")
     scene.add_argument("--coefficient", type=float, help="hourglass coefficient "
                        "(0.1 viscous, 0.05 stiffness)")
+    scene = add_scene(scenes, "taylor", "copper rod on a rigid wall, axisymmetric, without contact")
+    scene.add_argument("--columns", type=int, help="elements along the radius of 3.2 mm (10)")
+    scene.add_argument("--rows", type=int, help="elements along 32.4 mm (100)")
 
 
 def add_scene(scenes, name: str, text: str) -> argparse.ArgumentParser:

@@ -75,6 +75,26 @@ def parts_surface(cells: np.ndarray, label: str) -> Surface:
     return Surface(label, chains)
 
 
+def edges_surface(cells: np.ndarray, ends: np.ndarray, label: str) -> Surface:
+    """The chains of edges given by pairs of nodes, either way, among the exterior edges of all elements."""
+    wanted = {frozenset((int(a), int(b))) for a, b in np.reshape(ends, (-1, 2))}
+    near = cells[np.isin(cells, ends).sum(axis=1) >= 2]
+    edges = [(int(a), int(b)) for a, b in exterior_edges(near) if frozenset((int(a), int(b))) in wanted]
+    follower, reached = dict(edges), {b for _, b in edges}
+    if len(edges) < len(wanted) or len(follower) < len(edges) or len(reached) < len(edges):
+        return Surface(label, [np.array(edge) for edge in edges], "broken")
+    chains, used = [], set()
+    for start in [node for node in follower if node not in reached] + sorted(follower):
+        if start in used:
+            continue
+        chain = [start]
+        while chain[-1] not in used and chain[-1] in follower:
+            used.add(chain[-1])
+            chain.append(follower[chain[-1]])
+        chains.append(np.array(chain))
+    return Surface(label, chains)
+
+
 def list_surface(cells: np.ndarray, nodes: np.ndarray, label: str) -> Surface:
     """The chain that a list of nodes describes, among the exterior edges of all elements."""
     given = [int(node) for node in nodes if node >= 0]

@@ -16,7 +16,7 @@ import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.draw.cards import Card, read_cards, whole_number
-from slideline_tools.draw.chains import Surface, list_surface, parts_surface
+from slideline_tools.draw.chains import Surface, edges_surface, list_surface, parts_surface
 
 # Keywords that put nothing into a picture of the model.
 SILENT = ("KEYWORD", "END", "TITLE", "COMMENT", "PARAMETER", "CONTROL_", "DATABASE_", "SECTION_",
@@ -114,6 +114,7 @@ class Model:
     node_sets: dict[int, NodeSet] = dataclasses.field(default_factory=dict)
     part_sets: dict[int, list[int]] = dataclasses.field(default_factory=dict)
     segment_sets: dict[int, list[tuple[int, int]]] = dataclasses.field(default_factory=dict)
+    boundary_sets: dict[int, tuple[bool, list[int]]] = dataclasses.field(default_factory=dict)
     curves: dict[int, np.ndarray] = dataclasses.field(default_factory=dict)
     interfaces: list[Interface] = dataclasses.field(default_factory=list)
     fixed: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros((0, 2), bool))
@@ -230,6 +231,9 @@ def read_definition(model: Model, card: Card) -> bool:
         read_part(model, card)
     elif name.startswith("MAT_"):
         model.laws[card.row(0).integer(0)] = card
+    elif name.startswith("SET_NODE_GENERAL"):
+        number, members = read_general_set(model, card)
+        model.node_sets[number] = NodeSet(number, card.title, members)
     elif name.startswith("SET_NODE"):
         number, members = read_set(card, model.node_ids)
         model.node_sets[number] = NodeSet(number, card.title, model.indices(members))
@@ -240,11 +244,34 @@ def read_definition(model: Model, card: Card) -> bool:
         rows = [card.row(k) for k in range(1, len(card.lines)) if card.lines[k].strip()]
         model.segment_sets[card.row(0).integer(0)] = [(row.integer(0), row.integer(1))
                                                       for row in rows]
+    elif name.startswith("SET_2D_SEGMENT"):
+        model.boundary_sets[card.row(0).integer(0)] = (name.startswith("SET_2D_SEGMENT_SET"), read_set(
+            card, model.node_ids)[1])
     elif name == "DEFINE_CURVE":
         read_curve(model, card)
     else:
         return False
     return True
+
+
+def read_general_set(model: Model, card: Card) -> tuple[int, np.ndarray]:
+    """Number and node indices of a set whose rows add nodes and take them out."""
+    members: dict[int, None] = {}
+    for row in (card.row(k) for k in range(1, len(card.lines))):
+        option = row.text(0).upper()
+        numbers = [row.integer(k) for k in range(1, 8) if row.integer(k)]
+        if option == "ALL":
+            chosen = range(len(model.points))
+        elif option in ("PART", "DPART"):
+            chosen = model.cells[np.isin(model.cell_parts, numbers)].ravel().tolist()
+        else:
+            chosen = [int(node) for node in model.known(numbers)]
+        for node in chosen:
+            if option.startswith("D"):
+                members.pop(int(node), None)
+            else:
+                members.setdefault(int(node))
+    return card.row(0).integer(0), np.array(list(members), dtype=int)
 
 
 def read_part(model: Model, card: Card) -> None:
@@ -410,9 +437,11 @@ def read_wall(model: Model, card: Card) -> None:
 
 def read_interface(model: Model, card: Card) -> None:
     """*CONTACT_2D_...: both surfaces as the program walks them."""
+    if card.name.startswith("CONTACT_2D_FORCE_TRANSDUCER"):
+        return  # it measures
     row = card.row(0)
     sides = [row.integer(0), row.integer(1)]
-    if card.name.startswith("CONTACT_2D_PENALTY"):
+    if card.name.startswith(("CONTACT_2D_PENALTY", "CONTACT_2D_SLIDING", "CONTACT_2D_TIED_SLIDING")):
         sides = [-abs(side) for side in sides]
     elif sides[1] == 0 or "SINGLE_SURFACE" in card.name:
         sides[1] = sides[0]
@@ -423,7 +452,15 @@ def read_interface(model: Model, card: Card) -> None:
 
 
 def find_surface(model: Model, number: int) -> Surface:
-    """The boundary of a part set (above 0) or the chain of a node set (below 0)."""
+    """The boundary of a part set (above 0) or the chain of a node set (below 0), or the segment set of that number."""
+    if number not in model.part_sets and -number not in model.node_sets:
+        label = f"segment set {abs(number)}"
+        if abs(number) in model.boundary_sets:
+            by_set, numbers = model.boundary_sets[abs(number)]
+            parts = [part for k in numbers for part in model.part_sets[k]] if by_set else numbers
+            return parts_surface(model.cells[np.isin(model.cell_parts, parts)], label)
+        if abs(number) in model.segment_sets:
+            return edges_surface(model.cells, model.indices(np.ravel(model.segment_sets[abs(number)])), label)
     if number > 0:
         if number not in model.part_sets:
             raise ModelError(f"no part set {number}")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The scenes: each function returns the text of one complete deck (SI units, plane strain)."""
+"""The scenes: each function returns the text of one complete deck (SI units; plane strain, or per
+radian)."""
 from slideline_tools.scenes.block import block, block_grids
 from slideline_tools.scenes.collision import collision, collision_grids
 from slideline_tools.scenes.hertz import hertz, hertz_grids
@@ -7,10 +8,11 @@ from slideline_tools.scenes.oblique import oblique, oblique_grids
 from slideline_tools.scenes.patch import patch, patch_grids
 from slideline_tools.scenes.sliding import sliding, sliding_grids
 from slideline_tools.scenes.symmetric_plate import symmetric_plate, symmetric_plate_grid
+from slideline_tools.scenes.taylor import taylor, taylor_grid
 
 __all__ = ["block", "block_grids", "collision", "collision_grids", "committed_decks", "hertz",
            "hertz_grids", "oblique", "oblique_grids", "patch", "patch_grids", "sliding",
-           "sliding_grids", "symmetric_plate", "symmetric_plate_grid"]
+           "sliding_grids", "symmetric_plate", "symmetric_plate_grid", "taylor", "taylor_grid"]
 
 
 def committed_decks():
@@ -29,6 +31,7 @@ def committed_decks():
         for law in ("elastic", "elastoplastic"):
             yield (f"symmetric_plate/plate_{n_x}x{n_y}_{law}.k",
                    symmetric_plate(n_x, n_y, elastoplastic=law == "elastoplastic"))
+    yield "taylor/taylor.k", taylor()
 
 
 def suffix(level):

@@ -1,0 +1,132 @@
+! SPDX-License-Identifier: MIT
+!> Contact behind ties that break: between the same surfaces, of all places that no tie holds
+!> (doc/theory/contact.md, section 6.4). The tie tells it its places before each call.
+module behind_ties_m
+  use contact_law_m, only : density_of
+  use contact_state_m, only : contact_state_t, n_side
+  use friction_m, only : place_at
+  use friction_state_m, only : is_held, is_broken
+  use kinds_m, only : wp
+  use nodal_average_m, only : average_gaps, share_out
+  implicit none
+  private
+  public :: hear_tie, leave_to_tie, take_over, settle_with_tie, is_left_to_tie
+
+contains
+
+  !> Which places the tie holds now, and which it has just lost.
+  pure subroutine hear_tie(tie, memory)
+    type(contact_state_t), intent(in) :: tie
+    type(contact_state_t), intent(inout) :: memory
+    logical :: is_first
+
+    associate (scratch => memory%scratch, n_held => count(tie%ties%state == is_held))
+      is_first = .not. allocated(scratch%is_left)
+      if (is_first) then
+        allocate (scratch%is_left(size(tie%ties%state)), scratch%is_freed(size(tie%ties%state)))
+      else if (n_held == scratch%n_held) then
+        if (scratch%has_freed) scratch%is_freed = .false.
+        scratch%has_freed = .false.
+        return
+      end if
+      scratch%n_held = n_held
+      scratch%is_freed = scratch%is_left .and. .not. is_first
+      scratch%is_left = held_places(tie)
+      scratch%is_freed = scratch%is_freed .and. .not. scratch%is_left
+      scratch%has_freed = any(scratch%is_freed)
+    end associate
+  end subroutine hear_tie
+
+  !> The places that a tie holds. Where slave and master nodes lie upon each other type 5 has one
+  !> place of the two: the other, never tied itself, goes with it.
+  pure function held_places(tie) result(is_left)
+    type(contact_state_t), intent(in) :: tie
+    logical :: is_left(size(tie%ties%state))
+    integer :: s, p, k
+
+    is_left = tie%ties%state == is_held
+    if (allocated(tie%spots) .or. allocated(tie%node_pressure)) return
+    associate (ties => tie%ties, points => tie%points)
+      do s = 1, size(ties%side)
+        if (ties%state(ties%place(s)) /= is_held) cycle
+        p = ties%first(s)
+        do k = 1, n_side
+          associate (a => points%slave_nodes(k, p), b => points%master_nodes(k, p))
+            if (points%slave_weights(k, p) > 0.5_wp) is_left(a) = ties%state(a) /= is_broken
+            if (points%master_weights(k, p) > 0.5_wp) is_left(b) = ties%state(b) /= is_broken
+          end associate
+        end do
+      end do
+    end associate
+  end function held_places
+
+  !> After all places have been pressed: those that the tie holds are not.
+  pure subroutine leave_to_tie(memory)
+    type(contact_state_t), intent(inout) :: memory
+    integer :: p
+
+    associate (points => memory%points)
+      if (allocated(memory%node_pressure)) then
+        where (memory%scratch%is_left(:memory%n_slave)) memory%node_pressure = 0.0_wp
+        call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
+          points%pressure)
+      else
+        do p = 1, points%n
+          if (memory%scratch%is_left(place_at(memory, p))) points%pressure(p) = 0.0_wp
+        end do
+      end if
+    end associate
+  end subroutine leave_to_tie
+
+  !> What the springs hold of places that have just been freed while pressed: the tie has taken it
+  !> in, and gives it up (settle_with_tie).
+  pure subroutine take_over(memory)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: nodal(2, memory%n_slave)
+    integer :: p
+
+    associate (scratch => memory%scratch, points => memory%points)
+      if (.not. scratch%has_freed) return
+      if (allocated(memory%node_pressure)) then
+        call average_gaps(points, memory%n_slave, nodal)
+        do p = 1, memory%n_slave
+          if (scratch%is_freed(p)) scratch%taken = scratch%taken + nodal(2, p) &
+            *density_of(memory%contact_law, memory%slave_penalty, nodal(1, p))
+        end do
+      else
+        do p = 1, points%n
+          if (scratch%is_freed(place_at(memory, p))) scratch%taken = scratch%taken &
+            + points%area(p)*density_of(memory%contact_law, points%stiffness(p), points%gap(p))
+        end do
+      end if
+      memory%energy = memory%energy + scratch%taken
+    end associate
+  end subroutine take_over
+
+  !> After a cycle: what contact has taken over leaves the tie. What it holds beyond that, of
+  !> surfaces that lay within each other from the start, nobody has put in: that is told, and may be
+  !> returned.
+  pure subroutine settle_with_tie(memory, tie)
+    type(contact_state_t), intent(inout) :: memory, tie
+    real(wp) :: given
+
+    if (.not. memory%scratch%taken > 0.0_wp) return
+    given = min(memory%scratch%taken, max(0.0_wp, tie%ties%spent))
+    tie%ties%spent = tie%ties%spent - given
+    tie%energy = tie%energy - given
+    memory%energy = memory%energy - (memory%scratch%taken - given)
+    memory%limit%credit = memory%limit%credit + (memory%scratch%taken - given)
+    memory%scratch%taken = 0.0_wp
+  end subroutine settle_with_tie
+
+  !> Whether a tie holds a place.
+  pure function is_left_to_tie(memory, place) result(is_left)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: place
+    logical :: is_left
+
+    is_left = .false.
+    if (allocated(memory%scratch%is_left)) is_left = memory%scratch%is_left(place)
+  end function is_left_to_tie
+
+end module behind_ties_m

@@ -1,0 +1,193 @@
+! SPDX-License-Identifier: MIT
+!> The surfaces of an interface from the sets that SURFA and SURFB name: parts, nodes or segments.
+module deck_resolve_sides_m
+  use log_m, only : to_text
+  use surfaces_m, only : surface_t
+  use model_m, only : model_t
+  use sets_m, only : segment_set_t
+  use boundary_m, only : boundary_t, find_boundary, find_edge
+  use surface_building_m, only : boundary_surface, chain_surface, chain_turned, chain_ordered, &
+    chain_broken, chain_repeated, chain_short
+  use deck_ids_m, only : index_of
+  use deck_lines_m, only : deck_t, place_t, line_warning
+  use deck_cards_m, only : reject_field
+  use deck_maps_m, only : maps_t, resolve_id
+  use deck_raw_m, only : raw_contact_t
+  implicit none
+  private
+  public :: find_side, require_side, resolve_side, side_none, side_parts, side_nodes, side_segments
+
+  !> What a side is given by.
+  integer, parameter :: side_none = 0, side_parts = 1, side_nodes = 2, side_segments = 3
+  !> Names of the two sides in messages.
+  character(6), parameter :: side_names(2) = ['slave ', 'master']
+
+contains
+
+  !> The set of one side: a part set (more than 0) or a node set (less than 0), or the segment set
+  !> where the deck has no such set of that number.
+  subroutine find_side(entry, side, maps, kind, found)
+    type(raw_contact_t), intent(in) :: entry
+    integer, intent(in) :: side
+    type(maps_t), intent(in) :: maps
+    integer, intent(out) :: kind  !! one of the `side_` constants
+    integer, intent(out) :: found !! index of the set, 0 for none
+
+    associate (id => entry%sides(side))
+      kind = merge(side_parts, side_nodes, id > 0)
+      found = 0
+      if (id > 0) found = index_of(maps%part_sets, id)
+      if (id < 0) found = index_of(maps%node_sets, -id)
+      if (found > 0) return
+      kind = side_segments
+      if (id /= 0) found = index_of(maps%segment_sets, abs(id))
+      if (found == 0) kind = side_none
+    end associate
+  end subroutine find_side
+
+  !> The same, with an error where there is no such set.
+  subroutine require_side(deck, entry, side, maps, kind, found)
+    type(deck_t), intent(inout) :: deck
+    type(raw_contact_t), intent(in) :: entry
+    integer, intent(in) :: side
+    type(maps_t), intent(in) :: maps
+    integer, intent(out) :: kind, found
+
+    call find_side(entry, side, maps, kind, found)
+    if (kind /= side_none) return
+    if (entry%sides(side) > 0) call resolve_id(deck, maps%part_sets, entry%sides(side), &
+      'part set', entry%places(side), found)
+    if (entry%sides(side) < 0) call resolve_id(deck, maps%node_sets, -entry%sides(side), &
+      'node set', entry%places(side), found)
+  end subroutine require_side
+
+  !> The surface of one side of an interface.
+  subroutine resolve_side(deck, entry, side, maps, outside, model, surface)
+    type(deck_t), intent(inout) :: deck
+    type(raw_contact_t), intent(in) :: entry
+    integer, intent(in) :: side
+    type(maps_t), intent(in) :: maps
+    type(boundary_t), intent(in) :: outside
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(out) :: surface
+    integer :: kind, found
+
+    call require_side(deck, entry, side, maps, kind, found)
+    select case (kind)
+    case (side_parts)
+      call surface_of_parts(deck, model%part_sets(found)%parts, entry%places(side), model, surface)
+    case (side_nodes)
+      call surface_of_nodes(deck, model%node_sets(found)%nodes, side, entry%places(side), outside, &
+        model, surface)
+    case (side_segments)
+      if (allocated(model%segment_sets(found)%parts)) then
+        call surface_of_parts(deck, model%segment_sets(found)%parts, entry%places(side), model, &
+          surface)
+      else
+        call surface_of_segments(deck, model%segment_sets(found), entry%places(side), outside, &
+          model, surface)
+      end if
+    end select
+    if (.not. allocated(surface%nodes)) &
+      allocate (surface%nodes(0), surface%segments(2, 0), surface%segment_element(0))
+  end subroutine resolve_side
+
+  !> Chains of the edges of a segment set, in any order and walked either way.
+  subroutine surface_of_segments(deck, set, place, outside, model, surface)
+    type(deck_t), intent(inout) :: deck
+    type(segment_set_t), intent(in) :: set
+    type(place_t), intent(in) :: place
+    type(boundary_t), intent(in) :: outside
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(out) :: surface
+    type(boundary_t) :: chosen
+    logical, allocatable :: is_chosen(:)
+    integer :: i, node, n, edge, crossing
+
+    allocate (is_chosen(outside%n_edge), source=.false.)
+    do i = 1, size(set%nodes, 2)
+      edge = find_edge(outside, set%nodes(1, i), set%nodes(2, i))
+      if (edge == 0) edge = find_edge(outside, set%nodes(2, i), set%nodes(1, i))
+      if (edge == 0) then
+        call reject_field(deck, place, 'is a set with the edge between nodes ' &
+          //to_text(model%mesh%node_id(set%nodes(1, i)))//' and ' &
+          //to_text(model%mesh%node_id(set%nodes(2, i)))//', which is no outer edge of the mesh')
+        return
+      end if
+      is_chosen(edge) = .true.
+    end do
+    allocate (chosen%start(size(outside%start)))
+    n = 0
+    do node = 1, size(outside%start) - 1
+      chosen%start(node) = n + 1
+      n = n + count(is_chosen(outside%start(node):outside%start(node + 1) - 1))
+    end do
+    chosen%start(size(outside%start)) = n + 1
+    chosen%n_edge = n
+    chosen%elements = pack(outside%elements, is_chosen)
+    chosen%nodes = reshape(pack(outside%nodes, spread(is_chosen, 1, 2)), [2, n])
+    call boundary_surface(chosen, surface, crossing)
+    if (crossing > 0) call reject_field(deck, place, 'is a set whose edges touch each other at ' &
+      //'node '//to_text(model%mesh%node_id(crossing))//'; give the surface as a node set')
+  end subroutine surface_of_segments
+
+  !> Exterior boundary of a set of parts.
+  subroutine surface_of_parts(deck, parts, place, model, surface)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: parts(:)
+    type(place_t), intent(in) :: place
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(out) :: surface
+    type(boundary_t) :: boundary
+    logical, allocatable :: chosen_part(:), all_nodes(:)
+    integer :: crossing
+
+    allocate (chosen_part(size(model%parts)), source=.false.)
+    allocate (all_nodes(model%mesh%n_node), source=.true.)
+    chosen_part(parts) = .true.
+    call find_boundary(model%mesh%element_nodes, chosen_part(model%mesh%element_part), all_nodes, &
+      boundary)
+    if (boundary%n_edge == 0) then
+      call reject_field(deck, place, 'has no boundary: its parts have no elements')
+      return
+    end if
+    call boundary_surface(boundary, surface, crossing)
+    if (crossing > 0) call reject_field(deck, place, 'has a boundary that touches itself at node ' &
+      //to_text(model%mesh%node_id(crossing))//'; give the surface as a node set')
+  end subroutine surface_of_parts
+
+  !> Chain of a node set.
+  subroutine surface_of_nodes(deck, nodes, side, place, outside, model, surface)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: nodes(:)
+    integer, intent(in) :: side
+    type(place_t), intent(in) :: place
+    type(boundary_t), intent(in) :: outside
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(out) :: surface
+    integer :: outcome, trouble(2)
+
+    call chain_surface(outside, nodes, surface, outcome, trouble)
+    select case (outcome)
+    case (chain_turned)
+      call line_warning(deck, place%line, 'turned'//to_text(place%line)//side_names(side), &
+        'the '//trim(side_names(side))//' surface was walked clockwise round its body and ' &
+        //'has been turned')
+    case (chain_ordered)
+      call line_warning(deck, place%line, 'ordered'//to_text(place%line)//side_names(side), &
+        'the nodes of the '//trim(side_names(side))//' surface were not in walking order and ' &
+        //'have been put in order')
+    case (chain_short)
+      call reject_field(deck, place, 'is a set with fewer than two nodes, which is no surface')
+    case (chain_repeated)
+      call reject_field(deck, place, 'is a set with node ' &
+        //to_text(model%mesh%node_id(trouble(1)))//' in it twice')
+    case (chain_broken)
+      call reject_field(deck, place, 'is a set whose nodes do not follow an outer edge of the ' &
+        //'mesh: the first break is between nodes ' &
+        //to_text(model%mesh%node_id(trouble(1)))//' and ' &
+        //to_text(model%mesh%node_id(trouble(2))))
+    end select
+  end subroutine surface_of_nodes
+
+end module deck_resolve_sides_m
