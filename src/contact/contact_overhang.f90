@@ -49,6 +49,7 @@ contains
 
     formulation = formulation_of(contact)
     if (formulation%covers_segments .or. contact%search_depth > 0.0_wp) return
+    if (contact%is_self) return ! its runs end where nothing touches
     if (memory%facing%is_used) then
       call report_between(memory%facing%present, model, memory, log)
     else

@@ -39,11 +39,12 @@ contains
     integer, intent(in) :: pairs(:, :)               !! (2, n_pair) segments that face each other
     logical, intent(out) :: is_parted(:)             !! (n_segment)
     type(order_t) :: order
-    integer :: arcs(2, 2*size(pairs, 2)) ! position of the first segment, steps to the last one
+    integer, allocatable :: arcs(:, :) ! position of the first segment, steps to the last one
     logical, allocatable :: is_cut(:)
     integer :: n_arc, most, i
 
     is_parted = .false.
+    allocate (arcs(2, 2*size(pairs, 2)))
     call put_in_order(surface, places, is_active, order)
     call list_arcs(order, pairs, n_arc, arcs)
     most = 1

@@ -116,14 +116,14 @@ contains
     logical, intent(in) :: is_forced
     type(contact_state_t), intent(inout) :: memory
     type(side_view_t) :: view
-    logical :: is_active(contact%slave%n_segment), was_met(contact%slave%n_segment), &
-      is_parted(contact%slave%n_segment)
-    integer :: opposite(4, contact%slave%n_segment)
-    integer, allocatable :: pairs(:, :)
+    logical, allocatable :: is_active(:), was_met(:), is_parted(:)
+    integer, allocatable :: opposite(:, :), pairs(:, :)
+    integer :: n_pair
 
-    is_active = .false.
-    was_met = .false.
-    opposite = 0
+    associate (n => contact%slave%n_segment)
+      allocate (is_active(n), was_met(n), is_parted(n), source=.false.)
+      allocate (opposite(4, n), source=0)
+    end associate
     associate (capture => memory%slave_tracking%reach + margin)
       call view_side(contact%slave, memory%places(:, :memory%n_slave), &
         memory%facing%slave%depth, capture, view)
@@ -133,18 +133,19 @@ contains
     call keep_pressed(contact, memory, is_active, was_met)
     is_active = is_active .or. was_met
     call extend_runs(contact%slave, view%places, 2.0_wp*margin, is_active)
-    call list_pairs(contact%slave, memory, opposite, pairs)
-    call part_runs(contact%slave, view%places, is_active, pairs, is_parted)
+    call list_pairs(contact%slave, memory, opposite, n_pair, pairs)
+    call part_runs(contact%slave, view%places, is_active, pairs(:, :n_pair), is_parted)
     call take_over(contact, view, view, is_active, is_active, is_forced, memory, is_parted)
   end subroutine look_at_itself
 
   !> Segments that face each other, or press on each other.
-  pure subroutine list_pairs(surface, memory, opposite, pairs)
+  pure subroutine list_pairs(surface, memory, opposite, n, pairs)
     type(surface_t), intent(in) :: surface
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: opposite(:, :)            !! (4, n_segment) see find_facing
-    integer, allocatable, intent(out) :: pairs(:, :) !! (2, n)
-    integer :: s, k, n, p
+    integer, intent(out) :: n
+    integer, allocatable, intent(out) :: pairs(:, :) !! (2, n or more)
+    integer :: s, k, p
 
     allocate (pairs(2, count(opposite > 0) + count(opposite(4, :) > 0) + memory%points%n))
     n = 0
@@ -164,7 +165,6 @@ contains
       pairs(:, n) = [segment_at(memory%points%slave_nodes(1, p)), &
         segment_at(memory%points%master_nodes(1, p))]
     end do
-    pairs = pairs(:, :n)
 
   contains
 

@@ -209,6 +209,8 @@ contains
     if (integer_of(card, 'LCINT') == 0) return
     if (integer_of(card, 'TIE') /= tie_none) call report_field(deck, cursor, card, 'LCINT', &
       'asks for an overlap that grows, which a tie does not have (it keeps its gaps)')
+    if (entry%contact%is_self) call report_field(deck, cursor, card, 'LCINT', &
+      'asks for an overlap that grows, which is not supported of a surface with itself (SURFB 0)')
     if (entry%contact%birth > 0.0_wp) call report_field(deck, cursor, card, 'LCINT', &
       'asks for the overlap of time zero to grow; the interface must act from then on (TBIRTH 0)')
     if (is_bad(card, 'LCINT')) return

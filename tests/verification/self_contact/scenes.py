@@ -11,8 +11,8 @@ RHO, YOUNG, POISSON, PENALTY = 1000.0, 1.0e6, 0.3, 3.0e5
 def with_itself(deck, parts, kind, penalty, unit, friction=0.0):
     """One set of parts, and its contact with itself."""
     parts = list(parts)
-    deck.add("*SET_PART_LIST", (99,), *[parts[k:k + 8] for k in range(0, len(parts), 8)])
-    return deck.add("*CONTACT_2D_SLIDELINE", (99, 0, kind, 3, penalty, friction), (0.0, 1.0e20, unit))
+    deck.add("*SET_PART_LIST", (9999,), *[parts[k:k + 8] for k in range(0, len(parts), 8)])
+    return deck.add("*CONTACT_2D_SLIDELINE", (9999, 0, kind, 3, penalty, friction), (0.0, 1.0e20, unit))
 
 
 def octagons(rows, columns, seed, order=None, mirrored=False, cells=2):
@@ -99,14 +99,14 @@ def ring(kind, columns=64, layers=2):
     return with_itself(deck, (1, 2, 3), kind, 10.0, 2).output(plot=0.1, glstat=0.01), *stacked(meshes)
 
 
-def tube(kind, is_round, crushed=0.55, speed=60.0, rows=48, layers=2):
+def tube(kind, is_round, crushed=0.55, layers=2, points=None, speed=60.0, rows=48):
     """Mild steel in mm, ms, N: a tube of radius 20 and thickness 1 (or a strip clamped at its ends), crushed between two
-    plates; its upper end goes with the plate."""
+    plates; its upper end goes with the plate. `layers` of elements, with `points` integration points."""
     radius, length, end = 20.0, 40.0, crushed * 40.0 / speed
     x, quads = grid(layers, rows, 1.0, length, (radius - 0.5, 0.0))
     x[:, 0] += 0.15 * np.exp(-((x[:, 1] - 0.85 * length) / (0.06 * length)) ** 2)
     deck = Deck(f"a folding {'tube' if is_round else 'strip'}, type {kind}").control(end).hourglass(3, 0.05)
-    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,)).part()
+    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13, None, points), (1.0,)).part()
     for material, stress in ((1, 300.0), (2, 3.0e4), (3, 3.0e4)):
         deck.plastic(7.8e-3, 2.0e5, POISSON, stress, 500.0, material=material)
     ids = deck.mesh(x, quads)
@@ -162,6 +162,36 @@ def pressed_blocks(kind, blocks, friction, pressure, share=0.3, eps=1.0e6):
     deck.add("*LOAD_NODE_POINT", *[(k + 1, dof + 1, 1, force[k, dof]) for k in range(len(force)) for dof in (0, 1)
                                    if force[k, dof]])
     return with_itself(deck, (1, 2), kind, eps, 1, friction).output(plot=1.0, glstat=1.0)
+
+
+def ring_areas(r):
+    """Integrals of the hat functions of a chain along the radius, times it."""
+    length, total = np.diff(r), np.zeros(len(r))
+    total[:-1] += length * (2.0 * r[:-1] + r[1:]) / 6.0
+    total[1:] += length * (r[:-1] + 2.0 * r[1:]) / 6.0
+    return total
+
+
+def pressed_discs(kind, blocks, pressure, eps=1.0e6):
+    """The patch test of two whole discs (nu 0) in one set, axisymmetric and static, under a pressure on the upper one."""
+    deck = Deck(f"patch test of discs in one set, type {kind}")
+    deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 1.0))
+    deck.add("*SECTION_SHELL", (1, 15, None, 4), (1.0,))
+    for part in (1, 2):
+        deck.part(part).elastic(RHO, YOUNG, 0.0, part)
+    upper = deck.mesh(blocks.upper, blocks.upper_quads, part=1)
+    lower = deck.mesh(blocks.lower, blocks.lower_quads, part=2)
+    deck.fix(lower[:len(blocks.master)], y=1).curve(1, [(0.0, 0.0), (1.0, 1.0)])
+    deck.add("*LOAD_NODE_POINT", *[(int(n), 2, 1, -pressure * a) for n, a in
+                                   zip(upper[-len(blocks.slave):], ring_areas(blocks.lines[0]))])
+    return with_itself(deck, (1, 2), kind, eps, 1).output(plot=1.0, glstat=1.0)
+
+
+def disc_error(result, blocks, pressure):
+    """Largest deviation of the axial tractions of both sides, over the pressure."""
+    force, r = result.points("contact_force")[-1], result.points("Points")[-1, :, 0]
+    return max(np.max(np.abs(sign * force[nodes, 1] / ring_areas(r[nodes]) / pressure - 1.0))
+               for nodes, sign in ((blocks.slave, 1.0), (blocks.master, -1.0)))
 
 
 def patch_error(result, blocks, pressure, shear):
