@@ -174,3 +174,30 @@ def test_nodes_next_to_the_axis_are_told(exe, tmp_path):
         (tmp_path / "job.k").write_text(deck.text())
         said = run(exe, tmp_path, "check", "job.k").stderr
         assert ("4 node(s) lie next to the axis but not on it" in said) == told, said
+
+
+def cone_on_disc(kind, sides):
+    """A cone with its tip on the axis, too steep for its flank to face the disc that it falls upon: contact begins at the tip."""
+    deck = Deck("cone on a disc").control(0.04, scale=0.6).hourglass(4, 0.05)
+    deck.add("*SECTION_SHELL", (1, 15), (1.0,))
+    for part, young in ((1, 5.0e7), (2, 1.0e7)):
+        deck.part(part, section=1).elastic(1000.0, young, 0.3, part)
+        deck.add("*SET_PART_LIST", (part,), (part,))
+    points, quads = grid(18, 18, 0.3, 1.0)
+    cone = deck.mesh(np.column_stack([points[:, 0], 3.0 * points[:, 0] + 0.4 * points[:, 1] + 0.002]), quads, part=1)
+    disc = deck.mesh(*grid(30, 15, 1.0, 0.5, (0.0, -0.5)), part=2)
+    deck.node_set(1, cone[:19]).node_set(2, disc[-31:][::-1]).fix(disc[:31], y=1)
+    deck.add("*CONTACT_2D_SLIDELINE", (*sides, kind, 3, 0.5), (0.0, 1.0e20, 3))
+    deck.add("*INITIAL_VELOCITY_NODE", *[(int(node), 0.0, -2.0) for node in cone])
+    return deck.output(glstat=0.01, matsum=0.04, rcforc=4.0e-4).text()
+
+
+@pytest.mark.parametrize("kind", [4, 6])
+def test_edges_on_the_axis_are_no_surface(exe, tmp_path, kind):
+    """Whole outlines go along the axis; contact is that of the faces alone."""
+    forces = []
+    for sides in ((-1, -2), (1, 2)):
+        (tmp_path / "job.k").write_text(cone_on_disc(kind, sides))
+        run(exe, tmp_path, "i=job.k", "d=out")
+        forces.append(np.max(np.abs(numbers(tmp_path / "out/job.rcforc.csv", "fy"))))
+    assert forces[0] > 1000.0 and np.isclose(*forces, rtol=0.02), forces

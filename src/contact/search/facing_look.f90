@@ -22,6 +22,8 @@ module facing_look_m
 
   !> Motion between two looks, as a part of the mean segment of the finer side.
   real(wp), parameter :: look_interval = 0.5_wp
+  !> Depth of a segment that is no surface: no place is that deep before it.
+  real(wp), parameter :: no_surface = -huge(1.0_wp)
 
 contains
 
@@ -46,7 +48,8 @@ contains
     if (.not. allocated(memory%facing%present)) call make_present(contact, memory)
   end subroutine start_facing
 
-  !> What is known of the segments of a surface: all from the initial mesh.
+  !> What is known of the segments of a surface: all from the initial mesh. Edges on the axis of a
+  !> body of revolution are inside it: nothing faces them, and they face nothing.
   pure subroutine start_side(contact, surface, model, side)
     type(contact_t), intent(in) :: contact
     type(surface_t), intent(in) :: surface
@@ -63,11 +66,23 @@ contains
       side%depth(s) = half_row(model, surface, s)
       side%caught(s) = min(0.5_wp*length, side%depth(s))
       side%reached(s) = 0.5_wp*length
+      if (contact%is_round .and. lies_on_axis(surface, model, s)) side%depth(s) = no_surface
     end do
     if (.not. contact%search_depth > 0.0_wp) return
     side%caught = contact%search_depth
     side%reached = contact%search_depth
   end subroutine start_side
+
+  !> Whether both ends of a segment are on the axis.
+  pure function lies_on_axis(surface, model, segment) result(on_axis)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: segment
+    logical :: on_axis
+
+    on_axis = .not. any(model%mesh%coordinates(1, surface%nodes(surface%segments(:, segment))) &
+      > 0.0_wp)
+  end function lies_on_axis
 
   !> Look at who faces whom once the bodies have moved so far that runs may be others, and let the
   !> memory follow. Between two looks nothing moves by more than half a segment, and `beyond`: what
@@ -106,6 +121,8 @@ contains
     call keep_pressed(contact, memory, slave_active, master_active)
     call extend_runs(contact%slave, slave%places, 2.0_wp*margin, slave_active)
     call extend_runs(contact%master, master%places, 2.0_wp*margin, master_active)
+    slave_active = slave_active .and. slave%depth > no_surface
+    master_active = master_active .and. master%depth > no_surface
     call take_over(contact, slave, master, slave_active, master_active, is_forced, memory)
   end subroutine look_at_facing
 
