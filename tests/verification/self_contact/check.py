@@ -53,7 +53,7 @@ def check_names(run, kind):
 
 
 def check_patch(run, kind):
-    for layout in list(MESHES)[:3:2]:
+    for layout in list(MESHES)[:3:2] if kind in PASS_PATCH else list(MESHES)[:1]:
         blocks = static_patch.Blocks(*MESHES[layout][:2], scenes.YOUNG, MESHES[layout][2])
         for friction in (0.0, 0.5):
             pressure = 1.0e-4
@@ -67,7 +67,7 @@ def check_patch(run, kind):
 
 
 def check_discs(run, kind):
-    for layout in list(MESHES)[:3:2]:
+    for layout in list(MESHES)[:3:2] if kind in PASS_PATCH else list(MESHES)[:1]:
         blocks = static_patch.Blocks(*MESHES[layout][:2], scenes.YOUNG, MESHES[layout][2])
         result = run.program(scenes.pressed_discs(kind, blocks, 1.0e-4))
         error = scenes.disc_error(result, blocks, 1.0e-4)
@@ -158,10 +158,11 @@ def check(run):
         check_discs(run, kind)
         check_fork(run, kind)
         check_ring(run, kind)
-        check_tumbling(run, kind)
         check_tube(run, kind, True)
     for kind, is_round in ((5, False), (5, True), (7, False)):
         check_tube(run, kind, is_round, " one element thick, crushed by 0.9", layers=1, points=4, crushed=0.9)
-    for kind in (1, 3, 5, 7):
+    for kind in (1, 4, 7):
+        check_tumbling(run, kind)
+    for kind in (1, 5, 7):
         check_names(run, kind)
     check_many(run, 5)
