@@ -6,7 +6,7 @@ import time
 
 import h5py
 import pytest
-from conftest import numbers
+from conftest import by_turns, numbers
 from meshes import Deck, grid
 from test_implicit import implicit, pulled
 from test_restart import arrays, assert_same, histories, part_of, start, wait_for, with_files
@@ -109,7 +109,7 @@ def iterations(folder):
     return [line for line in (folder / "job.log").read_text().splitlines() if line.startswith("step to ")]
 
 
-@pytest.mark.parametrize("scene, kind", [(scene, kind) for scene in SCENES for kind in ALL_TYPES])
+@pytest.mark.parametrize("scene, kind", by_turns([(scene, kind) for scene in SCENES for kind in ALL_TYPES]))
 def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
     make, interval, shown = SCENES[scene]
     run_whole(slideline, make(kind), dump=interval)

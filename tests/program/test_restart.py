@@ -12,7 +12,7 @@ import zlib
 import h5py
 import numpy as np
 import pytest
-from conftest import drop, numbers
+from conftest import by_turns, drop, numbers
 from meshes import Deck, grid
 from round_decks import rings
 from test_repeatability import large_drop
@@ -37,8 +37,8 @@ SCENES = {
     "rings": (lambda kind: rings(kind, 16, end=0.03), 60, 20),
     "plate": (lambda kind: scenes.symmetric_plate(16, 8, True), 300, 170),
 }
-CASES = [(scene, kind) for scene in SCENES for kind in ALL_TYPES
-         if scene not in ("plate", "rigid die") or kind in {"plate": (1,), "rigid die": (2, 7)}[scene]]
+CASES = by_turns([(scene, kind) for scene in SCENES for kind in ALL_TYPES
+                  if scene not in ("plate", "rigid die") or kind in {"plate": (1,), "rigid die": (2, 7)}[scene]])
 
 
 def text_of(deck):
