@@ -150,6 +150,7 @@ contains
     call keep_pressed(contact, memory, is_active, was_met)
     is_active = is_active .or. was_met
     call extend_runs(contact%slave, view%places, 2.0_wp*margin, is_active)
+    is_active = is_active .and. view%depth > no_surface
     call list_pairs(contact%slave, memory, opposite, n_pair, pairs)
     call part_runs(contact%slave, view%places, is_active, pairs(:, :n_pair), is_parted)
     call take_over(contact, view, view, is_active, is_active, is_forced, memory, is_parted)
