@@ -66,11 +66,14 @@ contains
       side%depth(s) = half_row(model, surface, s)
       side%caught(s) = min(0.5_wp*length, side%depth(s))
       side%reached(s) = 0.5_wp*length
+      if (contact%search_depth > 0.0_wp) then
+        side%reached(s) = contact%search_depth
+        side%caught(s) = contact%search_depth
+        ! What is deeper than that may be the back of the spot's own wall.
+        if (contact%is_self) side%caught(s) = min(side%caught(s), side%depth(s))
+      end if
       if (contact%is_round .and. lies_on_axis(surface, model, s)) side%depth(s) = no_surface
     end do
-    if (.not. contact%search_depth > 0.0_wp) return
-    side%caught = contact%search_depth
-    side%reached = contact%search_depth
   end subroutine start_side
 
   !> Whether both ends of a segment are on the axis.
