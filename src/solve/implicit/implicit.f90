@@ -139,6 +139,7 @@ contains
       if (outcome%singular_equation == 0 .or. outcome%iterations > 1) &
         call cut_step(control, state%time, may_retry)
       if (.not. may_retry) then
+        if (allocated(ties)) state%contacts%ties = ties
         call raise_failure(model, state, step, outcome, error)
         return
       end if
