@@ -244,17 +244,22 @@ contains
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
     real(wp) :: depth !! that counts, m
+    logical :: is_pressed(memory%points%n)
     integer :: p, k
 
     if (memory%points%n == 0 .and. allocated(contact%interference)) call warn(log, 'interface ' &
       //to_text(contact%id)//': its curve of interference (LCINT) has no effect, for nothing ' &
       //'overlaps at the start')
     if (memory%points%n == 0) return
-    p = minloc(memory%points%gap(:memory%points%n), 1)
+    ! Behind ties, what these hold has no force.
+    is_pressed = .true.
+    if (contact%behind > 0) is_pressed = memory%points%pressure(:memory%points%n) > 0.0_wp
+    if (.not. any(is_pressed)) return
+    p = minloc(memory%points%gap(:memory%points%n), 1, is_pressed)
     depth = round_off*memory%slave_tracking%reach
     if (-memory%points%gap(p) <= depth) return
     k = maxloc(memory%points%slave_weights(:, p), 1)
-    text = ' at '//to_text(count(memory%points%gap(:memory%points%n) < -depth)) &
+    text = ' at '//to_text(count(is_pressed .and. memory%points%gap(:memory%points%n) < -depth)) &
       //' points, deepest at node '//to_text(model%mesh%node_id(memory%nodes( &
       memory%points%slave_nodes(k, p))))//': '//to_text(-memory%points%gap(p))//' m'
     if (allocated(contact%interference)) then
