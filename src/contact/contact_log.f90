@@ -289,7 +289,8 @@ contains
       call write_log(log, 'interface '//to_text(contact%id)//': of its ties '//to_text(n)//' of ' &
         //to_text(count(memory%ties%state /= is_open))//' places have broken, from time ' &
         //to_text(memory%ties%first_break)//' to '//to_text(memory%ties%last_break) &
-        //'; what they held, '//to_text(memory%ties%spent)//' J/m, stays in the energy of contact')
+        //'; what they held, '//to_text(memory%ties%spent)//trim(merge(' J per radian', &
+        ' J/m         ', contact%is_round))//', stays in the energy of contact')
     end if
   end subroutine report_broken
 
