@@ -137,8 +137,10 @@ contains
       //'its surfaces, so what they hold moves apart; PEN 10 with PUNIT 2, the default, is as ' &
       //'stiff as one')
     is_held = tied_nodes(memory, .true.)
+    n = 0
+    if (allocated(memory%ties%side)) n = size(memory%ties%side)
     call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
-      //to_text(memory%n_slave)//' slave nodes, '//to_text(size(memory%ties%side)) &
+      //to_text(memory%n_slave)//' slave nodes, '//to_text(n) &
       //' springs of area '//to_text(sum(memory%points%area(:memory%points%n))) &
       //', reach '//to_text(tie_reach(contact, model))//' m')
     if (breaks(contact)) call write_log(log, '  breaks at a tension of ' &
