@@ -137,8 +137,10 @@ contains
       //'its surfaces, so what they hold moves apart; PEN 10 with PUNIT 2, the default, is as ' &
       //'stiff as one')
     is_held = tied_nodes(memory, .true.)
+    n = 0
+    if (allocated(memory%ties%side)) n = size(memory%ties%side)
     call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
-      //to_text(memory%n_slave)//' slave nodes, '//to_text(size(memory%ties%side)) &
+      //to_text(memory%n_slave)//' slave nodes, '//to_text(n) &
       //' springs of area '//to_text(sum(memory%points%area(:memory%points%n))) &
       //', reach '//to_text(tie_reach(contact, model))//' m')
     if (breaks(contact)) call write_log(log, '  breaks at a tension of ' &
@@ -244,17 +246,22 @@ contains
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
     real(wp) :: depth !! that counts, m
+    logical :: is_pressed(memory%points%n)
     integer :: p, k
 
     if (memory%points%n == 0 .and. allocated(contact%interference)) call warn(log, 'interface ' &
       //to_text(contact%id)//': its curve of interference (LCINT) has no effect, for nothing ' &
       //'overlaps at the start')
     if (memory%points%n == 0) return
-    p = minloc(memory%points%gap(:memory%points%n), 1)
+    ! Behind ties, what these hold has no force.
+    is_pressed = .true.
+    if (contact%behind > 0) is_pressed = memory%points%pressure(:memory%points%n) > 0.0_wp
+    if (.not. any(is_pressed)) return
+    p = minloc(memory%points%gap(:memory%points%n), 1, is_pressed)
     depth = round_off*memory%slave_tracking%reach
     if (-memory%points%gap(p) <= depth) return
     k = maxloc(memory%points%slave_weights(:, p), 1)
-    text = ' at '//to_text(count(memory%points%gap(:memory%points%n) < -depth)) &
+    text = ' at '//to_text(count(is_pressed .and. memory%points%gap(:memory%points%n) < -depth)) &
       //' points, deepest at node '//to_text(model%mesh%node_id(memory%nodes( &
       memory%points%slave_nodes(k, p))))//': '//to_text(-memory%points%gap(p))//' m'
     if (allocated(contact%interference)) then
@@ -284,7 +291,8 @@ contains
       call write_log(log, 'interface '//to_text(contact%id)//': of its ties '//to_text(n)//' of ' &
         //to_text(count(memory%ties%state /= is_open))//' places have broken, from time ' &
         //to_text(memory%ties%first_break)//' to '//to_text(memory%ties%last_break) &
-        //'; what they held, '//to_text(memory%ties%spent)//' J/m, stays in the energy of contact')
+        //'; what they held, '//to_text(memory%ties%spent)//trim(merge(' J per radian', &
+        ' J/m         ', contact%is_round))//', stays in the energy of contact')
     end if
   end subroutine report_broken
 

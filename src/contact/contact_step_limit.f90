@@ -67,6 +67,7 @@ contains
         bounds(i)%node = memories(i)%nodes(worst(merge(1, 2, most(1) >= most(2))))
         if (all(most > 0.0_wp) .and. .not. contacts(i)%is_self) ratios(i)%c = most(2)/most(1)
       end associate
+      if (.not. scale(i) > 0.0_wp) cycle
       users(memories(i)%nodes(:n)) = users(memories(i)%nodes(:n)) + 1
       users(memories(i)%nodes(n + 1:)) = users(memories(i)%nodes(n + 1:)) + 1
     end do

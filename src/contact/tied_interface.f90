@@ -83,12 +83,16 @@ contains
     if (memory%points%n == 0) return
     had_force = memory%n_active > 0
     call gather_places(motion, memory)
-    if (has_broken(memory) .and. .not. had_force) return
+    if (has_broken(memory) .and. .not. had_force) then
+      memory%watch%has_looked = .false.
+      return
+    end if
     call lap(clock, phase_contact_search)
     call begin_look(had_force, memory%watch)
     if (had_force) call keep_former(memory)
     call hold_ties(memory, contact%strength, times(1))
-    if (memory%watch%is_due .or. cycle == 0) call measure_springs(memory)
+    ! When the last of them breaks there is no later look.
+    if (memory%watch%is_due .or. cycle == 0 .or. memory%n_active == 0) call measure_springs(memory)
     if (cycle == 0) memory%energy = memory%watch%stored
     call hand_over(times(2), motion, [0.0_wp, 0.0_wp], memory, force)
     call end_look(had_force, .true., memory%watch)

@@ -50,8 +50,8 @@ contains
         end if
         cycle
       end if
-      if (model%contacts(i)%behind > 0) cycle
       call report_initial_contact(model%contacts(i), model, state%contacts(i), log)
+      if (model%contacts(i)%behind > 0) cycle
       call report_overhang(model%contacts(i), model, state%contacts(i), log)
       if (.not. limits_step) cycle
       if (state%dt <= stable_step(element_limit, bounds(i))*(1.0_wp + round_off)) cycle

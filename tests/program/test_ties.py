@@ -249,8 +249,8 @@ def test_ties_of_unlikely_penalties_are_told(slideline, penalty, unit, told):
     """Springs that cost most of the step, and springs that hold next to nothing. PUNIT 2 is a factor on a tenth of K L/A."""
     text = tied(5)
     if penalty:
-        assert text.count("\n-1,-2,5,3\n") == text.count("\n0.0,1e+20,0,0,0,") == 1
-        text = text.replace("\n-1,-2,5,3\n", f"\n-1,-2,5,3,{penalty}\n").replace("\n0.0,1e+20,0,0,0,", f"\n0.0,1e+20,{unit},0,0,")
+        assert text.count("\n-1,-2,5,3,0.0,") == text.count("\n0.0,1e+20,0,0,0,") == 1
+        text = text.replace("\n-1,-2,5,3,0.0,", f"\n-1,-2,5,3,{penalty},").replace("\n0.0,1e+20,0,0,0,", f"\n0.0,1e+20,{unit},0,0,")
     done = slideline("d=out", "endtim=1.0e-5", deck=text)
     assert done.returncode == 0, done.stderr
     for words in ("the ties cost 9", "as soft as"):

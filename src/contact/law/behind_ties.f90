@@ -114,6 +114,7 @@ contains
     given = min(memory%scratch%taken, max(0.0_wp, tie%ties%spent))
     tie%ties%spent = tie%ties%spent - given
     tie%energy = tie%energy - given
+    tie%watch%stored = tie%watch%stored - given
     memory%energy = memory%energy - (memory%scratch%taken - given)
     memory%limit%credit = memory%limit%credit + (memory%scratch%taken - given)
     memory%scratch%taken = 0.0_wp

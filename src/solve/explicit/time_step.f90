@@ -8,6 +8,7 @@ module time_step_m
   use block_state_m, only : block_state_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
   use contacts_m, only : is_tied
+  use friction_state_m, only : is_broken
   use controls_m, only : contact_step_rules, contact_step_free
   use curves_m, only : curve_value, curve_is_constant
   use errors_m, only : error_t, raise, status_input
@@ -181,16 +182,22 @@ contains
   end function is_last
 
   !> Where ECDT = 2 asks for it, and for ties unless ECDT = 1: find now and then what the springs at
-  !> the present places demand of the steps to come.
+  !> the present places demand of the steps to come. Contact behind a tie counts with it once
+  !> anything of that has broken: it has the tie's penalty, which nobody chose for contact.
   pure subroutine follow_springs(model, state, bounds)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(spring_bound_t), allocatable, intent(inout) :: bounds(:)
     logical :: counts(size(model%contacts))
+    integer :: i
 
     if (.not. has_springs(model)) return
     if (mod(state%cycle, refresh_interval) /= 0) return
     counts = model%controls%contact_step == contact_step_rules .or. is_tied(model%contacts)
+    do i = 1, size(counts)
+      if (model%contacts(i)%behind > 0) counts(i) = counts(i) &
+        .or. any(state%contacts(model%contacts(i)%behind)%ties%state == is_broken)
+    end do
     if (.not. allocated(bounds)) allocate (bounds(size(model%contacts)))
     call bound_springs(model%contacts, state%contact_mass, state%contacts, &
       merge(1.0_wp, 0.0_wp, counts), bounds)

@@ -18,7 +18,7 @@ module implicit_m
   use implicit_report_m, only : reactions_work, report_step
   use implicit_start_m, only : begin_steps, plan_next, has_ended
   use implicit_tangent_m, only : step_t, new_acceleration, new_velocity
-  use log_m, only : write_log, to_text
+  use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, any_due
   use newton_m, only : outcome_t, find_equilibrium
@@ -139,6 +139,7 @@ contains
       if (outcome%singular_equation == 0 .or. outcome%iterations > 1) &
         call cut_step(control, state%time, may_retry)
       if (.not. may_retry) then
+        if (allocated(ties)) state%contacts%ties = ties
         call raise_failure(model, state, step, outcome, error)
         return
       end if
@@ -173,7 +174,7 @@ contains
       call start_trial(model, state, attempt)
       call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
       if (outcome%converged) then
-        call break_ties_of_step(model, time, attempt, state, broke)
+        call break_ties_of_step(model, time, attempt, state, monitor%log, broke)
         if (.not. broke) return
         cycle
       end if
@@ -189,11 +190,12 @@ contains
 
   !> What equilibrium breaks stays broken in the equilibrium that is then looked for, of the same
   !> step: there are only so many places.
-  subroutine break_ties_of_step(model, time, attempt, state, broke)
+  subroutine break_ties_of_step(model, time, attempt, state, log, broke)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: time
     type(trial_t), intent(inout) :: attempt
     type(state_t), intent(inout) :: state
+    type(log_t), intent(inout) :: log
     logical, intent(out) :: broke
     integer :: i, n_new
 
@@ -202,6 +204,8 @@ contains
       call break_at_end(model%contacts(i), time, attempt%contacts(i), n_new)
       if (n_new == 0) cycle
       broke = .true.
+      call write_log(log, 'step to '//to_text(time)//': of the ties of interface ' &
+        //to_text(model%contacts(i)%id)//' '//to_text(n_new)//' places break')
       state%contacts(i)%ties = attempt%contacts(i)%ties
     end do
   end subroutine break_ties_of_step
