@@ -28,16 +28,20 @@ def drawn(kind):
 
 @pytest.mark.parametrize("kind", ALL_TYPES)
 def test_drawn_and_let_go(slideline, tmp_path, kind):
-    """Drawn on, a step needs no more iterations than without friction; let go, friction alone holds the block."""
-    done = slideline("d=x", deck=drawn(kind))
+    """Drawn on, a step needs no more iterations than without friction; let go, friction alone holds the block.
+
+    Type 6 is not let go: once all its nodes slip in an iteration the matrix is singular, and whether they do is decided by
+    round-off (doc/theory/contact.md, 9.8)."""
+    is_let_go = kind != 6
+    done = slideline("d=x", *([] if is_let_go else ["endtim=1.0"]), deck=drawn(kind))
     assert done.returncode == 0, done.stderr
     log = (tmp_path / "x" / "job.log").read_text()
     assert len(re.findall(r"step to 1\.000000E\+00 iteration", log)) <= 4
-    assert "step to 1.250000E+00: the matrix is singular" in log, "all of it slipped"
+    assert ("step to 1.250000E+00: the matrix is singular" in log) == is_let_go, "all of it slipped"
     table = tmp_path / "x" / "job.rcforc.csv"
     time, down, along = (numbers(table, column)[::2] for column in ("time", "fy", "fx"))
     pulled = [abs(f) for t, f in zip(time, along) if t == 1.0]
     # The block's lower side, whose normals types 3 and 5 press along too, bends a little.
     assert pulled == [pytest.approx(FRICTION * LOAD, rel=1.0e-9 if kind not in (3, 5) else 1.0e-2)]
     assert abs(down[-1]) == pytest.approx(LOAD, rel=1.0e-9)
-    assert abs(along[-1]) < 1.0e-9 * LOAD
+    assert (abs(along[-1]) < 1.0e-9 * LOAD) == is_let_go

@@ -23,7 +23,8 @@ contains
     associate (scratch => memory%scratch, n_held => count(tie%ties%state == is_held))
       is_first = .not. allocated(scratch%is_left)
       if (is_first) then
-        allocate (scratch%is_left(size(tie%ties%state)), scratch%is_freed(size(tie%ties%state)))
+        allocate (scratch%is_left(size(tie%ties%state)), &
+          scratch%is_freed(size(tie%ties%state)), source=.false.)
       else if (n_held == scratch%n_held) then
         if (scratch%has_freed) scratch%is_freed = .false.
         scratch%has_freed = .false.

@@ -69,5 +69,6 @@ def taylor(columns=10, rows=100):
     deck.card("nsid nsidex", 0, 0)
     deck.card("vx vy", 0.0, "&v0")
     deck.block()
-    grid.write(deck, 1)
+    deck.nodes(grid.node.T.ravel(), grid.points.transpose(1, 0, 2).reshape(-1, 2))
+    deck.quads(grid.element.T.ravel(), 1, grid.quads.transpose(1, 0, 2).reshape(-1, 4))
     return deck.text()
