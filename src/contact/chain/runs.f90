@@ -94,7 +94,7 @@ contains
     integer, intent(out) :: n
     integer, intent(inout) :: segments(:)            !! (n_segment)
     logical, intent(inout) :: is_cut(:)              !! (n_segment)
-    logical, intent(in), optional :: is_parted(:)    !! (n_segment) cut before it in any case
+    logical, intent(in) :: is_parted(:)              !! (n_segment) cut before it; or none
     type(turn_t) :: turn
     integer :: s
 
@@ -110,7 +110,7 @@ contains
         if (.not. is_active(before)) cycle
         turn = turn_at(surface, places, before, s)
         is_cut(n) = turn%is_sharp .and. turn%is_convex
-        if (present(is_parted)) is_cut(n) = is_cut(n) .or. is_parted(s)
+        if (size(is_parted) > 0) is_cut(n) = is_cut(n) .or. is_parted(s)
       end associate
     end do
   end subroutine list_runs

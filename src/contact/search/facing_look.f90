@@ -97,6 +97,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(side_view_t) :: slave, master
     logical, allocatable :: slave_active(:), master_active(:)
+    logical :: no_parts(0)
     real(wp) :: margin
 
     if (.not. is_forced .and. memory%travel + beyond < memory%facing%next_look) return
@@ -126,7 +127,8 @@ contains
     call extend_runs(contact%master, master%places, 2.0_wp*margin, master_active)
     slave_active = slave_active .and. slave%depth > no_surface
     master_active = master_active .and. master%depth > no_surface
-    call take_over(contact, slave, master, slave_active, master_active, is_forced, memory)
+    call take_over(contact, slave, master, slave_active, master_active, is_forced, memory, &
+      no_parts)
   end subroutine look_at_facing
 
   !> The same of a surface with itself: the same runs on both sides, none of which faces itself.
@@ -298,7 +300,7 @@ contains
     logical, intent(in) :: slave_active(:), master_active(:)
     logical, intent(in) :: is_forced
     type(contact_state_t), intent(inout) :: memory
-    logical, intent(in), optional :: is_parted(:) !! runs of a surface with itself
+    logical, intent(in) :: is_parted(:) !! runs of a surface with itself; else none
     integer, allocatable :: former_slave(:), former_master(:)
     logical :: has_changed, is_other
 
@@ -321,7 +323,7 @@ contains
     type(facing_side_t), intent(inout) :: side
     integer, allocatable, intent(out) :: former(:) !! segments of the runs before
     logical, intent(out) :: has_changed
-    logical, intent(in), optional :: is_parted(:)
+    logical, intent(in) :: is_parted(:)
     logical, allocatable :: was_cut(:)
 
     allocate (former, source=side%segments(:side%n))
