@@ -40,12 +40,15 @@ contains
     type(pattern_t) :: pattern
     type(dual_t) :: slips(list%n), shear
     type(grip_t) :: grips(memory%n_slave)
+    real(wp) :: at_points(2, list%n)
     integer :: p, node
 
     do p = 1, list%n
       slips(p) = vary_slip(memory, list%points(p), 3, list%points(p)%master_xi)
+      at_points(1, p) = list%points(p)%gap%value
+      at_points(2, p) = slips(p)%value
     end do
-    call grip_nodes(contact, memory, list, slips%value, grips)
+    call grip_nodes(contact, memory, list, at_points, grips)
     do p = 1, list%n
       associate (point => list%points(p), a => grips(list%points(p)%nodes(1))%traction%value, &
         b => grips(list%points(p)%nodes(2))%traction%value)
@@ -63,18 +66,18 @@ contains
   end subroutine add_nodal_grip
 
   !> Tractions of all slave nodes, without slope where a node is not in contact.
-  pure subroutine grip_nodes(contact, memory, list, slips, grips)
+  pure subroutine grip_nodes(contact, memory, list, at_points, grips)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(varied_list_t), intent(in) :: list
-    real(wp), intent(in) :: slips(:) !! (list%n) m
+    real(wp), intent(in) :: at_points(:, :) !! (2, list%n) gap and slip, m
     type(grip_t), intent(out) :: grips(:) !! (n_slave)
     real(wp), dimension(memory%n_slave) :: gaps, eased, moments, areas
     integer :: node
 
-    call average(memory, list, list%points(:list%n)%gap%value, gaps, areas)
+    call average(memory, list, at_points(1, :), gaps, areas)
     eased = eased_moment(memory, gaps, areas)
-    call average(memory, list, slips, moments, areas)
+    call average(memory, list, at_points(2, :), moments, areas)
     do node = 1, memory%n_slave
       associate (grip => grips(node))
         grip%traction = constant(0.0_wp)

@@ -68,9 +68,13 @@ contains
     type(dual_t) :: load
     type(dual_t) :: gap, pressed
     real(wp), dimension(memory%n_slave) :: moment, content, eased, pressure, stiffness
+    real(wp) :: gaps(list%n)
     integer :: p, node
 
-    call average(memory, list, list%points(:list%n)%gap%value, moment, content)
+    do p = 1, list%n
+      gaps(p) = list%points(p)%gap%value
+    end do
+    call average(memory, list, gaps, moment, content)
     eased = eased_moment(memory, moment, content)
     pressure = 0.0_wp
     gap%slope = 0.0_wp
