@@ -255,3 +255,12 @@ def test_ties_of_unlikely_penalties_are_told(slideline, penalty, unit, told):
     assert done.returncode == 0, done.stderr
     for words in ("the ties cost 9", "as soft as"):
         assert (words in done.stderr) == (words == told), done.stderr
+
+
+def test_contact_behind_ties_counts_in_the_step(slideline, tmp_path):
+    """It has the stiff penalty of the ties: once something has broken the step may not rise to that of the elements."""
+    text = tied(5, strength=(1.0e3, 1.0e3))
+    assert slideline("d=broken", deck=text).returncode == 0
+    dt, state = numbers(tmp_path / "broken/job.glstat.csv", "dt"), numbers(tmp_path / "broken/job.contact.csv", "state")
+    assert 3.0 in state and set(state[-8:]) == {4.0}
+    assert max(dt[1:]) < 1.02 * dt[1]

@@ -63,8 +63,13 @@ def parts_surface(cells: np.ndarray, label: str) -> Surface:
     follower = {int(a): int(b) for a, b in edges}
     if len(follower) < len(edges):
         return Surface(label, [edge for edge in edges], "broken")
+    return Surface(label, walk_chains(follower, sorted(follower)))
+
+
+def walk_chains(follower: dict, starts: list) -> list:
+    """The chains from node to following node, begun at these nodes where no chain has been."""
     chains, used = [], set()
-    for start in sorted(follower):
+    for start in starts:
         if start in used:
             continue
         chain = [start]
@@ -72,7 +77,7 @@ def parts_surface(cells: np.ndarray, label: str) -> Surface:
             used.add(chain[-1])
             chain.append(follower[chain[-1]])
         chains.append(np.array(chain))
-    return Surface(label, chains)
+    return chains
 
 
 def edges_surface(cells: np.ndarray, ends: np.ndarray, label: str) -> Surface:
@@ -83,16 +88,7 @@ def edges_surface(cells: np.ndarray, ends: np.ndarray, label: str) -> Surface:
     follower, reached = dict(edges), {b for _, b in edges}
     if len(edges) < len(wanted) or len(follower) < len(edges) or len(reached) < len(edges):
         return Surface(label, [np.array(edge) for edge in edges], "broken")
-    chains, used = [], set()
-    for start in [node for node in follower if node not in reached] + sorted(follower):
-        if start in used:
-            continue
-        chain = [start]
-        while chain[-1] not in used and chain[-1] in follower:
-            used.add(chain[-1])
-            chain.append(follower[chain[-1]])
-        chains.append(np.array(chain))
-    return Surface(label, chains)
+    return Surface(label, walk_chains(follower, [node for node in follower if node not in reached] + sorted(follower)))
 
 
 def list_surface(cells: np.ndarray, nodes: np.ndarray, label: str) -> Surface:
