@@ -9,12 +9,13 @@
 !> and type: the best and the median of interleaved rounds, ns per step, slave node and point.
 program bench_contact
   use, intrinsic :: iso_fortran_env, only : output_unit
+  use contact_dispatch_m, only : contact_kinds
   use contact_factories_m, only : problem_t, make_problem, line
   use interface_m, only : start_contact, apply_contact
   use kinds_m, only : wp
   implicit none
 
-  integer, parameter :: n_type = 7, n_round = 5, sizes(3) = [20, 1000, 100000]
+  integer, parameter :: n_type = size(contact_kinds), n_round = 5, sizes(3) = [20, 1000, 100000]
   character(5), parameter :: scenes(7) = [character(5) :: 'flat', 'crown', 'match', 'shift', &
     'exact', 'slide', 'stick']
   real(wp), parameter :: friction_coefficient = 0.3_wp
