@@ -108,33 +108,31 @@ contains
 
     n_odd = 0
     do k = 1, n
-      list(n_odd + 1) = k
-      n_odd = n_odd + merge(1, 0, odd(k) > 0.0_wp)
+      if (.not. odd(k) > 0.0_wp) cycle
+      n_odd = n_odd + 1
+      list(n_odd) = k
     end do
   end subroutine list_odd
 
-  !> The neighbour of each segment at the end next to the foot: first all numbers, then the vectors.
+  !> The neighbour of each segment at the end next to the foot, where the chain ends the segment
+  !> itself: first all numbers, then the vectors.
   pure subroutine see_neighbours(n, segment, xi, previous, next, ends, chain, beside)
     integer, intent(in) :: n, segment(n)
     real(wp), intent(in) :: xi(n)
     integer, intent(in) :: previous(*), next(*), ends(2, *)
     real(wp), intent(in) :: chain(4, *)
-    real(wp), intent(inout) :: beside(2, n) !! its vector, m; 0 where there is none
+    real(wp), intent(inout) :: beside(2, n) !! its vector, m
     real(wp) :: vector(4)
     integer :: others(n_block), k, other
 
     do k = 1, n
-      others(k) = merge(next(segment(k)), previous(segment(k)), xi(k) > 0.5_wp)
+      other = merge(next(segment(k)), previous(segment(k)), xi(k) > 0.5_wp)
+      others(k) = merge(other, segment(k), other > 0)
     end do
     !GCC$ NOVECTOR
     do k = 1, n
-      other = others(k)
-      if (other > 0) then
-        vector = chain(:, ends(2, other)) - chain(:, ends(1, other))
-        beside(:, k) = vector(1:2) + vector(3:4)
-      else
-        beside(:, k) = 0.0_wp
-      end if
+      vector = chain(:, ends(2, others(k))) - chain(:, ends(1, others(k)))
+      beside(:, k) = vector(1:2) + vector(3:4)
     end do
   end subroutine see_neighbours
 
@@ -170,7 +168,6 @@ contains
       stays = merge(1.0_wp, 0.0_wp, other_along >= -small)
       stays = merge(1.0_wp, stays, other_across*other_across*square &
         >= across*across*other_square)
-      stays = merge(stays, 0.0_wp, other_square > 0.0_wp)
       stays = merge(stays, 0.0_wp, across < 0.0_wp)
       odd(k) = merge(0.0_wp, odd(k), min(to_end + round_off*square, across + (square - to_end), &
         stays - 0.5_wp) >= 0.0_wp)

@@ -4,7 +4,6 @@
 module piece_list_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
-  use geometry_m, only : sight_t, sight_of_segment
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, n_piece_block, is_listed_piece, is_last_piece
   use surfaces_m, only : surface_t
@@ -71,6 +70,7 @@ contains
     integer, intent(inout) :: feet(2, *)
     real(wp) :: near_node
     integer :: i, k, node
+    logical :: is_near(2)
 
     near_node = max(hair, least_cut)
     do i = 1, n
@@ -81,50 +81,53 @@ contains
           return
         end if
         feet(k, i) = segment(node)
-        if (min(xi(node), 1.0_wp - xi(node)) <= near_node) feet(k, i) = beside_node(segment(node), &
-          xi(node), ends(1, i), k, least_cut, master, n_slave, places)
+        is_near(k) = min(xi(node), 1.0_wp - xi(node)) <= near_node
       end do
+      if (is_near(1) .or. is_near(2)) call leave_nodes(ends(1, i), is_near, xi, least_cut, master, &
+        n_slave, places, feet(1, i))
     end do
   end subroutine find_ends
 
   !> Master segment of the first or the last piece of a slave segment where the foot of that end is
   !> a master node, or next to it. Of the two at that node the outer one has a piece only where the
   !> node projects on the slave segment.
-  pure function beside_node(foot, xi, ends, k, least_cut, master, n_slave, places) result(segment)
-    integer, intent(in) :: foot        !! master segment with the foot
-    real(wp), intent(in) :: xi         !! place on that
+  pure subroutine leave_nodes(ends, is_near, xi, least_cut, master, n_slave, places, feet)
     integer, intent(in) :: ends(2)     !! nodes of the slave segment
-    integer, intent(in) :: k           !! which end
+    logical, intent(in) :: is_near(2)  !! which ends
+    real(wp), intent(in) :: xi(*)      !! places on the master segments, of all slave nodes
     real(wp), intent(in) :: least_cut  !! of the table
     type(surface_t), intent(in) :: master
-    integer, intent(in) :: n_slave
+    integer, intent(in) :: n_slave     !! local number before the first master node
     real(wp), intent(in) :: places(4, *)
-    integer :: segment                 !! 0: a walk has to tell
-    integer :: before, behind, node    !! the two, on the way along the slave segment
-    type(sight_t) :: sight
+    integer, intent(inout) :: feet(2)  !! master segments; 0: a walk has to tell
+    integer :: before, behind          !! the two, on the way along the slave segment
+    integer :: node, outer, k
+    real(wp) :: own(4), way(4), t(2), square, along
     logical :: is_inside
 
-    if (xi < 0.5_wp) then
-      before = foot
-      behind = master%previous(foot)
-      node = master%segments(1, foot)
-    else
-      before = master%next(foot)
-      behind = foot
-      node = master%segments(2, foot)
-    end if
-    sight = sight_of_segment(places(:, n_slave + node), places(:, ends(1)), places(:, ends(2)))
-    ! From a node that far off the walk sees no more of the master.
-    segment = 0
-    if (sight%along < -sight%square .or. sight%along > 2.0_wp*sight%square) return
-    if (k == 1) then
-      is_inside = sight%along > least_cut*sight%square
-    else
-      is_inside = sight%along < (1.0_wp - least_cut)*sight%square
-    end if
-    segment = merge(before, behind, is_inside .eqv. k == 1)
-    if (segment == 0) segment = foot
-  end function beside_node
+    own = places(:, ends(2)) - places(:, ends(1))
+    t = own(1:2) + own(3:4)
+    square = t(1)*t(1) + t(2)*t(2)
+    do k = 1, 2
+      if (.not. is_near(k)) cycle
+      before = feet(k)
+      behind = feet(k)
+      if (xi(ends(k)) < 0.5_wp) then
+        behind = master%previous(feet(k))
+        node = master%segments(1, feet(k))
+      else
+        before = master%next(feet(k))
+        node = master%segments(2, feet(k))
+      end if
+      way = places(:, n_slave + node) - places(:, ends(1))
+      along = t(1)*(way(1) + way(3)) + t(2)*(way(2) + way(4))
+      is_inside = merge(along > least_cut*square, along < (1.0_wp - least_cut)*square, k == 1)
+      outer = merge(before, behind, is_inside .eqv. k == 1)
+      if (outer > 0) feet(k) = outer
+      ! From a node that far off the walk sees no more of the master.
+      if (along < -square .or. along > 2.0_wp*square) feet(k) = 0
+    end do
+  end subroutine leave_nodes
 
   !> List the pieces of slave segments, each from the master segment below its first end back to
   !> that below the second one, up to one where these are too many.
