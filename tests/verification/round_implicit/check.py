@@ -388,6 +388,39 @@ def check_compound(run, kind):
     run.check(f"{name}: order", run.order([1.0 / 4, 1.0 / 8], np.abs(errors)), 2.0, 0.2, "abs", "second order")
 
 
+def check_rubbing(run, kind):
+    """The shaft, pressed by its hub, is pushed through it until all slips; it starts back by the way, so that the ends are flush
+    at the end. Axial forces are then mu times the radial ones at every node of both sides, and uniform where these are."""
+    friction, way, pressure, penalty = 0.3, 3.0e-3, 1.0, 1.0e4
+    deck = round_deck("shaft pushed through a hub", 2.0, 0.25, 2)
+    bodies = [deck.elastic(1000.0, 1.0e6, 0.3, k + 1).mesh(*grid(2, rows, 1.0, 1.0, (inner, -way * (k == 0))), part=k + 1)
+              .reshape(-1, 3) for k, (rows, inner) in enumerate(((7, 0.0), (5, 1.0)))]
+    deck.fix(bodies[1].ravel(), y=1)
+    slave, master, outer = bodies[0][:, -1], bodies[1][::-1, 0], bodies[1][:, -1]
+    deck.curve(1, [(0.0, 0.0), (1.0, pressure), (2.0, pressure)]).curve(2, [(0.0, 0.0), (1.0, 0.0), (2.0, way)])
+    for node in bodies[0].ravel():
+        deck.prescribe(int(node), 2, 2, 2)
+    load_edges(deck, outer)
+    deck.node_set(1, slave).node_set(2, master).output(plot=1.0, glstat=0.25)
+    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 4, penalty, friction), (0.0, 1.0e20, 1))
+    result = run.program(deck)
+    place, force = result.points("Points")[-1], result.points("contact_force")[-1]
+    name = f"{TYPES[kind]}, shaft pushed through a hub"
+    for side, ids, sign in (("slave", slave, -1.0), ("master", master, 1.0)):
+        radial, axial = sign * force[ids - 1, 0], sign * force[ids - 1, 1]
+        run.check(f"{name}: axial over radial force of each node, {side} side", axial / radial, friction,
+                  1e-9 if kind in PASS_PATCH else 1e-6,
+                  source="all of it slips (the others press unevenly, so that their normals lean)")
+        if kind in PASS_PATCH:
+            traction = axial / areas(place[ids - 1, :2])
+            run.check(f"{name}: traction on the {side} side over its mean", traction, np.mean(traction), 1e-9,
+                      source="uniform")
+    table = result.table("contact")
+    table = table.where(time=table["time"][-1])
+    run.check(f"{name}: table, traction over pressure", np.abs(table["traction"]), friction * table["pressure"], 1e-9,
+              source="all of it slips")
+
+
 def check_sinking(run, kind, friction):
     """A conical ring is pushed down a cone and slides outwards on it: order of Newton's method."""
     columns = lines(5, 0.2), lines(8, -0.2)
@@ -425,6 +458,7 @@ def check(run):
         check_flat(run, kind)
         check_compound(run, kind)
         check_dish(run, kind)
+        check_rubbing(run, kind)
         for friction in (0.0, 0.3):
             check_sinking(run, kind, friction)
         for body in RADII:
