@@ -47,8 +47,8 @@ contains
     call number_chains(surface)
   end subroutine link_segments
 
-  !> Whether a segment begins, or ends, on the axis of a body of revolution: its chain may end there,
-  !> the surface does not.
+  !> Whether a segment begins, or ends, on the axis of a body of revolution: its chain may end
+  !> there, the surface does not.
   pure function meets_axis(surface, segment, at_start)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: segment

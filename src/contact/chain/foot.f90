@@ -214,8 +214,8 @@ contains
     end if
   end function face_foot
 
-  !> Foot on a segment, or beyond it at a chain's end. On the axis of a body of revolution the surface
-  !> has none: the place is behind a dish, and its foot stays on the line.
+  !> Foot on a segment, or beyond it at a chain's end. On the axis of a body of revolution the
+  !> surface has none: the place is behind a dish, and its foot stays on the line.
   pure function end_foot(surface, sight, segment) result(foot)
     type(surface_t), intent(in) :: surface
     type(sight_t), intent(in) :: sight
