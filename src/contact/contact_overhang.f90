@@ -12,7 +12,7 @@ module contact_overhang_m
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
-  use surfaces_m, only : surface_t
+  use surfaces_m, only : surface_t, meets_axis
   implicit none
   private
   public :: overhang_t, report_overhang, find_overhang
@@ -124,6 +124,7 @@ contains
     do segment = 1, master%n_segment
       do k = 1, 2
         if (merge(master%previous(segment), master%next(segment), k == 1) > 0) cycle
+        if (meets_axis(master, segment, k == 1)) cycle
         do i = 1, tracking%n
           distance = distance_beyond(master, chain, spots, tracking, segment, k == 1, i)
           if (distance > just_beyond*tracking%spot_depth(i)) cycle

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Stable step of fully integrated round quads: a lower bound of 2/omega_max of the single element
 !> with its row-sum masses in its present shape, u_r = 0 on the axis. With H the matrix of
-!> |grad v|^2 and T that of (v_r/r)^2 over the masses, their largest row sums bound their
-!> eigenvalues, and D:C:D <= 2G (|grad v|^2 + (v_r/r)^2) + lambda (div v + v_r/r)^2 gives
+!> |grad v|^2 and T that of (v_r/r)^2 of nodes off the axis over the masses, their largest row sums
+!> bound their eigenvalues, and with D:C:D <= 2G (|grad v|^2 + (v_r/r)^2) + lambda (div v + v_r/r)^2
 !>   omega^2 <= 2G (H + T) + lambda (sqrt(2H) + sqrt(T))^2,   K for lambda with mean dilatation.
 module round_full_step_m
   use kinds_m, only : wp
@@ -15,6 +15,12 @@ module round_full_step_m
   implicit none
   private
   public :: round_full_step
+
+  !> Values at the nodes from those at the points: of its own, of the two beside it, of the far one.
+  real(wp), parameter :: root = sqrt(3.0_wp), near = 0.25_wp*(1.0_wp + root)**2, beside = -0.5_wp, &
+    far = 0.25_wp*(1.0_wp - root)**2
+  !> Radii below this share of those of the points are round-off.
+  real(wp), parameter :: on_axis = 1.0e-12_wp
 
 contains
 
@@ -64,19 +70,20 @@ contains
 
   !> Largest row sums of H and T of the elements, over the volumes of the nodes. H is that of the
   !> patterns (s11 s22 s12 s13 s23 s33), of which the nodes have (-1, 0, 1), (0, -1, -1), (1, 0, 1)
-  !> and (0, 1, -1); rows of T sum to the integral of N_a/r dA.
+  !> and (0, 1, -1); rows of T sum to the integral of N_a/r dA, but for what is held on the axis.
   pure subroutine row_sums(inverse_mass, stride, points, plane, hoop)
     integer, intent(in) :: stride
     real(wp), intent(in) :: inverse_mass(stride, *)
     type(round_point_t), intent(in) :: points(n_point)
     real(wp), intent(out), dimension(chunk_size) :: plane, hoop
     real(wp), dimension(chunk_size, 6) :: s
-    real(wp), dimension(chunk_size, 4) :: t
+    real(wp), dimension(chunk_size, 4) :: t, is_off
     real(wp) :: v, h11, h22, h33, h44, h12, h13, h14, h23, h24, h34, w3, only
     integer :: i, k
 
     s = 0.0_wp
     t = 0.0_wp
+    call mark_off_axis(points, is_off)
     do k = 1, n_point
       associate (place => points(k))
         !$omp simd private(v)
@@ -88,7 +95,9 @@ contains
           s(i, 4) = s(i, 4) + v*(shift(1, k)*place%c33(i) + shift(2, k)*place%c34(i))
           s(i, 5) = s(i, 5) + v*(shift(1, k)*place%c34(i) + shift(2, k)*place%c44(i))
           s(i, 6) = s(i, 6) + v*(shift(1, k)**2*place%c33(i) + shift(2, k)**2*place%c44(i))
-          v = v/(place%radius(i)*place%radius(i))
+          v = v/(place%radius(i)*place%radius(i))*((is_off(i, 1)*shape_at_points(1, k) &
+            + is_off(i, 2)*shape_at_points(2, k)) + (is_off(i, 3)*shape_at_points(3, k) &
+            + is_off(i, 4)*shape_at_points(4, k)))
           t(i, 1) = t(i, 1) + v*shape_at_points(1, k)
           t(i, 2) = t(i, 2) + v*shape_at_points(2, k)
           t(i, 3) = t(i, 3) + v*shape_at_points(3, k)
@@ -96,6 +105,7 @@ contains
         end do
       end associate
     end do
+    t = t*is_off
     !$omp simd private(h11, h22, h33, h44, h12, h13, h14, h23, h24, h34, w3, only)
     do i = 1, chunk_size
       h11 = s(i, 1) - 2.0_wp*s(i, 4) + s(i, 6)
@@ -126,5 +136,26 @@ contains
         inverse_mass(i, 4)*t(i, 4))
     end do
   end subroutine row_sums
+
+  !> 1 at nodes off the axis, 0 on it.
+  pure subroutine mark_off_axis(points, is_off)
+    type(round_point_t), intent(in) :: points(n_point)
+    real(wp), intent(out) :: is_off(chunk_size, 4)
+    real(wp) :: least
+    integer :: i, a
+
+    do a = 1, 4
+      associate (own => points(a)%radius, next => points(1 + modulo(a, 4))%radius, &
+        opposite => points(1 + modulo(a + 1, 4))%radius, &
+        last => points(1 + modulo(a + 2, 4))%radius)
+        !$omp simd private(least)
+        do i = 1, chunk_size
+          least = on_axis*((own(i) + opposite(i)) + (next(i) + last(i)))
+          is_off(i, a) = merge(0.0_wp, 1.0_wp, abs(near*own(i) + far*opposite(i) &
+            + beside*(next(i) + last(i))) <= least)
+        end do
+      end associate
+    end do
+  end subroutine mark_off_axis
 
 end module round_full_step_m

@@ -5,7 +5,7 @@
 module surfaces_m
   implicit none
   private
-  public :: surface_t, link_segments, number_chains, has_closed_chain
+  public :: surface_t, link_segments, number_chains, has_closed_chain, meets_axis
 
   !> One surface. "Local" node numbers count the nodes of this surface in walking order.
   type :: surface_t
@@ -20,6 +20,7 @@ module surfaces_m
     integer, allocatable :: chain(:)           !! (n_segment) number of the chain that it belongs to
     integer, allocatable :: incoming(:)        !! (n_node) segment that ends at the node, or 0
     integer, allocatable :: outgoing(:)        !! (n_node) segment that starts at the node, or 0
+    logical, allocatable :: is_on_axis(:)      !! (n_node) axisymmetry alone: nodes on the axis
   end type surface_t
 
 contains
@@ -45,6 +46,19 @@ contains
     end do
     call number_chains(surface)
   end subroutine link_segments
+
+  !> Whether a segment begins, or ends, on the axis of a body of revolution: its chain may end
+  !> there, the surface does not.
+  pure function meets_axis(surface, segment, at_start)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    logical, intent(in) :: at_start
+    logical :: meets_axis
+
+    meets_axis = allocated(surface%is_on_axis)
+    if (meets_axis) meets_axis = surface%is_on_axis(surface%segments(merge(1, 2, at_start), &
+      segment))
+  end function meets_axis
 
   !> Whether some chain of a surface is closed.
   pure function has_closed_chain(surface) result(closed)

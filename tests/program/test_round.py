@@ -174,6 +174,11 @@ def test_nodes_next_to_the_axis_are_told(exe, tmp_path):
         (tmp_path / "job.k").write_text(deck.text())
         said = run(exe, tmp_path, "check", "job.k").stderr
         assert ("4 node(s) lie next to the axis but not on it" in said) == told, said
+        # What is next to the axis does not hang on how long the bodies are.
+        deck.mesh(*grid(1, 1, origin=(1.0, 1.0e5)))
+        (tmp_path / "job.k").write_text(deck.text())
+        said = run(exe, tmp_path, "check", "job.k").stderr
+        assert ("4 node(s) lie next to the axis but not on it" in said) == told, said
 
 
 def cone_on_disc(kind, sides):

@@ -6,7 +6,7 @@
 module foot_m
   use geometry_m, only : sight_t, sight_of_segment, closest_distance, sight_normal, separation
   use kinds_m, only : wp
-  use surfaces_m, only : surface_t
+  use surfaces_m, only : surface_t, meets_axis
   implicit none
   private
   public :: foot_t, mark_t, see_segment, closest_foot, nearest_foot, near_foot, face_foot, &
@@ -110,7 +110,7 @@ contains
     if (sight%along < 0.0_wp) neighbour = surface%previous(segment)
     if (sight%along > sight%square) neighbour = surface%next(segment)
     if (neighbour == 0) then
-      foot = face_foot(sight, segment)
+      foot = end_foot(surface, sight, segment)
     else
       foot = corner_foot(sight, see_segment(surface, chain, spot, neighbour), segment)
     end if
@@ -214,6 +214,18 @@ contains
     end if
   end function face_foot
 
+  !> Foot on a segment, or beyond it at a chain's end. On the axis of a body of revolution the
+  !> surface has none: the place is behind a dish, and its foot stays on the line.
+  pure function end_foot(surface, sight, segment) result(foot)
+    type(surface_t), intent(in) :: surface
+    type(sight_t), intent(in) :: sight
+    integer, intent(in) :: segment
+    type(foot_t) :: foot
+
+    foot = face_foot(sight, segment)
+    if (.not. foot%is_on) foot%is_on = meets_axis(surface, segment, sight%along < 0.0_wp)
+  end function end_foot
+
   !> Foot at the node between two segments, neither of which has the spot over it. Outside of a
   !> convex corner the gap is the distance. Inside of a re-entrant one it is minus the distance and
   !> the normal points from the spot to the node, so that P2 holds. The sides are told apart by the
@@ -265,7 +277,7 @@ contains
       end if
       neighbour = merge(surface%previous(segment), surface%next(segment), sight%along < 0.0_wp)
       if (neighbour == 0) then
-        foot = face_foot(sight, segment)
+        foot = end_foot(surface, sight, segment)
         return
       end if
       other = see_segment(surface, chain, spot, neighbour)

@@ -125,6 +125,7 @@ contains
     integer :: k, before
 
     allocate (part%nodes, source=surface%nodes)
+    if (allocated(surface%is_on_axis)) allocate (part%is_on_axis, source=surface%is_on_axis)
     allocate (part%segments(2, n), part%segment_element(n))
     do k = 1, n
       part%segments(:, k) = surface%segments(:, segments(k))

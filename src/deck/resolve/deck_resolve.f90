@@ -19,8 +19,8 @@ module deck_resolve_m
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
   use deck_resolve_rigids_m, only : resolve_rigids
-  use deck_resolve_round_m, only : settle_form, settle_axis, check_loads_of_round, &
-    check_velocities_of_round
+  use deck_resolve_round_m, only : settle_form, settle_axis, mark_round_contacts, &
+    check_loads_of_round, check_velocities_of_round
   use deck_resolve_velocity_m, only : resolve_velocity
   use deck_resolve_contacts_m, only : resolve_contacts, check_references
   use deck_resolve_transducers_m, only : resolve_transducers
@@ -156,7 +156,7 @@ contains
     if (sound) then
       call resolve_contacts(deck, raw, maps, model)
       call resolve_transducers(deck, raw, maps, model)
-      model%contacts%is_round = model%is_round
+      if (model%is_round) call mark_round_contacts(model)
     else
       call check_references(deck, raw, maps)
       allocate (model%contacts(0))

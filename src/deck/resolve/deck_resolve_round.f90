@@ -12,9 +12,10 @@ module deck_resolve_round_m
     row_load_node, row_load_set, id_place
   implicit none
   private
-  public :: settle_form, settle_axis, mark_axis, check_loads_of_round, check_velocities_of_round
+  public :: settle_form, settle_axis, mark_axis, mark_round_contacts, check_loads_of_round, &
+    check_velocities_of_round
 
-  !> Radii below this share of the mesh are the axis.
+  !> Radii below this share of the largest are the axis.
   real(wp), parameter :: axis_share = 1.0e-10_wp
   !> No bore is that narrow: nodes that were meant to be on the axis.
   real(wp), parameter :: bore_share = 1.0e-6_wp
@@ -63,7 +64,7 @@ contains
     integer :: i
 
     if (.not. model%is_round .or. model%mesh%n_node == 0) return
-    reach = axis_share*extent(model)
+    reach = axis_share*maxval(model%mesh%coordinates(1, :))
     associate (x => model%mesh%coordinates)
       do i = 1, model%mesh%n_node
         if (x(1, i) < -reach) then
@@ -77,14 +78,6 @@ contains
     end associate
   end subroutine settle_axis
 
-  !> The longer side of the mesh, m.
-  pure function extent(model) result(length)
-    type(model_t), intent(in) :: model
-    real(wp) :: length
-
-    length = maxval(maxval(model%mesh%coordinates, 2) - minval(model%mesh%coordinates, 2))
-  end function extent
-
   !> (n_node) nodes on the axis of an axisymmetric deck.
   pure function mark_axis(model) result(is_there)
     type(model_t), intent(in) :: model
@@ -93,6 +86,21 @@ contains
     is_there = .false.
     if (model%is_round) is_there = .not. model%mesh%coordinates(1, :) > 0.0_wp
   end function mark_axis
+
+  !> Contacts of an axisymmetric deck know it, and which of their nodes are on the axis.
+  pure subroutine mark_round_contacts(model)
+    type(model_t), intent(inout) :: model
+    integer :: i
+
+    model%contacts%is_round = .true.
+    do i = 1, size(model%contacts)
+      associate (slave => model%contacts(i)%slave, master => model%contacts(i)%master, &
+        radii => model%mesh%coordinates(1, :))
+        slave%is_on_axis = .not. radii(slave%nodes) > 0.0_wp
+        master%is_on_axis = .not. radii(master%nodes) > 0.0_wp
+      end associate
+    end do
+  end subroutine mark_round_contacts
 
   !> A body load across the axis has no meaning; a force in r on nodes of the axis does nothing;
   !> nodes next to the axis are the rim of a bore.
@@ -123,7 +131,7 @@ contains
 
     if (model%mesh%n_node == 0) return
     associate (radius => model%mesh%coordinates(1, :), conditions => model%conditions)
-      is_rim = radius > 0.0_wp .and. radius < bore_share*extent(model) &
+      is_rim = radius > 0.0_wp .and. radius < bore_share*maxval(radius) &
         .and. .not. mark_rigid_nodes(model%rigids, model%mesh%n_node)
       is_rim(pack(conditions%fixed_nodes, conditions%fixed_directions == 1)) = .false.
       if (.not. any(is_rim)) return

@@ -212,8 +212,70 @@ def check_taylor(run):
               0.0, 1e-12, "min")
 
 
+def check_rates(run):
+    """A disc and the ring around it are upset at a constant rate a, as incompressible bodies are: D = (a/2, -a, a/2). The
+    law's rate sqrt(D:D) = a sqrt(3/2) has the hoop part in it, and so has the yield stress."""
+    rate, yield_stress, slow, power, n_step, end = 2.0, 1.0, 40.0, 4.0, 200, 0.1
+    step = end / n_step
+    for points in (1, 4):
+        deck = Deck("upset at a constant rate").control(end, dt=step)
+        deck.add("*PART", "body", (1, 1, 1)).add("*SECTION_SHELL", (1, 15, None, points), (1.0,))
+        deck.add("*MAT_PIECEWISE_LINEAR_PLASTICITY", (1, RHO, YOUNG, POISSON, yield_stress, 0.0, 1.0e21, 0.0),
+                 (slow, power, 0, 0, 0.0))
+        coordinates, quads = grid(2, 2, 2.0, 1.0)
+        quads = quads[:3] + [(quads[3][0], quads[3][1], quads[3][2], quads[3][2]),
+                             (quads[3][0], quads[3][2], quads[3][3], quads[3][3])]
+        ids = deck.mesh(coordinates, quads)
+        times = step * np.arange(n_step + 2)
+        deck.curve(1, [(t, np.expm1(0.5 * rate * t)) for t in times])
+        deck.curve(2, [(t, np.expm1(-rate * t)) for t in times])
+        for node, (r, z) in zip(ids, coordinates):
+            if r > 0.0:
+                deck.prescribe(int(node), 1, 2, 1, r)
+            deck.prescribe(int(node), 2, 2, 2, z)
+        result = run.program(deck.output(plot=end), name=f"rates_{points}")
+        # The rate of the step in its middle.
+        middle = np.array([2.0 * np.tanh(0.25 * rate * step), -2.0 * np.tanh(0.5 * rate * step)]) / step
+        size = np.sqrt(2.0 * middle[0] ** 2 + middle[1] ** 2)
+        stress = result.cells("stress")[-1]
+        name = f"upset at a constant rate, {points} point(s)"
+        run.check(f"{name}: axial less radial stress", stress[:, 1] - stress[:, 0],
+                  -yield_stress * (1.0 + (size / slow) ** (1.0 / power)), 1e-9, source="Cowper and Symonds")
+        run.check(f"{name}: hoop less radial stress", stress[:, 2] - stress[:, 0], 0.0, 1e-9, "abs", "equal rates")
+        run.check(f"{name}: shear stress", stress[:, 3], 0.0, 1e-9, "abs", "none")
+
+
+def check_ring(run):
+    """A thin ring, nu 0, pushed outwards by nodal forces of F per radian, free and against a rigid cylinder about the axis."""
+    radius, thick, force = 10.0, 0.02, 1.0e-5
+    stiffness = YOUNG * thick ** 2 / radius      # per radian: hoop force E A u/R
+    free = force / stiffness
+    for points in (1, 4):
+        for share in (None, 0.25):
+            deck = round_deck("pushed ring", 9.0, points).elastic(RHO, YOUNG, 0.0)
+            ids = deck.mesh(*grid(1, 1, thick, thick, (radius - 0.5 * thick, 0.0)))
+            deck.fix(ids, y=1).curve(1, [(0.0, 0.0), (3.0, 1.0), (1.0e9, 1.0)])
+            deck.add("*LOAD_NODE_POINT", *[(int(node), 1, 1, 0.25 * force) for node in ids])
+            deck.add("*DAMPING_GLOBAL", (0, 2.0 * np.sqrt(YOUNG / RHO) / radius))
+            if share is not None:
+                edge = radius + 0.5 * thick + share * free
+                deck.add("*RIGIDWALL_PLANAR", (0,), (edge, 0.0, 0.0, edge - 1.0, 0.0, 0.0))
+                deck.add("*DATABASE_RWFORC", (1.0,))
+            result = run.program(deck.output(plot=9.0), name=f"ring_{points}_{share or 1}")
+            name = f"pushed ring, {points} point(s)" + (", cylinder" if share else "")
+            moved = result.points("displacement")[-1][:, 0]
+            run.check(f"{name}: radial displacement", moved[::2].mean() if share is None else moved[1::2].mean(),
+                      free * (share or 1.0), 1e-4, source="F R/(E A), thick 0.002 R")
+            if share is not None:
+                wall = result.table("rwforc")
+                run.check(f"{name}: force on the cylinder, per radian", np.abs(wall["fx"][-1]), force * (1.0 - share),
+                          1e-4, source="what the hoop does not carry")
+
+
 def check(run):
     check_tube(run)
+    check_rates(run)
+    check_ring(run)
     check_sphere(run, 1)
     check_sphere(run, 4)
     check_bar(run)

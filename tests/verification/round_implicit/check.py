@@ -306,9 +306,10 @@ def check_flat(run, kind):
                 run.check(f"{name}: stresses in all elements / p0", worst[2], 0.0, 1e-9, "abs", "uniaxial")
 
 
-def check_cone(run, kind, body, size):
-    """Interface inclined by 20 degrees, the load on all outer faces; see ../round_contact for the limit."""
-    columns, inner, penalty = (lines(5, 0.2), lines(4, -0.2)), RADII[body], 1.0e6
+def press_cone(run, kind, body, size, penalty=1.0e6):
+    """Interface inclined by 20 degrees, the load on all outer faces. Nodal forces of slave and master over those of uniform
+    pressure, and how far a slave place stands sideways of its foot, over the shortest segment."""
+    columns, inner = (lines(5, 0.2), lines(4, -0.2)), RADII[body]
     meshes = [inclined_block(columns[0], lambda x: SLOPE * x, lambda x: 1.0 + 0.0 * x),
               inclined_block(columns[1], lambda x: -1.0 + 0.0 * x, lambda x: SLOPE * x)]
     deck, (upper, lower) = patch_deck(f"cone, {body}, type {kind}", meshes, 0.3, size, inner, columns)
@@ -321,18 +322,33 @@ def check_cone(run, kind, body, size):
     deck.fix(lower[0], y=1)
     result = run.program(deck.contact(1, 2, kind, penalty, gauss=4))
     place, force = result.points("Points")[-1], result.points("contact_force")[-1]
-    gap = size / (penalty * 5.0 * np.cos(np.arctan(SLOPE)))
-    limit = 3.0 * gap * np.sin(np.arctan(SLOPE)) / min(np.min(np.diff(x)) for x in columns) + 2.0e-9
-    name = f"{TYPES[kind]}, cone on a {body}, load {size:.0e}"
-    for side, ids in (("slave", upper[0]), ("master", lower[2])):
+    gap, found = size / (penalty * 5.0 * np.cos(np.arctan(SLOPE))), []
+    for ids in (upper[0], lower[2]):
         x = place[ids - 1, :2]
         t = (x[-1] - x[0]) / np.linalg.norm(x[-1] - x[0])
-        error = np.max(np.abs(force[ids - 1, :2] / (size * areas(x))[:, None] - [-t[1], t[0]]))
+        found.append(force[ids - 1, :2] / (size * areas(x))[:, None] - [-t[1], t[0]])
+    return found, gap * np.sin(np.arctan(SLOPE)) / min(np.min(np.diff(x)) for x in columns)
+
+
+def check_cone(run, kind, body, size):
+    """See ../round_contact for the limit."""
+    found, sideways = press_cone(run, kind, body, size)
+    name = f"{TYPES[kind]}, cone on a {body}, load {size:.0e}"
+    for side, errors in zip(("slave", "master"), found):
+        error = np.max(np.abs(errors))
         if kind in PASS_PATCH:
-            run.check(f"{name}: nodal forces on the {side} side over those of uniform pressure", error, 0.0, limit,
-                      "abs", "shift over length, and round-off of the gap")
+            run.check(f"{name}: nodal forces on the {side} side over those of uniform pressure", error, 0.0,
+                      3.0 * sideways + 2.0e-9, "abs", "shift over length, and round-off of the gap")
         else:
             run.report(f"{name}: max |p/p0 - 1| on the {side} side", error)
+
+
+def check_dish(run, kind):
+    """Springs so soft that the slave's node on the axis is behind a dish by more than what counts at a chain's end."""
+    found, sideways = press_cone(run, kind, "disc", 10.0, 100.0)
+    name = f"{TYPES[kind]}, cone in a dish, {sideways:.3f} of a segment sideways"
+    run.check(f"{name}: axial force on the node on the axis over that of uniform pressure", found[0][0, 1], 0.0, 0.5, "abs",
+              "the surface does not end there; types 1 to 3 and 6 fail the patch test")
 
 
 def check_compound(run, kind):
@@ -372,6 +388,39 @@ def check_compound(run, kind):
     run.check(f"{name}: order", run.order([1.0 / 4, 1.0 / 8], np.abs(errors)), 2.0, 0.2, "abs", "second order")
 
 
+def check_rubbing(run, kind):
+    """The shaft, pressed by its hub, is pushed through it until all slips; it starts back by the way, so that the ends are flush
+    at the end. Axial forces are then mu times the radial ones at every node of both sides, and uniform where these are."""
+    friction, way, pressure, penalty = 0.3, 3.0e-3, 1.0, 1.0e4
+    deck = round_deck("shaft pushed through a hub", 2.0, 0.25, 2)
+    bodies = [deck.elastic(1000.0, 1.0e6, 0.3, k + 1).mesh(*grid(2, rows, 1.0, 1.0, (inner, -way * (k == 0))), part=k + 1)
+              .reshape(-1, 3) for k, (rows, inner) in enumerate(((7, 0.0), (5, 1.0)))]
+    deck.fix(bodies[1].ravel(), y=1)
+    slave, master, outer = bodies[0][:, -1], bodies[1][::-1, 0], bodies[1][:, -1]
+    deck.curve(1, [(0.0, 0.0), (1.0, pressure), (2.0, pressure)]).curve(2, [(0.0, 0.0), (1.0, 0.0), (2.0, way)])
+    for node in bodies[0].ravel():
+        deck.prescribe(int(node), 2, 2, 2)
+    load_edges(deck, outer)
+    deck.node_set(1, slave).node_set(2, master).output(plot=1.0, glstat=0.25)
+    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 4, penalty, friction), (0.0, 1.0e20, 1))
+    result = run.program(deck)
+    place, force = result.points("Points")[-1], result.points("contact_force")[-1]
+    name = f"{TYPES[kind]}, shaft pushed through a hub"
+    for side, ids, sign in (("slave", slave, -1.0), ("master", master, 1.0)):
+        radial, axial = sign * force[ids - 1, 0], sign * force[ids - 1, 1]
+        run.check(f"{name}: axial over radial force of each node, {side} side", axial / radial, friction,
+                  1e-9 if kind in PASS_PATCH else 1e-6,
+                  source="all of it slips (the others press unevenly, so that their normals lean)")
+        if kind in PASS_PATCH:
+            traction = axial / areas(place[ids - 1, :2])
+            run.check(f"{name}: traction on the {side} side over its mean", traction, np.mean(traction), 1e-9,
+                      source="uniform")
+    table = result.table("contact")
+    table = table.where(time=table["time"][-1])
+    run.check(f"{name}: table, traction over pressure", np.abs(table["traction"]), friction * table["pressure"], 1e-9,
+              source="all of it slips")
+
+
 def check_sinking(run, kind, friction):
     """A conical ring is pushed down a cone and slides outwards on it: order of Newton's method."""
     columns = lines(5, 0.2), lines(8, -0.2)
@@ -408,6 +457,8 @@ def check(run):
     for kind in TYPES:
         check_flat(run, kind)
         check_compound(run, kind)
+        check_dish(run, kind)
+        check_rubbing(run, kind)
         for friction in (0.0, 0.3):
             check_sinking(run, kind, friction)
         for body in RADII:
