@@ -9,7 +9,7 @@ import pytest
 
 from slideline_tools import cli, scenes
 from slideline_tools.commands import completion, make_deck
-from slideline_tools.scenes.patch import MESHES
+from slideline_tools.scenes.patch import MESHES, SURFACES
 from test_decks import Model
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -76,7 +76,7 @@ def test_defaults_that_the_help_names_are_those_of_the_scene(name):
 
 
 def test_names_of_the_meshes():
-    assert make_deck.MESHES == tuple(MESHES)
+    assert make_deck.MESHES == tuple(MESHES) and make_deck.SURFACES == SURFACES
 
 
 def test_make_deck_refuses(tmp_path, tool):

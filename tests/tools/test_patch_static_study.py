@@ -42,6 +42,6 @@ def test_page_of_one_type(tmp_path, monkeypatch):
     wanted = ["page", str(tmp_path), str(tmp_path / "doc"), "--types", "5"]
     assert patch_static.main(wanted) == 0
     page = (tmp_path / "doc" / "studies" / "patch_test_static.md").read_text()
-    assert page.count("| 5 NTS-mAR | < 1e-") == 5 and "| 5 NTS-mAR | 1e+00, " in page
+    assert page.count("| 5 NTS-mAR | < 1e-") == 6 and page.count("< 1e-") == 2 * (5 + 10) and "| 5 NTS-mAR | 1e+00, " in page
     assert (tmp_path / "doc" / "pictures" / "patch_static_deformed.png").exists()
     assert patch_static.main([*wanted[:-1], "6"]) == 2

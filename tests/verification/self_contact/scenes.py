@@ -15,8 +15,9 @@ def with_itself(deck, parts, kind, penalty, unit, friction=0.0):
     return deck.add("*CONTACT_2D_SLIDELINE", (9999, 0, kind, 3, penalty, friction), (0.0, 1.0e20, unit))
 
 
-def octagons(rows, columns, seed, order=None, mirrored=False, cells=2):
-    """Bodies (x, quads, velocity) on a lattice with spaces between them, moving inwards."""
+def octagons(rows, columns, seed, order=None, mirrored=False, cells=2, renumbered=False):
+    """Bodies (x, quads, velocity) on a lattice with spaces between them, moving inwards. `renumbered`: nodes of each
+    the other way round, and its elements too, which begin at their third node."""
     rng = np.random.default_rng(seed)
     corners = np.array([(0.45 * np.cos(a), 0.45 * np.sin(a)) for a in np.pi * np.arange(8) / 4.0])
     shape, quads = polygon_quads(corners, cells)
@@ -28,14 +29,18 @@ def octagons(rows, columns, seed, order=None, mirrored=False, cells=2):
             found.append((x, quads, -4.0 * away / columns + rng.uniform(-0.5, 0.5, 2)))
     if mirrored:
         found = [(x * [-1.0, 1.0], q[:, ::-1], v * [-1.0, 1.0]) for x, q, v in found]
+    if renumbered:
+        found = [(x[::-1], len(x) - 1 - np.roll(q, 2, axis=1)[::-1], v) for x, q, v in found]
     return [found[k] for k in (order if order is not None else range(len(found)))]
 
 
-def free_bodies(bodies, end, dt):
-    """A deck with these bodies, part by part; the contact is the caller's."""
+def free_bodies(bodies, end, dt, is_round=False):
+    """A deck with these bodies, part by part, or rings of them about an axis 4 m away; the contact is the caller's."""
     deck = Deck(f"{len(bodies)} bodies")
     deck.control(end, dt=dt).hourglass(4, 0.1)
+    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
     for part, (x, quads, velocity) in enumerate(bodies, start=1):
+        x = x + [4.0 if is_round else 0.0, 0.0]
         deck.part(part).elastic(RHO, YOUNG, POISSON, part)
         deck.node_set(part, deck.mesh(x, quads, part=part))
         deck.add("*SET_PART_LIST", (part,), (part,)).add("*INITIAL_VELOCITY", (part,), velocity.tolist())
@@ -56,6 +61,33 @@ def fork(kind):
     speed = np.where(x[:, 0] < 0.45, 3.0, -3.0) * np.maximum(0.0, x[:, 1] - 0.3)
     deck.add("*INITIAL_VELOCITY_NODE", *[(int(n), v, 0.0) for n, v in zip(ids, speed)])
     return with_itself(deck, [1], kind, 3.0, 2).output(plot=0.02, glstat=2.0e-3), x, quads
+
+
+#: Two arms: their thickness, elements over it, length, the slot between them, their speed and that of sound (nu = 0).
+ARM, N_ARM, ARM_LENGTH, SLOT, ARM_SPEED = 0.25, 16, 1.5, 1.0e-4, 0.1
+ARM_SOUND = np.sqrt(YOUNG / RHO)
+
+
+def arms(kind):
+    """A U whose arms meet flat, nu = 0: far from base and tips the contact is that of two bars as long as the arms are
+    thick. Returns the deck, coordinates and nodes on the inner side of the left arm."""
+    h = ARM / N_ARM
+    x, quads = grid(2 * N_ARM + 1, round(ARM_LENGTH / h), 2.0 * ARM + h, ARM_LENGTH)
+    quads = np.array(quads)
+    middle, axis = x[quads].mean(axis=1), ARM + 0.5 * h
+    quads = quads[~((np.abs(middle[:, 0] - axis) < 0.1 * h) & (middle[:, 1] > 0.25))]
+    used, quads = np.unique(quads, return_inverse=True)
+    x, quads = x[used], quads.reshape(-1, 4)
+    side = np.where(x[:, 0] < axis, 1.0, -1.0)
+    share = side * np.clip((x[:, 1] - 0.25) / 0.25, 0.0, 1.0)
+    inner = np.nonzero((np.abs(x[:, 0] - axis) < 0.51 * h) & (side > 0.0) & (x[:, 1] > 0.9) & (x[:, 1] < 1.3))[0]
+    x[:, 0] += 0.5 * (h - SLOT) * share
+    deck = Deck(f"a U of arms that meet flat, type {kind}").control(3.5 * ARM / ARM_SOUND, scale=0.6).hourglass(4, 0.1)
+    deck.part().elastic(RHO, YOUNG, 0.0)
+    ids = deck.mesh(x, quads)
+    deck.add("*INITIAL_VELOCITY_NODE", *[(int(n), v, 0.0) for n, v in zip(ids, ARM_SPEED * share)])
+    every = 2.0 * ARM / ARM_SOUND / 50.0
+    return with_itself(deck, [1], kind, 7.5, 2).output(plot=every, glstat=every), x, inner
 
 
 def plates(deck, boxes, speed, end):

@@ -80,6 +80,37 @@ def check_patch(run, name, kind, factor):
     return worst
 
 
+def disc_error(run, name, kind, inner, pull):
+    """Discs (or rings) tied at a flat face, drawn or pressed along their axis: largest deviation of the tractions on
+    either side, over the load."""
+    blocks = static_patch.Blocks(*MESHES[name][:2], YOUNG, MESHES[name][2])
+    deck = Deck(f"tied discs, type {kind}")
+    deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 1.0))
+    deck.add("*SECTION_SHELL", (1, 15, None, 4), (1.0,))
+    for part in (1, 2):
+        deck.part(part).elastic(RHO, YOUNG, 0.0, part)
+    upper = deck.mesh(blocks.upper + [inner, 0.0], blocks.upper_quads, part=1)
+    lower = deck.mesh(blocks.lower + [inner, 0.0], blocks.lower_quads, part=2)
+    ids = np.concatenate([upper, lower])
+    deck.node_set(1, ids[blocks.slave]).node_set(2, ids[blocks.master][::-1])
+    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 4), (0.0, 1.0e20), (0.0, 1.0, 1))
+    deck.fix(ids[blocks.bottom], y=1).curve(1, [(0.0, 0.0), (1.0, 1.0)])
+    forces = np.zeros_like(blocks.upper)
+    forces[-len(blocks.slave):, 1] = pull * ring_areas(inner + blocks.lines[0])
+    load(deck, upper, forces)
+    result = run.program(deck.output(plot=1.0, glstat=1.0))
+    return max(np.max(np.abs(found / ring_areas(inner + lines_of)[:, None] - [0.0, sign * pull])) / LOAD
+               for lines_of, sign, found in zip(blocks.lines, (-1.0, 1.0), tied_forces(result, blocks)))
+
+
+def ring_areas(r):
+    """Integrals of the hat functions of nodes along the radius, times it."""
+    length, total = np.diff(r), np.zeros(len(r))
+    total[:-1] += length * (2.0 * r[:-1] + r[1:]) / 6.0
+    total[1:] += length * (r[:-1] + 2.0 * r[1:]) / 6.0
+    return total
+
+
 def bending_error(run, kind, size):
     """Unlike meshes under a linear traction s (x - 1/2): largest error of the displacements over the largest of them, and
     L2 error of the normal traction of the tie. The exact solution has the spring k of the tie in it (type 3 has
@@ -121,6 +152,13 @@ def check(run):
                       "the stress that the bodies carry")
         else:
             run.report(f"type {kind}: largest error of the traction on either side", found)
+        found = max(disc_error(run, name, kind, inner, pull) for name in list(MESHES)[1:4:2] for inner in (0.0, 1.5)
+                    for pull in (LOAD, -LOAD))
+        if kind in PASS_PATCH:
+            run.check(f"type {kind}: traction of both sides, discs and rings, drawn and pressed", found, 0.0, 1.0e-9, "abs",
+                      "the stress that the bodies carry")
+        else:
+            run.report(f"type {kind}: largest error of the traction on either side, discs and rings", found)
         errors, pulls = zip(*(bending_error(run, kind, size) for size in SIZES))
         order = run.order([1.0 / n for n, _ in SIZES], errors)
         run.report(f"type {kind}: bending, error of displacements on the finest mesh", errors[-1])

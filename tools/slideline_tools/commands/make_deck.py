@@ -8,8 +8,9 @@ import pathlib
 
 from slideline_tools import UserError
 
-# The names of scenes.patch.MESHES, here without its slow imports.
+# The names of scenes.patch.MESHES and SURFACES, here without its slow imports.
 MESHES = ("3/2", "5/4", "7/5", "2/7", "51/50")
+SURFACES = ("faces", "tied", "one-set")
 #: scene -> refinement levels, Gauss points of type 6, what it is
 CONTACT_SCENES = {
     "collision": ("1 to 4 in the paper", 4, "projectile on a plate, half model"),
@@ -76,6 +77,8 @@ def add_own_options(scene: argparse.ArgumentParser, name: str) -> None:
                                 "(5/4)")
         scene.add_argument("--penalty", type=float, help="N/m per contact node; damping, step and "
                            "end time follow it (1e6)")
+        scene.add_argument("--surfaces", choices=SURFACES,
+                           help="contact of the two faces, ties of these, or one part set with itself (faces)")
     if name in ("patch", "hertz"):
         scene.add_argument("--static", action="store_true",
                            help="static steps of the implicit method, not damping to rest")

@@ -63,14 +63,24 @@ def relaxation(lower, upper, penalty):
     return float(2.0 * slowest), float(end / np.ceil(end / step)), float(end)
 
 
-def patch(ctype=2, ngauss=4, exchanged=False, penalty=1.0e6, grids=None, static=False, mesh="5/4"):
+#: What holds the blocks together: contact of their two faces, ties of these, or contact of one part set with itself.
+SURFACES = ("faces", "tied", "one-set")
+
+
+def patch(ctype=2, ngauss=4, exchanged=False, penalty=1.0e6, grids=None, static=False, mesh="5/4",
+          surfaces="faces"):
     """The contact patch test with a mesh of MESHES, or `grids` as from patch_grids.
 
     `exchanged`: the lower block is the slave; `penalty` in N/m per contact node; `static`: one
-    static step of the implicit method with fully integrated quads, instead of damping to rest.
+    static step of the implicit method with fully integrated quads, instead of damping to rest;
+    `surfaces`: one of SURFACES.
     """
     if not 0.0 < penalty < np.inf:
         raise ValueError("penalty of the patch scene: a positive number")
+    if surfaces not in SURFACES:
+        raise ValueError(f"surfaces of the patch scene: one of {', '.join(SURFACES)}")
+    if exchanged and surfaces == "one-set":
+        raise ValueError("exchanged: a surface with itself has neither slave nor master")
     lower, upper = grids or patch_grids(*MESHES[mesh])
     columns = " / ".join(str(len(grid.lower) - 1) for grid in (upper, lower))
     deck = Deck(f"contact patch test {columns}" + (" static" if static else "")
@@ -90,16 +100,32 @@ def patch(ctype=2, ngauss=4, exchanged=False, penalty=1.0e6, grids=None, static=
     else:
         write_damped(deck, contact, *relaxation(lower, upper, penalty))
     write_bodies(deck, lower, upper, static)
-    deck.block("The two surfaces as node sets in walking order.")
-    first, second = roles(exchanged)
-    deck.node_set(3, f"{first}: lower face of the upper block", upper.lower)
-    deck.node_set(4, f"{second}: upper face of the lower block", lower.upper)
-    slideline(deck, 3, 4, exchanged)
+    write_surfaces(deck, lower, upper, exchanged, surfaces)
     deck.block("Mesh of the lower block.")
     lower.write(deck, 1)
     deck.block("Mesh of the upper block.")
     upper.write(deck, 2)
     return deck.text()
+
+
+def write_surfaces(deck, lower, upper, exchanged, surfaces):
+    """The surfaces and what holds between them."""
+    if surfaces == "one-set":
+        deck.block("Both blocks as one set of parts, in contact with itself: whatever of their outlines meets.")
+        deck.keyword("SET_PART_LIST")
+        deck.card("sid", 3)
+        deck.card("pid1 pid2", 1, 2)
+        deck.keyword("CONTACT_2D_SLIDELINE")
+        deck.card("surfa surfb ctype ngauss pen", 3, 0, "&ctype", "&ngauss", "&pen")
+        return
+    deck.block("The two surfaces as node sets in walking order.")
+    first, second = roles(exchanged)
+    deck.node_set(3, f"{first}: lower face of the upper block", upper.lower)
+    deck.node_set(4, f"{second}: upper face of the lower block", lower.upper)
+    slideline(deck, 3, 4, exchanged)
+    if surfaces == "tied":
+        deck.card("tbirth", 0.0)
+        deck.card("vc tfac tie", 0.0, 1.0, 1)
 
 
 def write_static(deck, contact):

@@ -56,8 +56,8 @@ def write_decks(folder):
 class Run:
     """Pressures at rest on both sides of one run."""
 
-    def __init__(self, folder, layout, penalty, ctype):
-        path = folder / f"{deck_name(layout, penalty)}_type_{ctype}"
+    def __init__(self, folder, layout, penalty, ctype, surfaces=""):
+        path = folder / f"{deck_name(layout, penalty)}{surfaces}_type_{ctype}"
         energy = read_csv(path / "patch.glstat.csv")
         if not energy["kinetic"][-1] <= 1e-16 * energy["internal"][-1]:
             raise UserError(f"{path}: not at rest at the end")

@@ -4,7 +4,8 @@
     python -m slideline_tools.studies.patch_static decks FOLDER
     python -m slideline_tools.studies.patch_static page FOLDER DOC
 
-`decks` writes FOLDER/<layout>_<penalty>.k and prints the names; `page` reads the runs
+`decks` writes FOLDER/<layout>_<penalty>.k, at one penalty also with ties and with both blocks in one set
+(FOLDER/<layout>_<penalty>_tied.k, .._one-set.k), and prints the names; `page` reads the runs
 FOLDER/<layout>_<penalty>_type_<n>/patch.* and writes DOC/studies/patch_test_static.md, its pictures
 and one table FOLDER/type_<n>.csv for each type.
 """
@@ -17,7 +18,7 @@ from slideline_tools import UserError
 from slideline_tools.fields import scalar_field
 from slideline_tools.plots import PAGE_WIDTH, STYLE, colour_bar, draw_field, plt
 from slideline_tools.results import read
-from slideline_tools.scenes.patch import patch
+from slideline_tools.scenes.patch import SURFACES, patch
 from slideline_tools.studies.common import (decks_and_page_main, label, markdown_table, save_small,
                                             write_page)
 from slideline_tools.studies.patch import (ALL, LAYOUTS, Run, deck_name, layout_grids,
@@ -26,6 +27,7 @@ from slideline_tools.studies.patch import (ALL, LAYOUTS, Run, deck_name, layout_
 DEFORMED, DEFORMED_TYPES, DEFORMED_PENALTY, SCALE = "5_4", (1, 5), 1.0e6, 5.0e4
 STRESS_RANGE = (-1.15, -0.85)
 SMALL, SMALLEST = 1.0e-9, 1.0e-13
+OTHER_SURFACES, HELD_PENALTY = SURFACES[1:], 1.0e6
 
 
 def write_decks(folder):
@@ -35,6 +37,11 @@ def write_decks(folder):
         for penalty in ALL:
             name = deck_name(layout, penalty)
             text = patch(penalty=penalty, grids=layout_grids(layout), static=True)
+            (folder / f"{name}.k").write_text(text, encoding="ascii")
+            print(name)
+        for surfaces in OTHER_SURFACES:
+            name = f"{deck_name(layout, HELD_PENALTY)}_{surfaces}"
+            text = patch(penalty=HELD_PENALTY, grids=layout_grids(layout), static=True, surfaces=surfaces)
             (folder / f"{name}.k").write_text(text, encoding="ascii")
             print(name)
 
@@ -66,6 +73,15 @@ def layout_table(deviations, layout, types):
     rows = [[label(ctype), *(" / ".join(size(value) for value in deviations[layout, ctype, penalty])
                              for penalty in ALL)] for ctype in types]
     return markdown_table(["type", *(f"{penalty:.0e}".replace("+", "") for penalty in ALL)], rows)
+
+
+def surfaces_table(folder, types):
+    """Deviations by layout and type with ties, and with both blocks in one set."""
+    rows = [[label(ctype), *(" / ".join(size(value) for value in
+                                        Run(folder, layout, HELD_PENALTY, ctype, f"_{surfaces}").deviations())
+                             for layout in LAYOUTS for surfaces in OTHER_SURFACES)] for ctype in types]
+    heads = [f"{layout.replace('_', '/')} {text}" for layout in LAYOUTS for text in ("tied", "one set")]
+    return markdown_table(["type", *heads], rows)
 
 
 def newton_table(folder, types):
@@ -124,6 +140,13 @@ The chart shows the non-uniform 7 / 5 meshes at eps = 1 MN/m.
 Blocks of the 5 / 4 meshes at eps = 1 MN/m, displacements drawn 50 000 times, coloured by the
 vertical stress (-1 Pa is exact), for a type that fails and one that passes.
 
+## Ties, and both blocks in one set
+
+The same at eps = 1 MN/m where the faces are tied (TIE 1 of `*CONTACT_2D_SLIDELINE`), and where both blocks are one set of parts in contact
+with itself (SURFB 0): the whole outlines are met from either side, each time by half of the penalty.
+
+{surfaces}
+
 ## Newton's method
 
 {newton}
@@ -138,6 +161,7 @@ energy by their square. After the second the residual is round-off.
   it is still far below 1e-9. Type 5 shows no locking up to 1e10 N/m.
 - **Types 1, 2, 3, 6** deviate as on the explicit page; its remarks hold. Of the four, type 3 alone gets ever
   better as the penalty grows.
+- **Ties** transmit what contact of the same type does. **In one set** types 4, 5 and 7 stay exact: two half passes of what is exact are exact.
 """
 
 
@@ -152,7 +176,7 @@ def write(folder, doc, types):
     shown = [ctype for ctype in DEFORMED_TYPES if ctype in types] or types[:1]
     save_small(deformed_figure(folder, shown), pictures / "patch_static_deformed.png")
     write_page(doc, "patch_test_static",
-               PAGE.format(tables=tables, newton=newton_table(folder, types)))
+               PAGE.format(tables=tables, surfaces=surfaces_table(folder, types), newton=newton_table(folder, types)))
 
 
 def main(arguments=None):
