@@ -3,6 +3,8 @@
 import dataclasses
 import typing
 
+import numpy as np
+
 import eos
 import laws
 import paths
@@ -130,6 +132,17 @@ def johnson_cook(state, state_law, cutoff=0.0, spall=2, damage=None):
     return cards, law
 
 
+def with_viscosity(cards, law, quadratic=1.5, linear=0.06):
+    def both(deck):
+        return cards(deck.add("*CONTROL_BULK_VISCOSITY", (quadratic, linear)))
+
+    def viscous():
+        made = law()
+        made.bulk_viscosity = (RHO, quadratic, linear)
+        return made
+    return both, viscous
+
+
 def hydro(state, state_law, cutoff=0.0, failure=0.0, points=None):
     def cards(deck):
         columns = [[0.0] * 8] * 4
@@ -168,6 +181,24 @@ def foam(poisson):
     return cards, lambda: laws.CrushableFoam(1.0e7, poisson, FOAM, 1.0e5)
 
 
+def pressure(found):
+    return -np.trace(found["stress"], axis1=1, axis2=2) / 3.0
+
+
+def reaches(cutoff):
+    return lambda found: np.min(pressure(found)) <= cutoff * (1.0 - 1.0e-12)
+
+
+def breaks(found):
+    """No deviator at the end, but some before."""
+    deviator = found["stress"] + pressure(found)[:, None, None] * np.eye(3)
+    return np.max(np.abs(deviator[-1])) <= 1.0e-12 * np.max(np.abs(deviator))
+
+
+def crushes(found):
+    return np.max(pressure(found)) > 0.5e5
+
+
 def heats(found):
     return flows(found) and found["temperature"][-1] > 300.0
 
@@ -187,19 +218,25 @@ NEW = [
     Case("015 polynomial", *johnson_cook(polynomial, linear), has_eos=True, fields=METAL, reached=heats),
     Case("015 Gruneisen", *johnson_cook(gruneisen, gruneisen_law), has_eos=True, fields=METAL, reached=heats),
     Case("015 damage", *johnson_cook(gruneisen, gruneisen_law, damage=BRITTLE), has_eos=True, fields=METAL,
+         reached=lambda found: np.max(found["damage"]) >= 1.0 and breaks(found)),
+    Case("015 spall 1", *johnson_cook(gruneisen, gruneisen_law, -3.0e8, 1), has_eos=True, fields=METAL,
+         reached=reaches(-3.0e8)),
+    Case("015 spall 2", *johnson_cook(gruneisen, gruneisen_law, -2.0e9, 2), has_eos=True, fields=METAL,
+         reached=breaks),
+    Case("015 spall 3", *johnson_cook(gruneisen, gruneisen_law, -2.0e9, 3), has_eos=True, fields=METAL,
+         reached=breaks),
+    Case("015 bulk viscosity", *with_viscosity(*johnson_cook(gruneisen, gruneisen_law)), has_eos=True, fields=METAL,
          reached=heats),
-    Case("015 spall 1", *johnson_cook(gruneisen, gruneisen_law, -3.0e8, 1), has_eos=True, fields=METAL),
-    Case("015 spall 2", *johnson_cook(gruneisen, gruneisen_law, -2.0e9, 2), has_eos=True, fields=METAL),
-    Case("015 spall 3", *johnson_cook(gruneisen, gruneisen_law, -2.0e9, 3), has_eos=True, fields=METAL),
     Case("010 polynomial", *hydro(polynomial, linear), has_eos=True, reached=flows),
-    Case("010 points, cut-off", *hydro(gruneisen, gruneisen_law, -3.0e8, 0.0, POINTS), has_eos=True, reached=flows),
+    Case("010 failure strain", *hydro(polynomial, linear, 0.0, 0.15), has_eos=True, reached=breaks),
+    Case("010 points, cut-off", *hydro(gruneisen, gruneisen_law, -3.0e8, 0.0, POINTS), has_eos=True, reached=reaches(-3.0e8)),
     Case("009 viscous", *null(10.0, 0.0), has_eos=True, fields=()),
-    Case("009 cut-off", *null(0.0, -1.0e6), has_eos=True, fields=()),
+    Case("009 cut-off", *null(0.0, -1.0e6), has_eos=True, fields=(), reached=reaches(-1.0e6)),
     Case("027 one F", mooney_rivlin, lambda: laws.MooneyRivlin(0.49, 4.0e5, 1.0e5), path=paths.homogeneous,
          fields=(), **SLOW),
     Case("007 one F", blatz_ko, lambda: laws.BlatzKo(1.0e6), path=paths.homogeneous, fields=(), **SLOW),
     Case("027 distorted", mooney_rivlin, lambda: laws.MooneyRivlin(0.49, 4.0e5, 1.0e5), fields=(), **SLOW),
     Case("007 distorted", blatz_ko, lambda: laws.BlatzKo(1.0e6), fields=(), **SLOW),
-    Case("063 PR 0", *foam(0.0), fields=(), motion={"volume": 0.4}, **SLOW),
-    Case("063 PR 0.2", *foam(0.2), fields=(), motion={"volume": 0.4}, **SLOW),
+    Case("063 PR 0", *foam(0.0), fields=(), motion={"volume": 0.4}, reached=crushes, **SLOW),
+    Case("063 PR 0.2", *foam(0.2), fields=(), motion={"volume": 0.4}, reached=crushes, **SLOW),
 ]

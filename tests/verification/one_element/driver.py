@@ -61,11 +61,12 @@ class Step:
     """What a law may know of one step.
 
     rotation: Hughes-Winget Q of the step; strain: dt D of the mid-step, turned by half of Q; rate: sqrt(D:D);
-    before, after, middle: volume ratios; gradient: F at the end.
+    trace: that of D; before, after, middle: volume ratios; gradient and length: F and the root of the area at the end.
     """
 
-    def __init__(self, dt, velocity_gradient, ratios, gradient):
-        self.dt, self.gradient = dt, gradient
+    def __init__(self, dt, velocity_gradient, ratios, gradient, length):
+        self.dt, self.gradient, self.length = dt, gradient, length
+        self.trace = np.trace(velocity_gradient)
         self.before, self.middle, self.after = ratios
         stretching = 0.5 * (velocity_gradient + velocity_gradient.T)
         spin = 0.5 * (velocity_gradient - velocity_gradient.T)
@@ -88,8 +89,10 @@ def steps(history, dt, is_round):
     gradients = mean_gradient(history[0], history, is_round)
     # the 33 part of F is what makes det F the volume ratio
     gradients[:, 2, 2] = ratio / np.linalg.det(gradients[:, :2, :2])
+    lengths = np.sqrt(volume(history, False))
     for k, velocity_gradient in enumerate(velocity_gradients):
-        yield Step(dt, velocity_gradient, (ratio[k], middle_ratio[k], ratio[k + 1]), gradients[k + 1])
+        yield Step(dt, velocity_gradient, (ratio[k], middle_ratio[k], ratio[k + 1]), gradients[k + 1],
+                   lengths[k + 1])
 
 
 def drive(law, history, dt, is_round=False):

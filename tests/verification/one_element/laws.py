@@ -6,7 +6,7 @@ Equations, sources and the choices where the literature leaves the discrete upda
 import numpy as np
 
 from driver import ONE, deviator, dot
-from eos import pressure_step
+from eos import pressure_step, sound_speed
 
 
 def mises(tensor):
@@ -165,7 +165,11 @@ class SimplifiedJohnsonCook(J2):
 
 
 class WithPressure(J2):
-    """Laws whose pressure comes from an equation of state; PC and failure judged at the end of the step."""
+    """Laws whose pressure comes from an equation of state; PC and failure judged at the end of the step.
+
+    bulk_viscosity: its density, Q1 and Q2, whose work goes into E."""
+
+    bulk_viscosity = None
 
     def __init__(self, shear, eos, cutoff=0.0):
         super().__init__(0.0, shear)
@@ -188,9 +192,20 @@ class WithPressure(J2):
             super().deviator(new, trial, step)
 
     def volume(self, new, step, work):
+        work += self.viscous_work(new, step)
         new["p"], new["energy"] = pressure_step(self.eos, new["p"], new["energy"], step.before, step.after, work,
                                                 self.least_pressure(new))
         self.end_of_step(new, step)
+
+    def viscous_work(self, new, step):
+        """-q t dt, with the sound speed of the state at the start of the step."""
+        if self.bulk_viscosity is None or step.trace >= 0.0:
+            return 0.0
+        rho, quadratic, linear = self.bulk_viscosity
+        speed = sound_speed(self.eos, rho, self.shear, new["p"], new["energy"], step.before)
+        rate = -step.trace * step.length
+        pressure = rho / step.after * rate * (quadratic * rate + linear * speed)
+        return pressure * -step.trace * step.dt * step.middle
 
     def end_of_step(self, new, step):
         pass
