@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """One element along random motions beside an independent driver in Python (README.md)."""
+import functools
 import json
 import pathlib
 import subprocess
@@ -70,15 +71,23 @@ def scale_of(wanted, quantity):
     return largest or 1.0
 
 
+@functools.cache
+def motion(path, seed, is_round, dt, options):
+    """Corner positions and the steps between them; most laws share them."""
+    history = path(seed, N_STEP, is_round, **dict(options))
+    return history, list(driver.steps(history, dt, is_round))
+
+
 def go_through(run, case, seeds, is_round):
     """All seeds in one run; whether a motion reaches what is to be compared."""
     dt, shape = case.end / N_STEP, "round" if is_round else "plane"
-    histories = [case.path(seed, N_STEP, is_round, **case.motion) for seed in seeds]
+    motions = [motion(case.path, seed, is_round, dt, tuple(case.motion.items())) for seed in seeds]
+    histories = [history for history, _ in motions]
     result = run.program(deck_of(case, histories, dt, is_round),
                          name=f"{case.name} {shape} {seeds[0]}".replace(" ", "_").replace(",", ""))
     pairs, reached = [], False
-    for part, history in enumerate(histories, 1):
-        expected = driver.drive(case.law(), history, dt, is_round)
+    for part, (history, steps) in enumerate(motions, 1):
+        expected = driver.follow(case.law(), steps)
         reached = case.reached(expected) or reached
         pairs.append((of_program(result, part, case.fields),
                       of_driver(expected, driver.volume(history[0], is_round), case.fields)))

@@ -95,15 +95,18 @@ def steps(history, dt, is_round):
                    lengths[k + 1])
 
 
-def drive(law, history, dt, is_round=False):
-    """Follow the corner positions history[step, corner, 2] with the given step.
-
-    Returns stress (step, 3, 3), plastic strain, temperature, damage and internal energy per initial volume, the
-    first row being the state at the start."""
+def follow(law, path):
+    """Stress (step, 3, 3), plastic strain, temperature, damage and internal energy per initial volume along the
+    steps of a path; the first row is the state at the start."""
     state = law.at_rest()
     rows = [law.result(state)]
-    for step in steps(history, dt, is_round):
+    for step in path:
         state = law.advance(state, step)
         rows.append(law.result(state))
     names = ("stress", "plastic_strain", "temperature", "damage", "energy")
     return {name: np.array([row[name] for row in rows]) for name in names}
+
+
+def drive(law, history, dt, is_round=False):
+    """Follow corner positions history[step, corner, 2] with a constant step."""
+    return follow(law, steps(history, dt, is_round))

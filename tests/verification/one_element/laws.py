@@ -132,7 +132,7 @@ class PiecewiseLinear(J2):
     @staticmethod
     def polygon(row, plastic):
         """Behind the last point the last slope goes on, unless it falls."""
-        x, y = np.array(row[0]), np.array(row[1])
+        x, y = row
         if len(x) == 1 or plastic <= x[-1]:
             return np.interp(plastic, x, y)
         return y[-1] + max(0.0, (y[-1] - y[-2]) / (x[-1] - x[-2])) * (plastic - x[-1])
