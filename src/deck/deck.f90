@@ -25,8 +25,11 @@ module deck_m
   use deck_part_m, only : read_part, read_section, read_hourglass
   use deck_rigid_m, only : read_rigid
   use deck_curves_m, only : read_curve, read_table
-  use deck_hardening_m, only : read_piecewise
+  use deck_eos_m, only : read_linear_polynomial, read_gruneisen
+  use deck_hardening_m, only : read_piecewise, read_hydro
+  use deck_johnson_cook_m, only : read_johnson_cook, read_simplified_johnson_cook
   use deck_material_m, only : read_elastic, read_plastic_kinematic
+  use deck_null_m, only : read_null
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control, check_step
   use deck_output_m, only : read_database
@@ -184,6 +187,7 @@ contains
     lost%parts = lost%parts .or. index(name, 'PART') == 1
     lost%sections = lost%sections .or. index(name, 'SECTION') == 1
     lost%materials = lost%materials .or. index(name, 'MAT') == 1
+    lost%equations = lost%equations .or. index(name, 'EOS') == 1
     lost%curves = lost%curves .or. index(name, 'DEFINE') == 1
     lost%sets = lost%sets .or. index(name, 'SET') == 1
   end subroutine note_lost
@@ -219,6 +223,18 @@ contains
       call read_plastic_kinematic(deck, parameters, i, raw)
     case ('MAT_PIECEWISE_LINEAR_PLASTICITY')
       call read_piecewise(deck, parameters, i, raw)
+    case ('MAT_NULL')
+      call read_null(deck, parameters, i, raw)
+    case ('MAT_ELASTIC_PLASTIC_HYDRO')
+      call read_hydro(deck, parameters, i, raw)
+    case ('MAT_JOHNSON_COOK')
+      call read_johnson_cook(deck, parameters, i, raw)
+    case ('MAT_SIMPLIFIED_JOHNSON_COOK')
+      call read_simplified_johnson_cook(deck, parameters, i, raw)
+    case ('EOS_LINEAR_POLYNOMIAL')
+      call read_linear_polynomial(deck, parameters, i, raw)
+    case ('EOS_GRUNEISEN')
+      call read_gruneisen(deck, parameters, i, raw)
     case ('MAT_RIGID')
       call read_rigid(deck, parameters, i, raw)
     case ('DEFINE_CURVE')

@@ -22,6 +22,8 @@ module element_chunk_m
     real(wp), dimension(chunk_size) :: trace              !! volumetric strain rate D_xx + D_yy
     real(wp), dimension(chunk_size) :: pressure           !! tension positive: K ln(J), bulk
                                                           !! viscosity added
+    real(wp), dimension(chunk_size) :: heat               !! work of the deviator in the step, for
+                                                          !! an equation of state
     real(wp), dimension(chunk_size) :: qx, qy             !! hourglass force amplitude
     real(wp) :: force(4, chunk_size) !! node 3 x, y without hourglass; node 4 x, y
     real(wp) :: swing(2, chunk_size) !! hourglass amplitude q_x, q_y

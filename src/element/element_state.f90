@@ -5,9 +5,10 @@ module element_state_m
   use block_state_m, only : block_state_t
   use element_dispatch_m, only : point_count
   use layout_m, only : chunk_size, slot_part
-  use material_dispatch_m, only : history_size
+  use material_dispatch_m, only : history_size, column_temperature, column_damage
+  use eos_pressure_m, only : n_eos_value
   use model_m, only : model_t
-  use parts_m, only : hourglass_stiffness
+  use parts_m, only : hourglass_stiffness, has_memory_of_heat
   use quad_full_m, only : has_mean_dilatation
   use quad_points_m, only : n_point, point_ratios
   use round_chunk_m, only : n_round_reference
@@ -17,7 +18,7 @@ module element_state_m
   implicit none
   private
   public :: start_elements, lump_mass, element_stresses, element_plastic_strains, &
-    add_part_energies, smallest_ratio
+    element_temperatures, element_damages, add_part_energies, smallest_ratio
 
 contains
 
@@ -66,14 +67,16 @@ contains
   subroutine reserve_memories(model, elements)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(inout) :: elements
-    integer :: i_chunk, n_history, n_hourglass, n_deviator, n_points, n
+    integer :: i_chunk, n_history, n_hourglass, n_deviator, n_points, n_eos, n
 
     allocate (elements%history_start(model%layout%n_chunk), &
+      elements%eos_start(model%layout%n_chunk), &
       elements%hourglass_start(model%layout%n_chunk), &
       elements%point_start(model%layout%n_chunk), source=0)
     n_deviator = 0
     n_history = 0
     n_hourglass = 0
+    n_eos = 0
     do i_chunk = 1, model%layout%n_chunk
       associate (part => model%parts(model%layout%chunk_part(i_chunk)))
         if (model%materials(part%material)%is_rigid) cycle
@@ -81,6 +84,10 @@ contains
         n = n_points*history_size(model%materials(part%material))
         if (n > 0) elements%history_start(i_chunk) = n_history + 1
         n_history = n_history + n*chunk_size
+        if (allocated(model%materials(part%material)%eos)) then
+          elements%eos_start(i_chunk) = n_eos + 1
+          n_eos = n_eos + n_eos_value*chunk_size
+        end if
         if (n_points > 1) then
           elements%point_start(i_chunk) = n_deviator + 1
           n_deviator = n_deviator + 3*n_points*chunk_size
@@ -91,7 +98,12 @@ contains
       end associate
     end do
     allocate (elements%history(n_history), elements%hourglass_strain(n_hourglass), &
-      elements%point_deviator(n_deviator), source=0.0_wp)
+      elements%point_deviator(n_deviator), elements%eos_state(n_eos), source=0.0_wp)
+    do i_chunk = 1, model%layout%n_chunk
+      n = elements%eos_start(i_chunk)
+      if (n > 0) elements%eos_state(n:n + chunk_size - 1) = &
+        model%materials(model%parts(model%layout%chunk_part(i_chunk))%material)%eos%energy
+    end do
   end subroutine reserve_memories
 
   !> Lumped mass: a quarter of each quad, a third of each triangle to its nodes; in round bodies the
@@ -129,7 +141,7 @@ contains
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout) :: stress(:, :) !! (6, n_element)
     real(wp) :: volumetric, stretch(n_point), start(n_point), now(n_point), s(3)
-    integer :: i, n, slot
+    integer :: i, i_eos, n, slot
 
     do slot = 1, model%layout%n_slot
       i = model%layout%slot_element(slot)
@@ -140,6 +152,9 @@ contains
         now(:n) = start(:n)*(1.0_wp + stretch(:n))
         volumetric = material%bulk*(sum(now(:n)*log_ratio(stretch(:n)))/sum(now(:n)))
       end associate
+      i_eos = elements%eos_start((slot - 1)/chunk_size + 1)
+      if (i_eos > 0) volumetric = -elements%eos_state(i_eos + chunk_size + mod(slot - 1, &
+        chunk_size))
       s = elements%deviator(slot, :)
       stress(1:4, i) = [s(1) + volumetric, s(2) + volumetric, volumetric - (s(1) + s(2)), s(3)]
     end do
@@ -151,28 +166,73 @@ contains
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout) :: plastic_strain(:) !! (n_element)
-    real(wp) :: stretch(n_point), start(n_point)
-    real(wp), parameter :: none(2, 4) = 0.0_wp
-    integer :: i, k, slot, i_chunk, first, stride
+    integer :: slot
 
     plastic_strain = 0.0_wp
     do slot = 1, model%layout%n_slot
-      i = model%layout%slot_element(slot)
-      i_chunk = (slot - 1)/chunk_size + 1
-      if (i == 0 .or. elements%history_start(i_chunk) == 0) cycle
-      first = elements%history_start(i_chunk) + mod(slot - 1, chunk_size)
-      if (elements%point_start(i_chunk) == 0) then
-        plastic_strain(i) = elements%history(first)
-      else
-        call ratios_of_points(model, elements, slot, none, stretch, start)
-        associate (part => model%parts(model%layout%chunk_part(i_chunk)))
-          stride = chunk_size*history_size(model%materials(part%material))
-        end associate
-        plastic_strain(i) = sum([(start(k)*elements%history(first + (k - 1)*stride), &
-          k = 1, n_point)])/sum(start)
-      end if
+      if (model%layout%slot_element(slot) == 0) cycle
+      if (elements%history_start((slot - 1)/chunk_size + 1) == 0) cycle
+      plastic_strain(model%layout%slot_element(slot)) = history_of_slot(model, elements, slot, 1)
     end do
   end subroutine element_plastic_strains
+
+  !> Temperature of all elements in deck order, 0 in parts that keep none.
+  subroutine element_temperatures(model, elements, temperature)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    real(wp), intent(inout) :: temperature(:) !! (n_element)
+    integer :: slot
+
+    temperature = 0.0_wp
+    do slot = 1, model%layout%n_slot
+      if (model%layout%slot_element(slot) == 0) cycle
+      associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
+        if (has_memory_of_heat(material)) temperature(model%layout%slot_element(slot)) = &
+          material%flow%room + history_of_slot(model, elements, slot, column_temperature)
+      end associate
+    end do
+  end subroutine element_temperatures
+
+  !> Damage of all elements in deck order, 0 in parts that keep none.
+  subroutine element_damages(model, elements, damage)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    real(wp), intent(inout) :: damage(:) !! (n_element)
+    integer :: slot
+
+    damage = 0.0_wp
+    do slot = 1, model%layout%n_slot
+      if (model%layout%slot_element(slot) == 0) cycle
+      associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
+        if (has_memory_of_heat(material)) damage(model%layout%slot_element(slot)) = &
+          history_of_slot(model, elements, slot, column_damage)
+      end associate
+    end do
+  end subroutine element_damages
+
+  !> One value of the history of the element in a slot, the mean over the initial volume where it
+  !> has several points.
+  function history_of_slot(model, elements, slot, column) result(value)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: slot, column
+    real(wp) :: value
+    real(wp) :: stretch(n_point), start(n_point)
+    real(wp), parameter :: none(2, 4) = 0.0_wp
+    integer :: k, i_chunk, first, stride
+
+    i_chunk = (slot - 1)/chunk_size + 1
+    first = elements%history_start(i_chunk) + (column - 1)*chunk_size + mod(slot - 1, chunk_size)
+    if (elements%point_start(i_chunk) == 0) then
+      value = elements%history(first)
+      return
+    end if
+    call ratios_of_points(model, elements, slot, none, stretch, start)
+    associate (part => model%parts(model%layout%chunk_part(i_chunk)))
+      stride = chunk_size*history_size(model%materials(part%material))
+    end associate
+    value = sum([(start(k)*elements%history(first + (k - 1)*stride), k = 1, n_point)])/sum(start)
+  end function history_of_slot
 
   !> J - 1 where the volumetric stress of the element in a slot is formed: once for the element, or
   !> at each of its points, and the initial area (or volume per radian) that each stands for.
@@ -266,6 +326,11 @@ contains
       do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
         if (model%layout%slot_element(slot) == 0) cycle
         call volume_ratios(model, motion, elements, slot, n, stretch, start)
+        if (elements%eos_start(i_chunk) > 0) then
+          internal(part) = internal(part) + start(1)*elements%eos_state( &
+            elements%eos_start(i_chunk) + mod(slot - 1, chunk_size))
+          cycle
+        end if
         internal(part) = internal(part) + sum(start(:n) &
           *volumetric_energy(model%materials(model%parts(part)%material)%bulk, stretch(:n)))
       end do

@@ -7,6 +7,7 @@ module quad_full_m
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t, gather_chunk
+  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size
@@ -27,7 +28,7 @@ contains
     type(material_t), intent(in) :: material
     logical :: yes
 
-    yes = material%poisson > 0.4_wp .or. history_size(material) > 0
+    yes = material%poisson > 0.4_wp .or. history_size(material) > 0 .or. allocated(material%eos)
   end function has_mean_dilatation
 
   !> Advance one chunk by the step `dt` that led to the present motion (dt = 0: forces only) and
@@ -67,9 +68,43 @@ contains
       call add_point_sums(k, point, sums)
     end do
     call store_mean(n_slot, chunk, deviator, elements%deviator(first, 1))
+    if (allocated(material%eos)) then
+      call finish_with_eos(i_chunk, nodes, material, hourglass, sums, elements, chunk)
+      return
+    end if
     call full_step(material, hourglass, nodes, chunk, sums, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))
   end subroutine advance_full
+
+  !> The rest of the step where the pressure has a memory: what the points have done heats it. All
+  !> of them share it, so that its force is that of a one-point quad.
+  pure subroutine finish_with_eos(i_chunk, nodes, material, hourglass, sums, elements, chunk)
+    integer, intent(in) :: i_chunk
+    integer, intent(in) :: nodes(4, chunk_size)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    type(step_sums_t), intent(in) :: sums
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk
+    type(material_t) :: now
+    real(wp) :: half
+    integer :: i
+
+    call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+      *chunk%inverse_area, elements, chunk, now)
+    !$omp simd private(half)
+    do i = 1, chunk_size
+      half = 0.5_wp*chunk%pressure(i)
+      chunk%force(1, i) = chunk%force(1, i) + half*chunk%y42(i)
+      chunk%force(2, i) = chunk%force(2, i) - half*chunk%x42(i)
+      chunk%force(3, i) = chunk%force(3, i) - half*chunk%y31(i)
+      chunk%force(4, i) = chunk%force(4, i) + half*chunk%x31(i)
+    end do
+    call full_step(now, hourglass, nodes, chunk, sums, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
+    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
+      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+  end subroutine finish_with_eos
 
   !> The pressure that all points of an element share: bulk viscosity of the mean rate, and the
   !> volumetric stress with mean dilatation.
@@ -85,6 +120,12 @@ contains
 
     chunk%trace = 0.0_wp
     chunk%pressure = 0.0_wp
+    if (allocated(material%eos)) then
+      chunk%heat = 0.0_wp
+      if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) call form_increments(dt, &
+        chunk, unused)
+      return
+    end if
     if (has_mean_dilatation(material)) &
       call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
     if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
@@ -100,7 +141,7 @@ contains
     integer, intent(in) :: i_chunk, k
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
-    type(element_chunk_t), intent(in) :: chunk
+    type(element_chunk_t), intent(inout) :: chunk      !! its heat
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: point
     real(wp), intent(inout) :: deviator(chunk_size, 3) !! sum of deviator times area
@@ -110,6 +151,7 @@ contains
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
     call form_increments(dt, point, stress)
     call load_deviator(elements%point_deviator(first), chunk_size, stress)
+    if (allocated(material%eos)) call load_eos_state(i_chunk, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk) &
         + (k - 1)*chunk_size*history_size(material)))
@@ -117,8 +159,12 @@ contains
       call update_stress(material, stress)
     end if
     call store_deviator(stress, chunk_size, elements%point_deviator(first))
-    elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
-      + 0.25_wp*work_of_deviator(stress%work, point%mid_area)
+    if (allocated(material%eos)) then
+      chunk%heat = chunk%heat + 0.25_wp*stress%work*point%mid_area
+    else
+      elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
+        + 0.25_wp*work_of_deviator(stress%work, point%mid_area)
+    end if
     deviator(:, 1) = deviator(:, 1) + 0.25_wp*point%area*stress%sxx
     deviator(:, 2) = deviator(:, 2) + 0.25_wp*point%area*stress%syy
     deviator(:, 3) = deviator(:, 3) + 0.25_wp*point%area*stress%sxy

@@ -6,6 +6,7 @@ module quad_one_point_m
   use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use element_time_step_m, only : stable_step
+  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
   use hourglass_m, only : resist_viscously, resist_elastically
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
@@ -33,6 +34,7 @@ contains
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk     !! forces out
     type(stress_chunk_t) :: stress
+    real(wp) :: work
     integer :: first, n_slot
 
     first = (i_chunk - 1)*chunk_size + 1
@@ -41,45 +43,74 @@ contains
     call form_present_shape(elements%reference(first, 1), n_slot, chunk)
     call form_increments(dt, chunk, stress)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
+    if (allocated(material%eos)) call load_eos_state(i_chunk, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk)))
     else
       call update_stress(material, stress)
     end if
     call store_deviator(stress, n_slot, elements%deviator(first, 1))
+    if (allocated(material%eos)) then
+      call finish_with_eos(i_chunk, nodes, material, hourglass, length_rule, stress, elements, &
+        chunk)
+      return
+    end if
     elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
       + work_of_deviator(stress%work, chunk%mid_area)
     call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
-    call resist(i_chunk, material, hourglass, dt, stress, elements, chunk)
+    if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
+      call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
+        material%sound_speed, dt, chunk, work)
+      elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
+    end if
+    call resist(i_chunk, material, hourglass, stress, elements, chunk)
     call form_forces(stress, chunk)
     call stable_step(length_rule, material%sound_speed, hourglass, nodes, chunk, &
       elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
   end subroutine advance_one_point
 
-  !> Bulk viscosity and hourglass control of one chunk, with their work.
-  pure subroutine resist(i_chunk, material, hourglass, dt, stress, elements, chunk)
+  !> The rest of the step where the pressure has a memory: what else an element does heats it.
+  pure subroutine finish_with_eos(i_chunk, nodes, material, hourglass, length_rule, stress, &
+    elements, chunk)
+    integer, intent(in) :: i_chunk
+    integer, intent(in) :: nodes(4, chunk_size)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    integer, intent(in) :: length_rule
+    type(stress_chunk_t), intent(in) :: stress
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk
+    type(material_t) :: now
+
+    chunk%heat = stress%work*chunk%mid_area
+    call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+      *chunk%inverse_area, elements, chunk, now)
+    call resist(i_chunk, material, hourglass, stress, elements, chunk)
+    call form_forces(stress, chunk)
+    call stable_step(length_rule, now%sound_speed, hourglass, nodes, chunk, &
+      elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
+    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
+      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+  end subroutine finish_with_eos
+
+  !> Hourglass control of one chunk, with its work.
+  pure subroutine resist(i_chunk, material, hourglass, stress, elements, chunk)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
-    real(wp), intent(in) :: dt
     type(stress_chunk_t), intent(in) :: stress
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk
     real(wp) :: work
     integer :: first
 
-    if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
-      call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
-        material%sound_speed, dt, chunk, work)
-      elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
-    end if
     if (hourglass%form == hourglass_viscous) then
       call resist_viscously(0.25_wp*hourglass%coefficient*material%density*material%sound_speed, &
-        dt, chunk, work)
+        stress%dt, chunk, work)
     else
       first = elements%hourglass_start(i_chunk)
       call resist_elastically(0.25_wp*hourglass%coefficient*(material%bulk &
-        + 4.0_wp*material%shear/3.0_wp), dt, stress, elements%hourglass_strain(first), &
+        + 4.0_wp*material%shear/3.0_wp), stress%dt, stress, elements%hourglass_strain(first), &
         elements%hourglass_strain(first + chunk_size), chunk, work)
     end if
     elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work

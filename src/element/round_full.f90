@@ -7,6 +7,7 @@ module round_full_m
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t
+  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size
   use parts_m, only : hourglass_t, material_t
@@ -53,13 +54,51 @@ contains
     do k = 1, n_point
       call advance_point(i_chunk, k, material, dt, elements, chunk, round, points(k))
     end do
-    round%force = chunk%force
-    round%swing = chunk%swing
     call store_mean(points, round%inverse_volume, elements%point_deviator(elements%point_start( &
       i_chunk)), n_slot, elements%deviator(first, 1))
+    if (allocated(material%eos)) then
+      call finish_with_eos(i_chunk, material, hourglass, points, round, elements, chunk)
+      return
+    end if
+    round%force = chunk%force
+    round%swing = chunk%swing
     call round_full_step(material, hourglass, elements%reference(first, reference_mass), n_slot, &
       chunk, points, elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
   end subroutine advance_round_full
+
+  !> The rest of the step where the pressure has a memory: what the points have done heats it. All
+  !> of them share it, and they sum the gradient of the volume without error.
+  pure subroutine finish_with_eos(i_chunk, material, hourglass, points, round, elements, chunk)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    type(round_point_t), intent(in) :: points(n_point)
+    type(round_chunk_t), intent(inout) :: round
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk
+    type(material_t) :: now
+    integer :: first, i
+
+    first = (i_chunk - 1)*chunk_size + 1
+    call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+      *round%inverse_volume, elements, chunk, now)
+    associate (p => chunk%pressure)
+      do i = 1, chunk_size
+        round%force(1, i) = chunk%force(1, i) + p(i)*(round%rad_a(i) + round%mean_a(i))
+        round%force(2, i) = chunk%force(2, i) + p(i)*round%axi_a(i)
+        round%force(3, i) = chunk%force(3, i) + p(i)*(round%rad_b(i) + round%mean_b(i))
+        round%force(4, i) = chunk%force(4, i) + p(i)*round%axi_b(i)
+        round%swing(1, i) = chunk%swing(1, i) + p(i)*round%rad_h(i)
+        round%swing(2, i) = chunk%swing(2, i) + p(i)*round%axi_h(i)
+        round%hoop(1, i) = round%hoop(1, i) + p(i)*round%mean_s(i)
+      end do
+    end associate
+    call round_full_step(now, hourglass, elements%reference(first, reference_mass), &
+      size(elements%reference, 1), chunk, points, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
+    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
+      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+  end subroutine finish_with_eos
 
   !> The pressure that all points of an element share: bulk viscosity of the mean rate, and the
   !> volumetric stress with mean dilatation.
@@ -77,6 +116,12 @@ contains
     chunk%trace = 0.0_wp
     chunk%pressure = 0.0_wp
     chunk%area = round%area
+    if (allocated(material%eos)) then
+      chunk%heat = 0.0_wp
+      if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) call &
+        form_round_increments(dt, chunk, round, unused)
+      return
+    end if
     if (has_mean_dilatation(material)) &
       call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
     if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
@@ -114,6 +159,7 @@ contains
     call add_hoop_strain(dt, place, point, stress)
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
     call load_deviator(elements%point_deviator(first), chunk_size, stress)
+    if (allocated(material%eos)) call load_eos_state(i_chunk, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk) &
         + (k - 1)*chunk_size*history_size(material)))
@@ -121,8 +167,12 @@ contains
       call update_stress(material, stress)
     end if
     call store_deviator(stress, chunk_size, elements%point_deviator(first))
-    elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
-      + work_of_deviator(stress%work, point%mid_area)
+    if (allocated(material%eos)) then
+      chunk%heat = chunk%heat + stress%work*point%mid_area
+    else
+      elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
+        + work_of_deviator(stress%work, point%mid_area)
+    end if
     if (has_mean_dilatation(material)) then
       point%pressure = chunk%pressure
     else

@@ -5,6 +5,7 @@ module round_one_point_m
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t
+  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
   use parts_m, only : hourglass_t, material_t, hourglass_viscous
@@ -35,6 +36,7 @@ contains
     type(round_chunk_t), intent(inout) :: round       !! forces out
     type(element_chunk_t) :: chunk
     type(stress_chunk_t) :: stress
+    real(wp) :: work
     integer :: first, n_slot
 
     first = (i_chunk - 1)*chunk_size + 1
@@ -43,27 +45,63 @@ contains
     call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
     call form_round_increments(dt, chunk, round, stress)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
+    if (allocated(material%eos)) call load_eos_state(i_chunk, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk)))
     else
       call update_stress(material, stress)
     end if
     call store_deviator(stress, n_slot, elements%deviator(first, 1))
+    if (allocated(material%eos)) then
+      call finish_with_eos(i_chunk, material, hourglass, stress, round, elements, chunk)
+      return
+    end if
     elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
       + work_of_deviator(stress%work, chunk%mid_area)
     call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
-    call resist(i_chunk, material, hourglass, dt, stress, round, elements, chunk)
+    if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
+      chunk%area = round%area
+      call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
+        material%sound_speed, dt, chunk, work)
+      elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
+    end if
+    call resist(i_chunk, material, hourglass, stress, round, elements, chunk)
     call form_round_forces(stress, chunk, round)
     call round_step(material, hourglass, elements%reference(first, reference_mass), n_slot, chunk, &
       round, elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
   end subroutine advance_round_one_point
 
-  !> Bulk viscosity and hourglass control of one chunk, with their work.
-  pure subroutine resist(i_chunk, material, hourglass, dt, stress, round, elements, chunk)
+  !> The rest of the step where the pressure has a memory: what else an element does heats it.
+  pure subroutine finish_with_eos(i_chunk, material, hourglass, stress, round, elements, chunk)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
-    real(wp), intent(in) :: dt
+    type(stress_chunk_t), intent(in) :: stress
+    type(round_chunk_t), intent(inout) :: round
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk
+    type(material_t) :: now
+    integer :: first
+
+    first = (i_chunk - 1)*chunk_size + 1
+    chunk%area = round%area
+    chunk%heat = stress%work*chunk%mid_area
+    call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+      *round%inverse_volume, elements, chunk, now)
+    call resist(i_chunk, material, hourglass, stress, round, elements, chunk)
+    call form_round_forces(stress, chunk, round)
+    call round_step(now, hourglass, elements%reference(first, reference_mass), &
+      size(elements%reference, 1), chunk, round, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
+    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
+      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+  end subroutine finish_with_eos
+
+  !> Hourglass control of one chunk, with its work.
+  pure subroutine resist(i_chunk, material, hourglass, stress, round, elements, chunk)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
     type(stress_chunk_t), intent(in) :: stress
     type(round_chunk_t), intent(inout) :: round
     type(block_state_t), intent(inout) :: elements
@@ -71,18 +109,12 @@ contains
     real(wp) :: work
     integer :: first
 
-    if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
-      chunk%area = round%area
-      call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
-        material%sound_speed, dt, chunk, work)
-      elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
-    end if
     call form_resistance(material, hourglass, round)
     if (hourglass%form == hourglass_viscous) then
-      call resist_round_viscously(dt, round, chunk, work)
+      call resist_round_viscously(stress%dt, round, chunk, work)
     else
       first = elements%hourglass_start(i_chunk)
-      call resist_round_elastically(dt, stress, round, elements%hourglass_strain(first), &
+      call resist_round_elastically(stress%dt, stress, round, elements%hourglass_strain(first), &
         elements%hourglass_strain(first + chunk_size), chunk, work)
     end if
     elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work

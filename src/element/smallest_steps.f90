@@ -7,6 +7,7 @@ module smallest_steps_m
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use element_dispatch_m, only : point_count
   use element_time_step_m, only : stable_step
+  use eos_pressure_m, only : take_present
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
   use layout_m, only : chunk_size
   use model_m, only : model_t
@@ -49,10 +50,10 @@ contains
         if (model%layout%slot_element(i_slot) == 0) cycle
         if (model%is_round) then
           round_reference = elements%reference(i_slot, :)
-          step = round_step_of_slot(model, round_reference, i_slot, motion)
+          step = round_step_of_slot(model, elements, round_reference, i_slot, motion)
         else
           reference = elements%reference(i_slot, :6)
-          step = step_of_slot(model, reference, i_slot, motion)
+          step = step_of_slot(model, elements, reference, i_slot, motion)
         end if
         call insert(n, model%layout%slot_element(i_slot), step, found, steps)
       end do
@@ -78,14 +79,16 @@ contains
   end subroutine insert
 
   !> Stable step of the element in one slot: that of a chunk which holds nothing else.
-  function step_of_slot(model, reference, i_slot, motion) result(step)
+  function step_of_slot(model, elements, reference, i_slot, motion) result(step)
     type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
     real(wp), intent(in) :: reference(6)             !! its shape at time zero
     integer, intent(in) :: i_slot
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
     real(wp) :: step
     type(element_chunk_t) :: chunk
     type(stress_chunk_t) :: unused
+    type(material_t) :: now
     real(wp) :: shape(chunk_size, 6), volume
     integer :: nodes(4, chunk_size)
 
@@ -95,7 +98,8 @@ contains
     call form_present_shape(shape, chunk_size, chunk)
     call form_increments(0.0_wp, chunk, unused)
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
-      associate (material => model%materials(part%material))
+      call take_present(model%materials(part%material), elements, i_slot, now)
+      associate (material => now)
         if (point_count(model%sections(part%section)) == 1) then
           call stable_step(model%controls%length_rule, material%sound_speed, part%hourglass, &
             nodes, chunk, step, volume)
@@ -107,8 +111,9 @@ contains
   end function step_of_slot
 
   !> The same for round quads, with the hourglass control that has a share in their step.
-  function round_step_of_slot(model, reference, i_slot, motion) result(step)
+  function round_step_of_slot(model, elements, reference, i_slot, motion) result(step)
     type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
     real(wp), intent(in) :: reference(n_round_reference) !! its shape at time zero
     integer, intent(in) :: i_slot
     real(wp), intent(in), contiguous :: motion(:, :)     !! (4, n_node)
@@ -118,6 +123,7 @@ contains
     type(round_chunk_t) :: round
     type(round_point_t) :: places(n_point)
     type(stress_chunk_t) :: unused
+    type(material_t) :: now
     real(wp) :: shape(chunk_size, n_round_reference), point_shape(chunk_size, 6), volume
     integer :: nodes(4, chunk_size), k
 
@@ -127,10 +133,11 @@ contains
     call form_round_shape(shape, chunk_size, chunk, round)
     call form_round_increments(0.0_wp, chunk, round, unused)
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
-      associate (material => model%materials(part%material))
+      call take_present(model%materials(part%material), elements, i_slot, now)
+      associate (material => now)
         chunk%area = round%area
         if (point_count(model%sections(part%section)) == 1) then
-          call form_resistance(material, part%hourglass, round)
+          call form_resistance(model%materials(part%material), part%hourglass, round)
           call round_step(material, part%hourglass, shape(1, reference_mass), chunk_size, chunk, &
             round, step, volume)
         else

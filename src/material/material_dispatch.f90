@@ -3,19 +3,27 @@
 module material_dispatch_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use parts_m, only : material_t, law_elastic, law_plastic, law_piecewise
+  use parts_m, only : material_t, law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
+    law_hot_johnson_cook, law_null, has_memory_of_heat
   use stress_chunk_m, only : stress_chunk_t
   use stress_point_m, only : stress_point_t
   use material_elastic_m, only : update_elastic, tangent_elastic
   use material_j2_m, only : update_j2_isotropic, update_j2_mixed, tangent_j2
+  use material_johnson_cook_m, only : update_johnson_cook, update_hot_johnson_cook
+  use material_null_m, only : update_null
   use material_piecewise_m, only : update_piecewise, tangent_piecewise
   implicit none
   private
-  public :: update_stress, form_tangent, history_size
+  public :: update_stress, form_tangent, history_size, find_failed, break_points, &
+    column_temperature, column_damage
+
+  !> Columns of the history of the heated law of Johnson and Cook: rise of temperature, damage.
+  integer, parameter :: column_temperature = 2, column_damage = 3
 
 contains
 
-  !> History values per element of a law: 0, 1 (plastic strain) or 4 (and back stress xx, yy, xy).
+  !> History values per element of a law: 0, 1 (plastic strain), 3 (and rise of temperature, damage)
+  !> or 4 (and back stress xx, yy, xy).
   !> The first one is always the plastic strain.
   pure function history_size(material) result(n)
     type(material_t), intent(in) :: material
@@ -24,8 +32,10 @@ contains
     select case (material%law)
     case (law_plastic)
       n = merge(1, 4, has_no_back_stress(material))
-    case (law_piecewise)
+    case (law_piecewise, law_johnson_cook)
       n = 1
+    case (law_hot_johnson_cook)
+      n = 3
     case default
       n = 0
     end select
@@ -37,7 +47,9 @@ contains
     type(stress_chunk_t), intent(inout) :: chunk
     real(wp), intent(inout), optional :: history(chunk_size, *) !! history_size(material) columns;
                                                                 !! absent for a law without history
+    real(wp) :: before(chunk_size)
 
+    if (material%failure_strain < huge(1.0_wp)) before = history(:, 1)
     select case (material%law)
     case (law_elastic)
       call update_elastic(material%shear, chunk)
@@ -50,8 +62,60 @@ contains
       end if
     case (law_piecewise)
       call update_piecewise(material%shear, material%curve, chunk, history(:, 1))
+    case (law_johnson_cook)
+      call update_johnson_cook(material%shear, material%flow, chunk, history(:, 1))
+    case (law_hot_johnson_cook)
+      call update_hot_johnson_cook(material%shear, material%flow, chunk, history(:, 1), &
+        history(:, column_temperature), history(:, column_damage))
+    case (law_null)
+      call update_null(material%viscosity, chunk)
     end select
+    if (material%failure_strain < huge(1.0_wp)) call fail(material%failure_strain, before, chunk, &
+      history(:, 1))
   end subroutine update_stress
+
+  !> Points whose plastic strain has reached that of failure carry no stress; it stays what it was.
+  pure subroutine fail(limit, before, chunk, plastic_strain)
+    real(wp), intent(in) :: limit
+    real(wp), intent(in) :: before(chunk_size) !! plastic strain at the start of the step
+    type(stress_chunk_t), intent(inout) :: chunk
+    real(wp), intent(inout) :: plastic_strain(chunk_size)
+    real(wp) :: keep
+    integer :: i
+
+    !$omp simd private(keep)
+    do i = 1, chunk_size
+      keep = merge(0.0_wp, 1.0_wp, plastic_strain(i) >= limit)
+      chunk%sxx(i) = keep*chunk%sxx(i)
+      chunk%syy(i) = keep*chunk%syy(i)
+      chunk%sxy(i) = keep*chunk%sxy(i)
+      chunk%work(i) = merge(0.0_wp, chunk%work(i), before(i) >= limit)
+      plastic_strain(i) = merge(before(i), plastic_strain(i), before(i) >= limit)
+    end do
+  end subroutine fail
+
+  !> Which points have lost their stress, and whether pressure is left to them.
+  pure subroutine find_failed(material, history, failed, keeps_pressure)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: history(chunk_size, *)
+    logical, intent(out) :: failed(chunk_size)
+    logical, intent(out) :: keeps_pressure
+
+    keeps_pressure = has_memory_of_heat(material)
+    if (keeps_pressure) then
+      failed = history(:, column_damage) >= 1.0_wp
+    else
+      failed = history(:, 1) >= material%failure_strain
+    end if
+  end subroutine find_failed
+
+  !> Points that the cut-off of the pressure has broken: damage is full.
+  pure subroutine break_points(broken, history)
+    logical, intent(in) :: broken(chunk_size)
+    real(wp), intent(inout) :: history(chunk_size, *)
+
+    where (broken) history(:, column_damage) = max(1.0_wp, history(:, column_damage))
+  end subroutine break_points
 
   !> Deviator at the end of a step and its derivative, at one point.
   pure subroutine form_tangent(material, point)

@@ -15,7 +15,7 @@ module material_piecewise_m
   use stress_point_m, only : stress_point_t
   implicit none
   private
-  public :: update_piecewise, tangent_piecewise
+  public :: update_piecewise, tangent_piecewise, form_trial, return_to_surface
 
 contains
 

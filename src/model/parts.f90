@@ -1,20 +1,26 @@
 ! SPDX-License-Identifier: MIT
 !> Parts and what they refer to: section, material, hourglass control and bulk viscosity.
 module parts_m
+  use eos_m, only : eos_t
   use hardenings_m, only : hardening_t
+  use johnson_cook_m, only : johnson_cook_t
   use kinds_m, only : wp
   implicit none
   private
-  public :: part_t, section_t, material_t, hourglass_t, &
+  public :: part_t, section_t, material_t, hourglass_t, has_memory_of_heat, &
     form_one_point, form_full, form_round_one_point, form_round_full, law_elastic, law_plastic, &
-    law_piecewise, &
-    hourglass_viscous, hourglass_stiffness
+    law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, &
+    hourglass_viscous, hourglass_stiffness, spall_pressure, spall_stress, spall_tension
 
   !> Element forms. Only the element dispatcher asks for them.
   integer, parameter :: form_one_point = 1, form_full = 2, form_round_one_point = 3, &
     form_round_full = 4
   !> Material laws. Only the material dispatcher asks for them.
-  integer, parameter :: law_elastic = 1, law_plastic = 2, law_piecewise = 3
+  integer, parameter :: law_elastic = 1, law_plastic = 2, law_piecewise = 3, &
+    law_johnson_cook = 4, law_hot_johnson_cook = 5, law_null = 6
+  !> What a cut-off of the pressure means: a bound on tension; or the largest tensile stress, or the
+  !> largest tension, at which a point breaks.
+  integer, parameter :: spall_pressure = 1, spall_stress = 2, spall_tension = 3
   !> Hourglass control: viscous (IHQ 1 to 3 and blank) or stiffness (IHQ 4 and 5).
   integer, parameter :: hourglass_viscous = 1, hourglass_stiffness = 2
 
@@ -39,7 +45,16 @@ module parts_m
     real(wp) :: yield = 0.0_wp     !! initial yield stress sigma_Y
     real(wp) :: hardening = 0.0_wp !! plastic modulus E_p = E Et/(E - Et)
     real(wp) :: beta = 1.0_wp      !! 1 isotropic, 0 kinematic, between mixed
+    real(wp) :: viscosity = 0.0_wp !! dynamic viscosity of a fluid, Pa s
     type(hardening_t), allocatable :: curve !! yield stress by points, of a piecewise linear law
+    type(johnson_cook_t), allocatable :: flow !! of the laws of Johnson and Cook
+    type(eos_t), allocatable :: eos !! pressure with a memory: an equation of state, or where
+                                    !! points may fail one that stands for K ln(J)
+    real(wp) :: failure_strain = huge(1.0_wp) !! plastic strain from which a point has no stress
+    real(wp) :: cutoff = -huge(1.0_wp) !! least pressure, 0 or below
+    integer :: spall = spall_pressure  !! what the cut-off means
+    logical :: takes_eos = .false.   !! its parts may name an equation of state
+    logical :: needs_eos = .false.   !! and must: the law has no pressure of its own
     logical :: is_rigid = .false.  !! no stress: parts of it are rigid bodies; E and nu serve
                                    !! contact
     logical :: is_fixed(3) = .false. !! of a rigid body: x, y and the turn about z do not move
@@ -62,5 +77,16 @@ module parts_m
     integer :: material = 0           !! index into model%materials
     type(hourglass_t) :: hourglass    !! what holds for this part
   end type part_t
+
+contains
+
+  !> Whether points of a material keep a temperature and a damage.
+  pure elemental function has_memory_of_heat(material) result(yes)
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = .false.
+    if (allocated(material%flow)) yes = material%flow%has_memory
+  end function has_memory_of_heat
 
 end module parts_m

@@ -65,6 +65,8 @@ contains
     call keep(archive, 'point_deviator', elements%point_deviator)
     call keep_same(archive, 'history_start', elements%history_start)
     call keep(archive, 'history', elements%history)
+    call keep_same(archive, 'eos_start', elements%eos_start)
+    call keep(archive, 'eos_state', elements%eos_state)
     call keep_same(archive, 'hourglass_start', elements%hourglass_start)
     call keep(archive, 'hourglass_strain', elements%hourglass_strain)
     call keep(archive, 'deviatoric_work', elements%deviatoric_work)

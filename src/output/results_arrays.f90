@@ -26,10 +26,11 @@ module results_arrays_m
   private
   public :: results_file_t, create_file, create_steps, create_fields, planned_states, &
     states_per_chunk, block_rows, n_point_field, n_cell_field, n_step_array, &
-    point_names, point_columns, cell_names, cell_columns, step_values, step_points, step_ones
+    point_names, point_columns, cell_names, cell_columns, plane_fields, round_field, heat_fields, &
+    step_values, step_points, step_ones
 
   !> Fields, in the order in which `append_state` writes them, and their numbers of columns.
-  integer, parameter :: n_point_field = 9, n_cell_field = 5
+  integer, parameter :: n_point_field = 9, n_cell_field = 7
   character(16), parameter :: point_names(n_point_field) = [character(16) :: 'Points', &
     'displacement', 'velocity', 'contact_force', 'contact_pressure', 'gap', 'contact_traction', &
     'contact_slip', 'contact_state']
@@ -37,10 +38,10 @@ module results_arrays_m
   !> Without friction the fields from that one on are left out.
   integer, parameter :: n_plain_field = 6
   character(16), parameter :: cell_names(n_cell_field) = [character(16) :: 'stress', &
-    'plastic_strain', 'pressure', 'mises', 'hoop_strain']
-  integer, parameter :: cell_columns(n_cell_field) = [6, 0, 0, 0, 0]
-  !> In plane strain the last one is left out.
-  integer, parameter :: n_plane_field = 4
+    'plastic_strain', 'pressure', 'mises', 'hoop_strain', 'temperature', 'damage']
+  integer, parameter :: cell_columns(n_cell_field) = [6, 0, 0, 0, 0, 0, 0]
+  !> What every file has of them, what round bodies have, and what bodies that keep heat have.
+  integer, parameter :: plane_fields(4) = [1, 2, 3, 4], round_field = 5, heat_fields(2) = [6, 7]
   !> Arrays below Steps: times, first point of a state, first cell, zeros and ones.
   integer, parameter :: n_step_array = 5, step_values = 1, step_points = 2, step_cells = 3, &
     step_zeros = 4, step_ones = 5
@@ -70,7 +71,7 @@ module results_arrays_m
     integer(long) :: n_state = 0                !! states in the file
     real(wp), allocatable :: times(:)           !! (n_state or more) their times
     integer :: n_point_field = n_plain_field    !! of those above that the file has
-    integer :: n_cell_field = n_plane_field
+    integer, allocatable :: cells(:)            !! which of the cell fields
     type(growing_t) :: point_fields(n_point_field)
     type(growing_t) :: cell_fields(n_cell_field)
     type(growing_t) :: steps(n_step_array)
@@ -165,9 +166,9 @@ contains
         file%point_fields(i), error)
       call link_growing(file%point_fields(i), group, name, error)
     end do
-    do i = 1, file%n_cell_field
-      name = 'CellData/'//trim(cell_names(i))
-      call create_growing(file%id, name, as_real, cell_columns(i), cell_rows, &
+    do i = 1, size(file%cells)
+      name = 'CellData/'//trim(cell_names(file%cells(i)))
+      call create_growing(file%id, name, as_real, cell_columns(file%cells(i)), cell_rows, &
         file%cell_fields(i), error)
       call link_growing(file%cell_fields(i), group, name, error)
     end do
@@ -206,9 +207,9 @@ contains
       call link_growing(file%steps(step_points), group, &
         'Steps/PointDataOffsets/'//trim(point_names(i)), error)
     end do
-    do i = 1, file%n_cell_field
+    do i = 1, size(file%cells)
       call link_growing(file%steps(step_cells), group, &
-        'Steps/CellDataOffsets/'//trim(cell_names(i)), error)
+        'Steps/CellDataOffsets/'//trim(cell_names(file%cells(i))), error)
     end do
   end subroutine create_steps
 

@@ -121,9 +121,10 @@ contains
       deallocate (rows)
     end do
     n = model%mesh%n_element
-    do i = 1, file%n_cell_field
-      allocate (rows(n*max(cell_columns(i), 1)))
-      call read_rows(old, 'VTKHDF/CellData/'//trim(cell_names(i)), cell_columns(i), &
+    do i = 1, size(file%cells)
+      allocate (rows(n*max(cell_columns(file%cells(i)), 1)))
+      call read_rows(old, 'VTKHDF/CellData/'//trim(cell_names(file%cells(i))), &
+        cell_columns(file%cells(i)), &
         (k - 1)*int(n, long), n, c_loc(rows), error)
       call append_rows(file%cell_fields(i), n, c_loc(rows), error)
       deallocate (rows)

@@ -17,12 +17,14 @@ module results_file_m
   use file_facts_m, only : file_facts_t, facts_of_name, is_same_file
   use files_m, only : lengthen_file, remove_file, rename_file, unfinished
   use model_m, only : model_t
+  use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t
   use history_file_m, only : histories_t
   use results_tables_m, only : run_info_t, write_run, write_histories
   use results_mesh_m, only : write_mesh, deck_nodes
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
-    planned_states, block_rows, n_point_field, n_cell_field, n_step_array, &
+    planned_states, block_rows, n_point_field, n_step_array, plane_fields, round_field, &
+    heat_fields, &
     step_values, step_points, step_ones
   use hdf5_library_m, only : end_of_file
   use hdf5_writing_m, only : append_rows, close_growing, make_group, write_string_attribute, &
@@ -54,7 +56,9 @@ contains
     if (allocated(error)) return
     allocate (file%times(n_planned))
     if (any(has_shear(model%contacts))) file%n_point_field = n_point_field
-    if (model%is_round) file%n_cell_field = n_cell_field
+    file%cells = plane_fields
+    if (model%is_round) file%cells = [file%cells, round_field]
+    if (any(has_memory_of_heat(model%materials))) file%cells = [file%cells, heat_fields]
     call create_file(file, error)
     if (allocated(error)) return
     call make_group(file%id, 'VTKHDF', error)
@@ -184,7 +188,8 @@ contains
   end subroutine gather_scalars
 
   !> Append the fields of the elements: stress (xx yy zz xy yz xz), plastic strain, pressure,
-  !> mises, and of round bodies the hoop strain (zz is their hoop stress).
+  !> mises, of round bodies the hoop strain (zz is their hoop stress), and where some material keeps
+  !> them temperature and damage.
   subroutine append_cell_fields(file, snapshot, error)
     type(results_file_t), intent(inout), target :: file
     type(snapshot_t), intent(in), target :: snapshot
@@ -193,12 +198,12 @@ contains
 
     n_cell = size(snapshot%stress, 2)
     call append_rows(file%cell_fields(1), n_cell, c_loc(snapshot%stress), error)
-    do i = 2, file%n_cell_field
+    do i = 2, size(file%cells)
       file%rows = 0.0_wp
       do first = 1, n_cell, block_rows
         n = min(block_rows, n_cell - first + 1)
         associate (stress => snapshot%stress(:, first:first + n - 1))
-          select case (i)
+          select case (file%cells(i))
           case (2)
             if (allocated(snapshot%plastic_strain)) &
               file%rows(:n) = snapshot%plastic_strain(first:first + n - 1)
@@ -208,6 +213,10 @@ contains
             file%rows(:n) = mises_stress(stress(1, :), stress(2, :), stress(3, :), stress(4, :))
           case (5)
             file%rows(:n) = snapshot%hoop_strain(first:first + n - 1)
+          case (6)
+            file%rows(:n) = snapshot%temperature(first:first + n - 1)
+          case (7)
+            file%rows(:n) = snapshot%damage(first:first + n - 1)
           end select
         end associate
         call append_rows(file%cell_fields(i), n, c_loc(file%rows), error)
@@ -314,7 +323,7 @@ contains
     do i = 1, file%n_point_field
       call close_growing(file%point_fields(i), error)
     end do
-    do i = 1, file%n_cell_field
+    do i = 1, size(file%cells)
       call close_growing(file%cell_fields(i), error)
     end do
     do i = 1, n_step_array

@@ -5,12 +5,14 @@ module snapshot_filling_m
   use kinds_m, only : wp
   use constraints_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows, join_rows
-  use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains
+  use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains, &
+    element_temperatures, element_damages
   use contacts_m, only : transducer_t, has_shear, n_told, told_as
   use controls_m, only : is_asked
   use history_tables_m, only : table_matsum
   use layout_m, only : slot_part
   use model_m, only : model_t
+  use parts_m, only : has_memory_of_heat
   use round_chunk_m, only : node_volumes
   use round_state_m, only : hoop_strains
   use snapshot_m, only : snapshot_t, interface_result_t, rubbed_t
@@ -50,6 +52,8 @@ contains
     if (has_history) &
       allocate (snapshot%plastic_strain(n_element), source=0.0_wp)
     if (model%is_round) allocate (snapshot%hoop_strain(n_element), source=0.0_wp)
+    if (any(has_memory_of_heat(model%materials))) allocate (snapshot%temperature(n_element), &
+      snapshot%damage(n_element), source=0.0_wp)
     if (size(model%contacts) > 0) allocate (snapshot%contact_force(2, n_node), &
       snapshot%contact_pressure(n_node), snapshot%gap(n_node), source=0.0_wp)
     if (any(has_shear(model%contacts))) allocate (snapshot%contact_traction(n_node), &
@@ -322,6 +326,10 @@ contains
     if (allocated(snapshot%plastic_strain)) &
       call element_plastic_strains(model, state%elements, snapshot%plastic_strain)
     if (model%is_round) call hoop_strains(model, state%motion, snapshot%hoop_strain)
+    if (allocated(snapshot%damage)) then
+      call element_temperatures(model, state%elements, snapshot%temperature)
+      call element_damages(model, state%elements, snapshot%damage)
+    end if
     if (size(model%contacts) == 0) return
     snapshot%contact_force = 0.0_wp
     snapshot%contact_pressure = 0.0_wp

@@ -87,6 +87,8 @@ module snapshot_m
     real(wp), allocatable :: stress(:, :)        !! (6, n_element) xx yy zz xy yz xz
     real(wp), allocatable :: plastic_strain(:)   !! (n_element)
     real(wp), allocatable :: hoop_strain(:)      !! (n_element) of round bodies
+    real(wp), allocatable :: temperature(:)      !! (n_element) this and the next only where some
+    real(wp), allocatable :: damage(:)           !! material keeps them
     type(interface_result_t), allocatable :: interfaces(:)
     type(interface_result_t), allocatable :: transducers(:) !! forces alone; only where the deck has
                                                  !! any

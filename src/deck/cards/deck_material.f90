@@ -14,10 +14,11 @@ module deck_material_m
   implicit none
   private
   public :: read_elastic, read_plastic_kinematic, elastic_constants, append_material, &
-    check_tangent_modulus, check_failure, plastic_modulus
+    check_tangent_modulus, take_failure, take_cutoff, plastic_modulus, &
+    check_shear
 
   !> A strain at failure from here on means never.
-  real(wp), parameter :: never = 1.0e19_wp
+  real(wp), parameter :: never = 1.0e16_wp
 
 contains
 
@@ -64,7 +65,7 @@ contains
       'BETA', 'is not between 0 (kinematic) and 1 (isotropic hardening)')
     if (.not. any(card%bad)) material%hardening = plastic_modulus(card)
     call next_card(deck, parameters, cursor, 2, rate)
-    call check_failure(deck, cursor, rate, 'FS')
+    call take_failure(deck, cursor, rate, 'FS', material)
     call append_material(raw, material, card)
     call check_rest(deck, cursor)
   end subroutine read_plastic_kinematic
@@ -94,17 +95,50 @@ contains
     end if
   end subroutine check_tangent_modulus
 
-  !> A plastic strain at failure.
-  subroutine check_failure(deck, cursor, card, name)
+  !> A plastic strain at failure; 0 means never.
+  subroutine take_failure(deck, cursor, card, name, material)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     character(*), intent(in) :: name
+    type(material_t), intent(inout) :: material
 
-    if (abs(real_of(card, name)) > 0.0_wp .and. real_of(card, name) < never) call report_field( &
-      deck, cursor, card, name, 'asks for failure at a plastic strain, which this version does ' &
-      //'not have; leave it 0')
-  end subroutine check_failure
+    if (real_of(card, name) < 0.0_wp) call report_field(deck, cursor, card, name, &
+      'is negative: a plastic strain at failure is above 0, and 0 means never')
+    if (real_of(card, name) > 0.0_wp .and. real_of(card, name) < never) &
+      material%failure_strain = real_of(card, name)
+  end subroutine take_failure
+
+  !> The cut-off PC of the pressure; 0 means none.
+  subroutine take_cutoff(deck, cursor, card, material)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(material_t), intent(inout) :: material
+
+    if (real_of(card, 'PC') > 0.0_wp) call report_field(deck, cursor, card, 'PC', &
+      'is above 0: a cut-off is the least pressure, of tension (0 means none)')
+    if (real_of(card, 'PC') < 0.0_wp) material%cutoff = real_of(card, 'PC')
+  end subroutine take_cutoff
+
+  !> MID, RO and a shear modulus, of laws that get their pressure elsewhere.
+  subroutine check_shear(deck, cursor, card, material)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(material_t), intent(inout) :: material
+
+    call require_id(deck, cursor, card, 'MID')
+    if (real_of(card, 'RO') <= 0.0_wp) call report_field(deck, cursor, card, 'RO', &
+      'is not a density (more than 0)')
+    if (real_of(card, 'G') <= 0.0_wp) call report_field(deck, cursor, card, 'G', &
+      'is not a shear modulus (more than 0)')
+    if (max(real_of(card, 'G'), real_of(card, 'RO')) > 1.0e30_wp) call report_field(deck, cursor, &
+      card, 'G', 'with RO "'//to_text(real_of(card, 'RO'))//'" is out of reach (1e30)')
+    material%id = integer_of(card, 'MID')
+    material%density = real_of(card, 'RO')
+    material%shear = real_of(card, 'G')
+  end subroutine check_shear
 
   !> MID, RO, E, PR, which all materials have, and what follows from them.
   subroutine elastic_constants(deck, cursor, card, material)

@@ -49,11 +49,14 @@ contains
       call require_id(deck, cursor, card, 'PID')
       call require_id(deck, cursor, card, 'SECID')
       call require_id(deck, cursor, card, 'MID')
+      if (integer_of(card, 'EOSID') < 0) call report_field(deck, cursor, card, 'EOSID', &
+        'is not a number of 0 or more')
       if (integer_of(card, 'HGID') < 0) call report_field(deck, cursor, card, 'HGID', &
         'is not a number of 0 or more')
       part%id = integer_of(card, 'PID')
       part%section = integer_of(card, 'SECID')
       part%material = integer_of(card, 'MID')
+      part%eos = integer_of(card, 'EOSID')
       part%hourglass = integer_of(card, 'HGID')
       part%line = card%line
       if (is_bad(card, 'PID')) then

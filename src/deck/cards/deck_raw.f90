@@ -4,6 +4,7 @@
 module deck_raw_m
   use kinds_m, only : wp
   use curves_m, only : curve_t
+  use eos_m, only : eos_t
   use parts_m, only : section_t, material_t, hourglass_t
   use contacts_m, only : contact_t, friction_rule_t
   use controls_m, only : controls_t
@@ -81,7 +82,7 @@ module deck_raw_m
 
   !> One *PART.
   type :: raw_part_t
-    integer :: id = 0, section = 0, material = 0, hourglass = 0
+    integer :: id = 0, section = 0, material = 0, eos = 0, hourglass = 0
     integer :: line = 0
     character(:), allocatable :: title
   end type raw_part_t
@@ -124,7 +125,7 @@ module deck_raw_m
   type :: lost_t
     logical :: nodes = .false., elements = .false., parts = .false., sections = .false.
     logical :: materials = .false., hourglasses = .false., curves = .false., sets = .false.
-    logical :: tables = .false.
+    logical :: tables = .false., equations = .false.
   end type lost_t
 
   !> Everything.
@@ -141,6 +142,8 @@ module deck_raw_m
     integer, allocatable :: section_line(:)
     type(material_t), allocatable :: materials(:)
     integer, allocatable :: material_line(:)
+    type(eos_t), allocatable :: equations(:)   !! of state
+    integer, allocatable :: equation_line(:)
     type(raw_hardening_t), allocatable :: hardenings(:)
     type(raw_table_t), allocatable :: tables(:)
     type(hourglass_t), allocatable :: hourglasses(:)
@@ -183,6 +186,7 @@ contains
     type(raw_t), intent(out) :: raw
 
     allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%materials(0), &
+      raw%equations(0), raw%equation_line(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
       raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%tables(0), raw%contacts(0), &
       raw%transducers(0), raw%walls(0), raw%rows(64), raw%node_velocities(0), &

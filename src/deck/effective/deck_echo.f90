@@ -8,6 +8,7 @@ module deck_echo_m
   use hardenings_m, only : hardening_t
   use history_tables_m, only : history_tables, n_table
   use model_m, only : model_t
+  use parts_m, only : material_t
   use walls_m, only : friction_sticks
   implicit none
   private
@@ -141,9 +142,36 @@ contains
         text = text//', yield '//to_text(material%yield) &
         //', plastic modulus '//to_text(material%hardening)//', beta '//to_text(material%beta)
       end if
+      text = text//impact_text(material)
     end associate
     call write_log(log, text)
   end subroutine echo_material
+
+  !> Flow stress of Johnson and Cook, equation of state and failure.
+  pure function impact_text(material) result(text)
+    type(material_t), intent(in) :: material
+    character(:), allocatable :: text
+
+    text = ''
+    if (allocated(material%flow)) text = text//', Johnson-Cook A '//to_text(material%flow%a) &
+      //', B '//to_text(material%flow%b)//', n '//to_text(material%flow%n)//', C ' &
+      //to_text(material%flow%c)//', rate '//to_text(material%flow%rate)
+    if (allocated(material%flow)) then
+      if (material%flow%heat > 0.0_wp) text = text//', heated by all plastic work from ' &
+        //to_text(material%flow%room)//' to melt at '//to_text(material%flow%room &
+        + material%flow%span)//', m '//to_text(material%flow%m)
+      if (material%flow%has_damage) text = text//'; its damaged points (D = 1) carry no deviator ' &
+        //'and no tension but stay in the mesh'
+    end if
+    if (allocated(material%eos)) then
+      if (material%eos%id > 0) text = text//', equation of state '//to_text(material%eos%id) &
+        //' (K and c of the start)'
+    end if
+    if (material%cutoff > -huge(1.0_wp)) text = text//', cut-off of the pressure ' &
+      //to_text(material%cutoff)
+    if (material%failure_strain < huge(1.0_wp)) text = text//', failure at plastic strain ' &
+      //to_text(material%failure_strain)//': what fails carries no stress but stays in the mesh'
+  end function impact_text
 
   !> Hardening by points and its rate effect.
   pure function hardening_text(hardening) result(text)

@@ -11,8 +11,8 @@ module deck_maps_m
 
   !> Maps from user id to index.
   type :: maps_t
-    type(id_map_t) :: nodes, elements, parts, sections, materials, hourglasses, curves, tables, &
-      node_sets, part_sets, segment_sets
+    type(id_map_t) :: nodes, elements, parts, sections, materials, equations, hourglasses, &
+      curves, tables, node_sets, part_sets, segment_sets
   end type maps_t
 
 contains
@@ -31,6 +31,8 @@ contains
     call map_kind(deck, 'part', [raw%parts%id], [raw%parts%line], 'PID', maps%parts)
     call map_kind(deck, 'section', [raw%sections%id], raw%section_line, 'SECID', maps%sections)
     call map_kind(deck, 'material', [raw%materials%id], raw%material_line, 'MID', maps%materials)
+    call map_kind(deck, 'equation of state', [raw%equations%id], raw%equation_line, 'EOSID', &
+      maps%equations)
     call map_kind(deck, 'hourglass control', [raw%hourglasses%id], raw%hourglass_line, 'HGID', &
       maps%hourglasses)
     call map_kind(deck, 'curve', [raw%curves%id], raw%curve_line, 'LCID', maps%curves)
@@ -46,6 +48,7 @@ contains
     maps%parts%incomplete = raw%lost%parts .or. all_lost
     maps%sections%incomplete = raw%lost%sections .or. all_lost
     maps%materials%incomplete = raw%lost%materials .or. all_lost
+    maps%equations%incomplete = raw%lost%equations .or. all_lost
     maps%hourglasses%incomplete = raw%lost%hourglasses .or. all_lost
     maps%curves%incomplete = raw%lost%curves .or. all_lost
     maps%tables%incomplete = raw%lost%tables .or. all_lost

@@ -15,6 +15,7 @@ module deck_resolve_m
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, &
     row_motion_set, row_velocity, row_velocity_generation, output_plot
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
+  use deck_resolve_eos_m, only : resolve_equations, check_implicit_laws
   use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
@@ -51,6 +52,7 @@ contains
       end associate
     end do
     call check_no_rates(deck, raw, model)
+    call check_implicit_laws(deck, raw, model)
     do i = 1, raw%n_row
       associate (row => raw%rows(i))
         if (row%kind == row_damping) call line_error(deck, row%line, &
@@ -131,6 +133,7 @@ contains
     call resolve_parts(deck, raw, maps, model)
     call settle_form(deck, raw, model)
     call resolve_hardenings(deck, raw, maps, model)
+    call resolve_equations(deck, raw, maps, model)
     call resolve_mesh(deck, raw, maps, model, sound)
     call settle_axis(deck, raw, model)
     call resolve_sets(deck, raw, maps, model)

@@ -118,6 +118,18 @@ contains
       name = 'MAT_PLASTIC_KINEMATIC'
     case ('MAT_024')
       name = 'MAT_PIECEWISE_LINEAR_PLASTICITY'
+    case ('MAT_009')
+      name = 'MAT_NULL'
+    case ('MAT_010')
+      name = 'MAT_ELASTIC_PLASTIC_HYDRO'
+    case ('MAT_015')
+      name = 'MAT_JOHNSON_COOK'
+    case ('MAT_098')
+      name = 'MAT_SIMPLIFIED_JOHNSON_COOK'
+    case ('EOS_001')
+      name = 'EOS_LINEAR_POLYNOMIAL'
+    case ('EOS_004')
+      name = 'EOS_GRUNEISEN'
     case ('MAT_020')
       name = 'MAT_RIGID'
     case ('SET_NODE')
@@ -262,8 +274,6 @@ contains
     character(:), allocatable :: text
 
     select case (field)
-    case ('FS')
-      text = 'asks for failure at a plastic strain, which this version does not have; leave it 0'
     case ('FRIC_S')
       text = 'is a shear factor of friction, which this version does not have; leave it 0'
     case ('WVEL')
@@ -281,10 +291,11 @@ contains
         //'leave it 0'
     case ('DT2MS')
       text = 'asks for mass scaling, which this version does not have; leave it 0'
-    case ('ERODE', 'TDEL')
+    case ('ERODE', 'TDEL', 'DTF', 'TEROD', 'CEROD', 'CHARL', 'NUMINT')
       text = 'asks for deletion of elements, which this version does not have; leave it 0'
-    case ('EOSID')
-      text = 'is an equation of state, which this version does not have; leave it 0'
+    case ('RATEOP', 'C2_P_XNP_D', 'K')
+      text = 'asks for another form of the law of Johnson and Cook, which this version does not ' &
+        //'have; leave it 0'
     case ('N5', 'N6', 'N7', 'N8')
       text = 'is a mid-side node; elements and edges have corner nodes only here'
     case ('BOXID')

@@ -10,7 +10,7 @@ module deck_schema_others_m
   !> from the lines below it: a misspelt one must not pass for another.
   character(80), parameter :: table_others(*) = [character(80) :: &
     'MAT_* this material is', &
-    'EOS_* equations of state are', &
+    'EOS_* this equation of state is', &
     'ELEMENT_MASS* lumped masses are', &
     'ELEMENT_SHELL_* shells with thickness or offset are', &
     'ELEMENT_* this element is', &

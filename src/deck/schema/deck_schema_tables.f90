@@ -76,7 +76,7 @@ module deck_schema_tables_m
     ' EID:i8 PID:i8 N1:i8 N2:i8 N3:i8 N4:i8 N5:ir8 N6:ir8 N7:ir8 N8:ir8', &
     'PART t', &
     ' HEADING:a80', &
-    ' PID:i SECID:i MID:i EOSID:ir HGID:i GRAV:iw ADPOPT:iw TMID:iw', &
+    ' PID:i SECID:i MID:i EOSID:i HGID:i GRAV:iw ADPOPT:iw TMID:iw', &
     'SECTION_SHELL t', &
     ' SECID:i ELFORM:i=2 SHRF:fs NIP:i PROPT:fs QR_IRID:is ICOMP:ir SETYP:ir=1', &
     ' T1:fs T2:fs T3:fs T4:fs NLOC:fs MAREA:fs IDOF:fs EDGSET:is', &
@@ -92,6 +92,28 @@ module deck_schema_tables_m
     ' C:f P:f LCSS:i LCSR:i VP:f', &
     ' EPS1:f EPS2:f EPS3:f EPS4:f EPS5:f EPS6:f EPS7:f EPS8:f', &
     ' ES1:f ES2:f ES3:f ES4:f ES5:f ES6:f ES7:f ES8:f', &
+    'MAT_NULL t', &
+    ' MID:i RO:f PC:f MU:f TEROD:fr CEROD:fr YM:fs PR:fs', &
+    'MAT_ELASTIC_PLASTIC_HYDRO t', &
+    ' MID:i RO:f G:f SIGY:f EH:f PC:f FS:f CHARL:fr', &
+    ' EPS1:f EPS2:f EPS3:f EPS4:f EPS5:f EPS6:f EPS7:f EPS8:f', &
+    ' EPS9:f EPS10:f EPS11:f EPS12:f EPS13:f EPS14:f EPS15:f EPS16:f', &
+    ' ES1:f ES2:f ES3:f ES4:f ES5:f ES6:f ES7:f ES8:f', &
+    ' ES9:f ES10:f ES11:f ES12:f ES13:f ES14:f ES15:f ES16:f', &
+    'MAT_JOHNSON_COOK t', &
+    ' MID:i RO:f G:f E:f PR:f DTF:fr VP:f RATEOP:fr', &
+    ' A:f B:f N:f C:f M:f TM:f TR:f EPSO:f', &
+    ' CP:f PC:f SPALL:f=2 IT:fs D1:f D2:f D3:f D4:f', &
+    ' D5:f C2_P_XNP_D:fr EROD:fs EFMIN:f=1e-6 NUMINT:fr K:fr EPS1:fr', &
+    'MAT_SIMPLIFIED_JOHNSON_COOK t', &
+    ' MID:i RO:f E:f PR:f VP:f', &
+    ' A:f B:f N:f C:f PSFAIL:f=1e17 SIGMAX:f=1e28 SIGSAT:f=1e28 EPSO:f=1', &
+    'EOS_LINEAR_POLYNOMIAL t', &
+    ' EOSID:i C0:f C1:f C2:f C3:f C4:f C5:f C6:f', &
+    ' E0:f V0:f=1', &
+    'EOS_GRUNEISEN t', &
+    ' EOSID:i C:f S1:f S2:f S3:f GAMAO:f A:f E0:f', &
+    ' V0:f=1 -:x LCID:ir', &
     'MAT_RIGID t', &
     ' MID:i RO:f E:f PR:f N:fr COUPLE:fr M:fr ALIAS:ar', &
     ' CMO:i CON1:i CON2:i', &

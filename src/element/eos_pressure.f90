@@ -1,0 +1,210 @@
+! SPDX-License-Identifier: MIT
+!> Pressure with a memory: one chunk of elements of a material that has an equation of state.
+!> Energy, pressure and volume are kept once for each element; full integration has mean dilatation.
+module eos_pressure_m
+  use block_state_m, only : block_state_t
+  use element_chunk_m, only : element_chunk_t
+  use eos_chunk_m, only : eos_chunk_t
+  use eos_dispatch_m, only : form_eos, advance_energy, find_stiffness
+  use kinds_m, only : wp
+  use layout_m, only : chunk_size
+  use material_dispatch_m, only : find_failed, break_points, history_size
+  use parts_m, only : hourglass_t, material_t, spall_pressure, spall_stress
+  use quad_points_m, only : n_point
+  use stress_chunk_m, only : stress_chunk_t
+  implicit none
+  private
+  public :: n_eos_value, load_eos_state, form_eos_pressure, take_present, viscous_fluid_step
+
+  !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity.
+  integer, parameter :: n_eos_value = 4
+  !> The speed of sound is never told below this share of that of the undeformed body.
+  real(wp), parameter :: least_share = 1.0e-3_wp
+
+contains
+
+  !> Mean stress and volume at the start of the step, for laws that ask.
+  pure subroutine load_eos_state(i_chunk, elements, stress)
+    integer, intent(in) :: i_chunk
+    type(block_state_t), intent(in) :: elements
+    type(stress_chunk_t), intent(inout) :: stress
+    integer :: first
+
+    first = elements%eos_start(i_chunk)
+    stress%mean = -elements%eos_state(first + chunk_size:first + 2*chunk_size - 1)
+    stress%ratio = 1.0_wp + elements%eos_state(first + 2*chunk_size:first + 3*chunk_size - 1)
+  end subroutine load_eos_state
+
+  !> Energy and pressure at the end of the step, bulk viscosity included, whose work heats; points
+  !> that have failed have none. `now` has the stiffest element's moduli.
+  pure subroutine form_eos_pressure(i_chunk, material, viscosity, inverse_start, elements, chunk, &
+    now)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: viscosity            !! its Q1 and Q2 count
+    real(wp), intent(in) :: inverse_start(chunk_size)     !! 1/V0
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk         !! pressure out (tension positive)
+    type(material_t), intent(out) :: now
+    type(eos_chunk_t) :: state
+    real(wp), dimension(chunk_size) :: energy, pressure, growth, heat, least, q, stiffness
+    logical :: failed(chunk_size), keeps_pressure
+    integer :: first
+
+    first = elements%eos_start(i_chunk)
+    energy = elements%eos_state(first:first + chunk_size - 1)
+    pressure = elements%eos_state(first + chunk_size:first + 2*chunk_size - 1)
+    growth = chunk%stretch - elements%eos_state(first + 2*chunk_size:first + 3*chunk_size - 1)
+    call form_eos(material%eos, chunk%stretch, state)
+    call find_stiffness(state, chunk%stretch, energy, pressure, stiffness)
+    call form_viscous_pressure(viscosity, material, stiffness, chunk, q)
+    ! The work of its forces, which are those of the end of each step.
+    heat = chunk%heat*inverse_start - 0.5_wp*growth*(q + elements%eos_state(first + 3*chunk_size: &
+      first + 4*chunk_size - 1))
+    call look_for_failed(i_chunk, material, elements, failed, keeps_pressure)
+    least = -huge(1.0_wp)
+    if (material%spall == spall_pressure) least = material%cutoff
+    if (keeps_pressure) where (failed) least = 0.0_wp
+    call advance_energy(state, growth, heat, least, energy, pressure)
+    if (.not. keeps_pressure) then
+      ! What has no stress takes no more energy.
+      where (failed)
+        energy = elements%eos_state(first:first + chunk_size - 1)
+        pressure = 0.0_wp
+        q = 0.0_wp
+      end where
+    end if
+    call look_for_spall(i_chunk, material, pressure, elements)
+    call find_stiffness(state, chunk%stretch, energy, pressure, stiffness)
+    call stiffen(material, stiffness, 1.0_wp + chunk%stretch, now)
+    chunk%pressure = -(pressure + q)
+    elements%eos_state(first:first + chunk_size - 1) = energy
+    elements%eos_state(first + chunk_size:first + 2*chunk_size - 1) = pressure
+    elements%eos_state(first + 2*chunk_size:first + 3*chunk_size - 1) = chunk%stretch
+    elements%eos_state(first + 3*chunk_size:first + 4*chunk_size - 1) = q
+  end subroutine form_eos_pressure
+
+  !> Bulk viscosity (see `bulk_viscosity`) with the present speed of sound of each element.
+  pure subroutine form_viscous_pressure(viscosity, material, stiffness, chunk, q)
+    type(hourglass_t), intent(in) :: viscosity
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: stiffness(chunk_size)
+    type(element_chunk_t), intent(in) :: chunk
+    real(wp), intent(out) :: q(chunk_size)
+    real(wp) :: length, rate, density, speed
+    integer :: i
+
+    q = 0.0_wp
+    if (.not. (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp)) return
+    !$omp simd private(length, rate, density, speed)
+    do i = 1, chunk_size
+      length = sqrt(chunk%area(i))
+      rate = min(0.0_wp, chunk%trace(i))
+      density = material%density/(1.0_wp + chunk%stretch(i))
+      speed = sqrt((stiffness(i) + 4.0_wp*material%shear/3.0_wp)/density)
+      q(i) = density*length*rate*(viscosity%quadratic*length*rate - viscosity%linear*speed)
+    end do
+  end subroutine form_viscous_pressure
+
+  !> Elements all of whose points have failed.
+  pure subroutine look_for_failed(i_chunk, material, elements, failed, keeps_pressure)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    type(block_state_t), intent(in) :: elements
+    logical, intent(out) :: failed(chunk_size), keeps_pressure
+    logical :: one(chunk_size)
+    integer :: k, n
+
+    failed = .false.
+    keeps_pressure = .false.
+    if (elements%history_start(i_chunk) == 0) return
+    n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
+    failed = .true.
+    do k = 1, n
+      call find_failed(material, elements%history(elements%history_start(i_chunk) &
+        + (k - 1)*chunk_size*history_size(material)), one, keeps_pressure)
+      failed = failed .and. one
+    end do
+  end subroutine look_for_failed
+
+  !> Elements that break by tension: all their points, from the next step on.
+  pure subroutine look_for_spall(i_chunk, material, pressure, elements)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: pressure(chunk_size)
+    type(block_state_t), intent(inout) :: elements
+    real(wp) :: largest(chunk_size)
+    logical :: broken(chunk_size)
+    integer :: k, n, first
+
+    if (material%spall == spall_pressure) return
+    largest = 0.0_wp
+    if (material%spall == spall_stress) then
+      first = (i_chunk - 1)*chunk_size + 1
+      associate (s => elements%deviator(first:first + chunk_size - 1, :))
+        largest = max(0.5_wp*(s(:, 1) + s(:, 2)) + sqrt(0.25_wp*(s(:, 1) - s(:, 2))**2 &
+          + s(:, 3)**2), -(s(:, 1) + s(:, 2)))
+      end associate
+    end if
+    broken = largest - pressure > -material%cutoff
+    if (.not. any(broken)) return
+    n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
+    do k = 1, n
+      call break_points(broken, elements%history(elements%history_start(i_chunk) &
+        + (k - 1)*chunk_size*history_size(material)))
+    end do
+  end subroutine look_for_spall
+
+  !> The material with the moduli of the stiffest of some elements, as far as stable steps ask.
+  pure subroutine stiffen(material, stiffness, ratio, now)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: stiffness(chunk_size), ratio(chunk_size) !! adiabatic bulk modulus, V/V0
+    type(material_t), intent(inout) :: now
+
+    now%density = material%density
+    now%shear = material%shear
+    now%poisson = 0.5_wp ! mean dilatation
+    now%bulk = max(maxval(stiffness), least_share**2*material%bulk)
+    now%sound_speed = max(sqrt(maxval((stiffness + 4.0_wp*material%shear/3.0_wp)*ratio) &
+      /material%density), least_share*material%sound_speed)
+  end subroutine stiffen
+
+  !> The same of one element as its memory has it; the material itself where it has none.
+  pure subroutine take_present(material, elements, i_slot, now)
+    type(material_t), intent(in) :: material
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: i_slot
+    type(material_t), intent(out) :: now
+    type(eos_chunk_t) :: state
+    real(wp), dimension(chunk_size) :: energy, pressure, stretch, stiffness
+    integer :: first
+
+    if (.not. allocated(material%eos)) then
+      now = material
+      return
+    end if
+    first = elements%eos_start((i_slot - 1)/chunk_size + 1) + mod(i_slot - 1, chunk_size)
+    energy = elements%eos_state(first)
+    pressure = elements%eos_state(first + chunk_size)
+    stretch = elements%eos_state(first + 2*chunk_size)
+    call form_eos(material%eos, stretch, state)
+    call find_stiffness(state, stretch, energy, pressure, stiffness)
+    call stiffen(material, stiffness, 1.0_wp + stretch, now)
+  end subroutine take_present
+
+  !> Step of a viscous fluid from that without viscosity, L/c: damping of the shortest waves by
+  !> 4/3 of the viscosity, L/(Q + sqrt(Q^2 + c^2)) with Q = 4/3 viscosity/(rho L).
+  pure function viscous_fluid_step(material, now, largest_ratio, step) result(limit)
+    type(material_t), intent(in) :: material
+    type(material_t), intent(in) :: now
+    real(wp), intent(in) :: largest_ratio !! V/V0, thins the fluid most
+    real(wp), intent(in) :: step
+    real(wp) :: limit
+    real(wp) :: damping
+
+    damping = 4.0_wp*material%viscosity*largest_ratio/(3.0_wp*material%density*now%sound_speed**2 &
+      *step)
+    limit = step/(damping + sqrt(damping**2 + 1.0_wp))
+  end function viscous_fluid_step
+
+end module eos_pressure_m

@@ -1,0 +1,33 @@
+! SPDX-License-Identifier: MIT
+!> A fluid: the deviator is that of its viscosity, 2 mu dev(D), and none without.
+module material_null_m
+  use kinds_m, only : wp
+  use layout_m, only : chunk_size
+  use stress_chunk_m, only : stress_chunk_t
+  implicit none
+  private
+  public :: update_null
+
+contains
+
+  !> Deviator of the rate of the step. All of its work is heat: it belongs to the step as a whole.
+  pure subroutine update_null(viscosity, chunk)
+    real(wp), intent(in) :: viscosity             !! mu, Pa s
+    type(stress_chunk_t), intent(inout) :: chunk  !! increments in, deviator and work out
+    real(wp) :: factor, third
+    integer :: i
+
+    factor = 2.0_wp*viscosity/max(chunk%dt, tiny(1.0_wp))
+    if (.not. chunk%dt > 0.0_wp) factor = 0.0_wp
+    !$omp simd private(third)
+    do i = 1, chunk_size
+      third = (1.0_wp/3.0_wp)*(chunk%dxx(i) + chunk%dyy(i))
+      chunk%sxx(i) = factor*(chunk%dxx(i) - third)
+      chunk%syy(i) = factor*(chunk%dyy(i) - third)
+      chunk%sxy(i) = factor*chunk%dxy(i)
+      chunk%work(i) = chunk%sxx(i)*chunk%dxx(i) + chunk%syy(i)*chunk%dyy(i) &
+        + 2.0_wp*chunk%sxy(i)*chunk%dxy(i)
+    end do
+  end subroutine update_null
+
+end module material_null_m
