@@ -210,7 +210,7 @@ class WithPressure(J2):
         self.end_of_step(new, step)
 
     def viscous_work(self, new, step):
-        """-(q0 + q1)/2 t dt; sound speed at the volume of the end, with p and E of the start."""
+        """-(q0 + q1)/2 (V1 - V0); sound speed at the volume of the end, with p and E of the start."""
         if self.bulk_viscosity is None:
             return 0.0
         rho, quadratic, linear = self.bulk_viscosity
@@ -219,7 +219,7 @@ class WithPressure(J2):
             speed = sound_speed(self.eos, rho, self.shear, new["p"], new["energy"], step.after)
             rate = -step.trace * step.length
             new["q"] = rho / step.after * rate * (quadratic * rate + linear * speed)
-        return -0.5 * (old + new["q"]) * step.trace * step.dt * step.middle
+        return -0.5 * (old + new["q"]) * (step.after - step.before)
 
     def end_of_step(self, new, step):
         pass
