@@ -202,21 +202,19 @@ class WithPressure(J2):
             super().deviator(new, trial, step)
 
     def volume(self, new, step, work):
-        if new["failed"]:  # in this step: its work has been done
-            new["s"] = np.zeros((3, 3))
         work += self.viscous_work(new, step)
         new["p"], new["energy"] = pressure_step(self.eos, new["p"], new["energy"], step.before, step.after, work,
                                                 self.least_pressure(new))
         self.end_of_step(new, step)
 
     def viscous_work(self, new, step):
-        """-(q0 + q1)/2 (V1 - V0); sound speed at the volume of the end, with p and E of the start."""
+        """-(q0 + q1)/2 (V1 - V0); sound speed of the state at the start."""
         if self.bulk_viscosity is None:
             return 0.0
         rho, quadratic, linear = self.bulk_viscosity
         old, new["q"] = new["q"], 0.0
         if step.trace < 0.0:
-            speed = sound_speed(self.eos, rho, self.shear, new["p"], new["energy"], step.after)
+            speed = sound_speed(self.eos, rho, self.shear, new["p"], new["energy"], step.before)
             rate = -step.trace * step.length
             new["q"] = rho / step.after * rate * (quadratic * rate + linear * speed)
         return -0.5 * (old + new["q"]) * (step.after - step.before)
@@ -281,8 +279,9 @@ class JohnsonCook(WithPressure):
         if growth > 0.0:
             if self.damage is not None:
                 new["damage"] += growth / self.failure_strain(new, self.logarithm(growth / step.dt, step), stress)
-            new["temperature"] += stress * growth * step.before / (self.rho * self.heat)
-        new["failed"] = new["failed"] or new["damage"] >= 1.0
+            new["temperature"] += stress * growth * step.middle / (self.rho * self.heat)
+        if new["damage"] >= 1.0:
+            new["failed"], new["s"] = True, np.zeros((3, 3))
 
     def end_of_step(self, new, step):
         """A spalled element is told now and acts as one from the next step on."""
