@@ -315,10 +315,6 @@ class Null(WithPressure):
     def deviator(self, new, trial, step):
         new["s"] = 2.0 * self.viscosity * deviator(step.strain) / step.dt
 
-    def deviator_work(self, old, new, step):
-        """A stress of the rate of the step works with that rate alone."""
-        return dot(new, step.strain)
-
 
 class Hyperelastic:
     """Stress and energy are functions of F alone."""
