@@ -6,10 +6,10 @@
 !> where that is not allocated: the reader starts from a state of the same model. Reals must be
 !> finite. After a failure nothing is read any more, and variables stay as they are.
 module archive_m
-  use, intrinsic :: iso_c_binding, only : c_loc
+  use, intrinsic :: iso_c_binding, only : c_loc, c_ptr, c_null_ptr
   use hdf5, only : hid_t
-  use archive_file_m, only : archive_t, refuse, fail_archive, is_hard, put_array, put_null, &
-    open_array, get_values
+  use archive_file_m, only : archive_t, refuse, fail_archive, is_hard, put_array, open_array, &
+    get_values, close_array
   use errors_m, only : status_input
   use hdf5_library_m, only : read_text
   use hdf5_writing_m, only : as_real, as_integer, as_index, write_text
@@ -47,6 +47,9 @@ module archive_m
     module procedure keep_growing_integers
   end interface keep_growing
 
+  !> Extent of what is not allocated.
+  integer, parameter :: absent = -1
+  character(*), parameter :: not_finite = 'values that are no finite numbers'
   character(*), parameter :: other_numbers = 'other numbers than follow from the deck'
 
 contains
@@ -56,20 +59,12 @@ contains
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout), target :: values(:)
-    integer(hid_t) :: dataset
-    integer :: expected(1), extents(1)
 
-    expected = -1
-    if (allocated(values)) expected = shape(values)
-    if (archive%is_read) then
-      call open_array(archive, name, as_real, expected, .false., extents, dataset)
-      if (dataset < 0) return
-      call get_values(archive, as_real, dataset, extents, c_loc(values))
-      call expect(archive, name, all(is_finite(values)), 'values that are no finite numbers')
-    else if (allocated(values)) then
-      call put_array(archive, name, as_real, .true., expected, c_loc(values))
+    if (allocated(values)) then
+      call exchange(archive, name, as_real, shape(values), c_loc(values))
+      if (archive%is_read) call expect(archive, name, all(is_finite(values)), not_finite)
     else
-      call put_null(archive, name, as_real)
+      call exchange(archive, name, as_real, [absent], c_null_ptr)
     end if
   end subroutine keep_reals
 
@@ -78,20 +73,12 @@ contains
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout), target :: values(:, :)
-    integer(hid_t) :: dataset
-    integer :: expected(2), extents(2)
 
-    expected = -1
-    if (allocated(values)) expected = shape(values)
-    if (archive%is_read) then
-      call open_array(archive, name, as_real, expected, .false., extents, dataset)
-      if (dataset < 0) return
-      call get_values(archive, as_real, dataset, extents, c_loc(values))
-      call expect(archive, name, all(is_finite(values)), 'values that are no finite numbers')
-    else if (allocated(values)) then
-      call put_array(archive, name, as_real, .true., expected, c_loc(values))
+    if (allocated(values)) then
+      call exchange(archive, name, as_real, shape(values), c_loc(values))
+      if (archive%is_read) call expect(archive, name, all(is_finite(values)), not_finite)
     else
-      call put_null(archive, name, as_real)
+      call exchange(archive, name, as_real, [absent, absent], c_null_ptr)
     end if
   end subroutine keep_real_table
 
@@ -100,19 +87,11 @@ contains
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
     integer, allocatable, intent(inout), target :: values(:)
-    integer(hid_t) :: dataset
-    integer :: expected(1), extents(1)
 
-    expected = -1
-    if (allocated(values)) expected = shape(values)
-    if (archive%is_read) then
-      call open_array(archive, name, as_integer, expected, .false., extents, dataset)
-      if (dataset < 0) return
-      call get_values(archive, as_integer, dataset, extents, c_loc(values))
-    else if (allocated(values)) then
-      call put_array(archive, name, as_integer, .true., expected, c_loc(values))
+    if (allocated(values)) then
+      call exchange(archive, name, as_integer, shape(values), c_loc(values))
     else
-      call put_null(archive, name, as_integer)
+      call exchange(archive, name, as_integer, [absent], c_null_ptr)
     end if
   end subroutine keep_integers
 
@@ -121,45 +100,48 @@ contains
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
     integer, allocatable, intent(inout), target :: values(:, :)
-    integer(hid_t) :: dataset
-    integer :: expected(2), extents(2)
 
-    expected = -1
-    if (allocated(values)) expected = shape(values)
-    if (archive%is_read) then
-      call open_array(archive, name, as_integer, expected, .false., extents, dataset)
-      if (dataset < 0) return
-      call get_values(archive, as_integer, dataset, extents, c_loc(values))
-    else if (allocated(values)) then
-      call put_array(archive, name, as_integer, .true., expected, c_loc(values))
+    if (allocated(values)) then
+      call exchange(archive, name, as_integer, shape(values), c_loc(values))
     else
-      call put_null(archive, name, as_integer)
+      call exchange(archive, name, as_integer, [absent, absent], c_null_ptr)
     end if
   end subroutine keep_integer_table
+
+  !> Write an array of given extents, or read it; `absent` where it is not allocated.
+  subroutine exchange(archive, name, content, expected, values)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    integer, intent(in) :: content     !! one of the `as_` constants
+    integer, intent(in) :: expected(:) !! extents
+    type(c_ptr), intent(in) :: values  !! the first one
+    integer(hid_t) :: dataset
+    integer :: extents(size(expected))
+
+    if (archive%is_read) then
+      call open_array(archive, name, content, expected, .false., extents, dataset)
+      if (dataset >= 0) call get_values(archive, content, dataset, extents, values)
+    else
+      call put_array(archive, name, content, expected(1) /= absent, expected, values)
+    end if
+  end subroutine exchange
 
   !> An array of reals of any length.
   subroutine keep_growing_reals(archive, name, values)
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout), target :: values(:)
-    integer(hid_t) :: dataset
-    integer :: expected(1), extents(1)
+    integer :: extents(1)
 
-    expected = -1
-    if (allocated(values)) expected = shape(values)
     if (archive%is_read) then
-      call open_array(archive, name, as_real, expected, .true., extents, dataset)
+      extents = absent
+      if (allocated(values)) extents = shape(values)
+      call find_extents(archive, name, as_real, extents)
       if (allocated(archive%error)) return
       if (allocated(values)) deallocate (values)
-      if (dataset < 0) return
-      allocate (values(extents(1)))
-      call get_values(archive, as_real, dataset, extents, c_loc(values))
-      call expect(archive, name, all(is_finite(values)), 'values that are no finite numbers')
-    else if (allocated(values)) then
-      call put_array(archive, name, as_real, .true., expected, c_loc(values))
-    else
-      call put_null(archive, name, as_real)
+      if (extents(1) /= absent) allocate (values(extents(1)))
     end if
+    call keep_reals(archive, name, values)
   end subroutine keep_growing_reals
 
   !> A table of reals with any number of columns.
@@ -167,24 +149,17 @@ contains
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout), target :: values(:, :)
-    integer(hid_t) :: dataset
-    integer :: expected(2), extents(2)
+    integer :: extents(2)
 
-    expected = -1
-    if (allocated(values)) expected = shape(values)
     if (archive%is_read) then
-      call open_array(archive, name, as_real, expected, .true., extents, dataset)
+      extents = absent
+      if (allocated(values)) extents = shape(values)
+      call find_extents(archive, name, as_real, extents)
       if (allocated(archive%error)) return
       if (allocated(values)) deallocate (values)
-      if (dataset < 0) return
-      allocate (values(extents(1), extents(2)))
-      call get_values(archive, as_real, dataset, extents, c_loc(values))
-      call expect(archive, name, all(is_finite(values)), 'values that are no finite numbers')
-    else if (allocated(values)) then
-      call put_array(archive, name, as_real, .true., expected, c_loc(values))
-    else
-      call put_null(archive, name, as_real)
+      if (extents(1) /= absent) allocate (values(extents(1), extents(2)))
     end if
+    call keep_real_table(archive, name, values)
   end subroutine keep_growing_table
 
   !> A table of integers with any number of columns.
@@ -192,24 +167,36 @@ contains
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
     integer, allocatable, intent(inout), target :: values(:, :)
-    integer(hid_t) :: dataset
-    integer :: expected(2), extents(2)
+    integer :: extents(2)
 
-    expected = -1
-    if (allocated(values)) expected = shape(values)
     if (archive%is_read) then
-      call open_array(archive, name, as_integer, expected, .true., extents, dataset)
+      extents = absent
+      if (allocated(values)) extents = shape(values)
+      call find_extents(archive, name, as_integer, extents)
       if (allocated(archive%error)) return
       if (allocated(values)) deallocate (values)
-      if (dataset < 0) return
-      allocate (values(extents(1), extents(2)))
-      call get_values(archive, as_integer, dataset, extents, c_loc(values))
-    else if (allocated(values)) then
-      call put_array(archive, name, as_integer, .true., expected, c_loc(values))
-    else
-      call put_null(archive, name, as_integer)
+      if (extents(1) /= absent) allocate (values(extents(1), extents(2)))
     end if
+    call keep_integer_table(archive, name, values)
   end subroutine keep_growing_integers
+
+  !> Extents of an array in the file, the last of which may be any; `absent` where there is none.
+  subroutine find_extents(archive, name, content, extents)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    integer, intent(in) :: content       !! one of the `as_` constants
+    integer, intent(inout) :: extents(:) !! what the component has, then what was found
+    integer(hid_t) :: dataset
+    integer :: expected(size(extents))
+
+    expected = extents
+    call open_array(archive, name, content, expected, .true., extents, dataset)
+    if (dataset < 0) then
+      extents = absent
+    else
+      call close_array(dataset)
+    end if
+  end subroutine find_extents
 
   !> An array of truths, as 0 and 1.
   subroutine keep_logicals(archive, name, values)
@@ -267,17 +254,10 @@ contains
     character(*), intent(in) :: name
     integer(long), intent(inout) :: value
     integer(long), target :: copy
-    integer(hid_t) :: dataset
-    integer :: extents(1)
 
     copy = value
-    if (archive%is_read) then
-      call open_array(archive, name, as_index, [1], .false., extents, dataset)
-      call get_values(archive, as_index, dataset, extents, c_loc(copy))
-      if (.not. allocated(archive%error)) value = copy
-    else
-      call put_array(archive, name, as_index, .true., [1], c_loc(copy))
-    end if
+    call exchange(archive, name, as_index, [1], c_loc(copy))
+    if (.not. allocated(archive%error)) value = copy
   end subroutine keep_long
 
   !> A truth.

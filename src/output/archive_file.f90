@@ -4,7 +4,7 @@
 !>
 !> The first failure stays in the archive and ends its work: one question at the end is enough.
 module archive_file_m
-  use, intrinsic :: iso_c_binding, only : c_ptr, c_loc
+  use, intrinsic :: iso_c_binding, only : c_ptr
   use hdf5, only : hid_t, hsize_t, haddr_t, size_t, H5S_NULL_F, H5S_SIMPLE_F, &
     H5D_CONTIGUOUS_F, H5L_TYPE_HARD_F, h5dclose_f, h5dcreate_f, &
     h5dget_create_plist_f, h5dget_space_f, h5dget_storage_size_f, h5dget_type_f, h5dopen_f, &
@@ -17,8 +17,8 @@ module archive_file_m
   use log_m, only : to_text
   implicit none
   private
-  public :: archive_t, enter, leave, fail_archive, refuse, put_array, put_null, &
-    open_array, get_values, is_hard
+  public :: archive_t, enter, leave, fail_archive, refuse, put_array, open_array, &
+    get_values, close_array, is_hard
 
   !> Most dimensions that an array has in HDF5.
   integer, parameter :: most_dims = 32
@@ -108,17 +108,6 @@ contains
       //' (is the disk full, or a quota used up?)', status_files)
     call h5sclose_f(space, status(1))
   end subroutine put_array
-
-  !> A component that is not allocated.
-  subroutine put_null(archive, name, content)
-    type(archive_t), intent(inout) :: archive
-    character(*), intent(in) :: name
-    integer, intent(in) :: content         !! one of the `as_` constants
-    integer, target :: nothing
-
-    nothing = 0
-    call put_array(archive, name, content, .false., [0], c_loc(nothing))
-  end subroutine put_null
 
   !> Open an array of the file and compare it with what is expected: kind of numbers, shape, and
   !> whether there is one. What differs is refused by name. The dataset stays open for `get_values`,
