@@ -6,27 +6,37 @@ module contact_work_m
   use contact_state_m, only : contact_state_t
   use energy_limit_m, only : follow_largest
   use friction_m, only : set_tractions_aside
+  use friction_state_m, only : friction_memory_t
   use gather_m, only : take_force, power_of, add_force
   use kinds_m, only : wp
   implicit none
   private
-  public :: take_apart, hand_over, count_work, count_step
+  public :: apart_t, take_apart, hand_over, count_work, count_step
+
+  !> Of the former forces, what is kept apart from the springs.
+  type :: apart_t
+    real(wp) :: damping = 0.0_wp    !! power, W/m
+    real(wp) :: friction = 0.0_wp   !! power, W/m
+    real(wp) :: dissipated = 0.0_wp !! by friction so far, J/m
+  end type apart_t
 
 contains
 
   !> Power of the former forces of damping and of friction, which are zero then; nothing is left of
   !> the tractions but what friction goes on from.
-  pure subroutine take_apart(motion, memory, apart)
+  pure subroutine take_apart(motion, had_force, memory, apart)
     real(wp), intent(in), contiguous :: motion(:, :)
+    logical, intent(in) :: had_force !! the former call
     type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(out) :: apart(2) !! W/m
+    type(apart_t), intent(out) :: apart
 
-    apart = 0.0_wp
     if (allocated(memory%damping_force)) &
-      call take_force(memory%nodes, motion, memory%damping_force, apart(1))
+      call take_force(memory%nodes, motion, memory%damping_force, apart%damping)
     if (.not. allocated(memory%friction%force)) return
-    call take_force(memory%nodes, motion, memory%friction%force, apart(2))
+    call take_force(memory%nodes, motion, memory%friction%force, apart%friction)
+    apart%dissipated = memory%friction%work - memory%friction%stored
     call set_tractions_aside(memory)
+    if (.not. had_force) call keep_dissipated(apart%dissipated, memory%friction)
   end subroutine take_apart
 
   !> Add the forces to those of the mesh and count the work of a step: half of it was done by the
@@ -34,31 +44,45 @@ contains
   pure subroutine hand_over(dt, motion, former, memory, force)
     real(wp), intent(in) :: dt
     real(wp), intent(in), contiguous :: motion(:, :)
-    real(wp), intent(in) :: former(2)             !! power of the former damping and friction, W/m
+    type(apart_t), intent(in) :: former
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)
-    real(wp) :: power, apart(2)
+    type(apart_t) :: apart
+    real(wp) :: power
 
     call add_force(memory%nodes, memory%scratch%former_force, memory%force, motion, force, power)
     apart = former
-    if (allocated(memory%damping_force)) apart(1) = apart(1) &
+    if (allocated(memory%damping_force)) apart%damping = apart%damping &
       + power_of(memory%nodes, motion, memory%damping_force)
-    if (allocated(memory%friction%force)) apart(2) = apart(2) &
+    if (allocated(memory%friction%force)) apart%friction = apart%friction &
       + power_of(memory%nodes, motion, memory%friction%force)
     call count_work(dt, power, apart, memory)
     call follow_largest(memory%energy, memory%limit)
   end subroutine hand_over
 
-  !> Work of half a step, that of damping and of friction apart.
+  !> Work of a step, that of damping and of friction apart.
   pure subroutine count_work(dt, power, apart, memory)
     real(wp), intent(in) :: dt
-    real(wp), intent(in) :: power, apart(2) !! of all contact forces, and of damping and friction
+    real(wp), intent(in) :: power        !! of all former and present contact forces, W/m
+    type(apart_t), intent(in) :: apart   !! with the present forces of damping and friction
     type(contact_state_t), intent(inout) :: memory
 
-    memory%energy = memory%energy - 0.5_wp*dt*(power - apart(1) - apart(2))
-    memory%damping_work = memory%damping_work - 0.5_wp*dt*apart(1)
-    memory%friction%work = memory%friction%work - 0.5_wp*dt*apart(2)
+    memory%energy = memory%energy - 0.5_wp*dt*(power - apart%damping - apart%friction)
+    memory%damping_work = memory%damping_work - 0.5_wp*dt*apart%damping
+    if (.not. allocated(memory%friction%force)) return
+    memory%friction%work = memory%friction%work - 0.5_wp*dt*apart%friction
+    call keep_dissipated(apart%dissipated, memory%friction)
   end subroutine count_work
+
+  !> What is dissipated does not come back: tangential springs hold no more than the work that has
+  !> been done on them. Where forces are limited or areas change while places stick, the tractions
+  !> alone would say more.
+  pure subroutine keep_dissipated(dissipated, friction)
+    real(wp), intent(in) :: dissipated !! before, J/m
+    type(friction_memory_t), intent(inout) :: friction
+
+    friction%stored = min(friction%stored, friction%work - dissipated)
+  end subroutine keep_dissipated
 
   !> Work of an implicit step.
   pure subroutine count_step(motion, before, after)
@@ -73,7 +97,9 @@ contains
       + after%friction%force)*motion(3:4, after%nodes))
     after%energy = before%energy + (after%interference%work - before%interference%work) &
       - 0.5_wp*(work - rubbed)
+    if (.not. allocated(after%friction%force)) return
     after%friction%work = before%friction%work - 0.5_wp*rubbed
+    call keep_dissipated(before%friction%work - before%friction%stored, after%friction)
   end subroutine count_step
 
 end module contact_work_m

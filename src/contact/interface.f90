@@ -12,7 +12,7 @@ module interface_m
   use contact_penalty_m, only : set_penalties
   use contact_scatter_m, only : scatter_forces, join_passes
   use contact_springs_m, only : begin_look, measure_springs, end_look
-  use contact_work_m, only : take_apart, hand_over, count_work
+  use contact_work_m, only : apart_t, take_apart, hand_over, count_work
   use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
     allocate_tractions, allocate_scratch, places_of_segment, is_free
   use contacts_m, only : contact_t, has_friction, is_tied
@@ -165,7 +165,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     type(formulation_t) :: formulation
-    real(wp) :: apart(2)
+    type(apart_t) :: apart
     logical :: had_force, is_born
 
     formulation = formulation_of(contact)
@@ -210,13 +210,13 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)
     logical, intent(in) :: had_force              !! that call had some
     type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(out) :: apart(2)             !! power of its damping and of its friction, W/m
+    type(apart_t), intent(out) :: apart
 
     memory%n_active = 0
     call begin_look(had_force, memory%watch)
     if (had_force) call keep_former(memory)
     call keep_former_springs(had_force, memory)
-    call take_apart(motion, memory, apart)
+    call take_apart(motion, had_force, memory, apart)
   end subroutine set_forces_aside
 
   !> The springs as pressed, in calls that look at them. Those loaded at time zero hold energy that
@@ -363,13 +363,14 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)
     real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: power, apart(2)
+    type(apart_t) :: apart
+    real(wp) :: power
 
     memory%is_stale = .true.
     memory%watch%has_looked = .false.
     if (memory%n_active == 0) return
     call take_force(memory%nodes, motion, memory%force, power)
-    call take_apart(motion, memory, apart)
+    call take_apart(motion, .true., memory, apart)
     call count_work(dt, power, apart, memory)
     call end_look(.true., .false., memory%watch)
     memory%points%n = 0

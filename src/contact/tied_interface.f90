@@ -7,7 +7,7 @@ module tied_interface_m
   use contact_penalty_m, only : mean_length
   use contact_springs_m, only : begin_look, measure_springs, end_look
   use contact_state_m, only : contact_state_t, allocate_tractions
-  use contact_work_m, only : hand_over
+  use contact_work_m, only : apart_t, hand_over
   use contacts_m, only : contact_t, breaks
   use friction_state_m, only : is_held
   use gather_m, only : gather_places, keep_former
@@ -94,7 +94,7 @@ contains
     ! When the last of them breaks there is no later look.
     if (memory%watch%is_due .or. cycle == 0 .or. memory%n_active == 0) call measure_springs(memory)
     if (cycle == 0) memory%energy = memory%watch%stored
-    call hand_over(times(2), motion, [0.0_wp, 0.0_wp], memory, force)
+    call hand_over(times(2), motion, apart_t(), memory, force)
     call end_look(had_force, .true., memory%watch)
     call lap(clock, phase_contact_force)
   end subroutine apply_ties

@@ -18,6 +18,8 @@ MADE = 0.02
 #: Bodies that share more of the smaller one's area than type 2 leaves, and than this, are inside each other.
 OVERLAP = 0.01
 ONE_PASS = 2
+#: With friction: in the first one forces are limited in most cycles.
+RUBBED = [("three", 52004), ("pair", 52004)]
 #: Scenes of every family that CI runs with all types.
 FIXED = {"pair": range(5), "rigid slave": range(3), "rigid master": range(3), "three": range(3)}
 
@@ -72,8 +74,22 @@ def table(rows):
     return "\n".join(lines)
 
 
+def check_rubbing(run, family, seed, kind):
+    """With mu 1: what friction has dissipated does not come back, though forces are limited, and all energies balance."""
+    name = f"{TYPES[kind]}, mu 1, {family} {seed}"
+    result = run.program(Scene(family, seed).deck(kind), "fs=1", name=f"rubbed_{family}_{seed}_type{kind}")
+    energy = result.table("glstat")
+    start = energy["total"][0]
+    run.check(f"{name}: largest fall of the dissipated energy / E0", -np.diff(energy["friction"]).min() / start, 0.0, 1e-12, "max")
+    run.check(f"{name}: dissipated / E0", energy["friction"][-1] / start, 1e-4, 0.0, "min", "they do rub")
+    run.check(f"{name}: total / E0", energy["total"] / start, 1.0, 1e-3)
+
+
 def check(run):
     judge(run, measure_all(run, [Scene(family, seed) for family, seeds in FIXED.items() for seed in seeds]))
+    for family, seed in RUBBED:
+        for kind in TYPES:
+            check_rubbing(run, family, seed, kind)
 
 
 def sweep(run, seed, count):
