@@ -3,6 +3,9 @@
 """Run one verification case: `run_case.py CASE --program EXE --work DIR`.
 
 The case is the folder CASE beside this file; its check.py holds `check(run)`.
+With `--full` (or SLIDELINE_FULL=1) it runs every combination and the longest
+runs, as for doc/verification.md; without, as in CI, a covering design of them
+(`run.cover`) and what else `run.is_full` leaves. Tolerances are the same.
 With `--seed N --count M` a case of random scenes goes through M new ones
 instead, `sweep(run, seed, count)` of its check.py.
 Each check is printed as one line and kept in DIR/<case>.json, from which
@@ -11,9 +14,12 @@ only if at least one check ran and all passed.
 """
 import argparse
 import csv
+import collections
 import importlib.util
+import itertools
 import json
 import math
+import os
 import pathlib
 import shutil
 import subprocess
@@ -103,11 +109,26 @@ class Result:
         return self._stacked("CellData", name)
 
 
+def covering(sizes, strength):
+    """Rows of indices below `sizes`, few of all: any values of any `strength` columns stand together in
+    one of them. Greedily the row that brings the most, of several the one whose values are rarest."""
+    rows = list(itertools.product(*map(range, sizes)))
+    met = {row: set(itertools.combinations(enumerate(row), min(strength, len(sizes)))) for row in rows}
+    left, used, kept = set().union(*met.values()), collections.Counter(), []
+    while left:
+        best = max(rows, key=lambda row: (len(met[row] & left), -sum(used[one] for one in enumerate(row))))
+        kept.append(best)
+        left -= met[best]
+        used.update(enumerate(best))
+    return sorted(kept)
+
+
 class Run:
     """Handed to check(run): runs the program and keeps the verdicts."""
 
-    def __init__(self, case, program, work):
+    def __init__(self, case, program, work, is_full=False):
         self.case = case
+        self.is_full = is_full
         self.folder = HERE / case
         self.root = HERE.parents[1]
         self.program_path = program
@@ -139,6 +160,15 @@ class Run:
             raise RuntimeError(f"{name}: exit status {finished.returncode}, expected "
                                f"{expect_status}\n{finished.stderr}{finished.stdout[-2000:]}")
         return Result(folder, name, finished)
+
+    def cover(self, *values, strength=2):
+        """Combinations of one of each of `values`: all, or a covering design where not `is_full`, in
+        which any values of any `strength` of them meet (1: each value comes)."""
+        values = [list(choice) for choice in values]
+        if self.is_full:
+            return list(itertools.product(*values))
+        return [tuple(choice[k] for choice, k in zip(values, row))
+                for row in covering([len(choice) for choice in values], strength)]
 
     def check(self, quantity, found, expected, tol, kind="rel", source=""):
         """Compare and record. Arrays: largest difference, relative to the largest expected.
@@ -211,12 +241,14 @@ def main():
                         default=HERE.parents[1] / "build" / "release" / "slideline")
     parser.add_argument("--work", type=pathlib.Path,
                         default=HERE.parents[1] / "build" / "verification")
+    parser.add_argument("--full", action="store_true", default=os.environ.get("SLIDELINE_FULL") == "1",
+                        help="every combination, not a covering design (or SLIDELINE_FULL=1)")
     parser.add_argument("--seed", type=int, help="go through new random scenes")
     parser.add_argument("--count", type=int, default=60, help="so many of each family")
     options = parser.parse_args()
     work = options.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
-    run = Run(options.case, options.program.resolve(), work)
+    run = Run(options.case, options.program.resolve(), work, options.full)
     problem = None
     try:
         case = load_case(options.case)
@@ -229,7 +261,7 @@ def main():
         print(problem, flush=True)
     n_failed = sum(not record["passed"] for record in run.records) + (problem is not None)
     n_passed = sum(record["passed"] for record in run.records)
-    report = {"case": options.case, "checks": run.records, "reported": run.reported,
+    report = {"case": options.case, "full": options.full, "checks": run.records, "reported": run.reported,
               "problem": problem}
     (work / f"{options.case}.json").write_text(json.dumps(report, indent=1) + "\n")
     if not run.records:

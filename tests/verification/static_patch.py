@@ -5,6 +5,8 @@ One-point quads with the stiffness form of hourglass control, or full integratio
 contact as a sum of linear springs between means of nodal displacements; springs that would pull are
 left out.
 """
+import functools
+
 import numpy as np
 
 from contact_types import TYPES
@@ -92,6 +94,7 @@ def full_stiffness(x, young):
     return total
 
 
+@functools.lru_cache(maxsize=4)
 def body_stiffness(blocks, hourglass):
     """`hourglass`: coefficient of the one-point quad; None for full integration."""
     total = np.zeros((2 * len(blocks.x), 2 * len(blocks.x)))

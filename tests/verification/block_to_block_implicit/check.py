@@ -136,7 +136,8 @@ def report_drivers(run):
 
 def check(run):
     chain = solve(dataclasses.replace(Blocks(), penalty=PENALTY * N_SLAVE / WIDTH))
-    report_drivers(run)
+    if run.is_full:
+        report_drivers(run)
     ends = {}
     for kind, name in TYPES.items():
         scene = Scene(run, kind)

@@ -42,7 +42,7 @@ def strokes(*ways):
     return [*points, (10.0, 0.0)]
 
 
-def block_on_rail(title, kind):
+def block_on_rail(title, kind, plot=0.005):
     deck = Deck(f"{title}, type {kind}")
     deck.control(END, scale=0.5)
     for part in (1, 2):
@@ -52,7 +52,7 @@ def block_on_rail(title, kind):
     deck.node_set(1, block[:7]).node_set(2, rail[-RAIL_CELLS - 1:][::-1])
     deck.fix(rail[:RAIL_CELLS + 1], x=1, y=1)
     deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 2, PENALTY), (0.0, 1.0e20, 1))
-    deck.output(plot=0.005, glstat=0.002, matsum=0.002, rcforc=0.001)
+    deck.output(plot=plot, glstat=0.002, rcforc=0.001)
     return deck, block
 
 
@@ -73,7 +73,7 @@ def weighted_block(kind, distance):
 
 def guided_block(kind, sink):
     """The upper face is led: down by PRESSED, out, down by `sink` while outside, back, up."""
-    deck, block = block_on_rail(f"back {sink:g} m below", kind)
+    deck, block = block_on_rail(f"back {sink:g} m below", kind, END)
     deck.curve(1, strokes((0.0, PRESS, -PRESSED), (BACK, BACK + 0.1, -sink),
                           (LIFT + 0.1, LIFT + 0.3, sink + 2.0 * PRESSED)))
     deck.curve(2, strokes((OUT, BACK, OUTSIDE), (BACK + 0.1, LIFT, -OUTSIDE)))

@@ -40,28 +40,28 @@ def change_contact(deck, kind, penalty, whole, is_swapped):
                                               penalty * N_SEGMENT ** unit), (0.0, 1.0e20, unit))
 
 
-def compare(run, name, make, kind, penalty):
-    """Forces of outlines and of faces at rest, either side the slave; make() gives a deck."""
-    for is_swapped in (False, True):
-        faces, outlines = (run.program(change_contact(make(), kind, penalty, whole, is_swapped))
-                           .points("contact_force")[-1, :, :2] for whole in (False, True))
-        size = np.max(np.abs(faces))
-        slave = "lower" if is_swapped else "upper"
-        run.check(f"{name}, {slave} block the slave: there is force", size, 1e-3, 0.0, "min",
-                  "so that the comparison means something")
-        run.check(f"{name}, {slave} block the slave: nodal forces of whole outlines / largest",
-                  outlines / size, faces / size, SAME, "abs", "the two faces alone")
+def compare(run, name, make, kind, penalty, is_swapped):
+    """Forces of outlines and of faces at rest, either side the slave; make(kind) gives a deck."""
+    faces, outlines = (run.program(change_contact(make(kind), kind, penalty, whole, is_swapped))
+                       .points("contact_force")[-1, :, :2] for whole in (False, True))
+    size = np.max(np.abs(faces))
+    slave = "lower" if is_swapped else "upper"
+    run.check(f"{name}, {slave} block the slave: there is force", size, 1e-3, 0.0, "min",
+              "so that the comparison means something")
+    run.check(f"{name}, {slave} block the slave: nodal forces of whole outlines / largest",
+              outlines / size, faces / size, SAME, "abs", "the two faces alone")
 
 
 def check_outlines(run, pressed_blocks, inclined_patch):
     """All types; the decks are those of the patch tests but for the surfaces."""
-    for kind, title in TYPES.items():
-        for layout, mesh in LAYOUTS.items():
-            blocks = static_patch.Blocks(*mesh, YOUNG, 4)
-            relaxation = static_patch.frequencies(blocks, RHO, FLAT)
-            compare(run, f"{title}, outlines, {layout}",
-                    lambda k=kind, b=blocks, r=relaxation: pressed_blocks(k, FLAT, b, r), kind, FLAT)
-        for matching in (True, False):
-            name = f"{title}, outlines, {'matching' if matching else '5/4'}, inclined by 20 degrees"
-            compare(run, name, lambda k=kind, m=matching:
-                    inclined_patch(k, INCLINED, 1.0e-2, m)[0], kind, INCLINED)
+    makers = {}
+    for layout, mesh in LAYOUTS.items():
+        blocks = static_patch.Blocks(*mesh, YOUNG, 4)
+        relaxation = static_patch.frequencies(blocks, RHO, FLAT)
+        makers[layout] = FLAT, lambda kind, b=blocks, r=relaxation: pressed_blocks(kind, FLAT, b, r)
+    for matching in (True, False):
+        makers[f"{'matching' if matching else '5/4'}, inclined by 20 degrees"] = (
+            INCLINED, lambda kind, m=matching: inclined_patch(kind, INCLINED, 1.0e-2, m)[0])
+    for kind, layout, is_swapped in run.cover(TYPES, makers, (False, True)):
+        penalty, make = makers[layout]
+        compare(run, f"{TYPES[kind]}, outlines, {layout}", make, kind, penalty, is_swapped)

@@ -20,8 +20,9 @@ OVERLAP = 0.01
 ONE_PASS = 2
 #: With friction: in the first one forces are limited in most cycles.
 RUBBED = [("three", 52004), ("pair", 52004)]
-#: Scenes of every family that CI runs with all types.
+#: Scenes of every family that are run with all types, in full and in CI.
 FIXED = {"pair": range(5), "rigid slave": range(3), "rigid master": range(3), "three": range(3)}
+FEW = {"pair": range(4), "rigid slave": range(2), "rigid master": range(2), "three": range(2)}
 
 
 def measure_all(run, scenes):
@@ -86,8 +87,9 @@ def check_rubbing(run, family, seed, kind):
 
 
 def check(run):
-    judge(run, measure_all(run, [Scene(family, seed) for family, seeds in FIXED.items() for seed in seeds]))
-    for family, seed in RUBBED:
+    chosen = FIXED if run.is_full else FEW
+    judge(run, measure_all(run, [Scene(family, seed) for family, seeds in chosen.items() for seed in seeds]))
+    for family, seed in RUBBED if run.is_full else RUBBED[:1]:
         for kind in TYPES:
             check_rubbing(run, family, seed, kind)
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Frictional patch test, static, by the implicit program: all types, in stick and in full slip."""
+import itertools
 import re
 
 import numpy as np
@@ -131,12 +132,12 @@ def check(run):
     across = -0.3 / 0.7 * pressure
     like = (Body(soft, 0.3, 1.0), Body(soft, 0.3, 1.0))
     unlike = (Body(soft, 0.3, pressure, across), Body(3.0 * soft, 0.3, pressure, across))
-    for layout, mesh in MESHES.items():
+    pairs = {"like bodies": (like, 1.0), "unlike bodies": (unlike, pressure)}
+    others = [kind for kind in TYPES if kind not in PASS_PATCH]
+    rows = [*run.cover(MESHES, sorted(PASS_PATCH), RULES, pairs, PENALTIES, strength=3),
+            *run.cover(MESHES, others, ("stick", "slip"), pairs, PENALTIES[1:2], strength=3)]
+    for (layout, kind, rule, text), group in itertools.groupby(rows, lambda row: row[:4]):
+        mesh, (bodies, load) = MESHES[layout], pairs[text]
         blocks = static_patch.Blocks(*mesh[:2], soft, mesh[2])
-        for kind in TYPES:
-            for rule in RULES if kind in PASS_PATCH else ("stick", "slip"):
-                penalties = PENALTIES if kind in PASS_PATCH else PENALTIES[1:2]
-                for text, bodies, load in (("like bodies", like, 1.0), ("unlike bodies", unlike, pressure)):
-                    check_answers(run, f"{TYPES[kind]}, {layout}, {text}, {rule}", kind, {
-                        penalty: Answer(run, kind, penalty, blocks, rule, bodies, load, text[0] == "u")
-                        for penalty in penalties}, text[0] == "l")
+        check_answers(run, f"{TYPES[kind]}, {layout}, {text}, {rule}", kind, {
+            row[4]: Answer(run, kind, row[4], blocks, rule, bodies, load, text[0] == "u") for row in group}, text[0] == "l")

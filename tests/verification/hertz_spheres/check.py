@@ -96,6 +96,6 @@ def check_pressed(run, kind, level, exchanged=False):
 
 def check(run):
     for kind in TYPES:
-        for level in (1, 2) if kind in FINER else (1,):
+        for level in (1, 2) if kind in (FINER if run.is_full else FINER[-1:]) else (1,):
             check_pressed(run, kind, level)
         check_pressed(run, kind, 1, exchanged=True)

@@ -10,7 +10,7 @@ MIDDLE, STIFF = 5.0e5, 8.0e6
 SCENES = ((10.0, MIDDLE, 0.4), (10.0, STIFF, 0.1), (30.0, MIDDLE, 0.4))  # angle, penalty, TSSFAC
 CELLS, SIZE = (7, 5), (0.7, 0.5)
 VELOCITY = np.array([0.4, -1.0])
-INTERVAL = 1.0e-3
+INTERVAL = 2.0e-3
 END = 0.3
 
 

@@ -81,7 +81,7 @@ class Eigen:
     def fitting(self, limit):
         """The penalty for which the limit by eigenvalue is this one."""
         low, high = 0.0, 30.0
-        for _ in range(60):
+        for _ in range(32):  # to 1e-8
             middle = 0.5 * (low + high)
             low, high = (middle, high) if self.limit(np.exp(middle)) > limit else (low, middle)
         return float(np.exp(low))
@@ -159,6 +159,5 @@ def check_one(run, kind, meshes):
 
 
 def check(run):
-    for meshes in MESHES:
-        for kind in TYPES:
-            check_one(run, kind, meshes)
+    for meshes, kind in run.cover(MESHES, TYPES, strength=1):
+        check_one(run, kind, meshes)

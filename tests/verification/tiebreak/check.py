@@ -188,6 +188,7 @@ def check_static(run, kind, dof):
 #: Peel: two arms, their height and length, the crack at the start, elements over the height.
 ARM, LENGTH, CRACK, N_ARM = 0.5, 12.0, 3.0, 4
 PEEL_SPRING, PEEL_STRENGTH = 1.0e5, 500.0
+PEELED = (4, 7)   # where not in full
 
 
 def peel_traction(length, opening, ahead):
@@ -260,4 +261,5 @@ def check(run):
         check_pressed(run, kind)
         if kind in PASS_PATCH:
             check_wave(run, kind)
+        if kind in (PASS_PATCH if run.is_full else PEELED):
             check_peel(run, kind)

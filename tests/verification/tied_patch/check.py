@@ -60,23 +60,22 @@ def tied_forces(result, blocks):
     return force[blocks.slave], force[blocks.master]
 
 
-def check_patch(run, name, kind, factor):
+def check_patch(run, kind, name, factor, title):
     blocks = static_patch.Blocks(*MESHES[name][:2], YOUNG, MESHES[name][2])
-    worst = 0.0
-    for title, (shear, normal) in LOADS.items():
-        stress = np.array([[0.0, shear], [shear, normal]])
-        deck, ids, upper, lower = tied_deck(blocks, kind, 10.0 * factor, 2, f"tied patch, {title}, type {kind}")
-        load(deck, upper, outer_forces(blocks.upper, len(blocks.slave), stress, (1, 2, 3)))
-        load(deck, lower, outer_forces(blocks.lower, len(blocks.master), stress, (1, 3)))
-        deck.fix(ids[blocks.bottom], 1, 1)
-        result = run.program(deck)
-        for side, sign, found in zip((0, 1), (-1.0, 1.0), tied_forces(result, blocks)):
-            area = blocks.lengths(side)
-            worst = max(worst, np.max(np.abs(found / area[:, None] - sign * stress[1])) / LOAD)
-        row = result.table("contact").where(time=1.0)
-        if kind in PASS_PATCH:
-            worst = max(worst, np.max(np.abs([row["pressure"] + normal, row["traction"] + shear])) / LOAD)
-            worst = worst if np.all(row["state"] == 3) else np.inf
+    worst, (shear, normal) = 0.0, LOADS[title]
+    stress = np.array([[0.0, shear], [shear, normal]])
+    deck, ids, upper, lower = tied_deck(blocks, kind, 10.0 * factor, 2, f"tied patch, {title}, type {kind}")
+    load(deck, upper, outer_forces(blocks.upper, len(blocks.slave), stress, (1, 2, 3)))
+    load(deck, lower, outer_forces(blocks.lower, len(blocks.master), stress, (1, 3)))
+    deck.fix(ids[blocks.bottom], 1, 1)
+    result = run.program(deck)
+    for side, sign, found in zip((0, 1), (-1.0, 1.0), tied_forces(result, blocks)):
+        area = blocks.lengths(side)
+        worst = max(worst, np.max(np.abs(found / area[:, None] - sign * stress[1])) / LOAD)
+    row = result.table("contact").where(time=1.0)
+    if kind in PASS_PATCH:
+        worst = max(worst, np.max(np.abs([row["pressure"] + normal, row["traction"] + shear])) / LOAD)
+        worst = worst if np.all(row["state"] == 3) else np.inf
     return worst
 
 
@@ -146,7 +145,8 @@ def hat_forces(place, slope):
 
 def check(run):
     for kind in TYPES:
-        found = max(check_patch(run, name, kind, factor) for name in list(MESHES)[:5] for factor in (0.1, 1.0))
+        rows = run.cover(list(MESHES)[:5], (0.1, 1.0), LOADS)
+        found = max(check_patch(run, kind, *row) for row in rows)
         if kind in PASS_PATCH:
             run.check(f"type {kind}: traction of both sides, all layouts, loads and penalties", found, 0.0, 1.0e-9, "abs",
                       "the stress that the bodies carry")
