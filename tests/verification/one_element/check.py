@@ -64,10 +64,11 @@ def of_driver(expected, size, fields):
 
 
 def scale_of(wanted, quantity):
-    """The largest value; a deviator that stays at zero is judged beside the pressure, other zeros must be zeros."""
-    largest = np.max(np.abs(wanted[quantity]))
-    if quantity == "deviator" and largest == 0.0:
-        return np.max(np.abs(wanted["pressure"]))
+    """The largest value; a deviator that is round-off of the mean is judged beside the pressure, other zeros must be
+    zeros."""
+    largest, pressure = (np.max(np.abs(wanted[name])) for name in (quantity, "pressure"))
+    if quantity == "deviator" and largest < 1.0e-13 * pressure:
+        return pressure
     return largest or 1.0
 
 

@@ -167,7 +167,7 @@ class SimplifiedJohnsonCook(J2):
 class WithPressure(J2):
     """Laws whose pressure comes from an equation of state; PC and failure judged at the end of the step.
 
-    bulk_viscosity: its density, Q1 and Q2, whose work goes into E."""
+    bulk_viscosity: its density, Q1 and Q2; the work of its forces goes into E."""
 
     bulk_viscosity = None
 
@@ -178,7 +178,7 @@ class WithPressure(J2):
     def at_rest(self):
         a, b = self.eos.parts(1.0)
         energy = self.eos.first_energy
-        return {**super().at_rest(), "p": a + b * energy, "energy": energy, "failed": False}
+        return {**super().at_rest(), "p": a + b * energy, "energy": energy, "failed": False, "q": 0.0}
 
     def least_pressure(self, new):
         if new["failed"]:
@@ -198,23 +198,21 @@ class WithPressure(J2):
         self.end_of_step(new, step)
 
     def viscous_work(self, new, step):
-        """-q t dt, with the sound speed of the state at the start of the step."""
-        if self.bulk_viscosity is None or step.trace >= 0.0:
-            return 0.0
+        """By the pressures q of the two ends; q with the sound speed of the state at the start of the step."""
+        old, new["q"] = new["q"], 0.0
+        if self.bulk_viscosity is not None and step.trace < 0.0:
+            new["q"] = self.viscous_pressure(new, step)
+        return -0.5 * (old + new["q"]) * (step.after - step.before)
+
+    def viscous_pressure(self, new, step):
         rho, quadratic, linear = self.bulk_viscosity
         speed = sound_speed(self.eos, rho, self.shear, new["p"], new["energy"], step.before)
         rate = -step.trace * step.length
-        pressure = rho / step.after * rate * (quadratic * rate + linear * speed)
-        return pressure * -step.trace * step.dt * step.middle
+        return rho / step.after * rate * (quadratic * rate + linear * speed)
 
     def end_of_step(self, new, step):
         pass
 
-    @staticmethod
-    def fail(new):
-        """From now on no deviator and no tension."""
-        new["failed"] = True
-        new["s"], new["p"] = np.zeros((3, 3)), max(0.0, new["p"])
 
 
 class ElasticPlasticHydro(WithPressure):
@@ -230,21 +228,30 @@ class ElasticPlasticHydro(WithPressure):
             return PiecewiseLinear.polygon(self.points, plastic)
         return self.yield_stress + self.modulus * plastic
 
-    def end_of_step(self, new, step):
+    def deviator(self, new, trial, step):
+        super().deviator(new, trial, step)
         if self.failure > 0.0 and new["plastic"] >= self.failure:
-            self.fail(new)
+            new["failed"], new["s"] = True, np.zeros((3, 3))
+
+    def volume(self, new, step, work):
+        if not new["failed"]:
+            super().volume(new, step, work)
+        else:
+            # no pressure at the end of the step
+            new["energy"] += work - 0.5 * new["p"] * (step.after - step.before)
+            new["p"] = 0.0
 
 
 class JohnsonCook(WithPressure):
     """*MAT_JOHNSON_COOK with the temperature of the start of the step, spall 1 to 3 and damage D1 to D5."""
 
-    def __init__(self, rho, shear, constants, temperatures, heat, eos, cutoff=0.0, spall=2, damage=None, efmin=1.0e-6):
+    def __init__(self, rho, shear, constants, temperatures, heat, eos, cutoff=0.0, spall=2, damage=None, efmin=1.0e-6, vp=1):
         super().__init__(shear, eos, cutoff)
         self.rho, self.heat = rho, heat
         self.a, self.b, self.n, self.c, self.m, self.reference = constants
         self.melt, self.room = temperatures
         self.first_temperature = self.room
-        self.spall, self.damage, self.efmin = spall, damage, efmin
+        self.spall, self.damage, self.efmin, self.vp = spall, damage, efmin, vp
 
     def homologous(self, temperature):
         return min(1.0, max(0.0, (temperature - self.room) / (self.melt - self.room)))
@@ -253,7 +260,7 @@ class JohnsonCook(WithPressure):
         return np.log(max(1.0, rate / self.reference))
 
     def flow_stress(self, plastic, rate, new, step):
-        return ((self.a + self.b * plastic ** self.n) * (1.0 + self.c * self.logarithm(rate))
+        return ((self.a + self.b * plastic ** self.n) * (1.0 + self.c * self.logarithm(self.rate(rate, step)))
                 * (1.0 - self.homologous(new["temperature"]) ** self.m))
 
     def least_pressure(self, new):
@@ -261,14 +268,23 @@ class JohnsonCook(WithPressure):
             return 0.0
         return self.cutoff if self.spall == 1 and self.cutoff < 0.0 else None
 
-    def end_of_step(self, new, step):
+    def rate(self, plastic_rate, step):
+        return plastic_rate if self.vp == 1 else np.sqrt(2.0 / 3.0) * step.deviatoric_rate
+
+    def deviator(self, new, trial, step):
+        super().deviator(new, trial, step)
         growth, stress = new["growth"], mises(new["s"])
         if growth > 0.0 and self.damage is not None:
-            new["damage"] += growth / self.failure_strain(new, growth / step.dt, stress)
+            # the mean stress of the start of the step: the pressure waits for the work of the deviator
+            new["damage"] += growth / self.failure_strain(new, self.rate(growth / step.dt, step), stress)
         if growth > 0.0:
             new["temperature"] += stress * growth * step.middle / (self.rho * self.heat)
-        if new["damage"] >= 1.0 or self.is_spalled(new):
-            self.fail(new)
+        if new["damage"] >= 1.0:
+            new["failed"], new["s"] = True, np.zeros((3, 3))
+
+    def end_of_step(self, new, step):
+        if self.is_spalled(new):
+            new["failed"], new["damage"] = True, max(1.0, new["damage"])
 
     def failure_strain(self, new, rate, stress):
         d1, d2, d3, d4, d5 = self.damage
