@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Johnson and Cook's flow stress (A + B p^n)(1 + C ln r)(1 - T*^m), r = rate/rate0 not below 1, of
-!> the equivalent strain rate sqrt(2/3 d:d) of the step, or of its plastic strain rate: elastic trial stress, then radial return,
+!> the equivalent strain rate sqrt(2/3 d:d) of the step, or of its plastic strain rate: elastic
+!> trial stress, then radial return,
 !> the plastic strain at the end of the step being that of the flow stress. The heated law keeps a
 !> temperature (all plastic work heats) and damage (Johnson & Cook 1985).
 module material_johnson_cook_m
