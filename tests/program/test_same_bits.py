@@ -13,7 +13,11 @@ import subprocess
 import h5py
 import numpy as np
 import pytest
+<<<<<<< HEAD
 from conftest import by_turns, is_full
+=======
+from impact_decks import plates
+>>>>>>> 31d2ba4d60a1f23c3528f039dd9eb325298d67bc
 from meshes import Deck, grid, rotate
 from round_decks import rings
 
@@ -161,6 +165,14 @@ def test_plate_has_the_same_bits(exe, is_debug, tmp_path, elastoplastic):
     found = check_same(exe, is_debug, tmp_path, text, ("endtim=0.03", "p:dtplot=1e-2"))
     plate = np.frombuffer(found["VTKHDF/PointData/velocity"])
     assert np.abs(plate).max() > 0.0
+
+
+@pytest.mark.parametrize("points", [None, 4])
+def test_impact_has_the_same_bits(exe, is_debug, tmp_path, points):
+    """Materials that remember energy, temperature and damage."""
+    found = check_same(exe, is_debug, tmp_path, plates(3, points=points), ())
+    damage = np.frombuffer(found["VTKHDF/CellData/damage"])
+    assert damage.max() >= 1.0 and np.frombuffer(found["VTKHDF/CellData/temperature"]).max() > 310.0
 
 
 @pytest.mark.parametrize("kind", [1, 7])
