@@ -13,11 +13,8 @@ import subprocess
 import h5py
 import numpy as np
 import pytest
-<<<<<<< HEAD
 from conftest import by_turns, is_full
-=======
 from impact_decks import plates
->>>>>>> 31d2ba4d60a1f23c3528f039dd9eb325298d67bc
 from meshes import Deck, grid, rotate
 from round_decks import rings
 
