@@ -113,7 +113,7 @@ def judge_collision(one, folder):
     force = 2.0 * np.pi * np.abs(side["fy"])
     mass = 2.0 / 3.0 * np.pi * check.BALL ** 3 * check.DENSITY
     stiff = check.PENALTY * (2.0 if one.labels["type"] == 3 else 1.0)
-    duration, largest = check.spheres.impact_on_springs(mass, 0.5 * check.BALL, check.MODULUS, check.SPEED, stiff)
+    duration, _, largest = check.spheres.impact_on_springs(mass, 0.5 * check.BALL, check.MODULUS, check.SPEED, stiff)
     touched = np.flatnonzero(force > 1e-3 * largest)
     return {"time": float(side["time"][touched[-1]] - side["time"][touched[0]]) / duration,
             "force": float(force.max() / largest)}
