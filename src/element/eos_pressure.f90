@@ -16,23 +16,24 @@ module eos_pressure_m
   private
   public :: n_eos_value, load_eos_state, form_eos_pressure, take_present, viscous_fluid_step
 
-  !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity.
-  integer, parameter :: n_eos_value = 4
+  !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity, speed of sound squared.
+  integer, parameter :: n_eos_value = 5
   !> The speed of sound is never told below this share of that of the undeformed body.
   real(wp), parameter :: least_share = 1.0e-3_wp
 
 contains
 
-  !> Mean stress and volume at the start of the step, for laws that ask.
-  pure subroutine load_eos_state(i_chunk, elements, stress)
+  !> Mean stress at the start of the step, and volume in its middle, for laws that ask.
+  pure subroutine load_eos_state(i_chunk, ratio, elements, stress)
     integer, intent(in) :: i_chunk
+    real(wp), intent(in) :: ratio(chunk_size) !! V/V0 of the point
     type(block_state_t), intent(in) :: elements
     type(stress_chunk_t), intent(inout) :: stress
     integer :: first
 
     first = elements%eos_start(i_chunk)
     stress%mean = -elements%eos_state(first + chunk_size:first + 2*chunk_size - 1)
-    stress%ratio = 1.0_wp + elements%eos_state(first + 2*chunk_size:first + 3*chunk_size - 1)
+    stress%ratio = ratio
   end subroutine load_eos_state
 
   !> Energy and pressure at the end of the step, bulk viscosity included, whose work heats; points
@@ -47,7 +48,8 @@ contains
     type(element_chunk_t), intent(inout) :: chunk         !! pressure out (tension positive)
     type(material_t), intent(out) :: now
     type(eos_chunk_t) :: state
-    real(wp), dimension(chunk_size) :: energy, pressure, growth, heat, least, q, stiffness
+    real(wp), dimension(chunk_size) :: energy, pressure, growth, heat, least, most, q, &
+      stiffness
     logical :: failed(chunk_size), keeps_pressure
     integer :: first
 
@@ -56,24 +58,23 @@ contains
     pressure = elements%eos_state(first + chunk_size:first + 2*chunk_size - 1)
     growth = chunk%stretch - elements%eos_state(first + 2*chunk_size:first + 3*chunk_size - 1)
     call form_eos(material%eos, chunk%stretch, state)
-    call find_stiffness(state, chunk%stretch, energy, pressure, stiffness)
-    call form_viscous_pressure(viscosity, material, stiffness, chunk, q)
-    ! The work of its forces, which are those of the end of each step.
-    heat = chunk%heat*inverse_start - 0.5_wp*growth*(q + elements%eos_state(first + 3*chunk_size: &
-      first + 4*chunk_size - 1))
+    call form_viscous_pressure(viscosity, material%density, elements%eos_state(first &
+      + 4*chunk_size), chunk, q)
     call look_for_failed(i_chunk, material, elements, failed, keeps_pressure)
     least = -huge(1.0_wp)
+    most = huge(1.0_wp)
     if (material%spall == spall_pressure) least = material%cutoff
-    if (keeps_pressure) where (failed) least = 0.0_wp
-    call advance_energy(state, growth, heat, least, energy, pressure)
+    where (failed) least = 0.0_wp
     if (.not. keeps_pressure) then
-      ! What has no stress takes no more energy.
       where (failed)
-        energy = elements%eos_state(first:first + chunk_size - 1)
-        pressure = 0.0_wp
+        most = 0.0_wp
         q = 0.0_wp
       end where
     end if
+    ! The work of the forces of viscosity, which are those of the two ends of the step.
+    heat = chunk%heat*inverse_start - 0.5_wp*growth*(q + elements%eos_state(first + 3*chunk_size: &
+      first + 4*chunk_size - 1))
+    call advance_energy(state, growth, heat, least, most, energy, pressure)
     call look_for_spall(i_chunk, material, pressure, elements)
     call find_stiffness(state, chunk%stretch, energy, pressure, stiffness)
     call stiffen(material, stiffness, 1.0_wp + chunk%stretch, now)
@@ -82,13 +83,15 @@ contains
     elements%eos_state(first + chunk_size:first + 2*chunk_size - 1) = pressure
     elements%eos_state(first + 2*chunk_size:first + 3*chunk_size - 1) = chunk%stretch
     elements%eos_state(first + 3*chunk_size:first + 4*chunk_size - 1) = q
+    elements%eos_state(first + 4*chunk_size:first + 5*chunk_size - 1) = (stiffness &
+      + 4.0_wp*material%shear/3.0_wp)*(1.0_wp + chunk%stretch)/material%density
   end subroutine form_eos_pressure
 
-  !> Bulk viscosity (see `bulk_viscosity`) with the present speed of sound of each element.
-  pure subroutine form_viscous_pressure(viscosity, material, stiffness, chunk, q)
+  !> Bulk viscosity (see `bulk_viscosity`) with the speed of sound that each element had before.
+  pure subroutine form_viscous_pressure(viscosity, initial_density, speed_squared, chunk, q)
     type(hourglass_t), intent(in) :: viscosity
-    type(material_t), intent(in) :: material
-    real(wp), intent(in) :: stiffness(chunk_size)
+    real(wp), intent(in) :: initial_density
+    real(wp), intent(in) :: speed_squared(chunk_size)
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(out) :: q(chunk_size)
     real(wp) :: length, rate, density, speed
@@ -100,8 +103,8 @@ contains
     do i = 1, chunk_size
       length = sqrt(chunk%area(i))
       rate = min(0.0_wp, chunk%trace(i))
-      density = material%density/(1.0_wp + chunk%stretch(i))
-      speed = sqrt((stiffness(i) + 4.0_wp*material%shear/3.0_wp)/density)
+      density = initial_density/(1.0_wp + chunk%stretch(i))
+      speed = sqrt(speed_squared(i))
       q(i) = density*length*rate*(viscosity%quadratic*length*rate - viscosity%linear*speed)
     end do
   end subroutine form_viscous_pressure

@@ -151,7 +151,8 @@ contains
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
     call form_increments(dt, point, stress)
     call load_deviator(elements%point_deviator(first), chunk_size, stress)
-    if (allocated(material%eos)) call load_eos_state(i_chunk, elements, stress)
+    if (allocated(material%eos)) call load_eos_state(i_chunk, point%mid_area &
+      *(1.0_wp + point%stretch)*point%inverse_area, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk) &
         + (k - 1)*chunk_size*history_size(material)))

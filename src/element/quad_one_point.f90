@@ -43,7 +43,8 @@ contains
     call form_present_shape(elements%reference(first, 1), n_slot, chunk)
     call form_increments(dt, chunk, stress)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
-    if (allocated(material%eos)) call load_eos_state(i_chunk, elements, stress)
+    if (allocated(material%eos)) call load_eos_state(i_chunk, chunk%mid_area &
+      *(1.0_wp + chunk%stretch)*chunk%inverse_area, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk)))
     else

@@ -45,7 +45,8 @@ contains
     call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
     call form_round_increments(dt, chunk, round, stress)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
-    if (allocated(material%eos)) call load_eos_state(i_chunk, elements, stress)
+    if (allocated(material%eos)) call load_eos_state(i_chunk, chunk%mid_area &
+      *(1.0_wp + chunk%stretch)*round%inverse_volume, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk)))
     else

@@ -32,12 +32,12 @@ contains
 
   !> Pressure and energy at the end of a step from v0 to v1, both of the same instant:
   !>   E1 = E0 + heat - (p0 + p1)/2 (v1 - v0),  p1 = A1 + B1 E1,
-  !> solved in closed form since p is linear in E. A pressure below its floor is the floor.
-  pure subroutine advance_energy(state, growth, heat, least, energy, pressure)
+  !> solved in closed form since p is linear in E. A pressure beyond a bound is the bound.
+  pure subroutine advance_energy(state, growth, heat, least, most, energy, pressure)
     type(eos_chunk_t), intent(in) :: state         !! at the end of the step
     real(wp), intent(in) :: growth(chunk_size)     !! v1 - v0
     real(wp), intent(in) :: heat(chunk_size)       !! what else goes in, J per initial volume
-    real(wp), intent(in) :: least(chunk_size)      !! floor of the pressure
+    real(wp), intent(in) :: least(chunk_size), most(chunk_size) !! bounds of the pressure
     real(wp), intent(inout) :: energy(chunk_size), pressure(chunk_size)
     real(wp) :: start
     integer :: i
@@ -45,8 +45,8 @@ contains
     !$omp simd private(start)
     do i = 1, chunk_size
       start = energy(i) + (heat(i) - 0.5_wp*pressure(i)*growth(i))
-      pressure(i) = max(least(i), (state%a(i) + state%b(i)*start) &
-        /(1.0_wp + 0.5_wp*state%b(i)*growth(i)))
+      pressure(i) = min(most(i), max(least(i), (state%a(i) + state%b(i)*start) &
+        /(1.0_wp + 0.5_wp*state%b(i)*growth(i))))
       energy(i) = start - 0.5_wp*pressure(i)*growth(i)
     end do
   end subroutine advance_energy

@@ -86,10 +86,12 @@ contains
     !$omp simd private(keep)
     do i = 1, chunk_size
       keep = merge(0.0_wp, 1.0_wp, plastic_strain(i) >= limit)
+      ! The end of the step has no share in the work then.
+      chunk%work(i) = chunk%work(i) - 0.5_wp*(1.0_wp - keep)*(chunk%sxx(i)*chunk%dxx(i) &
+        + chunk%syy(i)*chunk%dyy(i) + 2.0_wp*chunk%sxy(i)*chunk%dxy(i))
       chunk%sxx(i) = keep*chunk%sxx(i)
       chunk%syy(i) = keep*chunk%syy(i)
       chunk%sxy(i) = keep*chunk%sxy(i)
-      chunk%work(i) = merge(0.0_wp, chunk%work(i), before(i) >= limit)
       plastic_strain(i) = merge(before(i), plastic_strain(i), before(i) >= limit)
     end do
   end subroutine fail

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Johnson and Cook's flow stress (A + B p^n)(1 + C ln r)(1 - T*^m), r = rate/rate0 not below 1, of
-!> the equivalent strain rate sqrt(2/3 d:d) of the step: elastic trial stress, then radial return,
+!> the equivalent strain rate sqrt(2/3 d:d) of the step, or of its plastic strain rate: elastic
+!> trial stress, then radial return,
 !> the plastic strain at the end of the step being that of the flow stress. The heated law keeps a
 !> temperature (all plastic work heats) and damage (Johnson & Cook 1985).
 module material_johnson_cook_m
@@ -30,7 +31,7 @@ contains
     ! Neither hardening nor rates lower the flow stress: what is below A is elastic.
     do i = 1, chunk_size
       if (mises(i) > flow%a) growth(i) = plastic_growth(flow, shear, mises(i), plastic_strain(i), &
-        rate_factor(flow%c, rate_ratio(flow, chunk, i)))
+        1.0_wp, rate_ratio(flow, chunk, i))
     end do
     call return_to_surface(shear, mises, growth, chunk, plastic_strain)
   end subroutine update_johnson_cook
@@ -56,27 +57,27 @@ contains
       if (mises(i) <= stress) cycle
       ratio = rate_ratio(flow, chunk, i)
       growth(i) = plastic_growth(flow, shear, mises(i), plastic_strain(i), &
-        rate_factor(flow%c, ratio)*softening(flow%m, hot))
+        softening(flow%m, hot), ratio)
+      if (flow%is_viscoplastic) ratio = max(1.0_wp, ratio*growth(i))
       stress = mises(i) - 3.0_wp*shear*growth(i)
       rise(i) = rise(i) + flow%heat*chunk%ratio(i)*stress*growth(i)
       if (flow%has_damage .and. growth(i) > 0.0_wp) damage(i) = damage(i) &
         + growth(i)/fracture_strain(flow, chunk%mean(i)/max(stress, tiny(1.0_wp)), ratio, hot)
     end do
-    ! Of a broken point the old deviator is 0, and so is its work below.
-    where (damage >= 1.0_wp .and. .not. growth > 0.0_wp)
-      chunk%sxx = 0.0_wp
-      chunk%syy = 0.0_wp
-      chunk%sxy = 0.0_wp
-    end where
     call return_to_surface(shear, mises, growth, chunk, plastic_strain)
-    where (damage >= 1.0_wp)
-      chunk%sxx = 0.0_wp
-      chunk%syy = 0.0_wp
-      chunk%sxy = 0.0_wp
-    end where
+    do i = 1, chunk_size
+      if (damage(i) < 1.0_wp) cycle
+      ! The end of the step has no share in the work then.
+      chunk%work(i) = chunk%work(i) - 0.5_wp*(chunk%sxx(i)*chunk%dxx(i) &
+        + chunk%syy(i)*chunk%dyy(i) + 2.0_wp*chunk%sxy(i)*chunk%dxy(i))
+      chunk%sxx(i) = 0.0_wp
+      chunk%syy(i) = 0.0_wp
+      chunk%sxy(i) = 0.0_wp
+    end do
   end subroutine update_hot_johnson_cook
 
-  !> Equivalent strain rate of the step over the reference rate, not below 1.
+  !> Equivalent strain rate of the step over the reference rate, not below 1; of the viscoplastic
+  !> form what the growth of the plastic strain is to be multiplied with.
   pure function rate_ratio(flow, chunk, i) result(ratio)
     type(johnson_cook_t), intent(in) :: flow
     type(stress_chunk_t), intent(in) :: chunk
@@ -84,6 +85,10 @@ contains
     real(wp) :: ratio
     real(wp) :: xx, yy
 
+    if (flow%is_viscoplastic) then
+      ratio = 1.0_wp/max(flow%rate*chunk%dt, tiny(1.0_wp))
+      return
+    end if
     xx = (2.0_wp*chunk%dxx(i) - chunk%dyy(i))/3.0_wp
     yy = (2.0_wp*chunk%dyy(i) - chunk%dxx(i))/3.0_wp
     ratio = sqrt(4.0_wp/3.0_wp*(xx*xx + yy*yy + xx*yy + chunk%dxy(i)**2))
@@ -109,18 +114,29 @@ contains
     if (hot > 0.0_wp) factor = 1.0_wp - hot**m
   end function softening
 
-  !> Flow stress at a plastic strain, and its slope.
-  pure subroutine flow_stress(flow, factor, strain, stress, slope)
+  !> Flow stress at the end of a step, and its slope over the growth of the plastic strain.
+  pure subroutine flow_stress(flow, factor, ratio, strain, growth, stress, slope)
     type(johnson_cook_t), intent(in) :: flow
-    real(wp), intent(in) :: factor !! of rate and temperature
-    real(wp), intent(in) :: strain
+    real(wp), intent(in) :: factor !! of temperature
+    real(wp), intent(in) :: ratio  !! of rates, or what makes one of the growth
+    real(wp), intent(in) :: strain, growth
     real(wp), intent(out) :: stress, slope
-    real(wp) :: power
+    real(wp) :: power, static, speed
 
-    power = flow%b*strain**flow%n
+    power = flow%b*(strain + growth)**flow%n
+    static = factor*min(flow%most_static, flow%a + power)
     slope = 0.0_wp
-    if (strain > 0.0_wp .and. flow%a + power < flow%most_static) slope = factor*flow%n*power/strain
-    stress = factor*min(flow%most_static, flow%a + power)
+    if (strain + growth > 0.0_wp .and. flow%a + power < flow%most_static) &
+      slope = factor*flow%n*power/(strain + growth)
+    if (flow%is_viscoplastic) then
+      speed = rate_factor(flow%c, max(1.0_wp, ratio*growth))
+      slope = slope*speed
+      if (ratio*growth > 1.0_wp) slope = slope + static*flow%c/growth
+    else
+      speed = rate_factor(flow%c, ratio)
+      slope = slope*speed
+    end if
+    stress = static*speed
     if (stress < flow%most) return
     stress = flow%most
     slope = 0.0_wp
@@ -128,12 +144,12 @@ contains
 
   !> Growth g of the plastic strain: 3G g + sigma(p + g) = q. The left side rises, so that the root
   !> lies between 0 and (q - sigma(p))/3G: Newton's method, and halves where it leaves these bounds.
-  pure function plastic_growth(flow, shear, mises, strain, factor) result(growth)
+  pure function plastic_growth(flow, shear, mises, strain, factor, ratio) result(growth)
     type(johnson_cook_t), intent(in) :: flow
     real(wp), intent(in) :: shear
     real(wp), intent(in) :: mises  !! q, of the trial stress
     real(wp), intent(in) :: strain !! p
-    real(wp), intent(in) :: factor
+    real(wp), intent(in) :: factor, ratio !! of temperature, of rates
     real(wp) :: growth
     real(wp), parameter :: close = 2.0_wp*epsilon(1.0_wp)
     integer, parameter :: most_rounds = 100
@@ -141,13 +157,13 @@ contains
     integer :: i
 
     growth = 0.0_wp
-    call flow_stress(flow, factor, strain, stress, slope)
+    call flow_stress(flow, factor, ratio, strain, 0.0_wp, stress, slope)
     if (mises <= stress) return
     low = 0.0_wp
     high = (mises - stress)/(3.0_wp*shear)
     growth = high
     do i = 1, most_rounds
-      call flow_stress(flow, factor, strain + growth, stress, slope)
+      call flow_stress(flow, factor, ratio, strain, growth, stress, slope)
       rest = 3.0_wp*shear*growth + stress - mises
       if (abs(rest) <= close*mises) return
       if (rest > 0.0_wp) then

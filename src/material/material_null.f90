@@ -10,23 +10,26 @@ module material_null_m
 
 contains
 
-  !> Deviator of the rate of the step. All of its work is heat: it belongs to the step as a whole.
+  !> Deviator of the rate of the step.
   pure subroutine update_null(viscosity, chunk)
     real(wp), intent(in) :: viscosity             !! mu, Pa s
     type(stress_chunk_t), intent(inout) :: chunk  !! increments in, deviator and work out
-    real(wp) :: factor, third
+    real(wp) :: factor, third, oxx, oyy, oxy
     integer :: i
 
     factor = 2.0_wp*viscosity/max(chunk%dt, tiny(1.0_wp))
     if (.not. chunk%dt > 0.0_wp) factor = 0.0_wp
-    !$omp simd private(third)
+    !$omp simd private(third, oxx, oyy, oxy)
     do i = 1, chunk_size
       third = (1.0_wp/3.0_wp)*(chunk%dxx(i) + chunk%dyy(i))
+      oxx = chunk%sxx(i)
+      oyy = chunk%syy(i)
+      oxy = chunk%sxy(i)
       chunk%sxx(i) = factor*(chunk%dxx(i) - third)
       chunk%syy(i) = factor*(chunk%dyy(i) - third)
       chunk%sxy(i) = factor*chunk%dxy(i)
-      chunk%work(i) = chunk%sxx(i)*chunk%dxx(i) + chunk%syy(i)*chunk%dyy(i) &
-        + 2.0_wp*chunk%sxy(i)*chunk%dxy(i)
+      chunk%work(i) = 0.5_wp*((chunk%sxx(i) + oxx)*chunk%dxx(i) &
+        + (chunk%syy(i) + oyy)*chunk%dyy(i)) + (chunk%sxy(i) + oxy)*chunk%dxy(i)
     end do
   end subroutine update_null
 

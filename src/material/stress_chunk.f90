@@ -18,8 +18,8 @@ module stress_chunk_m
     real(wp), dimension(chunk_size) :: work          !! work of the deviator per volume in this step
     logical :: has_hoop = .false.                    !! of a round body: D_xx and D_yy stand above
     real(wp), dimension(chunk_size) :: hoop          !! less the hoop rate, and this is dt times it
-    real(wp), dimension(chunk_size) :: mean, ratio   !! mean stress and V/V0 at the start of the
-                                                     !! step; only where the material has an EOS
+    real(wp), dimension(chunk_size) :: mean, ratio   !! mean stress at the start of the step, V/V0
+                                                     !! in its middle; only where there is an EOS
   end type stress_chunk_t
 
 contains

@@ -27,7 +27,7 @@ module block_state_m
                                               !! 0 = none
     real(wp), allocatable :: eos_state(:)     !! chunk by chunk: energy per initial volume, then
                                               !! pressure (compression positive), V/V0 - 1,
-                                              !! bulk viscosity
+                                              !! bulk viscosity, speed of sound squared
     integer, allocatable :: hourglass_start(:) !! (n_chunk) where a chunk's hourglass memory starts,
                                                !! 0 = none
     real(wp), allocatable :: hourglass_strain(:) !! chunk by chunk: q_x, then q_y (stiffness form)

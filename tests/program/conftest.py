@@ -9,8 +9,9 @@ import sys
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "verification"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[n] / folder) for n, folder in ((1, "verification"), (2, "tools"))]
 from meshes import Deck, grid  # noqa: E402
+from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
 
 
 def program_path():
@@ -44,10 +45,30 @@ def drop(end_time=0.02, dt=1.0e-4, kind=2, penalty=2.0e5, parametric=False):
                        nodout=interval, nodes=[1, 13, 20])
 
 
-def by_turns(cases, each=2):
-    """Of (scene, type) all; with the checked Debug build, which is slow, some types of each scene, in turn."""
+def is_full():
+    """Whether every combination is asked for, not a covering design, as in tests/verification/run_case.py."""
+    return os.environ.get("SLIDELINE_FULL") == "1"
+
+
+def threads_of(kind):
+    """Numbers of threads to compare: one, and others; where not in full one other, in turn by the type."""
+    return (1, 2, 4) if is_full() else (1, 2 + 2 * (kind % 2))
+
+
+def some_types(turn=0, each=3):
+    """All types; with the checked Debug build `each` of them, from another one on for every turn."""
     if os.environ.get("SLIDELINE_BUILD") != "Debug":
-        return cases
+        return ALL_TYPES
+    return tuple(ALL_TYPES[(each * turn + i) % len(ALL_TYPES)] for i in range(each))
+
+
+def by_turns(cases, each=2, release=4):
+    """Of (scene, type) some types of each scene, in turn: `each` with the checked Debug build, which is slow, `release` with
+    another one; all where SLIDELINE_FULL is 1."""
+    if os.environ.get("SLIDELINE_BUILD") != "Debug":
+        if is_full():
+            return cases
+        each = release
     scenes = {scene: [case for case in cases if case[0] == scene] for scene, _ in cases}
     return [own[(each * k + i) % len(own)] for k, own in enumerate(scenes.values())
             for i in range(min(each, len(own)))]

@@ -315,7 +315,7 @@ def unsupported():
             deck.append(text if text.count("\n") > 1 else text.rstrip("\n") + "\n         1\n")
     deck.append(kwd.ControlTimestep(dt2ms=-1.0e-7, erode=1))
     deck.append(kwd.MatPlasticKinematic(mid=12, ro=2700.0, e=7.0e10, pr=0.33, sigy=3.0e8, etan=1.0e9,
-                                        fs=0.3))
+                                        src=40.0))
     deck.append(kwd.MatRigid(mid=13, **STEEL, couple=1.0))
     deck.append(kwd.Part(parts=pd.DataFrame({
         "heading": ["with an equation of state"], "pid": [12], "secid": [12], "mid": [12], "eosid": [3],

@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import by_turns, drop, numbers
+from impact_decks import plates
 from meshes import Deck, grid
 from round_decks import rings
 from test_repeatability import large_drop
@@ -36,9 +37,13 @@ SCENES = {
     "patch": (lambda kind: scenes.patch(ctype=kind), 300, 170),
     "rings": (lambda kind: rings(kind, 16, end=0.03), 60, 20),
     "plate": (lambda kind: scenes.symmetric_plate(16, 8, True), 300, 170),
+    "impact": (plates, 90, 60),
+    "impact, 2x2 points": (lambda kind: plates(kind, points=4), 90, 60),
 }
+#: Scenes that are not for every type.
+FEW_TYPES = {"plate": (1,), "rigid die": (2, 7), "impact": (3,), "impact, 2x2 points": (1,)}
 CASES = by_turns([(scene, kind) for scene in SCENES for kind in ALL_TYPES
-                  if scene not in ("plate", "rigid die") or kind in {"plate": (1,), "rigid die": (2, 7)}[scene]])
+                  if kind in FEW_TYPES.get(scene, ALL_TYPES)])
 
 
 def text_of(deck):

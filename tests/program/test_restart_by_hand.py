@@ -12,6 +12,7 @@ import h5py
 import kill_runs
 import numpy as np
 import pytest
+from conftest import is_full
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "fuzz"))
 import fuzz_restarts  # noqa: E402
@@ -37,7 +38,7 @@ def implicit_job(exe, tmp_path_factory):
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
-@pytest.mark.parametrize("scene", [f"block_{kind}" for kind in ALL_TYPES] +
+@pytest.mark.parametrize("scene", [f"block_{kind}" for kind in (ALL_TYPES if is_full() else (3, 5, 7))] +
                          ["rigid_die", "everything", "block_implicit"])
 def test_files_made_by_hand(exe, checked, tmp_path, scene):
     """A share of all mutants: refused with the reason, or a run as any; the fuzzer takes more of them."""

@@ -8,6 +8,8 @@ from slideline_tools.results import STRESS_COMPONENTS, VECTOR_COMPONENTS, Result
 LABELS = {
     "plastic_strain": ("effective plastic strain", False),
     "mises": ("von Mises stress", True),
+    "temperature": ("temperature", True),
+    "damage": ("damage", False),
     "pressure": ("pressure (- trace of stress / 3)", True),
     "stress": ("stress", True),
     "displacement": ("displacement", True),

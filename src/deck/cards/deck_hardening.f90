@@ -18,6 +18,10 @@ module deck_hardening_m
   private
   public :: read_piecewise, read_hydro
 
+  !> First and last field of the cards of points.
+  character(5), parameter :: strain_ends(2, 2) = reshape(['EPS1 ', 'EPS8 ', 'EPS9 ', 'EPS16'], &
+    [2, 2]), stress_ends(2, 2) = reshape(['ES1  ', 'ES8  ', 'ES9  ', 'ES16 '], [2, 2])
+
 contains
 
   !> *MAT_PIECEWISE_LINEAR_PLASTICITY.
@@ -109,8 +113,8 @@ contains
 
     allocate (strain(0), stress(0))
     do i = 1, size(strains)
-      strain = [strain, reals_of(strains(i), 'EPS'//to_text(8*i - 7), 'EPS'//to_text(8*i))]
-      stress = [stress, reals_of(stresses(i), 'ES'//to_text(8*i - 7), 'ES'//to_text(8*i))]
+      strain = [strain, reals_of(strains(i), trim(strain_ends(1, i)), trim(strain_ends(2, i)))]
+      stress = [stress, reals_of(stresses(i), trim(stress_ends(1, i)), trim(stress_ends(2, i)))]
     end do
     n = 1
     do k = 2, size(strain)

@@ -34,9 +34,9 @@ contains
     call skip_title(deck, cursor)
     call next_card(deck, parameters, cursor, 1, card)
     call elastic_constants(deck, cursor, card, material)
-    call refuse_viscoplastic(deck, cursor, card)
     material%law = law_johnson_cook
     allocate (material%flow)
+    call take_rate_form(deck, cursor, card, material%flow)
     call next_card(deck, parameters, cursor, 2, stress)
     call take_stress(deck, cursor, stress, material%flow)
     call take_bound(deck, cursor, stress, 'SIGMAX', material%flow%most_static)
@@ -61,11 +61,11 @@ contains
     call next_card(deck, parameters, cursor, 1, card)
     call check_shear(deck, cursor, card, material)
     call take_bulk(deck, cursor, card, material)
-    call refuse_viscoplastic(deck, cursor, card)
     material%law = law_hot_johnson_cook
     material%takes_eos = .true.
     allocate (material%flow)
     material%flow%has_memory = .true.
+    call take_rate_form(deck, cursor, card, material%flow)
     call next_card(deck, parameters, cursor, 2, stress)
     call take_stress(deck, cursor, stress, material%flow)
     call next_card(deck, parameters, cursor, 3, heat)
@@ -97,16 +97,18 @@ contains
     material%bulk = real_of(card, 'E')/(3.0_wp*(1.0_wp - 2.0_wp*real_of(card, 'PR')))
   end subroutine take_bulk
 
-  !> The rate form VP 1 solves for the plastic rate.
-  subroutine refuse_viscoplastic(deck, cursor, card)
+  !> Whose rate counts: 0 the total one, 1 that of the plastic strain.
+  subroutine take_rate_form(deck, cursor, card, flow)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
+    type(johnson_cook_t), intent(inout) :: flow
 
-    if (abs(real_of(card, 'VP')) > 0.0_wp) call report_field(deck, cursor, card, 'VP', &
-      'asks for the viscoplastic rate form, which this version does not have; 0 scales the ' &
-      //'yield stress with the total strain rate')
-  end subroutine refuse_viscoplastic
+    flow%is_viscoplastic = .not. abs(real_of(card, 'VP') - 1.0_wp) > 0.0_wp
+    if (abs(real_of(card, 'VP')) > 0.0_wp .and. .not. flow%is_viscoplastic) call report_field( &
+      deck, cursor, card, 'VP', 'is not a rate form: 0 counts the total strain rate, 1 that of ' &
+      //'the plastic strain')
+  end subroutine take_rate_form
 
   !> A, B, N, C and EPSO.
   subroutine take_stress(deck, cursor, card, flow)

@@ -69,13 +69,13 @@ contains
     associate (part => raw%parts(i_part))
       place = place_t(part%line, 2, 'EOSID')
       if (part%eos > 0) then
-        call resolve_id(deck, maps%equations, part%eos, 'equation of state', place, found)
-        if (found == 0) found = -1
-        if (.not. material%takes_eos) then
+        if (material%takes_eos) then
+          call resolve_id(deck, maps%equations, part%eos, 'equation of state', place, found)
+        else
           call reject_field(deck, place, 'is an equation of state, but material ' &
             //to_text(material%id)//' has a pressure of its own; leave it 0')
-          found = -1
         end if
+        if (found == 0) found = -1
       else if (part%eos == 0 .and. material%needs_eos) then
         call line_error(deck, part%line, 'part '//to_text(part%id)//' names no equation of ' &
           //'state (EOSID), from which its material '//to_text(material%id)//' gets its pressure')

@@ -98,16 +98,22 @@ class Chain:
 
     def weight(self, k, left, right):
         """Of a stretch of a segment."""
+        if not self.is_round:
+            return (right - left) * self.length[k]
         return self.integral(k, left, right, np.ones_like)
 
     def centre(self, k, left, right):
         """Of a stretch of a segment, by weight; on the axis, where there is none, the middle."""
+        if not self.is_round:
+            return 0.5 * (left + right)
         weight = self.weight(k, left, right)
         return self.integral(k, left, right, lambda at: at) / weight if weight else 0.5 * (left + right)
 
     def shares(self, k, left, right):
         """What either end of a stretch has of its weight: the integral by its hat function there."""
         size = right - left
+        if not self.is_round:
+            return 0.5 * size * self.length[k], 0.5 * size * self.length[k]
         return (self.integral(k, left, right, lambda at: (right - at) / size),
                 self.integral(k, left, right, lambda at: (at - left) / size))
 
@@ -146,13 +152,15 @@ def project(points, chain, along):
     along: direction of the points' own surface, one for all or one per point.
     """
     points = np.atleast_2d(points)
-    along = np.broadcast_to(along, points.shape)
+    along = np.asarray(along)
+    if along.ndim == 1:
+        along = [along] * len(points)
     if not len(chain):
         return [None] * len(points)
     away = points[:, None, :] - chain.start[None, :, :]
     at = np.sum(away * chain.tangent, axis=2) / chain.length
     height = np.sum(away * chain.normal, axis=2)
-    beyond = (at - np.clip(at, 0.0, 1.0)) * chain.length
+    beyond = (at - np.minimum(np.maximum(at, 0.0), 1.0)) * chain.length
     nearest = np.argmin(np.hypot(beyond, height), axis=1)
     feet = []
     for i, k in enumerate(nearest):

@@ -87,7 +87,7 @@ def sliding_under(kind, depth, search):
     deck.control(0.6, scale=0.4).node_set(3, top).fix(bottom[:21], x=1, y=1)
     deck.add("*INITIAL_VELOCITY", (3,), (FLIGHT, 0.0))
     add_contact(deck, kind, PENALTY, search=search)
-    return deck.output(plot=0.01, glstat=0.002, matsum=0.002, rcforc=0.002)
+    return deck.output(plot=0.6, glstat=0.002, rcforc=0.002)
 
 
 def check_sliding_under(run, kind):

@@ -9,6 +9,9 @@ from slideline_tools.scenes.hertz import CYLINDER_CELL, GRADED_CELLS, PENALTY, h
 FRICTION, POISSON, RHO = 0.3, 0.3, 7850.0
 #: Increments of a way, each of which takes one unit of time.
 INCREMENTS = 4
+#: Ways of the top aside, m, in full and else.
+CYLINDER_WAYS = {True: (0.0, 4.0e-6, 8.0e-6, 1.2e-5, 4.0e-6), False: (0.0, 8.0e-6, 1.2e-5, 4.0e-6)}
+BLOCK_WAYS = {True: (0.0, 2.0e-6, 4.0e-6, 6.0e-6, 1.0e-5, 1.4e-5, 1.0e-5, 4.0e-6, -4.0e-6), False: (0.0, 4.0e-6, 1.4e-5, 4.0e-6)}
 
 
 class Scene:
@@ -32,18 +35,17 @@ class Scene:
         return 1.0 + np.arange(len(self.ways))
 
 
-def cylinder_on_block():
+def cylinder_on_block(is_full):
     """The scene of cattaneo_mindlin on its coarse mesh."""
-    return Scene(hertz_grids(1)[:2], 2.1e11, 3.0e-5, (0.0, 4.0e-6, 8.0e-6, 1.2e-5, 4.0e-6), PENALTY, CYLINDER_CELL, GRADED_CELLS)
+    return Scene(hertz_grids(1)[:2], 2.1e11, 3.0e-5, CYLINDER_WAYS[is_full], PENALTY, CYLINDER_CELL, GRADED_CELLS)
 
 
-def block_on_block():
+def block_on_block(is_full):
     """1 x 0.5 m, 20 x 10 quads, on 2 x 0.5 m, 36 x 9: first sticks, then slides, and back. Strains of 1e-5: laws of elasticity
     differ in the second order."""
     lower = Grid(spaced((-1.0, 1.0, 36)), spaced((-0.5, 0.0, 9)))
     upper = Grid(spaced((-0.5, 0.5, 20)), spaced((0.0, 0.5, 10)), first_node=100001, first_element=100001)
-    ways = (0.0, 2.0e-6, 4.0e-6, 6.0e-6, 1.0e-5, 1.4e-5, 1.0e-5, 4.0e-6, -4.0e-6)
-    return Scene((lower, upper), 1.0e9, 1.0e-5, ways, 20.0e9 * 0.05, 0.05, 0)
+    return Scene((lower, upper), 1.0e9, 1.0e-5, BLOCK_WAYS[is_full], 20.0e9 * 0.05, 0.05, 0)
 
 
 def slideline_deck(scene, kind):

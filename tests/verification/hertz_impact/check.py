@@ -70,7 +70,7 @@ def half_space(kind):
 
 def collision(kind):
     deck = Deck(f"two steel spheres collide, type {kind}")
-    deck.control(80.0e-6, scale=0.6)
+    deck.control(70.0e-6, scale=0.6)
     deck.add("*SECTION_SHELL", (1, 15), (1.0,)).hourglass(4, 0.05)
     ids, gap = [], 1.0e-9
     for part, cell in ((1, EDGE), (2, EDGE / RATIO)):
@@ -85,7 +85,7 @@ def collision(kind):
     for nodes, sign in ((3, -1.0), (4, 1.0)):
         deck.add("*INITIAL_VELOCITY", (nodes,), (0.0, sign * 0.5 * SPEED))
     deck.contact(1, 2, kind, PENALTY, unit=1, gauss=4)
-    return deck.output(plot=40.0e-6, glstat=0.2e-6, rcforc=0.1e-6, matsum=20.0e-6)
+    return deck.output(plot=35.0e-6, glstat=0.2e-6, rcforc=0.1e-6, matsum=20.0e-6)
 
 
 def contact_time(side, force, least):

@@ -37,7 +37,7 @@ def scene(kind, penalty, is_closed):
         deck.add("*CONTACT_2D_SLIDELINE", (1, 2, kind, 4, penalty))
     else:
         deck.node_set(2, block[0]).node_set(3, master[::-1]).contact(2, 3, kind, penalty, gauss=4)
-    return deck.output(plot=STEP), block[0] - 1, master - 1
+    return deck.output(plot=4.0 * STEP), block[0] - 1, master - 1
 
 
 def half_kinks(line):

@@ -15,10 +15,9 @@ import cases  # noqa: E402
 import driver  # noqa: E402
 import eos  # noqa: E402
 
-N_STEP, SEEDS, TOLERANCE = 60, (2, 3), 1.0e-8
+N_STEP, SEEDS, TOLERANCE = 60, (1, 2, 3), 1.0e-8
 SOURCE = "independent driver"
-REFUSALS = ("this material is not part of this version", "equations of state are not part of this version",
-            "asks for the viscoplastic rate form")
+REFUSALS = ("this material is not part of this version", "equations of state are not part of this version")
 
 
 def deck_of(case, histories, dt, is_round):
@@ -44,7 +43,7 @@ def is_refused(run, deck):
     path.write_text(deck.text())
     answer = subprocess.run([str(run.program_path), "check", str(path), "--json"], capture_output=True, text=True,
                             timeout=60)
-    return any(finding["message"].startswith(REFUSALS) for finding in json.loads(answer.stdout)["findings"])
+    return any(finding["message"] in REFUSALS for finding in json.loads(answer.stdout)["findings"])
 
 
 def of_program(result, part, fields):
@@ -56,21 +55,20 @@ def of_program(result, part, fields):
 
 
 def of_driver(expected, size, fields):
-    """The same of the driver, whose energy is per initial volume; that of a deleted element is not told."""
+    """The same of the driver, whose energy is per initial volume."""
     mean = np.trace(expected["stress"], axis1=1, axis2=2) / 3.0
     deviator = expected["stress"] - mean[:, None, None] * np.eye(3)
     found = {"pressure": -mean, "deviator": deviator[:, [0, 1, 2, 0], [0, 1, 2, 1]],
-             "internal energy": np.where(expected["deleted"], 0.0, size * expected["energy"])}
+             "internal energy": size * expected["energy"]}
     return found | {field: expected[field] for field in fields}
 
 
 def scale_of(wanted, quantity):
-    """The largest value; a deviator that is but the round-off of the pressure is judged beside that, other zeros
-    must be zeros."""
-    largest = np.max(np.abs(wanted[quantity]))
-    if quantity == "deviator":
-        pressure = np.max(np.abs(wanted["pressure"]))
-        return largest if largest > 1.0e-12 * pressure else pressure
+    """The largest value; a deviator that is round-off of the mean is judged beside the pressure, other zeros must be
+    zeros."""
+    largest, pressure = (np.max(np.abs(wanted[name])) for name in (quantity, "pressure"))
+    if quantity == "deviator" and largest < 1.0e-13 * pressure:
+        return pressure
     return largest or 1.0
 
 
@@ -92,9 +90,7 @@ def go_through(run, case, seeds, is_round):
     for part, (history, steps) in enumerate(motions, 1):
         expected = driver.follow(case.law(), steps)
         reached = case.reached(expected) or reached
-        found = of_program(result, part, case.fields)
-        found["internal energy"] = np.where(expected["deleted"], 0.0, found["internal energy"])
-        pairs.append((found,
+        pairs.append((of_program(result, part, case.fields),
                       of_driver(expected, driver.volume(history[0], is_round), case.fields)))
     for quantity in pairs[0][0]:
         scales = [scale_of(wanted, quantity) for _, wanted in pairs]

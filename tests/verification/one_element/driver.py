@@ -96,14 +96,14 @@ def steps(history, dt, is_round):
 
 
 def follow(law, path):
-    """Stress (step, 3, 3), plastic strain, temperature, damage, internal energy per initial volume and whether the
-    element is deleted, along the steps of a path; the first row is the state at the start."""
+    """Stress (step, 3, 3), plastic strain, temperature, damage and internal energy per initial volume along the
+    steps of a path; the first row is the state at the start."""
     state = law.at_rest()
     rows = [law.result(state)]
     for step in path:
         state = law.advance(state, step)
         rows.append(law.result(state))
-    names = ("stress", "plastic_strain", "temperature", "damage", "energy", "deleted")
+    names = ("stress", "plastic_strain", "temperature", "damage", "energy")
     return {name: np.array([row[name] for row in rows]) for name in names}
 
 

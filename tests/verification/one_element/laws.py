@@ -43,24 +43,18 @@ class Law:
 
     def at_rest(self):
         return {"s": np.zeros((3, 3)), "p": 0.0, "plastic": 0.0, "temperature": self.first_temperature,
-                "damage": 0.0, "energy": 0.0, "work": 0.0, "deleted": False}
+                "damage": 0.0, "energy": 0.0, "work": 0.0}
 
     def advance(self, state, step):
-        if state["deleted"]:
-            return state
         new = dict(state)
         old = step.turned(state["s"])
         self.deviator(new, old + 2.0 * self.shear * deviator(step.strain), step)
-        new["work"] += self.deviator_work(old, new["s"], step) * step.middle
+        new["work"] += 0.5 * dot(old + new["s"], step.strain) * step.middle
         self.volume(new, step, new["work"] - state["work"])
         return new
 
     def deviator(self, new, trial, step):
         new["s"] = trial
-
-    def deviator_work(self, old, new, step):
-        """Work of a step per present volume."""
-        return 0.5 * dot(old + new, step.strain)
 
     def volume(self, new, step, work):
         j = step.after
@@ -69,8 +63,7 @@ class Law:
 
     def result(self, state):
         return {"stress": state["s"] - state["p"] * ONE, "plastic_strain": state["plastic"],
-                "temperature": state["temperature"], "damage": state["damage"], "energy": state["energy"],
-                "deleted": state["deleted"]}
+                "temperature": state["temperature"], "damage": state["damage"], "energy": state["energy"]}
 
 
 class Elastic(Law):
@@ -152,11 +145,6 @@ class PiecewiseLinear(J2):
         return factor * np.interp(step.rate, self.rates, values)
 
 
-def equivalent_rate(step):
-    """Total, of the deviator."""
-    return np.sqrt(2.0 / 3.0) * step.deviatoric_rate
-
-
 class SimplifiedJohnsonCook(J2):
     """*MAT_SIMPLIFIED_JOHNSON_COOK: min(min(A + B e^n, SIGMAX) (1 + C ln r), SIGSAT).
 
@@ -167,8 +155,11 @@ class SimplifiedJohnsonCook(J2):
         self.a, self.b, self.n, self.c = a, b, n, c
         self.reference, self.vp, self.sigmax, self.sigsat = reference, vp, sigmax, sigsat
 
+    def total_rate(self, step):
+        return np.sqrt(2.0 / 3.0) * step.deviatoric_rate
+
     def flow_stress(self, plastic, rate, new, step):
-        r = rate if self.vp == 1 else equivalent_rate(step)
+        r = rate if self.vp == 1 else self.total_rate(step)
         stress = min(self.a + self.b * plastic ** self.n, self.sigmax)
         return min(stress * (1.0 + self.c * np.log(max(1.0, r / self.reference))), self.sigsat)
 
@@ -176,7 +167,7 @@ class SimplifiedJohnsonCook(J2):
 class WithPressure(J2):
     """Laws whose pressure comes from an equation of state; PC and failure judged at the end of the step.
 
-    bulk_viscosity: its density, Q1 and Q2, whose work goes into E."""
+    bulk_viscosity: its density, Q1 and Q2; the work of its forces goes into E."""
 
     bulk_viscosity = None
 
@@ -187,8 +178,7 @@ class WithPressure(J2):
     def at_rest(self):
         a, b = self.eos.parts(1.0)
         energy = self.eos.first_energy
-        return {**super().at_rest(), "p": a + b * energy, "energy": energy, "failed": False,
-                "spalled": False, "q": 0.0}
+        return {**super().at_rest(), "p": a + b * energy, "energy": energy, "failed": False, "q": 0.0}
 
     def least_pressure(self, new):
         if new["failed"]:
@@ -208,23 +198,21 @@ class WithPressure(J2):
         self.end_of_step(new, step)
 
     def viscous_work(self, new, step):
-        """-(q0 + q1)/2 (V1 - V0); sound speed of the state at the start."""
-        if self.bulk_viscosity is None:
-            return 0.0
-        rho, quadratic, linear = self.bulk_viscosity
+        """By the pressures q of the two ends; q with the sound speed of the state at the start of the step."""
         old, new["q"] = new["q"], 0.0
-        if step.trace < 0.0:
-            speed = sound_speed(self.eos, rho, self.shear, new["p"], new["energy"], step.before)
-            rate = -step.trace * step.length
-            new["q"] = rho / step.after * rate * (quadratic * rate + linear * speed)
+        if self.bulk_viscosity is not None and step.trace < 0.0:
+            new["q"] = self.viscous_pressure(new, step)
         return -0.5 * (old + new["q"]) * (step.after - step.before)
+
+    def viscous_pressure(self, new, step):
+        rho, quadratic, linear = self.bulk_viscosity
+        speed = sound_speed(self.eos, rho, self.shear, new["p"], new["energy"], step.before)
+        rate = -step.trace * step.length
+        return rho / step.after * rate * (quadratic * rate + linear * speed)
 
     def end_of_step(self, new, step):
         pass
 
-    @staticmethod
-    def delete(new):
-        new["deleted"], new["s"], new["p"] = True, np.zeros((3, 3)), 0.0
 
 
 class ElasticPlasticHydro(WithPressure):
@@ -240,31 +228,39 @@ class ElasticPlasticHydro(WithPressure):
             return PiecewiseLinear.polygon(self.points, plastic)
         return self.yield_stress + self.modulus * plastic
 
-    def end_of_step(self, new, step):
-        if 0.0 < self.failure <= new["plastic"]:
-            self.delete(new)
+    def deviator(self, new, trial, step):
+        super().deviator(new, trial, step)
+        if self.failure > 0.0 and new["plastic"] >= self.failure:
+            new["failed"], new["s"] = True, np.zeros((3, 3))
+
+    def volume(self, new, step, work):
+        if not new["failed"]:
+            super().volume(new, step, work)
+        else:
+            # no pressure at the end of the step
+            new["energy"] += work - 0.5 * new["p"] * (step.after - step.before)
+            new["p"] = 0.0
 
 
 class JohnsonCook(WithPressure):
     """*MAT_JOHNSON_COOK with the temperature of the start of the step, spall 1 to 3 and damage D1 to D5."""
 
-    def __init__(self, rho, shear, constants, temperatures, heat, eos, cutoff=0.0, spall=2, damage=None, vp=0, erod=0):
+    def __init__(self, rho, shear, constants, temperatures, heat, eos, cutoff=0.0, spall=2, damage=None, efmin=1.0e-6, vp=1):
         super().__init__(shear, eos, cutoff)
         self.rho, self.heat = rho, heat
         self.a, self.b, self.n, self.c, self.m, self.reference = constants
         self.melt, self.room = temperatures
         self.first_temperature = self.room
-        self.spall, self.damage, self.vp, self.erod = spall, damage, vp, erod
+        self.spall, self.damage, self.efmin, self.vp = spall, damage, efmin, vp
 
     def homologous(self, temperature):
         return min(1.0, max(0.0, (temperature - self.room) / (self.melt - self.room)))
 
-    def logarithm(self, plastic_rate, step):
-        rate = plastic_rate if self.vp == 1 else equivalent_rate(step)
+    def logarithm(self, rate):
         return np.log(max(1.0, rate / self.reference))
 
     def flow_stress(self, plastic, rate, new, step):
-        return ((self.a + self.b * plastic ** self.n) * (1.0 + self.c * self.logarithm(rate, step))
+        return ((self.a + self.b * plastic ** self.n) * (1.0 + self.c * self.logarithm(self.rate(rate, step)))
                 * (1.0 - self.homologous(new["temperature"]) ** self.m))
 
     def least_pressure(self, new):
@@ -272,30 +268,30 @@ class JohnsonCook(WithPressure):
             return 0.0
         return self.cutoff if self.spall == 1 and self.cutoff < 0.0 else None
 
+    def rate(self, plastic_rate, step):
+        return plastic_rate if self.vp == 1 else np.sqrt(2.0 / 3.0) * step.deviatoric_rate
+
     def deviator(self, new, trial, step):
-        """Damage is known with the deviator, the pressure being that of the start: it acts at once."""
         super().deviator(new, trial, step)
         growth, stress = new["growth"], mises(new["s"])
+        if growth > 0.0 and self.damage is not None:
+            # the mean stress of the start of the step: the pressure waits for the work of the deviator
+            new["damage"] += growth / self.failure_strain(new, self.rate(growth / step.dt, step), stress)
         if growth > 0.0:
-            if self.damage is not None:
-                new["damage"] += growth / self.failure_strain(new, self.logarithm(growth / step.dt, step), stress)
             new["temperature"] += stress * growth * step.middle / (self.rho * self.heat)
         if new["damage"] >= 1.0:
             new["failed"], new["s"] = True, np.zeros((3, 3))
 
     def end_of_step(self, new, step):
-        """A spalled element is told now and acts as one from the next step on."""
-        if new["failed"] and self.erod == 0 and not new["spalled"]:
-            self.delete(new)
-        elif self.is_spalled(new) and not new["failed"]:
-            new["failed"], new["spalled"], new["damage"] = True, True, max(1.0, new["damage"])
+        if self.is_spalled(new):
+            new["failed"], new["damage"] = True, max(1.0, new["damage"])
 
-    def failure_strain(self, new, logarithm, stress):
+    def failure_strain(self, new, rate, stress):
         d1, d2, d3, d4, d5 = self.damage
         triaxiality = -new["p"] / stress
-        strain = ((d1 + d2 * np.exp(d3 * triaxiality)) * (1.0 + d4 * logarithm)
+        strain = ((d1 + d2 * np.exp(d3 * triaxiality)) * (1.0 + d4 * self.logarithm(rate))
                   * (1.0 + d5 * self.homologous(new["temperature"])))
-        return max(strain, 1.0e-6)
+        return max(strain, self.efmin)
 
     def is_spalled(self, new):
         if self.cutoff >= 0.0 or self.spall == 1:
@@ -328,7 +324,7 @@ class Hyperelastic:
 
     def result(self, state):
         return {"stress": state["stress"], "plastic_strain": 0.0, "temperature": 0.0, "damage": 0.0,
-                "energy": state["energy"], "deleted": False}
+                "energy": state["energy"]}
 
 
 class MooneyRivlin(Hyperelastic):

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Ties in motion: a wave through a tie of unlike meshes, and a tied bar that vibrates, against the spring between bars."""
+import functools
+
 import numpy as np
 
 from contact_types import TYPES
@@ -56,20 +58,27 @@ def bar(kind, end_time, is_driven):
         deck.add("*INITIAL_VELOCITY_NODE", *[(int(node), SPEED * np.sin(np.pi * x / (4.0 * HALF)), 0.0)
                                              for node, x in zip(every, np.concatenate(places))])
     watch = ids[round(0.5 * HALF * ROWS[0] / HEIGHT)]
-    deck.output(glstat=0.1 / SOUND, nodout=0.05 / SOUND, nodes=[int(watch)])
+    every = 0.05 if is_driven else 0.25
+    deck.output(glstat=2.0 * every / SOUND, nodout=every / SOUND, nodes=[int(watch)])
     return deck
 
 
-def reflected(kind, time):
-    """Velocity half way to the tie that comes back from a spring k between two half spaces, over SPEED: v_r = v_i - v_t
+@functools.cache
+def came_back(spring):
+    """Times, and velocity over SPEED that comes at a spring k between two half spaces and does not pass: v_r = v_i - v_t
     with v_t + tau dv_t/dt = v_i, tau = rho c/(2 k)."""
-    tau = RHO * SOUND / (2.0 * spring_of(kind))
+    tau = RHO * SOUND / (2.0 * spring)
     fine = np.linspace(0.0, 3.0 * PULSE / SOUND, 60001)
     step, decay = fine[1] - fine[0], np.exp(-(fine[1] - fine[0]) / tau)
     came, gone = pulse(fine), np.zeros_like(fine)
     for k in range(1, len(fine)):
         gone[k] = decay * gone[k - 1] + (1.0 - decay) * 0.5 * (came[k] + came[k - 1])
-    return np.interp(time - 1.5 * HALF / SOUND, fine, came - gone, left=0.0)
+    return fine, came - gone
+
+
+def reflected(kind, time):
+    """Velocity half way to the tie that comes back."""
+    return np.interp(time - 1.5 * HALF / SOUND, *came_back(spring_of(kind)), left=0.0)
 
 
 def check_wave(run):
