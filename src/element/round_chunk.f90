@@ -20,7 +20,8 @@ module round_chunk_m
   !> `rad` is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over A),
   !> each for the patterns a, b, h (s: all four nodes).
   type :: round_chunk_t
-    real(wp) :: us(2, chunk_size), vs(2, chunk_size) !! sums of u and of v, 0 in padding
+    real(wp), dimension(chunk_size) :: us, vs !! sums of u_r and of v_r, 0 in padding. No pairs: a
+                                              !! loop that reads one of two has a remainder
     real(wp) :: force(4, chunk_size), swing(2, chunk_size) !! forces as in the plane chunk
     real(wp) :: hoop(2, chunk_size)     !! and on each of the four nodes, 0 in z
     real(wp), dimension(chunk_size) :: volume, inverse_volume, area, inverse_area !! now
@@ -61,13 +62,13 @@ contains
       chunk%v42(:, i) = d42(3:4)
       chunk%hu(:, i) = h(1:2)
       chunk%hv(:, i) = h(3:4)
-      round%us(:, i) = s(1:2)
-      round%vs(:, i) = s(3:4)
+      round%us(i) = s(1)
+      round%vs(i) = s(3)
     end do
     do i = chunk_size, 1, -1
       if (nodes(1, i) /= nodes(3, i)) exit
-      round%us(:, i) = 0.0_wp
-      round%vs(:, i) = 0.0_wp
+      round%us(i) = 0.0_wp
+      round%vs(i) = 0.0_wp
     end do
   end subroutine gather_round
 

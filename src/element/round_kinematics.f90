@@ -35,7 +35,7 @@ contains
       bz = reference(i, 4) + chunk%u42(2, i)
       hr = reference(i, 5) + chunk%hu(1, i)
       hz = reference(i, 6) + chunk%hu(2, i)
-      s = reference(i, reference_sum) + round%us(1, i)
+      s = reference(i, reference_sum) + round%us(i)
       chunk%x31(i) = ar
       chunk%y31(i) = az
       chunk%x42(i) = br
@@ -57,7 +57,7 @@ contains
       start = 0.25_wp*reference(i, reference_sum)*start_area + part*(reference(i, 5)*cross &
         - 2.0_wp*pair*reference(i, 6))
       area = start_area + area_growth
-      growth = 0.25_wp*(reference(i, reference_sum)*area_growth + round%us(1, i)*area) &
+      growth = 0.25_wp*(reference(i, reference_sum)*area_growth + round%us(i)*area) &
         + part*((reference(i, 5)*cross_growth + chunk%hu(1, i)*(cross + cross_growth)) &
         - 2.0_wp*(pair*chunk%hu(2, i) + pair_growth*hz))
       volume = start + growth
@@ -112,7 +112,7 @@ contains
       bz = chunk%y42(i) - back*chunk%v42(2, i)
       hr = chunk%hx(i) - back*chunk%hv(1, i)
       hz = chunk%hy(i) - back*chunk%hv(2, i)
-      s = eighth*(round%s(i) - back*round%vs(1, i))
+      s = eighth*(round%s(i) - back*round%vs(i))
       ! The gradients of `form_round_shape`.
       area = 0.5_wp*(ar*bz - br*az)
       rad_a = s*bz - part*br*hz
@@ -129,7 +129,7 @@ contains
       lrz = axi_a*chunk%v31(1, i) + axi_b*chunk%v42(1, i) + axi_h*chunk%hv(1, i)
       lzr = rad_a*chunk%v31(2, i) + rad_b*chunk%v42(2, i) + rad_h*chunk%hv(2, i)
       lzz = axi_a*chunk%v31(2, i) + axi_b*chunk%v42(2, i) + axi_h*chunk%hv(2, i)
-      ltt = mean_a*chunk%v31(1, i) + mean_b*chunk%v42(1, i) + 0.25_wp*area*round%vs(1, i)
+      ltt = mean_a*chunk%v31(1, i) + mean_b*chunk%v42(1, i) + 0.25_wp*area*round%vs(i)
       ! tan(half the rotation) = turn/V; one division gives 1/V, 1/(V^2 + turn^2) and 1/A.
       turn = 0.5_wp*back*(lzr - lrz)
       square = volume*volume + turn*turn

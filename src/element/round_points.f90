@@ -44,10 +44,10 @@ contains
     do i = 1, chunk_size
       start = 0.25_wp*reference(i, reference_sum) + (along_a(k)*reference(i, 1) &
         + along_b(k)*reference(i, 3) + along_h(k)*reference(i, 5))
-      growth = 0.25_wp*round%us(1, i) + (along_a(k)*chunk%u31(1, i) + along_b(k)*chunk%u42(1, i) &
+      growth = 0.25_wp*round%us(i) + (along_a(k)*chunk%u31(1, i) + along_b(k)*chunk%u42(1, i) &
         + along_h(k)*chunk%hu(1, i))
       place%radius(i) = start + growth
-      place%speed(i) = 0.25_wp*round%vs(1, i) + (along_a(k)*chunk%v31(1, i) &
+      place%speed(i) = 0.25_wp*round%vs(i) + (along_a(k)*chunk%v31(1, i) &
         + along_b(k)*chunk%v42(1, i) + along_h(k)*chunk%hv(1, i))
       place%volume(i) = 0.25_wp*point%area(i)*place%radius(i)
       ! (1 + A/A0 - 1)(1 + growth/start) - 1.

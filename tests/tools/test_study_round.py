@@ -16,6 +16,9 @@ def test_jobs_have_names_of_their_own_and_a_quick_form():
     assert {job.labels["type"] for job in quick} == {5, 7}
     assert {job.labels["scene"] for job in quick} == {"press_fit", "spheres"}
     assert {job.labels["scene"] for job in whole} == {"press_fit", "spheres", "collision"}
+    assert not any(job.counted for job in quick)
+    assert {(job.labels["scene"], job.labels["level"], job.labels["type"]) for job in whole if job.counted} == {
+        (scene, 1, ctype) for scene in ("press_fit", "spheres") for ctype in (5, 7)}
 
 
 @pytest.mark.parametrize("ctype", (2, 5))

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/taylor.sh
 # Runs input/taylor/taylor.k into results/batch/taylor and draws doc/pictures/taylor.png: the final shape beside
-# the radius and length of converged codes. A few seconds after the build.
+# the radius and length of converged codes, and both over time. A few seconds after the build.
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)

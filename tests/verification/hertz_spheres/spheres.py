@@ -103,7 +103,7 @@ def layer(softness):
 
 
 def impact_on_springs(mass, radius, modulus, speed, stiffness):
-    """(contact time, largest force) of `impact` with a layer of springs N/m^3 between the bodies."""
+    """(contact time, largest approach, largest force) of `impact` with a layer of springs N/m^3 between the bodies."""
     usual = impact(mass, radius, modulus, speed)
     force = usual[2] * np.linspace(0.0, 1.1, 111)[1:] ** 1.5
     a = hertz(force, radius, modulus)[0]
@@ -112,10 +112,9 @@ def impact_on_springs(mass, radius, modulus, speed, stiffness):
     ratio = np.exp(np.interp(np.log(softness), np.log(known), np.log([layer(one)[2] for one in known])))
     approach = np.concatenate([[0.0], a ** 2 / radius * ratio])
     force = np.concatenate([[0.0], force])
-    step, x, v, largest, n = usual[0] / 20000, 0.0, speed, 0.0, 0
+    step, x, v, deepest, n = usual[0] / 20000, 0.0, speed, 0.0, 0
     while x >= 0.0:
-        pull = np.interp(x, approach, force)
-        largest = max(largest, pull)
-        v -= step * pull / mass
+        deepest = max(deepest, x)
+        v -= step * np.interp(x, approach, force) / mass
         x, n = x + step * v, n + 1
-    return n * step, largest
+    return n * step, deepest, float(np.interp(deepest, approach, force))

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Taylor bar: series of meshes, and friction on a rigid wall and on a rigid body by every contact type."""
+import pathlib
+
 import numpy as np
 
 from contact_types import TYPES
@@ -10,6 +12,8 @@ DENSITY, YOUNG, POISSON, YIELD, HARDENING = 8930.0, 117.0e9, 0.35, 400.0e6, 100.
 FRICTION, PENALTY = 0.25, 4.0e14   # N/m^3 with PUNIT 1
 #: Radius and length in mm, plastic strain: `independent.py 5 50 MU free`.
 INDEPENDENT = {0.0: (7.2182, 21.5266, 3.2531), FRICTION: (6.0999, 21.8424, 1.9350)}
+#: Radius of the foot and length over time by tetrahedra of another program (README.md).
+PUBLISHED = np.genfromtxt(pathlib.Path(__file__).with_name("published.csv"), delimiter=",", names=True)
 
 
 def bar(columns, rows):
@@ -61,7 +65,7 @@ class Outcome:
 
     def __init__(self, run, name, made):
         deck, ids, coordinates, quads = made
-        self.name, n = name, len(ids)
+        self.name, self.nodes, n = name, ids, len(ids)
         self.result = result = run.program(deck, name="".join(c if c.isalnum() else "_" for c in name))
         places = result.points("Points")[:, :n, :2]
         self.radius, self.length = 1e3 * places[-1, :, 0].max(), 1e3 * (places[-1, -1, 1] - places[-1, :, 1].min())
@@ -86,8 +90,16 @@ class Outcome:
         return self
 
 
+def off_history(outcome, columns):
+    """Largest differences of radius and length to the published history, mm."""
+    edge, end = (outcome.result.node(outcome.nodes[k]) for k in (columns, -1))
+    time = np.minimum(1e-6 * PUBLISHED["time_us"], END)
+    return (np.abs(1e3 * np.interp(time, edge["time"], edge["x"]) - PUBLISHED["radius_mm"]).max(),
+            np.abs(1e3 * np.interp(time, end["time"], end["y"]) - PUBLISHED["length_mm"]).max())
+
+
 def check_series(run):
-    """Twice as fine, half as far from converged codes at least."""
+    """Twice as fine, half as far from converged codes at least, at the end and over time."""
     coarse, usual = (Outcome(run, f"{n} x {10 * n} quads", held(n, 10 * n)).check(run).report(run) for n in (5, 10))
     for what, value, before, low, high in (("radius", usual.radius, coarse.radius, 7.22, 7.24),
                                            ("length", usual.length, coarse.length, 21.42, 21.43)):
@@ -95,6 +107,12 @@ def check_series(run):
         run.check(f"{what}: difference to converged codes, 10 x 100 over 5 x 50 quads",
                   abs(value - near) / abs(before - min(max(before, low), high)), 0.5, 0.05, "max",
                   "at least first order; converged codes 7.22 to 7.24 and 21.42 to 21.43 mm")
+    for what, before, value, tolerance in zip(("radius", "length"), off_history(coarse, 5), off_history(usual, 10),
+                                              (0.105, 0.01)):
+        run.check(f"{what} over time: largest difference to tetrahedra, mm, 10 x 100 quads", value, 0.0, tolerance, "abs",
+                  "published history")
+        run.check(f"{what} over time: difference to tetrahedra, 10 x 100 over 5 x 50 quads", value / before, 0.5, 0.05,
+                  "max", "at least first order; published history")
 
 
 def check_friction(run):

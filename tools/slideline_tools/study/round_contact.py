@@ -18,6 +18,7 @@ from slideline_tools.plots import PAGE_WIDTH, plt
 from slideline_tools.results import read
 from slideline_tools.studies.common import colour, label, markdown_table, marker, save_small, write_page
 from slideline_tools.study.charts import save, styled
+from slideline_tools.study.counted import counted_job, instruction_section
 from slideline_tools.study.job import Job, Study
 from slideline_tools.study.round_contact_texts import PAGE
 from slideline_tools.study.rules import COST_FACTOR, ERROR_FACTOR, least, names
@@ -28,6 +29,7 @@ VERIFICATION = pathlib.Path(__file__).resolve().parents[3] / "tests" / "verifica
 #: Times are told over those of this type.
 BASE = 5
 ROWS, LEVELS = "7/5", (1, 2)
+COUNTED = {"press_fit": "Press fit", "spheres": "Spheres"}
 PHASES = ("contact_search", "contact_pairing", "contact_force")
 
 
@@ -47,7 +49,8 @@ def case(name):
 
 
 def jobs(options):
-    """Each type: the press fit, spheres on two meshes, the collision; `quick` without the finer mesh and the collision."""
+    """Each type: the press fit, spheres on two meshes, the collision; `quick` without the finer mesh and the collision.
+    Press fit and spheres on the first mesh are counted too."""
     listed = []
     for ctype in options.types:
         scenes = [("press_fit", 1, case("press_fit").press_fit(ctype, case("press_fit").ROWS[ROWS],
@@ -60,7 +63,8 @@ def jobs(options):
                        {"scene": scene, "level": level, "type": ctype}, group=f"{scene}_{level}", alone=True,
                        cost={"press_fit": 0.2, "spheres": float(level ** 3), "collision": 4.0}[scene])
                    for scene, level, deck in scenes]
-    return listed
+    return listed + [counted_job(one) for one in listed
+                     if one.labels["scene"] in COUNTED and one.labels["level"] == 1 and not options.quick]
 
 
 def measure(one, folder):
@@ -113,7 +117,7 @@ def judge_collision(one, folder):
     force = 2.0 * np.pi * np.abs(side["fy"])
     mass = 2.0 / 3.0 * np.pi * check.BALL ** 3 * check.DENSITY
     stiff = check.PENALTY * (2.0 if one.labels["type"] == 3 else 1.0)
-    duration, largest = check.spheres.impact_on_springs(mass, 0.5 * check.BALL, check.MODULUS, check.SPEED, stiff)
+    duration, _, largest = check.spheres.impact_on_springs(mass, 0.5 * check.BALL, check.MODULUS, check.SPEED, stiff)
     touched = np.flatnonzero(force > 1e-3 * largest)
     return {"time": float(side["time"][touched[-1]] - side["time"][touched[0]]) / duration,
             "force": float(force.max() / largest)}
@@ -204,7 +208,8 @@ def page(rows, doc):
     with styled():
         save_small(draw(rows), doc / "pictures" / "round_contact.png", lines=True)
     write_page(doc, "round_contact", PAGE.format(
-        errors=error_table(rows), costs=cost_table(rows), base=BASE, exact=names(exact), best=names(least(errors, ERROR_FACTOR)),
+        errors=error_table(rows), costs=cost_table(rows), counts=instruction_section(rows, COUNTED), base=BASE,
+        exact=names(exact), best=names(least(errors, ERROR_FACTOR)),
         cheap=names(least(costs, COST_FACTOR)), error_factor=ERROR_FACTOR, cost_factor=COST_FACTOR,
         both=names([one for one in least(errors, ERROR_FACTOR) if one in least(costs, COST_FACTOR)])))
 

@@ -32,4 +32,6 @@ a tenth of their nodes in contact: no measure of large ones, for which see [spee
 machine does other work beside it, they scatter by tens of per cent.
 
 {costs}
+
+{counts}
 """
