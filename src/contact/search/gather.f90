@@ -15,13 +15,14 @@ module gather_m
 contains
 
   !> Take the present displacements into the memory and let its travel grow by a bound on how far
-  !> any two nodes have moved relative to each other since the last call.
+  !> any two nodes have moved relative to each other since the last call. Friction keeps what each
+  !> has moved.
   pure subroutine gather_places(motion, memory)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: spread
 
-    call take_places(memory%nodes, motion, memory%places, spread)
+    call take_places(memory%nodes, motion, memory%places, spread, memory%scratch%increment)
     memory%travel = memory%travel + spread
   end subroutine gather_places
 
@@ -83,11 +84,12 @@ contains
   end function power_of
 
   !> Copy u of the nodes; the diagonal of the box of their changes bounds the relative motion.
-  pure subroutine take_places(nodes, motion, places, spread)
+  pure subroutine take_places(nodes, motion, places, spread, changes)
     integer, intent(in), contiguous :: nodes(:)
     real(wp), intent(in) :: motion(4, *)
     real(wp), intent(inout) :: places(4, *)
     real(wp), intent(out) :: spread !! m
+    real(wp), intent(inout), optional :: changes(2, *) !! m
     real(wp) :: low(2, n_lane), high(2, n_lane), change(2)
     integer :: i, k
 
@@ -98,6 +100,7 @@ contains
         associate (j => i - n_lane + k)
           change = motion(1:2, nodes(j)) - places(3:4, j)
           places(3:4, j) = motion(1:2, nodes(j))
+          if (present(changes)) changes(:, j) = change
           low(:, k) = merge(change, low(:, k), change < low(:, k))
           high(:, k) = merge(change, high(:, k), change > high(:, k))
         end associate
@@ -106,6 +109,7 @@ contains
     do i = size(nodes) - modulo(size(nodes), n_lane) + 1, size(nodes)
       change = motion(1:2, nodes(i)) - places(3:4, i)
       places(3:4, i) = motion(1:2, nodes(i))
+      if (present(changes)) changes(:, i) = change
       low(:, 1) = merge(change, low(:, 1), change < low(:, 1))
       high(:, 1) = merge(change, high(:, 1), change > high(:, 1))
     end do
