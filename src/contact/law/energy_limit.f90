@@ -10,7 +10,8 @@ module energy_limit_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: keep_former_springs, form_springs, limit_forces, follow_largest, lend, energy_factor, returned_t
+  public :: keep_former_springs, form_springs, limit_forces, follow_largest, lend, energy_factor, &
+    returned_t
 
   !> Work of forces with the factor one, J/m.
   type :: returned_t
