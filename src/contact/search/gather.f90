@@ -22,7 +22,9 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: spread
 
-    call take_places(memory%nodes, motion, memory%places, spread, memory%scratch%increment)
+    if (allocated(memory%scratch%increment)) call take_changes(size(memory%nodes), memory%nodes, &
+      motion, memory%places, memory%scratch%increment)
+    call take_places(memory%nodes, motion, memory%places, spread)
     memory%travel = memory%travel + spread
   end subroutine gather_places
 
@@ -83,13 +85,25 @@ contains
     end do
   end function power_of
 
+  !> What the nodes have moved by, in a loop of its own: without friction there is none.
+  pure subroutine take_changes(n, nodes, motion, places, changes)
+    integer, intent(in) :: n, nodes(n)
+    real(wp), intent(in) :: motion(4, *), places(4, n)
+    real(wp), intent(inout) :: changes(2, n) !! m
+    integer :: i
+
+    !GCC$ NOVECTOR
+    do i = 1, n
+      changes(:, i) = motion(1:2, nodes(i)) - places(3:4, i)
+    end do
+  end subroutine take_changes
+
   !> Copy u of the nodes; the diagonal of the box of their changes bounds the relative motion.
-  pure subroutine take_places(nodes, motion, places, spread, changes)
+  pure subroutine take_places(nodes, motion, places, spread)
     integer, intent(in), contiguous :: nodes(:)
     real(wp), intent(in) :: motion(4, *)
     real(wp), intent(inout) :: places(4, *)
     real(wp), intent(out) :: spread !! m
-    real(wp), intent(inout), optional :: changes(2, *) !! m
     real(wp) :: low(2, n_lane), high(2, n_lane), change(2)
     integer :: i, k
 
@@ -100,7 +114,6 @@ contains
         associate (j => i - n_lane + k)
           change = motion(1:2, nodes(j)) - places(3:4, j)
           places(3:4, j) = motion(1:2, nodes(j))
-          if (present(changes)) changes(:, j) = change
           low(:, k) = merge(change, low(:, k), change < low(:, k))
           high(:, k) = merge(change, high(:, k), change > high(:, k))
         end associate
@@ -109,7 +122,6 @@ contains
     do i = size(nodes) - modulo(size(nodes), n_lane) + 1, size(nodes)
       change = motion(1:2, nodes(i)) - places(3:4, i)
       places(3:4, i) = motion(1:2, nodes(i))
-      if (present(changes)) changes(:, i) = change
       low(:, 1) = merge(change, low(:, 1), change < low(:, 1))
       high(:, 1) = merge(change, high(:, 1), change > high(:, 1))
     end do
