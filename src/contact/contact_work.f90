@@ -33,11 +33,42 @@ contains
     if (allocated(memory%damping_force)) &
       call take_force(memory%nodes, motion, memory%damping_force, apart%damping)
     if (.not. allocated(memory%friction%force)) return
-    call take_force(memory%nodes, motion, memory%friction%force, apart%friction)
+    if (had_force) call take_friction(motion, memory, apart%friction)
     apart%dissipated = memory%friction%work - memory%friction%stored
     call set_tractions_aside(memory)
     if (.not. had_force) call keep_dissipated(apart%dissipated, memory%friction)
   end subroutine take_apart
+
+  !> Power of the forces of friction, which are zero afterwards.
+  pure subroutine take_friction(motion, memory, power)
+    real(wp), intent(in), contiguous :: motion(:, :)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(out) :: power !! W/m
+    integer :: side
+
+    power = friction_power(motion, memory)
+    do side = 1, 2
+      associate (first => memory%scratch%rubbed(1, side), last => memory%scratch%rubbed(2, side))
+        memory%friction%force(:, first:last) = 0.0_wp
+      end associate
+    end do
+  end subroutine take_friction
+
+  !> The same of forces that stay: of the nodes alone that have some.
+  pure function friction_power(motion, memory) result(power)
+    real(wp), intent(in), contiguous :: motion(:, :)
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: power
+    integer :: side
+
+    power = 0.0_wp
+    do side = 1, 2
+      associate (first => memory%scratch%rubbed(1, side), last => memory%scratch%rubbed(2, side))
+        power = power + power_of(memory%nodes(first:last), motion, &
+          memory%friction%force(:, first:last))
+      end associate
+    end do
+  end function friction_power
 
   !> Add the forces to those of the mesh and count the work of a step: half of it was done by the
   !> former forces.
@@ -55,7 +86,7 @@ contains
     if (allocated(memory%damping_force)) apart%damping = apart%damping &
       + power_of(memory%nodes, motion, memory%damping_force)
     if (allocated(memory%friction%force)) apart%friction = apart%friction &
-      + power_of(memory%nodes, motion, memory%friction%force)
+      + friction_power(motion, memory)
     call count_work(dt, power, apart, memory)
     call follow_largest(memory%energy, memory%limit)
   end subroutine hand_over

@@ -18,11 +18,11 @@ module interface_m
   use contacts_m, only : contact_t, has_friction, is_tied
   use crossing_m, only : crossings_t, find_crossings, catch_crossings
   use damping_m, only : damp_points
-  use energy_limit_m, only : keep_former_springs, limit_forces, lend
+  use energy_limit_m, only : keep_former_springs, form_springs, limit_forces, lend
   use energy_limit_state_m, only : allocate_limit
   use facing_change_m, only : rest_loose_nodes
   use facing_look_m, only : has_outline, start_facing, look_at_facing, make_present
-  use friction_m, only : take_increments, start_trial_slip, rub_places
+  use friction_m, only : start_trial_slip, take_trial_motion, rub_places
   use friction_state_m, only : allocate_friction
   use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
     start_slave_tracking, start_master_tracking, start_segments
@@ -143,13 +143,11 @@ contains
     else if (is_tied(contact)) then
       call apply_ties(contact, motion, [time, dt], cycle, clock, memory, force)
     else if (memory%facing%is_used) then
-      if (allocated(memory%friction%force)) call take_increments(motion, memory)
       call follow_runs(contact, motion, memory)
       call move_alloc(memory%facing%present, present)
       call apply_between(present, motion, mass, [time, dt], cycle, clock, memory, force)
       call move_alloc(present, memory%facing%present)
     else
-      if (allocated(memory%friction%force)) call take_increments(motion, memory)
       call apply_between(contact, motion, mass, [time, dt], cycle, clock, memory, force)
     end if
   end subroutine apply_contact
@@ -256,7 +254,7 @@ contains
     memory%n_active = 0
     memory%force = 0.0_wp
     memory%closed_gap = 0.0_wp
-    if (allocated(memory%friction%force)) call start_trial_slip(motion, dt, memory)
+    if (allocated(memory%friction%force)) call start_trial_slip(dt, memory)
     if (is_suspended(contact, time)) return
     if (.not. memory%facing%is_used) then
       call evaluate_between(contact, motion, is_first, memory, force)
@@ -282,6 +280,7 @@ contains
 
     formulation = formulation_of(contact)
     call gather_spots(contact, motion, memory)
+    if (allocated(memory%friction%force)) call take_trial_motion(motion, memory)
     call find_crossings(contact, motion, memory, crossings)
     call search_pairs(contact, 0, memory)
     call catch_crossings(contact, crossings, memory)
@@ -340,12 +339,13 @@ contains
     call gather_places(motion, memory)
   end subroutine follow_runs_in_step
 
-  !> After a restart: the present runs of an interface whose memory has been read.
+  !> After a restart: what follows from the memory of an interface that has been read.
   pure subroutine resume_contact(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
     if (memory%facing%is_used) call make_present(contact, memory)
+    call form_springs(memory)
   end subroutine resume_contact
 
   !> Whether a time is outside birth .. death.
@@ -377,7 +377,7 @@ contains
     memory%n_active = 0
   end subroutine suspend_contact
 
-  !> The present places of nodes and spots.
+  !> The present places of nodes, unless the look at what faces them has taken these, and of spots.
   pure subroutine gather_spots(contact, motion, memory)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: motion(:, :)
@@ -387,7 +387,7 @@ contains
       call refresh_memory(motion, memory)
       if (memory%facing%is_used) call rest_loose_nodes(contact%slave, contact%master, memory)
     end if
-    call gather_places(motion, memory)
+    if (.not. memory%facing%is_used) call gather_places(motion, memory)
     if (allocated(memory%spots)) call move_spots(contact%slave, memory%places, memory%spot_xi, &
       memory%spot_spread, memory%spots, memory%travel)
   end subroutine gather_spots

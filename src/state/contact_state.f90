@@ -124,6 +124,8 @@ module contact_state_m
     real(wp) :: dt = 0.0_wp                 !! step that made them, s; only in implicit runs
     real(wp), allocatable :: former_traction(:) !! (n_place) of the call before
     integer, allocatable :: former_state(:) !! (n_place) the same
+    integer :: rubbed(2, 2) = 0             !! the first and the last slave node, and master node,
+                                            !! of those with forces of friction
     real(wp) :: growth = 0.0_wp             !! of an initial overlap in this step, as a part of it
     logical :: is_start = .false.           !! this call is that of time zero; both only where such
                                             !! overlaps grow
@@ -285,6 +287,7 @@ contains
         allocate (scratch%increment(2, n), scratch%former_traction(size(memory%friction%state)), &
           source=0.0_wp)
         allocate (scratch%former_state(size(memory%friction%state)), source=0)
+        scratch%rubbed = reshape([1, memory%n_slave, memory%n_slave + 1, n], [2, 2])
       end if
       if (.not. allocated(memory%segments%status)) return
       allocate (scratch%is_placed(size(memory%segments%status)), source=.false.)

@@ -10,7 +10,8 @@ module energy_limit_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: keep_former_springs, limit_forces, follow_largest, lend, energy_factor, returned_t
+  public :: keep_former_springs, form_springs, limit_forces, follow_largest, lend, energy_factor, &
+    returned_t
 
   !> Work of forces with the factor one, J/m.
   type :: returned_t
@@ -38,21 +39,27 @@ module energy_limit_m
 
 contains
 
-  !> Before the points are placed, and before damping and friction have been counted: the forces of
-  !> the normal springs alone that acted in the cycle before. Only where there are others.
+  !> Before the points are placed: the forces of the normal springs alone that acted in the cycle
+  !> before, where there are others; both lists trade places.
   pure subroutine keep_former_springs(had_force, memory)
     logical, intent(in) :: had_force
     type(contact_state_t), intent(inout) :: memory
+    real(wp), allocatable :: spare(:, :)
 
     if (.not. allocated(memory%scratch%former_spring)) return
-    ! Where there was no force all parts are zero.
-    if (had_force) then
-      call take_springs(memory%scratch%former_force, memory%damping_force, &
-        memory%friction%force, memory%scratch%former_spring)
-    else
-      memory%scratch%former_spring = 0.0_wp
-    end if
+    call move_alloc(memory%scratch%former_spring, spare)
+    call move_alloc(memory%scratch%spring, memory%scratch%former_spring)
+    call move_alloc(spare, memory%scratch%spring)
+    if (.not. had_force) memory%scratch%former_spring = 0.0_wp
   end subroutine keep_former_springs
+
+  !> The forces of the normal springs alone, where there are others; after a restart too.
+  pure subroutine form_springs(memory)
+    type(contact_state_t), intent(inout) :: memory
+
+    if (allocated(memory%scratch%spring)) call take_springs(memory%force, memory%damping_force, &
+      memory%friction%force, memory%scratch%spring)
+  end subroutine form_springs
 
   !> Forces without the parts that damping and friction have.
   pure subroutine take_springs(force, damping, friction, spring)
@@ -96,11 +103,10 @@ contains
     real(wp), allocatable :: spare(:, :)
     real(wp) :: factor
 
+    call form_springs(memory)
     associate (limit => memory%limit, scratch => memory%scratch)
       if (.not. allocated(limit%velocity)) return
       if (allocated(scratch%former_spring)) then
-        call take_springs(memory%force, memory%damping_force, memory%friction%force, &
-          scratch%spring)
         call find_factor(memory%energy, memory%nodes, motion, dt, scratch%former_spring, &
           scratch%spring, scratch%velocity, limit, factor)
       else
@@ -114,6 +120,7 @@ contains
     end associate
     if (.not. factor < 1.0_wp) return
     call scale_forces(factor, memory)
+    call form_springs(memory)
     if (allocated(memory%interference%depth)) call limit_moment(factor, memory)
   end subroutine limit_forces
 

@@ -4,72 +4,55 @@
 module friction_m
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contacts_m, only : contact_t, friction_rule_t
-  use friction_state_m, only : is_open, sticks, slips
+  use friction_slips_m, only : find_slips
+  use friction_state_m, only : friction_memory_t, is_open, sticks, slips
   use kinds_m, only : wp
-  use law_friction_m, only : coefficient_of, return_traction
+  use law_friction_m, only : find_limits, return_tractions
   use lengths_m, only : competence_length
   use nodal_average_m, only : average_values, share_out
   use radii_m, only : centroid
   implicit none
   private
-  public :: take_increments, start_trial_slip, set_tractions_aside, rub_places, place_of_point, &
+  public :: start_trial_slip, take_trial_motion, set_tractions_aside, rub_places, place_of_point, &
     place_at, spot_at, has_slipped, let_stick
 
-  !> Places whose slips are formed together.
+  !> Places whose tractions are formed together.
   integer, parameter :: n_block = 64
 
-  !> A place in a step.
-  type :: rub_t
-    real(wp) :: slip = 0.0_wp      !! of the step, m
-    real(wp) :: former = 0.0_wp    !! traction before, N/m^2
-    real(wp) :: pressure = 0.0_wp  !! N/m^2
-    real(wp) :: stiffness = 0.0_wp !! tangential, N/m^3
-    real(wp) :: most = huge(1.0_wp) !! largest traction whatever the pressure, N/m^2
-  end type rub_t
+  !> Places in a step. Without default values, which would be written before each use.
+  type :: rubs_t
+    integer :: place(n_block)
+    real(wp) :: slip(n_block)      !! of the step, m
+    real(wp) :: former(n_block)    !! traction before, N/m^2
+    real(wp) :: stiffness(n_block) !! tangential, N/m^3
+    real(wp) :: pressure(n_block)  !! N/m^2
+    real(wp) :: most(n_block)      !! largest traction whatever the pressure, N/m^2; only where the
+                                   !! rule has one
+    real(wp) :: traction(n_block)  !! after the step, N/m^2
+    integer :: state(n_block)      !! the same
+  end type rubs_t
 
 contains
 
-  !> Before the present places are taken: displacements since the last call; none after a time
-  !> without contact.
-  pure subroutine take_increments(motion, memory)
-    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u(n), v(n-1/2)
-    type(contact_state_t), intent(inout) :: memory
-
-    associate (increment => memory%scratch%increment)
-      if (memory%is_stale) then
-        increment = 0.0_wp
-      else
-        call take_changes(size(memory%nodes), memory%nodes, motion, memory%places, increment)
-      end if
-    end associate
-  end subroutine take_increments
-
-  !> On arrays of known shape.
-  pure subroutine take_changes(n, nodes, motion, places, increment)
-    integer, intent(in) :: n, nodes(n)
-    real(wp), intent(in) :: motion(4, *), places(4, n)
-    real(wp), intent(inout) :: increment(2, n)
-    integer :: i
-
-    !GCC$ NOVECTOR
-    do i = 1, n
-      increment(:, i) = motion(1:2, nodes(i)) - places(3:4, i)
-    end do
-  end subroutine take_changes
-
   !> Before the points of a trial of an implicit step are placed: friction goes on from the last
-  !> converged step, with all motion since then.
-  pure subroutine start_trial_slip(motion, dt, memory)
-    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, and u minus that of the start
-                                                     !! of the step
+  !> converged step.
+  pure subroutine start_trial_slip(dt, memory)
     real(wp), intent(in) :: dt                       !! of the step, s
     type(contact_state_t), intent(inout) :: memory
 
-    memory%scratch%increment = motion(3:4, memory%nodes)
     memory%scratch%dt = dt
     memory%friction%force = 0.0_wp
     call set_tractions_aside(memory)
   end subroutine start_trial_slip
+
+  !> The displacements that it goes on with: all of the step.
+  pure subroutine take_trial_motion(motion, memory)
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, and u minus that of the start
+                                                     !! of the step
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%scratch%increment = motion(3:4, memory%nodes)
+  end subroutine take_trial_motion
 
   !> Whether any place slipped at the end of the last step.
   pure function has_slipped(contacts)
@@ -97,12 +80,19 @@ contains
     end do
   end subroutine let_stick
 
-  !> Before the points are placed: all places are open until they are found to be pressed.
+  !> Before the points are placed: all places are open until they are found to be pressed. Tractions
+  !> and states trade places with those of the call before.
   pure subroutine set_tractions_aside(memory)
     type(contact_state_t), intent(inout) :: memory
+    real(wp), allocatable :: traction(:)
+    integer, allocatable :: state(:)
 
-    memory%scratch%former_traction(:) = memory%friction%traction
-    memory%scratch%former_state(:) = memory%friction%state
+    call move_alloc(memory%scratch%former_traction, traction)
+    call move_alloc(memory%friction%traction, memory%scratch%former_traction)
+    call move_alloc(traction, memory%friction%traction)
+    call move_alloc(memory%scratch%former_state, state)
+    call move_alloc(memory%friction%state, memory%scratch%former_state)
+    call move_alloc(state, memory%friction%state)
     memory%friction%traction = 0.0_wp
     memory%friction%state = is_open
     memory%friction%stored = 0.0_wp
@@ -130,69 +120,116 @@ contains
     logical, intent(in) :: has_unit_area
     real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
-    type(rub_t) :: rub
-    integer :: p, place
+    type(rubs_t) :: rubs
+    integer :: first, last, n, k
 
-    memory%scratch%nodal(1, :) = 0.0_wp
-    rub%most = most_traction(contact%friction)
-    call find_point_slips(memory)
-    do p = 1, memory%points%n
-      rub%slip = memory%points%traction(p)
-      memory%points%traction(p) = 0.0_wp
-      if (.not. memory%points%pressure(p) > 0.0_wp) cycle
-      place = place_of_point(memory%points, p)
-      associate (points => memory%points)
-        rub%former = former_traction(memory, p, place)
-        rub%pressure = points%pressure(p)
-        rub%stiffness = contact%friction%stiffness*points%stiffness(p)
-        if (has_unit_area .and. contact%friction%most > 0.0_wp) rub%most = contact%friction%most &
-          *competence_length(contact%slave, memory%places(:, :memory%n_slave), place)
-      end associate
-      call rub_point(contact%friction, rub, dt, p, place, memory)
-    end do
+    if (contact%friction%most > 0.0_wp) rubs%most = contact%friction%most
+    associate (points => memory%points, scratch => memory%scratch)
+      do first = 1, points%n, n_block
+        last = min(first + n_block - 1, points%n)
+        n = last - first + 1
+        call find_slips(n, points%slave_nodes(1, first), points%slave_weights(1, first), &
+          points%master_nodes(1, first), points%master_weights(1, first), &
+          points%normal(1, first), points%gap(first), scratch%increment, memory%places, rubs%slip)
+        call find_former(n, points%slave_nodes(1, first), points%slave_weights(1, first), &
+          points%master_nodes(1, first), scratch%former_traction, scratch%former_state, &
+          rubs%place, rubs%former)
+        rubs%pressure(:n) = points%pressure(first:last)
+        rubs%stiffness(:n) = contact%friction%stiffness*points%stiffness(first:last)
+        if (has_unit_area .and. contact%friction%most > 0.0_wp) then
+          do k = 1, n
+            rubs%most(k) = contact%friction%most*competence_length(contact%slave, &
+              memory%places(:, :memory%n_slave), rubs%place(k))
+          end do
+        end if
+        call rub_block(contact%friction, n, dt, rubs)
+        call leave_tractions(n, rubs, points%area(first), points%traction(first), scratch%nodal, &
+          memory%friction)
+      end do
+    end associate
   end subroutine rub_points
 
-  !> One of them. Points at one place in a step (a node between two runs) go on from what it had,
-  !> and leave it their mean.
-  pure subroutine rub_point(rule, rub, dt, p, place, memory)
-    type(friction_rule_t), intent(in) :: rule
-    type(rub_t), intent(in) :: rub
-    real(wp), intent(in) :: dt
-    integer, intent(in) :: p, place
-    type(contact_state_t), intent(inout) :: memory
-    real(wp) :: traction, area
-    integer :: state
+  !> The places of some points and their tractions in the step before. A master node that was none
+  !> of the points then starts from what the two ends of its slave segment had: of nothing it would
+  !> lose that part of the shear.
+  pure subroutine find_former(n, slave_nodes, slave_weights, master_nodes, former_traction, &
+      former_state, place, former)
+    integer, intent(in) :: n, slave_nodes(n_side, *), master_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *)
+    real(wp), intent(in) :: former_traction(*)  !! of all places
+    integer, intent(in) :: former_state(*)
+    integer, intent(inout) :: place(*)          !! of the points
+    real(wp), intent(inout) :: former(*)
+    integer :: p
 
-    call rub_one(rule, rub, dt, traction, state)
-    associate (friction => memory%friction, points => memory%points, &
-      total => memory%scratch%nodal(1, place))
-      points%traction(p) = traction
-      area = points%area(p)
-      friction%stored = friction%stored + area*traction**2/(2.0_wp*rub%stiffness)
-      if (friction%state(place) == is_open) then
-        friction%slip(place) = friction%slip(place) + rub%slip
-      else if (total + area > 0.0_wp) then
-        traction = (total*friction%traction(place) + area*traction)/(total + area)
+    do p = 1, n
+      place(p) = slave_nodes(1, p)
+      if (slave_nodes(2, p) /= place(p)) place(p) = master_nodes(1, p)
+      former(p) = former_traction(place(p))
+      if (slave_nodes(1, p) == slave_nodes(2, p)) cycle
+      if (former_state(place(p)) == is_open) &
+        former(p) = sum(slave_weights(:, p)*former_traction(slave_nodes(:, p)))
+    end do
+  end subroutine find_former
+
+  !> Leave tractions to points and to their places.
+  pure subroutine leave_tractions(n, rubs, area, traction, total, friction)
+    integer, intent(in) :: n
+    type(rubs_t), intent(in) :: rubs
+    real(wp), intent(in) :: area(n)           !! of the points, m
+    real(wp), intent(inout) :: traction(n)    !! of the points, N/m^2
+    real(wp), intent(inout) :: total(2, *)    !! scratch of all places: (1, :) their areas, m
+    type(friction_memory_t), intent(inout) :: friction
+    integer :: k
+
+    do k = 1, n
+      traction(k) = 0.0_wp
+      if (.not. rubs%pressure(k) > 0.0_wp) cycle
+      traction(k) = rubs%traction(k)
+      friction%stored = friction%stored + area(k)*traction(k)**2/(2.0_wp*rubs%stiffness(k))
+      associate (place => rubs%place(k))
+        if (friction%state(place) == is_open) then
+          call leave_traction(rubs, k, friction)
+          total(1, place) = area(k)
+        else
+          call leave_mean(area(k), rubs, k, total(1, place), friction)
+        end if
+      end associate
+    end do
+  end subroutine leave_tractions
+
+  !> What a place remembers of a step.
+  pure subroutine leave_traction(rubs, k, friction)
+    type(rubs_t), intent(in) :: rubs
+    integer, intent(in) :: k
+    type(friction_memory_t), intent(inout) :: friction
+
+    associate (place => rubs%place(k))
+      friction%slip(place) = friction%slip(place) + rubs%slip(k)
+      friction%traction(place) = rubs%traction(k)
+      friction%state(place) = rubs%state(k)
+    end associate
+  end subroutine leave_traction
+
+  !> The same of a further point at one place (a node between two runs): all of them go on from what
+  !> it had, and leave it their mean.
+  pure subroutine leave_mean(area, rubs, k, total, friction)
+    real(wp), intent(in) :: area     !! of the point, m
+    type(rubs_t), intent(in) :: rubs
+    integer, intent(in) :: k
+    real(wp), intent(inout) :: total !! area of the place so far, m
+    type(friction_memory_t), intent(inout) :: friction
+
+    associate (place => rubs%place(k), mean => friction%traction(rubs%place(k)))
+      if (total + area > 0.0_wp) then
+        mean = (total*mean + area*rubs%traction(k))/(total + area)
+      else
+        mean = rubs%traction(k)
       end if
-      friction%traction(place) = traction
-      friction%state(place) = max(state, friction%state(place))
-      total = total + area
+      friction%state(place) = max(rubs%state(k), friction%state(place))
     end associate
-  end subroutine rub_point
-
-  !> Traction in the step before. A master node that was none of the points then starts from what
-  !> the two ends of its slave segment had: of nothing it would lose that part of the shear.
-  pure function former_traction(memory, p, place) result(traction)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: p, place
-    real(wp) :: traction
-
-    associate (former => memory%scratch%former_traction, nodes => memory%points%slave_nodes(:, p))
-      traction = former(place)
-      if (nodes(1) /= nodes(2) .and. memory%scratch%former_state(place) == is_open) &
-        traction = sum(memory%points%slave_weights(:, p)*former(nodes))
-    end associate
-  end function former_traction
+    total = total + area
+  end subroutine leave_mean
 
   !> The place of a point at a node, slave or master.
   pure function place_of_point(points, p) result(place)
@@ -218,39 +255,77 @@ contains
   end function place_at
 
   !> Type 4, and whatever presses at spots between nodes: virtual nodes, with the foot of each; all
-  !> its portions have its traction.
+  !> its portions, which follow each other in the order of the spots in contact, have its traction.
   pure subroutine rub_virtual_nodes(contact, dt, memory)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
-    type(rub_t) :: rub
-    real(wp) :: slips(memory%slave_tracking%n)
-    integer :: p, n, q, place
+    type(rubs_t) :: rubs
+    integer :: portions(n_block + 1) !! the first of each spot, and the first beyond
+    integer :: first, n, k
 
-    rub%most = most_traction(contact%friction)
-    rub%stiffness = contact%friction%stiffness*memory%slave_penalty
-    n = size(memory%spot_xi)
-    call find_spot_slips(contact, memory, slips)
-    do p = 1, memory%points%n
-      memory%points%traction(p) = 0.0_wp
-      if (.not. memory%points%pressure(p) > 0.0_wp) cycle
-      associate (friction => memory%friction, points => memory%points, &
-        first => memory%points%slave_nodes(1, p))
-        q = spot_at(points%slave_weights(2, p), memory%spot_xi)
-        place = n*(first - 1) + q
-        if (friction%state(place) == is_open) then
-          rub%slip = slips(n*(contact%slave%outgoing(first) - 1) + q)
-          rub%former = memory%scratch%former_traction(place)
-          rub%pressure = points%pressure(p)
-          call rub_one(contact%friction, rub, dt, friction%traction(place), friction%state(place))
-          friction%slip(place) = friction%slip(place) + rub%slip
-        end if
-        points%traction(p) = friction%traction(place)
-        friction%stored = friction%stored + points%area(p)*points%traction(p)**2 &
-          /(2.0_wp*rub%stiffness)
+    if (contact%friction%most > 0.0_wp) rubs%most = contact%friction%most
+    rubs%stiffness = contact%friction%stiffness*memory%slave_penalty
+    portions(1) = 1
+    do first = 1, memory%slave_tracking%n_touching, n_block
+      n = min(n_block, memory%slave_tracking%n_touching - first + 1)
+      call find_spot_slips(contact, memory, first, n, rubs)
+      associate (points => memory%points)
+        call find_portions(n, points%n, points%slave_nodes, points%slave_weights, portions)
+        do k = 1, n
+          rubs%former(k) = memory%scratch%former_traction(rubs%place(k))
+          rubs%pressure(k) = points%pressure(portions(k))
+        end do
+        call rub_block(contact%friction, n, dt, rubs)
+        do k = 1, n
+          if (rubs%pressure(k) > 0.0_wp) then
+            call leave_traction(rubs, k, memory%friction)
+          else
+            rubs%traction(k) = 0.0_wp
+          end if
+        end do
+        call share_tractions(n, portions, rubs, points%area, points%traction, &
+          memory%friction%stored)
       end associate
+      portions(1) = portions(n + 1)
     end do
   end subroutine rub_virtual_nodes
+
+  !> Where the portions of some spots begin on the list: another spot has another node or stands
+  !> elsewhere on its segment.
+  pure subroutine find_portions(n, n_point, slave_nodes, slave_weights, portions)
+    integer, intent(in) :: n, n_point, slave_nodes(n_side, n_point)
+    real(wp), intent(in) :: slave_weights(n_side, n_point)
+    integer, intent(inout) :: portions(n + 1) !! in: (1)
+    integer :: k, p
+
+    p = portions(1)
+    do k = 1, n
+      portions(k) = p
+      do p = portions(k) + 1, n_point
+        if (slave_nodes(1, p) /= slave_nodes(1, p - 1)) exit
+        if (slave_weights(2, p) /= slave_weights(2, p - 1)) exit
+      end do
+    end do
+    portions(n + 1) = p
+  end subroutine find_portions
+
+  !> Tractions of the portions of some spots, and what their springs hold.
+  pure subroutine share_tractions(n, portions, rubs, area, traction, stored)
+    integer, intent(in) :: n, portions(n + 1)
+    type(rubs_t), intent(in) :: rubs
+    real(wp), intent(in) :: area(*)        !! of all points, m
+    real(wp), intent(inout) :: traction(*) !! of all points, N/m^2
+    real(wp), intent(inout) :: stored      !! J/m
+    integer :: k, p
+
+    do k = 1, n
+      do p = portions(k), portions(k + 1) - 1
+        traction(p) = rubs%traction(k)
+        stored = stored + area(p)*rubs%traction(k)**2/(2.0_wp*rubs%stiffness(k))
+      end do
+    end do
+  end subroutine share_tractions
 
   !> Which of the spots of a segment stands at xi.
   pure function spot_at(xi, spot_xi) result(q)
@@ -263,42 +338,39 @@ contains
     end do
   end function spot_at
 
-  !> Slips of the spots in contact, some at a time.
-  pure subroutine find_spot_slips(contact, memory, slips)
+  !> Places and slips of some spots in contact.
+  pure subroutine find_spot_slips(contact, memory, first, n, rubs)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    real(wp), intent(inout) :: slips(:) !! of all spots, m
+    integer, intent(in) :: first        !! on the list of spots in contact
+    integer, intent(in) :: n
+    type(rubs_t), intent(inout) :: rubs
     integer, dimension(n_side, n_block) :: slave_nodes, master_nodes
     real(wp), dimension(n_side, n_block) :: slave_weights, master_weights
-    real(wp) :: normals(2, n_block), gaps(n_block), found(n_block)
-    integer :: first, n, k, i, s, q
+    real(wp) :: normals(2, n_block), gaps(n_block)
+    integer :: k, i, s, q
 
     associate (tracking => memory%slave_tracking, xi => memory%spot_xi)
-      do first = 1, tracking%n_touching, n_block
-        n = min(n_block, tracking%n_touching - first + 1)
-        do k = 1, n
-          i = tracking%touching(first + k - 1)
-          s = 1 + (i - 1)/size(xi)
-          q = i - (s - 1)*size(xi)
-          slave_nodes(:, k) = contact%slave%segments(:, s)
-          slave_weights(2, k) = xi(q)
-          if (memory%spot_spread > 0.0_wp) slave_weights(2, k) = centroid( &
-            memory%places(:, slave_nodes(1, k)), memory%places(:, slave_nodes(2, k)), &
-            xi(q) - 0.5_wp*memory%spot_spread, xi(q) + 0.5_wp*memory%spot_spread)
-          slave_weights(1, k) = 1.0_wp - slave_weights(2, k)
-          master_nodes(:, k) = memory%n_slave + contact%master%segments(:, tracking%segment(i))
-          master_weights(1, k) = 1.0_wp - tracking%xi(i)
-          master_weights(2, k) = tracking%xi(i)
-          normals(:, k) = tracking%normal(:, i)
-          gaps(k) = tracking%gap(i)
-        end do
-        call find_slips(n, slave_nodes, slave_weights, master_nodes, master_weights, normals, &
-          gaps, memory%scratch%increment, memory%places, found)
-        do k = 1, n
-          slips(tracking%touching(first + k - 1)) = found(k)
-        end do
+      do k = 1, n
+        i = tracking%touching(first + k - 1)
+        s = 1 + (i - 1)/size(xi)
+        q = i - (s - 1)*size(xi)
+        slave_nodes(:, k) = contact%slave%segments(:, s)
+        rubs%place(k) = size(xi)*(slave_nodes(1, k) - 1) + q
+        slave_weights(2, k) = xi(q)
+        if (memory%spot_spread > 0.0_wp) slave_weights(2, k) = centroid( &
+          memory%places(:, slave_nodes(1, k)), memory%places(:, slave_nodes(2, k)), &
+          xi(q) - 0.5_wp*memory%spot_spread, xi(q) + 0.5_wp*memory%spot_spread)
+        slave_weights(1, k) = 1.0_wp - slave_weights(2, k)
+        master_nodes(:, k) = memory%n_slave + contact%master%segments(:, tracking%segment(i))
+        master_weights(1, k) = 1.0_wp - tracking%xi(i)
+        master_weights(2, k) = tracking%xi(i)
+        normals(:, k) = tracking%normal(:, i)
+        gaps(k) = tracking%gap(i)
       end do
     end associate
+    call find_slips(n, slave_nodes, slave_weights, master_nodes, master_weights, normals, gaps, &
+      memory%scratch%increment, memory%places, rubs%slip)
   end subroutine find_spot_slips
 
   !> Types 6 and 7: slave nodes, with slips averaged as gaps are.
@@ -306,98 +378,64 @@ contains
     type(friction_rule_t), intent(in) :: rule
     real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
-    type(rub_t) :: rub
-    integer :: i
+    type(rubs_t) :: rubs
+    integer :: i, n
 
-    associate (friction => memory%friction, points => memory%points, nodal => memory%scratch%nodal)
-      call find_point_slips(memory)
-      call average_values(points, points%traction, memory%n_slave, nodal)
-      rub%stiffness = rule%stiffness*memory%slave_penalty
-      rub%most = most_traction(rule)
-      do i = 1, memory%n_slave
-        if (.not. memory%node_pressure(i) > 0.0_wp) cycle
-        rub%slip = nodal(1, i)
-        rub%former = memory%scratch%former_traction(i)
-        rub%pressure = memory%node_pressure(i)
-        call rub_one(rule, rub, dt, friction%traction(i), friction%state(i))
-        friction%slip(i) = friction%slip(i) + rub%slip
-        friction%stored = friction%stored + nodal(2, i)*friction%traction(i)**2 &
-          /(2.0_wp*rub%stiffness)
-      end do
-      call share_out(points%n, points%slave_nodes, points%slave_weights, friction%traction, &
-        points%traction)
-    end associate
-  end subroutine rub_slave_nodes
-
-  !> Slips of all points, into their tractions.
-  pure subroutine find_point_slips(memory)
-    type(contact_state_t), intent(inout) :: memory
-
-    associate (points => memory%points)
+    associate (points => memory%points, nodal => memory%scratch%nodal)
       call find_slips(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
         points%master_weights, points%normal, points%gap, memory%scratch%increment, &
         memory%places, points%traction)
+      call average_values(points, points%traction, memory%n_slave, nodal)
+      rubs%stiffness = rule%stiffness*memory%slave_penalty
+      if (rule%most > 0.0_wp) rubs%most = rule%most
+      n = 0
+      do i = 1, memory%n_slave
+        if (memory%node_pressure(i) > 0.0_wp) then
+          n = n + 1
+          rubs%place(n) = i
+          rubs%slip(n) = nodal(1, i)
+          rubs%former(n) = memory%scratch%former_traction(i)
+          rubs%pressure(n) = memory%node_pressure(i)
+        end if
+        if (n < n_block .and. i < memory%n_slave) cycle
+        call rub_nodes(rule, n, dt, nodal, rubs, memory%friction)
+        n = 0
+      end do
+      call share_out(points%n, points%slave_nodes, points%slave_weights, &
+        memory%friction%traction, points%traction)
     end associate
-  end subroutine find_point_slips
+  end subroutine rub_slave_nodes
 
-  !> Slips of a step of the slave sides of places over their master sides, along t = (-n_y, n_x), m:
-  !> the motion of the foot over the segment that has the normal, L d(xi)
-  !> (doc/theory/contact.md, section 6.2). Its second term takes off what the turn of that segment
-  !> moves at a distance; without it a rotation of all would slip. That segment is the master's, or
-  !> the slave's where the master side is one node.
-  pure subroutine find_slips(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
-      gap, du, places, slip)
-    integer, intent(in) :: n, slave_nodes(n_side, *), master_nodes(n_side, *)
-    real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *)
-    real(wp), intent(in) :: normal(2, *), gap(*)
-    real(wp), intent(in) :: du(2, *)      !! increments of the nodes, m
-    real(wp), intent(in) :: places(4, *)  !! of the nodes
-    real(wp), intent(inout) :: slip(*)
-    real(wp) :: relative(2), along(4), t(2), turn(2)
-    integer :: p, a, b, c, d
-
-    !GCC$ NOVECTOR
-    do p = 1, n
-      a = slave_nodes(1, p)
-      b = slave_nodes(2, p)
-      c = master_nodes(1, p)
-      d = master_nodes(2, p)
-      relative = slave_weights(1, p)*du(:, a) + slave_weights(2, p)*du(:, b) &
-        - master_weights(1, p)*du(:, c) - master_weights(2, p)*du(:, d)
-      if (c == d) then
-        c = a
-        d = b
-      end if
-      along = places(:, d) - places(:, c)
-      t = along(1:2) + along(3:4)
-      turn = du(:, d) - du(:, c)
-      slip(p) = normal(1, p)*relative(2) - normal(2, p)*relative(1) &
-        + gap(p)*(t(2)*turn(1) - t(1)*turn(2))/max(t(1)**2 + t(2)**2, tiny(1.0_wp))
-    end do
-  end subroutine find_slips
-
-  !> Largest traction of a rule whatever the pressure.
-  pure function most_traction(rule) result(most)
+  !> Some of them, all pressed.
+  pure subroutine rub_nodes(rule, n, dt, nodal, rubs, friction)
     type(friction_rule_t), intent(in) :: rule
-    real(wp) :: most
-
-    most = huge(1.0_wp)
-    if (rule%most > 0.0_wp) most = rule%most
-  end function most_traction
-
-  !> Traction and state of a place after a step.
-  pure subroutine rub_one(rule, rub, dt, traction, state)
-    type(friction_rule_t), intent(in) :: rule
-    type(rub_t), intent(in) :: rub
+    integer, intent(in) :: n
     real(wp), intent(in) :: dt
-    real(wp), intent(out) :: traction
-    integer, intent(out) :: state
-    real(wp) :: speed
+    real(wp), intent(in) :: nodal(2, *) !! of all slave nodes: (2, :) areas, m
+    type(rubs_t), intent(inout) :: rubs
+    type(friction_memory_t), intent(inout) :: friction
+    integer :: k
 
-    speed = 0.0_wp
-    if (dt > 0.0_wp) speed = abs(rub%slip)/dt
-    call return_traction(rub%former + rub%stiffness*rub%slip, &
-      min(coefficient_of(rule, speed)*rub%pressure, rub%most), traction, state)
-  end subroutine rub_one
+    call rub_block(rule, n, dt, rubs)
+    do k = 1, n
+      call leave_traction(rubs, k, friction)
+      friction%stored = friction%stored + nodal(2, rubs%place(k))*rubs%traction(k)**2 &
+        /(2.0_wp*rubs%stiffness(k))
+    end do
+  end subroutine rub_nodes
+
+  !> Tractions and states of some places after a step.
+  pure subroutine rub_block(rule, n, dt, rubs)
+    type(friction_rule_t), intent(in) :: rule
+    integer, intent(in) :: n
+    real(wp), intent(in) :: dt
+    type(rubs_t), intent(inout) :: rubs
+    real(wp) :: limits(n_block)
+
+    call find_limits(rule, n, dt, rubs%slip, rubs%pressure, limits)
+    if (rule%most > 0.0_wp) limits(:n) = min(limits(:n), rubs%most(:n))
+    call return_tractions(n, rubs%former, rubs%stiffness, rubs%slip, limits, rubs%traction, &
+      rubs%state)
+  end subroutine rub_block
 
 end module friction_m

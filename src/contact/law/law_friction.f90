@@ -8,7 +8,7 @@ module law_friction_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: coefficient_of, return_traction, vary_traction
+  public :: coefficient_of, find_limits, return_traction, return_tractions, vary_traction
 
 contains
 
@@ -23,6 +23,40 @@ contains
     if (rule%decay > 0.0_wp) coefficient = rule%sliding &
       + (rule%at_rest - rule%sliding)*exp(-rule%decay*speed)
   end function coefficient_of
+
+  !> Largest tractions of some places at their speeds; rules without a decay do not ask for these.
+  pure subroutine find_limits(rule, n, dt, slip, pressure, limit)
+    type(friction_rule_t), intent(in) :: rule
+    integer, intent(in) :: n
+    real(wp), intent(in) :: dt              !! step that made the slips, s
+    real(wp), intent(in) :: slip(n)         !! m
+    real(wp), intent(in) :: pressure(n)     !! N/m^2
+    real(wp), intent(inout) :: limit(n)     !! N/m^2
+    integer :: i
+
+    if (rule%decay > 0.0_wp .and. dt > 0.0_wp) then
+      do i = 1, n
+        limit(i) = coefficient_of(rule, abs(slip(i))/dt)*pressure(i)
+      end do
+    else
+      limit = coefficient_of(rule, 0.0_wp)*pressure
+    end if
+  end subroutine find_limits
+
+  !> Tractions of some places: springs over their slips, no more than the limits.
+  pure subroutine return_tractions(n, former, stiffness, slip, limit, traction, state)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: former(n)       !! traction before, N/m^2
+    real(wp), intent(in) :: stiffness(n)    !! tangential, N/m^3
+    real(wp), intent(in) :: slip(n), limit(n)
+    real(wp), intent(inout) :: traction(n)
+    integer, intent(inout) :: state(n)
+    integer :: i
+
+    do i = 1, n
+      call return_traction(former(i) + stiffness(i)*slip(i), limit(i), traction(i), state(i))
+    end do
+  end subroutine return_tractions
 
   !> Return of a trial traction to the limit.
   elemental subroutine return_traction(trial, limit, traction, state)

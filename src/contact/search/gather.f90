@@ -15,12 +15,15 @@ module gather_m
 contains
 
   !> Take the present displacements into the memory and let its travel grow by a bound on how far
-  !> any two nodes have moved relative to each other since the last call.
+  !> any two nodes have moved relative to each other since the last call. Friction keeps what each
+  !> has moved.
   pure subroutine gather_places(motion, memory)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: spread
 
+    if (allocated(memory%scratch%increment)) call take_changes(size(memory%nodes), memory%nodes, &
+      motion, memory%places, memory%scratch%increment)
     call take_places(memory%nodes, motion, memory%places, spread)
     memory%travel = memory%travel + spread
   end subroutine gather_places
@@ -81,6 +84,19 @@ contains
       power = power + (motion(3, nodes(i))*force(1, i) + motion(4, nodes(i))*force(2, i))
     end do
   end function power_of
+
+  !> What the nodes have moved by, in a loop of its own: without friction there is none.
+  pure subroutine take_changes(n, nodes, motion, places, changes)
+    integer, intent(in) :: n, nodes(n)
+    real(wp), intent(in) :: motion(4, *), places(4, n)
+    real(wp), intent(inout) :: changes(2, n) !! m
+    integer :: i
+
+    !GCC$ NOVECTOR
+    do i = 1, n
+      changes(:, i) = motion(1:2, nodes(i)) - places(3:4, i)
+    end do
+  end subroutine take_changes
 
   !> Copy u of the nodes; the diagonal of the box of their changes bounds the relative motion.
   pure subroutine take_places(nodes, motion, places, spread)

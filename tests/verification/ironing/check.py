@@ -11,6 +11,8 @@ RHO = 1000.0
 #: Time in which a wave goes a unit of length.
 UNIT = 1.0 / np.sqrt(YOUNG[1] / RHO)
 PENALTY = 4.0e10
+#: Types that come through on the way along the slab.
+THROUGH = (3, 4, 5, 6, 7)
 #: Forces per depth at parts of the way down (Fischer & Wriggers' example, by another program with another contact).
 TIMES = np.array([0.5, 0.6, 0.7, 0.8, 0.9, 1.0])
 DOWN = np.array([9.454e7, 1.3456e8, 1.7840e8, 2.2557e8, 2.7555e8, 3.2990e8])
@@ -78,6 +80,44 @@ def check_down(run, kind, press=120.0):
               "leap-frog keeps it")
 
 
+def along(result, press, slide):
+    """Forces on the slab, down and against the motion, over 2 to 9 of the way along it; rows of equal times."""
+    force = result.table("rcforc").where(side="slave")
+    way = 10.0 * (force["time"] / UNIT - press) / slide
+    keep = (way >= 2.0) & (way <= 9.0)
+    return way[keep], force["fy"][keep], -force["fx"][keep]
+
+
+def roughness(way, force):
+    """Standard deviation from the running mean over one element of the slab, over the mean."""
+    rows = round(0.1 / np.mean(np.diff(way)))
+    running = np.convolve(force, np.full(rows, 1.0 / rows), "valid")
+    inner = force[rows // 2:rows // 2 + len(running)]
+    return np.std(inner - running) / np.mean(force)
+
+
+def check_along(run, kind, press=150.0, slide=600.0):
+    """Forces along the slab: figures of each type, and what holds for all."""
+    name = f"{TYPES[kind]}, along"
+    result = run.program(ironing(kind, press, slide, penalty=2.0e10))
+    way, down, aside = along(result, press, slide)
+    for what, force in (("vertical", down), ("horizontal", aside)):
+        run.report(f"{name}: mean {what} force, 1e8", np.mean(force) / 1e8)
+        run.report(f"{name}: roughness of the {what} force", roughness(way, force))
+    energies = result.table("glstat")
+    scale = energies["internal"].max()
+    balance = energies["total"] - energies["external_work"]
+    run.check(f"{name}: total - external work", np.ptp(balance), 0.0, 1e-3 * scale, "max", "leap-frog keeps it")
+    run.check(f"{name}: largest fall of the dissipated energy", -np.diff(energies["friction"]).min(), 0.0, 1e-9 * scale, "max")
+    return np.mean(down), np.mean(aside), roughness(way, aside)
+
+
 def check(run):
     for kind in TYPES:
         check_down(run, kind)
+    if not run.is_full:
+        return
+    found = np.array([check_along(run, kind) for kind in THROUGH])
+    for what, values in zip(("vertical", "horizontal"), found.T):
+        run.check(f"types 3 to 7, along: mean {what} force over that of all", values / np.mean(values), 1.0, 0.05, source="each other")
+    run.true("the horizontal force is smoothest with type 7", np.argmin(found[:, 2]) == len(found) - 1)
