@@ -19,8 +19,8 @@ module pieces_m
   private
   public :: clear_pieces, list_awake, list_segment, cut_pieces, tracked_foot
 
-  !> Deepest piece of a surface in contact with itself, by the depth of a first contact, like that of
-  !> what is looked for (self_search).
+  !> Deepest piece of a surface in contact with itself, by the depth of a first contact, like that
+  !> of what is looked for (self_search).
   real(wp), parameter :: behind = 1.5_wp
 
 contains
