@@ -19,6 +19,10 @@ module pieces_m
   private
   public :: clear_pieces, list_awake, list_segment, cut_pieces, tracked_foot
 
+  !> Deepest piece of a surface in contact with itself, by the depth of a first contact, like that
+  !> of what is looked for (self_search).
+  real(wp), parameter :: behind = 1.5_wp
+
 contains
 
   !> Start a table.
@@ -175,6 +179,7 @@ contains
     call order_pieces(table%n, contact%master%segments, table%master, table%kind, table%cut, &
       table%low, table%high, table%first_cut, table%last_cut)
     call find_shares(table%n, table%own, table%other, table%share)
+    if (contact%is_self) call drop_backs(memory%slave_tracking%segment_depth, table)
   end subroutine cut_pieces
 
   !> Vectors of the pieces.
@@ -276,5 +281,26 @@ contains
         /sqrt(max(sum(own(:, k)**2)*sum(other(:, k)**2), tiny(1.0_wp))))
     end do
   end subroutine find_shares
+
+  !> In contact of a surface with itself the way along a run may lead round the tip of a fold: what
+  !> lies that deep behind a slave segment is the back of its own wall, or of another one.
+  pure subroutine drop_backs(segment_depth, table)
+    real(wp), intent(in) :: segment_depth(:) !! (segments of the master) m
+    type(piece_table_t), intent(inout) :: table
+    real(wp) :: place(2), gap
+    integer :: i, k
+
+    i = 1
+    do k = 1, table%n
+      do while (table%last(i) < k)
+        i = i + 1
+      end do
+      if (table%touches(i) .or. table%master(k) == 0 .or. .not. table%share(k) > 0.0_wp) cycle
+      place = table%way(:, k) + 0.5_wp*(table%low(k) + table%high(k))*table%own(:, k)
+      gap = table%other(2, k)*place(1) - table%other(1, k)*place(2)
+      if (gap < -behind*segment_depth(table%master(k))*norm2(table%other(:, k))) &
+        table%share(k) = 0.0_wp
+    end do
+  end subroutine drop_backs
 
 end module pieces_m

@@ -185,7 +185,7 @@ def check(run):
         for is_round in (False, True):
             check_tube(run, kind, is_round, " one element thick, crushed by 0.9", 0.3 if kind in AVERAGED else 0.15, layers=1,
                        points=4, crushed=0.9, speed=60.0 if is_round else 100.0)
-    check_tube(run, 5, True)
+    check_tube(run, 5, True, " of two one-point elements, crushed by 0.9", 0.1, crushed=0.9)
     for kind in (1, 3, 4, 5, 7):
         check_arms(run, kind)
     for kind in (1, 4, 7):
