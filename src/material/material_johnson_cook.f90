@@ -62,7 +62,7 @@ contains
       stress = mises(i) - 3.0_wp*shear*growth(i)
       rise(i) = rise(i) + flow%heat*chunk%ratio(i)*stress*growth(i)
       if (flow%has_damage .and. growth(i) > 0.0_wp) damage(i) = damage(i) &
-        + growth(i)/fracture_strain(flow, chunk%mean(i)/max(stress, tiny(1.0_wp)), ratio, hot)
+        + growth(i)/fracture_strain(flow, triaxiality(chunk%mean(i), stress), ratio, hot)
     end do
     call return_to_surface(shear, mises, growth, chunk, plastic_strain)
     do i = 1, chunk_size
@@ -178,15 +178,24 @@ contains
     end do
   end function plastic_growth
 
+  !> Mean over von Mises stress, tension positive; molten points have next to no von Mises stress.
+  pure function triaxiality(mean, mises) result(share)
+    real(wp), intent(in) :: mean, mises
+    real(wp) :: share
+    real(wp), parameter :: most = 100.0_wp
+
+    share = mean/max(mises, abs(mean)/most, tiny(1.0_wp))
+  end function triaxiality
+
   !> (D1 + D2 exp(D3 sigma_m/sigma)) (1 + D4 ln r) (1 + D5 T*), not below its bound.
-  pure function fracture_strain(flow, triaxiality, ratio, hot) result(strain)
+  pure function fracture_strain(flow, share, ratio, hot) result(strain)
     type(johnson_cook_t), intent(in) :: flow
-    real(wp), intent(in) :: triaxiality !! mean over von Mises stress, tension positive
+    real(wp), intent(in) :: share !! triaxiality
     real(wp), intent(in) :: ratio, hot
     real(wp) :: strain
 
     associate (d => flow%d)
-      strain = max(flow%least, (d(1) + d(2)*exp(min(100.0_wp, d(3)*triaxiality))) &
+      strain = max(flow%least, (d(1) + d(2)*exp(min(100.0_wp, d(3)*share))) &
         *(1.0_wp + d(4)*log(ratio))*(1.0_wp + d(5)*hot))
     end associate
   end function fracture_strain

@@ -73,6 +73,8 @@ contains
     call take_spall(deck, cursor, heat, material)
     call next_card(deck, parameters, cursor, 4, damage)
     material%flow%d = [reals_of(heat, 'D1', 'D4'), real_of(damage, 'D5')]
+    ! Tension breaks sooner, whichever sign of pressure and D3 the deck has in mind.
+    material%flow%d(3) = -abs(material%flow%d(3))
     material%flow%has_damage = any(abs(material%flow%d(1:2)) > 0.0_wp)
     if (any(abs(material%flow%d) > 0.0_wp) .and. .not. material%flow%has_damage) call &
       report_field(deck, cursor, heat, 'D1', 'is 0 as D2 is: the strain at fracture would be 0')
