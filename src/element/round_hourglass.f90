@@ -16,9 +16,10 @@ contains
 
   !> Force over gamma.v, (Q_h rho c sqrt(A)/4) V/A; or over its integral,
   !> (Q_h/4)(K + 4G/3)((B_x.B_x + B_y.B_y)/A) V/A.
-  pure subroutine form_resistance(material, hourglass, round)
+  pure subroutine form_resistance(material, hourglass, chunk, round)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
+    type(element_chunk_t), intent(in) :: chunk
     type(round_chunk_t), intent(inout) :: round !! `resistance` out
     real(wp) :: factor
     integer :: i
@@ -27,13 +28,14 @@ contains
       factor = 0.25_wp*hourglass%coefficient*material%density*material%sound_speed
       !$omp simd
       do i = 1, chunk_size
-        round%resistance(i) = factor*round%volume(i)*(round%inverse_area(i)*sqrt(round%area(i)))
+        round%resistance(i) = factor*round%volume(i)*(chunk%inverse_area(i)*sqrt(chunk%area(i)))
       end do
     else
       factor = 0.125_wp*hourglass%coefficient*(material%bulk + 4.0_wp*material%shear/3.0_wp)
       !$omp simd
       do i = 1, chunk_size
-        round%resistance(i) = factor*round%span(i)*round%volume(i)*round%inverse_area(i)**2
+        round%resistance(i) = factor*(chunk%x31(i)**2 + chunk%y31(i)**2 + chunk%x42(i)**2 &
+          + chunk%y42(i)**2)*round%volume(i)*chunk%inverse_area(i)**2
       end do
     end if
   end subroutine form_resistance

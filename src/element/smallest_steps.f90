@@ -135,9 +135,8 @@ contains
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
       call take_present(model%materials(part%material), elements, i_slot, now)
       associate (material => now)
-        chunk%area = round%area
         if (point_count(model%sections(part%section)) == 1) then
-          call form_resistance(model%materials(part%material), part%hourglass, round)
+          call form_resistance(model%materials(part%material), part%hourglass, chunk, round)
           call round_step(material, part%hourglass, shape(1, reference_mass), chunk_size, chunk, &
             round, step, volume)
         else
