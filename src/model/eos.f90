@@ -5,10 +5,13 @@ module eos_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: eos_t, initial_stiffness, eos_logarithmic, eos_linear_polynomial, eos_gruneisen
+  public :: eos_t, initial_stiffness, eos_logarithmic, eos_linear_polynomial, eos_gruneisen, &
+    eos_by_law
 
   !> Kinds. Only the dispatcher of the equations of state asks for them.
-  integer, parameter :: eos_logarithmic = 1, eos_linear_polynomial = 2, eos_gruneisen = 3
+  !> By law: the law of the material gives the pressure too, of all its strain.
+  integer, parameter :: eos_logarithmic = 1, eos_linear_polynomial = 2, eos_gruneisen = 3, &
+    eos_by_law = 4
 
   !> One *EOS, or what stands for it in a material with failure.
   type :: eos_t
