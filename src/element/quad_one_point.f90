@@ -6,7 +6,7 @@ module quad_one_point_m
   use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use element_time_step_m, only : stable_step
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
+  use eos_pressure_m, only : load_eos_state, form_eos_pressure, finish_limits
   use hourglass_m, only : resist_viscously, resist_elastically
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
@@ -90,8 +90,8 @@ contains
     call form_forces(stress, chunk)
     call stable_step(length_rule, now%sound_speed, hourglass, nodes, chunk, &
       elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> Hourglass control of one chunk, with its work.

@@ -5,7 +5,7 @@ module round_one_point_m
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
+  use eos_pressure_m, only : load_eos_state, form_eos_pressure, finish_limits
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
   use parts_m, only : hourglass_t, material_t, hourglass_viscous
@@ -94,8 +94,8 @@ contains
     call round_step(now, hourglass, elements%reference(first, reference_mass), &
       size(elements%reference, 1), chunk, round, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> Hourglass control of one chunk, with its work.
