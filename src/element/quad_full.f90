@@ -8,7 +8,7 @@ module quad_full_m
   use bulk_viscosity_m, only : add_bulk_viscosity
   use deformation_gradient_m, only : form_gradient
   use element_chunk_m, only : element_chunk_t, gather_chunk
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
+  use eos_pressure_m, only : load_eos_state, form_eos_pressure, finish_limits
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
   use law_pressure_m, only : load_law_state, start_law_values, add_law_values, form_law_pressure
   use layout_m, only : chunk_size
@@ -109,8 +109,8 @@ contains
     end do
     call full_step(now, hourglass, nodes, chunk, sums, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> The pressure that all points of an element share: bulk viscosity of the mean rate, and the

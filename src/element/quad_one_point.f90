@@ -7,7 +7,7 @@ module quad_one_point_m
   use deformation_gradient_m, only : form_gradient
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use element_time_step_m, only : stable_step
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
+  use eos_pressure_m, only : load_eos_state, form_eos_pressure, finish_limits
   use hourglass_m, only : resist_viscously, resist_elastically
   use law_pressure_m, only : load_law_state, start_law_values, add_law_values, form_law_pressure
   use layout_m, only : chunk_size
@@ -105,8 +105,8 @@ contains
     call form_forces(stress, chunk)
     call stable_step(length_rule, now%sound_speed, hourglass, nodes, chunk, &
       elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> Hourglass control of one chunk, with its work.

@@ -6,7 +6,7 @@ module round_one_point_m
   use bulk_viscosity_m, only : add_bulk_viscosity
   use deformation_gradient_m, only : form_round_gradient, form_rubber_forces
   use element_chunk_m, only : element_chunk_t
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
+  use eos_pressure_m, only : load_eos_state, form_eos_pressure, finish_limits
   use law_pressure_m, only : load_law_state, start_law_values, add_law_values, form_law_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
@@ -113,8 +113,8 @@ contains
     call round_step(now, hourglass, elements%reference(first, reference_mass), &
       size(elements%reference, 1), chunk, round, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> Hourglass control of one chunk, with its work.

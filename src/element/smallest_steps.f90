@@ -7,7 +7,7 @@ module smallest_steps_m
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use element_dispatch_m, only : point_count
   use element_time_step_m, only : stable_step
-  use eos_pressure_m, only : take_present
+  use eos_pressure_m, only : take_present, finish_limits
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
   use law_pressure_m, only : take_law_present
   use layout_m, only : chunk_size
@@ -107,6 +107,8 @@ contains
         else
           step = full_step_of(material, part%hourglass, nodes, shape, chunk)
         end if
+        if (allocated(model%materials(part%material)%eos)) call finish_limits( &
+          model%materials(part%material), now, chunk%stretch, step, volume)
       end associate
     end associate
   end function step_of_slot
@@ -166,6 +168,8 @@ contains
           call round_full_step(material, part%hourglass, shape(1, reference_mass), chunk_size, &
             chunk, places, step, volume)
         end if
+        if (allocated(model%materials(part%material)%eos)) call finish_limits( &
+          model%materials(part%material), now, chunk%stretch, step, volume)
       end associate
     end associate
   end function round_step_of_slot

@@ -10,7 +10,7 @@ module parts_m
   implicit none
   private
   public :: part_t, section_t, material_t, hourglass_t, has_memory_of_heat, &
-    gives_pressure, law_mooney_rivlin, law_blatz_ko, law_crushable_foam, &
+    may_fail, gives_pressure, law_mooney_rivlin, law_blatz_ko, law_crushable_foam, &
     form_one_point, form_full, form_round_one_point, form_round_full, law_elastic, law_plastic, &
     law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, &
     hourglass_viscous, hourglass_stiffness, spall_pressure, spall_stress, spall_tension
@@ -104,5 +104,14 @@ contains
     yes = .false.
     if (allocated(material%eos)) yes = material%eos%kind == eos_by_law
   end function gives_pressure
+
+  !> Whether points of a material may lose their stress.
+  pure elemental function may_fail(material) result(yes)
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = material%failure_strain < huge(1.0_wp) .or. material%spall /= spall_pressure
+    if (allocated(material%flow)) yes = yes .or. material%flow%has_damage
+  end function may_fail
 
 end module parts_m
