@@ -106,7 +106,8 @@ contains
   !> Nodal forces of a one-point round quad that are the derivative of W: with F of the plane the
   !> mean over the reference volume and F_33 = J/det F,
   !>   dW V0 = (sigma - s_33 1) : (dF J F^-1) V0 + s_33 dV,
-  !> so that gradients of time zero, J F^-T of them, stand where `form_round_forces` has present ones.
+  !> so that gradients of time zero, J F^-T of them, stand where `form_round_forces` has present
+  !> ones.
   pure subroutine form_rubber_forces(stress, chunk, round)
     type(stress_chunk_t), intent(in) :: stress
     type(element_chunk_t), intent(in) :: chunk

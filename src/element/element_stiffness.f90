@@ -9,6 +9,7 @@ module element_stiffness_m
   use quad_points_m, only : n_point
   use quad_tangent_m, only : quad_tangent
   use round_tangent_m, only : round_tangent
+  use rubber_tangent_m, only : rubber_tangent
   use sparse_m, only : sparse_t, add_block
   use stress_point_m, only : stress_point_t
   implicit none
@@ -43,7 +44,10 @@ contains
               committed, points)
             u = motion(1:2, nodes)
             du = dt*motion(3:4, nodes)
-            if (model%is_round) then
+            if (allocated(material%rubber)) then
+              x = model%mesh%coordinates(:, nodes)
+              call rubber_tangent(material%rubber, model%is_round, x, u, block)
+            else if (model%is_round) then
               x = model%mesh%coordinates(:, nodes)
               call round_tangent(material, x, u, du, points, block)
             else

@@ -12,8 +12,8 @@ module law_pressure_m
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: n_law_value, load_law_state, start_law_values, add_law_values, form_law_pressure, &
-    take_law_present
+  public :: n_law_value, load_law_state, start_law_values, add_law_values, add_point_values, &
+    form_law_pressure, take_law_present
 
   !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity, bulk and shear modulus.
   integer, parameter :: n_law_value = 6
@@ -51,10 +51,34 @@ contains
     type(element_chunk_t), intent(inout) :: chunk
 
     chunk%law_mean = chunk%law_mean + start*stress%mean
-    if (allocated(material%rubber)) chunk%law_energy = chunk%law_energy + start*stress%energy
+    if (allocated(material%rubber)) chunk%law_energy = chunk%law_energy &
+      + start*stress%energy
     chunk%law_bulk = max(chunk%law_bulk, stress%bulk)
     chunk%law_shear = max(chunk%law_shear, stress%shear)
   end subroutine add_law_values
+
+  !> The same where elements have several points, whose F is scaled to the dilatation of the element:
+  !> what that adds to the second derivative of the energy is at most |s| L:L beside a lambda not
+  !> below two thirds of the mean stress (doc/theory/elements.md, "Deformation gradient").
+  pure subroutine add_point_values(start, material, stress, chunk)
+    real(wp), intent(in) :: start(chunk_size)
+    type(material_t), intent(in) :: material
+    type(stress_chunk_t), intent(inout) :: stress
+    type(element_chunk_t), intent(inout) :: chunk
+    real(wp) :: lame
+    integer :: i
+
+    if (allocated(material%rubber)) then
+      !$omp simd private(lame)
+      do i = 1, chunk_size
+        lame = max(stress%bulk(i) - 2.0_wp*stress%shear(i)/3.0_wp, 2.0_wp*stress%mean(i)/3.0_wp)
+        stress%shear(i) = stress%shear(i) + 0.5_wp*sqrt(2.0_wp*(stress%sxx(i)**2 &
+          + stress%syy(i)**2 + stress%sxx(i)*stress%syy(i) + stress%sxy(i)**2))
+        stress%bulk(i) = lame + 2.0_wp*stress%shear(i)/3.0_wp
+      end do
+    end if
+    call add_law_values(start, material, stress, chunk)
+  end subroutine add_point_values
 
   !> Pressure and energy at the end of the step, bulk viscosity apart from the energy. `now` has the
   !> stiffest element's moduli.

@@ -10,7 +10,7 @@ module quad_full_m
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use eos_pressure_m, only : load_eos_state, form_eos_pressure, finish_limits
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
-  use law_pressure_m, only : load_law_state, start_law_values, add_law_values, form_law_pressure
+  use law_pressure_m, only : load_law_state, start_law_values, add_point_values, form_law_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size
   use parts_m, only : hourglass_t, material_t, gives_pressure
@@ -176,7 +176,7 @@ contains
     call store_deviator(stress, chunk_size, elements%point_deviator(first))
     if (allocated(material%eos)) then
       chunk%heat = chunk%heat + 0.25_wp*stress%work*point%mid_area
-      if (gives_pressure(material)) call add_law_values(0.25_wp*point%area/(1.0_wp &
+      if (gives_pressure(material)) call add_point_values(0.25_wp*point%area/(1.0_wp &
         + point%stretch), material, stress, chunk)
     else
       elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &

@@ -9,7 +9,7 @@ module round_full_m
   use deformation_gradient_m, only : form_gradient
   use element_chunk_m, only : element_chunk_t
   use eos_pressure_m, only : load_eos_state, form_eos_pressure, finish_limits
-  use law_pressure_m, only : load_law_state, start_law_values, add_law_values, form_law_pressure
+  use law_pressure_m, only : load_law_state, start_law_values, add_point_values, form_law_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size
   use parts_m, only : hourglass_t, material_t, gives_pressure
@@ -184,7 +184,7 @@ contains
     call store_deviator(stress, chunk_size, elements%point_deviator(first))
     if (allocated(material%eos)) then
       chunk%heat = chunk%heat + stress%work*point%mid_area
-      if (gives_pressure(material)) call add_law_values(place%volume/(1.0_wp + place%stretch), &
+      if (gives_pressure(material)) call add_point_values(place%volume/(1.0_wp + place%stretch), &
         material, stress, chunk)
     else
       elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &

@@ -52,20 +52,17 @@ contains
       chunk%mean(i) = mean/(1.0_wp + chunk%stretch(i))
       chunk%energy(i) = volumetric%potential(i) - (a + b)*q - (a + 2.0_wp*b)*det
       chunk%work(i) = 0.0_wp
-      ! Of the largest stress, for what else than the strain of L changes with the shape.
-      chunk%shear(i) = max(abs(txx), abs(tyy), abs(tzz)) + abs(txy)
-      chunk%bulk(i) = volumetric%excess(i) - 2.0_wp*(a + 2.0_wp*b)
     end do
-    call bound_stiffness(a, b, volumetric%second, chunk)
+    call bound_stiffness(a, b, volumetric, chunk)
   end subroutine form_hyperelastic
 
   !> Moduli G and K of which no second derivative of W along F + s L F exceeds
   !> 2G L:L + (K - 2G/3) (tr L)^2, per present volume. In principal axes of b it is a matrix H of
   !> the L_kk and a pair of L_12, L_21; what H has beside lambda 1 1^T is bounded by its row sums.
-  pure subroutine bound_stiffness(a, b, second, chunk)
+  pure subroutine bound_stiffness(a, b, volumetric, chunk)
     real(wp), intent(in) :: a, b
-    real(wp), intent(in) :: second(chunk_size)
-    type(stress_chunk_t), intent(inout) :: chunk !! J U' in `bulk`, largest stress in `shear`
+    type(volumetric_t), intent(in) :: volumetric
+    type(stress_chunk_t), intent(inout) :: chunk
     real(wp) :: b1, b2, b3, g1, g2, g3, mean, root, slope, lame, pair, rows
     integer :: i
 
@@ -83,8 +80,8 @@ contains
       g2 = b1*b3
       g3 = b1*b2
       mean = (g1 + g2 + g3)*(1.0_wp/3.0_wp)
-      slope = chunk%bulk(i)
-      lame = second(i) + slope + 4.0_wp*b*mean
+      slope = volumetric%excess(i) - 2.0_wp*(a + 2.0_wp*b) ! J U'
+      lame = volumetric%second(i) + slope + 4.0_wp*b*mean
       pair = 2.0_wp*(a + b*b3)
       root = pair*root
       pair = pair*(0.5_wp*(b1 + b2)) + sqrt(root*root + (slope + 2.0_wp*b*g3)**2)
@@ -92,7 +89,7 @@ contains
         2.0_wp*a*b1 + 2.0_wp*b*((mean - g1) + 2.0_wp*(abs(g2 - mean) + abs(g3 - mean))), &
         2.0_wp*a*b2 + 2.0_wp*b*((mean - g2) + 2.0_wp*(abs(g1 - mean) + abs(g3 - mean))), &
         2.0_wp*a*b3 + 2.0_wp*b*((mean - g3) + 2.0_wp*(abs(g1 - mean) + abs(g2 - mean)))) - slope
-      chunk%shear(i) = (0.5_wp*max(rows, pair) + chunk%shear(i))/(1.0_wp + chunk%stretch(i))
+      chunk%shear(i) = 0.5_wp*max(rows, pair)/(1.0_wp + chunk%stretch(i))
       chunk%bulk(i) = max(0.0_wp, lame)/(1.0_wp + chunk%stretch(i)) + 2.0_wp*chunk%shear(i)/3.0_wp
     end do
   end subroutine bound_stiffness

@@ -38,7 +38,7 @@ contains
     call refuse_negative(deck, cursor, card, 'TSC')
     material%law = law_crushable_foam
     material%tension = real_of(card, 'TSC')
-    material%eos = eos_t(kind=eos_by_law, stiffness=material%bulk)
+    if (material%bulk > 0.0_wp) material%eos = eos_t(kind=eos_by_law, stiffness=material%bulk)
     call append_material(raw, material, card)
     call check_rest(deck, cursor)
     if (is_bad(card, 'MID') .or. is_bad(card, 'LCID')) return
