@@ -28,7 +28,7 @@ module parts_m
   type :: section_t
     integer :: id = 0                          !! user id
     integer :: element_form = form_one_point   !! one of the `form_` constants
-    logical :: is_full = .false.               !! full integration, which the implicit method needs
+    logical :: is_full = .false.               !! full integration
     logical :: is_round = .false.              !! axisymmetric
   end type section_t
 

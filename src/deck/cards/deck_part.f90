@@ -114,6 +114,7 @@ contains
       else
         raw%sections = [raw%sections, section]
         raw%section_line = [raw%section_line, card%line]
+        raw%points_open = [raw%points_open, integer_of(card, 'NIP') == 0]
       end if
       call next_card(deck, parameters, cursor, 2, thickness)
       call row_comes(deck, cursor, found)
