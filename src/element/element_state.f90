@@ -10,7 +10,7 @@ module element_state_m
   use eos_pressure_m, only : n_eos_value
   use law_pressure_m, only : n_law_value
   use model_m, only : model_t
-  use parts_m, only : hourglass_stiffness, has_memory_of_heat, may_fail, gives_pressure
+  use parts_m, only : hourglass_viscous, has_memory_of_heat, may_fail, gives_pressure
   use quad_full_m, only : has_mean_dilatation
   use quad_points_m, only : n_point, point_ratios
   use round_chunk_m, only : n_round_reference
@@ -25,7 +25,7 @@ module element_state_m
 contains
 
   !> Allocate the streams and fill the reference shape. Elastic parts get no plastic history, parts
-  !> without stiffness hourglass control no hourglass memory.
+  !> with viscous hourglass control no hourglass memory.
   subroutine start_elements(model, elements)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(out) :: elements
@@ -94,7 +94,7 @@ contains
         if (n_points > 1) then
           elements%point_start(i_chunk) = n_deviator + 1
           n_deviator = n_deviator + 3*n_points*chunk_size
-        else if (part%hourglass%form == hourglass_stiffness) then
+        else if (part%hourglass%form /= hourglass_viscous) then
           elements%hourglass_start(i_chunk) = n_hourglass + 1
           n_hourglass = n_hourglass + 2*chunk_size
         end if

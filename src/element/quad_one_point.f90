@@ -2,6 +2,7 @@
 !> One chunk of one-point quads: from nodal motion to nodal forces, stress updated on the way.
 module quad_one_point_m
   use kinds_m, only : wp
+  use assumed_strain_m, only : resist_by_assumed_strain
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
   use deformation_gradient_m, only : form_gradient
@@ -12,7 +13,8 @@ module quad_one_point_m
   use law_pressure_m, only : load_law_state, start_law_values, add_law_values, form_law_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
-  use parts_m, only : hourglass_t, material_t, gives_pressure, hourglass_viscous
+  use parts_m, only : hourglass_t, material_t, gives_pressure, hourglass_viscous, &
+    hourglass_assumed
   use quad_kinematics_m, only : form_present_shape, form_increments, form_forces
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use volumetric_m, only : volumetric_stress
@@ -123,6 +125,11 @@ contains
     if (hourglass%form == hourglass_viscous) then
       call resist_viscously(0.25_wp*hourglass%coefficient*material%density*material%sound_speed, &
         stress%dt, chunk, work)
+    else if (hourglass%form == hourglass_assumed) then
+      first = elements%hourglass_start(i_chunk)
+      call resist_by_assumed_strain(material, hourglass, stress, &
+        elements%hourglass_strain(first), elements%hourglass_strain(first + chunk_size), chunk, &
+        work)
     else
       first = elements%hourglass_start(i_chunk)
       call resist_elastically(0.25_wp*hourglass%coefficient*(material%bulk &

@@ -12,13 +12,13 @@ module smallest_steps_m
   use law_pressure_m, only : take_law_present
   use layout_m, only : chunk_size
   use model_m, only : model_t
-  use parts_m, only : hourglass_t, material_t, gives_pressure
+  use parts_m, only : hourglass_t, material_t, gives_pressure, hourglass_assumed
   use quad_kinematics_m, only : form_present_shape, form_increments
   use quad_points_m, only : n_point, form_point
   use round_chunk_m, only : round_chunk_t, gather_round, n_round_reference, &
     reference_mass
   use round_full_step_m, only : round_full_step
-  use round_hourglass_m, only : form_resistance
+  use round_hourglass_m, only : form_resistance, form_assumed_resistance
   use round_kinematics_m, only : form_round_shape, form_round_increments
   use round_points_m, only : round_point_t, form_radii
   use round_time_step_m, only : round_step
@@ -154,7 +154,12 @@ contains
       associate (material => now)
         chunk%area = round%area
         if (point_count(model%sections(part%section)) == 1) then
-          call form_resistance(model%materials(part%material), part%hourglass, round)
+          if (part%hourglass%form == hourglass_assumed) then
+            call form_assumed_resistance(model%materials(part%material), part%hourglass, chunk, &
+              round)
+          else
+            call form_resistance(model%materials(part%material), part%hourglass, round)
+          end if
           call round_step(material, part%hourglass, shape(1, reference_mass), chunk_size, chunk, &
             round, step, volume)
         else
