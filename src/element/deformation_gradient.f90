@@ -73,7 +73,7 @@ contains
     bz = chunk%y42(i) - chunk%u42(2, i)
     hr = part*(chunk%hx(i) - chunk%hu(1, i))
     hz = part*(chunk%hy(i) - chunk%hu(2, i))
-    s = eighth*(round%s(i) - round%us(i))
+    s = round%radii(i) - eighth*round%us(i)
     g = [s*bz - br*hz, -(s*az + ar*hz), part*(ar*bz + br*az), -br*(s - hr), ar*(s + hr), &
       -2.0_wp*part*ar*br]
   end function start_gradients
@@ -112,7 +112,7 @@ contains
     type(stress_chunk_t), intent(in) :: stress
     type(element_chunk_t), intent(in) :: chunk
     type(round_chunk_t), intent(inout) :: round !! forces out
-    real(wp) :: g(6), rr, zz, rz, tt, turned(2, 2), factor
+    real(wp) :: g(6), rr, zz, rz, tt, qr, qz, turned(2, 2), factor
     integer :: i, k
 
     do i = 1, chunk_size
@@ -132,16 +132,17 @@ contains
         round%force(k + 2, i) = turned(k, 1)*g(2) + turned(k, 2)*g(5)
         round%swing(k, i) = turned(k, 1)*g(3) + turned(k, 2)*g(6)
       end do
+      qr = 12.0_wp*chunk%inverse_area(i)*chunk%qx(i)
+      qz = 12.0_wp*chunk%inverse_area(i)*chunk%qy(i)
       round%force(1, i) = round%force(1, i) + tt*(round%rad_a(i) + round%mean_a(i)) &
-        + round%gamma_a(i)*chunk%qx(i)
-      round%force(2, i) = round%force(2, i) + tt*round%axi_a(i) + round%gamma_a(i)*chunk%qy(i)
+        - round%mean_a(i)*qr
+      round%force(2, i) = round%force(2, i) + tt*round%axi_a(i) - round%mean_a(i)*qz
       round%force(3, i) = round%force(3, i) + tt*(round%rad_b(i) + round%mean_b(i)) &
-        + round%gamma_b(i)*chunk%qx(i)
-      round%force(4, i) = round%force(4, i) + tt*round%axi_b(i) + round%gamma_b(i)*chunk%qy(i)
+        + round%mean_b(i)*qr
+      round%force(4, i) = round%force(4, i) + tt*round%axi_b(i) + round%mean_b(i)*qz
       round%swing(1, i) = round%swing(1, i) + tt*round%rad_h(i) + chunk%qx(i)
       round%swing(2, i) = round%swing(2, i) + tt*round%axi_h(i) + chunk%qy(i)
-      round%hoop(1, i) = tt*round%mean_s(i)
-      round%hoop(2, i) = 0.0_wp
+      round%hoop(i) = tt*round%mean_s(i)
     end do
   end subroutine form_rubber_forces
 

@@ -97,7 +97,7 @@ contains
         round%force(4, i) = chunk%force(4, i) + p(i)*round%axi_b(i)
         round%swing(1, i) = chunk%swing(1, i) + p(i)*round%rad_h(i)
         round%swing(2, i) = chunk%swing(2, i) + p(i)*round%axi_h(i)
-        round%hoop(1, i) = round%hoop(1, i) + p(i)*round%mean_s(i)
+        round%hoop(i) = round%hoop(i) + p(i)*round%mean_s(i)
       end do
     end associate
     call round_full_step(now, hourglass, elements%reference(first, reference_mass), &
@@ -122,7 +122,6 @@ contains
 
     chunk%trace = 0.0_wp
     chunk%pressure = 0.0_wp
-    chunk%area = round%area
     if (allocated(material%eos)) then
       chunk%heat = 0.0_wp
       if (gives_pressure(material)) call start_law_values(chunk)

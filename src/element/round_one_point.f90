@@ -70,7 +70,6 @@ contains
       + work_of_deviator(stress%work, chunk%mid_area)
     call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
     if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
-      chunk%area = round%area
       call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
         material%sound_speed, dt, chunk, work)
       elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
@@ -94,7 +93,6 @@ contains
     integer :: first
 
     first = (i_chunk - 1)*chunk_size + 1
-    chunk%area = round%area
     chunk%heat = stress%work*chunk%mid_area
     if (gives_pressure(material)) then
       call start_law_values(chunk)
@@ -139,7 +137,7 @@ contains
       elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
       return
     end if
-    call form_resistance(material, hourglass, round)
+    call form_resistance(material, hourglass, chunk, round)
     if (hourglass%form == hourglass_viscous) then
       call resist_round_viscously(stress%dt, round, chunk, work)
     else

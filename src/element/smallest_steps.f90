@@ -152,13 +152,12 @@ contains
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
       call take_now(model%materials(part%material), elements, i_slot, now)
       associate (material => now)
-        chunk%area = round%area
         if (point_count(model%sections(part%section)) == 1) then
           if (part%hourglass%form == hourglass_assumed) then
             call form_assumed_resistance(model%materials(part%material), part%hourglass, chunk, &
               round)
           else
-            call form_resistance(model%materials(part%material), part%hourglass, round)
+            call form_resistance(model%materials(part%material), part%hourglass, chunk, round)
           end if
           call round_step(material, part%hourglass, shape(1, reference_mass), chunk_size, chunk, &
             round, step, volume)
