@@ -134,10 +134,12 @@ contains
       end do
       qr = 12.0_wp*chunk%inverse_area(i)*chunk%qx(i)
       qz = 12.0_wp*chunk%inverse_area(i)*chunk%qy(i)
-      round%force(1, i) = round%force(1, i) + tt*round%rad_a(i) + (tt - qr)*round%mean_a(i)
-      round%force(2, i) = round%force(2, i) + tt*round%axi_a(i) - qz*round%mean_a(i)
-      round%force(3, i) = round%force(3, i) + tt*round%rad_b(i) + (tt + qr)*round%mean_b(i)
-      round%force(4, i) = round%force(4, i) + tt*round%axi_b(i) + qz*round%mean_b(i)
+      round%force(1, i) = round%force(1, i) + tt*(round%rad_a(i) + round%mean_a(i)) &
+        - round%mean_a(i)*qr
+      round%force(2, i) = round%force(2, i) + tt*round%axi_a(i) - round%mean_a(i)*qz
+      round%force(3, i) = round%force(3, i) + tt*(round%rad_b(i) + round%mean_b(i)) &
+        + round%mean_b(i)*qr
+      round%force(4, i) = round%force(4, i) + tt*round%axi_b(i) + round%mean_b(i)*qz
       round%swing(1, i) = round%swing(1, i) + tt*round%rad_h(i) + chunk%qx(i)
       round%swing(2, i) = round%swing(2, i) + tt*round%axi_h(i) + chunk%qy(i)
       round%hoop(i) = tt*round%mean_s(i)

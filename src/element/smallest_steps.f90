@@ -157,8 +157,7 @@ contains
             call form_assumed_resistance(model%materials(part%material), part%hourglass, chunk, &
               round)
           else
-            call form_resistance(model%materials(part%material), part%hourglass, chunk, &
-              round)
+            call form_resistance(model%materials(part%material), part%hourglass, chunk, round)
           end if
           call round_step(material, part%hourglass, shape(1, reference_mass), chunk_size, chunk, &
             round, step, volume)
