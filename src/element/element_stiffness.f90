@@ -10,6 +10,7 @@ module element_stiffness_m
   use quad_points_m, only : n_point
   use quad_tangent_m, only : quad_tangent
   use round_tangent_m, only : round_tangent
+  use rubber_tangent_m, only : rubber_tangent
   use sparse_m, only : sparse_t, add_block
   use stress_point_m, only : stress_point_t
   implicit none
@@ -45,7 +46,10 @@ contains
               committed, points)
             u = motion(1:2, nodes)
             du = dt*motion(3:4, nodes)
-            if (committed%point_start(i_chunk) == 0) then
+            if (allocated(material%rubber)) then
+              x = model%mesh%coordinates(:, nodes)
+              call rubber_tangent(material%rubber, model%is_round, x, u, block)
+            else if (committed%point_start(i_chunk) == 0) then
               x = model%mesh%coordinates(:, nodes)
               pattern_stress = pattern_stress_of(i_chunk, mod(slot - 1, chunk_size), committed)
               moved(:, :, 1) = u

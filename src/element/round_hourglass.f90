@@ -18,9 +18,10 @@ contains
 
   !> Force over gamma.v, (Q_h rho c sqrt(A)/4) V/A; or over its integral,
   !> (Q_h/4)(K + 4G/3)((B_x.B_x + B_y.B_y)/A) V/A.
-  pure subroutine form_resistance(material, hourglass, round)
+  pure subroutine form_resistance(material, hourglass, chunk, round)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
+    type(element_chunk_t), intent(in) :: chunk
     type(round_chunk_t), intent(inout) :: round !! `resistance` out
     real(wp) :: factor
     integer :: i
@@ -29,13 +30,14 @@ contains
       factor = 0.25_wp*hourglass%coefficient*material%density*material%sound_speed
       !$omp simd
       do i = 1, chunk_size
-        round%resistance(i) = factor*round%volume(i)*(round%inverse_area(i)*sqrt(round%area(i)))
+        round%resistance(i) = factor*round%volume(i)*(chunk%inverse_area(i)*sqrt(chunk%area(i)))
       end do
     else
       factor = 0.125_wp*hourglass%coefficient*(material%bulk + 4.0_wp*material%shear/3.0_wp)
       !$omp simd
       do i = 1, chunk_size
-        round%resistance(i) = factor*round%span(i)*round%volume(i)*round%inverse_area(i)**2
+        round%resistance(i) = factor*(chunk%x31(i)**2 + chunk%y31(i)**2 + chunk%x42(i)**2 &
+          + chunk%y42(i)**2)*round%volume(i)*chunk%inverse_area(i)**2
       end do
     end if
   end subroutine form_resistance
@@ -55,7 +57,7 @@ contains
     !$omp simd
     do i = 1, chunk_size
       round%resistance(i) = factor*largest_spread(chunk%x31(i), chunk%y31(i), chunk%x42(i), &
-        chunk%y42(i))*round%volume(i)*round%inverse_area(i)**2
+        chunk%y42(i))*round%volume(i)*chunk%inverse_area(i)**2
     end do
   end subroutine form_assumed_resistance
 
@@ -75,7 +77,7 @@ contains
     call resist_by_assumed_strain(material, hourglass, stress, stress_x, stress_y, chunk, work)
     !$omp simd private(radius)
     do i = 1, chunk_size
-      radius = round%volume(i)*round%inverse_area(i)
+      radius = round%volume(i)*chunk%inverse_area(i)
       chunk%qx(i) = radius*chunk%qx(i)
       chunk%qy(i) = radius*chunk%qy(i)
     end do

@@ -16,6 +16,7 @@ module deck_resolve_m
     row_motion_set, row_velocity, row_velocity_generation, output_plot
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
   use deck_resolve_eos_m, only : resolve_equations, check_implicit_laws
+  use deck_resolve_foams_m, only : resolve_foams
   use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
@@ -131,6 +132,7 @@ contains
     call settle_form(deck, raw, model)
     call settle_points(deck, raw, model)
     call resolve_hardenings(deck, raw, maps, model)
+    call resolve_foams(deck, raw, maps, model)
     call resolve_equations(deck, raw, maps, model)
     call resolve_mesh(deck, raw, maps, model, sound)
     call settle_axis(deck, raw, model)

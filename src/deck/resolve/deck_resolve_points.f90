@@ -14,7 +14,8 @@ module deck_resolve_points_m
 contains
 
   !> Parts of one-point quads: those with assumed strain must resist shear; in implicit runs those
-  !> without it are fully integrated where the deck leaves NIP open, and refused where it does not.
+  !> without it, or of rubber, whose tangent is that of full integration, are fully integrated where
+  !> the deck leaves NIP open, and refused where it does not.
   subroutine settle_points(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
@@ -28,7 +29,8 @@ contains
       associate (part => model%parts(i))
         if (part%section == 0 .or. part%material == 0) cycle
         if (model%sections(part%section)%is_full .or. model%materials(part%material)%is_rigid) cycle
-        if (part%hourglass%form == hourglass_assumed) then
+        if (part%hourglass%form == hourglass_assumed .and. .not. (model%controls%implicit%is_on &
+          .and. allocated(model%materials(part%material)%rubber))) then
           call check_shear(deck, raw%parts(i)%line, i, model)
         else if (model%controls%implicit%is_on) then
           if (raw%points_open(part%section)) then
@@ -46,7 +48,7 @@ contains
     end do
     if (len(changed) > 0) call line_warning(deck, line, 'implicit points', 'the implicit method ' &
       //'takes parts without NIP as NIP 4 where hourglass control is not by assumed strain ' &
-      //'(IHQ 6), which would keep them as they are: '//changed(3:))
+      //'(IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
   end subroutine settle_points
 
   !> The stiffness of assumed strain is that of shear.
