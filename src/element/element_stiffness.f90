@@ -30,7 +30,8 @@ contains
     integer, intent(in) :: equation(:, :)            !! (2, n_node) equation numbers, 0 = none
     type(sparse_t), intent(inout) :: matrix          !! started, not compressed
     type(stress_point_t) :: points(n_point)
-    real(wp) :: block(8, 8), reference(6), x(2, 4), u(2, 4), du(2, 4), pattern_stress(2)
+    real(wp) :: block(8, 8), reference(6), x(2, 4), u(2, 4), du(2, 4), &
+      pattern_stress(2), moved(2, 4, 2)
     integer :: equations(8), i_chunk, slot
 
     do i_chunk = 1, model%layout%n_chunk
@@ -51,7 +52,9 @@ contains
             else if (committed%point_start(i_chunk) == 0) then
               x = model%mesh%coordinates(:, nodes)
               pattern_stress = pattern_stress_of(i_chunk, mod(slot - 1, chunk_size), committed)
-              call one_point_tangent(material, part%hourglass, model%is_round, x, u, du, &
+              moved(:, :, 1) = u
+              moved(:, :, 2) = du
+              call one_point_tangent(material, part%hourglass, model%is_round, x, moved, &
                 points(1), pattern_stress, block)
             else if (model%is_round) then
               x = model%mesh%coordinates(:, nodes)

@@ -40,13 +40,13 @@ module one_point_tangent_m
 contains
 
   !> Matrix of one element, unknowns x1 y1 x2 y2 ... (per metre of thickness, or per radian).
-  pure subroutine one_point_tangent(material, hourglass, is_round, x, u, du, point, pattern_stress, &
+  pure subroutine one_point_tangent(material, hourglass, is_round, x, moved, point, pattern_stress, &
     matrix)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
     logical, intent(in) :: is_round
-    real(wp), intent(in) :: x(2, 4), u(2, 4)     !! corners at time zero, displacement
-    real(wp), intent(in) :: du(2, 4)             !! its increment in the step
+    real(wp), intent(in) :: x(2, 4)              !! corners at time zero
+    real(wp), intent(in) :: moved(2, 4, 2)       !! displacement, and its increment in the step
     type(stress_point_t), intent(inout) :: point !! at the start of the step
     real(wp), intent(in) :: pattern_stress(2)    !! of the hourglass, at the start of the step
     real(wp), intent(out) :: matrix(8, 8)
@@ -56,8 +56,8 @@ contains
     real(wp) :: small(n_pattern, n_pattern), nodes(n_pattern, 8), start
     integer :: k
 
-    now = shape_of(x + u)
-    change = shape_of(du)
+    now = shape_of(x + moved(:, :, 1))
+    change = shape_of(moved(:, :, 2))
     middle = half_way_back(now, change)
     start = start_volume(x, is_round)
     call find_increment(is_round, middle, change, increment)
