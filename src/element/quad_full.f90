@@ -7,7 +7,7 @@ module quad_full_m
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t, gather_chunk
-  use eos_pressure_m, only : viscous_fluid_step
+  use eos_pressure_m, only : finish_limits
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
   use law_pressure_m, only : load_point_state, start_point_values, add_point_values, &
     form_shared_pressure
@@ -104,8 +104,8 @@ contains
     end do
     call full_step(now, hourglass, nodes, chunk, sums, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> The pressure that all points of an element share: bulk viscosity of the mean rate, and the

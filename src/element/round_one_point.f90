@@ -6,14 +6,14 @@ module round_one_point_m
   use bulk_viscosity_m, only : add_bulk_viscosity
   use deformation_gradient_m, only : form_rubber_forces
   use element_chunk_m, only : element_chunk_t
-  use eos_pressure_m, only : viscous_fluid_step
+  use eos_pressure_m, only : finish_limits
   use law_pressure_m, only : load_round_state, form_element_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
-  use parts_m, only : hourglass_t, material_t, hourglass_viscous
+  use parts_m, only : hourglass_t, material_t, hourglass_viscous, hourglass_assumed
   use round_chunk_m, only : round_chunk_t, gather_round, reference_mass
-  use round_hourglass_m, only : form_resistance, resist_round_viscously, &
-    resist_round_elastically
+  use round_hourglass_m, only : form_resistance, form_assumed_resistance, &
+    resist_round_viscously, resist_round_elastically, resist_round_by_assumed_strain
   use round_kinematics_m, only : form_round_shape, form_round_increments, form_round_forces
   use round_time_step_m, only : round_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
@@ -99,8 +99,8 @@ contains
     call round_step(now, hourglass, elements%reference(first, reference_mass), &
       size(elements%reference, 1), chunk, round, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> Hourglass control of one chunk, with its work.
@@ -115,6 +115,15 @@ contains
     real(wp) :: work
     integer :: first
 
+    if (hourglass%form == hourglass_assumed) then
+      call form_assumed_resistance(material, hourglass, chunk, round)
+      first = elements%hourglass_start(i_chunk)
+      call resist_round_by_assumed_strain(material, hourglass, stress, round, &
+        elements%hourglass_strain(first), elements%hourglass_strain(first + chunk_size), chunk, &
+        work)
+      elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
+      return
+    end if
     call form_resistance(material, hourglass, round)
     if (hourglass%form == hourglass_viscous) then
       call resist_round_viscously(stress%dt, round, chunk, work)

@@ -10,10 +10,10 @@ module parts_m
   implicit none
   private
   public :: part_t, section_t, material_t, hourglass_t, has_memory_of_heat, &
-    gives_pressure, law_mooney_rivlin, law_blatz_ko, law_crushable_foam, &
+    may_fail, gives_pressure, law_mooney_rivlin, law_blatz_ko, law_crushable_foam, &
     form_one_point, form_full, form_round_one_point, form_round_full, law_elastic, law_plastic, &
     law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, &
-    hourglass_viscous, hourglass_stiffness, spall_pressure, spall_stress, spall_tension
+    hourglass_viscous, hourglass_stiffness, hourglass_assumed, spall_pressure, spall_stress, spall_tension
 
   !> Element forms. Only the element dispatcher asks for them.
   integer, parameter :: form_one_point = 1, form_full = 2, form_round_one_point = 3, &
@@ -25,14 +25,14 @@ module parts_m
   !> What a cut-off of the pressure means: a bound on tension; or the largest tensile stress, or the
   !> largest tension, at which a point breaks.
   integer, parameter :: spall_pressure = 1, spall_stress = 2, spall_tension = 3
-  !> Hourglass control: viscous (IHQ 1 to 3 and blank) or stiffness (IHQ 4 and 5).
-  integer, parameter :: hourglass_viscous = 1, hourglass_stiffness = 2
+  !> Hourglass control: viscous (IHQ 1 to 3 and blank), stiffness (4 and 5) or assumed strain (6).
+  integer, parameter :: hourglass_viscous = 1, hourglass_stiffness = 2, hourglass_assumed = 3
 
   !> One *SECTION_SHELL.
   type :: section_t
     integer :: id = 0                          !! user id
     integer :: element_form = form_one_point   !! one of the `form_` constants
-    logical :: is_full = .false.               !! full integration, which the implicit method needs
+    logical :: is_full = .false.               !! full integration
     logical :: is_round = .false.              !! axisymmetric
   end type section_t
 
@@ -104,5 +104,14 @@ contains
     yes = .false.
     if (allocated(material%eos)) yes = material%eos%kind == eos_by_law
   end function gives_pressure
+
+  !> Whether points of a material may lose their stress.
+  pure elemental function may_fail(material) result(yes)
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = material%failure_strain < huge(1.0_wp) .or. material%spall /= spall_pressure
+    if (allocated(material%flow)) yes = yes .or. material%flow%has_damage
+  end function may_fail
 
 end module parts_m

@@ -148,6 +148,7 @@ module deck_raw_m
     type(raw_part_t), allocatable :: parts(:)
     type(section_t), allocatable :: sections(:)
     integer, allocatable :: section_line(:)
+    logical, allocatable :: points_open(:)     !! NIP of a section is blank or 0
     type(material_t), allocatable :: materials(:)
     integer, allocatable :: material_line(:)
     type(eos_t), allocatable :: equations(:)   !! of state
@@ -194,7 +195,8 @@ contains
   subroutine start_raw(raw)
     type(raw_t), intent(out) :: raw
 
-    allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%materials(0), &
+    allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%points_open(0), &
+      raw%materials(0), &
       raw%equations(0), raw%equation_line(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
       raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%foams(0), raw%tables(0), &
