@@ -1,27 +1,68 @@
 ! SPDX-License-Identifier: MIT
-!> Pressure that the law of a material gives itself: one chunk of rubber or of crushable foam. As
-!> with equations of state all points of an element share one pressure and one dilatation; the
-!> pressure is the mean of theirs over the initial volume.
+!> Pressure of materials that have more than K ln J: of an equation of state (`eos_pressure`), or of
+!> the law itself, one chunk of rubber or of crushable foam. All points of an element share one
+!> pressure and one dilatation; the pressure of a law is the mean of theirs over the initial volume.
 module law_pressure_m
   use block_state_m, only : block_state_t
+  use deformation_gradient_m, only : form_gradient, form_round_gradient
   use element_chunk_m, only : element_chunk_t
-  use eos_pressure_m, only : form_viscous_pressure
+  use eos_pressure_m, only : form_eos_pressure, form_viscous_pressure, load_eos_state, &
+    take_present
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use parts_m, only : hourglass_t, material_t
+  use parts_m, only : hourglass_t, material_t, gives_pressure
+  use round_chunk_m, only : round_chunk_t
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: n_law_value, load_law_state, start_law_values, add_law_values, add_point_values, &
-    form_law_pressure, take_law_present
+  public :: n_law_value, load_point_state, load_round_state, start_point_values, &
+    add_point_values, form_element_pressure, form_shared_pressure, take_now
 
   !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity, bulk and shear modulus.
   integer, parameter :: n_law_value = 6
 
 contains
 
+  !> What a law must know of a point of a material whose pressure has a memory or comes from the
+  !> law: with an equation of state what `load_eos_state` says, else F and both volumes.
+  pure subroutine load_point_state(i_chunk, material, ratio, own, chunk, point, elements, stress)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: ratio(chunk_size)   !! V/V0 of the point in the middle of the step
+    real(wp), intent(in) :: own(chunk_size)     !! V/V0 - 1 of the point at its end
+    type(element_chunk_t), intent(in) :: chunk  !! of the element
+    type(element_chunk_t), intent(in) :: point  !! of the point
+    type(block_state_t), intent(in) :: elements
+    type(stress_chunk_t), intent(inout) :: stress
+
+    if (gives_pressure(material)) then
+      call load_volumes(i_chunk, chunk, elements, stress)
+      call form_gradient(point, own, stress)
+    else
+      call load_eos_state(i_chunk, ratio, elements, stress)
+    end if
+  end subroutine load_point_state
+
+  !> The same of a one-point round quad.
+  pure subroutine load_round_state(i_chunk, material, ratio, chunk, round, elements, stress)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: ratio(chunk_size)
+    type(element_chunk_t), intent(in) :: chunk
+    type(round_chunk_t), intent(in) :: round
+    type(block_state_t), intent(in) :: elements
+    type(stress_chunk_t), intent(inout) :: stress
+
+    if (gives_pressure(material)) then
+      call load_volumes(i_chunk, chunk, elements, stress)
+      call form_round_gradient(chunk, round, stress)
+    else
+      call load_eos_state(i_chunk, ratio, elements, stress)
+    end if
+  end subroutine load_round_state
+
   !> Volume of the element at both ends of the step.
-  pure subroutine load_law_state(i_chunk, chunk, elements, stress)
+  pure subroutine load_volumes(i_chunk, chunk, elements, stress)
     integer, intent(in) :: i_chunk
     type(element_chunk_t), intent(in) :: chunk
     type(block_state_t), intent(in) :: elements
@@ -31,9 +72,18 @@ contains
     first = elements%eos_start(i_chunk) + 2*chunk_size
     stress%former = elements%eos_state(first:first + chunk_size - 1)
     stress%stretch = chunk%stretch
-  end subroutine load_law_state
+  end subroutine load_volumes
 
   !> No point has been summed yet.
+  pure subroutine start_point_values(material, chunk)
+    type(material_t), intent(in) :: material
+    type(element_chunk_t), intent(inout) :: chunk
+
+    chunk%heat = 0.0_wp
+    if (gives_pressure(material)) call start_law_values(chunk)
+  end subroutine start_point_values
+
+  !> Nothing of a law has been summed yet.
   pure subroutine start_law_values(chunk)
     type(element_chunk_t), intent(inout) :: chunk
 
@@ -43,31 +93,20 @@ contains
     chunk%law_shear = 0.0_wp
   end subroutine start_law_values
 
-  !> What the law has left for one point.
-  pure subroutine add_law_values(start, material, stress, chunk)
-    real(wp), intent(in) :: start(chunk_size) !! initial volume of the point
+  !> What the law has left for one of several points. F of rubber is scaled to the dilatation of the
+  !> element: what that adds to the second derivative of the energy is at most |s| L:L beside a
+  !> lambda not below two thirds of the mean stress (doc/theory/elements.md).
+  pure subroutine add_point_values(material, share, volume, own, middle, stress, chunk)
     type(material_t), intent(in) :: material
-    type(stress_chunk_t), intent(in) :: stress
-    type(element_chunk_t), intent(inout) :: chunk
-
-    chunk%law_mean = chunk%law_mean + start*stress%mean
-    if (allocated(material%rubber)) chunk%law_energy = chunk%law_energy &
-      + start*stress%energy
-    chunk%law_bulk = max(chunk%law_bulk, stress%bulk)
-    chunk%law_shear = max(chunk%law_shear, stress%shear)
-  end subroutine add_law_values
-
-  !> The same where elements have several points, whose F is scaled to the dilatation of the element:
-  !> what that adds to the second derivative of the energy is at most |s| L:L beside a lambda not
-  !> below two thirds of the mean stress (doc/theory/elements.md, "Deformation gradient").
-  pure subroutine add_point_values(start, material, stress, chunk)
-    real(wp), intent(in) :: start(chunk_size)
-    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: share              !! of `volume` and `middle` that the point stands for
+    real(wp), intent(in), dimension(chunk_size) :: volume, own, middle !! now, V/V0 - 1, mid-step
     type(stress_chunk_t), intent(inout) :: stress
     type(element_chunk_t), intent(inout) :: chunk
     real(wp) :: lame
     integer :: i
 
+    chunk%heat = chunk%heat + share*stress%work*middle
+    if (.not. gives_pressure(material)) return
     if (allocated(material%rubber)) then
       !$omp simd private(lame)
       do i = 1, chunk_size
@@ -77,8 +116,59 @@ contains
         stress%bulk(i) = lame + 2.0_wp*stress%shear(i)/3.0_wp
       end do
     end if
-    call add_law_values(start, material, stress, chunk)
+    call add_law_values(material, share*volume/(1.0_wp + own), stress, chunk)
   end subroutine add_point_values
+
+  !> What the law has left, for its share of the initial volume.
+  pure subroutine add_law_values(material, start, stress, chunk)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: start(chunk_size) !! initial volume of the point
+    type(stress_chunk_t), intent(in) :: stress
+    type(element_chunk_t), intent(inout) :: chunk
+
+    chunk%law_mean = chunk%law_mean + start*stress%mean
+    if (allocated(material%rubber)) chunk%law_energy = chunk%law_energy + start*stress%energy
+    chunk%law_bulk = max(chunk%law_bulk, stress%bulk)
+    chunk%law_shear = max(chunk%law_shear, stress%shear)
+  end subroutine add_law_values
+
+  !> Pressure and energy of a one-point element, whether of its equation of state or of its law.
+  pure subroutine form_element_pressure(i_chunk, material, viscosity, inverse_start, stress, &
+    elements, chunk, now)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: viscosity
+    real(wp), intent(in) :: inverse_start(chunk_size) !! 1/V0
+    type(stress_chunk_t), intent(in) :: stress
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk     !! pressure out (tension positive)
+    type(material_t), intent(out) :: now
+
+    chunk%heat = stress%work*chunk%mid_area
+    if (gives_pressure(material)) then
+      call start_law_values(chunk)
+      call add_law_values(material, 1.0_wp/inverse_start, stress, chunk)
+    end if
+    call form_shared_pressure(i_chunk, material, viscosity, inverse_start, elements, chunk, now)
+  end subroutine form_element_pressure
+
+  !> The same where several points have been summed.
+  pure subroutine form_shared_pressure(i_chunk, material, viscosity, inverse_start, elements, &
+    chunk, now)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: viscosity
+    real(wp), intent(in) :: inverse_start(chunk_size)
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk
+    type(material_t), intent(out) :: now
+
+    if (gives_pressure(material)) then
+      call form_law_pressure(i_chunk, material, viscosity, inverse_start, elements, chunk, now)
+    else
+      call form_eos_pressure(i_chunk, material, viscosity, inverse_start, elements, chunk, now)
+    end if
+  end subroutine form_shared_pressure
 
   !> Pressure and energy at the end of the step, bulk viscosity apart from the energy. `now` has the
   !> stiffest element's moduli.
@@ -137,17 +227,22 @@ contains
       /material%density)
   end subroutine stiffen
 
-  !> The same of one element as its memory has it.
-  pure subroutine take_law_present(material, elements, i_slot, now)
+  !> The material with the moduli that the element in a slot has now; the material itself where its
+  !> moduli do not change.
+  pure subroutine take_now(material, elements, i_slot, now)
     type(material_t), intent(in) :: material
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: i_slot
     type(material_t), intent(out) :: now
     integer :: first
 
+    if (.not. gives_pressure(material)) then
+      call take_present(material, elements, i_slot, now)
+      return
+    end if
     first = elements%eos_start((i_slot - 1)/chunk_size + 1) + mod(i_slot - 1, chunk_size)
     call stiffen(material, elements%eos_state(first + 4*chunk_size), &
       elements%eos_state(first + 5*chunk_size), elements%eos_state(first + 2*chunk_size), now)
-  end subroutine take_law_present
+  end subroutine take_now
 
 end module law_pressure_m

@@ -4,14 +4,13 @@ module round_one_point_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
-  use deformation_gradient_m, only : form_round_gradient, form_rubber_forces
+  use deformation_gradient_m, only : form_rubber_forces
   use element_chunk_m, only : element_chunk_t
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, finish_limits
-  use law_pressure_m, only : load_law_state, start_law_values, add_law_values, form_law_pressure
+  use eos_pressure_m, only : finish_limits
+  use law_pressure_m, only : load_round_state, form_element_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
-  use parts_m, only : hourglass_t, material_t, gives_pressure, hourglass_viscous, &
-    hourglass_assumed
+  use parts_m, only : hourglass_t, material_t, hourglass_viscous, hourglass_assumed
   use round_chunk_m, only : round_chunk_t, gather_round, reference_mass
   use round_hourglass_m, only : form_resistance, form_assumed_resistance, &
     resist_round_viscously, resist_round_elastically, resist_round_by_assumed_strain
@@ -48,14 +47,8 @@ contains
     call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
     call form_round_increments(dt, chunk, round, stress)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
-    if (allocated(material%eos)) then
-      call load_eos_state(i_chunk, chunk%mid_area*(1.0_wp + chunk%stretch)*round%inverse_volume, &
-        elements, stress)
-      if (gives_pressure(material)) then
-        call load_law_state(i_chunk, chunk, elements, stress)
-        call form_round_gradient(chunk, round, stress)
-      end if
-    end if
+    if (allocated(material%eos)) call load_round_state(i_chunk, material, chunk%mid_area &
+      *(1.0_wp + chunk%stretch)*round%inverse_volume, chunk, round, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk)))
     else
@@ -93,16 +86,8 @@ contains
     integer :: first
 
     first = (i_chunk - 1)*chunk_size + 1
-    chunk%heat = stress%work*chunk%mid_area
-    if (gives_pressure(material)) then
-      call start_law_values(chunk)
-      call add_law_values(round%volume/(1.0_wp + chunk%stretch), material, stress, chunk)
-      call form_law_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
-        *round%inverse_volume, elements, chunk, now)
-    else
-      call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
-        *round%inverse_volume, elements, chunk, now)
-    end if
+    call form_element_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+      *round%inverse_volume, stress, elements, chunk, now)
     call resist(i_chunk, material, hourglass, stress, round, elements, chunk)
     if (allocated(material%rubber)) then
       call form_rubber_forces(stress, chunk, round)

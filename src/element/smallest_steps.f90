@@ -7,12 +7,12 @@ module smallest_steps_m
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use element_dispatch_m, only : point_count
   use element_time_step_m, only : stable_step
-  use eos_pressure_m, only : take_present, finish_limits
+  use eos_pressure_m, only : finish_limits
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
-  use law_pressure_m, only : take_law_present
+  use law_pressure_m, only : take_now
   use layout_m, only : chunk_size
   use model_m, only : model_t
-  use parts_m, only : hourglass_t, material_t, gives_pressure, hourglass_assumed
+  use parts_m, only : hourglass_t, material_t, hourglass_assumed
   use quad_kinematics_m, only : form_present_shape, form_increments
   use quad_points_m, only : n_point, form_point
   use round_chunk_m, only : round_chunk_t, gather_round, n_round_reference, &
@@ -112,20 +112,6 @@ contains
       end associate
     end associate
   end function step_of_slot
-
-  !> The material with the moduli that the element in a slot has now.
-  pure subroutine take_now(material, elements, i_slot, now)
-    type(material_t), intent(in) :: material
-    type(block_state_t), intent(in) :: elements
-    integer, intent(in) :: i_slot
-    type(material_t), intent(out) :: now
-
-    if (gives_pressure(material)) then
-      call take_law_present(material, elements, i_slot, now)
-    else
-      call take_present(material, elements, i_slot, now)
-    end if
-  end subroutine take_now
 
   !> The same for round quads, with the hourglass control that has a share in their step.
   function round_step_of_slot(model, elements, reference, i_slot, motion) result(step)

@@ -20,8 +20,8 @@ module parts_m
     form_round_full = 4
   !> Material laws. Only the material dispatcher asks for them.
   integer, parameter :: law_elastic = 1, law_plastic = 2, law_piecewise = 3, &
-    law_johnson_cook = 4, law_hot_johnson_cook = 5, law_null = 6, &
-    law_mooney_rivlin = 7, law_blatz_ko = 8, law_crushable_foam = 9
+    law_johnson_cook = 4, law_crushable_foam = 5, law_hot_johnson_cook = 6, law_null = 7, &
+    law_mooney_rivlin = 8, law_blatz_ko = 9
   !> What a cut-off of the pressure means: a bound on tension; or the largest tensile stress, or the
   !> largest tension, at which a point breaks.
   integer, parameter :: spall_pressure = 1, spall_stress = 2, spall_tension = 3

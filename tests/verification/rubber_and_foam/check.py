@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Rubbers and crushable foam: closed forms on one element, the stable step, energy, a tube, both drivers."""
+import re
+
 import numpy as np
 
 from meshes import Deck, grid
@@ -305,6 +307,15 @@ def tube(law, pressure, inner, outer, n=400):
     return high - inner, end[0] - outer
 
 
+def check_newton(run, result, name):
+    """The tangent is exact: the last energy ratio of each step is far below what a constant factor would make it."""
+    log = (result.folder / f"{result.job}.log").read_text()
+    rows = [(int(k), float(ratio)) for k, ratio in re.findall(r"iteration (\d+): energy ratio (\S+),", log)]
+    ends = [(one[1], two[1]) for one, two, three in zip(rows, rows[1:], rows[2:] + [(1, 0.0)]) if three[0] == 1]
+    run.true(f"{name}: Newton's method converges as it does with an exact tangent",
+             len(ends) >= 4 and all(last < before ** 1.6 for before, last in ends), f"{ends}")
+
+
 def check_tube(run):
     """A round tube and a quarter of a plane ring, implicit, pressed from within."""
     inner, outer = 1.0, 1.5
@@ -323,6 +334,7 @@ def check_tube(run):
             deck.add("*LOAD_SEGMENT", *[(1, 1.0, 0.0, *[int(ids[k]) for k in ((j + 1) * (n + 1), j * (n + 1), j * (n + 1),
                                                                               j * (n + 1))]) for j in range(2)])
             result = run.program(deck.output(plot=1.0, glstat=0.25), name=f"tube_{law.name}_{n}")
+            check_newton(run, result, f"{law.name}, tube of {n} quads")
             u = result.points("displacement")[-1][[0, n], 0]
             errors.append(np.abs(u / exact - 1.0).max())
             table = result.table("glstat")
@@ -343,6 +355,7 @@ def check_tension(run):
         for node in ids[6:]:
             deck.prescribe(node, 2, 2, 1)
         result = run.program(deck.output(plot=1.0, glstat=0.2), name=f"tension_{law.name}")
+        check_newton(run, result, f"{law.name}, tension")
         low, high = 0.3, 1.0
         for _ in range(60):
             middle = 0.5 * (low + high)
