@@ -63,19 +63,29 @@ contains
 
   !> How much gives way at each slave node, 0 to 1: kept where averages come later. In a trial of an
   !> implicit step that of the start of the step, so that it is no part of the tangent.
-  pure subroutine find_tips(slave, memory, change)
-    type(surface_t), intent(in) :: slave
+  pure subroutine find_tips(contact, averages, memory, motion)
+    type(contact_t), intent(in) :: contact
+    logical, intent(in) :: averages !! the type forms pressures at slave nodes
     type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(in), contiguous, optional :: change(:, :) !! (2, n_slave) of u in the step, m
+    real(wp), intent(in), contiguous, optional :: motion(:, :) !! rows 3, 4: u of the step
+    real(wp), allocatable :: places(:, :)
     integer :: node
 
-    associate (part => memory%scratch%nodal, places => memory%places)
-      if (present(change)) places(3:4, :memory%n_slave) = places(3:4, :memory%n_slave) - change
+    if (.not. has_tips(contact, averages, memory)) return
+    if (.not. present(motion)) then
       do node = 1, memory%n_slave
-        part(1, node) = sharpness(slave, places, node)
+        memory%scratch%nodal(1, node) = sharpness(contact%slave, memory%places, node)
       end do
-      if (present(change)) places(3:4, :memory%n_slave) = places(3:4, :memory%n_slave) + change
-    end associate
+      return
+    end if
+    allocate (places(4, memory%n_slave))
+    do node = 1, memory%n_slave
+      places(1:2, node) = memory%places(1:2, node)
+      places(3:4, node) = memory%places(3:4, node) - motion(3:4, memory%nodes(node))
+    end do
+    do node = 1, memory%n_slave
+      memory%scratch%nodal(1, node) = sharpness(contact%slave, places, node)
+    end do
   end subroutine find_tips
 
   !> The same at one node.
