@@ -5,10 +5,12 @@ module element_state_m
   use block_state_m, only : block_state_t
   use element_dispatch_m, only : point_count
   use layout_m, only : chunk_size, slot_part
-  use material_dispatch_m, only : history_size, column_temperature, column_damage
+  use material_dispatch_m, only : history_size, column_temperature, column_damage, &
+    has_plastic_strain
   use eos_pressure_m, only : n_eos_value
+  use law_pressure_m, only : n_law_value
   use model_m, only : model_t
-  use parts_m, only : hourglass_stiffness, has_memory_of_heat, may_fail
+  use parts_m, only : hourglass_viscous, has_memory_of_heat, may_fail, gives_pressure
   use quad_full_m, only : has_mean_dilatation
   use quad_points_m, only : n_point, point_ratios
   use round_chunk_m, only : n_round_reference
@@ -23,7 +25,7 @@ module element_state_m
 contains
 
   !> Allocate the streams and fill the reference shape. Elastic parts get no plastic history, parts
-  !> without stiffness hourglass control no hourglass memory.
+  !> with viscous hourglass control no hourglass memory.
   subroutine start_elements(model, elements)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(out) :: elements
@@ -86,12 +88,13 @@ contains
         n_history = n_history + n*chunk_size
         if (allocated(model%materials(part%material)%eos)) then
           elements%eos_start(i_chunk) = n_eos + 1
-          n_eos = n_eos + n_eos_value*chunk_size
+          n_eos = n_eos + merge(n_law_value, n_eos_value, &
+            gives_pressure(model%materials(part%material)))*chunk_size
         end if
         if (n_points > 1) then
           elements%point_start(i_chunk) = n_deviator + 1
           n_deviator = n_deviator + 3*n_points*chunk_size
-        else if (part%hourglass%form == hourglass_stiffness) then
+        else if (part%hourglass%form /= hourglass_viscous) then
           elements%hourglass_start(i_chunk) = n_hourglass + 1
           n_hourglass = n_hourglass + 2*chunk_size
         end if
@@ -173,7 +176,8 @@ contains
     plastic_strain = 0.0_wp
     do slot = 1, model%layout%n_slot
       if (model%layout%slot_element(slot) == 0) cycle
-      if (elements%history_start((slot - 1)/chunk_size + 1) == 0) cycle
+      if (.not. has_plastic_strain(model%materials(model%parts(slot_part(model%layout, &
+        slot))%material))) cycle
       plastic_strain(model%layout%slot_element(slot)) = history_of_slot(model, elements, slot, 1)
     end do
   end subroutine element_plastic_strains

@@ -6,10 +6,12 @@ module eos_m
   implicit none
   private
   public :: eos_t, initial_stiffness, initial_pressure, asymptote, &
-    eos_logarithmic, eos_linear_polynomial, eos_gruneisen
+    eos_logarithmic, eos_linear_polynomial, eos_gruneisen, eos_by_law
 
   !> Kinds. Only the dispatcher of the equations of state asks for them.
-  integer, parameter :: eos_logarithmic = 1, eos_linear_polynomial = 2, eos_gruneisen = 3
+  !> By law: the law of the material gives the pressure too, of all its strain.
+  integer, parameter :: eos_logarithmic = 1, eos_linear_polynomial = 2, eos_gruneisen = 3, &
+    eos_by_law = 4
 
   !> Denominator of Gruneisen's equation at which its pressure, which goes with the inverse square,
   !> counts as without bound.

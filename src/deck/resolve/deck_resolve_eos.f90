@@ -146,6 +146,10 @@ contains
           reason = 'a flow stress of Johnson and Cook'
         else if (material%failure_strain < huge(1.0_wp)) then
           reason = 'a plastic strain at failure'
+        else if (allocated(material%rubber)) then
+          cycle
+        else if (allocated(material%crush)) then
+          reason = 'the law of a crushable foam'
         else if (allocated(material%eos) .or. material%needs_eos) then
           reason = 'an equation of state'
         else
