@@ -12,7 +12,7 @@ module element_log_m
   private
   public :: log_elements
 
-  !> Coefficient from which on hourglass control of squares rules their stable step, viscous or stiffness.
+  !> Coefficient from which on hourglass control of squares rules their stable step, by form.
   real(wp), parameter :: ruling_coefficient = 0.5_wp
   !> The same of assumed strain, at nu = 0.
   real(wp), parameter :: ruling_assumed = 3.0_wp

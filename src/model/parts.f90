@@ -13,7 +13,8 @@ module parts_m
     may_fail, gives_pressure, law_mooney_rivlin, law_blatz_ko, law_crushable_foam, &
     form_one_point, form_full, form_round_one_point, form_round_full, law_elastic, law_plastic, &
     law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, &
-    hourglass_viscous, hourglass_stiffness, hourglass_assumed, spall_pressure, spall_stress, spall_tension
+    hourglass_viscous, hourglass_stiffness, hourglass_assumed, spall_pressure, spall_stress, &
+    spall_tension
 
   !> Element forms. Only the element dispatcher asks for them.
   integer, parameter :: form_one_point = 1, form_full = 2, form_round_one_point = 3, &
