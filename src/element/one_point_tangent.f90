@@ -40,7 +40,7 @@ module one_point_tangent_m
 contains
 
   !> Matrix of one element, unknowns x1 y1 x2 y2 ... (per metre of thickness, or per radian).
-  pure subroutine one_point_tangent(material, hourglass, is_round, x, moved, point, point, pattern_stress, &
+  pure subroutine one_point_tangent(material, hourglass, is_round, x, moved, point, &
     pattern_stress, matrix)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
