@@ -1,10 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> The one place that knows the contact types: their numbers, names, needs, placements and tangents.
-!> Adding one is a row of `formulations`, and a `use` and a `case` for either
+!> The one place that knows the contact types: their names, needs, placements and tangents. Adding
+!> one is a number in `contact_types_m`, a row of `formulations`, and a `use` and a `case` for either
 !> (doc/add_a_formulation.md).
 module contact_dispatch_m
   use contact_law_m, only : law_penalty, pressed_at_points, pressed_at_slave_nodes
   use contact_state_m, only : contact_state_t
+  use contact_types_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
+    type_nts_mar, type_mortar, type_segmented_mortar
   use contacts_m, only : contact_t, contact_kind_t, kind_text
   use kinds_m, only : wp
   use place_mortar_m, only : place_mortar
@@ -37,9 +39,6 @@ module contact_dispatch_m
     real(wp) :: self_share = 0.5_wp       !! part of the penalty that either pass of a surface with
                                           !! itself has
   end type formulation_t
-
-  integer, parameter :: type_nts = 1, type_nts_ar = 2, type_two_pass_ar = 3, type_vts_ppt = 4, &
-    type_nts_mar = 5, type_mortar = 6, type_segmented_mortar = 7
 
   !> All formulations.
   type(formulation_t), parameter :: formulations(*) = [ &

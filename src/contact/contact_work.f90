@@ -16,59 +16,62 @@ module contact_work_m
   !> Of the former forces, what is kept apart from the springs.
   type :: apart_t
     real(wp) :: damping = 0.0_wp    !! power, W/m
-    real(wp) :: friction = 0.0_wp   !! power, W/m
+    real(wp) :: friction = 0.0_wp   !! power, W/m; 0 until the work is counted
     real(wp) :: dissipated = 0.0_wp !! by friction so far, J/m
   end type apart_t
 
 contains
 
-  !> Power of the former forces of damping and of friction, which are zero then; nothing is left of
-  !> the tractions but what friction goes on from.
+  !> Power of the former forces of damping, which are zero then; forces of friction trade places
+  !> with those of the call before, which are zero, and nothing is left of the tractions but what
+  !> friction goes on from.
   pure subroutine take_apart(motion, had_force, memory, apart)
     real(wp), intent(in), contiguous :: motion(:, :)
     logical, intent(in) :: had_force !! the former call
     type(contact_state_t), intent(inout) :: memory
     type(apart_t), intent(out) :: apart
+    real(wp), allocatable :: spare(:, :)
 
     if (allocated(memory%damping_force)) &
       call take_force(memory%nodes, motion, memory%damping_force, apart%damping)
     if (.not. allocated(memory%friction%force)) return
-    if (had_force) call take_friction(motion, memory, apart%friction)
+    call move_alloc(memory%scratch%former_rub, spare)
+    call move_alloc(memory%friction%force, memory%scratch%former_rub)
+    call move_alloc(spare, memory%friction%force)
     apart%dissipated = memory%friction%work - memory%friction%stored
     call set_tractions_aside(memory)
     if (.not. had_force) call keep_dissipated(apart%dissipated, memory%friction)
   end subroutine take_apart
 
-  !> Power of the forces of friction, which are zero afterwards.
+  !> Power of the former and of the present forces of friction; the former ones are zero then. The
+  !> energy law has gathered the velocities, unless there are no points.
   pure subroutine take_friction(motion, memory, power)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(out) :: power !! W/m
-    integer :: side
 
-    power = friction_power(motion, memory)
-    do side = 1, 2
-      associate (first => memory%scratch%rubbed(1, side), last => memory%scratch%rubbed(2, side))
-        memory%friction%force(:, first:last) = 0.0_wp
-      end associate
-    end do
+    associate (velocity => memory%limit%velocity)
+      if (memory%points%n == 0) velocity = motion(3:4, memory%nodes)
+      call take_power(size(velocity), velocity, memory%friction%force, memory%scratch%former_rub, &
+        power)
+    end associate
   end subroutine take_friction
 
-  !> The same of forces that stay: of the nodes alone that have some.
-  pure function friction_power(motion, memory) result(power)
-    real(wp), intent(in), contiguous :: motion(:, :)
-    type(contact_state_t), intent(in) :: memory
-    real(wp) :: power
-    integer :: side
+  !> Both components of all nodes in one loop.
+  pure subroutine take_power(n, velocity, present, former, power)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: velocity(n), present(n)
+    real(wp), intent(inout) :: former(n)
+    real(wp), intent(out) :: power
+    integer :: i
 
     power = 0.0_wp
-    do side = 1, 2
-      associate (first => memory%scratch%rubbed(1, side), last => memory%scratch%rubbed(2, side))
-        power = power + power_of(memory%nodes(first:last), motion, &
-          memory%friction%force(:, first:last))
-      end associate
+    !$omp simd reduction(+:power)
+    do i = 1, n
+      power = power + velocity(i)*(former(i) + present(i))
+      former(i) = 0.0_wp
     end do
-  end function friction_power
+  end subroutine take_power
 
   !> Add the forces to those of the mesh and count the work of a step: half of it was done by the
   !> former forces.
@@ -78,26 +81,26 @@ contains
     type(apart_t), intent(in) :: former
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)
-    type(apart_t) :: apart
     real(wp) :: power
 
     call add_force(memory%nodes, memory%scratch%former_force, memory%force, motion, force, power)
-    apart = former
-    if (allocated(memory%damping_force)) apart%damping = apart%damping &
-      + power_of(memory%nodes, motion, memory%damping_force)
-    if (allocated(memory%friction%force)) apart%friction = apart%friction &
-      + friction_power(motion, memory)
-    call count_work(dt, power, apart, memory)
+    call count_work(dt, motion, power, former, memory)
     call follow_largest(memory%energy, memory%limit)
   end subroutine hand_over
 
   !> Work of a step, that of damping and of friction apart.
-  pure subroutine count_work(dt, power, apart, memory)
+  pure subroutine count_work(dt, motion, power, former, memory)
     real(wp), intent(in) :: dt
+    real(wp), intent(in), contiguous :: motion(:, :)
     real(wp), intent(in) :: power        !! of all former and present contact forces, W/m
-    type(apart_t), intent(in) :: apart   !! with the present forces of damping and friction
+    type(apart_t), intent(in) :: former
     type(contact_state_t), intent(inout) :: memory
+    type(apart_t) :: apart
 
+    apart = former
+    if (allocated(memory%damping_force)) apart%damping = apart%damping &
+      + power_of(memory%nodes, motion, memory%damping_force)
+    if (allocated(memory%friction%force)) call take_friction(motion, memory, apart%friction)
     memory%energy = memory%energy - 0.5_wp*dt*(power - apart%damping - apart%friction)
     memory%damping_work = memory%damping_work - 0.5_wp*dt*apart%damping
     if (.not. allocated(memory%friction%force)) return

@@ -375,9 +375,9 @@ contains
     if (memory%n_active == 0) return
     call take_force(memory%nodes, motion, memory%force, power)
     call take_apart(motion, .true., memory, apart)
-    call count_work(dt, power, apart, memory)
-    call end_look(.true., .false., memory%watch)
     memory%points%n = 0
+    call count_work(dt, motion, power, apart, memory)
+    call end_look(.true., .false., memory%watch)
     memory%n_active = 0
   end subroutine suspend_contact
 

@@ -119,13 +119,13 @@ module contact_state_m
                                             !! alone; only where there are others
     real(wp), allocatable :: former_spring(:, :) !! the same of the call before
     real(wp), allocatable :: increment(:, :) !! (2, n_slave + n_master) displacements of the
-                                            !! step, m; this and the next two only where there is
-                                            !! friction
+                                            !! step, m
     real(wp) :: dt = 0.0_wp                 !! step that made them, s; only in implicit runs
-    real(wp), allocatable :: former_traction(:) !! (n_place) of the call before
+    real(wp), allocatable :: former_traction(:) !! (n_place) of the call before; this and the next
+                                            !! two only where there is friction
     integer, allocatable :: former_state(:) !! (n_place) the same
-    integer :: rubbed(2, 2) = 0             !! the first and the last slave node, and master node,
-                                            !! of those with forces of friction
+    real(wp), allocatable :: former_rub(:, :) !! (2, n_slave + n_master) forces of friction of the
+                                            !! call before, 0 between calls
     real(wp) :: growth = 0.0_wp             !! of an initial overlap in this step, as a part of it
     logical :: is_start = .false.           !! this call is that of time zero; both only where such
                                             !! overlaps grow
@@ -277,17 +277,17 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     associate (scratch => memory%scratch, n => memory%n_slave + memory%n_master)
-      allocate (scratch%former_force(2, n), scratch%nodal(2, n), source=0.0_wp)
+      allocate (scratch%former_force(2, n), scratch%nodal(2, n), scratch%increment(2, n), &
+        source=0.0_wp)
       allocate (scratch%point_at(memory%n_slave), source=0)
       if (allocated(memory%limit%velocity)) allocate (scratch%velocity(2, n), source=0.0_wp)
       if (allocated(memory%limit%velocity) .and. (allocated(memory%damping_force) &
         .or. allocated(memory%friction%force))) &
         allocate (scratch%spring(2, n), scratch%former_spring(2, n), source=0.0_wp)
       if (allocated(memory%friction%force)) then
-        allocate (scratch%increment(2, n), scratch%former_traction(size(memory%friction%state)), &
-          source=0.0_wp)
+        allocate (scratch%former_rub(2, n), &
+          scratch%former_traction(size(memory%friction%state)), source=0.0_wp)
         allocate (scratch%former_state(size(memory%friction%state)), source=0)
-        scratch%rubbed = reshape([1, memory%n_slave, memory%n_slave + 1, n], [2, 2])
       end if
       if (.not. allocated(memory%segments%status)) return
       allocate (scratch%is_placed(size(memory%segments%status)), source=.false.)

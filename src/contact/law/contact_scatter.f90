@@ -9,8 +9,6 @@ module contact_scatter_m
 
   !> Points whose loads are formed together.
   integer, parameter :: n_block = 128
-  !> Ranges before any node is in them.
-  integer, parameter :: no_nodes(2, 2) = reshape([huge(1), 0, huge(1), 0], [2, 2])
 
 contains
 
@@ -76,31 +74,8 @@ contains
       end do
       memory%n_active = count(points%pressure(:points%n) > 0.0_wp &
         .or. abs(points%traction(:points%n)) > 0.0_wp)
-      memory%scratch%rubbed = no_nodes
-      call span_nodes(n_side*points%n, points%slave_nodes, memory%n_slave, memory%scratch%rubbed)
-      call span_nodes(n_side*points%n, points%master_nodes, memory%n_slave, memory%scratch%rubbed)
     end associate
   end subroutine scatter_rubbed
-
-  !> Let the ranges of the slave and of the master nodes take in some nodes.
-  pure subroutine span_nodes(n, nodes, n_slave, ranges)
-    integer, intent(in) :: n, nodes(n), n_slave
-    integer, intent(inout) :: ranges(2, 2) !! first and last of each side
-    integer :: i, first_slave, last_slave, first_master, last_master
-
-    first_slave = ranges(1, 1)
-    last_slave = ranges(2, 1)
-    first_master = ranges(1, 2)
-    last_master = ranges(2, 2)
-    do i = 1, n
-      first_slave = min(first_slave, nodes(i))
-      last_slave = max(last_slave, merge(nodes(i), 0, nodes(i) <= n_slave))
-      first_master = min(first_master, merge(nodes(i), huge(i), nodes(i) > n_slave))
-      last_master = max(last_master, nodes(i))
-    end do
-    ranges(:, 1) = [first_slave, last_slave]
-    ranges(:, 2) = [first_master, last_master]
-  end subroutine span_nodes
 
   !> Loads of points: of pressure and friction together, and of friction alone.
   pure subroutine form_loads(n, part, pressure, traction, area, normal, load)
@@ -111,6 +86,7 @@ contains
     real(wp) :: press, rub
     integer :: p
 
+    !$omp simd private(press, rub)
     do p = 1, n
       press = part*pressure(p)*area(p)
       rub = traction(p)*area(p)
@@ -233,7 +209,6 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     call join(memory%force)
-    memory%scratch%rubbed(:, 1) = [1, memory%n_slave]
     if (allocated(memory%damping_force)) call join(memory%damping_force)
     if (allocated(memory%friction%force)) call join(memory%friction%force)
 

@@ -10,7 +10,6 @@ module friction_m
   use law_friction_m, only : find_limits, return_tractions
   use lengths_m, only : competence_length
   use nodal_average_m, only : average_values, share_out
-  use radii_m, only : centroid
   implicit none
   private
   public :: start_trial_slip, take_trial_motion, set_tractions_aside, rub_places, place_of_point, &
@@ -31,6 +30,13 @@ module friction_m
     real(wp) :: traction(n_block)  !! after the step, N/m^2
     integer :: state(n_block)      !! the same
   end type rubs_t
+
+  !> Both sides of spots between nodes. Without default values, as these.
+  type :: sides_t
+    integer, dimension(n_side, n_block) :: slave_nodes, master_nodes
+    real(wp), dimension(n_side, n_block) :: slave_weights, master_weights
+    real(wp) :: normal(2, n_block), gap(n_block) !! m
+  end type sides_t
 
 contains
 
@@ -162,13 +168,17 @@ contains
     real(wp), intent(inout) :: former(*)
     integer :: p
 
+    !GCC$ NOVECTOR
     do p = 1, n
       place(p) = slave_nodes(1, p)
-      if (slave_nodes(2, p) /= place(p)) place(p) = master_nodes(1, p)
-      former(p) = former_traction(place(p))
+      former(p) = former_traction(slave_nodes(1, p))
       if (slave_nodes(1, p) == slave_nodes(2, p)) cycle
-      if (former_state(place(p)) == is_open) &
+      place(p) = master_nodes(1, p)
+      if (former_state(master_nodes(1, p)) == is_open) then
         former(p) = sum(slave_weights(:, p)*former_traction(slave_nodes(:, p)))
+      else
+        former(p) = former_traction(master_nodes(1, p))
+      end if
     end do
   end subroutine find_former
 
@@ -183,10 +193,11 @@ contains
     integer :: k
 
     do k = 1, n
-      traction(k) = 0.0_wp
+      traction(k) = merge(rubs%traction(k), 0.0_wp, rubs%pressure(k) > 0.0_wp)
+    end do
+    friction%stored = friction%stored + stored_by(n, area, traction, rubs%stiffness)
+    do k = 1, n
       if (.not. rubs%pressure(k) > 0.0_wp) cycle
-      traction(k) = rubs%traction(k)
-      friction%stored = friction%stored + area(k)*traction(k)**2/(2.0_wp*rubs%stiffness(k))
       associate (place => rubs%place(k))
         if (friction%state(place) == is_open) then
           call leave_traction(rubs, k, friction)
@@ -197,6 +208,20 @@ contains
       end associate
     end do
   end subroutine leave_tractions
+
+  !> What tangential springs hold, J/m.
+  pure function stored_by(n, area, traction, stiffness) result(stored)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: area(n), traction(n), stiffness(n)
+    real(wp) :: stored
+    integer :: k
+
+    stored = 0.0_wp
+    !$omp simd reduction(+:stored)
+    do k = 1, n
+      stored = stored + area(k)*traction(k)**2/(2.0_wp*stiffness(k))
+    end do
+  end function stored_by
 
   !> What a place remembers of a step.
   pure subroutine leave_traction(rubs, k, friction)
@@ -269,9 +294,9 @@ contains
     portions(1) = 1
     do first = 1, memory%slave_tracking%n_touching, n_block
       n = min(n_block, memory%slave_tracking%n_touching - first + 1)
-      call find_spot_slips(contact, memory, first, n, rubs)
       associate (points => memory%points)
         call find_portions(n, points%n, points%slave_nodes, points%slave_weights, portions)
+        call find_spot_slips(contact, memory, first, n, portions, rubs)
         do k = 1, n
           rubs%former(k) = memory%scratch%former_traction(rubs%place(k))
           rubs%pressure(k) = points%pressure(portions(k))
@@ -317,12 +342,14 @@ contains
     real(wp), intent(in) :: area(*)        !! of all points, m
     real(wp), intent(inout) :: traction(*) !! of all points, N/m^2
     real(wp), intent(inout) :: stored      !! J/m
+    real(wp) :: density
     integer :: k, p
 
     do k = 1, n
+      density = rubs%traction(k)**2/(2.0_wp*rubs%stiffness(k))
       do p = portions(k), portions(k + 1) - 1
         traction(p) = rubs%traction(k)
-        stored = stored + area(p)*rubs%traction(k)**2/(2.0_wp*rubs%stiffness(k))
+        stored = stored + area(p)*density
       end do
     end do
   end subroutine share_tractions
@@ -338,40 +365,67 @@ contains
     end do
   end function spot_at
 
-  !> Places and slips of some spots in contact.
-  pure subroutine find_spot_slips(contact, memory, first, n, rubs)
+  !> Places and slips of some spots in contact: what the first portion of each has, but on the
+  !> master the foot of the spot.
+  pure subroutine find_spot_slips(contact, memory, first, n, portions, rubs)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: first        !! on the list of spots in contact
     integer, intent(in) :: n
+    integer, intent(in) :: portions(n)  !! the first of each
     type(rubs_t), intent(inout) :: rubs
-    integer, dimension(n_side, n_block) :: slave_nodes, master_nodes
-    real(wp), dimension(n_side, n_block) :: slave_weights, master_weights
-    real(wp) :: normals(2, n_block), gaps(n_block)
-    integer :: k, i, s, q
+    type(sides_t) :: sides
+    integer :: k
 
-    associate (tracking => memory%slave_tracking, xi => memory%spot_xi)
-      do k = 1, n
-        i = tracking%touching(first + k - 1)
-        s = 1 + (i - 1)/size(xi)
-        q = i - (s - 1)*size(xi)
-        slave_nodes(:, k) = contact%slave%segments(:, s)
-        rubs%place(k) = size(xi)*(slave_nodes(1, k) - 1) + q
-        slave_weights(2, k) = xi(q)
-        if (memory%spot_spread > 0.0_wp) slave_weights(2, k) = centroid( &
-          memory%places(:, slave_nodes(1, k)), memory%places(:, slave_nodes(2, k)), &
-          xi(q) - 0.5_wp*memory%spot_spread, xi(q) + 0.5_wp*memory%spot_spread)
-        slave_weights(1, k) = 1.0_wp - slave_weights(2, k)
-        master_nodes(:, k) = memory%n_slave + contact%master%segments(:, tracking%segment(i))
-        master_weights(1, k) = 1.0_wp - tracking%xi(i)
-        master_weights(2, k) = tracking%xi(i)
-        normals(:, k) = tracking%normal(:, i)
-        gaps(k) = tracking%gap(i)
-      end do
+    associate (points => memory%points, tracking => memory%slave_tracking)
+      call take_portions(n, portions, points%slave_nodes, points%slave_weights, points%normal, &
+        points%gap, sides)
+      call take_feet(n, tracking%touching(first), tracking%segment, tracking%xi, &
+        contact%master%segments, memory%n_slave, sides)
+      associate (m => size(memory%spot_xi))
+        do k = 1, n
+          rubs%place(k) = m*(sides%slave_nodes(1, k) - 1) + 1 &
+            + mod(tracking%touching(first + k - 1) - 1, m)
+        end do
+      end associate
     end associate
-    call find_slips(n, slave_nodes, slave_weights, master_nodes, master_weights, normals, gaps, &
-      memory%scratch%increment, memory%places, rubs%slip)
+    call find_slips(n, sides%slave_nodes, sides%slave_weights, sides%master_nodes, &
+      sides%master_weights, sides%normal, sides%gap, memory%scratch%increment, memory%places, &
+      rubs%slip)
   end subroutine find_spot_slips
+
+  !> Slave sides, normals and gaps of some spots from their first portions.
+  pure subroutine take_portions(n, portions, slave_nodes, slave_weights, normal, gap, sides)
+    integer, intent(in) :: n, portions(n), slave_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), normal(2, *), gap(*)
+    type(sides_t), intent(inout) :: sides
+    integer :: k, p
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      p = portions(k)
+      sides%slave_nodes(:, k) = slave_nodes(:, p)
+      sides%slave_weights(:, k) = slave_weights(:, p)
+      sides%normal(:, k) = normal(:, p)
+      sides%gap(k) = gap(p)
+    end do
+  end subroutine take_portions
+
+  !> Master sides of some spots at their feet.
+  pure subroutine take_feet(n, touching, segment, xi, segments, n_slave, sides)
+    integer, intent(in) :: n, touching(n), segment(*), segments(n_side, *)
+    real(wp), intent(in) :: xi(*)
+    integer, intent(in) :: n_slave !! local number before the first master node
+    type(sides_t), intent(inout) :: sides
+    integer :: k
+
+    !GCC$ NOVECTOR
+    do k = 1, n
+      sides%master_nodes(:, k) = n_slave + segments(:, segment(touching(k)))
+      sides%master_weights(1, k) = 1.0_wp - xi(touching(k))
+      sides%master_weights(2, k) = xi(touching(k))
+    end do
+  end subroutine take_feet
 
   !> Types 6 and 7: slave nodes, with slips averaged as gaps are.
   pure subroutine rub_slave_nodes(rule, dt, memory)

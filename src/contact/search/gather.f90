@@ -14,18 +14,17 @@ module gather_m
 
 contains
 
-  !> Take the present displacements into the memory and let its travel grow by a bound on how far
-  !> any two nodes have moved relative to each other since the last call. Friction keeps what each
-  !> has moved.
+  !> Take the present displacements into the memory, and what each node has moved, and let its
+  !> travel grow by a bound on how far any two nodes have moved relative to each other since the
+  !> last call.
   pure subroutine gather_places(motion, memory)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: spread
 
-    if (allocated(memory%scratch%increment)) call take_changes(size(memory%nodes), memory%nodes, &
-      motion, memory%places, memory%scratch%increment)
-    call take_places(memory%nodes, motion, memory%places, spread)
-    memory%travel = memory%travel + spread
+    associate (n => size(memory%nodes), increment => memory%scratch%increment)
+      call take_places(n, memory%nodes, motion, memory%places, increment)
+      memory%travel = memory%travel + spread_of(n, increment)
+    end associate
   end subroutine gather_places
 
   !> Set the forces of the last call aside. Both lists trade places: the former forces are zero
@@ -85,52 +84,45 @@ contains
     end do
   end function power_of
 
-  !> What the nodes have moved by, in a loop of its own: without friction there is none.
-  pure subroutine take_changes(n, nodes, motion, places, changes)
+  !> Copy u of the nodes; what it has changed by.
+  pure subroutine take_places(n, nodes, motion, places, changes)
     integer, intent(in) :: n, nodes(n)
-    real(wp), intent(in) :: motion(4, *), places(4, n)
-    real(wp), intent(inout) :: changes(2, n) !! m
+    real(wp), intent(in) :: motion(4, *)
+    real(wp), intent(inout) :: places(4, n), changes(2, n) !! m
     integer :: i
 
     !GCC$ NOVECTOR
     do i = 1, n
       changes(:, i) = motion(1:2, nodes(i)) - places(3:4, i)
+      places(3:4, i) = motion(1:2, nodes(i))
     end do
-  end subroutine take_changes
+  end subroutine take_places
 
-  !> Copy u of the nodes; the diagonal of the box of their changes bounds the relative motion.
-  pure subroutine take_places(nodes, motion, places, spread)
-    integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in) :: motion(4, *)
-    real(wp), intent(inout) :: places(4, *)
-    real(wp), intent(out) :: spread !! m
-    real(wp) :: low(2, n_lane), high(2, n_lane), change(2)
+  !> The diagonal of the box of these changes bounds the relative motion.
+  pure function spread_of(n, changes) result(spread)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: changes(2*n) !! x and y of each node, m
+    real(wp) :: spread                   !! m
+    real(wp) :: low(n_lane), high(n_lane), box(2)
     integer :: i, k
 
     low = huge(1.0_wp)
     high = -huge(1.0_wp)
-    do i = n_lane, size(nodes), n_lane
+    do i = 0, 2*n - n_lane, n_lane
+      !$omp simd
       do k = 1, n_lane
-        associate (j => i - n_lane + k)
-          change = motion(1:2, nodes(j)) - places(3:4, j)
-          places(3:4, j) = motion(1:2, nodes(j))
-          low(:, k) = merge(change, low(:, k), change < low(:, k))
-          high(:, k) = merge(change, high(:, k), change > high(:, k))
-        end associate
+        low(k) = merge(changes(i + k), low(k), changes(i + k) < low(k))
+        high(k) = merge(changes(i + k), high(k), changes(i + k) > high(k))
       end do
     end do
-    do i = size(nodes) - modulo(size(nodes), n_lane) + 1, size(nodes)
-      change = motion(1:2, nodes(i)) - places(3:4, i)
-      places(3:4, i) = motion(1:2, nodes(i))
-      low(:, 1) = merge(change, low(:, 1), change < low(:, 1))
-      high(:, 1) = merge(change, high(:, 1), change > high(:, 1))
+    do i = 2*n - modulo(2*n, n_lane) + 1, 2*n
+      k = 2 - modulo(i, 2)
+      low(k) = merge(changes(i), low(k), changes(i) < low(k))
+      high(k) = merge(changes(i), high(k), changes(i) > high(k))
     end do
-    do k = 2, n_lane
-      low(:, 1) = merge(low(:, k), low(:, 1), low(:, k) < low(:, 1))
-      high(:, 1) = merge(high(:, k), high(:, 1), high(:, k) > high(:, 1))
-    end do
-    spread = sqrt((high(1, 1) - low(1, 1))**2 + (high(2, 1) - low(2, 1))**2)
-  end subroutine take_places
+    box = [maxval(high(1::2)) - minval(low(1::2)), maxval(high(2::2)) - minval(low(2::2))]
+    spread = sqrt(box(1)**2 + box(2)**2)
+  end function spread_of
 
   !> Add the forces of the interface to those of the mesh. Their power and that of the former ones,
   !> with the same velocity, are formed on the way: v is read once. The former ones are zero

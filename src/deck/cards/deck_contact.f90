@@ -1,9 +1,11 @@
 ! SPDX-License-Identifier: MIT
 !> *CONTACT_2D_ cards. Contact types are numbers and names handed in by the caller; the stock
-!> keywords stand for fixed numbers, which must be among them.
+!> keywords stand for types that must be among them.
 module deck_contact_m
   use kinds_m, only : wp
   use log_m, only : to_text
+  use contact_types_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_nts_mar, &
+    type_segmented_mortar
   use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_none, tie_always, &
     tie_breaks
   use deck_lines_m, only : deck_t, line_error
@@ -103,20 +105,18 @@ contains
 
     select case (name)
     case ('CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE')
-      contact_type = 1
+      contact_type = type_nts
     case ('CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE')
-      contact_type = 2
+      contact_type = type_nts_ar
     case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE', 'CONTACT_2D_PENALTY', &
         'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS')
-      contact_type = 3
+      contact_type = type_two_pass_ar
     case ('CONTACT_2D_AUTOMATIC_TIED', 'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY', &
-        'CONTACT_2D_TIED_SLIDING')
-      contact_type = 5
-    case ('CONTACT_2D_AUTOMATIC_SINGLE_SURFACE')
-      contact_type = 5
+        'CONTACT_2D_TIED_SLIDING', 'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE')
+      contact_type = type_nts_mar
     case ('CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR', &
         'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE_MORTAR')
-      contact_type = 7
+      contact_type = type_segmented_mortar
     case default
       contact_type = 0
     end select
