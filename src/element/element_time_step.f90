@@ -8,7 +8,7 @@ module element_time_step_m
   use layout_m, only : chunk_size
   use controls_m, only : length_by_diagonal
   use element_chunk_m, only : element_chunk_t
-  use hourglass_m, only : hourglass_step, harmless_coefficient
+  use hourglass_m, only : hourglass_steps, harmless_coefficient
   use parts_m, only : hourglass_t
   implicit none
   private
@@ -17,7 +17,8 @@ module element_time_step_m
 contains
 
   !> Smallest stable step of the chunk, and its smallest volume ratio.
-  pure subroutine stable_step(length_rule, sound_speed, hourglass, nodes, chunk, limit, volume)
+  pure subroutine stable_step(length_rule, sound_speed, hourglass, nodes, chunk, limit, volume, &
+      single)
     integer, intent(in) :: length_rule
     real(wp), intent(in) :: sound_speed
     type(hourglass_t), intent(in) :: hourglass  !! bulk viscosity too
@@ -25,6 +26,7 @@ contains
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(out) :: limit             !! s
     real(wp), intent(out) :: volume            !! smallest A/A0
+    real(wp), intent(out), optional :: single(chunk_size) !! steps of the elements
     real(wp) :: squared(chunk_size), largest
     integer :: i
 
@@ -46,7 +48,14 @@ contains
       limit = minval(viscous_limit(1.0_wp/sqrt(squared), sound_speed, hourglass%quadratic, &
       hourglass%linear, chunk%trace))
     if (hourglass%coefficient > harmless_coefficient) &
-      limit = min(limit, hourglass_step(hourglass, sound_speed, nodes, chunk))
+      limit = min(limit, minval(hourglass_steps(hourglass, sound_speed, nodes, chunk)))
+    if (.not. present(single)) return
+    single = 1.0_wp/(sound_speed*sqrt(squared))
+    if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) single = &
+      viscous_limit(1.0_wp/sqrt(squared), sound_speed, hourglass%quadratic, hourglass%linear, &
+      chunk%trace)
+    if (hourglass%coefficient > harmless_coefficient) &
+      single = min(single, hourglass_steps(hourglass, sound_speed, nodes, chunk))
   end subroutine stable_step
 
   !> Step of one element under bulk viscosity.

@@ -26,7 +26,7 @@ contains
 
   !> Smallest step of the chunk, and its smallest volume ratio at a point.
   pure subroutine round_full_step(material, viscosity, inverse_mass, stride, chunk, points, limit, &
-    volume)
+    volume, single)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: viscosity      !! its Q1 and Q2 count
     integer, intent(in) :: stride
@@ -36,6 +36,7 @@ contains
     type(round_point_t), intent(in) :: points(n_point)
     real(wp), intent(out) :: limit                  !! s
     real(wp), intent(out) :: volume                 !! smallest J
+    real(wp), intent(out), optional :: single(chunk_size) !! steps of the elements
     real(wp) :: modulus, squared, rate, length, largest, step
     real(wp), dimension(chunk_size) :: plane, hoop, both
     integer :: i, k
@@ -57,6 +58,8 @@ contains
       largest = max(largest, squared)
     end do
     limit = 2.0_wp/sqrt(largest/material%density)
+    if (present(single)) single = 2.0_wp/sqrt((2.0_wp*material%shear*(plane + hoop) &
+      + modulus*both)/material%density)
     if (.not. (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp)) return
     step = limit
     do i = 1, chunk_size
@@ -65,6 +68,7 @@ contains
       rate = length/(1.0_wp + chunk%stretch(i))*(viscosity%linear*material%sound_speed &
         - viscosity%quadratic*length*chunk%trace(i))*both(i)
       limit = min(limit, step/(1.0_wp + 0.5_wp*step*rate))
+      if (present(single)) single(i) = single(i)/(1.0_wp + 0.5_wp*single(i)*rate)
     end do
   end subroutine round_full_step
 

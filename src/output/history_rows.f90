@@ -23,8 +23,9 @@ module history_rows_m
 contains
 
   !> Names and kinds of the columns of a table, by a row of nothing.
-  subroutine name_columns(i_table, row)
+  subroutine name_columns(i_table, tells_mass, row)
     integer, intent(in) :: i_table   !! one of `table_`
+    logical, intent(in) :: tells_mass !! masses are scaled
     type(row_t), intent(out) :: row
     type(snapshot_t) :: nothing
     type(interface_result_t) :: result
@@ -34,6 +35,7 @@ contains
     real(wp), parameter :: nowhere(2) = 0.0_wp
 
     row%is_named = .true.
+    nothing%energies%tells_mass = tells_mass
     select case (i_table)
     case (table_glstat)
       call put_glstat(row, nothing)
@@ -165,6 +167,7 @@ contains
       call put(row, 'energy_ratio', energy_ratio(e))
       call put(row, 'leapfrog', e%leapfrog)
       call put(row, 'friction', e%friction)
+      if (e%tells_mass) call put(row, 'added_mass', e%added_mass)
       call end_csv(row)
       call put(row, 'velocity_x,velocity_y', shot%mean_velocity)
       call put(row, 'element', shot%slowest(1))

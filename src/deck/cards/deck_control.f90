@@ -98,6 +98,7 @@ contains
     if (real_of(card, 'DTMIN') > 1.0_wp) call report_field(deck, cursor, card, 'DTMIN', &
       'is not a share of the first step (at most 1): the run would end at once')
     call refuse_negative(deck, cursor, card, 'ENDENG')
+    call refuse_negative(deck, cursor, card, 'ENDMAS')
     call refuse_outside(deck, cursor, card, 'NOSOL', 0, 1, &
       'is not 0 or 1 (stop after the initialisation)')
     raw%terminated = .true.
@@ -105,6 +106,7 @@ contains
     raw%controls%end_cycle = integer_of(card, 'ENDCYC')
     raw%controls%dt_floor = real_of(card, 'DTMIN')
     raw%controls%energy_limit = real_of(card, 'ENDENG')
+    raw%controls%most_added = real_of(card, 'ENDMAS')
     raw%controls%check_only = integer_of(card, 'NOSOL') == 1
   end subroutine take_termination
 
@@ -129,6 +131,11 @@ contains
     if (real_of(card, 'TSSFAC') > 0.0_wp) raw%controls%dt_scale = real_of(card, 'TSSFAC')
     raw%controls%length_rule = merge(length_by_diagonal, length_by_side, &
       integer_of(card, 'ISDO') == 1)
+    call refuse_outside(deck, cursor, card, 'MS1ST', 0, 1, 'is not 0 or 1 (masses are scaled at ' &
+      //'the start alone)')
+    call note_explicit(raw, card, 'DT2MS', abs(real_of(card, 'DT2MS')) > 0.0_wp)
+    raw%controls%mass_step = real_of(card, 'DT2MS')
+    raw%controls%masses_stay = integer_of(card, 'MS1ST') == 1
     raw%step_line = card%line
     raw%dt_curve = integer_of(card, 'LCTM')
     raw%dt_curve_place = place_of(card, 'LCTM')

@@ -286,11 +286,13 @@ contains
         //'it 0 (a transducer adds up all forces on SURFA)'
     case ('CID', 'ICID', 'VID')
       text = 'is a local coordinate system, which this version does not have; leave it 0'
+    case ('TF')
+      text = 'lets the constraint fail, which this version does not have; leave it blank'
+    case ('CIDL')
+      text = 'gives the points in another system, which this version does not have; leave it 0'
     case ('SRC', 'SRP')
       text = 'asks for a Cowper-Symonds strain rate effect, which this version does not have; ' &
         //'leave it 0'
-    case ('DT2MS')
-      text = 'asks for mass scaling, which this version does not have; leave it 0'
     case ('ERODE', 'TDEL', 'DTF', 'TEROD', 'CEROD', 'CHARL', 'NUMINT')
       text = 'asks for deletion of elements, which this version does not have; leave it 0'
     case ('RATEOP', 'C2_P_XNP_D', 'K')
