@@ -13,11 +13,11 @@ module element_steps_m
   use quad_kinematics_m, only : form_present_shape, form_increments
   use quad_points_m, only : n_point, form_point
   use round_chunk_m, only : round_chunk_t, gather_round, reference_mass
-  use round_full_step_m, only : round_full_step
+  use round_full_step_m, only : single_round_full_steps
   use round_hourglass_m, only : form_resistance
   use round_kinematics_m, only : form_round_shape, form_round_increments
   use round_points_m, only : round_point_t, form_radii
-  use round_time_step_m, only : round_step
+  use round_time_step_m, only : single_round_steps
   use stress_chunk_m, only : stress_chunk_t
   use eos_pressure_m, only : take_present
   implicit none
@@ -150,7 +150,7 @@ contains
     type(round_chunk_t) :: round
     type(round_point_t) :: places(n_point)
     type(stress_chunk_t) :: unused
-    real(wp) :: start(chunk_size, size(shape, 2)), point_shape(chunk_size, 6), limit, volume
+    real(wp) :: start(chunk_size, size(shape, 2)), point_shape(chunk_size, 6)
     integer :: k
 
     start = shape
@@ -160,8 +160,8 @@ contains
     chunk%area = round%area
     if (point_count(model%sections(part%section)) == 1) then
       call form_resistance(model%materials(part%material), part%hourglass, round)
-      call round_step(material, part%hourglass, start(1, reference_mass), chunk_size, chunk, &
-        round, limit, volume, steps)
+      call single_round_steps(material, part%hourglass, start(1, reference_mass), chunk_size, &
+        chunk, round, steps)
       return
     end if
     do k = 1, n_point
@@ -171,8 +171,8 @@ contains
       call form_present_shape(point_shape, chunk_size, point)
       call form_radii(k, start, chunk_size, chunk, round, point, places(k))
     end do
-    call round_full_step(material, part%hourglass, start(1, reference_mass), chunk_size, chunk, &
-      places, limit, volume, steps)
+    call single_round_full_steps(material, part%hourglass, start(1, reference_mass), chunk_size, &
+      chunk, places, steps)
   end subroutine round_steps
 
 end module element_steps_m

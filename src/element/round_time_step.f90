@@ -10,7 +10,7 @@ module round_time_step_m
   use round_chunk_m, only : round_chunk_t
   implicit none
   private
-  public :: round_step
+  public :: round_step, single_round_steps
 
   !> Of one chunk, over the masses: bounds of omega^2 of strain and of its part by volume (over
   !> lambda); of hourglass control gamma.gamma, and the square of its coupling to strain.
@@ -23,8 +23,7 @@ contains
   !> Smallest stable step of the chunk, and its smallest volume ratio. With x = omega^2 dt^2/4 of
   !> strain, y the same of hourglass control and z^2 the coupling, the element is stable where
   !> (1 - x)(1 - y) >= z^2, and so where y <= 1/2 and x + 2 z^2 <= 1.
-  pure subroutine round_step(material, hourglass, inverse_mass, stride, chunk, round, limit, &
-      volume, single)
+  pure subroutine round_step(material, hourglass, inverse_mass, stride, chunk, round, limit, volume)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass      !! bulk viscosity too
     integer, intent(in) :: stride
@@ -34,7 +33,6 @@ contains
     type(round_chunk_t), intent(in) :: round        !! present shape, resistance to hourglassing
     real(wp), intent(out) :: limit                  !! s
     real(wp), intent(out) :: volume                 !! smallest V/V0; below 0 where an area is
-    real(wp), intent(out), optional :: single(chunk_size) !! steps of the elements
     type(step_sums_t) :: sums
     real(wp) :: largest, pattern, coupled, factor, lame, shear
     integer :: i
@@ -72,22 +70,28 @@ contains
     end if
     if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) &
       call limit_bulk_viscosity(hourglass, material%sound_speed, chunk, sums, limit)
-    if (present(single)) call find_single_steps(material, hourglass, chunk, round, sums, single)
   end subroutine round_step
 
   !> The steps of the elements, each by the same bound alone.
-  pure subroutine find_single_steps(material, hourglass, chunk, round, sums, single)
+  pure subroutine single_round_steps(material, hourglass, inverse_mass, stride, chunk, round, &
+      single)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
+    integer, intent(in) :: stride
+    real(wp), intent(in) :: inverse_mass(stride, *) !! as above
     type(element_chunk_t), intent(in) :: chunk
     type(round_chunk_t), intent(in) :: round
-    type(step_sums_t), intent(in) :: sums
-    real(wp), intent(out) :: single(chunk_size)
+    real(wp), intent(out) :: single(chunk_size)     !! s
     real(wp), dimension(chunk_size) :: pattern, coupled
     type(element_chunk_t) :: one
-    type(step_sums_t) :: alone
+    type(step_sums_t) :: sums, alone
+    real(wp) :: lame, shear
     integer :: i
 
+    shear = 2.0_wp*material%shear/material%density
+    lame = max(0.0_wp, material%bulk/material%density - shear/3.0_wp)
+    call form_strain_sums(lame, shear, inverse_mass, stride, round, sums)
+    call form_pattern_sums(lame, shear, inverse_mass, stride, round, sums)
     pattern = max(round%resistance*sums%pattern/material%density, tiny(1.0_wp))
     if (hourglass%form == hourglass_viscous) then
       coupled = sums%strain + 2.0_wp/(material%density*sqrt(sums%strain))*round%resistance &
@@ -105,7 +109,7 @@ contains
       alone%dilation = sums%dilation(i)
       call limit_bulk_viscosity(hourglass, material%sound_speed, one, alone, single(i))
     end do
-  end subroutine find_single_steps
+  end subroutine single_round_steps
 
   !> The sums over the nodes for strain. With p, q, o, t, u, w the sums of b_r^2, b_z^2, b_r b_z,
   !> M^2, M b_r, M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda is

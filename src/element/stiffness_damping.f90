@@ -37,6 +37,7 @@ contains
       end associate
     end do
     call move_alloc(retardation, elements%retardation)
+    allocate (elements%damping_stress(16*model%layout%n_slot), source=0.0_wp)
     allocate (elements%damping_work(size(elements%time_limit)), source=0.0_wp)
   end subroutine start_retardation
 

@@ -167,13 +167,21 @@ contains
       call put(row, 'energy_ratio', energy_ratio(e))
       call put(row, 'leapfrog', e%leapfrog)
       call put(row, 'friction', e%friction)
-      if (e%tells_mass) call put(row, 'added_mass', e%added_mass)
+      if (e%tells_mass) call put_added_mass(row, e%added_mass)
       call end_csv(row)
       call put(row, 'velocity_x,velocity_y', shot%mean_velocity)
       call put(row, 'element', shot%slowest(1))
       call put(row, 'element_part', shot%slowest(2))
     end associate
   end subroutine put_glstat
+
+  !> The column that runs with scaled masses have besides.
+  pure subroutine put_added_mass(row, mass)
+    type(row_t), intent(inout) :: row
+    real(wp), intent(in) :: mass
+
+    call put(row, 'added_mass', mass)
+  end subroutine put_added_mass
 
   !> Resultant of one side of an interface.
   pure subroutine put_rcforc(row, time, id, side, result)

@@ -76,6 +76,7 @@ contains
     call keep(archive, 'viscous_work', elements%viscous_work)
     call keep(archive, 'mass_ratio', elements%mass_ratio)
     call keep(archive, 'retardation', elements%retardation)
+    call keep(archive, 'damping_stress', elements%damping_stress)
     call keep(archive, 'damping_work', elements%damping_work)
     call keep(archive, 'time_limit', elements%time_limit)
     call keep(archive, 'volume_limit', elements%volume_limit)

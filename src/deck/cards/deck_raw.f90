@@ -183,6 +183,8 @@ module deck_raw_m
     real(wp) :: newmark(2) = 0.0_wp            !! GAMMA and BETA of the implicit method, 0 = blank
     real(wp) :: hht = 0.0_wp                   !! minus ALPHA of the implicit method
     real(wp) :: spectral_radius = -1.0_wp      !! of the implicit method, negative = not given
+    logical :: never_relaxes = .false.         !! IDRFLG -999
+    integer :: relaxation_line = 0             !! card of *CONTROL_DYNAMIC_RELAXATION, 0 = none
     integer :: step_line = 0                   !! card of *CONTROL_TIMESTEP, 0 = none
     integer :: newmark_line = 0                !! card of *CONTROL_IMPLICIT_DYNAMICS, 0 = none
     integer :: dt_curve = 0                    !! LCTM, user id

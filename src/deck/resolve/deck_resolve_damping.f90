@@ -15,7 +15,7 @@ module deck_resolve_damping_m
   use deck_resolve_conditions_m, only : row_nodes, load_axes
   implicit none
   private
-  public :: resolve_damping
+  public :: resolve_damping, settle_relaxation
 
 contains
 
@@ -47,6 +47,40 @@ contains
       end associate
     end do
   end subroutine resolve_damping
+
+  !> Whether the run begins with dynamic relaxation, and what may not be in it.
+  subroutine settle_relaxation(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(inout) :: model
+    integer :: i, line
+
+    associate (relaxation => model%controls%relaxation, conditions => model%conditions)
+      do i = 1, size(model%curves)
+        if (model%curves(i)%phase > 0 .and. .not. raw%never_relaxes) relaxation%is_on = .true.
+      end do
+      if (.not. relaxation%is_on) return
+      line = raw%relaxation_line
+      if (line == 0) line = raw%curve_line(findloc(raw%curves%phase > 0, .true., dim=1))
+      if (model%controls%implicit%is_on) call refuse('with the implicit method')
+      if (size(raw%contacts) > 0) call refuse('with contact')
+      if (size(raw%walls) > 0) call refuse('with rigid walls')
+      if (size(model%rigids) > 0) call refuse('with rigid bodies')
+      if (size(conditions%motions) > 0) call refuse('with prescribed motion')
+      if (allocated(conditions%common_motions)) call refuse('with *CONSTRAINED_NODE_SET')
+    end associate
+
+  contains
+
+    !> One error.
+    subroutine refuse(what)
+      character(*), intent(in) :: what
+
+      call line_error(deck, line, 'asks for dynamic relaxation '//what &
+        //', which this version does not have')
+    end subroutine refuse
+
+  end subroutine settle_relaxation
 
   !> What the implicit method does not have.
   subroutine refuse_implicit(deck, model, line, what)

@@ -302,8 +302,11 @@ contains
       text = 'is a mid-side node; elements and edges have corner nodes only here'
     case ('BOXID')
       text = 'is a box, which this version does not have; leave it 0'
-    case ('PHASE', 'SIDR')
-      text = 'asks for dynamic relaxation, which this version does not have; leave it 0'
+    case ('PHASE')
+      text = 'is a velocity of dynamic relaxation, which this version does not have; leave it 0'
+    case ('IRELAL')
+      text = 'asks for a factor that the program finds, which this version does not have; leave ' &
+        //'it 0 and give DRFCTR'
     case ('COUPLE', 'M', 'ALIAS')
       text = 'couples the body to another program or to a surface file, which this version does ' &
         //'not have; leave it blank'

@@ -32,6 +32,9 @@ module deck_schema_tables_m
     ' DTINIT:f TSSFAC:f ISDO:i TSLIMT:fw DT2MS:f LCTM:i ERODE:ir MS1ST:i', &
     ' DT2MSF:fw DT2MSLC:iw IMSCL:iw -:x -:x RMSCL:fw EMSCL:fw IHDO:iw', &
     ' -:x IGADO:iw', &
+    'CONTROL_DYNAMIC_RELAXATION', &
+    ' NRCYCK:i=250 DRTOL:f=0.001 DRFCTR:f=0.995 DRTERM:f TSSFDR:f IRELAL:ir' &
+    //' EDTTL:fs=0.04 IDRFLG:i', &
     'CONTROL_HOURGLASS', &
     ' IHQ:i QH:f', &
     'CONTROL_BULK_VISCOSITY', &
@@ -123,7 +126,7 @@ module deck_schema_tables_m
     ' CMO:i CON1:i CON2:i', &
     ' LCO_OR_A1:fw A2:fw A3:fw V1:fw V2:fw V3:fw', &
     'DEFINE_CURVE t', &
-    ' LCID:i SIDR:ir SFA:f=1 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
+    ' LCID:i SIDR:i SFA:f=1 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
     ' A1:f20 O1:f20', &
     'DEFINE_COORDINATE_SYSTEM t', &
     ' CID:i XO:f YO:f ZO:f XL:f YL:f ZL:f CIDL:ir', &
