@@ -6,7 +6,7 @@ module deck_schema_tables_m
   public :: table_control, table_mesh, table_conditions, table_contact, table_database
 
   !> Control of the deck and of the run.
-  character(86), parameter :: table_control(*) = [character(86) :: &
+  character(98), parameter :: table_control(*) = [character(98) :: &
     'KEYWORD', &
     'END', &
     'COMMENT', &
