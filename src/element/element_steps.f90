@@ -5,24 +5,25 @@ module element_steps_m
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use element_dispatch_m, only : point_count
-  use element_time_step_m, only : stable_step
+  use element_time_step_m, only : single_steps
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
   use layout_m, only : chunk_size
   use model_m, only : model_t
-  use parts_m, only : hourglass_t, material_t, part_t
+  use parts_m, only : hourglass_t, material_t, part_t, gives_pressure, hourglass_assumed
   use quad_kinematics_m, only : form_present_shape, form_increments
   use quad_points_m, only : n_point, form_point
   use round_chunk_m, only : round_chunk_t, gather_round, reference_mass
   use round_full_step_m, only : single_round_full_steps
-  use round_hourglass_m, only : form_resistance
+  use round_hourglass_m, only : form_resistance, form_assumed_resistance
   use round_kinematics_m, only : form_round_shape, form_round_increments
   use round_points_m, only : round_point_t, form_radii
   use round_time_step_m, only : single_round_steps
   use stress_chunk_m, only : stress_chunk_t
-  use eos_pressure_m, only : take_present
+  use eos_pressure_m, only : take_present, finish_limits
+  use law_pressure_m, only : take_law_present
   implicit none
   private
-  public :: shape_steps, chunk_steps, damped_step
+  public :: shape_steps, chunk_steps, damped_step, take_now
 
 contains
 
@@ -44,6 +45,20 @@ contains
     end if
   end subroutine shape_steps
 
+  !> The material with the moduli that the element in a slot has now.
+  pure subroutine take_now(material, elements, i_slot, now)
+    type(material_t), intent(in) :: material
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: i_slot
+    type(material_t), intent(out) :: now
+
+    if (gives_pressure(material)) then
+      call take_law_present(material, elements, i_slot, now)
+    else
+      call take_present(material, elements, i_slot, now)
+    end if
+  end subroutine take_now
+
   !> Steps of the elements of a chunk, of padding too. With an equation of state the stiffest of
   !> them stands for all.
   subroutine chunk_steps(model, elements, i_chunk, motion, dt, steps)
@@ -59,11 +74,13 @@ contains
     first = (i_chunk - 1)*chunk_size + 1
     last = first + chunk_size - 1
     associate (part => model%parts(model%layout%chunk_part(i_chunk)))
-      call take_present(model%materials(part%material), elements, first, now)
-      if (allocated(model%materials(part%material)%eos)) then
+      call take_now(model%materials(part%material), elements, first, now)
+      if (allocated(model%materials(part%material)%eos) .or. &
+        gives_pressure(model%materials(part%material))) then
         do i = first + 1, first + model%layout%chunk_elements(i_chunk) - 1
-          call take_present(model%materials(part%material), elements, i, other)
+          call take_now(model%materials(part%material), elements, i, other)
           now%bulk = max(now%bulk, other%bulk)
+          now%shear = max(now%shear, other%shear)
           now%sound_speed = max(now%sound_speed, other%sound_speed)
         end do
       end if
@@ -98,19 +115,36 @@ contains
     real(wp), intent(out) :: steps(chunk_size)
     type(element_chunk_t) :: chunk
     type(stress_chunk_t) :: unused
-    real(wp) :: start(chunk_size, 6), limit, volume
+    real(wp) :: start(chunk_size, 6)
 
     start = shape(:, :6)
     call gather_chunk(nodes, motion, chunk)
     call form_present_shape(start, chunk_size, chunk)
     call form_increments(dt, chunk, unused)
     if (point_count(model%sections(part%section)) == 1) then
-      call stable_step(model%controls%length_rule, material%sound_speed, part%hourglass, nodes, &
-        chunk, limit, volume, steps)
+      call single_steps(model%controls%length_rule, material%sound_speed, part%hourglass, nodes, &
+        chunk, steps)
     else
       call full_steps(material, part%hourglass, nodes, start, chunk, steps)
     end if
+    call slow_fluid(model%materials(part%material), material, chunk%stretch, steps)
   end subroutine plane_steps
+
+  !> Steps of a viscous fluid from those without viscosity.
+  pure subroutine slow_fluid(fluid, now, stretch, steps)
+    type(material_t), intent(in) :: fluid, now
+    real(wp), intent(in) :: stretch(chunk_size)      !! V/V0 - 1
+    real(wp), intent(inout) :: steps(chunk_size)
+    real(wp) :: same(chunk_size), unused
+    integer :: i
+
+    if (.not. fluid%viscosity > 0.0_wp) return
+    unused = 1.0_wp
+    do i = 1, chunk_size
+      same = stretch(i)
+      call finish_limits(fluid, now, same, steps(i), unused)
+    end do
+  end subroutine slow_fluid
 
   !> Steps of fully integrated plane quads.
   subroutine full_steps(material, hourglass, nodes, shape, chunk, steps)
@@ -157,11 +191,15 @@ contains
     call gather_round(nodes, motion, chunk, round)
     call form_round_shape(start, chunk_size, chunk, round)
     call form_round_increments(dt, chunk, round, unused)
-    chunk%area = round%area
     if (point_count(model%sections(part%section)) == 1) then
-      call form_resistance(model%materials(part%material), part%hourglass, round)
+      if (part%hourglass%form == hourglass_assumed) then
+        call form_assumed_resistance(model%materials(part%material), part%hourglass, chunk, round)
+      else
+        call form_resistance(model%materials(part%material), part%hourglass, chunk, round)
+      end if
       call single_round_steps(material, part%hourglass, start(1, reference_mass), chunk_size, &
         chunk, round, steps)
+      call slow_fluid(model%materials(part%material), material, chunk%stretch, steps)
       return
     end if
     do k = 1, n_point
@@ -173,6 +211,7 @@ contains
     end do
     call single_round_full_steps(material, part%hourglass, start(1, reference_mass), chunk_size, &
       chunk, places, steps)
+    call slow_fluid(model%materials(part%material), material, chunk%stretch, steps)
   end subroutine round_steps
 
 end module element_steps_m

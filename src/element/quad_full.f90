@@ -6,12 +6,14 @@ module quad_full_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
+  use deformation_gradient_m, only : form_gradient
   use element_chunk_m, only : element_chunk_t, gather_chunk
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
+  use eos_pressure_m, only : load_eos_state, form_eos_pressure, finish_limits
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
+  use law_pressure_m, only : load_law_state, start_law_values, add_point_values, form_law_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size
-  use parts_m, only : hourglass_t, material_t
+  use parts_m, only : hourglass_t, material_t, gives_pressure
   use quad_kinematics_m, only : form_present_shape, form_increments, form_forces
   use quad_points_m, only : n_point, form_point, add_point_force
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
@@ -91,8 +93,13 @@ contains
     real(wp) :: half
     integer :: i
 
-    call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
-      *chunk%inverse_area, elements, chunk, now)
+    if (gives_pressure(material)) then
+      call form_law_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+        *chunk%inverse_area, elements, chunk, now)
+    else
+      call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+        *chunk%inverse_area, elements, chunk, now)
+    end if
     !$omp simd private(half)
     do i = 1, chunk_size
       half = 0.5_wp*chunk%pressure(i)
@@ -103,8 +110,8 @@ contains
     end do
     call full_step(now, hourglass, nodes, chunk, sums, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> The pressure that all points of an element share: bulk viscosity of the mean rate, and the
@@ -123,6 +130,7 @@ contains
     chunk%pressure = 0.0_wp
     if (allocated(material%eos)) then
       chunk%heat = 0.0_wp
+      if (gives_pressure(material)) call start_law_values(chunk)
       if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) call form_increments(dt, &
         chunk, unused)
       return
@@ -158,8 +166,14 @@ contains
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
     call form_increments(dt, point, stress)
     call load_deviator(elements%point_deviator(first), chunk_size, stress)
-    if (allocated(material%eos)) call load_eos_state(i_chunk, point%mid_area &
-      *(1.0_wp + point%stretch)*point%inverse_area, elements, stress)
+    if (allocated(material%eos)) then
+      call load_eos_state(i_chunk, point%mid_area*(1.0_wp + point%stretch)*point%inverse_area, &
+        elements, stress)
+      if (gives_pressure(material)) then
+        call load_law_state(i_chunk, chunk, elements, stress)
+        call form_gradient(point, point%stretch, stress)
+      end if
+    end if
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk) &
         + (k - 1)*chunk_size*history_size(material)))
@@ -169,6 +183,8 @@ contains
     call store_deviator(stress, chunk_size, elements%point_deviator(first))
     if (allocated(material%eos)) then
       chunk%heat = chunk%heat + 0.25_wp*stress%work*point%mid_area
+      if (gives_pressure(material)) call add_point_values(0.25_wp*point%area/(1.0_wp &
+        + point%stretch), material, stress, chunk)
     else
       elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
         + 0.25_wp*work_of_deviator(stress%work, point%mid_area)

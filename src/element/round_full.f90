@@ -6,11 +6,13 @@ module round_full_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
+  use deformation_gradient_m, only : form_gradient
   use element_chunk_m, only : element_chunk_t
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
+  use eos_pressure_m, only : load_eos_state, form_eos_pressure, finish_limits
+  use law_pressure_m, only : load_law_state, start_law_values, add_point_values, form_law_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size
-  use parts_m, only : hourglass_t, material_t
+  use parts_m, only : hourglass_t, material_t, gives_pressure
   use quad_full_m, only : has_mean_dilatation
   use quad_kinematics_m, only : form_present_shape, form_increments, form_forces
   use quad_points_m, only : n_point, form_point, add_point_force
@@ -82,8 +84,13 @@ contains
     integer :: first, i
 
     first = (i_chunk - 1)*chunk_size + 1
-    call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
-      *round%inverse_volume, elements, chunk, now)
+    if (gives_pressure(material)) then
+      call form_law_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+        *round%inverse_volume, elements, chunk, now)
+    else
+      call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+        *round%inverse_volume, elements, chunk, now)
+    end if
     associate (p => chunk%pressure)
       do i = 1, chunk_size
         round%force(1, i) = chunk%force(1, i) + p(i)*(round%rad_a(i) + round%mean_a(i))
@@ -92,14 +99,14 @@ contains
         round%force(4, i) = chunk%force(4, i) + p(i)*round%axi_b(i)
         round%swing(1, i) = chunk%swing(1, i) + p(i)*round%rad_h(i)
         round%swing(2, i) = chunk%swing(2, i) + p(i)*round%axi_h(i)
-        round%hoop(1, i) = round%hoop(1, i) + p(i)*round%mean_s(i)
+        round%hoop(i) = round%hoop(i) + p(i)*round%mean_s(i)
       end do
     end associate
     call round_full_step(now, hourglass, elements%reference(first, reference_mass), &
       size(elements%reference, 1), chunk, points, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> The pressure that all points of an element share: bulk viscosity of the mean rate, and the
@@ -117,9 +124,9 @@ contains
 
     chunk%trace = 0.0_wp
     chunk%pressure = 0.0_wp
-    chunk%area = round%area
     if (allocated(material%eos)) then
       chunk%heat = 0.0_wp
+      if (gives_pressure(material)) call start_law_values(chunk)
       if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) call &
         form_round_increments(dt, chunk, round, unused)
       return
@@ -167,8 +174,14 @@ contains
     call add_hoop_strain(dt, place, point, stress)
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
     call load_deviator(elements%point_deviator(first), chunk_size, stress)
-    if (allocated(material%eos)) call load_eos_state(i_chunk, point%mid_area &
-      *(1.0_wp + place%stretch)/place%volume, elements, stress)
+    if (allocated(material%eos)) then
+      call load_eos_state(i_chunk, point%mid_area*(1.0_wp + place%stretch)/place%volume, elements, &
+        stress)
+      if (gives_pressure(material)) then
+        call load_law_state(i_chunk, chunk, elements, stress)
+        call form_gradient(point, place%stretch, stress)
+      end if
+    end if
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk) &
         + (k - 1)*chunk_size*history_size(material)))
@@ -178,6 +191,8 @@ contains
     call store_deviator(stress, chunk_size, elements%point_deviator(first))
     if (allocated(material%eos)) then
       chunk%heat = chunk%heat + stress%work*point%mid_area
+      if (gives_pressure(material)) call add_point_values(place%volume/(1.0_wp + place%stretch), &
+        material, stress, chunk)
     else
       elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
         + work_of_deviator(stress%work, point%mid_area)

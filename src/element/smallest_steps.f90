@@ -4,8 +4,7 @@
 module smallest_steps_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
-  use element_steps_m, only : shape_steps, damped_step
-  use eos_pressure_m, only : take_present
+  use element_steps_m, only : shape_steps, damped_step, take_now
   use layout_m, only : chunk_size
   use mass_scaling_m, only : scaled_step
   use model_m, only : model_t
@@ -74,7 +73,7 @@ contains
     nodes = spread(model%layout%slot_nodes(:, i_slot), 2, chunk_size)
     shape = spread(elements%reference(i_slot, :), 1, chunk_size)
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
-      call take_present(model%materials(part%material), elements, i_slot, now)
+      call take_now(model%materials(part%material), elements, i_slot, now)
       call shape_steps(model, part, now, nodes, shape, motion, 0.0_wp, steps)
     end associate
     step = steps(1)

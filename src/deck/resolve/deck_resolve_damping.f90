@@ -5,6 +5,7 @@ module deck_resolve_damping_m
   use log_m, only : to_text
   use conditions_m, only : part_damping_t, lumped_mass_t, common_motion_t, nodal_load_t
   use model_m, only : model_t
+  use parts_m, only : gives_pressure
   use rigids_m, only : mark_rigid_nodes
   use supports_m, only : mark_meshed_nodes
   use deck_cards_m, only : reject_field
@@ -151,9 +152,10 @@ contains
     do k = 1, size(parts)
       associate (part => model%parts(parts(k)))
         if (part%material == 0) cycle
-        if (allocated(model%materials(part%material)%eos)) call reject_field(deck, id_place(row), &
-          ': part '//to_text(part%id)//' has an equation of state or a law whose points may ' &
-          //'fail, for which there is no damping by stiffness')
+        if (allocated(model%materials(part%material)%eos) .or. &
+          gives_pressure(model%materials(part%material))) call reject_field(deck, id_place(row), &
+          ': part '//to_text(part%id)//' has an equation of state, or is a rubber or a law ' &
+          //'whose points may fail, for which there is no damping by stiffness')
         if (abs(part%stiffness_damping) > 0.0_wp) call reject_field(deck, id_place(row), &
           ': part '//to_text(part%id)//' is damped by stiffness by another card too')
         if (model%materials(part%material)%is_rigid) cycle

@@ -50,11 +50,12 @@ contains
     integer :: i, k
 
     total = 0.0_wp
+    ! At time zero damping acts on the mean of v(0) and v(1/2).
     late = 1.0_wp
+    if (.not. state%dt_before > 0.0_wp) late = 1.0_wp + 0.25_wp*damping*state%dt
     do i = 1, model%mesh%n_node
-      ! At time zero damping acts on the mean of v(0) and v(1/2).
-      if (.not. state%dt_before > 0.0_wp) late = 1.0_wp + 0.25_wp*damping_at(state, damping, i) &
-        *state%dt
+      if (allocated(state%node_damping) .and. .not. state%dt_before > 0.0_wp) late = 1.0_wp &
+        + 0.25_wp*state%node_damping(:, i)*state%dt
       call find_motion(model%layout%n_special, state, damping, i, velocity, a)
       do k = 1, 2
         if (state%inverse_mass(k, i) > 0.0_wp) total = total + state%mass(i)*(a(k)/late(k))**2
@@ -151,9 +152,10 @@ contains
     real(wp), intent(in) :: damping(2)
     type(snapshot_t), intent(in) :: snapshot !! may keep velocities
     real(wp) :: work
-    real(wp) :: velocity(2), acceleration(2)
+    real(wp) :: velocity(2), acceleration(2), d(2)
     integer :: i
 
+    d = damping
     work = 0.0_wp
     do i = 1, model%mesh%n_node
       if (allocated(snapshot%velocity)) then
@@ -161,8 +163,8 @@ contains
       else
         call find_motion(model%layout%n_special, state, damping, i, velocity, acceleration)
       end if
-      work = work + state%mass(i)*sum(damping_at(state, damping, i)*velocity &
-        *state%motion(3:4, i))
+      if (allocated(state%node_damping)) d = state%node_damping(:, i)
+      work = work + state%mass(i)*sum(d*velocity*state%motion(3:4, i))
     end do
     work = 0.5_wp*state%dt_before*work
   end function half_step_damping
