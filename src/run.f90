@@ -22,6 +22,7 @@ module run_m
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name
   use progress_m, only : show_end
+  use relaxation_m, only : relax, leave_relaxation
   use renumber_m, only : renumber_model, forget_start
   use restart_m, only : forget_files
   use restart_plan_m, only : restarts_t
@@ -169,6 +170,10 @@ contains
     if (.not. monitor%restarts%goes_on) call start_state(model, monitor%log, state, error)
     if (allocated(error)) return
     call start_monitor(model, size(state%elements%history) > 0, monitor)
+    if (model%controls%relaxation%is_on .and. .not. monitor%restarts%goes_on &
+      .and. .not. model%controls%check_only) call relax(model, monitor%log, state, error)
+    if (allocated(error)) return
+    call leave_relaxation(model)
     call forget_start(model)
     call give_back_memory()
     monitor%progress%first_cycle = state%cycle

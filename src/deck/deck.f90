@@ -32,6 +32,8 @@ module deck_m
   use deck_johnson_cook_m, only : read_johnson_cook, read_simplified_johnson_cook
   use deck_material_m, only : read_elastic, read_plastic_kinematic
   use deck_null_m, only : read_null
+  use deck_damping_m, only : read_part_damping
+  use deck_systems_m, only : read_system
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control, check_step
   use deck_output_m, only : read_database
@@ -251,6 +253,12 @@ contains
       call read_table(deck, parameters, i, raw)
     case ('INITIAL_VELOCITY', 'INITIAL_VELOCITY_GENERATION')
       call read_initial_velocity(deck, parameters, i, raw)
+    case ('DAMPING_PART_MASS', 'DAMPING_PART_MASS_SET')
+      call read_part_damping(deck, parameters, i, raw)
+    case ('DEFINE_COORDINATE_SYSTEM')
+      call read_system(deck, parameters, i, raw)
+    case ('ELEMENT_MASS', 'ELEMENT_MASS_NODE_SET', 'CONSTRAINED_NODE_SET')
+      call read_condition(deck, parameters, i, raw)
     case ('RIGIDWALL_PLANAR')
       call read_wall(deck, parameters, i, raw)
     case ('DATABASE_HISTORY_NODE')

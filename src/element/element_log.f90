@@ -53,10 +53,31 @@ contains
           //'plastic flow; the viscous form (IHQ 1 to 3) does not')
       end associate
     end do
+    call tell_of_viscosity(model, log)
   end subroutine log_elements
 
+  !> One line where shocks are likely and nothing spreads them over elements: an equation of state
+  !> without bulk viscosity.
+  subroutine tell_of_viscosity(model, log)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    integer :: i
+
+    do i = 1, size(model%parts)
+      associate (part => model%parts(i))
+        if (.not. allocated(model%materials(part%material)%eos)) cycle
+        if (model%materials(part%material)%eos%id == 0) cycle
+        if (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) cycle
+        call write_log(log, 'bulk viscosity is off in part '//to_text(part%id)//' with an ' &
+          //'equation of state (the first such part); *CONTROL_BULK_VISCOSITY with a blank card ' &
+          //'makes it that of LS-DYNA, Q1 1.5 and Q2 0.06')
+        return
+      end associate
+    end do
+  end subroutine tell_of_viscosity
+
   !> Warn where hourglass control makes the stable step of squares smaller
-  !> than L/c (`hourglass_step`).
+  !> than L/c (`hourglass_steps`).
   subroutine warn_of_hourglass(part, log)
     type(part_t), intent(in) :: part
     type(log_t), intent(inout) :: log

@@ -31,6 +31,15 @@ contains
         end do
       end associate
     end do
+    if (.not. allocated(model%conditions%lumped_masses)) return
+    do i = 1, size(model%conditions%lumped_masses)
+      associate (lump => model%conditions%lumped_masses(i))
+        do k = 1, 2
+          call add_block(matrix, equation(k, [lump%node]), equation(k, [lump%node]), &
+            reshape([factor*lump%mass], [1, 1]))
+        end do
+      end associate
+    end do
   end subroutine add_mass
 
   !> The mass matrix times a nodal vector.
@@ -49,6 +58,12 @@ contains
         do k = 1, 4
           product(:, nodes(k)) = product(:, nodes(k)) + part(:, k)
         end do
+      end associate
+    end do
+    if (.not. allocated(model%conditions%lumped_masses)) return
+    do i = 1, size(model%conditions%lumped_masses)
+      associate (lump => model%conditions%lumped_masses(i))
+        product(:, lump%node) = product(:, lump%node) + lump%mass*vector(:, lump%node)
       end associate
     end do
   end function mass_times

@@ -120,6 +120,13 @@ contains
     integer :: i, corners
 
     allocate (mass(model%mesh%n_node), source=0.0_wp)
+    if (allocated(model%conditions%lumped_masses)) then
+      do i = 1, size(model%conditions%lumped_masses)
+        associate (lump => model%conditions%lumped_masses(i))
+          mass(lump%node) = mass(lump%node) + lump%mass
+        end associate
+      end do
+    end if
     if (model%is_round) then
       call add_round_masses(model, mass)
       return

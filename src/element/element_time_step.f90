@@ -8,11 +8,11 @@ module element_time_step_m
   use layout_m, only : chunk_size
   use controls_m, only : length_by_diagonal
   use element_chunk_m, only : element_chunk_t
-  use hourglass_m, only : hourglass_step, harmless_coefficient
+  use hourglass_m, only : hourglass_steps, harmless_coefficient
   use parts_m, only : hourglass_t
   implicit none
   private
-  public :: stable_step
+  public :: stable_step, single_steps
 
 contains
 
@@ -46,8 +46,32 @@ contains
       limit = minval(viscous_limit(1.0_wp/sqrt(squared), sound_speed, hourglass%quadratic, &
       hourglass%linear, chunk%trace))
     if (hourglass%coefficient > harmless_coefficient) &
-      limit = min(limit, hourglass_step(hourglass, sound_speed, nodes, chunk))
+      limit = min(limit, minval(hourglass_steps(hourglass, sound_speed, nodes, chunk)))
   end subroutine stable_step
+
+  !> The steps of the elements, each by the same rule.
+  pure subroutine single_steps(length_rule, sound_speed, hourglass, nodes, chunk, single)
+    integer, intent(in) :: length_rule
+    real(wp), intent(in) :: sound_speed
+    type(hourglass_t), intent(in) :: hourglass
+    integer, intent(in) :: nodes(4, chunk_size)
+    type(element_chunk_t), intent(in) :: chunk
+    real(wp), intent(out) :: single(chunk_size) !! s
+    real(wp) :: squared(chunk_size)
+
+    if (length_rule == length_by_diagonal) then
+      call longest_diagonals(chunk, squared)
+    else
+      call longest_sides(chunk, squared)
+    end if
+    squared = squared*(chunk%inverse_area*chunk%inverse_area)
+    single = 1.0_wp/(sound_speed*sqrt(squared))
+    if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) single = &
+      viscous_limit(1.0_wp/sqrt(squared), sound_speed, hourglass%quadratic, hourglass%linear, &
+      chunk%trace)
+    if (hourglass%coefficient > harmless_coefficient) &
+      single = min(single, hourglass_steps(hourglass, sound_speed, nodes, chunk))
+  end subroutine single_steps
 
   !> Step of one element under bulk viscosity.
   pure elemental function viscous_limit(length, sound_speed, quadratic, linear, trace) result(limit)

@@ -55,7 +55,7 @@ contains
   end subroutine add_point_sums
 
   !> Smallest step of the chunk, and its smallest volume ratio at a point.
-  pure subroutine full_step(material, viscosity, nodes, chunk, sums, limit, volume)
+  pure subroutine full_step(material, viscosity, nodes, chunk, sums, limit, volume, single)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: viscosity  !! its Q1 and Q2 count
     integer, intent(in) :: nodes(4, chunk_size) !! a triangle repeats its third
@@ -63,6 +63,7 @@ contains
     type(step_sums_t), intent(in) :: sums
     real(wp), intent(out) :: limit              !! s
     real(wp), intent(out) :: volume             !! smallest J
+    real(wp), intent(out), optional :: single(chunk_size) !! steps of the elements
     real(wp) :: squared(chunk_size), step(chunk_size), modulus
     integer :: i
 
@@ -84,6 +85,7 @@ contains
       *sqrt(abs(chunk%area))*(viscosity%linear*material%sound_speed &
       - viscosity%quadratic*sqrt(abs(chunk%area))*min(0.0_wp, chunk%trace)), chunk%trace)
     limit = minval(step)
+    if (present(single)) single = step
   end subroutine full_step
 
   !> Step under viscous pressure in compression: damping of the fastest mode at most

@@ -10,7 +10,7 @@ module hourglass_m
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: resist_viscously, resist_elastically, hourglass_step, harmless_coefficient
+  public :: resist_viscously, resist_elastically, hourglass_steps, harmless_coefficient
 
   !> Coefficient up to which hourglass control never asks for less than L/c in a convex quad of its
   !> initial area (doc/theory/elements.md).
@@ -74,18 +74,18 @@ contains
     work = 0.5_wp*work
   end subroutine resist_elastically
 
-  !> Smallest step that hourglass control of the chunk allows. With masses rho A0/4 and
+  !> Steps that hourglass control of the elements allows. With masses rho A0/4 and
   !> gamma.gamma = 4 + (|d31 x h.x|^2 + |d42 x h.x|^2)/(2 A^2): 2/omega of the stiffness form,
   !> omega^2 = Q_h c^2 (B.B) gamma.gamma/(A A0); 2/rate of the viscous one, whose force is that of
   !> v(n-1/2), rate = Q_h c sqrt(A) gamma.gamma/A0; of assumed strain, with E/(1 - nu^2) <= rho c^2
   !> and the spread S, omega^2 = QM c^2 S gamma.gamma/(6 A A0). A triangle has no hourglass.
-  pure function hourglass_step(hourglass, sound_speed, nodes, chunk) result(limit)
+  pure function hourglass_steps(hourglass, sound_speed, nodes, chunk) result(steps)
     type(hourglass_t), intent(in) :: hourglass
     real(wp), intent(in) :: sound_speed
     integer, intent(in) :: nodes(4, chunk_size)  !! a triangle repeats its third
     type(element_chunk_t), intent(in) :: chunk
-    real(wp) :: limit                            !! s
-    real(wp) :: pattern(chunk_size), inverse(chunk_size), largest
+    real(wp) :: steps(chunk_size)                !! s
+    real(wp) :: pattern(chunk_size), inverse(chunk_size)
     integer :: i
 
     do i = 1, chunk_size
@@ -97,17 +97,16 @@ contains
       if (nodes(4, i) == nodes(3, i)) pattern(i) = 0.0_wp
     end do
     if (hourglass%form == hourglass_viscous) then
-      largest = maxval(pattern*sqrt(inverse))
-      limit = 2.0_wp/max(hourglass%coefficient*sound_speed*largest, tiny(1.0_wp))
-    else if (hourglass%form == hourglass_assumed) then
-      largest = maxval(pattern*inverse**2*largest_spread(chunk%x31, chunk%y31, chunk%x42, &
-        chunk%y42))/6.0_wp
-      limit = 2.0_wp/(sound_speed*sqrt(max(hourglass%coefficient*largest, tiny(1.0_wp))))
-    else
-      largest = maxval(0.5_wp*pattern*inverse**2 &
-        *(chunk%x31**2 + chunk%y31**2 + chunk%x42**2 + chunk%y42**2))
-      limit = 2.0_wp/(sound_speed*sqrt(max(hourglass%coefficient*largest, tiny(1.0_wp))))
+      steps = 2.0_wp/max(hourglass%coefficient*sound_speed*(pattern*sqrt(inverse)), tiny(1.0_wp))
+      return
     end if
-  end function hourglass_step
+    if (hourglass%form == hourglass_assumed) then
+      pattern = pattern*inverse**2*largest_spread(chunk%x31, chunk%y31, chunk%x42, chunk%y42)/6.0_wp
+    else
+      pattern = 0.5_wp*pattern*inverse**2 &
+        *(chunk%x31**2 + chunk%y31**2 + chunk%x42**2 + chunk%y42**2)
+    end if
+    steps = 2.0_wp/(sound_speed*sqrt(max(hourglass%coefficient*pattern, tiny(1.0_wp))))
+  end function hourglass_steps
 
 end module hourglass_m

@@ -17,6 +17,7 @@ module quad_full_m
   use quad_kinematics_m, only : form_present_shape, form_increments, form_forces
   use quad_points_m, only : n_point, form_point, add_point_force
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
+  use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure
   use volumetric_m, only : volumetric_stress
   implicit none
   private
@@ -136,6 +137,12 @@ contains
         material%sound_speed, dt, chunk, work)
       elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
     end if
+    if (allocated(elements%retardation) .and. has_mean_dilatation(material)) then
+      call form_increments(dt, chunk, unused)
+      call add_viscous_pressure(material%bulk, elements%retardation((i_chunk - 1)*chunk_size + 1), &
+        chunk%trace, chunk%mid_area, dt, chunk%pressure, elements%damping_stress(viscous_start( &
+        i_chunk, 1) + 3*chunk_size), elements%damping_work(i_chunk))
+    end if
   end subroutine form_mean_pressure
 
   !> Advance point `k` of a chunk and leave its forces in `point`.
@@ -177,6 +184,17 @@ contains
     else
       call volumetric_stress(material%bulk, point%stretch, point%pressure)
       point%pressure = point%pressure + chunk%pressure
+    end if
+    if (allocated(elements%retardation)) then
+      first = (i_chunk - 1)*chunk_size + 1
+      associate (n => viscous_start(i_chunk, k))
+        call add_viscous_deviator(material%shear, elements%retardation(first), &
+          0.25_wp*point%mid_area, stress, elements%damping_stress(n), &
+          elements%damping_work(i_chunk))
+        if (.not. has_mean_dilatation(material)) call add_viscous_pressure(material%bulk, &
+          elements%retardation(first), point%trace, 0.25_wp*point%mid_area, dt, point%pressure, &
+          elements%damping_stress(n + 3*chunk_size), elements%damping_work(i_chunk))
+      end associate
     end if
     call form_forces(stress, point)
   end subroutine advance_point

@@ -15,6 +15,7 @@ module quad_one_point_m
   use parts_m, only : hourglass_t, material_t, hourglass_viscous, hourglass_assumed
   use quad_kinematics_m, only : form_present_shape, form_increments, form_forces
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
+  use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure
   use volumetric_m, only : volumetric_stress
   implicit none
   private
@@ -65,6 +66,15 @@ contains
       call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
         material%sound_speed, dt, chunk, work)
       elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
+    end if
+    if (allocated(elements%retardation)) then
+      associate (n => viscous_start(i_chunk, 1))
+        call add_viscous_deviator(material%shear, elements%retardation(first), chunk%mid_area, &
+          stress, elements%damping_stress(n), elements%damping_work(i_chunk))
+        call add_viscous_pressure(material%bulk, elements%retardation(first), chunk%trace, &
+          chunk%mid_area, dt, chunk%pressure, elements%damping_stress(n + 3*chunk_size), &
+          elements%damping_work(i_chunk))
+      end associate
     end if
     call resist(i_chunk, material, hourglass, stress, elements, chunk)
     call form_forces(stress, chunk)

@@ -21,6 +21,8 @@ module round_full_m
   use round_kinematics_m, only : form_round_shape, form_round_increments
   use round_points_m, only : round_point_t, form_radii, add_hoop_strain, add_hoop_force
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
+  use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure, &
+    trace_of
   use volumetric_m, only : volumetric_stress
   implicit none
   private
@@ -131,6 +133,12 @@ contains
         material%sound_speed, dt, chunk, work)
       elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
     end if
+    if (allocated(elements%retardation) .and. has_mean_dilatation(material)) then
+      call form_round_increments(dt, chunk, round, unused)
+      call add_viscous_pressure(material%bulk, elements%retardation((i_chunk - 1)*chunk_size + 1), &
+        chunk%trace, chunk%mid_area, dt, chunk%pressure, elements%damping_stress(viscous_start( &
+        i_chunk, 1) + 3*chunk_size), elements%damping_work(i_chunk))
+    end if
   end subroutine form_mean_pressure
 
   !> Advance point `k` of a chunk and add its forces.
@@ -181,6 +189,16 @@ contains
     else
       call volumetric_stress(material%bulk, place%stretch, point%pressure)
       point%pressure = point%pressure + chunk%pressure
+    end if
+    if (allocated(elements%retardation)) then
+      first = (i_chunk - 1)*chunk_size + 1
+      associate (n => viscous_start(i_chunk, k))
+        call add_viscous_deviator(material%shear, elements%retardation(first), point%mid_area, &
+          stress, elements%damping_stress(n), elements%damping_work(i_chunk))
+        if (.not. has_mean_dilatation(material)) call add_viscous_pressure(material%bulk, &
+          elements%retardation(first), trace_of(stress), point%mid_area, dt, point%pressure, &
+          elements%damping_stress(n + 3*chunk_size), elements%damping_work(i_chunk))
+      end associate
     end if
     call form_forces(stress, point)
     call add_hoop_force(k, place, stress, point, chunk, round)

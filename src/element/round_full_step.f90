@@ -14,7 +14,7 @@ module round_full_step_m
   use round_points_m, only : round_point_t
   implicit none
   private
-  public :: round_full_step
+  public :: round_full_step, single_round_full_steps
 
   !> Values at the nodes from those at the points: of its own, of the two beside it, of the far one.
   real(wp), parameter :: root = sqrt(3.0_wp), near = 0.25_wp*(1.0_wp + root)**2, beside = -0.5_wp, &
@@ -67,6 +67,32 @@ contains
       limit = min(limit, step/(1.0_wp + 0.5_wp*step*rate))
     end do
   end subroutine round_full_step
+
+  !> The steps of the elements, each by the same bound alone.
+  pure subroutine single_round_full_steps(material, viscosity, inverse_mass, stride, chunk, &
+      points, single)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: viscosity
+    integer, intent(in) :: stride
+    real(wp), intent(in) :: inverse_mass(stride, *) !! as above
+    type(element_chunk_t), intent(in) :: chunk
+    type(round_point_t), intent(in) :: points(n_point)
+    real(wp), intent(out) :: single(chunk_size)     !! s
+    real(wp), dimension(chunk_size) :: plane, hoop, both, rate, length
+    real(wp) :: modulus
+
+    modulus = material%bulk
+    if (.not. has_mean_dilatation(material)) &
+      modulus = max(0.0_wp, material%bulk - 2.0_wp*material%shear/3.0_wp)
+    call row_sums(inverse_mass, stride, points, plane, hoop)
+    both = 2.0_wp*plane + hoop + 2.0_wp*sqrt(2.0_wp*plane*hoop)
+    single = 2.0_wp/sqrt((2.0_wp*material%shear*(plane + hoop) + modulus*both)/material%density)
+    if (.not. (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp)) return
+    length = sqrt(abs(chunk%area))
+    rate = length/(1.0_wp + chunk%stretch)*(viscosity%linear*material%sound_speed &
+      - viscosity%quadratic*length*chunk%trace)*both
+    where (chunk%trace < 0.0_wp) single = single/(1.0_wp + 0.5_wp*single*rate)
+  end subroutine single_round_full_steps
 
   !> Largest row sums of H and T of the elements, over the volumes of the nodes. H is that of the
   !> patterns (s11 s22 s12 s13 s23 s33), of which the nodes have (-1, 0, 1), (0, -1, -1), (1, 0, 1)

@@ -17,6 +17,7 @@ module round_one_point_m
   use round_kinematics_m, only : form_round_shape, form_round_increments, form_round_forces
   use round_time_step_m, only : round_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
+  use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure
   use volumetric_m, only : volumetric_stress
   implicit none
   private
@@ -66,6 +67,15 @@ contains
       call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
         material%sound_speed, dt, chunk, work)
       elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
+    end if
+    if (allocated(elements%retardation)) then
+      associate (n => viscous_start(i_chunk, 1))
+        call add_viscous_deviator(material%shear, elements%retardation(first), chunk%mid_area, &
+          stress, elements%damping_stress(n), elements%damping_work(i_chunk))
+        call add_viscous_pressure(material%bulk, elements%retardation(first), chunk%trace, &
+          chunk%mid_area, dt, chunk%pressure, elements%damping_stress(n + 3*chunk_size), &
+          elements%damping_work(i_chunk))
+      end associate
     end if
     call resist(i_chunk, material, hourglass, stress, round, elements, chunk)
     call form_round_forces(stress, chunk, round)

@@ -10,7 +10,7 @@ module round_time_step_m
   use round_chunk_m, only : round_chunk_t
   implicit none
   private
-  public :: round_step
+  public :: round_step, single_round_steps
 
   !> Of one chunk, over the masses: bounds of omega^2 of strain and of its part by volume (over
   !> lambda); of hourglass control its gamma.gamma, and the square of its coupling to strain, both
@@ -72,6 +72,44 @@ contains
     if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) &
       call limit_bulk_viscosity(hourglass, material%sound_speed, chunk, sums, limit)
   end subroutine round_step
+
+  !> The steps of the elements, each by the same bound alone.
+  pure subroutine single_round_steps(material, hourglass, inverse_mass, stride, chunk, round, &
+      single)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    integer, intent(in) :: stride
+    real(wp), intent(in) :: inverse_mass(stride, *) !! as above
+    type(element_chunk_t), intent(in) :: chunk
+    type(round_chunk_t), intent(inout) :: round
+    real(wp), intent(out) :: single(chunk_size)     !! s
+    real(wp), dimension(chunk_size) :: pattern, coupled
+    type(element_chunk_t) :: one
+    type(step_sums_t) :: sums, alone
+    real(wp) :: lame, shear
+    integer :: i
+
+    shear = 2.0_wp*material%shear/material%density
+    lame = max(0.0_wp, material%bulk/material%density - shear/3.0_wp)
+    call join_third_nodes(inverse_mass(1, 4), round)
+    call form_sums(lame, shear, inverse_mass, stride, chunk%inverse_area, round, sums)
+    pattern = max(sums%pattern/material%density, tiny(1.0_wp))
+    if (hourglass%form == hourglass_viscous) then
+      coupled = sums%strain + 2.0_wp/(material%density*sqrt(sums%strain))*sums%coupling
+      single = min(2.0_wp/sqrt(coupled), 1.0_wp/pattern)
+    else
+      coupled = sums%strain + 2.0_wp/(material%density*sums%strain)*sums%coupling
+      single = 2.0_wp/sqrt(max(coupled, 2.0_wp*pattern))
+    end if
+    if (.not. (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp)) return
+    do i = 1, chunk_size
+      one%trace = chunk%trace(i)
+      one%area = chunk%area(i)
+      one%stretch = chunk%stretch(i)
+      alone%dilation = sums%dilation(i)
+      call limit_bulk_viscosity(hourglass, material%sound_speed, one, alone, single(i))
+    end do
+  end subroutine single_round_steps
 
   !> A triangle's third node has the place of its fourth too: the gradients whose pattern gives it
   !> both shares and leaves none, and no hourglass.

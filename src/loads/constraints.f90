@@ -13,7 +13,7 @@ module constraints_m
 
 contains
 
-  !> Take the inverse mass of fixed degrees of freedom away.
+  !> Take the inverse mass of fixed degrees of freedom away, and of those that move with others.
   subroutine fix_nodes(model, inverse_mass)
     type(model_t), intent(in) :: model
     real(wp), intent(inout) :: inverse_mass(:, :) !! (2, n_node)
@@ -21,6 +21,13 @@ contains
 
     do i = 1, size(model%conditions%fixed_nodes)
       inverse_mass(model%conditions%fixed_directions(i), model%conditions%fixed_nodes(i)) = 0.0_wp
+    end do
+    if (.not. allocated(model%conditions%common_motions)) return
+    do i = 1, size(model%conditions%common_motions)
+      associate (common => model%conditions%common_motions(i))
+        if (common%along(1)) inverse_mass(1, common%nodes) = 0.0_wp
+        if (common%along(2)) inverse_mass(2, common%nodes) = 0.0_wp
+      end associate
     end do
   end subroutine fix_nodes
 

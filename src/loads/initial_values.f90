@@ -26,6 +26,14 @@ contains
       do i = 1, size(conditions%fixed_nodes)
         motion(2 + conditions%fixed_directions(i), conditions%fixed_nodes(i)) = 0.0_wp
       end do
+      if (allocated(conditions%skew_supports)) then
+        do i = 1, size(conditions%skew_supports)
+          associate (normal => conditions%skew_supports(i)%normal, &
+            velocity => motion(3:4, conditions%skew_supports(i)%node))
+            velocity = velocity - dot_product(normal, velocity)*normal
+          end associate
+        end do
+      end if
       do i = 1, size(conditions%motions)
         associate (prescribed => conditions%motions(i))
           if (.not. is_active(prescribed, 0.0_wp) .or. prescribed%kind /= motion_velocity) cycle

@@ -5,7 +5,8 @@ module conditions_m
   implicit none
   private
   public :: conditions_t, prescribed_motion_t, nodal_load_t, pressure_load_t, body_load_t, &
-    damping_t, motion_velocity, motion_acceleration, motion_displacement
+    damping_t, part_damping_t, lumped_mass_t, common_motion_t, skew_support_t, motion_velocity, &
+    motion_acceleration, motion_displacement
 
   !> What a prescribed motion gives (VAD of *BOUNDARY_PRESCRIBED_MOTION).
   integer, parameter :: motion_velocity = 0, motion_acceleration = 1, motion_displacement = 2
@@ -52,7 +53,33 @@ module conditions_m
     real(wp) :: factor(2) = 1.0_wp      !! STX, STY
   end type damping_t
 
-  !> All conditions of a model.
+  !> *DAMPING_PART_MASS: f = -D m v on the masses of one part.
+  type :: part_damping_t
+    integer :: part = 0                 !! index
+    integer :: curve = 0                !! index of the curve of D(t)
+    real(wp) :: scale = 1.0_wp          !! SF
+    real(wp) :: factor(2) = 1.0_wp      !! STX, STY
+  end type part_damping_t
+
+  !> *ELEMENT_MASS: mass on one node, no element.
+  type :: lumped_mass_t
+    integer :: node = 0
+    real(wp) :: mass = 0.0_wp           !! kg per metre of depth or per radian
+  end type lumped_mass_t
+
+  !> *CONSTRAINED_NODE_SET: nodes that move alike along x, y or both.
+  type :: common_motion_t
+    integer, allocatable :: nodes(:)
+    logical :: along(2) = .false.
+  end type common_motion_t
+
+  !> A node that does not move along a direction that is neither x nor y.
+  type :: skew_support_t
+    integer :: node = 0
+    real(wp) :: normal(2) = 0.0_wp      !! unit vector of the fixed direction
+  end type skew_support_t
+
+  !> All conditions of a model. What is not always there is present only when the deck asks.
   type :: conditions_t
     integer, allocatable :: fixed_nodes(:)      !! nodes with a fixed degree of freedom ...
     integer, allocatable :: fixed_directions(:) !! ... and its direction, each pair once
@@ -63,6 +90,11 @@ module conditions_m
     type(pressure_load_t), allocatable :: pressures(:)
     type(body_load_t), allocatable :: body_loads(:)
     type(damping_t), allocatable :: damping     !! present only when the deck asks
+    type(part_damping_t), allocatable :: part_damping(:)
+    type(lumped_mass_t), allocatable :: lumped_masses(:)
+    type(common_motion_t), allocatable :: common_motions(:)
+    type(skew_support_t), allocatable :: skew_supports(:)
+    type(nodal_load_t), allocatable :: rigid_loads(:) !! on bodies: `node` is the body, 3 the moment
     real(wp), allocatable :: initial_velocity(:, :) !! (2, n_node), present only when the deck asks
   end type conditions_t
 

@@ -5,8 +5,8 @@ module controls_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: controls_t, implicit_t, output_plan_t, interval_t, is_asked, length_by_side, &
-    length_by_diagonal, contact_step_warns, contact_step_free, contact_step_rules
+  public :: controls_t, relaxation_t, implicit_t, output_plan_t, interval_t, is_asked, &
+    length_by_side, length_by_diagonal, contact_step_warns, contact_step_free, contact_step_rules
 
   !> Element length of the stable step (ISDO): area over longest side, or over longest diagonal.
   integer, parameter :: length_by_side = 0, length_by_diagonal = 1
@@ -62,6 +62,17 @@ module controls_m
     real(wp) :: dt_most = 0.0_wp       !! DTMAX, 0 = ten times DT0
   end type implicit_t
 
+  !> Dynamic relaxation (*CONTROL_DYNAMIC_RELAXATION): a first phase in which velocities are scaled
+  !> down in every cycle until the body rests.
+  type :: relaxation_t
+    logical :: is_on = .false.         !! IDRFLG = 1, or a curve of the phase (SIDR 1 or 2)
+    integer :: check_cycles = 250      !! NRCYCK
+    real(wp) :: tolerance = 1.0e-3_wp  !! DRTOL: of the kinetic energy over its largest
+    real(wp) :: factor = 0.995_wp      !! DRFCTR
+    real(wp) :: most_time = huge(1.0_wp) !! DRTERM
+    real(wp) :: step_scale = 0.0_wp    !! TSSFDR, 0 = TSSFAC
+  end type relaxation_t
+
   !> All controls.
   type :: controls_t
     character(:), allocatable :: title       !! *TITLE
@@ -75,6 +86,11 @@ module controls_m
     real(wp) :: dt_scale = 0.9_wp            !! TSSFAC
     integer :: length_rule = length_by_side  !! ISDO
     integer :: dt_curve = 0                  !! LCTM: index of the curve that caps the step
+    real(wp) :: mass_step = 0.0_wp           !! DT2MS: stable step of scaled elements; below 0
+                                             !! mass is added alone
+    logical :: masses_stay = .false.         !! MS1ST: masses are scaled at the start alone
+    real(wp) :: most_added = 0.0_wp          !! ENDMAS: added mass in per cent, 0 = off
+    type(relaxation_t) :: relaxation
     real(wp) :: penalty_scale = 0.1_wp       !! SLSFAC
     integer :: contact_step = contact_step_warns !! ECDT, one of the `contact_step_` constants
     type(implicit_t) :: implicit

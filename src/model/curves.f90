@@ -11,6 +11,7 @@ module curves_m
     integer :: id = 0                      !! user id
     real(wp), allocatable :: abscissa(:)   !! increasing, one or more points
     real(wp), allocatable :: ordinate(:)   !! same length
+    integer :: phase = 0                   !! SIDR: 0 run, 1 dynamic relaxation, 2 both
     logical :: is_of_time = .true.         !! false for one that a material uses
   end type curve_t
 

@@ -84,6 +84,8 @@ module parts_m
     integer :: section = 0            !! index into model%sections
     integer :: material = 0           !! index into model%materials
     type(hourglass_t) :: hourglass    !! what holds for this part
+    real(wp) :: stiffness_damping = 0.0_wp !! COEF of *DAMPING_PART_STIFFNESS: a share of critical
+                                           !! damping of the fastest mode, below 0 a time in s
   end type part_t
 
 contains

@@ -73,6 +73,13 @@ contains
     end do
     is_special(model%conditions%motions%node) = .true.
     is_special(model%conditions%nodal_loads%node) = .true.
+    if (allocated(model%conditions%skew_supports)) &
+      is_special(model%conditions%skew_supports%node) = .true.
+    if (allocated(model%conditions%common_motions)) then
+      do i = 1, size(model%conditions%common_motions)
+        is_special(model%conditions%common_motions(i)%nodes) = .true.
+      end do
+    end if
     do i = 1, size(model%conditions%pressures)
       is_special(model%conditions%pressures(i)%nodes) = .true.
     end do
@@ -109,6 +116,15 @@ contains
       conditions%fixed_nodes = new_index(conditions%fixed_nodes)
       conditions%motions%node = new_index(conditions%motions%node)
       conditions%nodal_loads%node = new_index(conditions%nodal_loads%node)
+      if (allocated(conditions%lumped_masses)) &
+        conditions%lumped_masses%node = new_index(conditions%lumped_masses%node)
+      if (allocated(conditions%skew_supports)) &
+        conditions%skew_supports%node = new_index(conditions%skew_supports%node)
+      if (allocated(conditions%common_motions)) then
+        do i = 1, size(conditions%common_motions)
+          conditions%common_motions(i)%nodes = new_index(conditions%common_motions(i)%nodes)
+        end do
+      end if
       do i = 1, size(conditions%pressures)
         conditions%pressures(i)%nodes = new_index(conditions%pressures(i)%nodes)
       end do

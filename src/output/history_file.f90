@@ -11,6 +11,7 @@ module history_file_m
     close_table, column_names
   use dyna_text_m, only : open_dyna_text
   use history_rows_m, only : name_columns
+  use kinds_m, only : wp
   use history_tables_m, only : history_tables, n_table, asked_alone, asked_or_states, &
     asked_by_states, each_run, each_contact, each_history_node, each_part, each_wall, &
     each_support, text_none, text_rows
@@ -36,7 +37,8 @@ contains
 
     do k = 1, n_table
       if (.not. is_wanted(model, k)) cycle
-      call name_columns(k, row)
+      call name_columns(k, abs(model%controls%mass_step) > 0.0_wp .and. &
+        .not. model%controls%implicit%is_on, row)
       call plan_table(histories%tables(k), trim(history_tables(k)%name), row%header, &
         row%kinds(:row%n), row%further)
     end do

@@ -23,8 +23,9 @@ module history_rows_m
 contains
 
   !> Names and kinds of the columns of a table, by a row of nothing.
-  subroutine name_columns(i_table, row)
+  subroutine name_columns(i_table, tells_mass, row)
     integer, intent(in) :: i_table   !! one of `table_`
+    logical, intent(in) :: tells_mass !! masses are scaled
     type(row_t), intent(out) :: row
     type(snapshot_t) :: nothing
     type(interface_result_t) :: result
@@ -34,6 +35,7 @@ contains
     real(wp), parameter :: nowhere(2) = 0.0_wp
 
     row%is_named = .true.
+    nothing%energies%tells_mass = tells_mass
     select case (i_table)
     case (table_glstat)
       call put_glstat(row, nothing)
@@ -165,12 +167,21 @@ contains
       call put(row, 'energy_ratio', energy_ratio(e))
       call put(row, 'leapfrog', e%leapfrog)
       call put(row, 'friction', e%friction)
+      if (e%tells_mass) call put_added_mass(row, e%added_mass)
       call end_csv(row)
       call put(row, 'velocity_x,velocity_y', shot%mean_velocity)
       call put(row, 'element', shot%slowest(1))
       call put(row, 'element_part', shot%slowest(2))
     end associate
   end subroutine put_glstat
+
+  !> The column that runs with scaled masses have besides.
+  pure subroutine put_added_mass(row, mass)
+    type(row_t), intent(inout) :: row
+    real(wp), intent(in) :: mass
+
+    call put(row, 'added_mass', mass)
+  end subroutine put_added_mass
 
   !> Resultant of one side of an interface.
   pure subroutine put_rcforc(row, time, id, side, result)

@@ -38,6 +38,8 @@ contains
     call keep(archive, 'internal_force', state%internal_force)
     call keep(archive, 'prescribed_velocity', state%prescribed_velocity)
     call keep(archive, 'former_velocity', state%former_velocity)
+    call keep(archive, 'node_damping', state%node_damping)
+    call keep(archive, 'former_damping', state%former_damping)
     call keep(archive, 'former_dt', state%former_dt)
     call keep(archive, 'acceleration', state%acceleration)
     call keep_fixed(archive, 'body_acceleration', state%body_acceleration)
@@ -72,6 +74,10 @@ contains
     call keep(archive, 'deviatoric_work', elements%deviatoric_work)
     call keep(archive, 'hourglass_work', elements%hourglass_work)
     call keep(archive, 'viscous_work', elements%viscous_work)
+    call keep(archive, 'mass_ratio', elements%mass_ratio)
+    call keep(archive, 'retardation', elements%retardation)
+    call keep(archive, 'damping_stress', elements%damping_stress)
+    call keep(archive, 'damping_work', elements%damping_work)
     call keep(archive, 'time_limit', elements%time_limit)
     call keep(archive, 'volume_limit', elements%volume_limit)
     call leave(archive)
@@ -127,6 +133,7 @@ contains
     call keep_fixed(archive, 'next_velocity', rigid%next_velocity)
     call keep_fixed(archive, 'acceleration', rigid%acceleration)
     call keep_fixed(archive, 'force', rigid%force)
+    call keep_fixed(archive, 'load', rigid%load)
     call leave(archive)
   end subroutine keep_rigid
 

@@ -3,25 +3,28 @@
 !> belong to one instant: v(n) = v(n-1/2) + a(n) dt/2.
 module snapshot_filling_m
   use kinds_m, only : wp
+  use block_state_m, only : block_state_t
+  use common_motion_m, only : fill_common
   use constraints_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows, join_rows
+  use element_shares_m, only : element_shares
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains, &
     element_heats
   use contacts_m, only : transducer_t, has_shear, n_told, told_as
   use controls_m, only : is_asked
   use history_tables_m, only : table_matsum
   use layout_m, only : slot_part
+  use mass_scaling_m, only : scales_masses, added_masses
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat
-  use round_chunk_m, only : node_volumes
   use round_state_m, only : hoop_strains
   use snapshot_m, only : snapshot_t, interface_result_t, rubbed_t
   use state_m, only : state_t
   use support_forces_m, only : find_supports
   implicit none
   private
-  public :: start_snapshot, fill_motion, find_motion, fill_energies, fill_parts, fill_interfaces, &
-    fill_plot
+  public :: start_snapshot, fill_motion, find_motion, damping_at, fill_energies, fill_parts, &
+    fill_interfaces, fill_plot
 
   !> Nodes whose motion is summed at a time.
   integer, parameter :: block_size = 512
@@ -43,6 +46,7 @@ contains
     if (keeps_motion(model) .or. is_asked(model%controls%output%histories(table_matsum))) &
       allocate (snapshot%velocity(2, n_node), source=0.0_wp)
     allocate (snapshot%parts(size(model%parts)))
+    snapshot%energies%tells_mass = scales_masses(model)
     if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
     if (allocated(model%transducers)) allocate (snapshot%transducers(size(model%transducers)))
     allocate (snapshot%interfaces(n_told(model%contacts)), snapshot%slaves(size(model%contacts)))
@@ -67,7 +71,7 @@ contains
 
     keeps = is_asked(model%controls%output%plot) .or. size(model%controls%output%history_nodes) &
       > 0 .or. size(model%conditions%motions) > 0 .or. size(model%rigids) > 0 &
-      .or. model%controls%implicit%is_on
+      .or. model%controls%implicit%is_on .or. allocated(model%conditions%common_motions)
   end function keeps_motion
 
   !> Displacement, velocity and acceleration of the present instant, where they are kept.
@@ -92,9 +96,22 @@ contains
       snapshot%displacement(:, i) = state%motion(1:2, i)
       snapshot%acceleration(:, i) = acceleration
     end do
+    if (allocated(model%conditions%common_motions)) &
+      call fill_common(model, state, damping, snapshot%velocity, snapshot%acceleration)
     if (allocated(snapshot%displacement)) &
       call fill_prescribed(model, state, velocity_next, snapshot)
   end subroutine fill_motion
+
+  !> D of a node: that of all nodes, or its own where the deck damps parts.
+  pure function damping_at(state, damping, node) result(d)
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)
+    integer, intent(in) :: node
+    real(wp) :: d(2)
+
+    d = damping
+    if (allocated(state%node_damping)) d = state%node_damping(:, node)
+  end function damping_at
 
   !> Velocity and acceleration of a node that moves freely, at the present instant.
   pure subroutine find_motion(n_special, state, damping, node, velocity, acceleration)
@@ -103,15 +120,17 @@ contains
     real(wp), intent(in) :: damping(2)
     integer, intent(in) :: node
     real(wp), intent(out) :: velocity(2), acceleration(2)
-    real(wp) :: force, a
+    real(wp) :: force, a, d(2)
     integer :: k
 
+    d = damping
+    if (allocated(state%node_damping)) d = state%node_damping(:, node)
     do k = 1, 2
       force = -state%internal_force(k, node)
       if (node <= n_special) force = force + state%force_special(k, node)
       a = force*state%inverse_mass(k, node)
       if (state%inverse_mass(k, node) > 0.0_wp) a = a + state%body_acceleration(k)
-      a = (a - damping(k)*state%motion(2 + k, node))/(1.0_wp + 0.5_wp*damping(k)*state%dt_before)
+      a = (a - d(k)*state%motion(2 + k, node))/(1.0_wp + 0.5_wp*d(k)*state%dt_before)
       acceleration(k) = a
       velocity(k) = state%motion(2 + k, node) + 0.5_wp*state%dt_before*a
     end do
@@ -147,6 +166,7 @@ contains
     type(snapshot_t), intent(inout) :: snapshot
     real(wp) :: internal(size(model%parts)), hourglass(size(model%parts)), &
       viscous(size(model%parts)), v(2, block_size)
+    real(wp) :: added(size(model%parts)), own(size(model%parts))
     integer :: first, n
 
     internal = 0.0_wp
@@ -168,6 +188,8 @@ contains
       end do
       snapshot%mean_velocity = snapshot%mean_velocity/sum(state%mass)
       energies%damping = state%damping_work
+      if (allocated(state%elements%damping_work)) energies%damping = energies%damping &
+        + sum(state%elements%damping_work)
       energies%contact = sum(state%contacts%energy) + sum(state%contacts%damping_work) &
         + sum(state%contacts%friction%stored)
       energies%friction = sum(state%contacts%friction%work) - sum(state%contacts%friction%stored)
@@ -176,6 +198,9 @@ contains
       energies%made = sum(max(0.0_wp, -state%contacts%watch%balance))
       energies%external_work = state%external_work + sum(state%contacts%interference%work)
       energies%initial = state%initial_energy
+      if (.not. energies%tells_mass) return
+      call added_masses(model, state%elements, added, own)
+      energies%added_mass = sum(added)
     end associate
   end subroutine fill_energies
 
@@ -220,11 +245,12 @@ contains
 
   !> Kinetic energy, momentum and mass of each part (energies are there already),
   !> where velocities are kept.
-  subroutine fill_parts(model, snapshot)
+  subroutine fill_parts(model, elements, snapshot)
     type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
     type(snapshot_t), intent(inout) :: snapshot
-    real(wp) :: x(2, 4), shares(4), v(2)
-    integer :: i, k, corners, slot, i_part
+    real(wp) :: shares(4), v(2)
+    integer :: i, k, slot, i_part
 
     if (.not. allocated(snapshot%velocity)) return
     snapshot%parts%kinetic = 0.0_wp
@@ -234,14 +260,10 @@ contains
     do i = 1, model%mesh%n_element
       slot = model%layout%element_slot(i)
       i_part = slot_part(model%layout, slot)
-      associate (nodes => model%layout%slot_nodes(:, slot), part => snapshot%parts(i_part), &
-        material => model%materials(model%parts(i_part)%material))
-        x = model%mesh%coordinates(:, nodes)
-        corners = merge(3, 4, nodes(4) == nodes(3))
-        shares = material%density/corners*0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
-          - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
-        if (model%is_round) shares = material%density*node_volumes(x, corners == 3)
-        do k = 1, corners
+      associate (nodes => model%layout%slot_nodes(:, slot), part => snapshot%parts(i_part))
+        shares = element_shares(model, slot)
+        if (allocated(elements%mass_ratio)) shares = elements%mass_ratio(slot)*shares
+        do k = 1, merge(3, 4, nodes(4) == nodes(3))
           v = snapshot%velocity(:, nodes(k))
           part%kinetic = part%kinetic + 0.5_wp*shares(k)*(v(1)**2 + v(2)**2)
           part%momentum = part%momentum + shares(k)*v

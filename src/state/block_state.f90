@@ -39,6 +39,14 @@ module block_state_m
     real(wp), allocatable :: hourglass_work(:)  !! (n_chunk) accumulated work of the hourglass
                                                 !! forces
     real(wp), allocatable :: viscous_work(:)    !! (n_chunk) accumulated work of the bulk viscosity
+    real(wp), allocatable :: mass_ratio(:)      !! (n_slot) mass of an element over that of its
+                                                !! density; only where masses are scaled
+    real(wp), allocatable :: retardation(:)     !! (n_slot) viscosity over stiffness, s; it and
+    real(wp), allocatable :: damping_stress(:)  !! (16 n_slot) its stress of the last step, chunk by
+                                                !! chunk, point by point: deviator xx, yy, xy, then
+                                                !! mean; and
+    real(wp), allocatable :: damping_work(:)    !! (n_chunk) its work only where the deck damps by
+                                                !! stiffness
     real(wp), allocatable :: time_limit(:)      !! (n_chunk) smallest L/c of the last step, s
     real(wp), allocatable :: volume_limit(:)    !! (n_chunk) smallest A/A0 (or J of a point) of the
                                                 !! last step

@@ -18,6 +18,7 @@ module rigid_state_m
     real(wp) :: next_velocity(3) = 0.0_wp !! v(n+1/2), once the forces of the cycle are known
     real(wp) :: acceleration(3) = 0.0_wp  !! of the present instant
     real(wp) :: force(3) = 0.0_wp         !! resultants of contact, loads and deformable elements
+    real(wp) :: load(3) = 0.0_wp          !! forces and moment of *LOAD_RIGID_BODY
   end type rigid_state_t
 
 contains

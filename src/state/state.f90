@@ -37,6 +37,9 @@ module state_m
                                                     !! knows it
     real(wp), allocatable :: former_velocity(:, :) !! (2, n_node) v(n-3/2), v(n-1/2) once the work
                                                    !! of damping is summed; only in damped runs
+    real(wp), allocatable :: node_damping(:, :) !! (2, n_node) D of each node; only where the deck
+                                                !! damps parts
+    real(wp), allocatable :: former_damping(:, :) !! (2, n_node) that of the step before
     real(wp) :: former_dt = 0.0_wp             !! step of v(n-3/2), s
     real(wp), allocatable :: acceleration(:, :) !! (2, n_node) of the implicit driver, whose v and a
                                                 !! belong to the instant of u

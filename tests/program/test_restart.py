@@ -137,13 +137,38 @@ def everything(form=4):
     return deck.output(glstat=5.0e-4, matsum=1.0e-3, rcforc=2.0e-4, nodout=3.0e-4, nodes=[1, 13, 20])
 
 
+def quasi_static():
+    """Scaled masses that grow, damping of parts by mass and by stiffness, masses on nodes, nodes that move alike,
+    skew supports, a loaded rigid body; several tiles."""
+    deck = Deck("quasi-static help")
+    deck.add("*CONTROL_TERMINATION", (0.02,)).add("*CONTROL_TIMESTEP", (0.0, 0.9, 0, 0.0, -9.5e-4)).hourglass(4, 0.05)
+    deck.part(1).elastic(1000.0, 1.0e6, 0.3, 1).part(2, section=2).elastic(1000.0, 1.0e6, 0.3, 2)
+    deck.add("*SECTION_SHELL", (2, 13, None, 4), (1.0,))
+    deck.part(3).add("*MAT_RIGID", (3, 1000.0, 1.0e6, 0.3), "0,0,0", "0.0")
+    first = deck.mesh(*grid(30, 20, 1.2, 0.8), part=1)
+    second = deck.mesh(*grid(30, 20, 1.2, 0.8, (2.0, 0.0)), part=2)
+    body = deck.mesh(*grid(4, 4, origin=(5.0, 0.0)), part=3)
+    deck.curve(1, [(0.0, 0.0), (0.01, 40.0), (1.0, 40.0)]).curve(2, [(0.0, 1.0), (1.0, 1.0)])
+    deck.add("*DAMPING_PART_MASS", (1, 1, 1.0, 1), (1.0, 0.5), (3, 2, 5.0)).add("*DAMPING_GLOBAL", (0, 1.0))
+    deck.add("*DAMPING_PART_STIFFNESS", (2, 0.1))
+    deck.add("*ELEMENT_MASS", f"{1:8d}{int(first[40]):8d}{3.0:16.1f}")
+    deck.add("*DEFINE_COORDINATE_SYSTEM", (7, 0.0, 0.0, 0.0, 0.8, 0.6, 0.0), (-0.6, 0.8, 0.0))
+    deck.add("*BOUNDARY_SPC_NODE", *[(int(node), 7, 0, 1) for node in first[:31]])
+    deck.node_set(1, [*first[-31:], *second[-31:]]).add("*CONSTRAINED_NODE_SET", (1, 2))
+    deck.add("*LOAD_RIGID_BODY", (3, 1, 1, 50.0, 7), (3, 7, 2, 5.0)).fix(second[:31], x=1, y=1)
+    deck.curve(3, [(0.0, -3.0), (1.0, -3.0)]).prescribe(int(first[-1]), 1, 0, 3)
+    deck.add("*INITIAL_VELOCITY_NODE", *[(int(node), 0.5, -2.0) for node in first[200:300]])
+    return deck.output(plot=5.0e-3, glstat=5.0e-4, matsum=1.0e-3, nodout=1.0e-3,
+                       nodes=[int(first[0]), int(first[-1]), int(second[-1]), int(body[0])])
+
+
 def longer_drop():
     """Several tiles and some hundred cycles."""
     return large_drop().text().replace("\n0.004,", "\n0.04,")
 
 
 def test_any_thread_counts(slideline, tmp_path):
-    for deck, name, cycles in ((everything(), "e", 40), (everything(6), "h", 40), (longer_drop(), "l", 60)):
+    for deck, name, cycles in ((everything(), "e", 40), (everything(6), "h", 40), (longer_drop(), "l", 60), (quasi_static(), "q", 12)):
         deck = with_files(deck, dump=cycles)
         assert slideline(f"d={name}1", "ncpu=1", deck=deck).returncode == 0
         assert slideline(f"d={name}3", "ncpu=3", "perthread=1", deck=deck).returncode == 0

@@ -13,7 +13,8 @@ module deck_conditions_m
   use deck_raw_m, only : raw_t, row_t, reserve_rows, append_row, reserve_velocities, &
     append_velocity, row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, &
     row_velocity_node, row_velocity_generation, row_load_node, row_load_set, row_pressure, &
-    row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid, id_fields
+    row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid, row_stiffness, &
+    row_stiffness_set, row_load_rigid, row_mass, row_mass_set, row_common, id_fields
   implicit none
   private
   public :: read_condition, read_initial_velocity
@@ -24,7 +25,7 @@ module deck_conditions_m
   !> Positions of the fields of `row_t` on the card of a keyword; 0 where it has none.
   type :: columns_t
     integer :: id = 0, direction = 0, motion = 0, curve = 0, scale = 0, birth = 0, death = 0, &
-      arrival = 0
+      arrival = 0, system = 0
     integer :: fixed(2) = 0, velocity(3) = 0
     integer :: nodes(2) = 0      !! first and last of N1 to N4
     integer :: factors(2) = 0    !! first and last of STX to SRZ
@@ -101,6 +102,18 @@ contains
       kind = row_pressure_set
     case ('LOAD_BODY_X', 'LOAD_BODY_Y')
       kind = row_body
+    case ('LOAD_RIGID_BODY')
+      kind = row_load_rigid
+    case ('DAMPING_PART_STIFFNESS')
+      kind = row_stiffness
+    case ('DAMPING_PART_STIFFNESS_SET')
+      kind = row_stiffness_set
+    case ('ELEMENT_MASS')
+      kind = row_mass
+    case ('ELEMENT_MASS_NODE_SET')
+      kind = row_mass_set
+    case ('CONSTRAINED_NODE_SET')
+      kind = row_common
     case default
       kind = row_damping
     end select
@@ -116,6 +129,13 @@ contains
     select case (kind)
     case (row_spc_node, row_spc_set)
       at%fixed = [find_field(cursor, 1, 'DOFX'), find_field(cursor, 1, 'DOFY')]
+      at%system = find_field(cursor, 1, 'CID')
+    case (row_stiffness, row_stiffness_set)
+      at%scale = find_field(cursor, 1, 'COEF')
+    case (row_mass, row_mass_set)
+      at%scale = find_field(cursor, 1, 'MASS')
+    case (row_common)
+      at%direction = find_field(cursor, 1, 'DOF')
     case (row_velocity_node)
       at%velocity = [find_field(cursor, 1, 'VX'), find_field(cursor, 1, 'VY'), 0]
     case (row_velocity_rigid)
@@ -135,8 +155,9 @@ contains
       at%motion = find_field(cursor, 1, 'VAD')
       at%birth = find_field(cursor, 1, 'BIRTH')
       at%death = find_field(cursor, 1, 'DEATH')
-    case (row_load_node, row_load_set)
+    case (row_load_node, row_load_set, row_load_rigid)
       at%direction = find_field(cursor, 1, 'DOF')
+      at%system = find_field(cursor, 1, 'CID')
     case (row_pressure, row_pressure_set)
       at%arrival = find_field(cursor, 1, 'AT')
       if (kind == row_pressure) at%nodes = [find_field(cursor, 1, 'N1'), &
@@ -159,6 +180,7 @@ contains
     if (at%curve > 0) row%curve = card%i(at%curve)
     if (at%scale > 0) row%scale = card%r(at%scale)
     if (at%direction > 0) row%direction = card%i(at%direction)
+    if (at%system > 0) row%system = card%i(at%system)
     if (at%arrival > 0) row%arrival = card%r(at%arrival)
     if (at%nodes(1) > 0) row%nodes = card%i(at%nodes(1):at%nodes(1) + 1)
     if (at%motion > 0) then
@@ -213,6 +235,19 @@ contains
     case (row_load_node, row_load_set)
       call check_direction(deck, cursor, card, at%direction)
       call check_curve(deck, cursor, card, at%curve)
+    case (row_load_rigid)
+      if (all(row%direction /= [1, 2, 7])) call report_field(deck, cursor, card, at%direction, &
+        'is not a load on a rigid body that this version has (1 x, 2 y, 7 moment about z)')
+      call check_curve(deck, cursor, card, at%curve)
+    case (row_mass, row_mass_set)
+      if (row%scale < 0.0_wp) call report_field(deck, cursor, card, at%scale, &
+        'is negative: a mass is 0 or more')
+    case (row_stiffness, row_stiffness_set)
+      if (row%scale > 1.0_wp) call report_field(deck, cursor, card, at%scale, &
+        'is not a share of critical damping (at most 1; below 0 it is a time)')
+    case (row_common)
+      if (row%direction < 1 .or. row%direction > 7) call report_field(deck, cursor, card, &
+        at%direction, 'is not a code of directions (1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)')
     case (row_pressure)
       call check_edge_nodes(deck, cursor, card, at%nodes(1))
       call check_arrival(deck, cursor, card, at%arrival)

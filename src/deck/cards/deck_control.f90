@@ -46,6 +46,8 @@ contains
       call take_termination(deck, cursor, cards(1), raw)
     case ('CONTROL_TIMESTEP')
       call take_timestep(deck, cursor, cards(1), raw)
+    case ('CONTROL_DYNAMIC_RELAXATION')
+      call take_relaxation(deck, cursor, cards(1), raw)
     case ('CONTROL_HOURGLASS')
       call hourglass_form(deck, cursor, cards(1), 'IHQ', raw%hourglass_default%form)
       call hourglass_coefficient(deck, cursor, cards(1), 'QH', &
@@ -98,6 +100,7 @@ contains
     if (real_of(card, 'DTMIN') > 1.0_wp) call report_field(deck, cursor, card, 'DTMIN', &
       'is not a share of the first step (at most 1): the run would end at once')
     call refuse_negative(deck, cursor, card, 'ENDENG')
+    call refuse_negative(deck, cursor, card, 'ENDMAS')
     call refuse_outside(deck, cursor, card, 'NOSOL', 0, 1, &
       'is not 0 or 1 (stop after the initialisation)')
     raw%terminated = .true.
@@ -105,6 +108,7 @@ contains
     raw%controls%end_cycle = integer_of(card, 'ENDCYC')
     raw%controls%dt_floor = real_of(card, 'DTMIN')
     raw%controls%energy_limit = real_of(card, 'ENDENG')
+    raw%controls%most_added = real_of(card, 'ENDMAS')
     raw%controls%check_only = integer_of(card, 'NOSOL') == 1
   end subroutine take_termination
 
@@ -129,10 +133,45 @@ contains
     if (real_of(card, 'TSSFAC') > 0.0_wp) raw%controls%dt_scale = real_of(card, 'TSSFAC')
     raw%controls%length_rule = merge(length_by_diagonal, length_by_side, &
       integer_of(card, 'ISDO') == 1)
+    call refuse_outside(deck, cursor, card, 'MS1ST', 0, 1, 'is not 0 or 1 (masses are scaled at ' &
+      //'the start alone)')
+    call note_explicit(raw, card, 'DT2MS', abs(real_of(card, 'DT2MS')) > 0.0_wp)
+    raw%controls%mass_step = real_of(card, 'DT2MS')
+    raw%controls%masses_stay = integer_of(card, 'MS1ST') == 1
     raw%step_line = card%line
     raw%dt_curve = integer_of(card, 'LCTM')
     raw%dt_curve_place = place_of(card, 'LCTM')
   end subroutine take_timestep
+
+  !> *CONTROL_DYNAMIC_RELAXATION. Whether it takes place may depend on the curves too.
+  subroutine take_relaxation(deck, cursor, card, raw)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_t), intent(inout) :: raw
+
+    if (all(integer_of(card, 'IDRFLG') /= [0, 1, -999])) call report_field(deck, cursor, card, &
+      'IDRFLG', 'is not a kind of dynamic relaxation that this version has (0 where a curve asks ' &
+      //'for it, 1 in any case, -999 in no case)')
+    if (integer_of(card, 'NRCYCK') < 1) call report_field(deck, cursor, card, 'NRCYCK', &
+      'is not a number of cycles (1 or more)')
+    if (.not. (real_of(card, 'DRTOL') > 0.0_wp .and. real_of(card, 'DRTOL') < 1.0_wp)) call &
+      report_field(deck, cursor, card, 'DRTOL', 'is not a share between 0 and 1')
+    if (.not. (real_of(card, 'DRFCTR') > 0.0_wp .and. real_of(card, 'DRFCTR') < 1.0_wp)) call &
+      report_field(deck, cursor, card, 'DRFCTR', 'is not a factor between 0 and 1')
+    call refuse_negative(deck, cursor, card, 'DRTERM')
+    call refuse_negative(deck, cursor, card, 'TSSFDR')
+    associate (relaxation => raw%controls%relaxation)
+      relaxation%is_on = integer_of(card, 'IDRFLG') == 1
+      raw%never_relaxes = integer_of(card, 'IDRFLG') == -999
+      raw%relaxation_line = card%line
+      relaxation%check_cycles = integer_of(card, 'NRCYCK')
+      relaxation%tolerance = real_of(card, 'DRTOL')
+      relaxation%factor = real_of(card, 'DRFCTR')
+      if (real_of(card, 'DRTERM') > 0.0_wp) relaxation%most_time = real_of(card, 'DRTERM')
+      relaxation%step_scale = real_of(card, 'TSSFDR')
+    end associate
+  end subroutine take_relaxation
 
   !> A field that is given and that the implicit method leaves.
   subroutine note_explicit(raw, card, name, is_given)

@@ -9,7 +9,7 @@ module deck_curves_m
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field, &
     find_field
   use deck_values_m, only : integer_of, real_of, reals_of, is_bad
-  use deck_checks_m, only : require_id
+  use deck_checks_m, only : require_id, refuse_outside
   use deck_raw_m, only : raw_t, raw_table_t
   implicit none
   private
@@ -32,6 +32,9 @@ contains
     call read_head(deck, parameters, i_block, ['LCID', 'SFA '], &
       'is negative: it would turn the curve round', cursor, head)
     scale = reals_of(head, 'SFA', 'SFO')
+    call refuse_outside(deck, cursor, head, 'SIDR', 0, 2, &
+      'is not a phase (0 run, 1 dynamic relaxation, 2 both)')
+    curve%phase = integer_of(head, 'SIDR')
     if (.not. scale(1) > 0.0_wp) scale(1) = 1.0_wp
     if (.not. abs(scale(2)) > 0.0_wp) scale(2) = 1.0_wp
     call read_rows(deck, parameters, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &

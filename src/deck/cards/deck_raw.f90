@@ -20,13 +20,16 @@ module deck_raw_m
     reserve_nodes, reserve_elements, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
     row_velocity, row_velocity_node, row_velocity_generation, row_load_node, row_load_set, &
     row_pressure, row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid, &
-    output_plot, id_fields, id_place
+    row_damping_part, row_damping_part_set, row_stiffness, row_stiffness_set, row_load_rigid, &
+    row_mass, row_mass_set, row_common, raw_system_t, output_plot, id_fields, id_place
 
   !> Kinds of `row_t`.
   integer, parameter :: row_spc_node = 1, row_spc_set = 2, row_motion_node = 3, &
     row_motion_set = 4, row_velocity = 5, row_velocity_node = 6, row_velocity_generation = 7, &
     row_load_node = 8, row_load_set = 9, row_pressure = 10, row_pressure_set = 11, &
-    row_body = 12, row_damping = 13, row_motion_rigid = 14, row_velocity_rigid = 15
+    row_body = 12, row_damping = 13, row_motion_rigid = 14, row_velocity_rigid = 15, &
+    row_damping_part = 16, row_damping_part_set = 17, row_stiffness = 18, row_stiffness_set = 19, &
+    row_load_rigid = 20, row_mass = 21, row_mass_set = 22, row_common = 23
   !> Files of the output plan: states, and histories by their `table_` constants.
   integer, parameter :: output_plot = 0
 
@@ -40,9 +43,10 @@ module deck_raw_m
     integer :: curve = 0         !! LCID
     integer :: others = 0        !! NSIDEX
     integer :: set_kind = 0      !! STYP
+    integer :: system = 0        !! CID
     integer :: nodes(2) = 0      !! N1, N2
     logical :: fixed(2) = .false.            !! DOFX, DOFY
-    real(wp) :: scale = 0.0_wp               !! SF; of damping VALDMP
+    real(wp) :: scale = 0.0_wp               !! SF; of damping VALDMP, COEF; MASS
     real(wp) :: birth = 0.0_wp, death = 0.0_wp, arrival = 0.0_wp
     real(wp) :: velocity(3) = 0.0_wp         !! VX, VY, VZR
     real(wp) :: other_velocity(2) = 0.0_wp   !! VXE, VYE
@@ -51,8 +55,9 @@ module deck_raw_m
   end type row_t
 
   !> Field of what a row is about, by its kind; LCID where there is nothing but a curve.
-  character(4), parameter :: id_fields(15) = [character(4) :: 'NID', 'NSID', 'NID', 'NSID', &
-    'NSID', 'NID', 'ID', 'NID', 'NSID', 'LCID', 'SSID', 'LCID', 'LCID', 'PID', 'PID']
+  character(4), parameter :: id_fields(23) = [character(4) :: 'NID', 'NSID', 'NID', 'NSID', &
+    'NSID', 'NID', 'ID', 'NID', 'NSID', 'LCID', 'SSID', 'LCID', 'LCID', 'PID', 'PID', 'PID', &
+    'PSID', 'PID', 'PSID', 'PID', 'NID', 'NSID', 'NSID']
 
   !> One card of *INITIAL_VELOCITY_NODE: a large deck may have one for each node.
   type :: node_velocity_t
@@ -120,6 +125,13 @@ module deck_raw_m
     real(wp) :: reach = 0.0_wp          !! OFFSET
   end type raw_wall_t
 
+  !> One *DEFINE_COORDINATE_SYSTEM.
+  type :: raw_system_t
+    integer :: id = 0
+    integer :: line = 0
+    real(wp) :: axes(2, 2) = 0.0_wp     !! its x axis, its y axis
+  end type raw_system_t
+
   !> Output of one file: its interval is completed when curves and ENDTIM are known.
   type :: history_t
     real(wp) :: dt = 0.0_wp
@@ -171,6 +183,7 @@ module deck_raw_m
     type(raw_contact_t), allocatable :: contacts(:)
     type(raw_contact_t), allocatable :: transducers(:) !! with one side
     type(raw_wall_t), allocatable :: walls(:)
+    type(raw_system_t), allocatable :: systems(:)
     type(controls_t) :: controls
     type(friction_rule_t) :: friction          !! of *CONTROL_CONTACT
     type(place_t) :: friction_place            !! SFRIC, line 0 without the keyword
@@ -180,6 +193,8 @@ module deck_raw_m
     real(wp) :: newmark(2) = 0.0_wp            !! GAMMA and BETA of the implicit method, 0 = blank
     real(wp) :: hht = 0.0_wp                   !! minus ALPHA of the implicit method
     real(wp) :: spectral_radius = -1.0_wp      !! of the implicit method, negative = not given
+    logical :: never_relaxes = .false.         !! IDRFLG -999
+    integer :: relaxation_line = 0             !! card of *CONTROL_DYNAMIC_RELAXATION, 0 = none
     integer :: step_line = 0                   !! card of *CONTROL_TIMESTEP, 0 = none
     integer :: newmark_line = 0                !! card of *CONTROL_IMPLICIT_DYNAMICS, 0 = none
     integer :: dt_curve = 0                    !! LCTM, user id
@@ -200,7 +215,8 @@ contains
       raw%equations(0), raw%equation_line(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
       raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%foams(0), raw%tables(0), &
-      raw%contacts(0), raw%transducers(0), raw%walls(0), raw%rows(64), raw%node_velocities(0), &
+      raw%contacts(0), raw%transducers(0), raw%walls(0), raw%systems(0), raw%rows(64), &
+      raw%node_velocities(0), &
       raw%node_sets(16), raw%part_sets(16), &
       raw%segment_sets(16), raw%explicit_only(0))
     call reserve_nodes(raw, 0)

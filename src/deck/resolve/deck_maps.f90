@@ -12,7 +12,7 @@ module deck_maps_m
   !> Maps from user id to index.
   type :: maps_t
     type(id_map_t) :: nodes, elements, parts, sections, materials, equations, hourglasses, &
-      curves, tables, node_sets, part_sets, segment_sets
+      curves, tables, node_sets, part_sets, segment_sets, systems
   end type maps_t
 
 contains
@@ -43,6 +43,8 @@ contains
       [raw%part_sets(:raw%n_part_set)%line], 'SID', maps%part_sets)
     call map_kind(deck, 'segment set', [raw%segment_sets(:raw%n_segment_set)%id], &
       [raw%segment_sets(:raw%n_segment_set)%line], 'SID', maps%segment_sets)
+    call map_kind(deck, 'coordinate system', [raw%systems%id], [raw%systems%line], 'CID', &
+      maps%systems)
     all_lost = deck%incomplete
     maps%nodes%incomplete = raw%lost%nodes .or. raw%n_node == 0 .or. all_lost
     maps%parts%incomplete = raw%lost%parts .or. all_lost
@@ -52,6 +54,7 @@ contains
     maps%hourglasses%incomplete = raw%lost%hourglasses .or. all_lost
     maps%curves%incomplete = raw%lost%curves .or. all_lost
     maps%tables%incomplete = raw%lost%tables .or. all_lost
+    maps%systems%incomplete = raw%lost%curves .or. all_lost
     maps%node_sets%incomplete = raw%lost%sets .or. all_lost
     maps%part_sets%incomplete = raw%lost%sets .or. all_lost
     maps%segment_sets%incomplete = raw%lost%sets .or. all_lost

@@ -20,6 +20,7 @@ module deck_resolve_m
   use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
+  use deck_resolve_damping_m, only : resolve_damping, settle_relaxation
   use deck_resolve_points_m, only : settle_points
   use deck_resolve_rigids_m, only : resolve_rigids
   use deck_resolve_round_m, only : settle_form, settle_axis, mark_round_contacts, &
@@ -150,6 +151,8 @@ contains
     if (model%controls%implicit%is_on) call check_implicit(deck, raw, model)
     call resolve_conditions(deck, raw, maps, model)
     call resolve_rigids(deck, raw, maps, model)
+    call resolve_damping(deck, raw, maps, model)
+    call settle_relaxation(deck, raw, model)
     call resolve_velocity(deck, raw, maps, model)
     call check_loads_of_round(deck, raw, model)
     call check_velocities_of_round(deck, raw, model)

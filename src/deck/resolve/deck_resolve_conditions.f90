@@ -3,7 +3,8 @@
 module deck_resolve_conditions_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use conditions_m, only : conditions_t, prescribed_motion_t, nodal_load_t, body_load_t
+  use conditions_m, only : conditions_t, prescribed_motion_t, nodal_load_t, body_load_t, &
+    skew_support_t
   use model_m, only : model_t
   use supports_m, only : mark_meshed_nodes
   use deck_lines_m, only : deck_t, place_t, line_warning, line_error
@@ -14,7 +15,7 @@ module deck_resolve_conditions_m
     row_load_node, row_load_set, row_body, row_damping, id_place
   implicit none
   private
-  public :: resolve_conditions
+  public :: resolve_conditions, row_nodes, load_axes
 
 contains
 
@@ -34,6 +35,7 @@ contains
     where (mark_axis(model)) fixed(1, :) = .true.
     call collect_motions(deck, raw, maps, model, motion_rows)
     call check_motions(deck, raw, model, motion_rows, fixed, meshed)
+    call check_skew_supports(deck, raw, model, motion_rows)
     call collect_loads(deck, raw, maps, model, meshed)
     call collect_global(deck, raw, maps, model)
     call list_fixed(fixed, model%conditions)
@@ -84,7 +86,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     logical, intent(in) :: meshed(:)
     logical, intent(inout) :: fixed(:, :)
     integer, allocatable :: nodes(:)
@@ -112,10 +114,95 @@ contains
     do i = 1, raw%n_row
       if (raw%rows(i)%kind /= row_spc_node .and. raw%rows(i)%kind /= row_spc_set) cycle
       call row_nodes(deck, maps, model, raw%rows(i), raw%rows(i)%kind == row_spc_set, nodes)
+      if (raw%rows(i)%system /= 0) then
+        call fix_along_axes(deck, raw, maps, raw%rows(i), nodes, model%conditions, fixed)
+        cycle
+      end if
       if (raw%rows(i)%fixed(1)) fixed(1, nodes) = .true.
       if (raw%rows(i)%fixed(2)) fixed(2, nodes) = .true.
     end do
   end subroutine collect_fixed
+
+  !> Fix nodes along the axes of a coordinate system. Axes along x and y, and both of any two, are
+  !> plain supports; a node that two skew supports hold does not move at all.
+  subroutine fix_along_axes(deck, raw, maps, row, nodes, conditions, fixed)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(row_t), intent(in) :: row
+    integer, intent(in) :: nodes(:)
+    type(conditions_t), intent(inout) :: conditions
+    logical, intent(inout) :: fixed(:, :)
+    type(skew_support_t) :: support
+    integer :: system, k
+    real(wp), parameter :: aligned = 1.0e-12_wp
+
+    call resolve_id(deck, maps%systems, row%system, 'coordinate system', &
+      place_t(row%line, 1, 'CID'), system)
+    if (system == 0 .or. .not. any(row%fixed)) return
+    if (all(row%fixed)) then
+      fixed(:, nodes) = .true.
+      return
+    end if
+    support%normal = raw%systems(system)%axes(:, merge(1, 2, row%fixed(1)))
+    k = maxloc(abs(support%normal), 1)
+    if (abs(support%normal(3 - k)) < aligned) then
+      fixed(k, nodes) = .true.
+      return
+    end if
+    if (.not. allocated(conditions%skew_supports)) allocate (conditions%skew_supports(0))
+    do k = 1, size(nodes)
+      support%node = nodes(k)
+      if (any(conditions%skew_supports%node == nodes(k))) then
+        fixed(:, nodes(k)) = .true.
+      else
+        conditions%skew_supports = [conditions%skew_supports, support]
+      end if
+    end do
+  end subroutine fix_along_axes
+
+  !> What skew supports ask of the rest of the deck.
+  subroutine check_skew_supports(deck, raw, model, rows)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: rows(:) !! of the motions
+    integer :: i, k
+
+    if (.not. allocated(model%conditions%skew_supports)) return
+    do i = 1, size(rows)
+      if (.not. any(model%conditions%skew_supports%node == model%conditions%motions(i)%node)) cycle
+      call reject_field(deck, id_place(raw%rows(rows(i))), ': node ' &
+        //to_text(model%mesh%node_id(model%conditions%motions(i)%node)) &
+        //' has a support along an axis of a coordinate system (CID) and cannot be moved by this ' &
+        //'card too')
+      exit
+    end do
+    if (.not. model%controls%implicit%is_on) return
+    do k = 1, raw%n_row
+      if (any(raw%rows(k)%kind == [row_spc_node, row_spc_set]) .and. raw%rows(k)%system /= 0) &
+        call reject_field(deck, place_t(raw%rows(k)%line, 1, 'CID'), &
+        'is a coordinate system of a support, which the implicit method does not have')
+    end do
+  end subroutine check_skew_supports
+
+  !> The direction of a load in the axes of the model; 0 for a moment.
+  subroutine load_axes(deck, raw, maps, row, axis)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(row_t), intent(in) :: row
+    real(wp), intent(out) :: axis(2)
+    integer :: system
+
+    axis = 0.0_wp
+    if (row%direction /= 1 .and. row%direction /= 2) return
+    axis(row%direction) = 1.0_wp
+    if (row%system == 0) return
+    call resolve_id(deck, maps%systems, row%system, 'coordinate system', &
+      place_t(row%line, 1, 'CID'), system)
+    if (system > 0) axis = raw%systems(system)%axes(:, row%direction)
+  end subroutine load_axes
 
   !> Fixed pairs of node and direction as lists.
   pure subroutine list_fixed(fixed, conditions)
@@ -237,7 +324,8 @@ contains
     type(nodal_load_t), allocatable :: loads(:)
     type(nodal_load_t) :: load
     integer, allocatable :: nodes(:)
-    integer :: i, k, n
+    real(wp) :: axis(2)
+    integer :: i, j, k, n
 
     allocate (loads(64))
     n = 0
@@ -253,13 +341,17 @@ contains
         exit
       end do
       if (load%curve == 0) cycle
-      load%direction = raw%rows(i)%direction
-      load%scale = raw%rows(i)%scale
+      call load_axes(deck, raw, maps, raw%rows(i), axis)
       do k = 1, size(nodes)
-        if (n == size(loads)) loads = [loads, loads]
-        n = n + 1
-        load%node = nodes(k)
-        loads(n) = load
+        do j = 1, 2
+          if (.not. abs(axis(j)) > 0.0_wp) cycle
+          if (n == size(loads)) loads = [loads, loads]
+          n = n + 1
+          load%node = nodes(k)
+          load%direction = j
+          load%scale = raw%rows(i)%scale*axis(j)
+          loads(n) = load
+        end do
       end do
     end do
     model%conditions%nodal_loads = loads(:n)

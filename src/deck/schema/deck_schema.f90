@@ -292,11 +292,13 @@ contains
         //'it 0 (a transducer adds up all forces on SURFA)'
     case ('CID', 'ICID', 'VID')
       text = 'is a local coordinate system, which this version does not have; leave it 0'
+    case ('TF')
+      text = 'lets the constraint fail, which this version does not have; leave it blank'
+    case ('CIDL')
+      text = 'gives the points in another system, which this version does not have; leave it 0'
     case ('SRC', 'SRP')
       text = 'asks for a Cowper-Symonds strain rate effect, which this version does not have; ' &
         //'leave it 0'
-    case ('DT2MS')
-      text = 'asks for mass scaling, which this version does not have; leave it 0'
     case ('ERODE', 'TDEL', 'DTF', 'TEROD', 'CEROD', 'CHARL', 'NUMINT')
       text = 'asks for deletion of elements, which this version does not have; leave it 0'
     case ('RATEOP', 'C2_P_XNP_D', 'K')
@@ -316,8 +318,11 @@ contains
       text = 'is a mid-side node; elements and edges have corner nodes only here'
     case ('BOXID')
       text = 'is a box, which this version does not have; leave it 0'
-    case ('PHASE', 'SIDR')
-      text = 'asks for dynamic relaxation, which this version does not have; leave it 0'
+    case ('PHASE')
+      text = 'is a velocity of dynamic relaxation, which this version does not have; leave it 0'
+    case ('IRELAL')
+      text = 'asks for a factor that the program finds, which this version does not have; leave ' &
+        //'it 0 and give DRFCTR'
     case ('COUPLE', 'M', 'ALIAS')
       text = 'couples the body to another program or to a surface file, which this version does ' &
         //'not have; leave it blank'

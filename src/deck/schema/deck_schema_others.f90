@@ -11,7 +11,8 @@ module deck_schema_others_m
   character(80), parameter :: table_others(*) = [character(80) :: &
     'MAT_* this material is', &
     'EOS_* this equation of state is', &
-    'ELEMENT_MASS* lumped masses are', &
+    'ELEMENT_MASS_PART* masses of whole parts are', &
+    'ELEMENT_MASS_MATRIX* matrices of mass are', &
     'ELEMENT_SHELL_* shells with thickness or offset are', &
     'ELEMENT_* this element is', &
     'SECTION_* this kind of section is', &

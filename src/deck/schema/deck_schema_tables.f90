@@ -6,7 +6,7 @@ module deck_schema_tables_m
   public :: table_control, table_mesh, table_conditions, table_contact, table_database
 
   !> Control of the deck and of the run.
-  character(86), parameter :: table_control(*) = [character(86) :: &
+  character(98), parameter :: table_control(*) = [character(98) :: &
     'KEYWORD', &
     'END', &
     'COMMENT', &
@@ -27,11 +27,14 @@ module deck_schema_tables_m
     'PARAMETER_DUPLICATION', &
     ' DFLAG:i', &
     'CONTROL_TERMINATION', &
-    ' ENDTIM:f ENDCYC:i DTMIN:f ENDENG:f ENDMAS:fs NOSOL:i', &
+    ' ENDTIM:f ENDCYC:i DTMIN:f ENDENG:f ENDMAS:f NOSOL:i', &
     'CONTROL_TIMESTEP', &
-    ' DTINIT:f TSSFAC:f ISDO:i TSLIMT:fw DT2MS:fr LCTM:i ERODE:ir MS1ST:iw', &
+    ' DTINIT:f TSSFAC:f ISDO:i TSLIMT:fw DT2MS:f LCTM:i ERODE:ir MS1ST:i', &
     ' DT2MSF:fw DT2MSLC:iw IMSCL:iw -:x -:x RMSCL:fw EMSCL:fw IHDO:iw', &
     ' -:x IGADO:iw', &
+    'CONTROL_DYNAMIC_RELAXATION', &
+    ' NRCYCK:i=250 DRTOL:f=0.001 DRFCTR:f=0.995 DRTERM:f TSSFDR:f IRELAL:ir' &
+    //' EDTTL:fs=0.04 IDRFLG:i', &
     'CONTROL_HOURGLASS', &
     ' IHQ:i QH:f', &
     'CONTROL_BULK_VISCOSITY', &
@@ -74,6 +77,10 @@ module deck_schema_tables_m
     ' NID:i8 X:f16 Y:f16 Z:f16 TC:i8 RC:is8', &
     'ELEMENT_SHELL', &
     ' EID:i8 PID:i8 N1:i8 N2:i8 N3:i8 N4:i8 N5:ir8 N6:ir8 N7:ir8 N8:ir8', &
+    'ELEMENT_MASS', &
+    ' EID:is8 NID:i8 MASS:f16 PID:is8', &
+    'ELEMENT_MASS_NODE_SET', &
+    ' EID:is8 NSID:i8 MASS:f16 PID:is8', &
     'PART t', &
     ' HEADING:a80', &
     ' PID:i SECID:i MID:i EOSID:i HGID:i GRAV:iw ADPOPT:iw TMID:iw', &
@@ -126,8 +133,11 @@ module deck_schema_tables_m
     ' CMO:i CON1:i CON2:i', &
     ' LCO_OR_A1:fw A2:fw A3:fw V1:fw V2:fw V3:fw', &
     'DEFINE_CURVE t', &
-    ' LCID:i SIDR:ir SFA:f=1 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
+    ' LCID:i SIDR:i SFA:f=1 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
     ' A1:f20 O1:f20', &
+    'DEFINE_COORDINATE_SYSTEM t', &
+    ' CID:i XO:f YO:f ZO:f XL:f YL:f ZL:f CIDL:ir', &
+    ' XP:f YP:f ZP:f', &
     'DEFINE_TABLE t', &
     ' TBID:i SFA:f=1 OFFA:f', &
     ' VALUE:f20', &
@@ -159,9 +169,9 @@ module deck_schema_tables_m
   !> Constraints, loads, initial values.
   character(69), parameter :: table_conditions(*) = [character(69) :: &
     'BOUNDARY_SPC_NODE t', &
-    ' NID:i CID:ir DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
+    ' NID:i CID:i DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
     'BOUNDARY_SPC_SET t', &
-    ' NSID:i CID:ir DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
+    ' NSID:i CID:i DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
     'BOUNDARY_PRESCRIBED_MOTION_NODE t', &
     ' NID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'BOUNDARY_PRESCRIBED_MOTION_SET t', &
@@ -180,9 +190,11 @@ module deck_schema_tables_m
     'INITIAL_VELOCITY_RIGID_BODY', &
     ' PID:i VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:f ICID:ir', &
     'LOAD_NODE_POINT', &
-    ' NID:i DOF:i LCID:i SF:f=1 CID:ir M1:is M2:is M3:is', &
+    ' NID:i DOF:i LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
     'LOAD_NODE_SET', &
-    ' NSID:i DOF:i LCID:i SF:f=1 CID:ir M1:is M2:is M3:is', &
+    ' NSID:i DOF:i LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
+    'LOAD_RIGID_BODY', &
+    ' PID:i DOF:i=1 LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
     'LOAD_SEGMENT t', &
     ' LCID:i SF:f=1 AT:f N1:i N2:i N3:i N4:i N5:ir', &
     'LOAD_SEGMENT_SET t', &
@@ -195,7 +207,19 @@ module deck_schema_tables_m
     ' NSID:i NSIDEX:i BOXID:ir OFFSET:f BIRTH:f DEATH:f=1e20 RWKSF:fs=1', &
     ' XT:f YT:f ZT:f XH:f YH:f ZH:f FRIC:f WVEL:fr', &
     'DAMPING_GLOBAL', &
-    ' LCID:i VALDMP:f STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs']
+    ' LCID:i VALDMP:f STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs', &
+    'DAMPING_PART_MASS', &
+    ' PID:i LCID:i SF:f=1 FLAG:i', &
+    ' STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs', &
+    'DAMPING_PART_MASS_SET', &
+    ' PSID:i LCID:i SF:f=1 FLAG:i', &
+    ' STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs', &
+    'DAMPING_PART_STIFFNESS', &
+    ' PID:i COEF:f', &
+    'DAMPING_PART_STIFFNESS_SET', &
+    ' PSID:i COEF:f', &
+    'CONSTRAINED_NODE_SET t', &
+    ' NSID:i DOF:i=1 TF:fr=1e20']
 
   !> Contact interfaces.
   character(95), parameter :: table_contact(*) = [character(95) :: &

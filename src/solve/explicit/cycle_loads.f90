@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> What acts from outside in an explicit cycle, and its work.
 module cycle_loads_m
+  use curves_m, only : curve_value
   use external_force_m, only : form_external_force, body_acceleration, damping_rate
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -30,6 +31,7 @@ contains
     else
       call clear_forces(model, state)
     end if
+    if (allocated(model%conditions%rigid_loads)) call apply_rigid_loads(model, half, state)
     if (size(model%conditions%body_loads) > 0) then
       body = body_acceleration(model%conditions, model%curves, state%time)
       sums%share(1:2) = half*(body + state%body_acceleration)
@@ -40,7 +42,35 @@ contains
       damping = damping_rate(model%conditions, model%curves, state%time)
       sums%share(3:4) = former ! the sums belong to the cycle before
     end if
+    if (allocated(state%node_damping)) sums%share(3:4) = 1.0_wp ! they hold the rates
   end subroutine apply_loads
+
+  !> Loads on rigid bodies and their work.
+  subroutine apply_rigid_loads(model, half, state)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: half     !! of the step behind
+    type(state_t), intent(inout) :: state
+    integer :: i
+
+    do i = 1, size(state%rigids)
+      associate (rigid => state%rigids(i))
+        state%external_work = state%external_work + half*sum(rigid%load*rigid%velocity)
+        rigid%load = 0.0_wp
+      end associate
+    end do
+    do i = 1, size(model%conditions%rigid_loads)
+      associate (load => model%conditions%rigid_loads(i))
+        associate (force => state%rigids(load%node)%load(load%direction))
+          force = force + load%scale*curve_value(model%curves(load%curve), state%time)
+        end associate
+      end associate
+    end do
+    do i = 1, size(state%rigids)
+      associate (rigid => state%rigids(i))
+        state%external_work = state%external_work + half*sum(rigid%load*rigid%velocity)
+      end associate
+    end do
+  end subroutine apply_rigid_loads
 
   !> No force yet on the nodes of interfaces and walls. On the others there never is one: to write
   !> zeros there would only take them out of the caches of other threads.
@@ -52,6 +82,8 @@ contains
     do i = 1, size(state%contacts)
       call clear(state%contacts(i)%nodes)
     end do
+    if (allocated(model%conditions%skew_supports)) &
+      call clear(model%conditions%skew_supports%node)
     if (.not. allocated(state%walls)) return
     do i = 1, size(model%walls)
       call clear(model%walls(i)%nodes)

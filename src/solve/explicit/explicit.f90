@@ -15,10 +15,12 @@ module explicit_m
   use failure_watch_m, only : report_failures
   use health_m, only : check_tile, judge_energies, judge_ratio
   use kinds_m, only : wp
+  use mass_scaling_m, only : refine_limits
   use model_m, only : model_t
   use motion_sums_m, only : sum_motion, sum_blocks
   use monitor_m, only : monitor_t
-  use node_motion_m, only : move_tile_nodes, move_special_nodes
+  use node_motion_m, only : leap_t, move_tile_nodes, move_special_nodes, move_damped_nodes
+  use skew_motion_m, only : hold_skew_nodes
   use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
   use wall_motion_m, only : hold_nodes
@@ -118,12 +120,16 @@ contains
     do i_tile = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i_tile))
         call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+        if (cycle%refines) call refine_limits(model, tile, state%motion, state%dt_before, &
+          state%elements)
         cycle%checks(i_tile) = check_tile(tile, state%elements)
         call share_tile_forces(tile, force, state%force_slots)
         if (sums) call sum_motion(tile%first_node, tile%last_node, state, &
           cycle%sums%parts(:, i_tile))
         if (cycle%writes) then
           call keep_tile_forces(tile, force, state%internal_force)
+        else if (allocated(state%node_damping)) then
+          call move_damped_nodes(cycle%leap, 0, tile%first_node, tile%last_node, force, state)
         else
           call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, force, &
             state%inverse_mass, state%motion)
@@ -148,12 +154,29 @@ contains
         call sum_special_forces(model%layout, state%force_slots, first, last, state%internal_force)
         if (.not. cycle%writes) then
           if (allocated(state%walls)) call hold_nodes(model, cycle%leap, first, last, state)
-          call move_special_nodes(cycle%leap, first, last, state)
+          if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, cycle%leap, &
+            first, last, state)
+          if (allocated(state%node_damping)) then
+            call move_damped(model, cycle%leap, first, last, state)
+          else
+            call move_special_nodes(cycle%leap, first, last, state)
+          end if
         end if
       end associate
     end do
     !$omp end do
   end subroutine advance_special_nodes
+
+  !> Nodes of damped parts whose internal forces stand in the nodal array.
+  subroutine move_damped(model, leap, first, last, state)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
+    type(state_t), intent(inout) :: state
+
+    if (last >= first) call move_damped_nodes(leap, model%layout%n_special, first, last, &
+      state%internal_force(:, first:last), state)
+  end subroutine move_damped
 
   !> Move all nodes after a cycle that wrote.
   subroutine move_all_nodes(model, state, cycle)
@@ -165,6 +188,11 @@ contains
     !$omp do schedule(static)
     do i_tile = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i_tile))
+        if (allocated(state%node_damping)) then
+          call move_damped(model, cycle%leap, tile%first_node, tile%last_node, state)
+          call move_damped(model, cycle%leap, tile%first_owned, tile%last_owned, state)
+          cycle
+        end if
         if (tile%last_node >= tile%first_node) call move_tile_nodes(cycle%leap, tile%first_node, &
           tile%last_node, state%internal_force(1, tile%first_node), state%inverse_mass, &
           state%motion)

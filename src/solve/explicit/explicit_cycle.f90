@@ -23,16 +23,20 @@ module explicit_cycle_m
   use interface_m, only : apply_contact
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
+  use mass_growth_m, only : grow_state_masses
+  use mass_log_m, only : check_added_mass
   use model_log_m, only : log_smallest_steps, judge_damping
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use motion_sums_m, only : motion_sums_t, plan_sums, count_sums
+  use node_damping_m, only : follow_damping
   use node_motion_m, only : leap_t, make_leap
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
   use progress_m, only : show_progress, follow_progress
   use requests_m, only : requests_t, take_requests
   use restart_plan_m, only : wanted_files
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
+  use skew_motion_m, only : hold_skew_nodes, remember_common, move_common
   use slowest_element_m, only : find_slowest
   use state_m, only : state_t
   use wall_motion_m, only : hold_nodes, count_walls, fill_walls
@@ -53,14 +57,17 @@ module explicit_cycle_m
     type(step_plan_t) :: steps
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
     logical, allocatable :: active(:)  !! (n_motion) which of them hold, once that has been asked
+    logical :: refines = .false.     !! steps of elements are not those of their density alone
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
     type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
                                                  !! come to
     type(failure_watch_t) :: failures !! points that have failed, as far as the log tells of them
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
+    real(wp), allocatable :: rates(:, :) !! (2, n_part) D of parts, where the deck damps some
     real(wp) :: ratio = 1.0_wp       !! last energy ratio known
     real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
     real(wp), allocatable :: displacement(:) !! (n_motion) u(n) of prescribed motions
+    real(wp), allocatable :: common(:, :)    !! (2, n_set) v(n-1/2) of nodes that move alike
     character(:), allocatable :: reason      !! what ended the run
     type(error_t), allocatable :: error
   end type explicit_cycle_t
@@ -80,6 +87,8 @@ contains
         motions%death < model%controls%end_time)
     end associate
     call plan_sums(model, cycle%sums)
+    cycle%refines = allocated(state%elements%mass_ratio) .or. &
+      allocated(state%elements%retardation)
     allocate (cycle%checks(size(model%layout%tiles)))
     cycle%reason = 'termination time reached'
     cycle%steps = start_steps(model, state%time)
@@ -103,6 +112,7 @@ contains
     cycle%plots = .false.
     cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
     call apply_loads(model, state, cycle%damping, cycle%sums)
+    if (allocated(state%node_damping)) call follow_damping(model, cycle%damping, cycle%rates, state)
     ! What ended the cycle before is in this lap, or without contact in the one below.
     if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
     call plan_looks(model, cycle%writes, state)
@@ -135,6 +145,7 @@ contains
       end associate
     end do
     call find_prescribed_velocities(model, state, cycle%velocity)
+    if (allocated(model%conditions%common_motions)) call remember_common(model, state, cycle%common)
   end subroutine prepare_leap
 
   !> Inverse masses where some prescribed motion has just started or ended.
@@ -180,6 +191,8 @@ contains
     end if
     call report_rigids(model, state, cycle)
     call report_walls(model, state, monitor, cycle)
+    if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, cycle%leap, 1, &
+      model%layout%n_special, state)
     state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
       cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
     call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
@@ -192,7 +205,8 @@ contains
       state%initial_energy = total_energy(monitor%snapshot%energies)
       monitor%snapshot%energies%initial = state%initial_energy
     end if
-    if (cycle%due%tables(table_matsum)) call fill_parts(model, monitor%snapshot)
+    if (cycle%due%tables(table_matsum)) call fill_parts(model, state%elements, &
+      monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call find_slowest(model, state, monitor%snapshot)
     if (any(cycle%due%tables([table_rcforc, table_sleout]))) &
       call fill_interfaces(model, state, monitor%snapshot)
@@ -270,11 +284,14 @@ contains
         cycle%damping, before, 0.5_wp*state%dt)
       call impose_prescribed(model, cycle%velocity, cycle%displacement, state)
     end if
+    if (allocated(cycle%common)) call move_common(model, cycle%leap, cycle%damping, cycle%common, &
+      state)
     if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
     if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
     state%cycle = state%cycle + 1
     state%former_dt = state%dt_before
     state%dt_before = state%dt
+    if (allocated(state%elements%mass_ratio)) call follow_masses(model, state, cycle)
     call follow_springs(model, state, cycle%steps%springs)
     call next_step(model, minval(cycle%checks%time_limit), monitor%log, state%cycle, cycle%steps, &
       state%time, state%dt)
@@ -286,6 +303,23 @@ contains
     call follow_progress(monitor%progress, monitor%clock, state%cycle, .false., state%time, &
       state%dt, cycle%ratio)
   end subroutine end_cycle
+
+  !> Mass for elements that have become too small for DT2MS, where the deck lets it grow.
+  subroutine follow_masses(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(inout) :: cycle
+    logical :: has_grown
+
+    if (model%controls%masses_stay) return
+    if (minval(cycle%checks%time_limit) >= abs(model%controls%mass_step)) return
+    call grow_state_masses(model, state, has_grown)
+    if (has_grown .and. allocated(cycle%rates)) deallocate (cycle%rates)
+    ! The places of the next cycle have been looked at.
+    cycle%checks%time_limit = max(cycle%checks%time_limit, abs(model%controls%mass_step))
+    if (has_grown .and. .not. allocated(cycle%error)) &
+      call check_added_mass(model, state%elements, cycle%error)
+  end subroutine follow_masses
 
   !> Stop, restart files, states and lines that are due or that someone asks for; for restart files
   !> a stop by a signal counts as an end. The state is that before the next cycle; a run that goes

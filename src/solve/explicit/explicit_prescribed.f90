@@ -5,6 +5,7 @@ module explicit_prescribed_m
   use conditions_m, only : motion_displacement, motion_velocity, prescribed_motion_t
   use constraints_m, only : is_active, next_velocity
   use model_m, only : model_t
+  use snapshot_filling_m, only : damping_at
   use state_m, only : state_t
   implicit none
   private
@@ -72,7 +73,7 @@ contains
     real(wp), intent(in) :: damping(2)             !! D per direction
     real(wp), intent(in) :: factor_old, factor_new !! times v(n-1/2) and v(n+1/2)
     real(wp) :: work
-    real(wp) :: reaction
+    real(wp) :: reaction, d(2)
     integer :: i
 
     work = 0.0_wp
@@ -80,8 +81,9 @@ contains
       associate (prescribed => model%conditions%motions(i), old => state%prescribed_velocity(i))
         if (.not. is_active(prescribed, state%time)) cycle
         associate (node => prescribed%node, k => prescribed%direction)
+          d = damping_at(state, damping, node)
           reaction = state%mass(node)*((velocity(i) - old)/(0.5_wp*(state%dt + state%dt_before)) &
-            - state%body_acceleration(k) + 0.5_wp*damping(k)*(velocity(i) + old)) &
+            - state%body_acceleration(k) + 0.5_wp*d(k)*(velocity(i) + old)) &
             + state%internal_force(k, node) - state%force_special(k, node)
         end associate
         work = work + reaction*(factor_old*old + factor_new*velocity(i))

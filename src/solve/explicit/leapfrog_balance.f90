@@ -3,11 +3,12 @@
 !> keeps: v(n-1/2).M v(n+1/2)/2 + U with equal steps (doc/theory/time_integration.md). Formed only
 !> when something is written, by one thread.
 module leapfrog_balance_m
+  use common_motion_m, only : common_drive
   use constraints_m, only : is_active
   use kinds_m, only : wp
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t
-  use snapshot_filling_m, only : find_motion
+  use snapshot_filling_m, only : find_motion, damping_at
   use state_m, only : state_t
   use walls_m, only : wall_tangent
   implicit none
@@ -30,11 +31,13 @@ contains
     dt = merge(state%dt_before, state%dt, state%dt_before > 0.0_wp)
     inertia = free_inertia(model, state, damping) + prescribed_inertia(model, state, velocity_next)
     inertia = inertia + rigid_inertia(state)
+    if (allocated(model%conditions%common_motions)) &
+      inertia = inertia + common_inertia(model, state, damping)
     if (allocated(state%walls) .and. .not. state%dt_before > 0.0_wp) &
       inertia = inertia - wall_power(model, state, damping)
     snapshot%energies%leapfrog = -0.125_wp*dt**2*inertia
-    if (allocated(state%former_velocity)) snapshot%energies%damping = state%damping_work &
-      + half_step_damping(model, state, damping, snapshot)
+    if (allocated(state%former_velocity)) snapshot%energies%damping = &
+      snapshot%energies%damping + half_step_damping(model, state, damping, snapshot)
   end subroutine complete_balance
 
   !> Sum of m a^2 over degrees of freedom that move freely, with a = (v(n+1/2) - v(n-1/2))/h.
@@ -51,6 +54,8 @@ contains
     late = 1.0_wp
     if (.not. state%dt_before > 0.0_wp) late = 1.0_wp + 0.25_wp*damping*state%dt
     do i = 1, model%mesh%n_node
+      if (allocated(state%node_damping) .and. .not. state%dt_before > 0.0_wp) late = 1.0_wp &
+        + 0.25_wp*state%node_damping(:, i)*state%dt
       call find_motion(model%layout%n_special, state, damping, i, velocity, a)
       do k = 1, 2
         if (state%inverse_mass(k, i) > 0.0_wp) total = total + state%mass(i)*(a(k)/late(k))**2
@@ -76,6 +81,29 @@ contains
       end associate
     end do
   end function prescribed_inertia
+
+  !> The same over nodes that move alike.
+  pure function common_inertia(model, state, damping) result(total)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)
+    real(wp) :: total
+    real(wp) :: push, rate, a
+    integer :: i, k
+
+    total = 0.0_wp
+    do i = 1, size(model%conditions%common_motions)
+      associate (common => model%conditions%common_motions(i))
+        do k = 1, 2
+          if (.not. common%along(k)) cycle
+          call common_drive(model, i, k, state, damping, push, rate)
+          a = (push - rate*state%motion(2 + k, common%nodes(1)))/(1.0_wp &
+            + 0.5_wp*rate*merge(state%dt_before, 0.5_wp*state%dt, state%dt_before > 0.0_wp))
+          total = total + sum(state%mass(common%nodes))*a**2
+        end do
+      end associate
+    end do
+  end function common_inertia
 
   !> The same over centres and turns of rigid bodies, whose forces must be solved for.
   pure function rigid_inertia(state) result(total)
@@ -111,7 +139,8 @@ contains
         push = state%walls(i)%force(k)*model%walls(i)%normal
         if (size(state%walls(i)%friction) > 0) push = push + state%walls(i)%friction(k) &
           *wall_tangent(model%walls(i))
-        total = total + dot_product(push, a/(1.0_wp + 0.25_wp*damping*state%dt))
+        total = total + dot_product(push, a/(1.0_wp + 0.25_wp*damping_at(state, damping, &
+          model%walls(i)%nodes(k))*state%dt))
       end do
     end do
   end function wall_power
@@ -123,9 +152,10 @@ contains
     real(wp), intent(in) :: damping(2)
     type(snapshot_t), intent(in) :: snapshot !! may keep velocities
     real(wp) :: work
-    real(wp) :: velocity(2), acceleration(2)
+    real(wp) :: velocity(2), acceleration(2), d(2)
     integer :: i
 
+    d = damping
     work = 0.0_wp
     do i = 1, model%mesh%n_node
       if (allocated(snapshot%velocity)) then
@@ -133,7 +163,8 @@ contains
       else
         call find_motion(model%layout%n_special, state, damping, i, velocity, acceleration)
       end if
-      work = work + state%mass(i)*sum(damping*velocity*state%motion(3:4, i))
+      if (allocated(state%node_damping)) d = state%node_damping(:, i)
+      work = work + state%mass(i)*sum(d*velocity*state%motion(3:4, i))
     end do
     work = 0.5_wp*state%dt_before*work
   end function half_step_damping

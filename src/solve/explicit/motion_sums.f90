@@ -35,8 +35,8 @@ contains
     type(motion_sums_t), intent(out) :: sums
     integer :: n_tile, n_special, n_moved, n_block, i
 
-    if (size(model%conditions%body_loads) == 0 .and. .not. allocated(model%conditions%damping)) &
-      return
+    if (size(model%conditions%body_loads) == 0 .and. .not. allocated(model%conditions%damping) &
+      .and. .not. allocated(model%conditions%part_damping)) return
     n_tile = size(model%layout%tiles)
     n_special = model%layout%n_special
     n_moved = n_special
@@ -71,6 +71,10 @@ contains
 
     sums(1:2) = sum_momentum(first, last, state%mass, state%motion)
     sums(3:4) = 0.0_wp
+    if (allocated(state%former_damping)) then
+      call sum_own_drag(first, last, state, sums(3:4))
+      return
+    end if
     if (allocated(state%former_velocity)) call sum_drag(first, last, state%mass, state%motion, &
       [state%former_dt, state%dt_before], state%former_velocity, sums(3:4))
   end subroutine sum_motion
@@ -115,6 +119,26 @@ contains
       former(:, i) = v
     end do
   end subroutine sum_drag
+
+  !> The same where each node has its own damping, which the sums then hold.
+  pure subroutine sum_own_drag(first, last, state, sums)
+    integer, intent(in) :: first, last
+    type(state_t), intent(inout) :: state
+    real(wp), intent(out) :: sums(2)        !! J/m, along x and y
+    real(wp) :: v(2)
+    integer :: i
+
+    sums = 0.0_wp
+    do i = first, last
+      v = state%motion(3:4, i)
+      associate (former => state%former_velocity(:, i))
+        sums = sums + 0.25_wp*state%mass(i)*state%former_damping(:, i)*((former + v) &
+          *(state%former_dt*former + state%dt_before*v))
+      end associate
+      state%former_velocity(:, i) = v
+      state%former_damping(:, i) = state%node_damping(:, i)
+    end do
+  end subroutine sum_own_drag
 
   !> The blocks, shared by the team, which does not wait: nothing moves these
   !> nodes while tiles advance.

@@ -8,11 +8,13 @@ module node_motion_m
   use state_m, only : state_t
   implicit none
   private
-  public :: leap_t, make_leap, move_tile_nodes, move_special_nodes
+  public :: leap_t, make_leap, find_factors, move_tile_nodes, move_special_nodes, &
+    move_damped_nodes
 
   !> Factors of one leap, the same for all nodes.
   type :: leap_t
     real(wp) :: dt = 0.0_wp        !! t(n+1) - t(n)
+    real(wp) :: mean = 0.0_wp      !! mean of the steps before and after
     real(wp) :: half(2) = 0.0_wp   !! what an acceleration counts in the velocity
     real(wp) :: keep(2) = 1.0_wp   !! what the old velocity counts
     real(wp) :: body(2) = 0.0_wp   !! acceleration of every free node
@@ -30,10 +32,46 @@ contains
 
     mean = 0.5_wp*(dt_before + dt)
     leap%dt = dt
+    leap%mean = mean
     leap%half = mean/(1.0_wp + 0.5_wp*damping*mean)
     leap%keep = (1.0_wp - 0.5_wp*damping*mean)/(1.0_wp + 0.5_wp*damping*mean)
     leap%body = body
   end function make_leap
+
+  !> Factors of one node, which has a D of its own where parts are damped.
+  pure subroutine find_factors(leap, state, node, half, keep)
+    type(leap_t), intent(in) :: leap
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: node
+    real(wp), intent(out) :: half(2), keep(2)
+
+    half = leap%half
+    keep = leap%keep
+    if (.not. allocated(state%node_damping)) return
+    half = leap%mean/(1.0_wp + 0.5_wp*state%node_damping(:, node)*leap%mean)
+    keep = (1.0_wp - 0.5_wp*state%node_damping(:, node)*leap%mean) &
+      /(1.0_wp + 0.5_wp*state%node_damping(:, node)*leap%mean)
+  end subroutine find_factors
+
+  !> Move the nodes first .. last where each has its own damping.
+  subroutine move_damped_nodes(leap, n_special, first, last, force, state)
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: n_special
+    integer, intent(in) :: first, last
+    real(wp), intent(in) :: force(2, first:*)        !! internal force of those nodes
+    type(state_t), intent(inout) :: state
+    real(wp) :: half(2), keep(2), push(2)
+    integer :: i
+
+    do i = first, last
+      call find_factors(leap, state, i, half, keep)
+      push = -force(:, i)
+      if (i <= n_special) push = state%force_special(:, i) + push
+      state%motion(3:4, i) = keep*state%motion(3:4, i) + half*(merge(leap%body, 0.0_wp, &
+        state%inverse_mass(:, i) > 0.0_wp) + push*state%inverse_mass(:, i))
+      state%motion(1:2, i) = state%motion(1:2, i) + leap%dt*state%motion(3:4, i)
+    end do
+  end subroutine move_damped_nodes
 
   !> Move the interior nodes first .. last.
   subroutine move_tile_nodes(leap, first, last, force, inverse_mass, motion)

@@ -6,6 +6,7 @@ module rigid_motion_m
   use conditions_m, only : motion_displacement
   use constraints_m, only : is_active, next_velocity
   use model_m, only : model_t
+  use part_damping_m, only : part_damping_rate
   use rigid_state_m, only : rigid_state_t, turn_of, shift_by_turn, velocity_of
   use snapshot_m, only : snapshot_t
   use state_m, only : state_t
@@ -27,7 +28,7 @@ contains
     do i = 1, size(state%rigids)
       associate (body => model%rigids(i), rigid => state%rigids(i))
         call sum_forces(body%nodes, model%layout%n_special, state, rigid)
-        rate = damping_of(rigid, damping)
+        rate = damping_of(rigid, damping + part_damping_rate(model, body%part, state%time))
         free = rigid%force/rigid%inertia + [state%body_acceleration, 0.0_wp]
         rigid%acceleration = (free - rate*rigid%velocity)/(1.0_wp + 0.5_wp*rate*state%dt_before)
         rigid%next_velocity = ((1.0_wp - 0.5_wp*rate*mean)*rigid%velocity + mean*free) &
@@ -71,7 +72,7 @@ contains
       total(2) = total(2) + fy
       total(3) = total(3) + (arm(1)*fy - arm(2)*fx)
     end do
-    rigid%force = total
+    rigid%force = total + rigid%load
   end subroutine sum_forces
 
   !> D of each degree of freedom: the turn is damped by the forces -D m v on
@@ -123,7 +124,8 @@ contains
       associate (motion => model%conditions%rigid_motions(i))
         if (.not. is_active(motion, state%time)) cycle
         associate (rigid => state%rigids(motion%node), k => motion%direction)
-          rate = damping_of(rigid, damping)
+          rate = damping_of(rigid, damping + part_damping_rate(model, &
+            model%rigids(motion%node)%part, state%time))
           associate (old => rigid%velocity(k), next => rigid%next_velocity(k))
             reaction = rigid%inertia(k)*((next - old)/(0.5_wp*(state%dt + state%dt_before)) &
               - body(k) + 0.5_wp*rate(k)*(next + old)) - rigid%force(k)
@@ -145,7 +147,8 @@ contains
     integer :: i, k
 
     ! Gravity and damping count the momentum of all nodes.
-    sums_all = size(model%conditions%body_loads) > 0 .or. allocated(model%conditions%damping)
+    sums_all = size(model%conditions%body_loads) > 0 .or. allocated(model%conditions%damping) &
+      .or. allocated(model%conditions%part_damping)
     do i = 1, size(state%rigids)
       associate (nodes => model%rigids(i)%nodes, rigid => state%rigids(i), dt => state%dt)
         speed = rigid%next_velocity

@@ -6,7 +6,7 @@
 module wall_motion_m
   use kinds_m, only : wp
   use model_m, only : model_t
-  use node_motion_m, only : leap_t
+  use node_motion_m, only : leap_t, find_factors
   use snapshot_m, only : wall_result_t
   use state_m, only : state_t
   use walls_m, only : wall_t, wall_distance, wall_tangent, friction_sticks
@@ -26,7 +26,7 @@ contains
     type(leap_t), intent(in) :: leap
     integer, intent(in) :: node
     type(state_t), intent(inout) :: state
-    real(wp) :: velocity(2), mobility(2), more, most
+    real(wp) :: velocity(2), mobility(2), half(2), keep(2), more, most
     integer :: i, k, round, n_seen
     logical :: settles
 
@@ -45,8 +45,9 @@ contains
       settles = .false.
     end do
     if (n_seen == 0) return
-    mobility = leap%half*state%inverse_mass(:, node)
-    velocity = leap%keep*state%motion(3:4, node) + leap%half*merge(leap%body, 0.0_wp, &
+    call find_factors(leap, state, node, half, keep)
+    mobility = half*state%inverse_mass(:, node)
+    velocity = keep*state%motion(3:4, node) + half*merge(leap%body, 0.0_wp, &
       state%inverse_mass(:, node) > 0.0_wp) + mobility*(state%force_special(:, node) &
       - state%internal_force(:, node))
     do round = 1, most_rounds

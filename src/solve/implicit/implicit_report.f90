@@ -3,6 +3,7 @@
 !> with the consistent mass.
 module implicit_report_m
   use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc
+  use block_state_m, only : block_state_t
   use kinds_m, only : wp
   use clock_m, only : lap, phase_output
   use element_mass_m, only : mass_times, sum_part_motion
@@ -59,7 +60,7 @@ contains
         state%initial_energy = total_energy(shot%energies)
         shot%energies%initial = state%initial_energy
       end if
-      if (due%tables(table_matsum)) call fill_consistent_parts(model, shot)
+      if (due%tables(table_matsum)) call fill_consistent_parts(model, state%elements, shot)
       if (any(due%tables([table_rcforc, table_sleout]))) call fill_interfaces(model, state, shot)
       if (due%tables(table_spcforc)) call fill_reactions(model, &
         force + mass_times(model, shot%acceleration), shot)
@@ -89,13 +90,14 @@ contains
   end function without
 
   !> Parts with the consistent mass.
-  subroutine fill_consistent_parts(model, shot)
+  subroutine fill_consistent_parts(model, elements, shot)
     type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
     type(snapshot_t), intent(inout) :: shot
     real(wp) :: kinetic(size(model%parts)), momentum(2, size(model%parts))
     integer :: i
 
-    call fill_parts(model, shot)
+    call fill_parts(model, elements, shot)
     call sum_part_motion(model, shot%velocity, kinetic, momentum)
     do i = 1, size(model%parts)
       shot%parts(i)%kinetic = kinetic(i)

@@ -23,6 +23,7 @@ contains
     if (size(state%contacts) == 0) return
     allocate (inverse(2, model%layout%n_special))
     inverse = state%inverse_mass(:, :model%layout%n_special)
+    if (allocated(model%conditions%common_motions)) call weigh_common(model, state%mass, inverse)
     do i = 1, size(model%rigids)
       call weigh_rigid(model, i, state%contact_mass, inverse)
     end do
@@ -36,6 +37,22 @@ contains
       end associate
     end do
   end subroutine weigh_contacts
+
+  !> Nodes that move alike: their own mass, the least that a force on one of them moves.
+  subroutine weigh_common(model, mass, inverse)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: mass(:)            !! (n_node)
+    real(wp), intent(inout) :: inverse(:, :)   !! (2, n_special)
+    integer :: i, k
+
+    do i = 1, size(model%conditions%common_motions)
+      associate (common => model%conditions%common_motions(i))
+        do k = 1, 2
+          if (common%along(k)) inverse(k, common%nodes) = 1.0_wp/mass(common%nodes)
+        end do
+      end associate
+    end do
+  end subroutine weigh_common
 
   !> The nodes of one rigid body.
   subroutine weigh_rigid(model, i_body, contact_mass, inverse)

@@ -5,6 +5,7 @@ module start_m
   use kinds_m, only : wp
   use behind_ties_m, only : hear_tie
   use automatic_penalty_m, only : set_automatic_penalties
+  use common_start_m, only : start_common
   use constraints_m, only : fix_nodes, update_activity
   use contact_inertia_m, only : weigh_contacts
   use element_log_m, only : log_elements
@@ -13,10 +14,13 @@ module start_m
   use errors_m, only : error_t, raise, status_input
   use initial_values_m, only : start_motion
   use log_m, only : log_t, to_text
+  use mass_log_m, only : log_added_mass
+  use mass_scaling_m, only : scales_masses, start_mass_scaling
   use model_log_m, only : log_masses
   use model_m, only : model_t
   use rigid_start_m, only : start_rigids
   use state_m, only : state_t
+  use stiffness_damping_m, only : start_retardation
   implicit none
   private
   public :: start_state, resume_contacts
@@ -33,6 +37,17 @@ contains
 
     call start_motion(model, state%motion)
     call lump_mass(model, state%mass)
+    call log_elements(model, log)
+    call log_masses(model, log)
+    call start_elements(model, state%elements)
+    if (any(abs(model%parts%stiffness_damping) > 0.0_wp)) &
+      call start_retardation(model, state%motion, state%elements)
+    if (scales_masses(model)) then
+      call start_mass_scaling(model, state%motion, state%elements, state%mass)
+      call log_added_mass(model, state%elements, log, error)
+      if (allocated(error)) return
+    end if
+    call start_common(model, state)
     allocate (state%inverse_mass(2, model%mesh%n_node), source=0.0_wp)
     do i = 1, model%mesh%n_node
       if (state%mass(i) > 0.0_wp) state%inverse_mass(:, i) = 1.0_wp/state%mass(i)
@@ -44,6 +59,12 @@ contains
       allocate (state%external(2, model%layout%n_special), source=0.0_wp)
     if (allocated(model%conditions%damping) .and. .not. model%controls%implicit%is_on) &
       allocate (state%former_velocity(2, model%mesh%n_node), source=0.0_wp)
+    if (allocated(model%conditions%part_damping)) then
+      allocate (state%node_damping(2, model%mesh%n_node), &
+        state%former_damping(2, model%mesh%n_node), source=0.0_wp)
+      if (.not. allocated(state%former_velocity)) &
+        allocate (state%former_velocity(2, model%mesh%n_node), source=0.0_wp)
+    end if
     allocate (state%force_slots(2, size(model%layout%special_node)), source=0.0_wp)
     allocate (state%internal_force(2, model%mesh%n_node), source=0.0_wp)
     allocate (state%prescribed_velocity(size(model%conditions%motions)), source=0.0_wp)
@@ -52,11 +73,8 @@ contains
         state%prescribed_velocity(i) = state%motion(2 + prescribed%direction, prescribed%node)
       end associate
     end do
-    call log_elements(model, log)
-    call log_masses(model, log)
     call start_rigids(model, log, state)
     call start_walls(model, state)
-    call start_elements(model, state%elements)
     allocate (state%contacts(size(model%contacts)))
     do i = 1, size(model%contacts)
       call start_contact(model%contacts(i), model, log, state%contacts(i))

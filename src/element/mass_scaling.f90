@@ -1,0 +1,222 @@
+! SPDX-License-Identifier: MIT
+!> Mass scaling (DT2MS of *CONTROL_TIMESTEP): elements get so much mass that their stable step is
+!> |DT2MS|; with DT2MS > 0 those of larger steps lose mass too. Omega falls with the root of the
+!> mass, and the damping of a mode falls faster, so that a step of more mass is at least the root as
+!> large. With less mass damping grows: where there is any the step is taken as in proportion.
+module mass_scaling_m
+  use block_state_m, only : block_state_t
+  use element_shares_m, only : element_shares
+  use element_steps_m, only : chunk_steps
+  use kinds_m, only : wp
+  use layout_m, only : chunk_size, slot_part, tile_t
+  use model_m, only : model_t
+  use parts_m, only : hourglass_viscous, part_t
+  implicit none
+  private
+  public :: scales_masses, start_mass_scaling, refine_limits, grow_masses, scaled_step, &
+    added_masses
+
+  !> By how much the step of an element that has become too small is made larger than asked: it then
+  !> lasts for some cycles.
+  real(wp), parameter :: reserve = 1.01_wp
+
+contains
+
+  !> Whether a run scales masses.
+  pure function scales_masses(model) result(scales)
+    type(model_t), intent(in) :: model
+    logical :: scales
+
+    scales = abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%implicit%is_on
+  end function scales_masses
+
+  !> The masses of time zero; those of nodes so far are of the densities.
+  subroutine start_mass_scaling(model, motion, elements, mass)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in), contiguous :: motion(:, :)  !! (4, n_node)
+    type(block_state_t), intent(inout) :: elements
+    real(wp), intent(inout) :: mass(:)                !! (n_node)
+    real(wp) :: steps(chunk_size)
+    integer :: i_chunk, i, slot
+
+    allocate (elements%mass_ratio(model%layout%n_slot), source=1.0_wp)
+    do i_chunk = 1, size(elements%time_limit)
+      call chunk_steps(model, elements, i_chunk, motion, 0.0_wp, steps)
+      do i = 1, model%layout%chunk_elements(i_chunk)
+        if (.not. model%controls%mass_step > 0.0_wp .and. steps(i) &
+          >= abs(model%controls%mass_step)) cycle
+        slot = (i_chunk - 1)*chunk_size + i
+        call set_ratio(model, slot, needed_ratio(model, slot, steps(i), &
+          abs(model%controls%mass_step)), elements, mass)
+      end do
+    end do
+  end subroutine start_mass_scaling
+
+  !> Give an element its mass.
+  pure subroutine set_ratio(model, slot, ratio, elements, mass)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: slot
+    real(wp), intent(in) :: ratio
+    type(block_state_t), intent(inout) :: elements
+    real(wp), intent(inout) :: mass(:)
+    real(wp) :: shares(4)
+    integer :: k
+
+    shares = (ratio - elements%mass_ratio(slot))*element_shares(model, slot)
+    elements%mass_ratio(slot) = ratio
+    do k = 1, 4
+      associate (node => model%layout%slot_nodes(k, slot))
+        mass(node) = mass(node) + shares(k)
+      end associate
+    end do
+  end subroutine set_ratio
+
+  !> Limits of the chunks of a tile whose elements may be scaled, once the forces of the step have
+  !> left those of unscaled ones.
+  subroutine refine_limits(model, tile, motion, dt, elements)
+    type(model_t), intent(in) :: model
+    type(tile_t), intent(in) :: tile
+    real(wp), intent(in), contiguous :: motion(:, :)
+    real(wp), intent(in) :: dt                       !! step that led here
+    type(block_state_t), intent(inout) :: elements   !! only this tile's chunks are touched
+    integer :: i_chunk
+
+    do i_chunk = tile%first_chunk, tile%last_chunk
+      call limit_chunk(model, i_chunk, motion, dt, elements)
+    end do
+  end subroutine refine_limits
+
+  !> Limit of one chunk; the same step for all of it with DT2MS > 0.
+  subroutine limit_chunk(model, i_chunk, motion, dt, elements)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_chunk
+    real(wp), intent(in), contiguous :: motion(:, :)
+    real(wp), intent(in) :: dt
+    type(block_state_t), intent(inout) :: elements
+    real(wp) :: steps(chunk_size), limit
+    integer :: i, first
+
+    first = (i_chunk - 1)*chunk_size + 1
+    if (.not. has_own_limits(elements, first)) return
+    call chunk_steps(model, elements, i_chunk, motion, dt, steps)
+    limit = huge(1.0_wp)
+    do i = 1, model%layout%chunk_elements(i_chunk)
+      limit = min(limit, scaled_step(model, first + i - 1, steps(i), elements))
+    end do
+    if (model%controls%mass_step > 0.0_wp) limit = min(limit, model%controls%mass_step)
+    elements%time_limit(i_chunk) = limit
+  end subroutine limit_chunk
+
+  !> Whether elements of a chunk are scaled or damped.
+  pure function has_own_limits(elements, first) result(has)
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: first  !! slot of the chunk
+    logical :: has
+
+    has = .false.
+    if (allocated(elements%mass_ratio)) has = &
+      any(abs(elements%mass_ratio(first:first + chunk_size - 1) - 1.0_wp) > 0.0_wp)
+    if (allocated(elements%retardation)) has = has .or. elements%retardation(first) > 0.0_wp
+  end function has_own_limits
+
+  !> Mass for elements whose step has become too small since, on the geometry of the next cycle.
+  !> Velocities stay: `work` is the kinetic energy that the new mass brings.
+  subroutine grow_masses(model, motion, dt, elements, mass, work)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in), contiguous :: motion(:, :)
+    real(wp), intent(in) :: dt
+    type(block_state_t), intent(inout) :: elements
+    real(wp), intent(inout) :: mass(:)
+    real(wp), intent(out) :: work
+    real(wp) :: steps(chunk_size), target, before(4)
+    integer :: i_chunk, i, slot
+
+    target = abs(model%controls%mass_step)
+    work = 0.0_wp
+    do i_chunk = 1, size(elements%time_limit)
+      if (elements%time_limit(i_chunk) >= target) cycle
+      call chunk_steps(model, elements, i_chunk, motion, dt, steps)
+      do i = 1, model%layout%chunk_elements(i_chunk)
+        slot = (i_chunk - 1)*chunk_size + i
+        if (scaled_step(model, slot, steps(i), elements) >= target) cycle
+        associate (nodes => model%layout%slot_nodes(:, slot))
+          before = mass(nodes)
+          call set_ratio(model, slot, max(elements%mass_ratio(slot), needed_ratio(model, slot, &
+            steps(i), reserve*target)), elements, mass)
+          work = work + 0.5_wp*sum((mass(nodes) - before)*(motion(3, nodes)**2 &
+            + motion(4, nodes)**2), [.true., .true., .true., nodes(4) /= nodes(3)])
+        end associate
+      end do
+      call limit_chunk(model, i_chunk, motion, dt, elements)
+    end do
+  end subroutine grow_masses
+
+  !> Stable step of the element in a slot with its mass.
+  pure function scaled_step(model, slot, step, elements) result(scaled)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: slot
+    real(wp), intent(in) :: step                 !! with the mass of its density
+    type(block_state_t), intent(in) :: elements
+    real(wp) :: scaled
+
+    scaled = step
+    if (.not. allocated(elements%mass_ratio)) return
+    associate (ratio => elements%mass_ratio(slot))
+      scaled = step*sqrt(ratio)
+      if (ratio < 1.0_wp) then
+        if (is_damped(model, model%parts(slot_part(model%layout, slot)))) scaled = step*ratio
+      end if
+    end associate
+  end function scaled_step
+
+  !> Mass over that of the density which takes an element from one step to another.
+  pure function needed_ratio(model, slot, step, target) result(ratio)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: slot
+    real(wp), intent(in) :: step, target !! s
+    real(wp) :: ratio
+
+    ratio = target/step
+    if (ratio < 1.0_wp) then
+      if (is_damped(model, model%parts(slot_part(model%layout, slot)))) return
+    end if
+    ratio = ratio**2
+  end function needed_ratio
+
+  !> Whether something resists the rates of a part.
+  pure function is_damped(model, part) result(damped)
+    type(model_t), intent(in) :: model
+    type(part_t), intent(in) :: part
+    logical :: damped
+
+    associate (hourglass => part%hourglass)
+      damped = model%materials(part%material)%viscosity > 0.0_wp &
+        .or. hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp &
+        .or. (hourglass%form == hourglass_viscous .and. hourglass%coefficient > 0.0_wp &
+        .and. .not. model%sections(part%section)%is_full) .or. abs(part%stiffness_damping) > 0.0_wp
+    end associate
+  end function is_damped
+
+  !> Added mass of each part, below zero where some was taken away; and the mass without it.
+  pure subroutine added_masses(model, elements, added, own)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    real(wp), intent(out) :: added(:), own(:) !! (n_part) kg per metre of depth or per radian
+    real(wp) :: mass
+    integer :: i_chunk, i, slot
+
+    added = 0.0_wp
+    own = 0.0_wp
+    do i_chunk = 1, model%layout%n_chunk
+      associate (part => model%layout%chunk_part(i_chunk))
+        do i = 1, model%layout%chunk_elements(i_chunk)
+          slot = (i_chunk - 1)*chunk_size + i
+          mass = sum(element_shares(model, slot))
+          own(part) = own(part) + mass
+          added(part) = added(part) + (elements%mass_ratio(slot) - 1.0_wp)*mass
+        end do
+      end associate
+    end do
+  end subroutine added_masses
+
+end module mass_scaling_m

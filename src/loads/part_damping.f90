@@ -1,0 +1,31 @@
+! SPDX-License-Identifier: MIT
+!> Rates of *DAMPING_PART_MASS.
+module part_damping_m
+  use curves_m, only : curve_value
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  implicit none
+  private
+  public :: part_damping_rate
+
+contains
+
+  !> D per direction that the masses of a part have at `time`; cards of one part add up.
+  pure function part_damping_rate(model, part, time) result(rate)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: part
+    real(wp), intent(in) :: time
+    real(wp) :: rate(2)
+    integer :: i
+
+    rate = 0.0_wp
+    if (.not. allocated(model%conditions%part_damping)) return
+    do i = 1, size(model%conditions%part_damping)
+      associate (damping => model%conditions%part_damping(i))
+        if (damping%part == part) rate = rate + damping%scale*damping%factor &
+          *curve_value(model%curves(damping%curve), time)
+      end associate
+    end do
+  end function part_damping_rate
+
+end module part_damping_m

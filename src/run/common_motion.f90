@@ -1,0 +1,62 @@
+! SPDX-License-Identifier: MIT
+!> Nodes that move alike (*CONSTRAINED_NODE_SET): all of them have the acceleration of the sum of
+!> their forces over the sum of their masses.
+module common_motion_m
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: common_drive, fill_common
+
+contains
+
+  !> Of one set along one direction: acceleration by all but damping, and the mean D.
+  pure subroutine common_drive(model, i_set, k, state, damping, push, rate)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_set, k
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)     !! D per direction
+    real(wp), intent(out) :: push, rate
+    real(wp) :: mass
+    integer :: i
+
+    push = 0.0_wp
+    rate = 0.0_wp
+    mass = 0.0_wp
+    associate (nodes => model%conditions%common_motions(i_set)%nodes)
+      do i = 1, size(nodes)
+        push = push + (state%force_special(k, nodes(i)) - state%internal_force(k, nodes(i)))
+        mass = mass + state%mass(nodes(i))
+        if (allocated(state%node_damping)) &
+          rate = rate + state%mass(nodes(i))*state%node_damping(k, nodes(i))
+      end do
+    end associate
+    push = push/mass + state%body_acceleration(k)
+    rate = rate/mass
+    if (.not. allocated(state%node_damping)) rate = damping(k)
+  end subroutine common_drive
+
+  !> Acceleration and velocity of the present instant.
+  pure subroutine fill_common(model, state, damping, velocity, acceleration)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)
+    real(wp), intent(inout) :: velocity(:, :), acceleration(:, :) !! (2, n_node)
+    real(wp) :: push, rate, a
+    integer :: i, k
+
+    do i = 1, size(model%conditions%common_motions)
+      associate (nodes => model%conditions%common_motions(i)%nodes)
+        do k = 1, 2
+          if (.not. model%conditions%common_motions(i)%along(k)) cycle
+          call common_drive(model, i, k, state, damping, push, rate)
+          a = (push - rate*state%motion(2 + k, nodes(1)))/(1.0_wp + 0.5_wp*rate*state%dt_before)
+          acceleration(k, nodes) = a
+          velocity(k, nodes) = state%motion(2 + k, nodes(1)) + 0.5_wp*state%dt_before*a
+        end do
+      end associate
+    end do
+  end subroutine fill_common
+
+end module common_motion_m

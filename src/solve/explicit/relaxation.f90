@@ -1,0 +1,197 @@
+! SPDX-License-Identifier: MIT
+!> Dynamic relaxation (*CONTROL_DYNAMIC_RELAXATION): before time zero the loads of that phase act on
+!> the body, and every step leaves a share of the velocities, until the body rests. What it has come
+!> to is the state at time zero. One thread, before any output.
+module relaxation_m
+  use cycle_loads_m, only : apply_loads
+  use element_dispatch_m, only : add_tile_forces
+  use errors_m, only : error_t, raise, status_run
+  use health_m, only : check_elements
+  use kinds_m, only : wp
+  use log_m, only : log_t, write_log, warn, to_text
+  use mass_scaling_m, only : refine_limits
+  use model_m, only : model_t
+  use motion_sums_m, only : motion_sums_t
+  use node_motion_m, only : leap_t, make_leap, move_tile_nodes, move_special_nodes
+  use scaled_step_m, only : scaled_step
+  use skew_motion_m, only : hold_skew_nodes
+  use state_m, only : state_t
+  use tile_forces_m, only : share_tile_forces, sum_special_forces
+  implicit none
+  private
+  public :: relax, leave_relaxation
+
+  !> Cycles after which relaxation is given up where DRTERM does not end it.
+  integer, parameter :: most_cycles = 5000000
+  !> By how much the limit of the step must rise before the step does.
+  real(wp), parameter :: least_rise = 0.05_wp
+
+contains
+
+  !> From the state that the deck describes to the one at rest, which becomes that of time zero.
+  subroutine relax(model, log, state, error)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    type(state_t), intent(inout) :: state
+    type(error_t), allocatable, intent(out) :: error
+    type(model_t), allocatable :: relaxing
+    real(wp), allocatable :: start_velocity(:, :), force(:, :)
+    real(wp) :: most, share
+    integer :: n
+
+    allocate (relaxing, source=model)
+    call switch_loads(relaxing, 0)
+    start_velocity = state%motion(3:4, :)
+    state%motion(3:4, :) = 0.0_wp
+    allocate (force(2, model%layout%n_local))
+    most = 0.0_wp
+    share = 1.0_wp
+    associate (rules => model%controls%relaxation)
+      do n = 1, most_cycles
+        call relax_once(relaxing, force, state)
+        if (mod(n, 100) == 0 .or. mod(n, rules%check_cycles) == 0) &
+          call check_elements(relaxing, state, error)
+        if (allocated(error)) return
+        share = own_energy(state)
+        most = max(most, share)
+        if (most > 0.0_wp) share = share/most
+        if (mod(n, rules%check_cycles) == 0 .and. share < rules%tolerance) exit
+        if (state%time >= rules%most_time) exit
+      end do
+      if (n > most_cycles) then
+        call raise(error, 'dynamic relaxation does not come to rest in '//to_text(most_cycles) &
+          //' cycles: its kinetic energy is '//to_text(share)//' of the largest', status_run)
+        return
+      end if
+      call write_log(log, 'dynamic relaxation: '//to_text(n)//' cycles, kinetic energy ' &
+        //to_text(share)//' of its largest at the end')
+      if (.not. share < rules%tolerance) call warn(log, 'dynamic relaxation ended by DRTERM ' &
+        //'before it converged')
+    end associate
+    call begin_at_zero(start_velocity, state)
+  end subroutine relax
+
+  !> One cycle of relaxation: v(n+1/2) = DRFCTR v(n-1/2) + h a.
+  subroutine relax_once(model, force, state)
+    type(model_t), intent(in) :: model
+    real(wp), intent(inout), contiguous :: force(:, :) !! work array of a tile
+    type(state_t), intent(inout) :: state
+    type(motion_sums_t) :: unused
+    type(leap_t) :: leap
+    real(wp) :: global(2)
+    real(wp), parameter :: none(2) = 0.0_wp
+    integer :: i
+
+    global = none
+    call apply_loads(model, state, global, unused)
+    ! The first step follows from the elements at time zero, which the forces below leave.
+    if (.not. state%dt > 0.0_wp) then
+      do i = 1, size(model%layout%tiles)
+        call advance_tile(model, i, state, force)
+      end do
+      call choose_step(model, state)
+    end if
+    leap = make_leap(state%dt_before, state%dt, none, state%body_acceleration)
+    leap%keep = model%controls%relaxation%factor
+    do i = 1, size(model%layout%tiles)
+      call advance_tile(model, i, state, force)
+      associate (tile => model%layout%tiles(i))
+        call share_tile_forces(tile, force, state%force_slots)
+        call move_tile_nodes(leap, tile%first_node, tile%last_node, force, state%inverse_mass, &
+          state%motion)
+      end associate
+    end do
+    associate (n => model%layout%n_special)
+      call sum_special_forces(model%layout, state%force_slots, 1, n, state%internal_force)
+      if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, leap, 1, n, state)
+      call move_special_nodes(leap, 1, n, state)
+    end associate
+    state%time = state%time + state%dt
+    state%dt_before = state%dt
+    call choose_step(model, state)
+  end subroutine relax_once
+
+  !> Forces of one tile, and its limits.
+  subroutine advance_tile(model, i, state, force)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    type(state_t), intent(inout) :: state
+    real(wp), intent(inout), contiguous :: force(:, :)
+
+    associate (tile => model%layout%tiles(i))
+      call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+      if (allocated(state%elements%mass_ratio) .or. allocated(state%elements%retardation)) &
+        call refine_limits(model, tile, state%motion, state%dt_before, state%elements)
+    end associate
+  end subroutine advance_tile
+
+  !> TSSFDR, or what the run takes, times the limit; held while that rises by little.
+  pure subroutine choose_step(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    real(wp) :: limit, wanted
+
+    limit = minval(state%elements%time_limit)
+    wanted = scaled_step(model, limit, 0.0_wp)
+    if (model%controls%relaxation%step_scale > 0.0_wp) &
+      wanted = model%controls%relaxation%step_scale*limit
+    if (wanted < state%dt .or. wanted > (1.0_wp + least_rise)*state%dt) state%dt = wanted
+  end subroutine choose_step
+
+  !> Kinetic energy beyond that of the mean velocity.
+  pure function own_energy(state) result(energy)
+    type(state_t), intent(in) :: state
+    real(wp) :: energy
+    real(wp) :: momentum(2), mass
+    integer :: i
+
+    energy = 0.0_wp
+    momentum = 0.0_wp
+    mass = 0.0_wp
+    do i = 1, size(state%mass)
+      energy = energy + 0.5_wp*state%mass(i)*(state%motion(3, i)**2 + state%motion(4, i)**2)
+      momentum = momentum + state%mass(i)*state%motion(3:4, i)
+      mass = mass + state%mass(i)
+    end do
+    energy = max(0.0_wp, energy - 0.5_wp*sum(momentum**2)/mass)
+  end function own_energy
+
+  !> The clock and the account of the run begin; velocities are those that the deck gives.
+  subroutine begin_at_zero(velocity, state)
+    real(wp), intent(in) :: velocity(:, :) !! (2, n_node)
+    type(state_t), intent(inout) :: state
+
+    state%time = 0.0_wp
+    state%dt = 0.0_wp
+    state%dt_before = 0.0_wp
+    state%cycle = 0
+    state%motion(3:4, :) = velocity
+    state%external_work = 0.0_wp
+    state%damping_work = 0.0_wp
+    state%body_acceleration = 0.0_wp
+    state%elements%viscous_work = 0.0_wp
+    if (allocated(state%external)) state%external = 0.0_wp
+    if (allocated(state%elements%damping_work)) state%elements%damping_work = 0.0_wp
+    if (allocated(state%elements%damping_stress)) state%elements%damping_stress = 0.0_wp
+  end subroutine begin_at_zero
+
+  !> The loads of the run: those of relaxation alone (SIDR 1) no longer act.
+  subroutine leave_relaxation(model)
+    type(model_t), intent(inout) :: model
+
+    if (any(model%curves%phase == 1)) call switch_loads(model, 1)
+  end subroutine leave_relaxation
+
+  !> Switch off the loads whose curves are of one phase alone.
+  subroutine switch_loads(model, phase)
+    type(model_t), intent(inout) :: model
+    integer, intent(in) :: phase !! SIDR 0 of the run, 1 of relaxation
+
+    associate (loads => model%conditions)
+      where (model%curves(loads%nodal_loads%curve)%phase == phase) loads%nodal_loads%scale = 0.0_wp
+      where (model%curves(loads%pressures%curve)%phase == phase) loads%pressures%scale = 0.0_wp
+      where (model%curves(loads%body_loads%curve)%phase == phase) loads%body_loads%scale = 0.0_wp
+    end associate
+  end subroutine switch_loads
+
+end module relaxation_m

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""Mass scaling: closed sums of the added mass, the step that is asked for, motions that no mass changes."""
+import numpy as np
+
+from meshes import Deck, grid_quads, lumped_mass
+
+RHO, YOUNG, POISSON = 1000.0, 1.0e6, 0.25
+SPEED = np.sqrt(1.2 * YOUNG / RHO)  # K + 4G/3 = 1.2 E at nu = 0.25
+COLUMNS = np.array([0.0, 0.1, 0.15, 0.17, 0.3])  # widths 0.1, 0.05, 0.02, 0.13; height 0.1
+
+
+def strip(title, mass_step, points=1, stays=0, form=13, left=0.0, scale=0.9, hourglass=4):
+    """One row of rectangles of unequal widths."""
+    coordinates = np.array([(left + x, y) for y in (0.0, 0.1) for x in COLUMNS])
+    deck = Deck(title)
+    deck.add("*CONTROL_TERMINATION", (0.02,))
+    deck.add("*CONTROL_TIMESTEP", (0.0, scale, 0, 0.0, mass_step, 0, 0, stays)).hourglass(hourglass, 0.1)
+    deck.add("*PART", "strip", (1, 1, 1)).add("*SECTION_SHELL", (1, form, None, points), (1.0,))
+    deck.elastic(RHO, YOUNG, POISSON)
+    deck.mesh(coordinates, grid_quads(4, 1))
+    deck.output(glstat=0.001, matsum=0.001, nodout=0.001, nodes=range(1, 11))
+    return deck
+
+
+def own_steps():
+    """L/c of the rectangles, L = area over longest side."""
+    return np.minimum(np.diff(COLUMNS), 0.1) / SPEED
+
+
+def check_sums(run):
+    """The added mass and the step."""
+    masses, steps = RHO * np.diff(COLUMNS) * 0.1, own_steps()
+    target = 0.07 / SPEED
+    for name, sign, expected in (
+            ("DT2MS < 0", -1.0, np.sum(masses * np.maximum(0.0, (target / steps) ** 2 - 1.0))),
+            ("DT2MS > 0", 1.0, np.sum(masses * ((target / steps) ** 2 - 1.0)))):
+        result = run.program(strip(name, sign * target))
+        table = result.table("glstat")
+        run.check(f"{name}: added mass at the start", table["added_mass"][0], expected, 1e-12,
+                  source="sum of m_e ((DT2MS c/L)^2 - 1)")
+        run.check(f"{name}: the step", table["dt"], 0.9 * target, 1e-12, source="TSSFAC |DT2MS|")
+        run.check(f"{name}: mass of the part", result.table("matsum")["mass"][0], masses.sum() + expected, 1e-12,
+                  source="own and added mass")
+    run.check("without it there is no column", "added_mass" in run.program(strip("off", 0.0)).table("glstat"), False,
+              0.0, "abs")
+
+
+def check_fall(run):
+    """A block of scaled masses falls with g, and flies on with its velocity."""
+    for name, options in (("one point", {}), ("four points", {"points": 4}), ("round", {"form": 15, "left": 0.1}),
+                          ("round, four points", {"form": 15, "left": 0.1, "points": 4})):
+        deck = strip(f"fall, {name}", -0.09 / SPEED, **options)
+        deck.curve(1, [(0.0, 9.81), (1.0, 9.81)]).add("*LOAD_BODY_Y", (1, 1.0))
+        deck.add("*INITIAL_VELOCITY", (0,), (0.0, 3.0))
+        result = run.program(deck)
+        for node in (1, 4, 10):
+            history = result.node(node)
+            run.check(f"{name}: fall of node {node}", history["uy"], 3.0 * history["time"]
+                      - 4.905 * history["time"] ** 2, 1e-11, source="v t - g t^2/2: all forces are in proportion to the masses")
+        table = result.table("glstat")
+        run.check(f"{name}: masses were added", table["added_mass"][0] > 1.0, True, 0.0, "abs")
+        run.check(f"{name}: kinetic energy of parts and of all", result.table("matsum")["kinetic"], table["kinetic"],
+                  1e-12, source="both of the scaled masses")
+        run.check(f"{name}: balance", table["energy_ratio"], 1.0, 1e-10, "abs", source="m g h of the scaled masses")
+
+
+def check_stability(run):
+    """A bar that rings at the asked step keeps its energy; without mass the same step is an explosion."""
+    target = 0.09 / SPEED
+    for points in (1, 4):
+        for sign in (-1.0, 1.0):
+            deck = strip("ringing", sign * target, points=points, stays=1)
+            deck.add("*CONTROL_TERMINATION", (0.3,))
+            deck.fix([1, 6], x=1, y=1).add("*INITIAL_VELOCITY", (0,), (0.02, 0.01))
+            table = run.program(deck).table("glstat")
+            run.check(f"{points} points, sign {sign:g}: balance over {table['cycle'][-1]:.0f} steps",
+                      table["energy_ratio"], 1.0, 2e-3, "abs", source="stable at TSSFAC |DT2MS|")
+    deck = strip("ringing, no mass added", 0.0, scale=0.9 * target / own_steps().min())
+    deck.add("*CONTROL_TERMINATION", (0.3,))
+    deck.fix([1, 6], x=1, y=1).add("*INITIAL_VELOCITY", (0,), (0.02, 0.01))
+    run.check("without mass the same step ends the run", run.program(deck, expect_status=None).status, 2, 0.0, "abs",
+              source="omega dt up to 8")
+
+
+def check_growth(run):
+    """A bar that is pushed together gets more mass, the step stays and the balance holds."""
+    target = 0.06 / SPEED
+    deck = strip("pushed", -target, hourglass=5)
+    deck.add("*CONTROL_TERMINATION", (0.02,))
+    deck.curve(1, [(0.0, -5.0), (1.0, -5.0)])
+    for node in (5, 10):
+        deck.prescribe(node, 1, 0, 1)
+    deck.fix([1, 6], x=1)
+    table = run.program(deck).table("glstat")
+    run.check("growth: step", table["dt"], 0.9 * target, 1e-12, source="kept by more mass")
+    run.check("growth: mass grows", np.all(np.diff(table["added_mass"]) >= 0.0)
+              and table["added_mass"][-1] > 1.2 * table["added_mass"][0], True, 0.0, "abs")
+    run.check("growth: balance", table["energy_ratio"][-1], 1.0, 0.01, "abs",
+              source="kinetic energy of the new mass is external work")
+
+
+def check(run):
+    check_sums(run)
+    check_fall(run)
+    check_stability(run)
+    check_growth(run)

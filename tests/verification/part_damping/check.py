@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: MIT
+"""Damping of parts by mass and by stiffness: decay of rigid motion, of an oscillator, of modes."""
+import numpy as np
+
+from meshes import Deck, grid
+
+RHO, YOUNG, POISSON = 1000.0, 1.0e6, 0.25
+SPEED = np.sqrt(1.2 * YOUNG / RHO)
+
+
+def bar(title, n=1, points=None, form=13, poisson=POISSON, left=0.0, dt=2.0e-4, end=0.05, rate_of_output=None):
+    """A row of n unit squares, of plane strain along x, or a round disc that moves along y."""
+    coordinates, quads = grid(n, 1, width=float(n), height=1.0, origin=(left, 0.0))
+    deck = Deck(title)
+    deck.control(end, dt=dt).hourglass(4, 0.1)
+    deck.add("*PART", "bar", (1, 1, 1)).add("*SECTION_SHELL", (1, form, None, points), (1.0,))
+    deck.elastic(RHO, YOUNG, poisson)
+    nodes = deck.mesh(coordinates, quads)
+    deck.output(glstat=rate_of_output or dt, nodout=rate_of_output or dt, nodes=nodes)
+    return deck, nodes
+
+
+def roots(stiffness_rate, dt, damping=0.0, retardation=0.0):
+    """Amplification z per step of u'' + (D) u' + w^2 (u + beta u') = 0 in leap-frog: D acts on the mean of the
+    two half-step velocities, beta on the one behind."""
+    square = stiffness_rate * dt ** 2
+    return np.roots([1.0 + 0.5 * damping * dt, square - 2.0 + square * retardation / dt,
+                     1.0 - 0.5 * damping * dt - square * retardation / dt])
+
+
+def rate_and_frequency(time, motion):
+    """Fit of two samples before and after: z from u(n+1) + p u(n) + q u(n-1) = 0, least squares."""
+    a = np.column_stack([motion[1:-1], motion[:-2]])
+    p, q = np.linalg.lstsq(a, -motion[2:], rcond=None)[0]
+    return np.roots([1.0, p, q])
+
+
+def check_rigid_motion(run):
+    """Velocities of two parts with rates of their own; the curve, SF and the factors of the directions."""
+    deck = Deck("two parts")
+    dt, end = 1.0e-4, 0.1
+    deck.control(end, dt=dt).hourglass(4, 0.1)
+    deck.add("*PART", "one", (1, 1, 1)).add("*PART", "two", (2, 1, 1)).add("*SECTION_SHELL", (1, 13), (1.0,))
+    deck.elastic(RHO, YOUNG, POISSON)
+    for part, left in ((1, 0.0), (2, 5.0)):
+        deck.mesh(*grid(1, 1, origin=(left, 0.0)), part=part)
+    deck.curve(1, [(0.0, 10.0), (1.0, 10.0)]).curve(2, [(0.0, 0.0), (0.1, 40.0)])
+    deck.add("*DAMPING_PART_MASS", (1, 1, 2.0, 1), (1.0, 0.0), (2, 2))
+    deck.add("*INITIAL_VELOCITY", (0,), (2.0, -1.0))
+    deck.output(glstat=0.01, nodout=0.01, nodes=[1, 5])
+    result = run.program(deck)
+    one, two, table = result.node(1), result.node(5), result.table("glstat")
+    inner = slice(1, -1)
+    run.check("part 1: velocity x", one["vx"][inner], 2.0 * np.exp(-20.0 * one["time"][inner]), 2e-6,
+              source="v exp(-SF LCID STX t)")
+    run.check("part 1: velocity y", one["vy"], -1.0, 1e-13, source="STY = 0")
+    run.check("part 2: velocity", two["vx"][inner], 2.0 * np.exp(-200.0 * two["time"][inner] ** 2), 2e-4,
+              source="v exp(-integral of the curve)")
+    lost = 0.5 * RHO * (4.0 * (1.0 - np.exp(-40.0 * 0.1)) + 5.0 * (1.0 - np.exp(-400.0 * 0.01)))
+    run.check("what damping has taken", table["damping"][-1], lost, 1e-4, source="kinetic energy that is gone")
+    run.check("balance", table["energy_ratio"], 1.0, 1e-12, "abs", source="the sum that leap-frog keeps")
+
+
+def check_oscillator(run):
+    """One element between fixed and free side: a mass on a spring, w^2 = M/(m/2), damped by its mass."""
+    dt, damping = 2.0e-4, 8.0
+    deck, nodes = bar("oscillator", dt=dt, end=0.2)
+    deck.fix(nodes, y=1).fix(nodes[[0, 2]], x=1)
+    deck.curve(1, [(0.0, damping), (1.0, damping)]).add("*DAMPING_PART_MASS", (1, 1))
+    deck.add("*INITIAL_VELOCITY_NODE", (int(nodes[1]), 1e-6), (int(nodes[3]), 1e-6))
+    result = run.program(deck)
+    history = result.node(int(nodes[1]))
+    found = rate_and_frequency(history["time"], history["ux"])
+    square = 2.0 * SPEED ** 2
+    run.check("oscillator: amplification of a step", np.sort_complex(found).view(float),
+              np.sort_complex(roots(square, dt, damping)).view(float), 1e-6, source="leap-frog of u'' + D u' + w^2 u")
+    run.check("oscillator: decay", -np.log(np.abs(found[0])) / dt, 0.5 * damping, 1e-4, source="exp(-D t/2)")
+    run.check("oscillator: balance", result.table("glstat")["energy_ratio"], 1.0, 1e-8, "abs")
+
+
+def check_share(run):
+    """COEF is the share of critical damping of the fastest mode of an element, in all four element kinds."""
+    share = 0.2
+    for name, points, form, poisson, left in (
+            ("one point", None, 13, 0.25, 0.0), ("four points", 4, 13, 0.25, 0.0),
+            ("mean dilatation", 4, 13, 0.45, 0.0), ("round", None, 15, 0.25, 3.0), ("round, four points", 4, 15, 0.25, 3.0),
+            ("round, mean dilatation", 4, 15, 0.45, 3.0)):
+        dt = 1.0e-4
+        deck, nodes = bar(f"share, {name}", points=points, form=form, poisson=poisson, left=left, dt=dt, end=0.05)
+        deck.add("*DAMPING_PART_STIFFNESS", (1, share))
+        # stretched along y, no motion along x: an oscillator of the modulus M
+        deck.fix(nodes, x=1).fix(nodes[[0, 1]], y=1)
+        deck.add("*INITIAL_VELOCITY_NODE", (int(nodes[2]), 0.0, 1e-6), (int(nodes[3]), 0.0, 1e-6))
+        result = run.program(deck)
+        history = result.node(int(nodes[3]))
+        found = rate_and_frequency(history["time"], history["uy"])
+        modulus = YOUNG * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
+        log = (result.folder / f"{result.job}.log").read_text()
+        line = log.split("part   stable step")[1].splitlines()[1]
+        damped = float(line.split()[2])
+        own = damped / (np.sqrt(1.0 + share ** 2) - share)
+        square = 2.0 * modulus / RHO
+        if form == 15:  # lumped masses of the upper nodes together are half of the body in the mean of the motion
+            square = 2.0 * modulus / RHO
+        expected = roots(square, dt, retardation=share * own)
+        run.check(f"{name}: amplification of a step", np.sort_complex(found).view(float),
+                  np.sort_complex(expected).view(float), 2e-5 if form == 13 else 2e-2,
+                  source="leap-frog with beta = COEF times the element's step")
+        if form == 13 and points is None:
+            run.check("one point: step in the log", damped, (np.sqrt(1.04) - 0.2) / SPEED, 1e-6,
+                      source="L/c (sqrt(1 + COEF^2) - COEF)")
+        run.check(f"{name}: balance", result.table("glstat")["energy_ratio"], 1.0, 1e-7, "abs",
+                  source="trapezoidal work")
+
+
+def check_time(run):
+    """A negative COEF is the retardation time itself; what damping takes is what the body loses."""
+    dt, beta = 2.0e-5, 1.0e-4
+    deck, nodes = bar("time", dt=dt, end=0.05, rate_of_output=dt)
+    deck.fix(nodes, y=1).fix(nodes[[0, 2]], x=1).add("*DAMPING_PART_STIFFNESS", (1, -beta))
+    deck.add("*INITIAL_VELOCITY_NODE", (int(nodes[1]), 1e-6), (int(nodes[3]), 1e-6))
+    result = run.program(deck)
+    history = result.node(int(nodes[1]))
+    found = rate_and_frequency(history["time"], history["ux"])
+    square = 2.0 * SPEED ** 2
+    run.check("time: amplification of a step", np.sort_complex(found).view(float),
+              np.sort_complex(roots(square, dt, retardation=beta)).view(float), 1e-6, source="as above")
+    run.check("time: decay", -np.log(np.abs(found[0])) / dt, 0.5 * beta * square, 3e-3, source="beta w^2/2")
+    table = result.table("glstat")
+    run.check("time: balance", table["energy_ratio"], 1.0, 1e-7, "abs")
+    w, end = np.sqrt(square), table["time"][-1]
+    run.check("time: work of damping", table["damping"][-1],
+              beta * square * (0.5 * end + 0.25 * np.sin(2.0 * w * end) / w) * 500.0e-12, 1e-2,
+              source="integral of beta k v^2, v = v0 cos w t; damping takes 1 % meanwhile")
+
+
+def check_stability(run):
+    """At TSSFAC 0.9 a bar with COEF 0.25 decays; without the bound it would not stand."""
+    for points in (None, 4):
+        deck, nodes = bar("bound", n=4, points=points, end=0.5)
+        text = deck.text().replace("*CONTROL_TIMESTEP\n0.0,0.9,0,0.0,0.0,9001", "*CONTROL_TIMESTEP\n0.0,0.9")
+        text = text.replace("*END", "*DAMPING_PART_STIFFNESS\n1,0.25\n*INITIAL_VELOCITY_NODE\n2,0.0001,0.0002\n*END")
+        table = run.program(text).table("glstat")
+        run.check(f"{points or 1} points: kinetic energy falls", table["kinetic"][-1] < 0.9 * table["kinetic"][0], True, 0.0, "abs")
+        run.check(f"{points or 1} points: balance", table["energy_ratio"], 1.0, 1e-5, "abs",
+                  source="the work of the mean of two steps' viscous stresses, in the fastest modes too")
+
+
+def check(run):
+    check_rigid_motion(run)
+    check_oscillator(run)
+    check_share(run)
+    check_time(run)
+    check_stability(run)
