@@ -53,9 +53,9 @@ contains
       ! Who asked for these lines has not got them: that counts more than what they would have said.
       if (allocated(failure)) call raise(error, failure%message, status_files)
     else if (.not. allocated(error)) then
-      call show(arguments%deck//': accepted, '//to_text(model%mesh%n_element)//' elements, ' &
-        //to_text(model%mesh%n_node)//' nodes, '//to_text(n_told(model%contacts))//' interfaces, ' &
-        //to_text(monitor%log%n_warning)//' warnings')
+      call show(arguments%deck//': accepted, '//counted(model%mesh%n_element, 'element')//', ' &
+        //to_text(model%mesh%n_node)//' nodes, '//counted(n_told(model%contacts), 'interface') &
+        //', '//counted(monitor%log%n_warning, 'warning'))
     end if
   end subroutine check_deck
 
@@ -95,6 +95,16 @@ contains
       start = last + 2
     end do
   end subroutine add_warnings
+
+  !> So many of something, in words.
+  pure function counted(n, name) result(text)
+    integer, intent(in) :: n
+    character(*), intent(in) :: name
+    character(:), allocatable :: text
+
+    text = to_text(n)//' '//name
+    if (n /= 1) text = text//'s'
+  end function counted
 
   !> A finding that no line of the deck is known for.
   subroutine add_message(severity, message, findings)

@@ -33,6 +33,7 @@ module interface_m
   use log_m, only : log_t
   use model_m, only : model_t
   use spots_m, only : start_spots, move_spots
+  use tips_m, only : find_tips
   use tied_interface_m, only : start_ties, apply_ties, evaluate_ties
   use tracking_m, only : update_tracking, wake_all, forget_pairs
   implicit none
@@ -66,7 +67,8 @@ contains
     formulation = formulation_of(contact)
     memory%contact_law = formulation%contact_law
     call set_penalties(contact, model, formulation%self_share, memory)
-    call start_spots(formulation%spots, contact%n_gauss, contact%is_round, contact%slave, memory)
+    call start_spots(formulation%spots, contact%n_gauss, contact%is_round, &
+      has_outline(contact) .and. .not. is_tied(contact), contact%slave, memory)
     call allocate_slave_tracking(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_tracking(contact, model, memory)
     if (formulation%covers_segments) call allocate_segments(contact, memory)
@@ -172,6 +174,7 @@ contains
     call gather_spots(contact, motion, memory)
     call search_pairs(contact, cycle, memory)
     call lap(clock, phase_contact_search)
+    call find_tips(contact, formulation%where_pressed == pressed_at_slave_nodes, memory)
     call set_forces_aside(motion, had_force, memory, apart)
     call place_points(contact, memory)
     call lap(clock, phase_contact_pairing)
@@ -285,6 +288,7 @@ contains
     call search_pairs(contact, 0, memory)
     call catch_crossings(contact, crossings, memory)
     if (is_first) call close_contacts(contact, closed_gap_of(contact, memory), memory)
+    call find_tips(contact, formulation%where_pressed == pressed_at_slave_nodes, memory, motion)
     call place_points(contact, memory)
     if (memory%points%n == 0) return
     call press_places(memory%contact_law, formulation%where_pressed, memory)

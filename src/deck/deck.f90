@@ -23,10 +23,12 @@ module deck_m
   use deck_raw_m, only : raw_t, lost_t, start_raw
   use deck_mesh_m, only : read_nodes, read_elements, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
+  use deck_rubber_m, only : read_mooney_rivlin, read_blatz_ko
   use deck_rigid_m, only : read_rigid
   use deck_curves_m, only : read_curve, read_table
   use deck_eos_m, only : read_linear_polynomial, read_gruneisen
   use deck_hardening_m, only : read_piecewise, read_hydro
+  use deck_foam_m, only : read_crushable_foam
   use deck_johnson_cook_m, only : read_johnson_cook, read_simplified_johnson_cook
   use deck_material_m, only : read_elastic, read_plastic_kinematic
   use deck_null_m, only : read_null
@@ -231,6 +233,12 @@ contains
       call read_johnson_cook(deck, parameters, i, raw)
     case ('MAT_SIMPLIFIED_JOHNSON_COOK')
       call read_simplified_johnson_cook(deck, parameters, i, raw)
+    case ('MAT_MOONEY-RIVLIN_RUBBER')
+      call read_mooney_rivlin(deck, parameters, i, raw)
+    case ('MAT_BLATZ-KO_RUBBER')
+      call read_blatz_ko(deck, parameters, i, raw)
+    case ('MAT_CRUSHABLE_FOAM')
+      call read_crushable_foam(deck, parameters, i, raw)
     case ('EOS_LINEAR_POLYNOMIAL')
       call read_linear_polynomial(deck, parameters, i, raw)
     case ('EOS_GRUNEISEN')

@@ -24,6 +24,8 @@ module element_chunk_m
                                                           !! viscosity added
     real(wp), dimension(chunk_size) :: heat               !! work of the deviator in the step, for
                                                           !! an equation of state
+    real(wp), dimension(chunk_size) :: law_mean, law_energy, law_bulk, law_shear !! where the law
+                                                          !! gives the pressure: see `law_pressure`
     real(wp), dimension(chunk_size) :: qx, qy             !! hourglass force amplitude
     real(wp) :: force(4, chunk_size) !! node 3 x, y without hourglass; node 4 x, y
     real(wp) :: swing(2, chunk_size) !! hourglass amplitude q_x, q_y

@@ -6,14 +6,16 @@ module element_log_m
   use material_dispatch_m, only : history_size
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
-  use parts_m, only : part_t, hourglass_stiffness
+  use parts_m, only : part_t, hourglass_viscous, hourglass_stiffness, hourglass_assumed
   use quad_full_m, only : has_mean_dilatation
   implicit none
   private
   public :: log_elements
 
-  !> Coefficient from which on hourglass control of squares rules their stable step, in both forms.
+  !> Coefficient from which on hourglass control of squares rules their stable step, by form.
   real(wp), parameter :: ruling_coefficient = 0.5_wp
+  !> The same of assumed strain, at nu = 0.
+  real(wp), parameter :: ruling_assumed = 3.0_wp
 
 contains
 
@@ -34,8 +36,7 @@ contains
         if (point_count(model%sections(part%section)) == 1) then
           text = trim(merge('round, volume weighted one-point quads', &
             'one-point quads                       ', &
-            model%is_round))//', '//trim(merge('stiffness', 'viscous  ', &
-            part%hourglass%form == hourglass_stiffness))//' hourglass control ' &
+            model%is_round))//', '//form_name(part%hourglass%form)//' hourglass control ' &
             //to_text(part%hourglass%coefficient)
         else
           text = trim(merge('round fully integrated quads', 'fully integrated quads      ', &
@@ -59,14 +60,32 @@ contains
   subroutine warn_of_hourglass(part, log)
     type(part_t), intent(in) :: part
     type(log_t), intent(inout) :: log
+    real(wp) :: ruling
     real(wp) :: share !! of L/c
 
-    if (part%hourglass%coefficient <= ruling_coefficient) return
-    share = ruling_coefficient/part%hourglass%coefficient
-    if (part%hourglass%form == hourglass_stiffness) share = sqrt(share)
+    ruling = ruling_coefficient
+    if (part%hourglass%form == hourglass_assumed) ruling = ruling_assumed
+    if (part%hourglass%coefficient <= ruling) return
+    share = ruling/part%hourglass%coefficient
+    if (part%hourglass%form /= hourglass_viscous) share = sqrt(share)
     call warn(log, 'part '//to_text(part%id)//': hourglass control of QM ' &
       //to_text(part%hourglass%coefficient)//' lowers the stable step, that of squares to ' &
-      //to_text(share)//' of L/c; QM up to '//to_text(ruling_coefficient)//' would not')
+      //to_text(share)//' of L/c; QM up to '//to_text(ruling)//' would not')
   end subroutine warn_of_hourglass
+
+  !> The form of hourglass control in words.
+  pure function form_name(form) result(name)
+    integer, intent(in) :: form !! one of the `hourglass_` constants
+    character(:), allocatable :: name
+
+    select case (form)
+    case (hourglass_stiffness)
+      name = 'stiffness'
+    case (hourglass_assumed)
+      name = 'assumed strain'
+    case default
+      name = 'viscous'
+    end select
+  end function form_name
 
 end module element_log_m

@@ -5,10 +5,12 @@ module element_state_m
   use block_state_m, only : block_state_t
   use element_dispatch_m, only : point_count
   use layout_m, only : chunk_size, slot_part
-  use material_dispatch_m, only : history_size, column_temperature, column_damage
+  use material_dispatch_m, only : history_size, column_temperature, column_damage, &
+    has_plastic_strain
   use eos_pressure_m, only : n_eos_value
+  use law_pressure_m, only : n_law_value
   use model_m, only : model_t
-  use parts_m, only : hourglass_stiffness, has_memory_of_heat
+  use parts_m, only : hourglass_viscous, has_memory_of_heat, may_fail, gives_pressure
   use quad_full_m, only : has_mean_dilatation
   use quad_points_m, only : n_point, point_ratios
   use round_chunk_m, only : n_round_reference
@@ -18,12 +20,12 @@ module element_state_m
   implicit none
   private
   public :: start_elements, lump_mass, element_stresses, element_plastic_strains, &
-    element_temperatures, element_damages, add_part_energies, smallest_ratio
+    element_heats, add_part_energies, smallest_ratio
 
 contains
 
   !> Allocate the streams and fill the reference shape. Elastic parts get no plastic history, parts
-  !> without stiffness hourglass control no hourglass memory.
+  !> with viscous hourglass control no hourglass memory.
   subroutine start_elements(model, elements)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(out) :: elements
@@ -86,12 +88,13 @@ contains
         n_history = n_history + n*chunk_size
         if (allocated(model%materials(part%material)%eos)) then
           elements%eos_start(i_chunk) = n_eos + 1
-          n_eos = n_eos + n_eos_value*chunk_size
+          n_eos = n_eos + merge(n_law_value, n_eos_value, &
+            gives_pressure(model%materials(part%material)))*chunk_size
         end if
         if (n_points > 1) then
           elements%point_start(i_chunk) = n_deviator + 1
           n_deviator = n_deviator + 3*n_points*chunk_size
-        else if (part%hourglass%form == hourglass_stiffness) then
+        else if (part%hourglass%form /= hourglass_viscous) then
           elements%hourglass_start(i_chunk) = n_hourglass + 1
           n_hourglass = n_hourglass + 2*chunk_size
         end if
@@ -99,6 +102,8 @@ contains
     end do
     allocate (elements%history(n_history), elements%hourglass_strain(n_hourglass), &
       elements%point_deviator(n_deviator), elements%eos_state(n_eos), source=0.0_wp)
+    if (any(may_fail(model%materials(model%parts%material)))) allocate (elements%n_failed( &
+      model%layout%n_chunk), source=0)
     do i_chunk = 1, model%layout%n_chunk
       n = elements%eos_start(i_chunk)
       if (n > 0) elements%eos_state(n:n + chunk_size - 1) = &
@@ -171,44 +176,32 @@ contains
     plastic_strain = 0.0_wp
     do slot = 1, model%layout%n_slot
       if (model%layout%slot_element(slot) == 0) cycle
-      if (elements%history_start((slot - 1)/chunk_size + 1) == 0) cycle
+      if (.not. has_plastic_strain(model%materials(model%parts(slot_part(model%layout, &
+        slot))%material))) cycle
       plastic_strain(model%layout%slot_element(slot)) = history_of_slot(model, elements, slot, 1)
     end do
   end subroutine element_plastic_strains
 
-  !> Temperature of all elements in deck order, 0 in parts that keep none.
-  subroutine element_temperatures(model, elements, temperature)
+  !> Temperature and damage of all elements in deck order, 0 in parts that keep none.
+  subroutine element_heats(model, elements, temperature, damage)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: temperature(:) !! (n_element)
+    real(wp), intent(inout) :: temperature(:), damage(:) !! (n_element)
     integer :: slot
 
     temperature = 0.0_wp
-    do slot = 1, model%layout%n_slot
-      if (model%layout%slot_element(slot) == 0) cycle
-      associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
-        if (has_memory_of_heat(material)) temperature(model%layout%slot_element(slot)) = &
-          material%flow%room + history_of_slot(model, elements, slot, column_temperature)
-      end associate
-    end do
-  end subroutine element_temperatures
-
-  !> Damage of all elements in deck order, 0 in parts that keep none.
-  subroutine element_damages(model, elements, damage)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: damage(:) !! (n_element)
-    integer :: slot
-
     damage = 0.0_wp
     do slot = 1, model%layout%n_slot
       if (model%layout%slot_element(slot) == 0) cycle
-      associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
-        if (has_memory_of_heat(material)) damage(model%layout%slot_element(slot)) = &
-          history_of_slot(model, elements, slot, column_damage)
+      associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material), &
+        i => model%layout%slot_element(slot))
+        if (.not. has_memory_of_heat(material)) cycle
+        temperature(i) = material%flow%room + history_of_slot(model, elements, slot, &
+          column_temperature)
+        damage(i) = history_of_slot(model, elements, slot, column_damage)
       end associate
     end do
-  end subroutine element_damages
+  end subroutine element_heats
 
   !> One value of the history of the element in a slot, the mean over the initial volume where it
   !> has several points.
@@ -326,13 +319,15 @@ contains
       do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
         if (model%layout%slot_element(slot) == 0) cycle
         call volume_ratios(model, motion, elements, slot, n, stretch, start)
-        if (elements%eos_start(i_chunk) > 0) then
-          internal(part) = internal(part) + start(1)*elements%eos_state( &
-            elements%eos_start(i_chunk) + mod(slot - 1, chunk_size))
-          cycle
-        end if
-        internal(part) = internal(part) + sum(start(:n) &
-          *volumetric_energy(model%materials(model%parts(part)%material)%bulk, stretch(:n)))
+        associate (material => model%materials(model%parts(part)%material))
+          if (elements%eos_start(i_chunk) > 0) then
+            internal(part) = internal(part) + start(1)*(material%eos%datum + elements%eos_state( &
+              elements%eos_start(i_chunk) + mod(slot - 1, chunk_size)))
+          else
+            internal(part) = internal(part) + sum(start(:n)*volumetric_energy(material%bulk, &
+              stretch(:n)))
+          end if
+        end associate
       end do
     end do
   end subroutine add_part_energies

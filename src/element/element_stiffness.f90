@@ -6,9 +6,11 @@ module element_stiffness_m
   use layout_m, only : chunk_size
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
+  use one_point_tangent_m, only : one_point_tangent
   use quad_points_m, only : n_point
   use quad_tangent_m, only : quad_tangent
   use round_tangent_m, only : round_tangent
+  use rubber_tangent_m, only : rubber_tangent
   use sparse_m, only : sparse_t, add_block
   use stress_point_m, only : stress_point_t
   implicit none
@@ -18,8 +20,8 @@ module element_stiffness_m
 contains
 
   !> Add the exact derivative of the internal force with respect to the displacement. The step `dt`
-  !> goes from the committed state to `motion`, with velocity (u - u_committed)/dt. All parts must
-  !> have fully integrated elements (`point_count`).
+  !> goes from the committed state to `motion`, with velocity (u - u_committed)/dt. Parts of
+  !> one-point elements must have hourglass control by assumed strain.
   pure subroutine add_stiffness(model, motion, dt, committed, equation, matrix)
     type(model_t), intent(in) :: model
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
@@ -28,12 +30,13 @@ contains
     integer, intent(in) :: equation(:, :)            !! (2, n_node) equation numbers, 0 = none
     type(sparse_t), intent(inout) :: matrix          !! started, not compressed
     type(stress_point_t) :: points(n_point)
-    real(wp) :: block(8, 8), reference(6), x(2, 4), u(2, 4), du(2, 4)
+    real(wp) :: block(8, 8), reference(6), x(2, 4), u(2, 4), du(2, 4), &
+      pattern_stress(2), moved(2, 4, 2)
     integer :: equations(8), i_chunk, slot
 
     do i_chunk = 1, model%layout%n_chunk
-      associate (material => &
-        model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+      associate (part => model%parts(model%layout%chunk_part(i_chunk)), &
+        material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
         do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
           if (model%layout%slot_element(slot) == 0) cycle
           associate (nodes => model%layout%slot_nodes(:, slot))
@@ -43,7 +46,17 @@ contains
               committed, points)
             u = motion(1:2, nodes)
             du = dt*motion(3:4, nodes)
-            if (model%is_round) then
+            if (allocated(material%rubber)) then
+              x = model%mesh%coordinates(:, nodes)
+              call rubber_tangent(material%rubber, model%is_round, x, u, block)
+            else if (committed%point_start(i_chunk) == 0) then
+              x = model%mesh%coordinates(:, nodes)
+              pattern_stress = pattern_stress_of(i_chunk, mod(slot - 1, chunk_size), committed)
+              moved(:, :, 1) = u
+              moved(:, :, 2) = du
+              call one_point_tangent(material, part%hourglass, model%is_round, x, moved, &
+                points(1), pattern_stress, block)
+            else if (model%is_round) then
               x = model%mesh%coordinates(:, nodes)
               call round_tangent(material, x, u, du, points, block)
             else
@@ -57,6 +70,18 @@ contains
     end do
   end subroutine add_stiffness
 
+  !> Hourglass stress of one element.
+  pure function pattern_stress_of(i_chunk, place, elements) result(stress)
+    integer, intent(in) :: i_chunk
+    integer, intent(in) :: place     !! in the chunk, from 0
+    type(block_state_t), intent(in) :: elements
+    real(wp) :: stress(2)
+    integer :: first
+
+    first = elements%hourglass_start(i_chunk) + place
+    stress = [elements%hourglass_strain(first), elements%hourglass_strain(first + chunk_size)]
+  end function pattern_stress_of
+
   !> State of the points of one element out of the streams.
   pure subroutine load_points(i_chunk, place, n_history, elements, points)
     integer, intent(in) :: i_chunk
@@ -64,11 +89,18 @@ contains
     integer, intent(in) :: n_history !! values at each point
     type(block_state_t), intent(in) :: elements
     type(stress_point_t), intent(inout) :: points(n_point)
-    integer :: first, k
+    integer :: first, k, n
 
-    do k = 1, n_point
-      first = elements%point_start(i_chunk) + 3*(k - 1)*chunk_size + place
-      points(k)%old = plane_parts(elements%point_deviator, first)
+    n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
+    do k = 1, n
+      if (n > 1) then
+        first = elements%point_start(i_chunk) + 3*(k - 1)*chunk_size + place
+        points(k)%old = plane_parts(elements%point_deviator, first)
+      else
+        associate (s => elements%deviator((i_chunk - 1)*chunk_size + place + 1, :))
+          points(k)%old = [0.5_wp*(s(1) + s(2)), 0.5_wp*(s(1) - s(2)), s(3)]
+        end associate
+      end if
       if (n_history == 0) cycle
       first = elements%history_start(i_chunk) + n_history*(k - 1)*chunk_size + place
       points(k)%plastic_strain = elements%history(first)

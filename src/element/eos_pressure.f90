@@ -6,15 +6,17 @@ module eos_pressure_m
   use element_chunk_m, only : element_chunk_t
   use eos_chunk_m, only : eos_chunk_t
   use eos_dispatch_m, only : form_eos, advance_energy, find_stiffness
+  use eos_m, only : eos_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use material_dispatch_m, only : find_failed, break_points, history_size
-  use parts_m, only : hourglass_t, material_t, spall_pressure, spall_stress
+  use parts_m, only : hourglass_t, material_t, may_fail, spall_pressure, spall_stress
   use quad_points_m, only : n_point
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: n_eos_value, load_eos_state, form_eos_pressure, take_present, viscous_fluid_step
+  public :: n_eos_value, load_eos_state, form_eos_pressure, take_present, finish_limits, &
+    form_viscous_pressure, is_too_dense
 
   !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity, speed of sound squared.
   integer, parameter :: n_eos_value = 5
@@ -109,25 +111,28 @@ contains
     end do
   end subroutine form_viscous_pressure
 
-  !> Elements all of whose points have failed.
+  !> Elements all of whose points have failed; how many points have is kept.
   pure subroutine look_for_failed(i_chunk, material, elements, failed, keeps_pressure)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
-    type(block_state_t), intent(in) :: elements
+    type(block_state_t), intent(inout) :: elements
     logical, intent(out) :: failed(chunk_size), keeps_pressure
     logical :: one(chunk_size)
-    integer :: k, n
+    integer :: k, n, n_failed
 
     failed = .false.
     keeps_pressure = .false.
-    if (elements%history_start(i_chunk) == 0) return
+    if (.not. may_fail(material)) return
     n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
     failed = .true.
+    n_failed = 0
     do k = 1, n
       call find_failed(material, elements%history(elements%history_start(i_chunk) &
         + (k - 1)*chunk_size*history_size(material)), one, keeps_pressure)
       failed = failed .and. one
+      n_failed = n_failed + count(one)
     end do
+    elements%n_failed(i_chunk) = n_failed
   end subroutine look_for_failed
 
   !> Elements that break by tension: all their points, from the next step on.
@@ -172,7 +177,7 @@ contains
       /material%density), least_share*material%sound_speed)
   end subroutine stiffen
 
-  !> The same of one element as its memory has it; the material itself where it has none.
+  !> The same of one element as its memory has it; those of the material where it has none.
   pure subroutine take_present(material, elements, i_slot, now)
     type(material_t), intent(in) :: material
     type(block_state_t), intent(in) :: elements
@@ -182,8 +187,14 @@ contains
     real(wp), dimension(chunk_size) :: energy, pressure, stretch, stiffness
     integer :: first
 
+    now%law = material%law
+    now%viscosity = material%viscosity
     if (.not. allocated(material%eos)) then
-      now = material
+      now%density = material%density
+      now%bulk = material%bulk
+      now%shear = material%shear
+      now%poisson = material%poisson
+      now%sound_speed = material%sound_speed
       return
     end if
     first = elements%eos_start((i_slot - 1)/chunk_size + 1) + mod(i_slot - 1, chunk_size)
@@ -194,6 +205,28 @@ contains
     call find_stiffness(state, stretch, energy, pressure, stiffness)
     call stiffen(material, stiffness, 1.0_wp + stretch, now)
   end subroutine take_present
+
+  !> Limits of a chunk whose pressure has a memory: the step that a viscous fluid allows, and no
+  !> volume where the pressure of some element has no bound.
+  pure subroutine finish_limits(material, now, stretch, step, volume)
+    type(material_t), intent(in) :: material
+    type(material_t), intent(in) :: now
+    real(wp), intent(in) :: stretch(chunk_size) !! V/V0 - 1
+    real(wp), intent(inout) :: step, volume     !! smallest of the chunk
+
+    if (material%viscosity > 0.0_wp) step = viscous_fluid_step(material, now, 1.0_wp &
+      + maxval(stretch), step)
+    if (any(is_too_dense(material%eos, stretch))) volume = 0.0_wp
+  end subroutine finish_limits
+
+  !> Whether the pressure of an equation of state has next to no bound at v = 1 + stretch.
+  pure elemental function is_too_dense(eos, stretch) result(yes)
+    type(eos_t), intent(in) :: eos
+    real(wp), intent(in) :: stretch
+    logical :: yes
+
+    yes = 1.0_wp + stretch < eos%least_ratio
+  end function is_too_dense
 
   !> Step of a viscous fluid from that without viscosity, L/c: damping of the shortest waves by
   !> 4/3 of the viscosity, L/(Q + sqrt(Q^2 + c^2)) with Q = 4/3 viscosity/(rho L).

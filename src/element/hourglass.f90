@@ -3,9 +3,10 @@
 !> Belytschko 1981), from the hourglass velocity gamma.v.
 module hourglass_m
   use kinds_m, only : wp
+  use assumed_strain_m, only : largest_spread
   use layout_m, only : chunk_size
   use element_chunk_m, only : element_chunk_t
-  use parts_m, only : hourglass_t, hourglass_viscous
+  use parts_m, only : hourglass_t, hourglass_viscous, hourglass_assumed
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
@@ -76,7 +77,8 @@ contains
   !> Smallest step that hourglass control of the chunk allows. With masses rho A0/4 and
   !> gamma.gamma = 4 + (|d31 x h.x|^2 + |d42 x h.x|^2)/(2 A^2): 2/omega of the stiffness form,
   !> omega^2 = Q_h c^2 (B.B) gamma.gamma/(A A0); 2/rate of the viscous one, whose force is that of
-  !> v(n-1/2), rate = Q_h c sqrt(A) gamma.gamma/A0. A triangle has no hourglass.
+  !> v(n-1/2), rate = Q_h c sqrt(A) gamma.gamma/A0; of assumed strain, with E/(1 - nu^2) <= rho c^2
+  !> and the spread S, omega^2 = QM c^2 S gamma.gamma/(6 A A0). A triangle has no hourglass.
   pure function hourglass_step(hourglass, sound_speed, nodes, chunk) result(limit)
     type(hourglass_t), intent(in) :: hourglass
     real(wp), intent(in) :: sound_speed
@@ -97,6 +99,10 @@ contains
     if (hourglass%form == hourglass_viscous) then
       largest = maxval(pattern*sqrt(inverse))
       limit = 2.0_wp/max(hourglass%coefficient*sound_speed*largest, tiny(1.0_wp))
+    else if (hourglass%form == hourglass_assumed) then
+      largest = maxval(pattern*inverse**2*largest_spread(chunk%x31, chunk%y31, chunk%x42, &
+        chunk%y42))/6.0_wp
+      limit = 2.0_wp/(sound_speed*sqrt(max(hourglass%coefficient*largest, tiny(1.0_wp))))
     else
       largest = maxval(0.5_wp*pattern*inverse**2 &
         *(chunk%x31**2 + chunk%y31**2 + chunk%x42**2 + chunk%y42**2))

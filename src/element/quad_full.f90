@@ -7,8 +7,10 @@ module quad_full_m
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t, gather_chunk
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
+  use eos_pressure_m, only : finish_limits
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
+  use law_pressure_m, only : load_point_state, start_point_values, add_point_values, &
+    form_shared_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size
   use parts_m, only : hourglass_t, material_t
@@ -90,7 +92,7 @@ contains
     real(wp) :: half
     integer :: i
 
-    call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+    call form_shared_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
       *chunk%inverse_area, elements, chunk, now)
     !$omp simd private(half)
     do i = 1, chunk_size
@@ -102,8 +104,8 @@ contains
     end do
     call full_step(now, hourglass, nodes, chunk, sums, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> The pressure that all points of an element share: bulk viscosity of the mean rate, and the
@@ -121,7 +123,7 @@ contains
     chunk%trace = 0.0_wp
     chunk%pressure = 0.0_wp
     if (allocated(material%eos)) then
-      chunk%heat = 0.0_wp
+      call start_point_values(material, chunk)
       if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) call form_increments(dt, &
         chunk, unused)
       return
@@ -151,8 +153,8 @@ contains
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
     call form_increments(dt, point, stress)
     call load_deviator(elements%point_deviator(first), chunk_size, stress)
-    if (allocated(material%eos)) call load_eos_state(i_chunk, point%mid_area &
-      *(1.0_wp + point%stretch)*point%inverse_area, elements, stress)
+    if (allocated(material%eos)) call load_point_state(i_chunk, material, point%mid_area &
+      *(1.0_wp + point%stretch)*point%inverse_area, point%stretch, chunk, point, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk) &
         + (k - 1)*chunk_size*history_size(material)))
@@ -161,7 +163,8 @@ contains
     end if
     call store_deviator(stress, chunk_size, elements%point_deviator(first))
     if (allocated(material%eos)) then
-      chunk%heat = chunk%heat + 0.25_wp*stress%work*point%mid_area
+      call add_point_values(material, 0.25_wp, point%area, point%stretch, point%mid_area, stress, &
+        chunk)
     else
       elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
         + 0.25_wp*work_of_deviator(stress%work, point%mid_area)

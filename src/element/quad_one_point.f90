@@ -2,15 +2,17 @@
 !> One chunk of one-point quads: from nodal motion to nodal forces, stress updated on the way.
 module quad_one_point_m
   use kinds_m, only : wp
+  use assumed_strain_m, only : resist_by_assumed_strain
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use element_time_step_m, only : stable_step
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
+  use eos_pressure_m, only : finish_limits
   use hourglass_m, only : resist_viscously, resist_elastically
+  use law_pressure_m, only : load_point_state, form_element_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
-  use parts_m, only : hourglass_t, material_t, hourglass_viscous
+  use parts_m, only : hourglass_t, material_t, hourglass_viscous, hourglass_assumed
   use quad_kinematics_m, only : form_present_shape, form_increments, form_forces
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use volumetric_m, only : volumetric_stress
@@ -43,8 +45,8 @@ contains
     call form_present_shape(elements%reference(first, 1), n_slot, chunk)
     call form_increments(dt, chunk, stress)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
-    if (allocated(material%eos)) call load_eos_state(i_chunk, chunk%mid_area &
-      *(1.0_wp + chunk%stretch)*chunk%inverse_area, elements, stress)
+    if (allocated(material%eos)) call load_point_state(i_chunk, material, chunk%mid_area &
+      *(1.0_wp + chunk%stretch)*chunk%inverse_area, chunk%stretch, chunk, chunk, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk)))
     else
@@ -83,15 +85,14 @@ contains
     type(element_chunk_t), intent(inout) :: chunk
     type(material_t) :: now
 
-    chunk%heat = stress%work*chunk%mid_area
-    call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
-      *chunk%inverse_area, elements, chunk, now)
+    call form_element_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+      *chunk%inverse_area, stress, elements, chunk, now)
     call resist(i_chunk, material, hourglass, stress, elements, chunk)
     call form_forces(stress, chunk)
     call stable_step(length_rule, now%sound_speed, hourglass, nodes, chunk, &
       elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> Hourglass control of one chunk, with its work.
@@ -108,6 +109,11 @@ contains
     if (hourglass%form == hourglass_viscous) then
       call resist_viscously(0.25_wp*hourglass%coefficient*material%density*material%sound_speed, &
         stress%dt, chunk, work)
+    else if (hourglass%form == hourglass_assumed) then
+      first = elements%hourglass_start(i_chunk)
+      call resist_by_assumed_strain(material, hourglass, stress, &
+        elements%hourglass_strain(first), elements%hourglass_strain(first + chunk_size), chunk, &
+        work)
     else
       first = elements%hourglass_start(i_chunk)
       call resist_elastically(0.25_wp*hourglass%coefficient*(material%bulk &

@@ -7,7 +7,9 @@ module round_full_m
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
+  use eos_pressure_m, only : finish_limits
+  use law_pressure_m, only : load_point_state, start_point_values, add_point_values, &
+    form_shared_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size
   use parts_m, only : hourglass_t, material_t
@@ -80,7 +82,7 @@ contains
     integer :: first, i
 
     first = (i_chunk - 1)*chunk_size + 1
-    call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+    call form_shared_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
       *round%inverse_volume, elements, chunk, now)
     associate (p => chunk%pressure)
       do i = 1, chunk_size
@@ -90,14 +92,14 @@ contains
         round%force(4, i) = chunk%force(4, i) + p(i)*round%axi_b(i)
         round%swing(1, i) = chunk%swing(1, i) + p(i)*round%rad_h(i)
         round%swing(2, i) = chunk%swing(2, i) + p(i)*round%axi_h(i)
-        round%hoop(1, i) = round%hoop(1, i) + p(i)*round%mean_s(i)
+        round%hoop(i) = round%hoop(i) + p(i)*round%mean_s(i)
       end do
     end associate
     call round_full_step(now, hourglass, elements%reference(first, reference_mass), &
       size(elements%reference, 1), chunk, points, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> The pressure that all points of an element share: bulk viscosity of the mean rate, and the
@@ -115,9 +117,8 @@ contains
 
     chunk%trace = 0.0_wp
     chunk%pressure = 0.0_wp
-    chunk%area = round%area
     if (allocated(material%eos)) then
-      chunk%heat = 0.0_wp
+      call start_point_values(material, chunk)
       if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) call &
         form_round_increments(dt, chunk, round, unused)
       return
@@ -159,8 +160,8 @@ contains
     call add_hoop_strain(dt, place, point, stress)
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
     call load_deviator(elements%point_deviator(first), chunk_size, stress)
-    if (allocated(material%eos)) call load_eos_state(i_chunk, point%mid_area &
-      *(1.0_wp + place%stretch)/place%volume, elements, stress)
+    if (allocated(material%eos)) call load_point_state(i_chunk, material, point%mid_area &
+      *(1.0_wp + place%stretch)/place%volume, place%stretch, chunk, point, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk) &
         + (k - 1)*chunk_size*history_size(material)))
@@ -169,7 +170,8 @@ contains
     end if
     call store_deviator(stress, chunk_size, elements%point_deviator(first))
     if (allocated(material%eos)) then
-      chunk%heat = chunk%heat + stress%work*point%mid_area
+      call add_point_values(material, 1.0_wp, place%volume, place%stretch, point%mid_area, stress, &
+        chunk)
     else
       elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) &
         + work_of_deviator(stress%work, point%mid_area)

@@ -4,14 +4,16 @@ module round_one_point_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use bulk_viscosity_m, only : add_bulk_viscosity
+  use deformation_gradient_m, only : form_rubber_forces
   use element_chunk_m, only : element_chunk_t
-  use eos_pressure_m, only : load_eos_state, form_eos_pressure, viscous_fluid_step
+  use eos_pressure_m, only : finish_limits
+  use law_pressure_m, only : load_round_state, form_element_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
-  use parts_m, only : hourglass_t, material_t, hourglass_viscous
+  use parts_m, only : hourglass_t, material_t, hourglass_viscous, hourglass_assumed
   use round_chunk_m, only : round_chunk_t, gather_round, reference_mass
-  use round_hourglass_m, only : form_resistance, resist_round_viscously, &
-    resist_round_elastically
+  use round_hourglass_m, only : form_resistance, form_assumed_resistance, &
+    resist_round_viscously, resist_round_elastically, resist_round_by_assumed_strain
   use round_kinematics_m, only : form_round_shape, form_round_increments, form_round_forces
   use round_time_step_m, only : round_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
@@ -45,8 +47,8 @@ contains
     call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
     call form_round_increments(dt, chunk, round, stress)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
-    if (allocated(material%eos)) call load_eos_state(i_chunk, chunk%mid_area &
-      *(1.0_wp + chunk%stretch)*round%inverse_volume, elements, stress)
+    if (allocated(material%eos)) call load_round_state(i_chunk, material, chunk%mid_area &
+      *(1.0_wp + chunk%stretch)*round%inverse_volume, chunk, round, elements, stress)
     if (elements%history_start(i_chunk) > 0) then
       call update_stress(material, stress, elements%history(elements%history_start(i_chunk)))
     else
@@ -61,7 +63,6 @@ contains
       + work_of_deviator(stress%work, chunk%mid_area)
     call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
     if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
-      chunk%area = round%area
       call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
         material%sound_speed, dt, chunk, work)
       elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
@@ -85,17 +86,19 @@ contains
     integer :: first
 
     first = (i_chunk - 1)*chunk_size + 1
-    chunk%area = round%area
-    chunk%heat = stress%work*chunk%mid_area
-    call form_eos_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
-      *round%inverse_volume, elements, chunk, now)
+    call form_element_pressure(i_chunk, material, hourglass, (1.0_wp + chunk%stretch) &
+      *round%inverse_volume, stress, elements, chunk, now)
     call resist(i_chunk, material, hourglass, stress, round, elements, chunk)
-    call form_round_forces(stress, chunk, round)
+    if (allocated(material%rubber)) then
+      call form_rubber_forces(stress, chunk, round)
+    else
+      call form_round_forces(stress, chunk, round)
+    end if
     call round_step(now, hourglass, elements%reference(first, reference_mass), &
       size(elements%reference, 1), chunk, round, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))
-    if (material%viscosity > 0.0_wp) elements%time_limit(i_chunk) = viscous_fluid_step(material, &
-      now, 1.0_wp + maxval(chunk%stretch), elements%time_limit(i_chunk))
+    call finish_limits(material, now, chunk%stretch, elements%time_limit(i_chunk), &
+      elements%volume_limit(i_chunk))
   end subroutine finish_with_eos
 
   !> Hourglass control of one chunk, with its work.
@@ -110,7 +113,16 @@ contains
     real(wp) :: work
     integer :: first
 
-    call form_resistance(material, hourglass, round)
+    if (hourglass%form == hourglass_assumed) then
+      call form_assumed_resistance(material, hourglass, chunk, round)
+      first = elements%hourglass_start(i_chunk)
+      call resist_round_by_assumed_strain(material, hourglass, stress, round, &
+        elements%hourglass_strain(first), elements%hourglass_strain(first + chunk_size), chunk, &
+        work)
+      elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
+      return
+    end if
+    call form_resistance(material, hourglass, chunk, round)
     if (hourglass%form == hourglass_viscous) then
       call resist_round_viscously(stress%dt, round, chunk, work)
     else

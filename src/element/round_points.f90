@@ -102,7 +102,7 @@ contains
       chunk%force(1, i) = chunk%force(1, i) + along_a(k)*force
       chunk%force(3, i) = chunk%force(3, i) + along_b(k)*force
       chunk%swing(1, i) = chunk%swing(1, i) + along_h(k)*force
-      round%hoop(1, i) = round%hoop(1, i) + 0.25_wp*force
+      round%hoop(i) = round%hoop(i) + 0.25_wp*force
     end do
   end subroutine add_hoop_force
 

@@ -5,7 +5,8 @@ module round_state_m
   use layout_m, only : chunk_size
   use mesh_m, only : mesh_t
   use model_m, only : model_t
-  use round_chunk_m, only : node_volumes, reference_mass, reference_sum
+  use round_chunk_m, only : node_volumes, reference_inverse, reference_mass, &
+    reference_sum
   use volumetric_m, only : log_ratio
   implicit none
   private
@@ -14,7 +15,7 @@ module round_state_m
 
 contains
 
-  !> Sum of the radii and density over nodal mass of all slots; padding is its chunk's first
+  !> Sum of the radii, 1/V and density over nodal mass of all slots; padding is its chunk's first
   !> element, larger by the factor that its diagonals are.
   subroutine fill_round_reference(model, reference)
     type(model_t), intent(in) :: model
@@ -27,13 +28,14 @@ contains
       if (model%layout%slot_element(i) == 0) then
         factor = maxval(abs(reference(i, 1:4)))/maxval(abs(reference(first, 1:4)))
         reference(i, reference_sum) = factor*reference(first, reference_sum)
-        reference(i, reference_mass:) = reference(first, reference_mass:)/factor**3
+        reference(i, reference_inverse:) = reference(first, reference_inverse:)/factor**3
         cycle
       end if
       associate (nodes => model%layout%slot_nodes(:, i))
         x = model%mesh%coordinates(:, nodes)
         volumes = node_volumes(x, nodes(4) == nodes(3))
         reference(i, reference_sum) = sum(x(1, :))
+        reference(i, reference_inverse) = 1.0_wp/sum(volumes)
         reference(i, reference_mass:) = 0.0_wp
         where (volumes > 0.0_wp) reference(i, reference_mass:) = 1.0_wp/volumes
       end associate

@@ -13,7 +13,8 @@ module round_time_step_m
   public :: round_step
 
   !> Of one chunk, over the masses: bounds of omega^2 of strain and of its part by volume (over
-  !> lambda); of hourglass control gamma.gamma, and the square of its coupling to strain.
+  !> lambda); of hourglass control its gamma.gamma, and the square of its coupling to strain, both
+  !> times the resistance.
   type :: step_sums_t
     real(wp), dimension(chunk_size) :: strain, dilation, pattern, coupling
   end type step_sums_t
@@ -30,7 +31,8 @@ contains
     real(wp), intent(in) :: inverse_mass(stride, *) !! density over mass, first slot of the chunk; 0
                                                     !! at the fourth node of a triangle
     type(element_chunk_t), intent(in) :: chunk
-    type(round_chunk_t), intent(in) :: round        !! present shape, resistance to hourglassing
+    type(round_chunk_t), intent(inout) :: round     !! present shape, resistance to hourglassing;
+                                                    !! gradients of triangles are changed
     real(wp), intent(out) :: limit                  !! s
     real(wp), intent(out) :: volume                 !! smallest V/V0; below 0 where an area is
     type(step_sums_t) :: sums
@@ -39,17 +41,16 @@ contains
 
     shear = 2.0_wp*material%shear/material%density
     lame = max(0.0_wp, material%bulk/material%density - shear/3.0_wp)
-    call form_strain_sums(lame, shear, inverse_mass, stride, round, sums)
-    call form_pattern_sums(lame, shear, inverse_mass, stride, round, sums)
+    call join_third_nodes(inverse_mass(1, 4), round)
+    call form_sums(lame, shear, inverse_mass, stride, chunk%inverse_area, round, sums)
     largest = 0.0_wp
     pattern = 0.0_wp
     volume = huge(1.0_wp)
     !$omp simd reduction(max : largest, pattern) reduction(min : volume)
     do i = 1, chunk_size
       largest = max(largest, sums%strain(i))
-      pattern = max(pattern, round%resistance(i)*sums%pattern(i))
-      volume = min(volume, min(1.0_wp + chunk%stretch(i), &
-        sign(1.0e3_wp, round%area(i))))
+      pattern = max(pattern, sums%pattern(i))
+      volume = min(volume, min(1.0_wp + chunk%stretch(i), sign(1.0e3_wp, chunk%area(i))))
     end do
     pattern = max(pattern/material%density, tiny(1.0_wp))
     ! Resistances of the viscous form act on velocities, those of the stiffness form on their sum.
@@ -61,7 +62,7 @@ contains
     coupled = 0.0_wp
     !$omp simd reduction(max : coupled)
     do i = 1, chunk_size
-      coupled = max(coupled, sums%strain(i) + factor*round%resistance(i)*sums%coupling(i))
+      coupled = max(coupled, sums%strain(i) + factor*sums%coupling(i))
     end do
     if (hourglass%form == hourglass_viscous) then
       limit = min(2.0_wp/sqrt(coupled), 1.0_wp/pattern)
@@ -72,129 +73,94 @@ contains
       call limit_bulk_viscosity(hourglass, material%sound_speed, chunk, sums, limit)
   end subroutine round_step
 
-  !> The sums over the nodes for strain. With p, q, o, t, u, w the sums of b_r^2, b_z^2, b_r b_z,
-  !> M^2, M b_r, M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda is
-  !> the largest row sum (Gershgorin) of the matrix [p o u; o q w; u w t].
-  pure subroutine form_strain_sums(lame, shear, inverse_mass, stride, round, sums)
+  !> A triangle's third node has the place of its fourth too: the gradients whose pattern gives it
+  !> both shares and leaves none, and no hourglass.
+  pure subroutine join_third_nodes(inverse_mass, round)
+    real(wp), intent(in) :: inverse_mass(chunk_size) !! of the fourth nodes
+    type(round_chunk_t), intent(inout) :: round
+    real(wp) :: r, z, m, least
+    integer :: i
+
+    least = huge(1.0_wp)
+    !$omp simd reduction(min : least)
+    do i = 1, chunk_size
+      least = min(least, inverse_mass(i))
+    end do
+    if (least > 0.0_wp) return
+    do i = 1, chunk_size
+      if (inverse_mass(i) > 0.0_wp) cycle
+      r = 0.5_wp*(round%rad_b(i) - round%rad_h(i))
+      z = 0.5_wp*(round%axi_b(i) - round%axi_h(i))
+      m = 0.5_wp*(round%mean_b(i) + round%mean_s(i))
+      round%rad_a(i) = round%rad_a(i) + r
+      round%rad_b(i) = round%rad_b(i) - r
+      round%rad_h(i) = round%rad_h(i) + r
+      round%axi_a(i) = round%axi_a(i) + z
+      round%axi_b(i) = round%axi_b(i) - z
+      round%axi_h(i) = round%axi_h(i) + z
+      round%mean_a(i) = round%mean_a(i) + m
+      round%mean_b(i) = round%mean_b(i) + m
+      round%mean_s(i) = round%mean_s(i) + m
+      round%resistance(i) = 0.0_wp
+    end do
+  end subroutine join_third_nodes
+
+  !> The sums over the nodes. With p, q, o, t, u, w the sums of b_r^2, b_z^2, b_r b_z, M^2, M b_r,
+  !> M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda is the largest
+  !> row sum (Gershgorin) of the matrix [p o u; o q w; u w t]. In the patterns nodes 1 and 3 have
+  !> b = h -+ a, nodes 2 and 4 have -h -+ b (M: s -+ a and s -+ b), so that the sum v and the
+  !> difference d of two opposite nodes' 1/m give the weights v a + d h and v h + d a of a pattern.
+  pure subroutine form_sums(lame, shear, inverse_mass, stride, inverse_area, round, sums)
     real(wp), intent(in) :: lame, shear            !! lambda/rho and 2G/rho
     integer, intent(in) :: stride
     real(wp), intent(in) :: inverse_mass(stride, *)
+    real(wp), intent(in) :: inverse_area(chunk_size)
     type(round_chunk_t), intent(in) :: round
-    type(step_sums_t), intent(inout) :: sums       !! `strain` and `dilation` out
-    real(wp) :: p, q, o, t, u, w, r, z, m, vr, vz, both
+    type(step_sums_t), intent(inout) :: sums
+    real(wp) :: va, da, vb, db, wa, wb, wha, whb, ga, gb, gr, gz, gm, p, q, o, t, u, w
     integer :: i
 
-    !$omp simd private(p, q, o, t, u, w, r, z, m, vr, vz, both)
+    !$omp simd private(va, da, vb, db, wa, wb, wha, whb, ga, gb, gr, gz, gm, p, q, o, t, u, w)
     do i = 1, chunk_size
-      both = merge(1.0_wp, 0.0_wp, inverse_mass(i, 4) <= 0.0_wp)
-      r = round%rad_h(i) - round%rad_a(i)
-      z = round%axi_h(i) - round%axi_a(i)
-      m = round%mean_s(i) - round%mean_a(i)
-      vr = inverse_mass(i, 1)*r
-      vz = inverse_mass(i, 1)*z
-      p = vr*r
-      q = vz*z
-      o = vr*z
-      u = vr*m
-      w = vz*m
-      t = inverse_mass(i, 1)*m*m
-      ! With signs that leave the sums as they are.
-      r = round%rad_h(i) + round%rad_b(i)
-      z = round%axi_h(i) + round%axi_b(i)
-      m = round%mean_b(i) - round%mean_s(i)
-      vr = inverse_mass(i, 2)*r
-      vz = inverse_mass(i, 2)*z
-      p = p + vr*r
-      q = q + vz*z
-      o = o + vr*z
-      u = u + vr*m
-      w = w + vz*m
-      t = t + inverse_mass(i, 2)*m*m
-      ! Node 4, and node 3, which in a triangle has the place of node 4 too.
-      r = round%rad_b(i) - round%rad_h(i)
-      z = round%axi_b(i) - round%axi_h(i)
-      m = round%mean_s(i) + round%mean_b(i)
-      vr = inverse_mass(i, 4)*r
-      vz = inverse_mass(i, 4)*z
-      p = p + vr*r
-      q = q + vz*z
-      o = o + vr*z
-      u = u + vr*m
-      w = w + vz*m
-      t = t + inverse_mass(i, 4)*m*m
-      r = (round%rad_h(i) + round%rad_a(i)) + both*r
-      z = (round%axi_h(i) + round%axi_a(i)) + both*z
-      m = (round%mean_s(i) + round%mean_a(i)) + both*m
-      vr = inverse_mass(i, 3)*r
-      vz = inverse_mass(i, 3)*z
-      p = p + vr*r
-      q = q + vz*z
-      o = o + vr*z
-      u = u + vr*m
-      w = w + vz*m
-      t = t + inverse_mass(i, 3)*m*m
+      va = inverse_mass(i, 3) + inverse_mass(i, 1)
+      da = inverse_mass(i, 3) - inverse_mass(i, 1)
+      vb = inverse_mass(i, 2) + inverse_mass(i, 4)
+      db = inverse_mass(i, 2) - inverse_mass(i, 4)
+      ga = -12.0_wp*inverse_area(i)*round%mean_a(i)
+      gb = 12.0_wp*inverse_area(i)*round%mean_b(i)
+      ! Gradients in r, weighted, and their products with all others.
+      wa = va*round%rad_a(i) + da*round%rad_h(i)
+      wb = vb*round%rad_b(i) + db*round%rad_h(i)
+      wha = va*round%rad_h(i) + da*round%rad_a(i)
+      whb = vb*round%rad_h(i) + db*round%rad_b(i)
+      p = round%rad_a(i)*wa + round%rad_b(i)*wb + round%rad_h(i)*(wha + whb)
+      o = round%axi_a(i)*wa + round%axi_b(i)*wb + round%axi_h(i)*(wha + whb)
+      u = round%mean_a(i)*wa + round%mean_b(i)*wb + round%mean_s(i)*(wha - whb)
+      gr = ga*wa + gb*wb + (wha + whb)
+      ! In z.
+      wa = va*round%axi_a(i) + da*round%axi_h(i)
+      wb = vb*round%axi_b(i) + db*round%axi_h(i)
+      wha = va*round%axi_h(i) + da*round%axi_a(i)
+      whb = vb*round%axi_h(i) + db*round%axi_b(i)
+      q = round%axi_a(i)*wa + round%axi_b(i)*wb + round%axi_h(i)*(wha + whb)
+      w = round%mean_a(i)*wa + round%mean_b(i)*wb + round%mean_s(i)*(wha - whb)
+      gz = ga*wa + gb*wb + (wha + whb)
+      ! The integrals M.
+      wa = va*round%mean_a(i) + da*round%mean_s(i)
+      wb = vb*round%mean_b(i) - db*round%mean_s(i)
+      wha = va*round%mean_s(i) + da*round%mean_a(i)
+      whb = vb*round%mean_s(i) - db*round%mean_b(i)
+      t = round%mean_a(i)*wa + round%mean_b(i)*wb + round%mean_s(i)*(wha + whb)
+      gm = ga*wa + gb*wb + (wha - whb)
+      sums%pattern(i) = round%resistance(i)*((ga*(va*ga + da) + gb*(vb*gb + db)) &
+        + ((va + da*ga) + (vb + db*gb)))
+      sums%coupling(i) = round%resistance(i)*round%inverse_volume(i)*(shear*(1.5_wp*(gr*gr &
+        + gz*gz) + gm*gm) + lame*((gr + gm)**2 + gz*gz))
       sums%dilation(i) = round%inverse_volume(i)*((p + q) + (t + 2.0_wp*u))
-      m = max(p + (abs(o) + abs(u)), q + (abs(o) + abs(w)), t + (abs(u) + abs(w)))
-      sums%strain(i) = round%inverse_volume(i)*shear*m + lame*sums%dilation(i)
+      t = max(p + (abs(o) + abs(u)), q + (abs(o) + abs(w)), t + (abs(u) + abs(w)))
+      sums%strain(i) = round%inverse_volume(i)*shear*t + lame*sums%dilation(i)
     end do
-  end subroutine form_strain_sums
-
-  !> The same for hourglass control: gamma^2 over m, and the square of the coupling to strain.
-  pure subroutine form_pattern_sums(lame, shear, inverse_mass, stride, round, sums)
-    real(wp), intent(in) :: lame, shear            !! lambda/rho and 2G/rho
-    integer, intent(in) :: stride
-    real(wp), intent(in) :: inverse_mass(stride, *)
-    type(round_chunk_t), intent(in) :: round
-    type(step_sums_t), intent(inout) :: sums       !! `pattern` and `coupling` out
-    real(wp) :: gr, gz, gm, gg, r, z, m, g, vg, both
-    integer :: i
-
-    !$omp simd private(gr, gz, gm, gg, r, z, m, g, vg, both)
-    do i = 1, chunk_size
-      both = merge(1.0_wp, 0.0_wp, inverse_mass(i, 4) <= 0.0_wp)
-      r = round%rad_h(i) - round%rad_a(i)
-      z = round%axi_h(i) - round%axi_a(i)
-      m = round%mean_s(i) - round%mean_a(i)
-      g = 1.0_wp - round%gamma_a(i)
-      vg = inverse_mass(i, 1)*g
-      gr = vg*r
-      gz = vg*z
-      gm = vg*m
-      gg = vg*g
-      ! With signs that leave the sums as they are.
-      r = round%rad_h(i) + round%rad_b(i)
-      z = round%axi_h(i) + round%axi_b(i)
-      m = round%mean_b(i) - round%mean_s(i)
-      g = 1.0_wp + round%gamma_b(i)
-      vg = inverse_mass(i, 2)*g
-      gr = gr + vg*r
-      gz = gz + vg*z
-      gm = gm + vg*m
-      gg = gg + vg*g
-      ! Node 4, and node 3, which in a triangle has the place of node 4 too.
-      r = round%rad_b(i) - round%rad_h(i)
-      z = round%axi_b(i) - round%axi_h(i)
-      m = round%mean_s(i) + round%mean_b(i)
-      g = round%gamma_b(i) - 1.0_wp
-      vg = inverse_mass(i, 4)*g
-      gr = gr + vg*r
-      gz = gz + vg*z
-      gm = gm + vg*m
-      gg = gg + vg*g
-      r = (round%rad_h(i) + round%rad_a(i)) + both*r
-      z = (round%axi_h(i) + round%axi_a(i)) + both*z
-      m = (round%mean_s(i) + round%mean_a(i)) + both*m
-      g = (1.0_wp + round%gamma_a(i)) + both*g
-      vg = inverse_mass(i, 3)*g
-      gr = gr + vg*r
-      gz = gz + vg*z
-      gm = gm + vg*m
-      gg = gg + vg*g
-      sums%pattern(i) = gg
-      sums%coupling(i) = round%inverse_volume(i)*(shear*(1.5_wp*(gr*gr + gz*gz) + gm*gm) &
-        + lame*((gr + gm)**2 + gz*gz))
-    end do
-  end subroutine form_pattern_sums
+  end subroutine form_sums
 
   !> Bulk viscosity in compression has a rate of its own, which is added: x + y <= theta at a share
   !> theta <= 1 of the step without it.

@@ -7,17 +7,18 @@ module smallest_steps_m
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use element_dispatch_m, only : point_count
   use element_time_step_m, only : stable_step
-  use eos_pressure_m, only : take_present
+  use eos_pressure_m, only : finish_limits
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
+  use law_pressure_m, only : take_now
   use layout_m, only : chunk_size
   use model_m, only : model_t
-  use parts_m, only : hourglass_t, material_t
+  use parts_m, only : hourglass_t, material_t, hourglass_assumed
   use quad_kinematics_m, only : form_present_shape, form_increments
   use quad_points_m, only : n_point, form_point
   use round_chunk_m, only : round_chunk_t, gather_round, n_round_reference, &
     reference_mass
   use round_full_step_m, only : round_full_step
-  use round_hourglass_m, only : form_resistance
+  use round_hourglass_m, only : form_resistance, form_assumed_resistance
   use round_kinematics_m, only : form_round_shape, form_round_increments
   use round_points_m, only : round_point_t, form_radii
   use round_time_step_m, only : round_step
@@ -98,7 +99,7 @@ contains
     call form_present_shape(shape, chunk_size, chunk)
     call form_increments(0.0_wp, chunk, unused)
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
-      call take_present(model%materials(part%material), elements, i_slot, now)
+      call take_now(model%materials(part%material), elements, i_slot, now)
       associate (material => now)
         if (point_count(model%sections(part%section)) == 1) then
           call stable_step(model%controls%length_rule, material%sound_speed, part%hourglass, &
@@ -106,6 +107,8 @@ contains
         else
           step = full_step_of(material, part%hourglass, nodes, shape, chunk)
         end if
+        if (allocated(model%materials(part%material)%eos)) call finish_limits( &
+          model%materials(part%material), now, chunk%stretch, step, volume)
       end associate
     end associate
   end function step_of_slot
@@ -133,11 +136,15 @@ contains
     call form_round_shape(shape, chunk_size, chunk, round)
     call form_round_increments(0.0_wp, chunk, round, unused)
     associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
-      call take_present(model%materials(part%material), elements, i_slot, now)
+      call take_now(model%materials(part%material), elements, i_slot, now)
       associate (material => now)
-        chunk%area = round%area
         if (point_count(model%sections(part%section)) == 1) then
-          call form_resistance(model%materials(part%material), part%hourglass, round)
+          if (part%hourglass%form == hourglass_assumed) then
+            call form_assumed_resistance(model%materials(part%material), part%hourglass, chunk, &
+              round)
+          else
+            call form_resistance(model%materials(part%material), part%hourglass, chunk, round)
+          end if
           call round_step(material, part%hourglass, shape(1, reference_mass), chunk_size, chunk, &
             round, step, volume)
         else
@@ -151,6 +158,8 @@ contains
           call round_full_step(material, part%hourglass, shape(1, reference_mass), chunk_size, &
             chunk, places, step, volume)
         end if
+        if (allocated(model%materials(part%material)%eos)) call finish_limits( &
+          model%materials(part%material), now, chunk%stretch, step, volume)
       end associate
     end associate
   end function round_step_of_slot

@@ -4,18 +4,22 @@ module material_dispatch_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use parts_m, only : material_t, law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
-    law_hot_johnson_cook, law_null, has_memory_of_heat
+    law_hot_johnson_cook, law_null, has_memory_of_heat, law_mooney_rivlin, law_blatz_ko, &
+    law_crushable_foam
   use stress_chunk_m, only : stress_chunk_t
   use stress_point_m, only : stress_point_t
+  use material_blatz_ko_m, only : update_blatz_ko
+  use material_crushable_foam_m, only : update_crushable_foam
   use material_elastic_m, only : update_elastic, tangent_elastic
   use material_j2_m, only : update_j2_isotropic, update_j2_mixed, tangent_j2
   use material_johnson_cook_m, only : update_johnson_cook, update_hot_johnson_cook
+  use material_mooney_rivlin_m, only : update_mooney_rivlin
   use material_null_m, only : update_null
   use material_piecewise_m, only : update_piecewise, tangent_piecewise
   implicit none
   private
   public :: update_stress, form_tangent, history_size, find_failed, break_points, &
-    column_temperature, column_damage
+    column_temperature, column_damage, has_plastic_strain
 
   !> Columns of the history of the heated law of Johnson and Cook: rise of temperature, damage.
   integer, parameter :: column_temperature = 2, column_damage = 3
@@ -24,7 +28,7 @@ contains
 
   !> History values per element of a law: 0, 1 (plastic strain), 3 (and rise of temperature, damage)
   !> or 4 (and back stress xx, yy, xy).
-  !> The first one is always the plastic strain.
+  !> The first one is the plastic strain, but for a foam (`has_plastic_strain`): its mean stress.
   pure function history_size(material) result(n)
     type(material_t), intent(in) :: material
     integer :: n
@@ -32,7 +36,7 @@ contains
     select case (material%law)
     case (law_plastic)
       n = merge(1, 4, has_no_back_stress(material))
-    case (law_piecewise, law_johnson_cook)
+    case (law_piecewise, law_johnson_cook, law_crushable_foam)
       n = 1
     case (law_hot_johnson_cook)
       n = 3
@@ -40,6 +44,14 @@ contains
       n = 0
     end select
   end function history_size
+
+  !> Whether the history of a law starts with a plastic strain.
+  pure function has_plastic_strain(material) result(yes)
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = history_size(material) > 0 .and. material%law /= law_crushable_foam
+  end function has_plastic_strain
 
   !> Advance the deviator of one chunk by its law.
   pure subroutine update_stress(material, chunk, history)
@@ -69,6 +81,12 @@ contains
         history(:, column_temperature), history(:, column_damage))
     case (law_null)
       call update_null(material%viscosity, chunk)
+    case (law_mooney_rivlin)
+      call update_mooney_rivlin(material%rubber, chunk)
+    case (law_blatz_ko)
+      call update_blatz_ko(material%rubber, chunk)
+    case (law_crushable_foam)
+      call update_crushable_foam(material, chunk, history(:, 1))
     end select
     if (material%failure_strain < huge(1.0_wp)) call fail(material%failure_strain, before, chunk, &
       history(:, 1))

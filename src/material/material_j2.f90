@@ -13,6 +13,9 @@ module material_j2_m
   private
   public :: update_j2_isotropic, update_j2_mixed, tangent_j2, tangent_of_return, trial_mises
 
+  !> Part of the yield stress by which a point on the surface may miss it by round-off.
+  real(wp), parameter :: on_surface = 1.0e-9_wp
+
 contains
 
   !> Advance a chunk by one step; isotropic hardening (beta = 1), no back stress.
@@ -112,7 +115,8 @@ contains
 
   !> Return to a surface that grows by `hardening` from `radius` R, at one point, with
   !> its derivative: xi* is scaled by f = 1 - 3G/(3G + E_p) (1 - R/xi_v),
-  !> d(xi_v) = 3 (3 m, h, q).d(xi*)/xi_v.
+  !> d(xi_v) = 3 (3 m, h, q).d(xi*)/xi_v. A point that flowed in the step before stands on the
+  !> surface when the next begins: it flows on in the first tangent, whatever its last digits.
   pure subroutine tangent_of_return(shear, radius, hardening, point)
     real(wp), intent(in) :: shear
     real(wp), intent(in) :: radius    !! yield stress at the plastic strain at the start of the step
@@ -128,7 +132,7 @@ contains
     mises = trial_mises(shear, point)
     factor = 1.0_wp
     scaling = 0.0_wp
-    if (mises > radius) then
+    if (mises > (1.0_wp - on_surface)*radius) then
       ratio = 3.0_wp*shear/(3.0_wp*shear + hardening)
       factor = 1.0_wp - ratio*(1.0_wp - radius/mises)
       slope = -3.0_wp*ratio*radius/mises**3

@@ -61,8 +61,8 @@ contains
       if (flow%is_viscoplastic) ratio = max(1.0_wp, ratio*growth(i))
       stress = mises(i) - 3.0_wp*shear*growth(i)
       rise(i) = rise(i) + flow%heat*chunk%ratio(i)*stress*growth(i)
-      if (flow%has_damage .and. growth(i) > 0.0_wp) damage(i) = damage(i) &
-        + growth(i)/fracture_strain(flow, triaxiality(chunk%mean(i), stress), ratio, hot)
+      if (flow%has_damage .and. growth(i) > 0.0_wp) damage(i) = min(1.0_wp, damage(i) &
+        + growth(i)/fracture_strain(flow, triaxiality(chunk%mean(i), stress), ratio, hot))
     end do
     call return_to_surface(shear, mises, growth, chunk, plastic_strain)
     do i = 1, chunk_size

@@ -20,6 +20,12 @@ module stress_chunk_m
     real(wp), dimension(chunk_size) :: hoop          !! less the hoop rate, and this is dt times it
     real(wp), dimension(chunk_size) :: mean, ratio   !! mean stress at the start of the step, V/V0
                                                      !! in its middle; only where there is an EOS
+    ! What follows is there only for laws that give the pressure too. They leave the mean stress at
+    ! the end of the step in `mean`, energy per initial volume and moduli per present one.
+    real(wp), dimension(chunk_size) :: stretch, former !! V/V0 - 1 at the end and at the start
+    real(wp), dimension(chunk_size) :: volume          !! V/V0 of the point itself, at the end
+    real(wp), dimension(chunk_size) :: hxx, hxy, hyx, hyy, hzz !! F - 1, det F = 1 + stretch
+    real(wp), dimension(chunk_size) :: energy, bulk, shear
   end type stress_chunk_t
 
 contains

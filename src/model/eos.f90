@@ -5,10 +5,17 @@ module eos_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: eos_t, initial_stiffness, eos_logarithmic, eos_linear_polynomial, eos_gruneisen
+  public :: eos_t, initial_stiffness, initial_pressure, asymptote, &
+    eos_logarithmic, eos_linear_polynomial, eos_gruneisen, eos_by_law
 
   !> Kinds. Only the dispatcher of the equations of state asks for them.
-  integer, parameter :: eos_logarithmic = 1, eos_linear_polynomial = 2, eos_gruneisen = 3
+  !> By law: the law of the material gives the pressure too, of all its strain.
+  integer, parameter :: eos_logarithmic = 1, eos_linear_polynomial = 2, eos_gruneisen = 3, &
+    eos_by_law = 4
+
+  !> Denominator of Gruneisen's equation at which its pressure, which goes with the inverse square,
+  !> counts as without bound.
+  real(wp), parameter :: next_to_none = 0.1_wp
 
   !> One *EOS, or what stands for it in a material with failure.
   type :: eos_t
@@ -21,6 +28,9 @@ module eos_m
     real(wp) :: gamma = 0.0_wp        !! Gruneisen's gamma at the start
     real(wp) :: correction = 0.0_wp   !! a
     real(wp) :: energy = 0.0_wp       !! E at the start, J per initial volume
+    real(wp) :: datum = 0.0_wp        !! what a body under pressure at the start has stored beyond
+                                      !! that, J per initial volume
+    real(wp) :: least_ratio = 0.0_wp  !! V/V0 at which the pressure has next to no bound
   end type eos_t
 
 contains
@@ -39,5 +49,39 @@ contains
       stiffness = eos%stiffness
     end select
   end function initial_stiffness
+
+  !> A + B E at mu = 0.
+  pure function initial_pressure(eos) result(pressure)
+    type(eos_t), intent(in) :: eos
+    real(wp) :: pressure
+
+    select case (eos%kind)
+    case (eos_linear_polynomial)
+      pressure = eos%c(0) + eos%c(4)*eos%energy
+    case (eos_gruneisen)
+      pressure = eos%gamma*eos%energy
+    case default
+      pressure = 0.0_wp
+    end select
+  end function initial_pressure
+
+  !> Bound of the volume of Gruneisen's equation: V/V0 at the least mu > 0 where its denominator
+  !> (`eos_gruneisen_m`) is next to 0; 0 where it never is. With y = mu/(1 + mu) = 1 - v
+  !> the denominator is (1 - S1 y - S2 y^2 - S3 y^3)/(1 - y).
+  pure function asymptote(s) result(ratio)
+    real(wp), intent(in) :: s(3) !! S1 to S3
+    real(wp) :: ratio
+    integer, parameter :: n = 10000
+    real(wp) :: y
+    integer :: i
+
+    ratio = 0.0_wp
+    do i = 1, n - 1
+      y = real(i, wp)/n
+      if (1.0_wp - y*(s(1) + y*(s(2) + y*s(3))) > next_to_none*(1.0_wp - y)) cycle
+      ratio = 1.0_wp - y
+      return
+    end do
+  end function asymptote
 
 end module eos_m

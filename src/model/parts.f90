@@ -1,34 +1,39 @@
 ! SPDX-License-Identifier: MIT
 !> Parts and what they refer to: section, material, hourglass control and bulk viscosity.
 module parts_m
-  use eos_m, only : eos_t
+  use curves_m, only : curve_t
+  use eos_m, only : eos_t, eos_by_law
   use hardenings_m, only : hardening_t
   use johnson_cook_m, only : johnson_cook_t
   use kinds_m, only : wp
+  use rubbers_m, only : rubber_t
   implicit none
   private
   public :: part_t, section_t, material_t, hourglass_t, has_memory_of_heat, &
+    may_fail, gives_pressure, law_mooney_rivlin, law_blatz_ko, law_crushable_foam, &
     form_one_point, form_full, form_round_one_point, form_round_full, law_elastic, law_plastic, &
     law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, &
-    hourglass_viscous, hourglass_stiffness, spall_pressure, spall_stress, spall_tension
+    hourglass_viscous, hourglass_stiffness, hourglass_assumed, spall_pressure, spall_stress, &
+    spall_tension
 
   !> Element forms. Only the element dispatcher asks for them.
   integer, parameter :: form_one_point = 1, form_full = 2, form_round_one_point = 3, &
     form_round_full = 4
   !> Material laws. Only the material dispatcher asks for them.
   integer, parameter :: law_elastic = 1, law_plastic = 2, law_piecewise = 3, &
-    law_johnson_cook = 4, law_hot_johnson_cook = 5, law_null = 6
+    law_johnson_cook = 4, law_crushable_foam = 5, law_hot_johnson_cook = 6, law_null = 7, &
+    law_mooney_rivlin = 8, law_blatz_ko = 9
   !> What a cut-off of the pressure means: a bound on tension; or the largest tensile stress, or the
   !> largest tension, at which a point breaks.
   integer, parameter :: spall_pressure = 1, spall_stress = 2, spall_tension = 3
-  !> Hourglass control: viscous (IHQ 1 to 3 and blank) or stiffness (IHQ 4 and 5).
-  integer, parameter :: hourglass_viscous = 1, hourglass_stiffness = 2
+  !> Hourglass control: viscous (IHQ 1 to 3 and blank), stiffness (4 and 5) or assumed strain (6).
+  integer, parameter :: hourglass_viscous = 1, hourglass_stiffness = 2, hourglass_assumed = 3
 
   !> One *SECTION_SHELL.
   type :: section_t
     integer :: id = 0                          !! user id
     integer :: element_form = form_one_point   !! one of the `form_` constants
-    logical :: is_full = .false.               !! full integration, which the implicit method needs
+    logical :: is_full = .false.               !! full integration
     logical :: is_round = .false.              !! axisymmetric
   end type section_t
 
@@ -48,6 +53,9 @@ module parts_m
     real(wp) :: viscosity = 0.0_wp !! dynamic viscosity of a fluid, Pa s
     type(hardening_t), allocatable :: curve !! yield stress by points, of a piecewise linear law
     type(johnson_cook_t), allocatable :: flow !! of the laws of Johnson and Cook
+    type(rubber_t), allocatable :: rubber !! hyperelastic: stress and energy follow from F
+    type(curve_t), allocatable :: crush !! of a foam: largest compression against 1 - V/V0
+    real(wp) :: tension = 0.0_wp   !! and its largest tension
     type(eos_t), allocatable :: eos !! pressure with a memory: an equation of state, or where
                                     !! points may fail one that stands for K ln(J)
     real(wp) :: failure_strain = huge(1.0_wp) !! plastic strain from which a point has no stress
@@ -88,5 +96,23 @@ contains
     yes = .false.
     if (allocated(material%flow)) yes = material%flow%has_memory
   end function has_memory_of_heat
+
+  !> Whether the law of a material gives its pressure too.
+  pure function gives_pressure(material) result(yes)
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = .false.
+    if (allocated(material%eos)) yes = material%eos%kind == eos_by_law
+  end function gives_pressure
+
+  !> Whether points of a material may lose their stress.
+  pure elemental function may_fail(material) result(yes)
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = material%failure_strain < huge(1.0_wp) .or. material%spall /= spall_pressure
+    if (allocated(material%flow)) yes = yes .or. material%flow%has_damage
+  end function may_fail
 
 end module parts_m

@@ -6,6 +6,7 @@ module health_m
   use controls_m, only : controls_t
   use energies_m, only : energies_t, energy_ratio, total_energy
   use element_state_m, only : smallest_ratio
+  use eos_pressure_m, only : is_too_dense
   use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
   use layout_m, only : chunk_size, slot_part, tile_t
@@ -136,11 +137,35 @@ contains
         'values that are not finite', ratio <= 0.0_wp), error)
       return
     end do
-    call name_wild_chunk(model, state, error)
+    call name_dense_element(model, state, error)
+    if (.not. allocated(error)) call name_wild_chunk(model, state, error)
     if (.not. allocated(error)) call raise(error, &
       'negative area or values that are not finite at cycle '//to_text(state%cycle)//', time ' &
       //to_text(state%time), status_run)
   end subroutine name_bad_chunk
+
+  !> The element whose equation of state has next to no bound at its volume.
+  subroutine name_dense_element(model, state, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i_chunk, slot, first
+    real(wp) :: stretch
+
+    do slot = 1, model%layout%n_slot
+      i_chunk = (slot - 1)/chunk_size + 1
+      first = state%elements%eos_start(i_chunk)
+      if (first == 0 .or. model%layout%slot_element(slot) == 0) cycle
+      stretch = state%elements%eos_state(first + 2*chunk_size + mod(slot - 1, chunk_size))
+      associate (eos => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material)%eos)
+        if (.not. is_too_dense(eos, stretch)) cycle
+        call blame(model, state, slot, 'V/V0 '//to_text(1.0_wp + stretch)//', near which the ' &
+          //'pressure of equation of state '//to_text(eos%id)//' has no bound (1 - (S1 - 1) mu - ' &
+          //'S2 mu^2/(1 + mu) - S3 mu^3/(1 + mu)^2 comes to 0),', error)
+        return
+      end associate
+    end do
+  end subroutine name_dense_element
 
   !> The element that is under the largest stress of those whose chunk has
   !> done work beyond all measure.

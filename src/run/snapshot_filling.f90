@@ -6,7 +6,7 @@ module snapshot_filling_m
   use constraints_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows, join_rows
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains, &
-    element_temperatures, element_damages
+    element_heats
   use contacts_m, only : transducer_t, has_shear, n_told, told_as
   use controls_m, only : is_asked
   use history_tables_m, only : table_matsum
@@ -327,8 +327,7 @@ contains
       call element_plastic_strains(model, state%elements, snapshot%plastic_strain)
     if (model%is_round) call hoop_strains(model, state%motion, snapshot%hoop_strain)
     if (allocated(snapshot%damage)) then
-      call element_temperatures(model, state%elements, snapshot%temperature)
-      call element_damages(model, state%elements, snapshot%damage)
+      call element_heats(model, state%elements, snapshot%temperature, snapshot%damage)
     end if
     if (size(model%contacts) == 0) return
     snapshot%contact_force = 0.0_wp

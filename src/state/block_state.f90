@@ -22,15 +22,19 @@ module block_state_m
                                               !! none
     real(wp), allocatable :: history(:)       !! chunk by chunk, point by point: plastic strain,
                                               !! then back stress xx yy xy, or temperature rise
-                                              !! and damage
+                                              !! and damage; of a foam its mean stress
     integer, allocatable :: eos_start(:)      !! (n_chunk) where a chunk's equation of state starts,
                                               !! 0 = none
     real(wp), allocatable :: eos_state(:)     !! chunk by chunk: energy per initial volume, then
                                               !! pressure (compression positive), V/V0 - 1,
                                               !! bulk viscosity, speed of sound squared
+                                              !! or two moduli
+    integer, allocatable :: n_failed(:)       !! (n_chunk) failed points of the last step; only
+                                              !! where points may fail
     integer, allocatable :: hourglass_start(:) !! (n_chunk) where a chunk's hourglass memory starts,
                                                !! 0 = none
-    real(wp), allocatable :: hourglass_strain(:) !! chunk by chunk: q_x, then q_y (stiffness form)
+    real(wp), allocatable :: hourglass_strain(:) !! chunk by chunk: q_x, then q_y (stiffness form);
+                                                 !! generalised stress (assumed strain)
     real(wp), allocatable :: deviatoric_work(:) !! (n_chunk) accumulated work of the deviator, J/m
     real(wp), allocatable :: hourglass_work(:)  !! (n_chunk) accumulated work of the hourglass
                                                 !! forces

@@ -11,7 +11,7 @@ import numpy as np
 
 from measuring import Variant, is_fresh, phase_calls, run_program, without_others
 from slideline_tools.decks import Deck
-from slideline_tools.scenes.common import part, perfectly_plastic, elastic, plane_strain
+from slideline_tools.scenes.common import perfectly_plastic, elastic, plane_strain
 
 SIDE, RHO, YOUNG, POISSON = 1.0, 7850.0, 210.0e9, 0.3
 STRAIN_RATE = 20.0  # 1/s, less where the run is so long that it would stretch the block by more than
@@ -57,10 +57,10 @@ def write_velocities(path, columns, rows, rate):
         stream.write("*END\n")
 
 
-def write_deck(path, elements, yields, steps=None):
+def write_deck(path, elements, yields, steps=None, law=None):
     """A block as described above; returns the number of elements.
 
-    Mesh and velocities are files beside it, shared by the materials.
+    `law`: another material in its place, `law(deck)` writes material 1 and returns the number of its equation of state. Mesh and velocities are files beside it, shared by the materials.
     """
     columns, rows = columns_of(elements)
     steps = steps or max(20, int(WORK / (columns * rows)))
@@ -77,9 +77,12 @@ def write_deck(path, elements, yields, steps=None):
     deck.constant_step(1, step, 1.0e3)
     deck.database(glstat=steps * step)
     deck.keyword("CONTROL_ENERGY").card("hgen rwen slnten rylen", 2, 2, 2, 2)
-    part(deck, 1, "block", 1, 1)
     plane_strain(deck, 1)
-    if yields:
+    eos = law(deck) if law else 0
+    deck.keyword("PART", "block").card("pid secid mid eosid hgid", 1, 1, 1, eos, 0)
+    if law:
+        pass
+    elif yields:
         perfectly_plastic(deck, 1, RHO, YOUNG, POISSON, SOFT)
     else:
         elastic(deck, 1, RHO, YOUNG, POISSON)

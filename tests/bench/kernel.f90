@@ -2,7 +2,8 @@
 !> The program's own element routine, alone on one chunk that stays in the L1 cache (gather, J2 stress, hourglass,
 !> forces, step limit; ns per element), and the bandwidth of the main memory (a = b + s c, GB/s counting 24 bytes an
 !> entry). The unit of all times is neither: it is yardstick/, which stays as it is when this routine changes.
-!> usage: bench_kernel DECK [THREADS [ENTRIES [CALLS]]], a deck of one full chunk of plastic quads that move; the
+!> usage: bench_kernel DECK [THREADS [ENTRIES [CALLS]]], a deck of one full chunk of quads that move (and yield, where
+!> their law can); the
 !> bandwidth is that of THREADS threads together (1) on arrays of ENTRIES (20 million). Prints `routine_ns,...` and
 !> `bandwidth_gb_s,...`, each the best of several rounds, the routine's of CALLS (20000) calls each, by processor time:
 !> the machine may be shared.
@@ -83,7 +84,9 @@ contains
         end do
       end associate
     end associate
-    if (.not. maxval(state%elements%history) > 0.0_wp) error stop 'no element yields'
+    if (size(state%elements%history) > 0) then
+      if (.not. maxval(state%elements%history) > 0.0_wp) error stop 'no element yields'
+    end if
   end function time_routine
 
   !> GB/s of the best round. Each thread is the first to touch its share of the memory.

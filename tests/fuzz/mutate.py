@@ -53,7 +53,7 @@ def keywords(decks: list[list[str]]) -> list[str]:
     """All keywords of the decks and of the reference."""
     found = {line.split()[0] for deck in decks for line in deck if line.startswith("*")}
     text = (ROOT / "doc/keywords.md").read_text(encoding="utf-8")
-    return sorted(found | set(re.findall(r"^#+ `?(\*[A-Z_0-9]+)", text, re.MULTILINE)))
+    return sorted(found | set(re.findall(r"^#+ `?(\*[A-Z_0-9-]+)", text, re.MULTILINE)))
 
 
 class Mutator:

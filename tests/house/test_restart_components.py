@@ -13,7 +13,8 @@ KEPT = {
         "contacts": "kept one by one", "rigids": "kept one by one", "walls": "kept one by one"}),
     "rigid_state_t": ("state/rigid_state.f90", "output/restart_state.f90", "rigid%", {}),
     "wall_state_t": ("state/wall_state.f90", "output/restart_state.f90", "wall%", {}),
-    "block_state_t": ("state/block_state.f90", "output/restart_state.f90", "elements%", {}),
+    "block_state_t": ("state/block_state.f90", "output/restart_state.f90", "elements%", {
+        "n_failed": "counted in each step"}),
     "contact_state_t": ("state/contact_state.f90", "output/restart_contact.f90", "contact%", {
         "scratch": "nothing in it lasts to the next step"}),
     "contact_watch_t": ("state/contact_watch.f90", "output/restart_contact.f90", "watch%", {
@@ -47,7 +48,7 @@ KEPT = {
         "writes": "set in each cycle", "finished": "not when a file is written",
         "last": "found again", "plots": "of the run that was asked", "due": "set in each cycle",
         "leap": "made in each cycle", "sums": "formed in each cycle",
-        "checks": "filled in each cycle", "steps": "kept as step_plan_t",
+        "checks": "filled in each cycle", "failures": "of each log, counted anew", "steps": "kept as step_plan_t",
         "timed_motions": "from the deck", "active": "asked anew in the first cycle", "velocity": "made in each cycle",
         "displacement": "made in each cycle", "reason": "of each run", "error": "of each run"}),
     "implicit_memory_t": ("solve/implicit/implicit_memory.f90", "solve/implicit/implicit_memory.f90", "", {

@@ -131,6 +131,19 @@ def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
         assert sorted(path.name for path in rest.glob("job.dump*")) == dumps[thread - 1:]
 
 
+@pytest.mark.parametrize("is_round", [False, True])
+def test_assumed_strain_goes_on_to_the_same_bits(slideline, tmp_path, is_round):
+    deck = struck(4)
+    deck.lines[deck.lines.index("*SECTION_SHELL") + 1] = "1,15" if is_round else "1,13"
+    run_whole(slideline, deck.hourglass(6, 1.0), dump=23)
+    whole = tmp_path / "whole"
+    assert (whole / "job.log").read_text().count("assumed strain hourglass control") == 2
+    assert numbers(whole / "job.glstat.csv", "hourglass")[-1] > 0.0
+    rest = part_of(whole, tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
+    go_on(slideline, rest / "job.dump01.h5", "ncpu=2", "perthread=1")
+    assert_same(whole, rest)
+
+
 def test_file_before_the_last_step(slideline, tmp_path):
     """CYCL 0 asks for it alone; a run of one step begins anew from it."""
     for name, dt, time, cycle in (("a", 0.25, 0.75, 3), ("b", 1.0, 0.0, 0)):

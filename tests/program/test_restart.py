@@ -114,10 +114,10 @@ def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
     assert arrays(whole / last, *groups) == arrays(rest / last, *groups)
 
 
-def everything():
+def everything(form=4):
     """Loads, damping, motion that starts and ends, points, hourglass memory, a varying interval."""
     deck = Deck("everything")
-    deck.control(0.03).hourglass(4, 0.05)
+    deck.control(0.03).hourglass(form, 0.05)
     deck.part(1, points=4).elastic(1000.0, 1.0e6, 0.3, 1)
     deck.part(2, section=2).plastic(1000.0, 1.0e6, 0.3, 1.0e3, 1.0e5, 0.5, 2)
     deck.add("*CONTROL_CONTACT", (0.1,), (0, 0, 0, 0, 0.0, 0, 2))  # springs limit the step
@@ -143,7 +143,7 @@ def longer_drop():
 
 
 def test_any_thread_counts(slideline, tmp_path):
-    for deck, name, cycles in ((everything(), "e", 40), (longer_drop(), "l", 60)):
+    for deck, name, cycles in ((everything(), "e", 40), (everything(6), "h", 40), (longer_drop(), "l", 60)):
         deck = with_files(deck, dump=cycles)
         assert slideline(f"d={name}1", "ncpu=1", deck=deck).returncode == 0
         assert slideline(f"d={name}3", "ncpu=3", "perthread=1", deck=deck).returncode == 0
@@ -248,7 +248,7 @@ def test_head_is_that_of_an_independent_program(slideline, tmp_path):
     assert slideline("d=a", deck=with_files(drop(), dump=100)).returncode == 0
     data = (tmp_path / "a" / "job.dump01.h5").read_bytes()
     lines = data[:HEAD].decode().splitlines()
-    assert lines[:3] == ["slideline restart 14", f"length {len(data) - HEAD}",
+    assert lines[:3] == ["slideline restart 15", f"length {len(data) - HEAD}",
                          f"checksum {zlib.crc32(data[HEAD:]):08X}"]
     with h5py.File(tmp_path / "a" / "job.dump01.h5") as stream:
         assert stream["state/cycle"][0] == 100

@@ -3,6 +3,8 @@
 import dataclasses
 import json
 import os
+import re
+import shutil
 import subprocess
 import time
 
@@ -280,6 +282,18 @@ def test_automatic_penalty_leaves_the_step_alone(slideline, tmp_path, rigid_die)
     assert "steps: the penalty follows the step (PUNIT 3, interface 1)" in notes
     assert finished.read_run(share).log.interfaces[1].slave_penalty > 0.0
     assert not any("steps" in note for note in advise(given)[2])
+
+
+def test_equation_of_state_leaves_the_step_alone(runs, tmp_path):
+    """Under pressure waves run faster than at the start: no limit follows from the mesh."""
+    shutil.copytree(runs["all"], tmp_path / "run")
+    log = tmp_path / "run" / "run.log"
+    words, count = re.subn("(?m)^(material 1: .*)$", r"\1, equation of state 5 (K and c of the start)", log.read_text())
+    assert count == 1
+    log.write_text(words)
+    _, found, notes = advise(tmp_path / "run")
+    assert "short steps" in topics(runs["all"]) and "short steps" not in {item.topic for item in found}
+    assert "steps: the wave speed follows the equation of state (material 1)" in notes
 
 
 def test_unknown_limits_have_a_reason(runs):

@@ -16,7 +16,7 @@ import keyword_pages
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)\s]+)\)")
 NAMED_PAGE = re.compile(r"(?<!\[)`((?:[\w.]+/)*\w+\.md)`(?!\])")
-NAMED_KEYWORD = re.compile(r"(?<!\[)`\*([A-Z0-9_]+)`(?!\])")
+NAMED_KEYWORD = re.compile(r"(?<!\[)`\*([A-Z0-9_-]+)`(?!\])")
 FORTRAN = """# Fortran interface
 
 [architecture.md](architecture.md) explains the layers. Every module, type and procedure that other modules may use, with arguments and units:

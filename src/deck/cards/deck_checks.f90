@@ -10,7 +10,7 @@ module deck_checks_m
   use deck_values_m, only : integer_of, real_of
   implicit none
   private
-  public :: refuse_negative, refuse_outside, require_id, take_life
+  public :: refuse_negative, refuse_large, refuse_outside, require_id, take_life
 
 contains
 
@@ -57,6 +57,18 @@ contains
     if (card%r(k) < 0.0_wp .or. card%i(k) < 0) call report_field(deck, cursor, card, k, &
       'is negative')
   end subroutine refuse_negative
+
+  !> A number whose size is beyond what its place can mean.
+  subroutine refuse_large(deck, cursor, card, name, most)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    character(*), intent(in) :: name
+    real(wp), intent(in) :: most
+
+    if (abs(real_of(card, name)) > most) call report_field(deck, cursor, card, name, &
+      'is out of reach (at most '//to_text(most)//' by size)')
+  end subroutine refuse_large
 
   !> A whole number that is below the least or above the most.
   subroutine refuse_outside(deck, cursor, card, name, least, most, message)

@@ -8,11 +8,15 @@ module deck_eos_m
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_values_m, only : integer_of, real_of, reals_of, is_bad
-  use deck_checks_m, only : require_id, refuse_negative
+  use deck_checks_m, only : require_id, refuse_large, refuse_negative
   use deck_raw_m, only : raw_t
   implicit none
   private
   public :: read_linear_polynomial, read_gruneisen
+
+  !> Largest pressure and energy, speed, and pure number that constants may be: below them squares
+  !> and cubes stay numbers in any units, and no material is anywhere near.
+  real(wp), parameter :: most_pressure = 1.0e30_wp, most_speed = 1.0e12_wp, most_number = 100.0_wp
 
 contains
 
@@ -25,19 +29,18 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card, start
     type(eos_t) :: eos
+    integer :: k
 
-    call open_cursor(deck, i_block, cursor)
-    call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
-    call require_id(deck, cursor, card, 'EOSID')
+    call read_cards(deck, parameters, i_block, cursor, card, start)
+    do k = 0, 6
+      call refuse_large(deck, cursor, card, 'C'//achar(iachar('0') + k), merge(most_pressure, &
+        most_number, k < 4))
+    end do
     eos%kind = eos_linear_polynomial
-    eos%id = integer_of(card, 'EOSID')
     eos%c = reals_of(card, 'C0', 'C6')
-    call next_card(deck, parameters, cursor, 2, start)
     eos%energy = real_of(start, 'E0')
-    call check_start(deck, cursor, start)
-    call append_eos(raw, eos, card)
-    call check_rest(deck, cursor)
+    call refuse_large(deck, cursor, start, 'E0', most_pressure)
+    call append_eos(deck, cursor, card, eos, raw)
   end subroutine read_linear_polynomial
 
   !> *EOS_GRUNEISEN.
@@ -49,46 +52,58 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card, start
     type(eos_t) :: eos
+    character(5), parameter :: numbers(5) = [character(5) :: 'S1', 'S2', 'S3', 'GAMAO', 'A']
+    integer :: k
 
-    call open_cursor(deck, i_block, cursor)
-    call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
-    call require_id(deck, cursor, card, 'EOSID')
+    call read_cards(deck, parameters, i_block, cursor, card, start)
     if (.not. real_of(card, 'C') > 0.0_wp) call report_field(deck, cursor, card, 'C', &
       'is not a speed (more than 0): shocks of no strength run with it')
+    call refuse_large(deck, cursor, card, 'C', most_speed)
     call refuse_negative(deck, cursor, card, 'GAMAO')
+    do k = 1, size(numbers)
+      call refuse_large(deck, cursor, card, trim(numbers(k)), most_number)
+    end do
+    call refuse_large(deck, cursor, card, 'E0', most_pressure)
     eos%kind = eos_gruneisen
-    eos%id = integer_of(card, 'EOSID')
     eos%speed = real_of(card, 'C')
     eos%s = reals_of(card, 'S1', 'S3')
     eos%gamma = real_of(card, 'GAMAO')
     eos%correction = real_of(card, 'A')
     eos%energy = real_of(card, 'E0')
-    call next_card(deck, parameters, cursor, 2, start)
-    call check_start(deck, cursor, start)
-    call append_eos(raw, eos, card)
-    call check_rest(deck, cursor)
+    call append_eos(deck, cursor, card, eos, raw)
   end subroutine read_gruneisen
 
-  !> V0: bodies start with the density of their material.
-  subroutine check_start(deck, cursor, card)
+  !> The two cards that both have: EOSID on the first and V0 on the second. Bodies start with the
+  !> density of their material.
+  subroutine read_cards(deck, parameters, i_block, cursor, card, start)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(cursor_t), intent(out) :: cursor
+    type(card_t), intent(out) :: card, start
 
-    if (abs(real_of(card, 'V0')) > 0.0_wp .and. abs(real_of(card, 'V0') - 1.0_wp) > 0.0_wp) &
-      call report_field(deck, cursor, card, 'V0', 'is a volume at the start that is not that of ' &
+    call open_cursor(deck, i_block, cursor)
+    call skip_title(deck, cursor)
+    call next_card(deck, parameters, cursor, 1, card)
+    call require_id(deck, cursor, card, 'EOSID')
+    call next_card(deck, parameters, cursor, 2, start)
+    if (abs(real_of(start, 'V0')) > 0.0_wp .and. abs(real_of(start, 'V0') - 1.0_wp) > 0.0_wp) &
+      call report_field(deck, cursor, start, 'V0', 'is a volume at the start that is not that of ' &
       //'the density RO, which this version does not have (0 or 1)')
-  end subroutine check_start
+  end subroutine read_cards
 
   !> One more equation of state.
-  subroutine append_eos(raw, eos, card)
-    type(raw_t), intent(inout) :: raw
-    type(eos_t), intent(in) :: eos
+  subroutine append_eos(deck, cursor, card, eos, raw)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(inout) :: cursor
     type(card_t), intent(in) :: card
+    type(eos_t), intent(inout) :: eos
+    type(raw_t), intent(inout) :: raw
 
+    call check_rest(deck, cursor)
     if (is_bad(card, 'EOSID')) raw%lost%equations = .true.
     if (is_bad(card, 'EOSID')) return
+    eos%id = integer_of(card, 'EOSID')
     raw%equations = [raw%equations, eos]
     raw%equation_line = [raw%equation_line, card%line]
   end subroutine append_eos

@@ -5,10 +5,12 @@ module deck_johnson_cook_m
   use johnson_cook_m, only : johnson_cook_t
   use parts_m, only : material_t, law_johnson_cook, law_hot_johnson_cook, spall_pressure, &
     spall_stress
-  use deck_lines_m, only : deck_t
+  use log_m, only : to_text
+  use deck_lines_m, only : deck_t, place_t
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field, &
+    warn_of_field
   use deck_values_m, only : real_of, reals_of
   use deck_checks_m, only : refuse_negative
   use deck_material_m, only : elastic_constants, append_material, check_shear, take_cutoff, &
@@ -17,6 +19,9 @@ module deck_johnson_cook_m
   implicit none
   private
   public :: read_johnson_cook, read_simplified_johnson_cook
+
+  !> How far G may be off E/(2 (1 + PR)) without a word: decks give three digits.
+  real(wp), parameter :: same_shear = 0.01_wp
 
 contains
 
@@ -96,6 +101,11 @@ contains
       deck, cursor, card, 'PR', 'is not a Poisson''s ratio (more than -1 and less than 0.5)')
     material%needs_eos = .not. real_of(card, 'E') > 0.0_wp
     if (any(card%bad) .or. material%needs_eos) return
+    associate (shear => real_of(card, 'E')/(2.0_wp*(1.0_wp + real_of(card, 'PR'))))
+      if (abs(shear - material%shear) > same_shear*material%shear) call warn_of_field(deck, &
+        place_t(card%line, 1, 'G'), 'is not E/(2 (1 + PR)) = '//to_text(shear)//': the deviator ' &
+        //'goes with G; E and PR give the bulk modulus where there is no equation of state')
+    end associate
     material%bulk = real_of(card, 'E')/(3.0_wp*(1.0_wp - 2.0_wp*real_of(card, 'PR')))
   end subroutine take_bulk
 
@@ -183,7 +193,12 @@ contains
     if (all(abs(kind - [1.0_wp, 2.0_wp, 3.0_wp]) > 0.0_wp)) call report_field(deck, cursor, card, &
       'SPALL', 'is not 1 (least pressure), 2 (largest stress) or 3 (largest tension)')
     material%spall = spall_pressure
-    if (real_of(card, 'PC') < 0.0_wp) material%spall = nint(kind)
+    if (real_of(card, 'PC') < 0.0_wp) then
+      material%spall = nint(kind)
+    else if (abs(kind - spall_stress) > 0.0_wp) then
+      call warn_of_field(deck, place_t(card%line, 3, 'SPALL'), 'has no effect: PC is 0, so that ' &
+        //'nothing breaks by tension')
+    end if
   end subroutine take_spall
 
 end module deck_johnson_cook_m

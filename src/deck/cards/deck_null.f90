@@ -8,7 +8,7 @@ module deck_null_m
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_values_m, only : integer_of, real_of
-  use deck_checks_m, only : require_id, refuse_negative
+  use deck_checks_m, only : require_id, refuse_negative, refuse_large
   use deck_material_m, only : append_material, take_cutoff
   use deck_raw_m, only : raw_t
   implicit none
@@ -34,6 +34,7 @@ contains
     if (real_of(card, 'RO') <= 0.0_wp .or. real_of(card, 'RO') > 1.0e30_wp) call report_field( &
       deck, cursor, card, 'RO', 'is not a density (more than 0, up to 1e30)')
     call refuse_negative(deck, cursor, card, 'MU')
+    call refuse_large(deck, cursor, card, 'MU', 1.0e30_wp)
     material%law = law_null
     material%takes_eos = .true.
     material%needs_eos = .true.

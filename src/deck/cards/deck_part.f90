@@ -5,7 +5,7 @@ module deck_part_m
   use text_m, only : read_integer, number_good
   use log_m, only : to_text
   use parts_m, only : section_t, hourglass_t, hourglass_viscous, hourglass_stiffness, &
-    form_one_point, form_full, form_round_one_point, form_round_full
+    hourglass_assumed, form_one_point, form_full, form_round_one_point, form_round_full
   use deck_lines_m, only : deck_t, line_text, line_error, line_warning, flag_blank
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
@@ -114,6 +114,7 @@ contains
       else
         raw%sections = [raw%sections, section]
         raw%section_line = [raw%section_line, card%line]
+        raw%points_open = [raw%points_open, integer_of(card, 'NIP') == 0]
       end if
       call next_card(deck, parameters, cursor, 2, thickness)
       call row_comes(deck, cursor, found)
@@ -197,12 +198,15 @@ contains
       continue
     case (4, 5)
       form = hourglass_stiffness
-    case (6, 7)
-      call report_field(deck, cursor, card, name, 'is an assumed strain form, which this ' &
-        //'version does not have (1 to 3 viscous, 4 and 5 stiffness)')
+    case (6)
+      form = hourglass_assumed
+    case (7)
+      call report_field(deck, cursor, card, name, 'is the total form of 6, whose forces pull ' &
+        //'back to the initial shape whatever has yielded since; this version has the form in ' &
+        //'increments (6), which is the same while the strains are small and elastic')
     case default
       call report_field(deck, cursor, card, name, &
-        'is not an hourglass form (1 to 3 viscous, 4 and 5 stiffness)')
+        'is not an hourglass form (1 to 3 viscous, 4 and 5 stiffness, 6 assumed strain)')
     end select
   end subroutine hourglass_form
 

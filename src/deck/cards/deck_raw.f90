@@ -15,7 +15,8 @@ module deck_raw_m
   implicit none
   private
   public :: raw_t, lost_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_contact_t, &
-    raw_wall_t, row_t, history_t, reserve_rows, append_row, reserve_velocities, append_velocity, &
+    raw_wall_t, raw_foam_t, row_t, history_t, reserve_rows, &
+    append_row, reserve_velocities, append_velocity, &
     reserve_nodes, reserve_elements, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
     row_velocity, row_velocity_node, row_velocity_generation, row_load_node, row_load_set, &
     row_pressure, row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid, &
@@ -71,6 +72,13 @@ module deck_raw_m
     real(wp) :: rate_constant = 0.0_wp, rate_power = 0.0_wp !! C, P
     logical :: is_viscoplastic = .false. !! VP = 1
   end type raw_hardening_t
+
+  !> Curve of a *MAT_CRUSHABLE_FOAM, until it is known.
+  type :: raw_foam_t
+    integer :: material = 0   !! index
+    integer :: curve = 0      !! LCID, user id
+    type(place_t) :: place
+  end type raw_foam_t
 
   !> One *DEFINE_TABLE: its values; its curves are those of the blocks that come next.
   type :: raw_table_t
@@ -140,11 +148,13 @@ module deck_raw_m
     type(raw_part_t), allocatable :: parts(:)
     type(section_t), allocatable :: sections(:)
     integer, allocatable :: section_line(:)
+    logical, allocatable :: points_open(:)     !! NIP of a section is blank or 0
     type(material_t), allocatable :: materials(:)
     integer, allocatable :: material_line(:)
     type(eos_t), allocatable :: equations(:)   !! of state
     integer, allocatable :: equation_line(:)
     type(raw_hardening_t), allocatable :: hardenings(:)
+    type(raw_foam_t), allocatable :: foams(:)
     type(raw_table_t), allocatable :: tables(:)
     type(hourglass_t), allocatable :: hourglasses(:)
     integer, allocatable :: hourglass_line(:)
@@ -185,11 +195,12 @@ contains
   subroutine start_raw(raw)
     type(raw_t), intent(out) :: raw
 
-    allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%materials(0), &
+    allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%points_open(0), &
+      raw%materials(0), &
       raw%equations(0), raw%equation_line(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
-      raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%tables(0), raw%contacts(0), &
-      raw%transducers(0), raw%walls(0), raw%rows(64), raw%node_velocities(0), &
+      raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%foams(0), raw%tables(0), &
+      raw%contacts(0), raw%transducers(0), raw%walls(0), raw%rows(64), raw%node_velocities(0), &
       raw%node_sets(16), raw%part_sets(16), &
       raw%segment_sets(16), raw%explicit_only(0))
     call reserve_nodes(raw, 0)

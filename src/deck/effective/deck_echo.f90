@@ -167,6 +167,10 @@ contains
       if (material%eos%id > 0) text = text//', equation of state '//to_text(material%eos%id) &
         //' (K and c of the start)'
     end if
+    if (allocated(material%rubber)) text = text//', rubber A '//to_text(material%rubber%a) &
+      //', B '//to_text(material%rubber%b)//' (moduli of small strain)'
+    if (allocated(material%crush)) text = text//', crushed along curve ' &
+      //to_text(material%crush%id)//', tension up to '//to_text(material%tension)
     if (material%cutoff > -huge(1.0_wp)) text = text//', cut-off of the pressure ' &
       //to_text(material%cutoff)
     if (material%failure_strain < huge(1.0_wp)) text = text//', failure at plastic strain ' &

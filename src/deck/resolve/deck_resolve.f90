@@ -16,9 +16,11 @@ module deck_resolve_m
     row_motion_set, row_velocity, row_velocity_generation, output_plot
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
   use deck_resolve_eos_m, only : resolve_equations, check_implicit_laws
+  use deck_resolve_foams_m, only : resolve_foams
   use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
+  use deck_resolve_points_m, only : settle_points
   use deck_resolve_rigids_m, only : resolve_rigids
   use deck_resolve_round_m, only : settle_form, settle_axis, mark_round_contacts, &
     check_loads_of_round, check_velocities_of_round
@@ -45,10 +47,6 @@ contains
           call line_error(deck, raw%parts(i)%line, 'part '//to_text(part%id)//' has bulk ' &
           //'viscosity (*CONTROL_BULK_VISCOSITY or *HOURGLASS), which the implicit method ' &
           //'does not have')
-        if (part%section == 0) cycle
-        if (.not. model%sections(part%section)%is_full) call line_error(deck, &
-          raw%section_line(part%section), 'part '//to_text(part%id)//' has one-point quads; the ' &
-          //'implicit method needs fully integrated ones (NIP 4)')
       end associate
     end do
     call check_no_rates(deck, raw, model)
@@ -132,7 +130,9 @@ contains
     call check_scheme(deck, raw%newmark_line, model%controls%implicit)
     call resolve_parts(deck, raw, maps, model)
     call settle_form(deck, raw, model)
+    call settle_points(deck, raw, model)
     call resolve_hardenings(deck, raw, maps, model)
+    call resolve_foams(deck, raw, maps, model)
     call resolve_equations(deck, raw, maps, model)
     call resolve_mesh(deck, raw, maps, model, sound)
     call settle_axis(deck, raw, model)

@@ -3,11 +3,12 @@
 module deck_resolve_eos_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use eos_m, only : eos_t, initial_stiffness, eos_gruneisen, eos_logarithmic
+  use eos_m, only : eos_t, initial_stiffness, initial_pressure, asymptote, eos_gruneisen, &
+    eos_logarithmic
   use model_m, only : model_t
   use parts_m, only : material_t
   use deck_cards_m, only : reject_field
-  use deck_lines_m, only : deck_t, place_t, line_error
+  use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_maps_m, only : maps_t, resolve_id
   use deck_raw_m, only : raw_t
   implicit none
@@ -52,6 +53,10 @@ contains
     do m = 1, size(taken)
       if (taken(m) > 0) model%materials(m)%eos = raw%equations(taken(m))
       call settle_pressure(deck, raw%material_line(m), model%materials(m))
+    end do
+    do k = 1, size(raw%equations)
+      if (.not. any(taken == k)) call line_warning(deck, raw%equation_line(k), 'unused', &
+        'no part names equation of state '//to_text(raw%equations(k)%id)//' (EOSID of *PART)')
     end do
   end subroutine resolve_equations
 
@@ -103,12 +108,16 @@ contains
 
     if (material%is_rigid) return
     if (allocated(material%eos)) then
-      if (material%eos%kind == eos_gruneisen) material%eos%stiffness = material%density &
-        *material%eos%speed**2
+      if (material%eos%kind == eos_gruneisen) then
+        material%eos%stiffness = material%density*material%eos%speed**2
+        material%eos%least_ratio = asymptote(material%eos%s)
+      end if
       material%bulk = initial_stiffness(material%eos)
       if (.not. material%bulk > 0.0_wp) call line_error(deck, line, 'material ' &
         //to_text(material%id)//' is not stiff under pressure at the start: the bulk modulus of ' &
         //'its equation of state '//to_text(material%eos%id)//' is '//to_text(material%bulk))
+      if (material%bulk > 0.0_wp) material%eos%datum = max(0.0_wp, &
+        0.5_wp*initial_pressure(material%eos)**2/material%bulk - material%eos%energy)
     else if (material%failure_strain < huge(1.0_wp) .or. material%takes_eos) then
       if (.not. material%bulk > 0.0_wp) return
       material%eos = eos_t(kind=eos_logarithmic, stiffness=material%bulk)
@@ -137,6 +146,10 @@ contains
           reason = 'a flow stress of Johnson and Cook'
         else if (material%failure_strain < huge(1.0_wp)) then
           reason = 'a plastic strain at failure'
+        else if (allocated(material%rubber)) then
+          cycle
+        else if (allocated(material%crush)) then
+          reason = 'the law of a crushable foam'
         else if (allocated(material%eos) .or. material%needs_eos) then
           reason = 'an equation of state'
         else

@@ -124,6 +124,12 @@ contains
       name = 'MAT_ELASTIC_PLASTIC_HYDRO'
     case ('MAT_015')
       name = 'MAT_JOHNSON_COOK'
+    case ('MAT_007')
+      name = 'MAT_BLATZ-KO_RUBBER'
+    case ('MAT_027')
+      name = 'MAT_MOONEY-RIVLIN_RUBBER'
+    case ('MAT_063')
+      name = 'MAT_CRUSHABLE_FOAM'
     case ('MAT_098')
       name = 'MAT_SIMPLIFIED_JOHNSON_COOK'
     case ('EOS_001')
@@ -296,6 +302,16 @@ contains
     case ('RATEOP', 'C2_P_XNP_D', 'K')
       text = 'asks for another form of the law of Johnson and Cook, which this version does not ' &
         //'have; leave it 0'
+    case ('SGL', 'SW', 'ST')
+      text = 'asks for constants that fit a test, which this version does not have; leave it 0 ' &
+        //'and give A and B'
+    case ('REF')
+      text = 'asks for stress from another reference shape, which this version does not have; ' &
+        //'leave it 0'
+    case ('DAMP')
+      text = 'asks for a rate effect of foams, which this version does not have; leave it 0'
+    case ('MODEL')
+      text = 'asks for another law of foams, which this version does not have; leave it 0'
     case ('N5', 'N6', 'N7', 'N8')
       text = 'is a mid-side node; elements and edges have corner nodes only here'
     case ('BOXID')

@@ -108,6 +108,13 @@ module deck_schema_tables_m
     'MAT_SIMPLIFIED_JOHNSON_COOK t', &
     ' MID:i RO:f E:f PR:f VP:f', &
     ' A:f B:f N:f C:f PSFAIL:f=1e17 SIGMAX:f=1e28 SIGSAT:f=1e28 EPSO:f=1', &
+    'MAT_MOONEY-RIVLIN_RUBBER t', &
+    ' MID:i RO:f PR:f A:f B:f REF:fr', &
+    ' SGL:fr SW:fr ST:fr LCID:ir', &
+    'MAT_BLATZ-KO_RUBBER t', &
+    ' MID:i RO:f G:f REF:fr', &
+    'MAT_CRUSHABLE_FOAM t', &
+    ' MID:i RO:f E:f PR:f LCID:i TSC:f DAMP:fr MODEL:ir', &
     'EOS_LINEAR_POLYNOMIAL t', &
     ' EOSID:i C0:f C1:f C2:f C3:f C4:f C5:f C6:f', &
     ' E0:f V0:f=1', &

@@ -154,7 +154,7 @@ contains
       call move_alloc(longer, deck%blocks)
     end if
     deck%n_block = deck%n_block + 1
-    n_name = verify(upper_case(text)//' ', 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_') - 1
+    n_name = length_of_name(upper_case(text)//' ')
     associate (block => deck%blocks(deck%n_block))
       block%given = upper_case(text(:n_name))
       block%name = block%given
@@ -176,6 +176,22 @@ contains
       end if
     end associate
   end subroutine open_block
+
+  !> Characters of the keyword at the start of a line that ends with a blank. A hyphen between two
+  !> letters is part of a name (MAT_BLATZ-KO_RUBBER); behind a name it marks its layout.
+  pure function length_of_name(text) result(n)
+    character(*), intent(in) :: text !! upper case
+    integer :: n
+    character(*), parameter :: letters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZ'
+
+    n = 0
+    do
+      n = n + verify(text(n + 1:), letters//'0123456789_') - 1
+      if (n == 0 .or. text(n + 1:n + 1) /= '-') return
+      if (verify(text(n:n), letters) > 0 .or. verify(text(n + 2:n + 2), letters) > 0) return
+      n = n + 1
+    end do
+  end function length_of_name
 
   !> Options of a *KEYWORD line: LONG=Y|S|K|N and I10=Y; the others say nothing about the deck.
   pure subroutine file_options(rest, layout)

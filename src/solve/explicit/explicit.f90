@@ -12,6 +12,7 @@ module explicit_m
   use element_dispatch_m, only : add_tile_forces
   use errors_m, only : error_t
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
+  use failure_watch_m, only : report_failures
   use health_m, only : check_tile, judge_energies, judge_ratio
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -55,6 +56,7 @@ contains
     if (allocated(cycle%error)) call move_alloc(cycle%error, error)
     call report_contact_end(model, state, monitor%log)
     call report_contact_energies(model, state, monitor%log)
+    call report_failures(model, state, cycle%failures, monitor%log)
     if (allocated(error)) return
     call judge_energies(monitor%snapshot%energies, monitor%log)
     call judge_ratio(monitor%snapshot%energies, monitor%log)

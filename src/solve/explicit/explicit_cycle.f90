@@ -11,6 +11,7 @@ module explicit_cycle_m
   use cycle_loads_m, only : apply_loads
   use energies_m, only : energy_ratio, total_energy
   use errors_m, only : error_t
+  use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
   use explicit_memory_m, only : write_restarts, take_up_steps
   use contacts_m, only : told_as
   use explicit_prescribed_m, only : find_prescribed_velocities, start_prescribed, &
@@ -55,6 +56,7 @@ module explicit_cycle_m
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
     type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
                                                  !! come to
+    type(failure_watch_t) :: failures !! points that have failed, as far as the log tells of them
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
     real(wp) :: ratio = 1.0_wp       !! last energy ratio known
     real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
@@ -81,6 +83,7 @@ contains
     allocate (cycle%checks(size(model%layout%tiles)))
     cycle%reason = 'termination time reached'
     cycle%steps = start_steps(model, state%time)
+    call start_watch(monitor%restarts%goes_on, cycle%failures)
     if (monitor%restarts%goes_on) call take_up_steps(model, state, monitor%restarts%source, &
       cycle%steps, cycle%damping, cycle%ratio, cycle%error)
   end subroutine start_cycles
@@ -253,6 +256,8 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
     real(wp) :: before
 
+    if (allocated(state%elements%n_failed)) call follow_failures(model, state, cycle%failures, &
+      monitor%log)
     if (cycle%finished) return
     if (.not. cycle%writes) then
       call count_sums(cycle%sums, state%external_work, state%damping_work)

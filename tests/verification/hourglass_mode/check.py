@@ -18,13 +18,13 @@ WIDTH, HEIGHT = 2.0, 1.0
 AREA = WIDTH * HEIGHT
 
 
-def mode_deck(form, coefficient, speed, dt, end_time, n_x=1, n_y=1, dof=1, scale=None):
+def mode_deck(form, coefficient, speed, dt, end_time, n_x=1, n_y=1, dof=1, scale=None, poisson=POISSON):
     """n_x by n_y rectangles, each in the hourglass pattern, node (0, 0) with +speed; `scale` (TSSFAC): `dt` is
     the interval of the output alone."""
     coordinates, quads = grid(n_x, n_y, WIDTH * n_x, HEIGHT * n_y)
     deck = Deck("hourglass mode")
     deck.control(end_time, dt=None if scale else dt, scale=scale).hourglass(form, coefficient)
-    deck.part().elastic(RHO, YOUNG, POISSON)
+    deck.part().elastic(RHO, YOUNG, poisson)
     nodes = deck.mesh(coordinates, quads)
     signs = [(-1) ** (k % (n_x + 1) + k // (n_x + 1)) for k in range(len(nodes))]
     deck.add("*INITIAL_VELOCITY_NODE",
@@ -90,18 +90,34 @@ def check_stiffness(run):
                np.pi / (np.mean(np.diff(crossings)) * omega))
 
 
+def check_assumed(run):
+    """QM 1.0: the frequencies of the elastic bending modes of one rectangle."""
+    for name, dof, side, coefficient in (("x", 1, WIDTH, 1.0), ("y", 2, HEIGHT, 0.1)):
+        omega = np.sqrt(coefficient * 4.0 * YOUNG / (1.0 - POISSON ** 2) / (3.0 * RHO * side ** 2))
+        dt = 0.05 / omega
+        theta = 2.0 * np.arcsin(0.5 * omega * dt)
+        result = run.program(mode_deck(6, coefficient, 1.0e-7, dt, 20.0 / omega, dof=dof))
+        history = result.node(1)
+        cycle = np.rint(history["time"] / dt)
+        run.check(f"assumed strain in {name}, QM {coefficient:g}: displacement", history["u" + name],
+                  1.0e-7 * dt * np.sin(cycle * theta) / np.sin(theta), 1e-5,
+                  source="4 QM E/(3 (1 - nu^2) rho side^2), central difference")
+        run.check(f"assumed strain in {name}: energy ratio", result.table("glstat")["energy_ratio"], 1.0,
+                  2e-3, "abs", "balance")
+
+
 def first_step(result):
     text = (result.folder / f"{result.job}.log").read_text()
     return float(re.search(r"first time step ([^,]+),", text).group(1))
 
 
-def eigen_limit(coordinates, quads, coefficient):
+def eigen_limit(coordinates, quads, coefficient, assumed=False):
     """2/omega of the largest eigenvalue of M^-1 K of a free mesh."""
     stiffness = np.zeros((2 * len(coordinates),) * 2)
     for quad in np.asarray(quads):
         dofs = np.stack([2 * quad, 2 * quad + 1], axis=1).ravel()
         stiffness[np.ix_(dofs, dofs)] += quad_stiffness(coordinates[quad], YOUNG, POISSON,
-                                                        coefficient)[0]
+                                                        coefficient, assumed)[0]
     root = 1.0 / np.sqrt(np.repeat(lumped_mass(coordinates, quads, RHO), 2))
     return 2.0 / np.sqrt(np.linalg.eigvalsh(root[:, None] * stiffness * root)[-1])
 
@@ -142,11 +158,38 @@ def check_step(run):
                   "largest eigenvalue of M^-1 K")
 
 
+def check_assumed_step(run):
+    """QM 6 rules the step of rectangles; at nu = 0 the limit is sharp. QM 1 rules none."""
+    sound = np.sqrt(YOUNG / RHO)
+    limit = HEIGHT / sound * np.sqrt(3.0 / 6.0)
+    grown = []
+    for scale in (0.97, 1.03):
+        result = run.program(mode_deck(6, 6.0, 1.0e-9, 1.0e-6, 30.0 * limit, scale=scale, n_x=6, n_y=4,
+                                       dof=2, poisson=0.0))
+        run.check(f"assumed strain, QM 6: first step / (TSSFAC x limit), TSSFAC {scale:g}",
+                  first_step(result) / (scale * limit), 1.0, 1e-6, source="pattern of a rectangle")
+        grown.append(np.max(np.abs(result.node(1)["vy"])) / 1.0e-9)
+    run.check("assumed strain, QM 6: velocity just inside / at the start", grown[0], 10.0, 0.0, "max", "stable")
+    run.check("assumed strain, QM 6: velocity just outside / at the start", grown[1], 1.0e3, 0.0, "min",
+              "unstable: the limit is sharp")
+    coordinates, quads = distorted_patch()
+    steps = []
+    for coefficient in (0.1, 1.0, 8.0):
+        deck = Deck("distorted patch").control(1.0e-6, scale=1.0).hourglass(6, coefficient)
+        deck.part().elastic(RHO, YOUNG, POISSON).mesh(coordinates, quads)
+        steps.append(first_step(run.program(deck.output(glstat=1.0))))
+        run.check(f"assumed strain, distorted patch, QM {coefficient:g}: limit by eigenvalue / step",
+                  eigen_limit(coordinates, quads, coefficient, True) / steps[-1], 1.0, 0.0, "min",
+                  "largest eigenvalue of M^-1 K")
+    run.check("assumed strain, distorted patch: step of QM 1 / of QM 0.1", steps[1] / steps[0], 1.0, 1e-12,
+              source="L/c of both")
+
+
 def check_linear_motion(run):
     """Rigid motion + uniform strain of a distorted patch: no hourglass work at all."""
     coordinates, quads = distorted_patch()
     rate = np.array([[0.1, 0.35], [-0.2, -0.15]])
-    for form in (1, 4):
+    for form in (1, 4, 6):
         deck = Deck("linear velocity field")
         deck.control(1.0, dt=0.002).hourglass(form, 0.1).part().elastic(RHO, YOUNG, POISSON)
         nodes = deck.mesh(coordinates, quads)
@@ -167,4 +210,6 @@ def check(run):
     check_viscous(run)
     check_stiffness(run)
     check_step(run)
+    check_assumed(run)
+    check_assumed_step(run)
     check_linear_motion(run)

@@ -152,6 +152,7 @@ def check_damage(run):
         fracture = ((d[0] + d[1] * np.exp(d[2] * mean[:-1] / np.maximum(q[1:], 1.0)))
                     * (1.0 + d[3] * np.log(np.maximum(1.0, rate / RATE))) * (1.0 + d[4] * rise[:-1] / (TM - TR)))
         run.check(f"damage{name}: sum of dp/eps_f", damage[1:n], np.cumsum(np.diff(p) / fracture)[:n - 1], 1e-9)
+        run.check(f"damage{name}: 1 once broken", damage[n:], 1.0, 0.0, "abs")
         run.check(f"damage{name}: no deviator once broken", q[n:], 0.0, 0.0, "abs")
         run.check(f"damage{name}: no tension once broken", mean[n + 1:], 0.0, 0.0, "max")
         run.true(f"damage{name}: tension before", mean[n - 1] > 0.0)

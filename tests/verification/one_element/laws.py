@@ -276,7 +276,8 @@ class JohnsonCook(WithPressure):
         growth, stress = new["growth"], mises(new["s"])
         if growth > 0.0 and self.damage is not None:
             # the mean stress of the start of the step: the pressure waits for the work of the deviator
-            new["damage"] += growth / self.failure_strain(new, self.rate(growth / step.dt, step), stress)
+            more = growth / self.failure_strain(new, self.rate(growth / step.dt, step), stress)
+            new["damage"] = min(1.0, new["damage"] + more)
         if growth > 0.0:
             new["temperature"] += stress * growth * step.middle / (self.rho * self.heat)
         if new["damage"] >= 1.0:

@@ -66,6 +66,7 @@ class RunLog:
 
     parts: dict[int, Part] = dataclasses.field(default_factory=dict)
     materials: dict[int, dict[str, float]] = dataclasses.field(default_factory=dict)
+    own_speeds: list[int] = dataclasses.field(default_factory=list)  # materials whose wave speed is that of the start alone
     interfaces: dict[int, Interface] = dataclasses.field(default_factory=dict)
     walls: dict[int, Wall] = dataclasses.field(default_factory=dict)
     driven: bool = False         # loads or prescribed motion
@@ -86,6 +87,8 @@ def read_log(text: str) -> RunLog:
         read_wall(log, line)
         if found := re.match(r"material (\d+): (.*)", line):
             log.materials[int(found[1])] = material_data(found[2])
+            if "(K and c of the start)" in line:
+                log.own_speeds.append(int(found[1]))
         elif found := re.match(r"conditions: \d+ fixed and (\d+) moved degrees of freedom, "
                                r"(\d+) nodal loads, (\d+) pressure edges, (\d+) body loads", line):
             log.driven = any(int(count) for count in found.groups())

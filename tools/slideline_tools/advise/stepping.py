@@ -40,6 +40,8 @@ def unknown_limits(run) -> str:
         return "no states of the run"
     if run.log.element_limit <= 0.0:
         return "the log has no smallest L/c of the elements"
+    if moving := [str(number) for number in run.log.own_speeds]:
+        return f"the wave speed follows the equation of state (material {', '.join(moving)})"
     if unread := [str(one.id) for one in interfaces if not one.slave_penalty > 0.0]:
         return f"the log has no penalty of interface {', '.join(unread)}"
     if len(read_surfaces(run)) < len(run.log.interfaces):

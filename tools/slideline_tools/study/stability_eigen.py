@@ -2,15 +2,16 @@
 """The largest stable step of a mesh at rest: 2/omega of M^-1 (elements + contact springs).
 
 Written from the equations (doc/theory/elements.md), not from the program: one-point quads in plane
-strain with stiffness hourglass control, lumped mass, all dense.
+strain with stiffness hourglass control or assumed strain, lumped mass, all dense.
 """
 import numpy as np
 
 SIGNS = np.array([1.0, -1.0, 1.0, -1.0])
 
 
-def quad_stiffness(x, young, poisson, hourglass):
-    """Stiffness (8, 8) of one quad (x: 4 corners, counter-clockwise), order x1 y1 x2 y2 ..."""
+def quad_stiffness(x, young, poisson, hourglass, assumed=False):
+    """Stiffness (8, 8) of one quad (x: 4 corners, counter-clockwise), order x1 y1 x2 y2 ...
+    hourglass: its coefficient; assumed: by assumed strain (IHQ 6)."""
     diagonals = x[2] - x[0], x[3] - x[1]
     area = 0.5 * (diagonals[0][0] * diagonals[1][1] - diagonals[0][1] * diagonals[1][0])
     bx = 0.5 * np.array([x[1, 1] - x[3, 1], x[2, 1] - x[0, 1], x[3, 1] - x[1, 1], x[0, 1] - x[2, 1]])
@@ -23,11 +24,30 @@ def quad_stiffness(x, young, poisson, hourglass):
     strain[0, 0::2], strain[1, 1::2] = bx, by
     strain[2, 0::2], strain[2, 1::2] = by, bx
     gamma = SIGNS - (bx * (SIGNS @ x[:, 0]) + by * (SIGNS @ x[:, 1])) / area
-    amplitude = 0.25 * hourglass * (lame + 2.0 * shear) * (bx @ bx + by @ by) / area
-    stiffness = strain.T @ law @ strain / area
-    for k in (0, 1):
-        stiffness[k::2, k::2] += amplitude * np.outer(gamma, gamma)
+    amplitude = 0.25 * hourglass * (lame + 2.0 * shear) * (bx @ bx + by @ by) / area * np.eye(2)
+    if assumed:
+        amplitude = hourglass * assumed_amplitude(x, young, poisson)
+    stiffness = strain.T @ law @ strain / area + np.kron(np.outer(gamma, gamma), amplitude)
     return stiffness, area
+
+
+def assumed_amplitude(x, young, poisson):
+    """Hourglass force over gamma.u (2, 2) of the optimal bending field: the energy of the strains
+    (a_x q_x - n a_y q_y, a_y q_y - n a_x q_x), n = nu/(1 - nu), a the gradient of xi eta in the frame of the
+    polar decomposition, q = gamma.u/4, over the parallelogram of the mean Jacobian."""
+    jacobian = 0.25 * np.array([[-1, 1, 1, -1], [-1, -1, 1, 1]]) @ x
+    left, _, right = np.linalg.svd(jacobian.T)
+    frame = left @ right
+    lateral = poisson / (1.0 - poisson)
+    law = young / ((1.0 + poisson) * (1.0 - 2.0 * poisson)) * np.array(
+        [[1.0 - poisson, poisson], [poisson, 1.0 - poisson]])
+    amplitude = np.zeros((2, 2))
+    for xi in (-np.sqrt(1 / 3), np.sqrt(1 / 3)):
+        for eta in (-np.sqrt(1 / 3), np.sqrt(1 / 3)):
+            slope = frame.T @ np.linalg.solve(jacobian, (eta, xi))
+            strain = np.array([[slope[0], -lateral * slope[1]], [-lateral * slope[0], slope[1]]])
+            amplitude += np.linalg.det(jacobian) * strain.T @ law @ strain
+    return frame @ amplitude @ frame.T / 16.0
 
 
 class Model:

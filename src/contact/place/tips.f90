@@ -1,0 +1,178 @@
+! SPDX-License-Identifier: MIT
+!> Averages over a slave segment at a sharp outward corner (types 6 and 7): the corner comes first,
+!> and its flanks, which are still open, would hold it off the sum. There the points of the segment
+!> give way to its two nodes (doc/theory/contact.md, section 5.6).
+module tips_m
+  use contact_state_m, only : contact_state_t, contact_points_t, tracking_t, make_room, &
+    is_touching, is_behind
+  use contacts_m, only : contact_t, is_tied
+  use foot_m, only : foot_t, near_foot
+  use geometry_m, only : separation
+  use kinds_m, only : wp
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: has_tips, find_tips, sharpen_tips, belongs_to
+
+  !> Cosines of the turn at a node up to which nothing changes, and from which on all gives way.
+  real(wp), parameter :: gentle = 0.96592582628906829_wp, sharp = 0.90630778703664996_wp
+
+contains
+
+  !> Whether corners count as such: those of whole outlines, but in ties.
+  pure function has_tips(contact, averages, memory)
+    type(contact_t), intent(in) :: contact
+    logical, intent(in) :: averages !! the type forms pressures at slave nodes
+    type(contact_state_t), intent(in) :: memory
+    logical :: has_tips
+
+    has_tips = averages .and. memory%facing%is_used .and. .not. is_tied(contact)
+  end function has_tips
+
+  !> Let the points of segments next to sharp corners give way to their nodes.
+  pure subroutine sharpen_tips(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: part(2)
+    integer :: first, last, n
+
+    n = memory%points%n
+    last = 0
+    do while (last < n)
+      first = last + 1
+      last = first
+      associate (ends => memory%points%slave_nodes)
+        do while (last < n)
+          if (ends(1, last + 1) /= ends(1, first) .or. ends(2, last + 1) /= ends(2, first)) exit
+          last = last + 1
+        end do
+        part = maxval(memory%scratch%nodal(1, ends(:, first)))
+      end associate
+      if (part(1) > 0.0_wp) call give_way(contact, first, last, part, memory)
+    end do
+  end subroutine sharpen_tips
+
+  !> Whether a node is an end of the segment that it stands upon, where a surface folds.
+  pure function belongs_to(nodes, node, master_nodes) result(belongs)
+    integer, intent(in), contiguous :: nodes(:) !! of the mesh, by local number
+    integer, intent(in) :: node, master_nodes(2) !! local numbers
+    logical :: belongs
+
+    belongs = any(nodes(master_nodes) == nodes(node))
+  end function belongs_to
+
+  !> How much gives way at each slave node, 0 to 1: kept where averages come later. In a trial of an
+  !> implicit step that of the start of the step, so that it is no part of the tangent.
+  pure subroutine find_tips(contact, averages, memory, motion)
+    type(contact_t), intent(in) :: contact
+    logical, intent(in) :: averages !! the type forms pressures at slave nodes
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(in), contiguous, optional :: motion(:, :) !! rows 3, 4: u of the step
+    real(wp), allocatable :: places(:, :)
+    integer :: node
+
+    if (.not. has_tips(contact, averages, memory)) return
+    if (.not. present(motion)) then
+      do node = 1, memory%n_slave
+        memory%scratch%nodal(1, node) = sharpness(contact%slave, memory%places, node)
+      end do
+      return
+    end if
+    allocate (places(4, memory%n_slave))
+    do node = 1, memory%n_slave
+      places(1:2, node) = memory%places(1:2, node)
+      places(3:4, node) = memory%places(3:4, node) - motion(3:4, memory%nodes(node))
+    end do
+    do node = 1, memory%n_slave
+      memory%scratch%nodal(1, node) = sharpness(contact%slave, places, node)
+    end do
+  end subroutine find_tips
+
+  !> The same at one node.
+  pure function sharpness(slave, places, node) result(part)
+    type(surface_t), intent(in) :: slave
+    real(wp), intent(in), contiguous :: places(:, :)
+    integer, intent(in) :: node
+    real(wp) :: part
+    real(wp) :: before(2), behind(2), cosine
+
+    part = 0.0_wp
+    if (slave%incoming(node) == 0 .or. slave%outgoing(node) == 0) return
+    before = separation(places(:, node), places(:, slave%segments(1, slave%incoming(node))))
+    behind = separation(places(:, slave%segments(2, slave%outgoing(node))), places(:, node))
+    if (.not. before(1)*behind(2) - before(2)*behind(1) > 0.0_wp) return
+    cosine = dot_product(before, behind)/sqrt(sum(before**2)*sum(behind**2))
+    part = min(1.0_wp, max(0.0_wp, (gentle - cosine)/(gentle - sharp)))
+    part = part**2*(3.0_wp - 2.0_wp*part)
+  end function sharpness
+
+  !> Points at the nodes of a segment take a part of the areas of its points, as these weigh there,
+  !> as far as the nodes have a foot.
+  pure subroutine give_way(contact, first, last, part, memory)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: first, last !! points of the segment
+    real(wp), intent(inout) :: part(2) !! at either end
+    type(contact_state_t), intent(inout) :: memory
+    type(foot_t) :: feet(2)
+    real(wp) :: content(2)
+    integer :: k, p
+
+    do k = 1, 2
+      call find_foot(contact, memory, first, last, k, feet(k))
+      if (feet(k)%is_on) feet(k)%is_on = .not. belongs_to(memory%nodes, &
+        memory%points%slave_nodes(k, first), memory%n_slave &
+        + contact%master%segments(:, feet(k)%segment))
+      if (.not. feet(k)%is_on) part(k) = 0.0_wp
+      content(k) = sum(memory%points%slave_weights(k, first:last)*memory%points%area(first:last))
+    end do
+    call make_room(memory%points, 2)
+    associate (points => memory%points)
+      do p = first, last
+        points%area(p) = points%area(p)*(1.0_wp - dot_product(part, points%slave_weights(:, p)))
+      end do
+      do k = 1, 2
+        if (.not. part(k) > 0.0_wp) cycle
+        p = points%n + 1
+        points%n = p
+        points%slave_nodes(:, p) = points%slave_nodes(:, first)
+        points%slave_weights(:, p) = 0.0_wp
+        points%slave_weights(k, p) = 1.0_wp
+        points%master_nodes(:, p) = memory%n_slave + contact%master%segments(:, feet(k)%segment)
+        points%master_weights(:, p) = [1.0_wp - feet(k)%xi, feet(k)%xi]
+        points%normal(:, p) = feet(k)%normal
+        points%gap(p) = feet(k)%gap
+        points%area(p) = part(k)*content(k)
+        points%stiffness(p) = points%stiffness(first)
+      end do
+    end associate
+  end subroutine give_way
+
+  !> Foot of an end of a segment: that which is followed, or from the nearest of its points on.
+  pure subroutine find_foot(contact, memory, first, last, k, foot)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: first, last, k
+    type(foot_t), intent(out) :: foot
+    integer :: node, nearest
+
+    node = memory%points%slave_nodes(k, first)
+    if (.not. allocated(memory%spots)) then
+      associate (tracking => memory%slave_tracking)
+        if (tracking%status(node) == is_behind) return
+        if (tracking%status(node) == is_touching) then
+          foot%segment = tracking%segment(node)
+          foot%is_on = .true.
+          foot%xi = tracking%xi(node)
+          foot%gap = tracking%gap(node)
+          foot%normal = tracking%normal(:, node)
+          return
+        end if
+      end associate
+    end if
+    nearest = first - 1 + maxloc(memory%points%slave_weights(k, first:last), 1)
+    foot = near_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
+      memory%places(:, node), contact%master%outgoing(memory%points%master_nodes(1, nearest) &
+      - memory%n_slave))
+  end subroutine find_foot
+
+end module tips_m

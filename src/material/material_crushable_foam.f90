@@ -1,0 +1,80 @@
+! SPDX-License-Identifier: MIT
+!> Crushable foam: an elastic step of the whole stress, whose principal values are then cut to the
+!> curve of yield stress against 1 - V/V0 in compression and to the cut-off in tension.
+module material_crushable_foam_m
+  use curves_m, only : curve_t
+  use kinds_m, only : wp
+  use layout_m, only : chunk_size
+  use parts_m, only : material_t
+  use stress_chunk_m, only : stress_chunk_t
+  implicit none
+  private
+  public :: update_crushable_foam
+
+  !> Share by which a volume may shrink in a step; the run ends before.
+  real(wp), parameter :: least = -1.0_wp + 1.0e-12_wp
+
+contains
+
+  !> Advance the stress of a chunk; the work of the deviator by the trapezoidal rule.
+  pure subroutine update_crushable_foam(material, chunk, mean)
+    type(material_t), intent(in) :: material
+    type(stress_chunk_t), intent(inout) :: chunk
+    real(wp), intent(inout) :: mean(chunk_size) !! stress of the point, start to end
+    real(wp) :: crush(chunk_size), third, growth, oxx, oyy, oxy, middle, root, half, xy, xx, yy, zz
+    integer :: i
+
+    call find_crush(material%crush, chunk%stretch, crush)
+    do i = 1, chunk_size
+      third = (1.0_wp/3.0_wp)*(chunk%dxx(i) + chunk%dyy(i))
+      ! ln(J1/J0) = 2 atanh((J1 - J0)/(J1 + J0)).
+      growth = 2.0_wp*atanh(max(least, (chunk%stretch(i) - chunk%former(i))/(2.0_wp &
+        + (chunk%stretch(i) + chunk%former(i)))))
+      oxx = chunk%sxx(i)
+      oyy = chunk%syy(i)
+      oxy = chunk%sxy(i)
+      xx = mean(i) + material%bulk*growth + oxx + 2.0_wp*material%shear*(chunk%dxx(i) - third)
+      yy = mean(i) + material%bulk*growth + oyy + 2.0_wp*material%shear*(chunk%dyy(i) - third)
+      zz = mean(i) + material%bulk*growth - (oxx + oyy) - 2.0_wp*material%shear*third
+      xy = oxy + 2.0_wp*material%shear*chunk%dxy(i)
+      ! Principal values are cut, their axes stay.
+      middle = 0.5_wp*(xx + yy)
+      half = 0.5_wp*(xx - yy)
+      root = sqrt(half*half + xy*xy)
+      xx = max(-crush(i), min(material%tension, middle + root))
+      yy = max(-crush(i), min(material%tension, middle - root))
+      zz = max(-crush(i), min(material%tension, zz))
+      middle = 0.5_wp*(xx + yy)
+      root = 0.5_wp*(xx - yy)/max(root, tiny(1.0_wp))
+      mean(i) = (xx + yy + zz)*(1.0_wp/3.0_wp)
+      chunk%sxx(i) = middle + root*half - mean(i)
+      chunk%syy(i) = middle - root*half - mean(i)
+      chunk%sxy(i) = root*xy
+      chunk%work(i) = 0.5_wp*((chunk%sxx(i) + oxx)*chunk%dxx(i) &
+        + (chunk%syy(i) + oyy)*chunk%dyy(i)) + (chunk%sxy(i) + oxy)*chunk%dxy(i)
+    end do
+    chunk%mean = mean
+    chunk%bulk = material%bulk
+    chunk%shear = material%shear
+  end subroutine update_crushable_foam
+
+  !> Yield stress of each slot: a polygon in 1 - V/V0, end values outside.
+  pure subroutine find_crush(curve, stretch, crush)
+    type(curve_t), intent(in) :: curve
+    real(wp), intent(in) :: stretch(chunk_size) !! V/V0 - 1
+    real(wp), intent(out) :: crush(chunk_size)
+    real(wp) :: slope, width
+    integer :: i, k
+
+    crush = curve%ordinate(1)
+    do k = 1, size(curve%abscissa) - 1
+      width = curve%abscissa(k + 1) - curve%abscissa(k)
+      slope = (curve%ordinate(k + 1) - curve%ordinate(k))/width
+      !$omp simd
+      do i = 1, chunk_size
+        crush(i) = crush(i) + slope*max(0.0_wp, min(width, -stretch(i) - curve%abscissa(k)))
+      end do
+    end do
+  end subroutine find_crush
+
+end module material_crushable_foam_m

@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What each material law costs: instructions and ns per element and step of the one-point routine, gather and forces included.
+
+usage: laws.py --build FOLDER [--kernel PROGRAM] [--rounds N] [--out FILE]
+
+`--build`: a build for x86-64-v3 with bench_kernel, whose instructions callgrind counts. Times are those of `--kernel` (the same where
+it is not given, then with a yardstick for the same instructions), in turn with the yardstick, so that their ratio to K stands on a
+busy machine; 0 rounds: no times.
+Prints a table, with `--out` as a page too.
+"""
+import argparse
+import re
+import statistics
+import subprocess
+import tempfile
+from pathlib import Path
+
+import counts
+import elements
+from measuring import HERE
+
+COPPER = (8930.0, 46.0e9, 124.0e9, 0.34)
+CALLS = 400  # a round; more would melt what heats
+
+
+def cards(*keywords, eos=0):
+    """A law by its keywords: (name, (fields, values...), ...) each."""
+    def write(deck):
+        for name, *lines in keywords:
+            deck.keyword(name)
+            for fields, *values in lines:
+                deck.card(fields, *values)
+        return eos
+    return write
+
+
+def johnson_cook(damage=(), spall=0.0):
+    rho, shear, young, poisson = COPPER
+    return ("MAT_JOHNSON_COOK", ("mid ro g e pr", 1, rho, shear, young, poisson),
+            ("a b n c m tm tr epso", 9.0e5, 2.92e8, 0.31, 0.025, 1.09, 1356.0, 293.0, 1.0),
+            ("cp pc spall it d1 d2 d3 d4", 383.0, -1.0e12 if spall else 0.0, spall, 0.0, *(damage or (0.0,) * 4)),
+            ("d5", 1.0 if damage else 0.0))
+
+
+def plastic(tangent=0.0, beta=1.0, failure=0.0):
+    return ("MAT_PLASTIC_KINEMATIC", ("mid ro e pr sigy etan beta", 1, *COPPER[:1], *COPPER[2:], 1.0e5, tangent, beta),
+            ("src srp fs vp", 0.0, 0.0, failure, 0.0))
+
+
+GRUNEISEN = ("EOS_GRUNEISEN", ("eosid c s1 s2 s3 gamao a e0", 1, 3940.0, 1.489, 0.0, 0.0, 1.99, 0.47, 0.0), ("v0", 1.0))
+POLYNOMIAL = ("EOS_LINEAR_POLYNOMIAL", ("eosid c0 c1 c2 c3 c4 c5 c6", 1, 0.0, 1.4e11, 2.0e11, 3.0e11, 2.0, 2.0, 0.0),
+              ("e0 v0", 0.0, 1.0))
+VISCOUS = ("MAT_NULL", ("mid ro pc mu", 1, 8930.0, 0.0, 1.0))
+LAWS = {
+    "001 elastic": cards(("MAT_ELASTIC", ("mid ro e pr", 1, COPPER[0], *COPPER[2:]))),
+    "003 isotropic": cards(plastic()),
+    "003 kinematic": cards(plastic(1.0e9, 0.5)),
+    "003 isotropic, FAIL": cards(plastic(failure=10.0)),
+    "024": cards(("MAT_PIECEWISE_LINEAR_PLASTICITY", ("mid ro e pr sigy etan", 1, COPPER[0], *COPPER[2:], 1.0e5, 1.0e9))),
+    "098": cards(("MAT_SIMPLIFIED_JOHNSON_COOK", ("mid ro e pr", 1, COPPER[0], *COPPER[2:]),
+                  ("a b n c psfail sigmax sigsat epso", 9.0e5, 2.92e8, 0.31, 0.025, 0.0, 0.0, 0.0, 1.0))),
+    "015": cards(johnson_cook()),
+    "015, damage": cards(johnson_cook((100.0, 100.0, -1.5, 0.01))),
+    "015, Gruneisen": cards(johnson_cook(), GRUNEISEN, eos=1),
+    "015, damage, SPALL 2, Gruneisen": cards(johnson_cook((100.0, 100.0, -1.5, 0.01), 2.0), GRUNEISEN, eos=1),
+    "010, Gruneisen": cards(("MAT_ELASTIC_PLASTIC_HYDRO", ("mid ro g sigy eh", 1, *COPPER[:2], 1.0e5, 1.0e9)), GRUNEISEN, eos=1),
+    "009, viscous, Gruneisen": cards(VISCOUS, GRUNEISEN, eos=1),
+    "009, viscous, linear polynomial": cards(VISCOUS, POLYNOMIAL, eos=1),
+}
+
+
+def time_routine(kernel, deck):
+    """ns per element, the best of the rounds of one run."""
+    said = subprocess.run([kernel, deck, "1", "1000", str(CALLS)], check=True, capture_output=True, text=True).stdout
+    return float(re.search(r"routine_ns,(\S+)", said)[1])
+
+
+def measure_yardstick(words):
+    """K, ns, of the instructions that the timed program has: those of this machine, or ARCH."""
+    said = subprocess.run([HERE / "yardstick" / "run.sh", *words], check=True, capture_output=True, text=True).stdout
+    return float(said.split(",")[1])
+
+
+def measure(kernel, counted, folder, rounds):
+    """[(law, instructions, over those of the elastic law, ns, K)]."""
+    decks, words = {}, [] if kernel else [counts.ARCH]
+    for number, (name, law) in enumerate(LAWS.items()):
+        decks[name] = folder / f"law_{number}.k"
+        elements.write_deck(decks[name], 64, False, law=law)
+    counted_laws = {name: counts.count_routine(counted, deck, folder) for name, deck in decks.items()}
+    times, shares = ({name: [] for name in decks} for _ in range(2))
+    for _ in range(rounds):
+        for name, deck in decks.items():
+            unit = measure_yardstick(words)
+            times[name].append(time_routine(kernel or counted, deck))
+            shares[name].append(2.0 * times[name][-1] / (unit + measure_yardstick(words)))
+    return [(name, found, found - counted_laws["001 elastic"],
+             statistics.median(times[name]) if rounds else float("nan"),
+             statistics.median(shares[name]) if rounds else float("nan")) for name, found in counted_laws.items()]
+
+
+def table(rows):
+    """The table in the form of the pages."""
+    lines = ["| law | instructions | more than elastic | ns | K |", "|---|---|---|---|---|"]
+    for name, found, more, time, share in rows:
+        lines.append(f"| {name} | {found:.1f} | {more:.1f} | {time:.2f} | {share:.2f} |".replace("nan", ""))
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--build", type=Path, required=True)
+    parser.add_argument("--kernel", type=Path, help="the program to be timed")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--out", type=Path)
+    options = parser.parse_args()
+    counted = options.build.resolve() / "tests" / "bench" / "bench_kernel"
+    with tempfile.TemporaryDirectory() as folder:
+        text = table(measure(options.kernel, counted, Path(folder), options.rounds))
+    print(text, end="")
+    if options.out:
+        options.out.write_text(text, encoding="ascii")
+
+
+if __name__ == "__main__":
+    main()
