@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> The one place that knows the contact types: their names, needs, placements and tangents. Adding
-!> one is a number in `contact_types_m`, a row of `formulations`, and a `use` and a `case` for either
-!> (doc/add_a_formulation.md).
+!> one is a number in `contact_types_m`, a row of `formulations`, and a `use` and a `case` for
+!> either (doc/add_a_formulation.md).
 module contact_dispatch_m
   use contact_law_m, only : law_penalty, pressed_at_points, pressed_at_slave_nodes
   use contact_state_m, only : contact_state_t

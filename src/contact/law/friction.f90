@@ -4,6 +4,8 @@
 module friction_m
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contacts_m, only : contact_t, friction_rule_t
+  use friction_sides_m, only : sides_t, find_portions, take_portions, take_feet, &
+    n_block
   use friction_slips_m, only : find_slips
   use friction_state_m, only : friction_memory_t, is_open, sticks, slips
   use kinds_m, only : wp
@@ -14,9 +16,6 @@ module friction_m
   private
   public :: start_trial_slip, take_trial_motion, set_tractions_aside, rub_places, place_of_point, &
     place_at, spot_at, has_slipped, let_stick
-
-  !> Places whose tractions are formed together.
-  integer, parameter :: n_block = 64
 
   !> Places in a step. Without default values, which would be written before each use.
   type :: rubs_t
@@ -30,13 +29,6 @@ module friction_m
     real(wp) :: traction(n_block)  !! after the step, N/m^2
     integer :: state(n_block)      !! the same
   end type rubs_t
-
-  !> Both sides of spots between nodes. Without default values, as these.
-  type :: sides_t
-    integer, dimension(n_side, n_block) :: slave_nodes, master_nodes
-    real(wp), dimension(n_side, n_block) :: slave_weights, master_weights
-    real(wp) :: normal(2, n_block), gap(n_block) !! m
-  end type sides_t
 
 contains
 
@@ -316,25 +308,6 @@ contains
     end do
   end subroutine rub_virtual_nodes
 
-  !> Where the portions of some spots begin on the list: another spot has another node or stands
-  !> elsewhere on its segment.
-  pure subroutine find_portions(n, n_point, slave_nodes, slave_weights, portions)
-    integer, intent(in) :: n, n_point, slave_nodes(n_side, n_point)
-    real(wp), intent(in) :: slave_weights(n_side, n_point)
-    integer, intent(inout) :: portions(n + 1) !! in: (1)
-    integer :: k, p
-
-    p = portions(1)
-    do k = 1, n
-      portions(k) = p
-      do p = portions(k) + 1, n_point
-        if (slave_nodes(1, p) /= slave_nodes(1, p - 1)) exit
-        if (slave_weights(2, p) /= slave_weights(2, p - 1)) exit
-      end do
-    end do
-    portions(n + 1) = p
-  end subroutine find_portions
-
   !> Tractions of the portions of some spots, and what their springs hold.
   pure subroutine share_tractions(n, portions, rubs, area, traction, stored)
     integer, intent(in) :: n, portions(n + 1)
@@ -393,39 +366,6 @@ contains
       sides%master_weights, sides%normal, sides%gap, memory%scratch%increment, memory%places, &
       rubs%slip)
   end subroutine find_spot_slips
-
-  !> Slave sides, normals and gaps of some spots from their first portions.
-  pure subroutine take_portions(n, portions, slave_nodes, slave_weights, normal, gap, sides)
-    integer, intent(in) :: n, portions(n), slave_nodes(n_side, *)
-    real(wp), intent(in) :: slave_weights(n_side, *), normal(2, *), gap(*)
-    type(sides_t), intent(inout) :: sides
-    integer :: k, p
-
-    !GCC$ NOVECTOR
-    do k = 1, n
-      p = portions(k)
-      sides%slave_nodes(:, k) = slave_nodes(:, p)
-      sides%slave_weights(:, k) = slave_weights(:, p)
-      sides%normal(:, k) = normal(:, p)
-      sides%gap(k) = gap(p)
-    end do
-  end subroutine take_portions
-
-  !> Master sides of some spots at their feet.
-  pure subroutine take_feet(n, touching, segment, xi, segments, n_slave, sides)
-    integer, intent(in) :: n, touching(n), segment(*), segments(n_side, *)
-    real(wp), intent(in) :: xi(*)
-    integer, intent(in) :: n_slave !! local number before the first master node
-    type(sides_t), intent(inout) :: sides
-    integer :: k
-
-    !GCC$ NOVECTOR
-    do k = 1, n
-      sides%master_nodes(:, k) = n_slave + segments(:, segment(touching(k)))
-      sides%master_weights(1, k) = 1.0_wp - xi(touching(k))
-      sides%master_weights(2, k) = xi(touching(k))
-    end do
-  end subroutine take_feet
 
   !> Types 6 and 7: slave nodes, with slips averaged as gaps are.
   pure subroutine rub_slave_nodes(rule, dt, memory)
