@@ -29,6 +29,7 @@ module deck_m
   use deck_hardening_m, only : read_piecewise, read_hydro
   use deck_johnson_cook_m, only : read_johnson_cook, read_simplified_johnson_cook
   use deck_material_m, only : read_elastic, read_plastic_kinematic
+  use deck_erosion_m, only : read_erosion
   use deck_null_m, only : read_null
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control, check_step
@@ -231,6 +232,8 @@ contains
       call read_johnson_cook(deck, parameters, i, raw)
     case ('MAT_SIMPLIFIED_JOHNSON_COOK')
       call read_simplified_johnson_cook(deck, parameters, i, raw)
+    case ('MAT_ADD_EROSION')
+      call read_erosion(deck, parameters, i, raw)
     case ('EOS_LINEAR_POLYNOMIAL')
       call read_linear_polynomial(deck, parameters, i, raw)
     case ('EOS_GRUNEISEN')

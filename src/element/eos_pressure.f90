@@ -14,7 +14,8 @@ module eos_pressure_m
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: n_eos_value, load_eos_state, form_eos_pressure, take_present, viscous_fluid_step
+  public :: n_eos_value, load_eos_state, form_eos_pressure, take_present, viscous_fluid_step, &
+    look_for_failed
 
   !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity, speed of sound squared.
   integer, parameter :: n_eos_value = 5

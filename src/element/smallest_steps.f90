@@ -8,6 +8,7 @@ module smallest_steps_m
   use element_dispatch_m, only : point_count
   use element_time_step_m, only : stable_step
   use eos_pressure_m, only : take_present
+  use erosion_state_m, only : stays
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
   use layout_m, only : chunk_size
   use model_m, only : model_t
@@ -24,7 +25,7 @@ module smallest_steps_m
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: find_smallest_steps
+  public :: find_smallest_steps, step_of_element
 
 contains
 
@@ -38,7 +39,7 @@ contains
     integer, allocatable, intent(out) :: found(:)     !! element indices
     real(wp), allocatable, intent(out) :: steps(:)    !! s
     logical, allocatable :: seen(:)
-    real(wp) :: step, reference(6), round_reference(n_round_reference)
+    real(wp) :: step
     integer :: i, i_chunk, i_slot
 
     allocate (found(0), steps(0))
@@ -48,17 +49,31 @@ contains
       seen(i_chunk) = .true.
       do i_slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
         if (model%layout%slot_element(i_slot) == 0) cycle
-        if (model%is_round) then
-          round_reference = elements%reference(i_slot, :)
-          step = round_step_of_slot(model, elements, round_reference, i_slot, motion)
-        else
-          reference = elements%reference(i_slot, :6)
-          step = step_of_slot(model, elements, reference, i_slot, motion)
+        if (allocated(elements%erosion)) then
+          if (elements%erosion%status(i_slot) /= stays) cycle
         end if
+        step = step_of_element(model, elements, i_slot, motion)
         call insert(n, model%layout%slot_element(i_slot), step, found, steps)
       end do
     end do
   end subroutine find_smallest_steps
+
+  !> Stable step of the element in one slot.
+  function step_of_element(model, elements, i_slot, motion) result(step)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: i_slot
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
+    real(wp) :: step, reference(6), round_reference(n_round_reference)
+
+    if (model%is_round) then
+      round_reference = elements%reference(i_slot, :)
+      step = round_step_of_slot(model, elements, round_reference, i_slot, motion)
+    else
+      reference = elements%reference(i_slot, :6)
+      step = step_of_slot(model, elements, reference, i_slot, motion)
+    end if
+  end function step_of_element
 
   !> Put one element into the rising list, which keeps `n` at most.
   pure subroutine insert(n, element, step, found, steps)

@@ -36,7 +36,7 @@ contains
 
     do k = 1, n_table
       if (.not. is_wanted(model, k)) cycle
-      call name_columns(k, row)
+      call name_columns(k, model%erodes, row)
       call plan_table(histories%tables(k), trim(history_tables(k)%name), row%header, &
         row%kinds(:row%n), row%further)
     end do

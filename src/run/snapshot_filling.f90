@@ -6,7 +6,7 @@ module snapshot_filling_m
   use constraints_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows, join_rows
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains, &
-    element_temperatures, element_damages
+    element_temperatures, element_damages, element_erosion
   use contacts_m, only : transducer_t, has_shear, n_told, told_as
   use controls_m, only : is_asked
   use history_tables_m, only : table_matsum
@@ -54,6 +54,7 @@ contains
     if (model%is_round) allocate (snapshot%hoop_strain(n_element), source=0.0_wp)
     if (any(has_memory_of_heat(model%materials))) allocate (snapshot%temperature(n_element), &
       snapshot%damage(n_element), source=0.0_wp)
+    if (model%erodes) allocate (snapshot%eroded(n_element), source=0.0_wp)
     if (size(model%contacts) > 0) allocate (snapshot%contact_force(2, n_node), &
       snapshot%contact_pressure(n_node), snapshot%gap(n_node), source=0.0_wp)
     if (any(has_shear(model%contacts))) allocate (snapshot%contact_traction(n_node), &
@@ -176,6 +177,7 @@ contains
       energies%made = sum(max(0.0_wp, -state%contacts%watch%balance))
       energies%external_work = state%external_work + sum(state%contacts%interference%work)
       energies%initial = state%initial_energy
+      if (model%erodes) energies%eroded = state%elements%erosion%took
     end associate
   end subroutine fill_energies
 
@@ -325,6 +327,7 @@ contains
     call element_stresses(model, state%motion, state%elements, snapshot%stress)
     if (allocated(snapshot%plastic_strain)) &
       call element_plastic_strains(model, state%elements, snapshot%plastic_strain)
+    if (model%erodes) call element_erosion(model, state%elements, snapshot%eroded)
     if (model%is_round) call hoop_strains(model, state%motion, snapshot%hoop_strain)
     if (allocated(snapshot%damage)) then
       call element_temperatures(model, state%elements, snapshot%temperature)

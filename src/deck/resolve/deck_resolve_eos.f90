@@ -109,7 +109,7 @@ contains
       if (.not. material%bulk > 0.0_wp) call line_error(deck, line, 'material ' &
         //to_text(material%id)//' is not stiff under pressure at the start: the bulk modulus of ' &
         //'its equation of state '//to_text(material%eos%id)//' is '//to_text(material%bulk))
-    else if (material%failure_strain < huge(1.0_wp) .or. material%takes_eos) then
+    else if (allocated(material%erosion) .or. material%takes_eos) then
       if (.not. material%bulk > 0.0_wp) return
       material%eos = eos_t(kind=eos_logarithmic, stiffness=material%bulk)
     else

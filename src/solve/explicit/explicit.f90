@@ -10,6 +10,8 @@ module explicit_m
   use contact_account_m, only : report_contact_energies
   use contact_check_m, only : report_contact_end
   use element_dispatch_m, only : add_tile_forces
+  use eroding_tiles_m, only : add_eroding_tile_forces
+  use erosion_account_m, only : report_erosion
   use errors_m, only : error_t
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
   use health_m, only : check_tile, judge_energies, judge_ratio
@@ -55,6 +57,7 @@ contains
     if (allocated(cycle%error)) call move_alloc(cycle%error, error)
     call report_contact_end(model, state, monitor%log)
     call report_contact_energies(model, state, monitor%log)
+    if (model%erodes) call report_erosion(model, state, monitor%log)
     if (allocated(error)) return
     call judge_energies(monitor%snapshot%energies, monitor%log)
     call judge_ratio(monitor%snapshot%energies, monitor%log)
@@ -115,7 +118,12 @@ contains
     !$omp do schedule(static)
     do i_tile = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i_tile))
-        call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+        if (model%erodes) then
+          call add_eroding_tile_forces(model, tile, state%motion, [state%time, state%dt_before], &
+            state%elements, force)
+        else
+          call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+        end if
         cycle%checks(i_tile) = check_tile(tile, state%elements)
         call share_tile_forces(tile, force, state%force_slots)
         if (sums) call sum_motion(tile%first_node, tile%last_node, state, &

@@ -10,6 +10,7 @@ module explicit_cycle_m
   use contact_inertia_m, only : weigh_contacts
   use cycle_loads_m, only : apply_loads
   use energies_m, only : energy_ratio, total_energy
+  use erosion_account_m, only : settle_elements, release_nodes, note_least_step
   use errors_m, only : error_t
   use explicit_memory_m, only : write_restarts, take_up_steps
   use contacts_m, only : told_as
@@ -57,6 +58,8 @@ module explicit_cycle_m
                                                  !! come to
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
     real(wp) :: ratio = 1.0_wp       !! last energy ratio known
+    integer, allocatable :: freed(:) !! nodes whose last element has left the mesh in this cycle;
+                                     !! there where any element has
     real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
     real(wp), allocatable :: displacement(:) !! (n_motion) u(n) of prescribed motions
     character(:), allocatable :: reason      !! what ended the run
@@ -160,6 +163,7 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
 
     call count_sums(cycle%sums, state%external_work, state%damping_work)
+    if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
     call check_elements(model, state, cycle%error)
     if (state%cycle == 0) call follow_springs(model, state, cycle%steps%springs)
     if (state%cycle == 0 .and. .not. allocated(cycle%error)) &
@@ -169,6 +173,7 @@ contains
       return
     end if
     if (state%cycle == 0) then
+      if (model%erodes) call note_least_step(model%controls, cycle%steps%first_dt, state)
       call report_contact_start(model, state, monitor%log)
       call log_smallest_steps(model, state, monitor%log)
       call judge_damping(model, state%dt, monitor%log)
@@ -256,6 +261,7 @@ contains
     if (cycle%finished) return
     if (.not. cycle%writes) then
       call count_sums(cycle%sums, state%external_work, state%damping_work)
+      if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
       if (.not. are_sound(cycle%checks, state%contacts)) &
         call check_elements(model, state, cycle%error)
     end if
@@ -267,6 +273,7 @@ contains
     end if
     if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
     if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
+    if (allocated(cycle%freed)) call release_nodes(model, cycle%freed, state)
     state%cycle = state%cycle + 1
     state%former_dt = state%dt_before
     state%dt_before = state%dt
