@@ -21,7 +21,8 @@ module interface_m
   use energy_limit_m, only : keep_former_springs, form_springs, limit_forces, lend
   use energy_limit_state_m, only : allocate_limit
   use facing_change_m, only : rest_loose_nodes
-  use facing_look_m, only : has_outline, start_facing, look_at_facing, make_present
+  use facing_look_m, only : has_outline, prepare_facing, start_facing, look_at_facing, &
+    make_present
   use friction_m, only : start_trial_slip, take_trial_motion, rub_places
   use friction_state_m, only : allocate_friction
   use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
@@ -37,7 +38,7 @@ module interface_m
   use tracking_m, only : update_tracking, wake_all, forget_pairs
   implicit none
   private
-  public :: start_contact, resume_contact, apply_contact, evaluate_contact
+  public :: start_contact, prepare_contact, resume_contact, apply_contact, evaluate_contact
 
 contains
 
@@ -46,6 +47,20 @@ contains
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
+    type(contact_state_t), intent(out) :: memory
+    type(formulation_t) :: formulation
+
+    formulation = formulation_of(contact)
+    call prepare_contact(contact, model, memory)
+    call start_search(contact, model, memory)
+    if (is_tied(contact)) call start_ties(contact, model, memory)
+    call log_contact(contact, model, formulation%kind, memory, log)
+  end subroutine start_contact
+
+  !> The memory of one interface that knows nothing yet.
+  subroutine prepare_contact(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
     type(contact_state_t), intent(out) :: memory
     type(formulation_t) :: formulation
     real(wp) :: origin(2)
@@ -72,7 +87,6 @@ contains
     if (formulation%covers_segments) call allocate_segments(contact, memory)
     call allocate_points(memory%points, formulation%points_per_slave*memory%slave_tracking%n &
       + formulation%points_per_master*n_master)
-    call start_search(contact, model, memory)
     if (formulation%where_pressed == pressed_at_slave_nodes) &
       allocate (memory%node_pressure(n_slave), source=0.0_wp)
     if (contact%damping > 0.0_wp) then
@@ -89,9 +103,8 @@ contains
     if (allocated(contact%interference)) call allocate_interference(memory%interference, &
       places_of_segment(memory)*n_slave, n_master)
     call allocate_scratch(memory)
-    if (is_tied(contact)) call start_ties(contact, model, memory)
-    call log_contact(contact, model, formulation%kind, memory, log)
-  end subroutine start_contact
+    if (has_outline(contact)) call prepare_facing(contact, model, memory)
+  end subroutine prepare_contact
 
   !> Who touches whom at time zero, between whole surfaces or between runs of them.
   subroutine start_search(contact, model, memory)
@@ -101,7 +114,7 @@ contains
     type(contact_t), allocatable :: present
 
     if (has_outline(contact)) then
-      call start_facing(contact, model, memory)
+      call start_facing(contact, memory)
       call move_alloc(memory%facing%present, present)
       if (min(present%slave%n_segment, present%master%n_segment) > 0) &
         call search_between(present)

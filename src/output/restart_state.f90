@@ -14,7 +14,7 @@ module restart_state_m
   use wall_state_m, only : wall_state_t
   implicit none
   private
-  public :: keep_state
+  public :: keep_state, keep_erosion_status
 
 contains
 
@@ -78,6 +78,20 @@ contains
     if (allocated(elements%erosion)) call keep_erosion(archive, 'erosion', elements%erosion)
     call leave(archive)
   end subroutine keep_elements
+
+  !> Which elements are there, before anything else is read: shapes of interfaces follow from it.
+  subroutine keep_erosion_status(archive, erosion)
+    type(archive_t), intent(inout) :: archive
+    type(erosion_state_t), intent(inout) :: erosion
+
+    call enter(archive, 'state')
+    call enter(archive, 'elements')
+    call enter(archive, 'erosion')
+    call keep(archive, 'status', erosion%status)
+    call leave(archive)
+    call leave(archive)
+    call leave(archive)
+  end subroutine keep_erosion_status
 
   !> Which elements have left the mesh.
   subroutine keep_erosion(archive, name, erosion)

@@ -15,7 +15,7 @@ module snapshot_filling_m
   use parts_m, only : has_memory_of_heat
   use round_chunk_m, only : node_volumes
   use round_state_m, only : hoop_strains
-  use snapshot_m, only : snapshot_t, interface_result_t, rubbed_t
+  use snapshot_m, only : snapshot_t, interface_result_t, rubbed_t, slave_result_t
   use state_m, only : state_t
   use support_forces_m, only : find_supports
   implicit none
@@ -343,8 +343,14 @@ contains
       snapshot%contact_state = 0.0_wp
     end if
     do i = 1, size(model%contacts)
-      call slave_rows(model%contacts(i), state%motion, state%contacts(i), &
-        snapshot%slaves(i))
+      if (model%erodes) then
+        ! Its nodes may be others than those of the state before.
+        snapshot%slaves(i) = slave_result_t()
+        call slave_rows(state%outlines(i), state%motion, state%contacts(i), snapshot%slaves(i))
+      else
+        call slave_rows(model%contacts(i), state%motion, state%contacts(i), &
+          snapshot%slaves(i))
+      end if
       associate (memory => state%contacts(i), rows => snapshot%slaves(i))
         do k = 1, size(memory%nodes)
           snapshot%contact_force(:, memory%nodes(k)) = snapshot%contact_force(:, memory%nodes(k)) &

@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> What elements that leave the mesh take along, and their nodes that nothing holds any more.
 module erosion_account_m
-  use contact_inertia_m, only : weigh_contacts
   use controls_m, only : controls_t
   use element_state_m, only : settle_erosion
   use kinds_m, only : wp
@@ -40,8 +39,7 @@ contains
 
   !> Nodes without an element stop where they are, after the motion of the cycle: their kinetic
   !> energy leaves the account, and their mass moves nothing any more.
-  subroutine release_nodes(model, freed, state)
-    type(model_t), intent(in) :: model
+  subroutine release_nodes(freed, state)
     integer, intent(in) :: freed(:)
     type(state_t), intent(inout) :: state
     integer :: i
@@ -56,7 +54,6 @@ contains
         end associate
       end do
     end associate
-    if (size(freed) > 0) call weigh_contacts(model, state)
   end subroutine release_nodes
 
   !> At the end of a run: how many elements have left, when first, and what they took along.

@@ -28,6 +28,7 @@ module explicit_cycle_m
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use motion_sums_m, only : motion_sums_t, plan_sums, count_sums
   use node_motion_m, only : leap_t, make_leap
+  use outlines_m, only : follow_outlines
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
   use progress_m, only : show_progress, follow_progress
   use requests_m, only : requests_t, take_requests
@@ -58,6 +59,8 @@ module explicit_cycle_m
                                                  !! come to
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
     real(wp) :: ratio = 1.0_wp       !! last energy ratio known
+    integer, allocatable :: told(:)  !! (n_part) eroded elements that interfaces have heard of; only
+                                     !! where elements may leave the mesh
     integer, allocatable :: freed(:) !! nodes whose last element has left the mesh in this cycle;
                                      !! there where any element has
     real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
@@ -83,6 +86,7 @@ contains
     call plan_sums(model, cycle%sums)
     allocate (cycle%checks(size(model%layout%tiles)))
     cycle%reason = 'termination time reached'
+    if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
     cycle%steps = start_steps(model, state%time)
     if (monitor%restarts%goes_on) call take_up_steps(model, state, monitor%restarts%source, &
       cycle%steps, cycle%damping, cycle%ratio, cycle%error)
@@ -109,9 +113,15 @@ contains
     do i = 1, size(model%contacts)
       k = told_as(model%contacts, i)
       if (k < i) call hear_tie(state%contacts(k), state%contacts(i))
-      call apply_contact(model%contacts(i), state%motion, state%contact_mass, &
-        state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
-        state%force_special)
+      if (model%erodes) then
+        call apply_contact(state%outlines(i), state%motion, state%contact_mass, &
+          state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
+          state%force_special)
+      else
+        call apply_contact(model%contacts(i), state%motion, state%contact_mass, &
+          state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
+          state%force_special)
+      end if
       if (k < i) call settle_with_tie(state%contacts(i), state%contacts(k))
       call share_contact(monitor%clock, k)
       call follow_contact(model, i, state, monitor%log)
@@ -250,6 +260,20 @@ contains
     call move_rigids(model, state)
   end subroutine advance_rigids
 
+  !> Elements have left in this cycle: nodes that none holds any more, and surfaces of interfaces.
+  subroutine lose_elements(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(inout) :: cycle
+
+    call release_nodes(cycle%freed, state)
+    associate (n_eroded => state%elements%erosion%n_eroded)
+      call follow_outlines(model, n_eroded > cycle%told, state)
+      cycle%told = n_eroded
+    end associate
+    deallocate (cycle%freed)
+  end subroutine lose_elements
+
   !> Prescribed nodes to their places, health, and on to the next instant.
   subroutine end_cycle(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
@@ -273,7 +297,7 @@ contains
     end if
     if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
     if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
-    if (allocated(cycle%freed)) call release_nodes(model, cycle%freed, state)
+    if (allocated(cycle%freed)) call lose_elements(model, state, cycle)
     state%cycle = state%cycle + 1
     state%former_dt = state%dt_before
     state%dt_before = state%dt
