@@ -2,6 +2,7 @@
 !> An interface whose surfaces have lost elements or come to light anew: its memory is made for the
 !> surfaces that are left, and what it knew of places that remain goes over by nodes and segments.
 module renewal_m
+  use contact_preparation_m, only : prepare_contact
   use contact_springs_m, only : measure_springs
   use contact_state_m, only : contact_state_t, tracking_t, make_room, places_of_segment, &
     n_side
@@ -10,7 +11,6 @@ module renewal_m
   use facing_change_m, only : move_memory
   use facing_look_m, only : make_present
   use facing_state_m, only : facing_side_t
-  use interface_m, only : prepare_contact
   use kinds_m, only : wp
   use model_m, only : model_t
   use surfaces_m, only : surface_t

@@ -12,8 +12,10 @@ module eroding_tiles_m
   use layout_m, only : chunk_size, tile_t
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
+  use parts_m, only : material_t, has_memory_of_heat
   use quad_points_m, only : n_point
   use round_chunk_m, only : round_chunk_t, scatter_round, reference_mass
+  use round_state_m, only : round_ratios
   use smallest_steps_m, only : step_of_element
   implicit none
   private
@@ -21,6 +23,14 @@ module eroding_tiles_m
 
   !> How much larger the shape of an element is that has left.
   real(wp), parameter :: much = 1.0e6_wp
+
+  !> Elements of a chunk that leave in this step, and what all of them held before it.
+  type :: leaving_t
+    logical :: flags(chunk_size) = .false.
+    real(wp) :: energy(chunk_size)    !! internal, per initial volume
+    real(wp) :: hourglass(chunk_size) !! J/m
+    real(wp) :: work                  !! of the hourglass forces of the chunk, J/m
+  end type leaving_t
 
 contains
 
@@ -34,8 +44,7 @@ contains
     real(wp), intent(inout) :: force(2, model%layout%n_local) !! set here
     type(element_chunk_t) :: chunk
     type(round_chunk_t) :: round
-    logical :: leaves(chunk_size)
-    real(wp) :: former(chunk_size, 2), work
+    type(leaving_t) :: leaving
     integer :: nodes(4, chunk_size), i_chunk, first
 
     force = 0.0_wp
@@ -43,12 +52,12 @@ contains
       first = (i_chunk - 1)*chunk_size + 1
       call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
         elements%erosion%status(first:first + chunk_size - 1), nodes)
-      call keep_energies(i_chunk, elements, former, work)
+      call keep_energies(i_chunk, elements, leaving)
       call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk, round)
       if (times(2) > 0.0_wp) then
-        call find_leaving(model, i_chunk, nodes, motion, times, elements, leaves)
-        if (any(leaves)) call take_out(model, i_chunk, motion, times(2), leaves, former, work, &
-          elements, chunk, round)
+        call find_leaving(model, i_chunk, nodes, motion, times, elements, leaving%flags)
+        if (any(leaving%flags)) call take_out(model, i_chunk, motion, times(2), leaving, elements, &
+          chunk, round)
       end if
       if (elements%erosion%n_gone(i_chunk) > 0) call clear_forces(elements%erosion%status(first: &
         first + chunk_size - 1) /= stays, model%is_round, chunk, round)
@@ -75,29 +84,27 @@ contains
   end subroutine take_nodes
 
   !> What each element holds before the step, and the hourglass work of the chunk.
-  pure subroutine keep_energies(i_chunk, elements, former, work)
+  pure subroutine keep_energies(i_chunk, elements, leaving)
     integer, intent(in) :: i_chunk
     type(block_state_t), intent(in) :: elements
-    real(wp), intent(out) :: former(chunk_size, 2) !! internal, per initial volume; hourglass
-    real(wp), intent(out) :: work
+    type(leaving_t), intent(inout) :: leaving
     integer :: first
 
-    former(:, 1) = 0.0_wp
+    leaving%energy = 0.0_wp
     first = elements%eos_start(i_chunk)
-    if (first > 0) former(:, 1) = elements%eos_state(first:first + chunk_size - 1)
+    if (first > 0) leaving%energy = elements%eos_state(first:first + chunk_size - 1)
     first = (i_chunk - 1)*chunk_size + 1
-    former(:, 2) = elements%erosion%hourglass(first:first + chunk_size - 1)
-    work = elements%hourglass_work(i_chunk)
+    leaving%hourglass = elements%erosion%hourglass(first:first + chunk_size - 1)
+    leaving%work = elements%hourglass_work(i_chunk)
   end subroutine keep_energies
 
   !> Elements that leave take their energies along; the limits of the chunk are those of the rest.
-  subroutine take_out(model, i_chunk, motion, dt, leaves, former, work, elements, chunk, round)
+  subroutine take_out(model, i_chunk, motion, dt, leaving, elements, chunk, round)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
     real(wp), intent(in), contiguous :: motion(:, :)
     real(wp), intent(in) :: dt
-    logical, intent(in) :: leaves(chunk_size)
-    real(wp), intent(in) :: former(chunk_size, 2), work
+    type(leaving_t), intent(in) :: leaving
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(in) :: chunk
     type(round_chunk_t), intent(in) :: round
@@ -106,14 +113,14 @@ contains
 
     limit = huge(1.0_wp)
     volume = huge(1.0_wp)
-    elements%hourglass_work(i_chunk) = work
+    elements%hourglass_work(i_chunk) = leaving%work
     i_eos = elements%eos_start(i_chunk)
     do i = 1, model%layout%chunk_elements(i_chunk)
       slot = (i_chunk - 1)*chunk_size + i
       if (elements%erosion%status(slot) /= stays) cycle
-      if (.not. leaves(i)) then
+      if (.not. leaving%flags(i)) then
         elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) &
-          + (elements%erosion%hourglass(slot) - former(i, 2))
+          + (elements%erosion%hourglass(slot) - leaving%hourglass(i))
         limit = min(limit, step_of_element(model, elements, slot, motion))
         volume = min(volume, smallest_ratio(model, motion, elements, slot))
         cycle
@@ -125,10 +132,10 @@ contains
         elements%erosion%internal(slot) = elements%eos_state(i_eos + i - 1) &
           *initial_volume(model, elements, slot) - share
       else
-        elements%erosion%hourglass(slot) = former(i, 2)
-        elements%erosion%internal(slot) = former(i, 1)*initial_volume(model, elements, slot)
+        elements%erosion%hourglass(slot) = leaving%hourglass(i)
+        elements%erosion%internal(slot) = leaving%energy(i)*initial_volume(model, elements, slot)
       end if
-      elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) - former(i, 2)
+      elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) - leaving%hourglass(i)
       elements%erosion%status(slot) = has_left
       elements%erosion%n_gone(i_chunk) = elements%erosion%n_gone(i_chunk) + 1
       call make_padding(model, i_chunk, i, elements)
@@ -139,7 +146,6 @@ contains
 
   !> Initial area, or volume per radian, of the element in a slot.
   pure function initial_volume(model, elements, slot) result(volume)
-    use round_state_m, only : round_ratios
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
@@ -188,8 +194,8 @@ contains
     integer :: slot, first, k, n
 
     slot = (i_chunk - 1)*chunk_size + i
-    associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material), &
-      reference => elements%reference)
+    associate (reference => elements%reference, &
+      material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
       n = min(size(reference, 2), reference_mass - 1)
       reference(slot, :n) = much*reference(slot, :n)
       if (size(reference, 2) > n) reference(slot, n + 1:) = reference(slot, n + 1:)/much**3
@@ -200,11 +206,8 @@ contains
           elements%point_deviator(elements%point_start(i_chunk) + k*chunk_size + i - 1) = 0.0_wp
         end do
       end if
-      if (elements%history_start(i_chunk) > 0) then
-        do k = 0, n*history_size(material) - 1
-          elements%history(elements%history_start(i_chunk) + k*chunk_size + i - 1) = 0.0_wp
-        end do
-      end if
+      if (elements%history_start(i_chunk) > 0) call keep_told(material, n, &
+        elements%history(elements%history_start(i_chunk) + i - 1:))
       first = elements%hourglass_start(i_chunk) + i - 1
       if (first >= i) elements%hourglass_strain([first, first + chunk_size]) = 0.0_wp
       first = elements%eos_start(i_chunk) + i - 1
@@ -212,6 +215,22 @@ contains
       elements%eos_state(first + 4*chunk_size) = material%sound_speed**2
     end associate
   end subroutine make_padding
+
+  !> Plastic strain, temperature and damage are told on as they were; back stress would pull.
+  pure subroutine keep_told(material, n, history)
+    type(material_t), intent(in) :: material
+    integer, intent(in) :: n                 !! points
+    real(wp), intent(inout) :: history(:)    !! from the slot on
+    integer :: k, column
+
+    do k = 0, n*history_size(material) - 1
+      column = mod(k, history_size(material)) + 1
+      associate (value => history(k*chunk_size + 1))
+        if (column > 1 .and. .not. has_memory_of_heat(material)) value = 0.0_wp
+        if (.not. abs(value) <= huge(1.0_wp)) value = 0.0_wp
+      end associate
+    end do
+  end subroutine keep_told
 
   !> Elements that have left do not push.
   pure subroutine clear_forces(is_gone, is_round, chunk, round)

@@ -55,6 +55,10 @@ contains
     end do
     if (raw%erodes_by_step) call line_error(deck, raw%step_line, 'ERODE lets elements leave the ' &
       //'mesh, which the implicit method does not have')
+    model%erodes = .false.
+    do m = 1, size(model%materials)
+      if (allocated(model%materials(m)%erosion)) deallocate (model%materials(m)%erosion)
+    end do
   end subroutine resolve_erosion
 
   !> What the law itself and ERODE ask for.

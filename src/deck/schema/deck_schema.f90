@@ -292,7 +292,7 @@ contains
     case ('DT2MS')
       text = 'asks for mass scaling, which this version does not have; leave it 0'
     case ('TDEL', 'DTF', 'TEROD', 'CEROD', 'CHARL', 'NUMINT')
-      text = 'asks for another deletion of elements, which this version does not have; leave it 0'
+      text = 'asks for deletion of elements, which this version does not have; leave it 0'
     case ('IDAM', 'LCREGD', 'LCFLD', 'EPSTHIN', 'ENGCRT', 'RADCRT', 'LCEPS12', 'LCEPS13', &
         'LCEPSMX', 'MXTMP')
       text = 'asks for a criterion of erosion that this version does not have; leave it 0'
