@@ -192,15 +192,16 @@ contains
     strains = 0.5_wp*log(max(tiny(1.0_wp), [mean + radius, mean - radius]))
   end function plane_strains
 
-  !> Elements whose own stable step, or volume, has become too small.
+  !> Elements whose own stable step, or volume, has become too small. The limit of a chunk is that of
+  !> its shortest element with the fastest waves of any, so that it may lie below all of theirs.
   subroutine find_by_step(model, erosion, i_chunk, motion, elements, leaves)
     type(model_t), intent(in) :: model
     type(erosion_t), intent(in) :: erosion
     integer, intent(in) :: i_chunk
     real(wp), intent(in), contiguous :: motion(:, :)
-    type(block_state_t), intent(in) :: elements
+    type(block_state_t), intent(inout) :: elements !! the limit of the chunk
     logical, intent(inout) :: leaves(chunk_size)
-    real(wp) :: least
+    real(wp) :: least, step, limit
     integer :: i, slot
     logical :: inverts
 
@@ -208,13 +209,18 @@ contains
     if (erosion%by_step) least = max(least, elements%erosion%least_step)
     inverts = erosion%by_step .and. .not. elements%volume_limit(i_chunk) > 0.0_wp
     if (elements%time_limit(i_chunk) >= least .and. .not. inverts) return
+    limit = huge(1.0_wp)
     do i = 1, chunk_size
       slot = (i_chunk - 1)*chunk_size + i
       if (model%layout%slot_element(slot) == 0 .or. elements%erosion%status(slot) /= stays) cycle
       if (inverts) leaves(i) = leaves(i) .or. &
         .not. elements%eos_state(elements%eos_start(i_chunk) + 2*chunk_size + i - 1) > -1.0_wp
-      if (.not. leaves(i)) leaves(i) = .not. step_of_element(model, elements, slot, motion) >= least
+      if (leaves(i)) cycle
+      step = step_of_element(model, elements, slot, motion)
+      leaves(i) = .not. step >= least
+      if (.not. leaves(i)) limit = min(limit, step)
     end do
+    elements%time_limit(i_chunk) = limit
   end subroutine find_by_step
 
 end module erosion_criteria_m
