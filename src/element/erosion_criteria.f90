@@ -192,8 +192,8 @@ contains
     strains = 0.5_wp*log(max(tiny(1.0_wp), [mean + radius, mean - radius]))
   end function plane_strains
 
-  !> Elements whose own stable step, or volume, has become too small. The limit of a chunk is that of
-  !> its shortest element with the fastest waves of any, so that it may lie below all of theirs.
+  !> Elements whose own stable step, or volume, has become too small. The limit of a chunk is that
+  !> of its shortest element with the fastest waves of any: it may lie below all of theirs.
   subroutine find_by_step(model, erosion, i_chunk, motion, elements, leaves)
     type(model_t), intent(in) :: model
     type(erosion_t), intent(in) :: erosion

@@ -17,9 +17,9 @@ module deck_raw_m
   private
   public :: raw_t, lost_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_contact_t, &
     raw_erosion_t, raw_wall_t, row_t, history_t, reserve_rows, append_row, reserve_velocities, &
-    append_velocity, reserve_nodes, reserve_elements, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
-    row_velocity, row_velocity_node, row_velocity_generation, row_load_node, row_load_set, &
-    row_pressure, row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid, &
+    append_velocity, reserve_nodes, reserve_elements, row_spc_node, row_spc_set, &
+    row_motion_node, row_motion_set, row_velocity, row_velocity_node, row_velocity_generation, &
+    row_load_node, row_load_set, row_pressure, row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid, &
     output_plot, id_fields, id_place
 
   !> Kinds of `row_t`.
