@@ -19,7 +19,8 @@ module deck_raw_m
     raw_erosion_t, raw_wall_t, row_t, history_t, reserve_rows, append_row, reserve_velocities, &
     append_velocity, reserve_nodes, reserve_elements, row_spc_node, row_spc_set, &
     row_motion_node, row_motion_set, row_velocity, row_velocity_node, row_velocity_generation, &
-    row_load_node, row_load_set, row_pressure, row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid, &
+    row_load_node, row_load_set, row_pressure, row_pressure_set, row_body, row_damping, &
+    row_motion_rigid, row_velocity_rigid, &
     output_plot, id_fields, id_place
 
   !> Kinds of `row_t`.
