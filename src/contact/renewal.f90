@@ -11,6 +11,7 @@ module renewal_m
   use facing_change_m, only : move_memory
   use facing_look_m, only : make_present
   use facing_state_m, only : facing_side_t
+  use gather_m, only : power_of
   use kinds_m, only : wp
   use model_m, only : model_t
   use surfaces_m, only : surface_t
@@ -67,13 +68,19 @@ contains
     memory%watch%is_due = .true.
   end subroutine renew_contact
 
-  !> An interface that is over keeps its account alone.
-  subroutine close_contact(contact, model, memory)
+  !> An interface that is over keeps its account alone. The forces of the last call have done half of
+  !> the work of a step yet; `lost` is what the interface holds then.
+  subroutine close_contact(contact, model, motion, dt, memory, lost)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
+    real(wp), intent(in) :: dt                       !! of the step behind the forces, s
     type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(out) :: lost                    !! J/m
     real(wp) :: damping, friction
 
+    lost = memory%energy
+    if (memory%n_active > 0) lost = lost - 0.5_wp*dt*power_of(memory%nodes, motion, memory%force)
     damping = memory%damping_work
     friction = memory%friction%work
     call reshape_contact(contact, model, memory)
@@ -89,7 +96,12 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     call prepare_contact(contact, model, memory)
-    if (memory%facing%is_used) call make_present(contact, memory)
+    if (.not. memory%facing%is_used) return
+    call make_present(contact, memory)
+    if (.not. allocated(memory%spot_xi)) return
+    ! There are no spots where there is no run.
+    memory%slave_tracking%n = 0
+    memory%slave_tracking%chord = 1
   end subroutine reshape_contact
 
   !> Numbers moved by an offset; 0 stays.

@@ -38,16 +38,22 @@ contains
   end subroutine settle_elements
 
   !> Nodes without an element stop where they are, after the motion of the cycle: their kinetic
-  !> energy leaves the account, and their mass moves nothing any more.
-  subroutine release_nodes(freed, state)
+  !> energy, v(n-1/2).m v(n+1/2)/2, leaves the account, and their mass moves nothing any more. No
+  !> element has pushed them in this cycle; contact has, and does no work on them any more.
+  subroutine release_nodes(n_special, freed, state)
+    integer, intent(in) :: n_special
     integer, intent(in) :: freed(:)
     type(state_t), intent(inout) :: state
+    real(wp) :: before(2)
     integer :: i
 
     associate (took => state%elements%erosion%took)
       do i = 1, size(freed)
         associate (node => freed(i))
-          took(1) = took(1) + 0.5_wp*state%mass(node)*sum(state%motion(3:4, node)**2)
+          before = state%motion(3:4, node)
+          if (node <= n_special) before = before - 0.5_wp*(state%dt_before + state%dt) &
+            *state%inverse_mass(:, node)*state%force_special(:, node)
+          took(1) = took(1) + 0.5_wp*state%mass(node)*sum(before*state%motion(3:4, node))
           state%mass(node) = 0.0_wp
           state%inverse_mass(:, node) = 0.0_wp
           state%motion(3:4, node) = 0.0_wp

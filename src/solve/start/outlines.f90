@@ -44,8 +44,8 @@ contains
       state%force_special(:, state%contacts(i)%nodes) = 0.0_wp
       call take_left(model, i, is_left, state%outlines(i))
       if (is_closed(state%outlines(i))) then
-        lost = state%contacts(i)%energy
-        call close_contact(state%outlines(i), model, state%contacts(i))
+        call close_contact(state%outlines(i), model, state%motion, state%dt, state%contacts(i), &
+          lost)
       else
         call renew_contact(former, state%outlines(i), model, state%motion, state%contacts(i), lost)
       end if
@@ -118,11 +118,7 @@ contains
     if (all(is_left)) return
     do i = 1, size(state%outlines)
       call take_left(model, i, is_left, state%outlines(i))
-      if (is_closed(state%outlines(i))) then
-        call close_contact(state%outlines(i), model, state%contacts(i))
-      else
-        call reshape_contact(state%outlines(i), model, state%contacts(i))
-      end if
+      call reshape_contact(state%outlines(i), model, state%contacts(i))
     end do
   end subroutine resume_outlines
 
