@@ -68,8 +68,8 @@ contains
     memory%watch%is_due = .true.
   end subroutine renew_contact
 
-  !> An interface that is over keeps its account alone. The forces of the last call have done half of
-  !> the work of a step yet; `lost` is what the interface holds then.
+  !> An interface that is over keeps its account alone. The forces of the last call have done half
+  !> of the work of a step yet; `lost` is what the interface holds then.
   subroutine close_contact(contact, model, motion, dt, memory, lost)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -80,7 +80,8 @@ contains
     real(wp) :: damping, friction
 
     lost = memory%energy
-    if (memory%n_active > 0) lost = lost - 0.5_wp*dt*power_of(memory%nodes, motion, memory%force)
+    if (memory%n_active > 0) lost = lost - 0.5_wp*dt*power_of(memory%nodes, motion, &
+      memory%force)
     damping = memory%damping_work
     friction = memory%friction%work
     call reshape_contact(contact, model, memory)
