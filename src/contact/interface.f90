@@ -7,32 +7,27 @@ module interface_m
   use closing_m, only : close_contacts, closed_gap_of
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
   use behind_ties_m, only : leave_to_tie, take_over
-  use contact_law_m, only : pressed_at_slave_nodes, press_places
+  use contact_law_m, only : press_places, pressed_at_slave_nodes
   use contact_log_m, only : log_contact
-  use contact_penalty_m, only : set_penalties
+  use contact_preparation_m, only : prepare_contact
   use contact_scatter_m, only : scatter_forces, join_passes
   use contact_springs_m, only : begin_look, measure_springs, end_look
   use contact_work_m, only : apart_t, take_apart, hand_over, count_work
-  use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
-    allocate_tractions, allocate_scratch, places_of_segment, is_free
-  use contacts_m, only : contact_t, has_friction, is_tied
+  use contact_state_m, only : contact_state_t, is_free
+  use contacts_m, only : contact_t, is_tied
   use crossing_m, only : crossings_t, find_crossings, catch_crossings
   use damping_m, only : damp_points
   use energy_limit_m, only : keep_former_springs, form_springs, limit_forces, lend
-  use energy_limit_state_m, only : allocate_limit
   use facing_change_m, only : rest_loose_nodes
   use facing_look_m, only : has_outline, start_facing, look_at_facing, make_present
   use friction_m, only : start_trial_slip, take_trial_motion, rub_places
-  use friction_state_m, only : allocate_friction
-  use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
-    start_slave_tracking, start_master_tracking, start_segments
+  use first_search_m, only : start_slave_tracking, start_master_tracking, start_segments
   use gather_m, only : gather_places, take_force, keep_former
   use interference_m, only : begin_growth
-  use interference_state_m, only : allocate_interference
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
-  use spots_m, only : start_spots, move_spots
+  use spots_m, only : move_spots
   use tips_m, only : find_tips
   use tied_interface_m, only : start_ties, apply_ties, evaluate_ties
   use tracking_m, only : update_tracking, wake_all, forget_pairs
@@ -49,48 +44,10 @@ contains
     type(log_t), intent(inout) :: log
     type(contact_state_t), intent(out) :: memory
     type(formulation_t) :: formulation
-    real(wp) :: origin(2)
-    integer :: n_slave, n_master, i
 
-    n_slave = contact%slave%n_node
-    n_master = contact%master%n_node
-    memory%n_slave = n_slave
-    memory%n_master = n_master
-    memory%nodes = [contact%slave%nodes, contact%master%nodes]
-    allocate (memory%force(2, n_slave + n_master), memory%places(4, n_slave + n_master), &
-      source=0.0_wp)
-    origin = model%mesh%coordinates(:, memory%nodes(1))
-    if (contact%is_round) origin(1) = 0.0_wp
-    do i = 1, size(memory%nodes)
-      memory%places(1:2, i) = model%mesh%coordinates(:, memory%nodes(i)) - origin
-    end do
     formulation = formulation_of(contact)
-    memory%contact_law = formulation%contact_law
-    call set_penalties(contact, model, formulation%self_share, memory)
-    call start_spots(formulation%spots, contact%n_gauss, contact%is_round, &
-      has_outline(contact) .and. .not. is_tied(contact), contact%slave, memory)
-    call allocate_slave_tracking(contact, model, memory)
-    if (formulation%has_two_passes) call allocate_master_tracking(contact, model, memory)
-    if (formulation%covers_segments) call allocate_segments(contact, memory)
-    call allocate_points(memory%points, formulation%points_per_slave*memory%slave_tracking%n &
-      + formulation%points_per_master*n_master)
+    call prepare_contact(contact, model, memory)
     call start_search(contact, model, memory)
-    if (formulation%where_pressed == pressed_at_slave_nodes) &
-      allocate (memory%node_pressure(n_slave), source=0.0_wp)
-    if (contact%damping > 0.0_wp) then
-      call allocate_loads(memory%points)
-      allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
-    end if
-    if (.not. (model%controls%implicit%is_on .or. is_tied(contact))) &
-      call allocate_limit(memory%limit, n_slave + n_master)
-    if (has_friction(contact)) then
-      call allocate_tractions(memory%points)
-      call allocate_friction(memory%friction, places_of_segment(memory)*n_slave + n_master, &
-        n_slave + n_master)
-    end if
-    if (allocated(contact%interference)) call allocate_interference(memory%interference, &
-      places_of_segment(memory)*n_slave, n_master)
-    call allocate_scratch(memory)
     if (is_tied(contact)) call start_ties(contact, model, memory)
     call log_contact(contact, model, formulation%kind, memory, log)
   end subroutine start_contact
@@ -103,7 +60,7 @@ contains
     type(contact_t), allocatable :: present
 
     if (has_outline(contact)) then
-      call start_facing(contact, model, memory)
+      call start_facing(contact, memory)
       call move_alloc(memory%facing%present, present)
       if (min(present%slave%n_segment, present%master%n_segment) > 0) &
         call search_between(present)

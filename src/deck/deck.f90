@@ -31,6 +31,7 @@ module deck_m
   use deck_foam_m, only : read_crushable_foam
   use deck_johnson_cook_m, only : read_johnson_cook, read_simplified_johnson_cook
   use deck_material_m, only : read_elastic, read_plastic_kinematic
+  use deck_erosion_m, only : read_erosion
   use deck_null_m, only : read_null
   use deck_damping_m, only : read_part_damping
   use deck_systems_m, only : read_system
@@ -241,6 +242,8 @@ contains
       call read_blatz_ko(deck, parameters, i, raw)
     case ('MAT_CRUSHABLE_FOAM')
       call read_crushable_foam(deck, parameters, i, raw)
+    case ('MAT_ADD_EROSION')
+      call read_erosion(deck, parameters, i, raw)
     case ('EOS_LINEAR_POLYNOMIAL')
       call read_linear_polynomial(deck, parameters, i, raw)
     case ('EOS_GRUNEISEN')

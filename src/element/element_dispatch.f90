@@ -14,7 +14,7 @@ module element_dispatch_m
   use round_one_point_m, only : advance_round_one_point
   implicit none
   private
-  public :: add_tile_forces, point_count
+  public :: add_tile_forces, advance_chunk, point_count
 
 contains
 
@@ -47,32 +47,45 @@ contains
     force = 0.0_wp
     do i_chunk = tile%first_chunk, tile%last_chunk
       first = (i_chunk - 1)*chunk_size + 1
-      associate (part => model%parts(model%layout%chunk_part(i_chunk)))
-        select case (model%sections(part%section)%element_form)
-        case (form_one_point)
-          call advance_one_point(i_chunk, model%layout%slot_nodes(1, first), motion, &
-            model%materials(part%material), part%hourglass, model%controls%length_rule, dt, &
-            elements, chunk)
-        case (form_full)
-          call advance_full(i_chunk, model%layout%slot_nodes(1, first), motion, &
-            model%materials(part%material), part%hourglass, dt, elements, chunk)
-        case (form_round_one_point)
-          call advance_round_one_point(i_chunk, model%layout%slot_nodes(1, first), motion, &
-            model%materials(part%material), part%hourglass, dt, elements, round)
-          call scatter_round(model%layout%chunk_elements(i_chunk), &
-            model%layout%slot_local(1, first), round, force)
-          cycle
-        case (form_round_full)
-          call advance_round_full(i_chunk, model%layout%slot_nodes(1, first), motion, &
-            model%materials(part%material), part%hourglass, dt, elements, round)
-          call scatter_round(model%layout%chunk_elements(i_chunk), &
-            model%layout%slot_local(1, first), round, force)
-          cycle
-        end select
+      call advance_chunk(model, i_chunk, model%layout%slot_nodes(1, first), motion, dt, elements, &
+        chunk, round)
+      if (model%is_round) then
+        call scatter_round(model%layout%chunk_elements(i_chunk), &
+          model%layout%slot_local(1, first), round, force)
+      else
         call scatter_chunk(model%layout%chunk_elements(i_chunk), &
           model%layout%slot_local(1, first), chunk, force)
-      end associate
+      end if
     end do
   end subroutine add_tile_forces
+
+  !> Advance one chunk by its form; its forces stand in `round` in round bodies, else in `chunk`.
+  subroutine advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk, round)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_chunk
+    integer, intent(in) :: nodes(4, chunk_size)
+    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node)
+    real(wp), intent(in) :: dt
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk
+    type(round_chunk_t), intent(inout) :: round
+
+    associate (part => model%parts(model%layout%chunk_part(i_chunk)))
+      select case (model%sections(part%section)%element_form)
+      case (form_one_point)
+        call advance_one_point(i_chunk, nodes, motion, model%materials(part%material), &
+          part%hourglass, model%controls%length_rule, dt, elements, chunk)
+      case (form_full)
+        call advance_full(i_chunk, nodes, motion, model%materials(part%material), part%hourglass, &
+          dt, elements, chunk)
+      case (form_round_one_point)
+        call advance_round_one_point(i_chunk, nodes, motion, model%materials(part%material), &
+          part%hourglass, dt, elements, round)
+      case (form_round_full)
+        call advance_round_full(i_chunk, nodes, motion, model%materials(part%material), &
+          part%hourglass, dt, elements, round)
+      end select
+    end associate
+  end subroutine advance_chunk
 
 end module element_dispatch_m

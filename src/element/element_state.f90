@@ -4,6 +4,7 @@ module element_state_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use element_dispatch_m, only : point_count
+  use erosion_state_m, only : erosion_state_t, stays, has_left, has_gone
   use layout_m, only : chunk_size, slot_part
   use material_dispatch_m, only : history_size, column_temperature, column_damage, &
     has_plastic_strain
@@ -20,7 +21,7 @@ module element_state_m
   implicit none
   private
   public :: start_elements, lump_mass, element_stresses, element_plastic_strains, &
-    element_heats, add_part_energies, smallest_ratio
+    element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone
 
 contains
 
@@ -44,7 +45,91 @@ contains
     end do
     if (model%is_round) call fill_round_reference(model, elements%reference)
     call reserve_memories(model, elements)
+    if (model%erodes) call start_erosion(model, elements)
   end subroutine start_elements
+
+  !> What is known of elements that may leave the mesh.
+  subroutine start_erosion(model, elements)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(inout) :: elements
+    integer :: i_slot, k
+
+    allocate (elements%erosion)
+    associate (erosion => elements%erosion, layout => model%layout)
+      allocate (erosion%status(layout%n_slot), source=stays)
+      allocate (erosion%n_gone(layout%n_chunk), erosion%n_element(model%mesh%n_node), &
+        erosion%n_eroded(size(model%parts)), source=0)
+      allocate (erosion%hourglass(layout%n_slot), erosion%internal(layout%n_slot), &
+        erosion%impulse(layout%n_slot), source=0.0_wp)
+      do i_slot = 1, layout%n_slot
+        if (layout%slot_element(i_slot) == 0) cycle
+        do k = 1, corners_of(layout%slot_nodes(:, i_slot))
+          associate (node => layout%slot_nodes(k, i_slot))
+            erosion%n_element(node) = erosion%n_element(node) + 1
+          end associate
+        end do
+      end do
+    end associate
+  end subroutine start_erosion
+
+  !> Corners of an element: a triangle repeats its third node.
+  pure function corners_of(nodes) result(n)
+    integer, intent(in) :: nodes(4)
+    integer :: n
+
+    n = merge(3, 4, nodes(4) == nodes(3))
+  end function corners_of
+
+  !> Elements that have left the mesh in this cycle: their energies leave the account, and their
+  !> nodes have one element less. Slot by slot, so that sums do not depend on threads.
+  subroutine settle_erosion(model, time, erosion, freed)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: time
+    type(erosion_state_t), intent(inout) :: erosion
+    integer, allocatable, intent(out) :: freed(:) !! nodes that have no element any more; not there
+                                                  !! where no element has left
+    integer :: slot, k
+
+    if (.not. any(erosion%status == has_left)) return
+    allocate (freed(0))
+    if (sum(erosion%n_eroded) == 0) erosion%first_time = time
+    do slot = 1, model%layout%n_slot
+      if (erosion%status(slot) /= has_left) cycle
+      erosion%status(slot) = has_gone
+      erosion%took(2) = erosion%took(2) + erosion%internal(slot)
+      erosion%took(3) = erosion%took(3) + erosion%hourglass(slot)
+      associate (part => slot_part(model%layout, slot), nodes => model%layout%slot_nodes(:, slot))
+        erosion%n_eroded(part) = erosion%n_eroded(part) + 1
+        do k = 1, corners_of(nodes)
+          erosion%n_element(nodes(k)) = erosion%n_element(nodes(k)) - 1
+          if (erosion%n_element(nodes(k)) == 0) freed = [freed, nodes(k)]
+        end do
+      end associate
+    end do
+  end subroutine settle_erosion
+
+  !> Which elements have left the mesh, in deck order.
+  subroutine element_erosion(model, elements, eroded)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    real(wp), intent(inout) :: eroded(:) !! (n_element) 1 or 0
+    integer :: i
+
+    do i = 1, size(eroded)
+      eroded(i) = merge(0.0_wp, 1.0_wp, elements%erosion%status(model%layout%element_slot(i)) &
+        == stays)
+    end do
+  end subroutine element_erosion
+
+  !> Whether the element in a slot has left the mesh.
+  pure function is_gone(elements, slot) result(gone)
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: slot
+    logical :: gone
+
+    gone = allocated(elements%erosion)
+    if (gone) gone = elements%erosion%status(slot) /= stays
+  end function is_gone
 
   !> Diagonals and h.X of one slot; padding is the first element of its chunk, much larger: it
   !> divides by no zero and its stable step never counts.
@@ -158,6 +243,10 @@ contains
     do slot = 1, model%layout%n_slot
       i = model%layout%slot_element(slot)
       if (i == 0) cycle
+      if (is_gone(elements, slot)) then
+        stress(:, i) = 0.0_wp
+        cycle
+      end if
       associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
         call volume_ratios(model, motion, elements, slot, n, stretch, start)
         if (material%is_rigid) stretch = 0.0_wp
@@ -325,6 +414,7 @@ contains
       viscous(part) = viscous(part) + elements%viscous_work(i_chunk)
       do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
         if (model%layout%slot_element(slot) == 0) cycle
+        if (is_gone(elements, slot)) cycle
         call volume_ratios(model, motion, elements, slot, n, stretch, start)
         associate (material => model%materials(model%parts(part)%material))
           if (elements%eos_start(i_chunk) > 0) then

@@ -16,7 +16,7 @@ module eos_pressure_m
   implicit none
   private
   public :: n_eos_value, load_eos_state, form_eos_pressure, take_present, finish_limits, &
-    form_viscous_pressure, is_too_dense
+    form_viscous_pressure, is_too_dense, look_for_failed
 
   !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity, speed of sound squared.
   integer, parameter :: n_eos_value = 5

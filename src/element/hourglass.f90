@@ -10,7 +10,8 @@ module hourglass_m
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: resist_viscously, resist_elastically, hourglass_steps, harmless_coefficient
+  public :: resist_viscously, resist_elastically, hourglass_steps, harmless_coefficient, &
+    add_viscous_works, add_elastic_works
 
   !> Coefficient up to which hourglass control never asks for less than L/c in a convex quad of its
   !> initial area (doc/theory/elements.md).
@@ -73,6 +74,36 @@ contains
     end do
     work = 0.5_wp*work
   end subroutine resist_elastically
+
+  !> Works of the viscous forces, element by element.
+  pure subroutine add_viscous_works(dt, chunk, works)
+    real(wp), intent(in) :: dt
+    type(element_chunk_t), intent(in) :: chunk
+    real(wp), intent(inout) :: works(chunk_size)
+
+    works = works + dt*(chunk%qx*chunk%gx + chunk%qy*chunk%gy)
+  end subroutine add_viscous_works
+
+  !> The same of the stiffness form, whose strains are those of the end of the step.
+  pure subroutine add_elastic_works(stress, chunk, strain_x, strain_y, works)
+    type(stress_chunk_t), intent(in) :: stress
+    type(element_chunk_t), intent(in) :: chunk
+    real(wp), intent(in), dimension(chunk_size) :: strain_x, strain_y
+    real(wp), intent(inout) :: works(chunk_size)
+    real(wp) :: half(2), growth(2), square
+    integer :: i
+
+    do i = 1, chunk_size
+      half = 0.5_wp*stress%dt*[chunk%gx(i), chunk%gy(i)]
+      growth = half + [stress%cosine(i)*half(1) - stress%sine(i)*half(2), &
+        stress%sine(i)*half(1) + stress%cosine(i)*half(2)]
+      works(i) = works(i) + (chunk%qx(i)*growth(1) + chunk%qy(i)*growth(2))
+      ! The mean of both ends: less half of stiffness times growth squared.
+      square = strain_x(i)**2 + strain_y(i)**2
+      if (square > 0.0_wp) works(i) = works(i) - 0.5_wp*sum(growth**2) &
+        *(chunk%qx(i)*strain_x(i) + chunk%qy(i)*strain_y(i))/square
+    end do
+  end subroutine add_elastic_works
 
   !> Steps that hourglass control of the elements allows. With masses rho A0/4 and
   !> gamma.gamma = 4 + (|d31 x h.x|^2 + |d42 x h.x|^2)/(2 A^2): 2/omega of the stiffness form,

@@ -4,6 +4,7 @@
 module smallest_steps_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
+  use erosion_state_m, only : stays
   use element_steps_m, only : shape_steps, damped_step
   use law_pressure_m, only : take_now
   use layout_m, only : chunk_size
@@ -12,7 +13,7 @@ module smallest_steps_m
   use parts_m, only : material_t
   implicit none
   private
-  public :: find_smallest_steps
+  public :: find_smallest_steps, step_of_element
 
 contains
 
@@ -35,8 +36,11 @@ contains
       seen(i_chunk) = .true.
       do i_slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
         if (model%layout%slot_element(i_slot) == 0) cycle
+        if (allocated(elements%erosion)) then
+          if (elements%erosion%status(i_slot) /= stays) cycle
+        end if
         call insert(n, model%layout%slot_element(i_slot), &
-          step_of_slot(model, elements, i_slot, motion), found, steps)
+          step_of_element(model, elements, i_slot, motion), found, steps)
       end do
     end do
   end subroutine find_smallest_steps
@@ -61,7 +65,7 @@ contains
 
   !> Stable step of the element in one slot, as its memory has it: that of a chunk which holds
   !> nothing else.
-  function step_of_slot(model, elements, i_slot, motion) result(step)
+  function step_of_element(model, elements, i_slot, motion) result(step)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: i_slot
@@ -80,6 +84,6 @@ contains
     step = steps(1)
     if (allocated(elements%retardation)) step = damped_step(step, elements%retardation(i_slot))
     step = scaled_step(model, i_slot, step, elements)
-  end function step_of_slot
+  end function step_of_element
 
 end module smallest_steps_m

@@ -51,7 +51,7 @@ contains
 
     associate (motions => model%conditions%motions)
       do i = 1, size(motions)
-        if (.not. is_active(motions(i), time)) &
+        if (.not. is_active(motions(i), time) .and. mass(motions(i)%node) > 0.0_wp) &
           inverse_mass(motions(i)%direction, motions(i)%node) = 1.0_wp/mass(motions(i)%node)
       end do
       do i = 1, size(motions)

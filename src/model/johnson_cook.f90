@@ -19,6 +19,7 @@ module johnson_cook_m
     real(wp) :: d(5) = 0.0_wp            !! D1 to D5
     real(wp) :: least = 0.0_wp           !! EFMIN, bound on the strain at fracture
     logical :: is_viscoplastic = .false. !! the rate is that of the plastic strain
+    logical :: keeps_broken = .false.    !! broken elements stay in the mesh (EROD)
     logical :: has_damage = .false.
     logical :: has_memory = .false.      !! points keep a temperature and a damage
   end type johnson_cook_t

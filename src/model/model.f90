@@ -38,6 +38,7 @@ module model_m
     type(rigid_t), allocatable :: rigids(:)
     type(wall_t), allocatable :: walls(:)       !! only where the deck has any
     type(controls_t) :: controls
+    logical :: erodes = .false.   !! elements may leave the mesh
     logical :: is_round = .false. !! axisymmetric: x is the radius, y the axis; forces, masses and
                                   !! energies per radian
   end type model_t

@@ -3,6 +3,7 @@
 module parts_m
   use curves_m, only : curve_t
   use eos_m, only : eos_t, eos_by_law
+  use erosion_m, only : erosion_t
   use hardenings_m, only : hardening_t
   use johnson_cook_m, only : johnson_cook_t
   use kinds_m, only : wp
@@ -61,6 +62,7 @@ module parts_m
     real(wp) :: failure_strain = huge(1.0_wp) !! plastic strain from which a point has no stress
     real(wp) :: cutoff = -huge(1.0_wp) !! least pressure, 0 or below
     integer :: spall = spall_pressure  !! what the cut-off means
+    type(erosion_t), allocatable :: erosion !! elements of it may leave the mesh
     logical :: takes_eos = .false.   !! its parts may name an equation of state
     logical :: needs_eos = .false.   !! and must: the law has no pressure of its own
     logical :: is_rigid = .false.  !! no stress: parts of it are rigid bodies; E and nu serve

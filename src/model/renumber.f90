@@ -56,7 +56,7 @@ contains
       deallocate (model%conditions%initial_velocity)
     if (allocated(model%node_sets)) deallocate (model%node_sets)
     if (allocated(model%segment_sets)) deallocate (model%segment_sets)
-    if (model%controls%implicit%is_on) return
+    if (model%controls%implicit%is_on .or. model%erodes) return
     deallocate (model%mesh%element_nodes, model%mesh%element_part)
     if (.not. is_asked(model%controls%output%plot)) deallocate (model%mesh%deck_node)
   end subroutine forget_start
@@ -71,6 +71,7 @@ contains
       is_special(model%contacts(i)%slave%nodes) = .true.
       is_special(model%contacts(i)%master%nodes) = .true.
     end do
+    if (model%erodes) call mark_hidden_nodes(model, is_special)
     is_special(model%conditions%motions%node) = .true.
     is_special(model%conditions%nodal_loads%node) = .true.
     if (allocated(model%conditions%skew_supports)) &
@@ -88,6 +89,28 @@ contains
       is_special(model%walls(i)%nodes) = .true.
     end do
   end subroutine mark_touched_nodes
+
+  !> Nodes that may come to the surface of parts in contact as their elements leave the mesh.
+  subroutine mark_hidden_nodes(model, is_special)
+    type(model_t), intent(in) :: model
+    logical, intent(inout) :: is_special(:) !! (n_node)
+    logical :: may_open(size(model%parts))
+    integer :: i
+
+    may_open = .false.
+    do i = 1, size(model%contacts)
+      if (allocated(model%contacts(i)%slave%parts)) &
+        may_open(model%contacts(i)%slave%parts) = .true.
+      if (allocated(model%contacts(i)%master%parts)) &
+        may_open(model%contacts(i)%master%parts) = .true.
+    end do
+    do i = 1, size(model%parts)
+      may_open(i) = may_open(i) .and. allocated(model%materials(model%parts(i)%material)%erosion)
+    end do
+    do i = 1, model%mesh%n_element
+      if (may_open(model%mesh%element_part(i))) is_special(model%mesh%element_nodes(:, i)) = .true.
+    end do
+  end subroutine mark_hidden_nodes
 
   !> Mesh arrays.
   subroutine renumber_mesh(model, order, new_index)

@@ -20,6 +20,8 @@ module surfaces_m
     integer, allocatable :: chain(:)           !! (n_segment) number of the chain that it belongs to
     integer, allocatable :: incoming(:)        !! (n_node) segment that ends at the node, or 0
     integer, allocatable :: outgoing(:)        !! (n_node) segment that starts at the node, or 0
+    integer, allocatable :: parts(:)           !! whose outline it is; only where elements may leave
+                                               !! the mesh
     logical, allocatable :: is_on_axis(:)      !! (n_node) axisymmetry alone: nodes on the axis
   end type surface_t
 

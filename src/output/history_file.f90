@@ -38,7 +38,7 @@ contains
     do k = 1, n_table
       if (.not. is_wanted(model, k)) cycle
       call name_columns(k, abs(model%controls%mass_step) > 0.0_wp .and. &
-        .not. model%controls%implicit%is_on, row)
+        .not. model%controls%implicit%is_on, model%erodes, row)
       call plan_table(histories%tables(k), trim(history_tables(k)%name), row%header, &
         row%kinds(:row%n), row%further)
     end do

@@ -23,9 +23,10 @@ module history_rows_m
 contains
 
   !> Names and kinds of the columns of a table, by a row of nothing.
-  subroutine name_columns(i_table, tells_mass, row)
-    integer, intent(in) :: i_table   !! one of `table_`
+  subroutine name_columns(i_table, tells_mass, erodes, row)
+    integer, intent(in) :: i_table    !! one of `table_`
     logical, intent(in) :: tells_mass !! masses are scaled
+    logical, intent(in) :: erodes     !! elements may leave the mesh
     type(row_t), intent(out) :: row
     type(snapshot_t) :: nothing
     type(interface_result_t) :: result
@@ -38,7 +39,7 @@ contains
     nothing%energies%tells_mass = tells_mass
     select case (i_table)
     case (table_glstat)
-      call put_glstat(row, nothing)
+      call put_glstat(row, nothing, erodes)
     case (table_rcforc)
       call put_rcforc(row, nothing%time, 0, side_slave, result)
     case (table_nodout)
@@ -68,7 +69,7 @@ contains
     if (.not. table%is_open) return
     select case (i_table)
     case (table_glstat)
-      call put_glstat(row, snapshot)
+      call put_glstat(row, snapshot, model%erodes)
       call take(table, row)
     case (table_nodout)
       do i = 1, size(model%controls%output%history_nodes)
@@ -148,9 +149,10 @@ contains
   ! ---- the columns of each table -----------------------------------------------------------------
 
   !> The energy account.
-  pure subroutine put_glstat(row, shot)
+  pure subroutine put_glstat(row, shot, erodes)
     type(row_t), intent(inout) :: row
     type(snapshot_t), intent(in) :: shot
+    logical, intent(in) :: erodes
 
     associate (e => shot%energies)
       call put(row, 'time', shot%time)
@@ -168,7 +170,10 @@ contains
       call put(row, 'leapfrog', e%leapfrog)
       call put(row, 'friction', e%friction)
       if (e%tells_mass) call put_added_mass(row, e%added_mass)
+      if (erodes) call put(row, 'eroded', sum(e%eroded))
       call end_csv(row)
+      if (erodes) call put(row, 'eroded_kinetic,eroded_internal,eroded_hourglass,eroded_contact', &
+        e%eroded)
       call put(row, 'velocity_x,velocity_y', shot%mean_velocity)
       call put(row, 'element', shot%slowest(1))
       call put(row, 'element_part', shot%slowest(2))

@@ -6,6 +6,7 @@ module restart_state_m
   use archive_m, only : keep, keep_fixed, keep_same
   use archive_file_m, only : archive_t, enter, leave
   use block_state_m, only : block_state_t
+  use erosion_state_m, only : erosion_state_t
   use log_m, only : to_text
   use restart_contact_m, only : keep_contact
   use rigid_state_m, only : rigid_state_t
@@ -13,7 +14,7 @@ module restart_state_m
   use wall_state_m, only : wall_state_t
   implicit none
   private
-  public :: keep_state
+  public :: keep_state, keep_erosion_status
 
 contains
 
@@ -80,8 +81,43 @@ contains
     call keep(archive, 'damping_work', elements%damping_work)
     call keep(archive, 'time_limit', elements%time_limit)
     call keep(archive, 'volume_limit', elements%volume_limit)
+    if (allocated(elements%erosion)) call keep_erosion(archive, 'erosion', elements%erosion)
     call leave(archive)
   end subroutine keep_elements
+
+  !> Which elements are there, before anything else is read: shapes of interfaces follow from it.
+  subroutine keep_erosion_status(archive, erosion)
+    type(archive_t), intent(inout) :: archive
+    type(erosion_state_t), intent(inout) :: erosion
+
+    call enter(archive, 'state')
+    call enter(archive, 'elements')
+    call enter(archive, 'erosion')
+    call keep(archive, 'status', erosion%status)
+    call leave(archive)
+    call leave(archive)
+    call leave(archive)
+  end subroutine keep_erosion_status
+
+  !> Which elements have left the mesh.
+  subroutine keep_erosion(archive, name, erosion)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(erosion_state_t), intent(inout) :: erosion
+
+    call enter(archive, name)
+    call keep(archive, 'status', erosion%status)
+    call keep(archive, 'n_gone', erosion%n_gone)
+    call keep(archive, 'hourglass', erosion%hourglass)
+    call keep(archive, 'internal', erosion%internal)
+    call keep(archive, 'impulse', erosion%impulse)
+    call keep(archive, 'n_element', erosion%n_element)
+    call keep(archive, 'n_eroded', erosion%n_eroded)
+    call keep(archive, 'first_time', erosion%first_time)
+    call keep(archive, 'least_step', erosion%least_step)
+    call keep_fixed(archive, 'took', erosion%took)
+    call leave(archive)
+  end subroutine keep_erosion
 
   !> Memories of all interfaces, numbered from 1.
   subroutine keep_contacts(archive, name, state)

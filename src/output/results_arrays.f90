@@ -27,10 +27,11 @@ module results_arrays_m
   public :: results_file_t, create_file, create_steps, create_fields, planned_states, &
     states_per_chunk, block_rows, n_point_field, n_cell_field, n_step_array, &
     point_names, point_columns, cell_names, cell_columns, plane_fields, round_field, heat_fields, &
+    eroded_field, &
     step_values, step_points, step_ones
 
   !> Fields, in the order in which `append_state` writes them, and their numbers of columns.
-  integer, parameter :: n_point_field = 9, n_cell_field = 7
+  integer, parameter :: n_point_field = 9, n_cell_field = 8
   character(16), parameter :: point_names(n_point_field) = [character(16) :: 'Points', &
     'displacement', 'velocity', 'contact_force', 'contact_pressure', 'gap', 'contact_traction', &
     'contact_slip', 'contact_state']
@@ -38,10 +39,13 @@ module results_arrays_m
   !> Without friction the fields from that one on are left out.
   integer, parameter :: n_plain_field = 6
   character(16), parameter :: cell_names(n_cell_field) = [character(16) :: 'stress', &
-    'plastic_strain', 'pressure', 'mises', 'hoop_strain', 'temperature', 'damage']
-  integer, parameter :: cell_columns(n_cell_field) = [6, 0, 0, 0, 0, 0, 0]
-  !> What every file has of them, what round bodies have, and what bodies that keep heat have.
-  integer, parameter :: plane_fields(4) = [1, 2, 3, 4], round_field = 5, heat_fields(2) = [6, 7]
+    'plastic_strain', 'pressure', 'mises', 'hoop_strain', 'temperature', 'damage', &
+    'eroded']
+  integer, parameter :: cell_columns(n_cell_field) = [6, 0, 0, 0, 0, 0, 0, 0]
+  !> What every file has of them, what round bodies have, what bodies that keep heat have, and what
+  !> those have whose elements may leave the mesh.
+  integer, parameter :: plane_fields(4) = [1, 2, 3, 4], round_field = 5, heat_fields(2) = [6, 7], &
+    eroded_field = 8
   !> Arrays below Steps: times, first point of a state, first cell, zeros and ones.
   integer, parameter :: n_step_array = 5, step_values = 1, step_points = 2, step_cells = 3, &
     step_zeros = 4, step_ones = 5

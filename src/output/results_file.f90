@@ -24,7 +24,7 @@ module results_file_m
   use results_mesh_m, only : write_mesh, deck_nodes
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
     planned_states, block_rows, n_point_field, n_step_array, plane_fields, round_field, &
-    heat_fields, &
+    heat_fields, eroded_field, &
     step_values, step_points, step_ones
   use hdf5_library_m, only : end_of_file
   use hdf5_writing_m, only : append_rows, close_growing, make_group, write_string_attribute, &
@@ -59,6 +59,7 @@ contains
     file%cells = plane_fields
     if (model%is_round) file%cells = [file%cells, round_field]
     if (any(has_memory_of_heat(model%materials))) file%cells = [file%cells, heat_fields]
+    if (model%erodes) file%cells = [file%cells, eroded_field]
     call create_file(file, error)
     if (allocated(error)) return
     call make_group(file%id, 'VTKHDF', error)
@@ -217,6 +218,8 @@ contains
             file%rows(:n) = snapshot%temperature(first:first + n - 1)
           case (7)
             file%rows(:n) = snapshot%damage(first:first + n - 1)
+          case (8)
+            file%rows(:n) = snapshot%eroded(first:first + n - 1)
           end select
         end associate
         call append_rows(file%cell_fields(i), n, c_loc(file%rows), error)

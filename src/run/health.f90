@@ -5,7 +5,7 @@ module health_m
   use contact_state_m, only : contact_state_t
   use controls_m, only : controls_t
   use energies_m, only : energies_t, energy_ratio, total_energy
-  use element_state_m, only : smallest_ratio
+  use element_state_m, only : smallest_ratio, is_gone
   use eos_pressure_m, only : is_too_dense
   use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
@@ -131,6 +131,7 @@ contains
     do slot = 1, model%layout%n_slot
       element = model%layout%slot_element(slot)
       if (element == 0) cycle
+      if (is_gone(state%elements, slot)) cycle
       ratio = smallest_ratio(model, state%motion, state%elements, slot)
       if (ratio > 0.0_wp .and. ratio <= huge(ratio)) cycle
       call blame(model, state, slot, merge('negative area             ', &

@@ -36,8 +36,13 @@ contains
     call require(archive, 'state/dt_before', state%dt_before >= 0.0_wp, 'a step below zero')
     call require(archive, 'state/mass', all(state%mass >= 0.0_wp), 'masses below zero')
     do i = 1, size(state%contacts)
-      call check_contact(model%contacts(i), model%mesh%n_node, state%contacts(i), &
-        'state/contacts/'//to_text(i)//'/', archive)
+      if (model%erodes) then
+        call check_contact(state%outlines(i), model%mesh%n_node, state%contacts(i), &
+          'state/contacts/'//to_text(i)//'/', archive)
+      else
+        call check_contact(model%contacts(i), model%mesh%n_node, state%contacts(i), &
+          'state/contacts/'//to_text(i)//'/', archive)
+      end if
     end do
   end subroutine check_state
 

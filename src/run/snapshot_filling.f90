@@ -9,7 +9,7 @@ module snapshot_filling_m
   use contact_results_m, only : interface_resultants, slave_rows, join_rows
   use element_shares_m, only : element_shares
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains, &
-    element_heats
+    element_heats, element_erosion
   use contacts_m, only : transducer_t, has_shear, n_told, told_as
   use controls_m, only : is_asked
   use history_tables_m, only : table_matsum
@@ -18,7 +18,7 @@ module snapshot_filling_m
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat
   use round_state_m, only : hoop_strains
-  use snapshot_m, only : snapshot_t, interface_result_t, rubbed_t
+  use snapshot_m, only : snapshot_t, interface_result_t, rubbed_t, slave_result_t
   use state_m, only : state_t
   use support_forces_m, only : find_supports
   implicit none
@@ -58,6 +58,7 @@ contains
     if (model%is_round) allocate (snapshot%hoop_strain(n_element), source=0.0_wp)
     if (any(has_memory_of_heat(model%materials))) allocate (snapshot%temperature(n_element), &
       snapshot%damage(n_element), source=0.0_wp)
+    if (model%erodes) allocate (snapshot%eroded(n_element), source=0.0_wp)
     if (size(model%contacts) > 0) allocate (snapshot%contact_force(2, n_node), &
       snapshot%contact_pressure(n_node), snapshot%gap(n_node), source=0.0_wp)
     if (any(has_shear(model%contacts))) allocate (snapshot%contact_traction(n_node), &
@@ -198,6 +199,7 @@ contains
       energies%made = sum(max(0.0_wp, -state%contacts%watch%balance))
       energies%external_work = state%external_work + sum(state%contacts%interference%work)
       energies%initial = state%initial_energy
+      if (model%erodes) energies%eroded = state%elements%erosion%took
       if (.not. energies%tells_mass) return
       call added_masses(model, state%elements, added, own)
       energies%added_mass = sum(added)
@@ -347,6 +349,7 @@ contains
     call element_stresses(model, state%motion, state%elements, snapshot%stress)
     if (allocated(snapshot%plastic_strain)) &
       call element_plastic_strains(model, state%elements, snapshot%plastic_strain)
+    if (model%erodes) call element_erosion(model, state%elements, snapshot%eroded)
     if (model%is_round) call hoop_strains(model, state%motion, snapshot%hoop_strain)
     if (allocated(snapshot%damage)) then
       call element_heats(model, state%elements, snapshot%temperature, snapshot%damage)
@@ -361,8 +364,14 @@ contains
       snapshot%contact_state = 0.0_wp
     end if
     do i = 1, size(model%contacts)
-      call slave_rows(model%contacts(i), state%motion, state%contacts(i), &
-        snapshot%slaves(i))
+      if (model%erodes) then
+        ! Its nodes may be others than those of the state before.
+        snapshot%slaves(i) = slave_result_t()
+        call slave_rows(state%outlines(i), state%motion, state%contacts(i), snapshot%slaves(i))
+      else
+        call slave_rows(model%contacts(i), state%motion, state%contacts(i), &
+          snapshot%slaves(i))
+      end if
       associate (memory => state%contacts(i), rows => snapshot%slaves(i))
         do k = 1, size(memory%nodes)
           snapshot%contact_force(:, memory%nodes(k)) = snapshot%contact_force(:, memory%nodes(k)) &

@@ -10,6 +10,7 @@ module restart_reading_m
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, plan_outputs
+  use outlines_m, only : resume_outlines
   use output_schedule_m, only : output_reach
   use progress_m, only : show_note
   use restart_bounds_m, only : check_state
@@ -17,7 +18,7 @@ module restart_reading_m
   use restart_history_m, only : keep_times
   use restart_plan_m, only : restarts_t, place_text
   use restart_run_m, only : keep_run, keep_outputs
-  use restart_state_m, only : keep_state
+  use restart_state_m, only : keep_state, keep_erosion_status
   use results_copy_m, only : check_old_results, copy_states
   use results_file_m, only : results_file_t
   use start_m, only : start_state, resume_contacts
@@ -78,7 +79,11 @@ contains
     if (allocated(error)) return
     if (model%controls%implicit%is_on) &
       allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
-    call keep_state(source, state)
+    if (model%erodes) then
+      call keep_erosion_status(source, state%elements%erosion)
+      if (.not. allocated(source%error)) call resume_outlines(model, state)
+    end if
+    if (.not. allocated(source%error)) call keep_state(source, state)
     if (.not. allocated(source%error)) call check_state(model, state, source)
     if (.not. allocated(source%error)) then
       call resume_contacts(model, state)

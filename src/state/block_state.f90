@@ -2,6 +2,7 @@
 !> Everything about elements that changes, as long streams over the element slots, so that a chunk
 !> of a stream is contiguous and goes to a kernel without a copy.
 module block_state_m
+  use erosion_state_m, only : erosion_state_t
   use kinds_m, only : wp
   implicit none
   private
@@ -50,6 +51,7 @@ module block_state_m
     real(wp), allocatable :: time_limit(:)      !! (n_chunk) smallest L/c of the last step, s
     real(wp), allocatable :: volume_limit(:)    !! (n_chunk) smallest A/A0 (or J of a point) of the
                                                 !! last step
+    type(erosion_state_t), allocatable :: erosion !! only where elements may leave the mesh
   end type block_state_t
 
 end module block_state_m

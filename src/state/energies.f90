@@ -22,6 +22,8 @@ module energies_m
     real(wp) :: made = 0.0_wp          !! what contact springs gave beyond what they took, over the
                                        !! interfaces where they did; no part of the sum
     real(wp) :: external_work = 0.0_wp !! work of loads and prescribed motion
+    real(wp) :: eroded(4) = 0.0_wp     !! what went with elements: kinetic, internal, hourglass,
+                                       !! contact springs
     real(wp) :: leapfrog = 0.0_wp      !! v(n-1/2).M v(n+1/2)/2 minus the kinetic energy, in
                                        !! explicit runs
     real(wp) :: initial = 0.0_wp       !! total at time zero
@@ -37,7 +39,8 @@ contains
     real(wp) :: total
 
     total = energies%kinetic + energies%internal + energies%hourglass + energies%viscous &
-      + energies%damping + energies%contact + energies%leapfrog + energies%friction
+      + energies%damping + energies%contact + energies%leapfrog + energies%friction &
+      + sum(energies%eroded)
   end function total_energy
 
   !> total / (initial + external work); 1 when both vanish against the terms that they are sums of.
@@ -65,7 +68,7 @@ contains
 
     largest = maxval(abs([energies%kinetic, energies%internal, energies%hourglass, &
       energies%viscous, energies%damping, energies%contact, energies%friction, energies%leapfrog, &
-      energies%external_work, energies%initial]))
+      energies%external_work, energies%initial, energies%eroded]))
   end function largest_term
 
 end module energies_m

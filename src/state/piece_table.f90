@@ -6,8 +6,8 @@ module piece_table_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: piece_table_t, allocate_pieces, grow_pieces, n_piece_block, is_listed_piece, &
-    is_last_piece, is_walked_piece
+  public :: piece_table_t, allocate_pieces, grow_pieces, shrink_pieces, n_piece_block, &
+    is_listed_piece, is_last_piece, is_walked_piece
 
   !> Pieces that are taken together; a slave segment with more of them makes the table grow.
   integer, parameter :: n_piece_block = 64
@@ -87,5 +87,14 @@ contains
     end associate
     table = larger
   end subroutine grow_pieces
+
+  !> Back to the room of the start; nothing stays.
+  pure subroutine shrink_pieces(table)
+    type(piece_table_t), intent(inout) :: table
+    type(piece_table_t) :: smaller
+
+    call allocate_pieces(smaller, n_piece_block)
+    table = smaller
+  end subroutine shrink_pieces
 
 end module piece_table_m

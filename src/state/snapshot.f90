@@ -89,6 +89,8 @@ module snapshot_m
     real(wp), allocatable :: hoop_strain(:)      !! (n_element) of round bodies
     real(wp), allocatable :: temperature(:)      !! (n_element) this and the next only where some
     real(wp), allocatable :: damage(:)           !! material keeps them
+    real(wp), allocatable :: eroded(:)           !! (n_element) 1: has left the mesh; only where
+                                                 !! elements may
     type(interface_result_t), allocatable :: interfaces(:)
     type(interface_result_t), allocatable :: transducers(:) !! forces alone; only where the deck has
                                                  !! any

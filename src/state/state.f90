@@ -10,6 +10,7 @@ module state_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use contact_state_m, only : contact_state_t
+  use contacts_m, only : contact_t
   use rigid_state_m, only : rigid_state_t
   use wall_state_m, only : wall_state_t
   implicit none
@@ -46,6 +47,8 @@ module state_m
     real(wp) :: body_acceleration(2) = 0.0_wp  !! of *LOAD_BODY at `time`
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)
+    type(contact_t), allocatable :: outlines(:) !! interfaces with the surfaces that are left; only
+                                               !! where elements may leave the mesh
     type(rigid_state_t), allocatable :: rigids(:)
     type(wall_state_t), allocatable :: walls(:) !! only where the deck has any
     real(wp) :: external_work = 0.0_wp

@@ -10,7 +10,9 @@ from fortran_source import ROOT, read_source
 #: components that are not kept like that and why)
 KEPT = {
     "state_t": ("state/state.f90", "output/restart_state.f90", "state%", {
-        "contacts": "kept one by one", "rigids": "kept one by one", "walls": "kept one by one"}),
+        "contacts": "kept one by one", "rigids": "kept one by one", "walls": "kept one by one",
+        "outlines": "made of the deck and the status of elements"}),
+    "erosion_state_t": ("state/erosion_state.f90", "output/restart_state.f90", "erosion%", {}),
     "rigid_state_t": ("state/rigid_state.f90", "output/restart_state.f90", "rigid%", {}),
     "wall_state_t": ("state/wall_state.f90", "output/restart_state.f90", "wall%", {}),
     "block_state_t": ("state/block_state.f90", "output/restart_state.f90", "elements%", {
@@ -49,6 +51,7 @@ KEPT = {
         "last": "found again", "plots": "of the run that was asked", "due": "set in each cycle",
         "leap": "made in each cycle", "sums": "formed in each cycle", "refines": "from the deck", "common": "made in each cycle", "rates": "asked anew in the first cycle",
         "checks": "filled in each cycle", "failures": "of each log, counted anew", "steps": "kept as step_plan_t",
+        "told": "of the state", "freed": "not when a file is written",
         "timed_motions": "from the deck", "active": "asked anew in the first cycle", "velocity": "made in each cycle",
         "displacement": "made in each cycle", "reason": "of each run", "error": "of each run"}),
     "implicit_memory_t": ("solve/implicit/implicit_memory.f90", "solve/implicit/implicit_memory.f90", "", {

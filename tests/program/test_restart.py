@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import by_turns, drop, numbers
+from erosion_decks import penetration
 from impact_decks import plates
 from meshes import Deck, grid
 from round_decks import rings
@@ -39,9 +40,13 @@ SCENES = {
     "plate": (lambda kind: scenes.symmetric_plate(16, 8, True), 300, 170),
     "impact": (plates, 90, 60),
     "impact, 2x2 points": (lambda kind: plates(kind, points=4), 90, 60),
+    "erosion": (penetration, 330, 180),
+    "erosion, round, 2x2 points": (lambda kind: penetration(kind, True, 4), 330, 180),
+    "erosion, one surface": (lambda kind: penetration(kind, is_self=True), 330, 180),
 }
 #: Scenes that are not for every type.
-FEW_TYPES = {"plate": (1,), "rigid die": (2, 7), "impact": (3,), "impact, 2x2 points": (1,)}
+FEW_TYPES = {"plate": (1,), "rigid die": (2, 7), "impact": (3,), "impact, 2x2 points": (1,), "erosion": (4, 5), "erosion, round, 2x2 points": (6,),
+             "erosion, one surface": (5,)}
 CASES = by_turns([(scene, kind) for scene in SCENES for kind in ALL_TYPES
                   if kind in FEW_TYPES.get(scene, ALL_TYPES)])
 

@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import by_turns, is_full
+from erosion_decks import penetration
 from impact_decks import plates
 from meshes import Deck, grid, rotate
 from round_decks import rings
@@ -170,6 +171,15 @@ def test_impact_has_the_same_bits(exe, is_debug, tmp_path, points):
     found = check_same(exe, is_debug, tmp_path, plates(3, points=points), ())
     damage = np.frombuffer(found["VTKHDF/CellData/damage"])
     assert damage.max() >= 1.0 and np.frombuffer(found["VTKHDF/CellData/temperature"]).max() > 310.0
+
+
+@pytest.mark.parametrize("is_self", [False, True])
+def test_erosion_has_the_same_bits(exe, is_debug, tmp_path, is_self):
+    """Elements leave the mesh, and surfaces of contact follow."""
+    found = check_same(exe, is_debug, tmp_path, penetration(5, is_self=is_self, n=16), ())
+    assert np.frombuffer(found["VTKHDF/CellData/eroded"]).sum() > 5.0
+    # Of a surface with itself both sides feel all forces, and these add up to nothing.
+    assert is_self or last_force(found) > 0.0, "no contact behind what has gone"
 
 
 @pytest.mark.parametrize("kind", [1, 7])

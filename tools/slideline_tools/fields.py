@@ -10,6 +10,7 @@ LABELS = {
     "mises": ("von Mises stress", True),
     "temperature": ("temperature", True),
     "damage": ("damage", False),
+    "eroded": ("1: has left the mesh", False),
     "pressure": ("pressure (- trace of stress / 3)", True),
     "stress": ("stress", True),
     "displacement": ("displacement", True),

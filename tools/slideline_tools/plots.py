@@ -43,6 +43,10 @@ def draw_field(axes, results, field, state, scale=1.0, limits=None):
     cells = results.cells
     low, high = field.limits() if limits is None else limits
     values = field.values[state]
+    if "eroded" in results.cell_fields:
+        left = results.cell_field("eroded")[state] < 0.5
+        cells = cells[left]
+        values = values if field.at_nodes else values[left]
     if field.at_nodes:
         artist = draw_nodal(axes, points, cells, values, colours(low, high), low, high)
     else:

@@ -12,7 +12,8 @@ module pieces_m
   use foot_m, only : foot_t, nearest_foot, facing_share, face_on, round_off
   use kinds_m, only : wp
   use piece_list_m, only : list_kept, list_run, note_segments, may_list, hair
-  use piece_table_m, only : piece_table_t, n_piece_block, is_last_piece, is_walked_piece
+  use piece_table_m, only : piece_table_t, shrink_pieces, n_piece_block, is_last_piece, &
+    is_walked_piece
   use piece_walk_m, only : walk_pieces
   use sleep_m, only : is_asleep
   implicit none
@@ -33,6 +34,8 @@ contains
     real(wp), intent(in), optional :: least_cut !! part of a slave segment next to its ends where
                                                 !! master nodes need not cut it
 
+    ! A restart knows nothing of room that was once needed, and what is taken together has an order.
+    if (size(table%master) > n_piece_block) call shrink_pieces(table)
     table%least_cut = round_off
     if (present(least_cut)) table%least_cut = least_cut
     table%n_segment = 0

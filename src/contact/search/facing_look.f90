@@ -18,7 +18,7 @@ module facing_look_m
   use surfaces_m, only : surface_t, has_closed_chain
   implicit none
   private
-  public :: has_outline, start_facing, look_at_facing, make_present
+  public :: has_outline, prepare_facing, start_facing, look_at_facing, make_present
 
   !> Motion between two looks, as a part of the mean segment of the finer side.
   real(wp), parameter :: look_interval = 0.5_wp
@@ -35,8 +35,8 @@ contains
     outline = has_closed_chain(contact%slave) .or. has_closed_chain(contact%master)
   end function has_outline
 
-  !> Who faces whom at time zero. The trackings must know their depths, and nothing else yet.
-  pure subroutine start_facing(contact, model, memory)
+  !> What is known of both surfaces before anybody looks.
+  pure subroutine prepare_facing(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
@@ -44,6 +44,13 @@ contains
     memory%facing%is_used = .true.
     call start_side(contact, contact%slave, model, memory%facing%slave)
     call start_side(contact, contact%master, model, memory%facing%master)
+  end subroutine prepare_facing
+
+  !> Who faces whom at time zero. The trackings must know their depths, and nothing else yet.
+  pure subroutine start_facing(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+
     call look_at_facing(contact, 0.0_wp, .true., memory)
     if (.not. allocated(memory%facing%present)) call make_present(contact, memory)
   end subroutine start_facing

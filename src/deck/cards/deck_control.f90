@@ -124,6 +124,9 @@ contains
       //'mean 0.9)')
     call refuse_outside(deck, cursor, card, 'ISDO', 0, 1, &
       'is not an element length rule (0 area over longest side, 1 area over longest diagonal)')
+    call refuse_outside(deck, cursor, card, 'ERODE', 0, 1, 'is not 0 or 1 (1: elements whose ' &
+      //'step falls below DTMIN times the first step, or whose volume vanishes, leave the mesh)')
+    raw%erodes_by_step = integer_of(card, 'ERODE') == 1
     call note_explicit(raw, card, 'DTINIT', real_of(card, 'DTINIT') > 0.0_wp)
     call note_explicit(raw, card, 'TSSFAC', real_of(card, 'TSSFAC') > 0.0_wp)
     call note_explicit(raw, card, 'ISDO', integer_of(card, 'ISDO') == 1)

@@ -81,6 +81,7 @@ contains
     ! Tension breaks sooner, whichever sign of pressure and D3 the deck has in mind.
     material%flow%d(3) = -abs(material%flow%d(3))
     material%flow%has_damage = any(abs(material%flow%d(1:2)) > 0.0_wp)
+    material%flow%keeps_broken = abs(real_of(damage, 'EROD')) > 0.0_wp
     if (any(abs(material%flow%d) > 0.0_wp) .and. .not. material%flow%has_damage) call &
       report_field(deck, cursor, heat, 'D1', 'is 0 as D2 is: the strain at fracture would be 0')
     call refuse_negative(deck, cursor, damage, 'EFMIN')

@@ -5,6 +5,7 @@ module deck_raw_m
   use kinds_m, only : wp
   use curves_m, only : curve_t
   use eos_m, only : eos_t
+  use erosion_m, only : erosion_t
   use parts_m, only : section_t, material_t, hourglass_t
   use contacts_m, only : contact_t, friction_rule_t
   use controls_m, only : controls_t
@@ -15,7 +16,7 @@ module deck_raw_m
   implicit none
   private
   public :: raw_t, lost_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_contact_t, &
-    raw_wall_t, raw_foam_t, row_t, history_t, reserve_rows, &
+    raw_erosion_t, raw_wall_t, raw_foam_t, row_t, history_t, reserve_rows, &
     append_row, reserve_velocities, append_velocity, &
     reserve_nodes, reserve_elements, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
     row_velocity, row_velocity_node, row_velocity_generation, row_load_node, row_load_set, &
@@ -84,6 +85,13 @@ module deck_raw_m
     integer :: curve = 0      !! LCID, user id
     type(place_t) :: place
   end type raw_foam_t
+
+  !> One *MAT_ADD_EROSION.
+  type :: raw_erosion_t
+    integer :: material = 0 !! user id
+    type(place_t) :: place  !! MID
+    type(erosion_t) :: erosion
+  end type raw_erosion_t
 
   !> One *DEFINE_TABLE: its values; its curves are those of the blocks that come next.
   type :: raw_table_t
@@ -165,6 +173,8 @@ module deck_raw_m
     integer, allocatable :: material_line(:)
     type(eos_t), allocatable :: equations(:)   !! of state
     integer, allocatable :: equation_line(:)
+    type(raw_erosion_t), allocatable :: erosions(:)
+    logical :: erodes_by_step = .false.        !! ERODE of *CONTROL_TIMESTEP
     type(raw_hardening_t), allocatable :: hardenings(:)
     type(raw_foam_t), allocatable :: foams(:)
     type(raw_table_t), allocatable :: tables(:)
@@ -212,7 +222,7 @@ contains
 
     allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%points_open(0), &
       raw%materials(0), &
-      raw%equations(0), raw%equation_line(0), &
+      raw%equations(0), raw%equation_line(0), raw%erosions(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
       raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%foams(0), raw%tables(0), &
       raw%contacts(0), raw%transducers(0), raw%walls(0), raw%systems(0), raw%rows(64), &

@@ -161,7 +161,7 @@ contains
         //to_text(material%flow%room)//' to melt at '//to_text(material%flow%room &
         + material%flow%span)//', m '//to_text(material%flow%m)
       if (material%flow%has_damage) text = text//'; its damaged points (D = 1) carry no deviator ' &
-        //'and no tension but stay in the mesh'
+        //'and no tension'
     end if
     if (allocated(material%eos)) then
       if (material%eos%id > 0) text = text//', equation of state '//to_text(material%eos%id) &
@@ -174,8 +174,33 @@ contains
     if (material%cutoff > -huge(1.0_wp)) text = text//', cut-off of the pressure ' &
       //to_text(material%cutoff)
     if (material%failure_strain < huge(1.0_wp)) text = text//', failure at plastic strain ' &
-      //to_text(material%failure_strain)//': what fails carries no stress but stays in the mesh'
+      //to_text(material%failure_strain)//': what fails carries no stress'
+    text = text//erosion_text(material)
   end function impact_text
+
+  !> Whether elements leave the mesh.
+  pure function erosion_text(material) result(text)
+    type(material_t), intent(in) :: material
+    character(:), allocatable :: text
+
+    text = ''
+    if (.not. allocated(material%erosion)) then
+      if (allocated(material%flow)) then
+        if (material%flow%has_damage) text = '; broken elements stay in the mesh'
+      end if
+      return
+    end if
+    associate (erosion => material%erosion)
+      text = '; elements leave the mesh'
+      if (erosion%by_law) text = text//' once all of their points have failed,'
+      if (erosion%by_step) text = text//' below the least step (ERODE) or without volume,'
+      if (erosion%n_given > 0) text = text//' where '//to_text(erosion%n_criteria)//' of ' &
+        //to_text(erosion%n_given)//' criteria hold at '//to_text(erosion%n_point)//' point(s),'
+      if (erosion%least_step > 0.0_wp) text = text//' below the step ' &
+        //to_text(erosion%least_step)//','
+      text = text(:len(text) - 1)
+    end associate
+  end function erosion_text
 
   !> Hardening by points and its rate effect.
   pure function hardening_text(hardening) result(text)

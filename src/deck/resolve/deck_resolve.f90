@@ -17,6 +17,7 @@ module deck_resolve_m
   use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
   use deck_resolve_eos_m, only : resolve_equations, check_implicit_laws
   use deck_resolve_foams_m, only : resolve_foams
+  use deck_resolve_erosion_m, only : resolve_erosion, check_erosion_points, check_eroding_contacts
   use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
@@ -134,6 +135,8 @@ contains
     call settle_points(deck, raw, model)
     call resolve_hardenings(deck, raw, maps, model)
     call resolve_foams(deck, raw, maps, model)
+    call resolve_erosion(deck, raw, maps, model)
+    call check_erosion_points(deck, raw, model)
     call resolve_equations(deck, raw, maps, model)
     call resolve_mesh(deck, raw, maps, model, sound)
     call settle_axis(deck, raw, model)
@@ -161,6 +164,7 @@ contains
     model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]
     if (sound) then
       call resolve_contacts(deck, raw, maps, model)
+      call check_eroding_contacts(deck, raw, model)
       call resolve_transducers(deck, raw, maps, model)
       if (model%is_round) call mark_round_contacts(model)
     else

@@ -65,6 +65,7 @@ contains
       if (line == 0) line = raw%curve_line(findloc(raw%curves%phase > 0, .true., dim=1))
       if (model%controls%implicit%is_on) call refuse('with the implicit method')
       if (size(raw%contacts) > 0) call refuse('with contact')
+      if (model%erodes) call refuse('with elements that may leave the mesh')
       if (size(raw%walls) > 0) call refuse('with rigid walls')
       if (size(model%rigids) > 0) call refuse('with rigid bodies')
       if (size(conditions%motions) > 0) call refuse('with prescribed motion')

@@ -118,7 +118,7 @@ contains
         //'its equation of state '//to_text(material%eos%id)//' is '//to_text(material%bulk))
       if (material%bulk > 0.0_wp) material%eos%datum = max(0.0_wp, &
         0.5_wp*initial_pressure(material%eos)**2/material%bulk - material%eos%energy)
-    else if (material%failure_strain < huge(1.0_wp) .or. material%takes_eos) then
+    else if (allocated(material%erosion) .or. material%takes_eos) then
       if (.not. material%bulk > 0.0_wp) return
       material%eos = eos_t(kind=eos_logarithmic, stiffness=material%bulk)
     else

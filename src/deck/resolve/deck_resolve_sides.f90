@@ -157,6 +157,7 @@ contains
       return
     end if
     call boundary_surface(boundary, surface, crossing)
+    if (model%erodes) surface%parts = parts
     if (crossing > 0) call reject_field(deck, place, 'has a boundary that touches itself at node ' &
       //to_text(model%mesh%node_id(crossing))//'; give the surface as a node set')
   end subroutine surface_of_parts

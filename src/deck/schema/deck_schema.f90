@@ -299,8 +299,11 @@ contains
     case ('SRC', 'SRP')
       text = 'asks for a Cowper-Symonds strain rate effect, which this version does not have; ' &
         //'leave it 0'
-    case ('ERODE', 'TDEL', 'DTF', 'TEROD', 'CEROD', 'CHARL', 'NUMINT')
+    case ('TDEL', 'DTF', 'TEROD', 'CEROD', 'CHARL', 'NUMINT')
       text = 'asks for deletion of elements, which this version does not have; leave it 0'
+    case ('IDAM', 'LCREGD', 'LCFLD', 'EPSTHIN', 'ENGCRT', 'RADCRT', 'LCEPS12', 'LCEPS13', &
+        'LCEPSMX', 'MXTMP')
+      text = 'asks for a criterion of erosion that this version does not have; leave it 0'
     case ('RATEOP', 'C2_P_XNP_D', 'K')
       text = 'asks for another form of the law of Johnson and Cook, which this version does not ' &
         //'have; leave it 0'

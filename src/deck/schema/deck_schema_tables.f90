@@ -29,7 +29,7 @@ module deck_schema_tables_m
     'CONTROL_TERMINATION', &
     ' ENDTIM:f ENDCYC:i DTMIN:f ENDENG:f ENDMAS:f NOSOL:i', &
     'CONTROL_TIMESTEP', &
-    ' DTINIT:f TSSFAC:f ISDO:i TSLIMT:fw DT2MS:f LCTM:i ERODE:ir MS1ST:i', &
+    ' DTINIT:f TSSFAC:f ISDO:i TSLIMT:fw DT2MS:f LCTM:i ERODE:i MS1ST:i', &
     ' DT2MSF:fw DT2MSLC:iw IMSCL:iw -:x -:x RMSCL:fw EMSCL:fw IHDO:iw', &
     ' -:x IGADO:iw', &
     'CONTROL_DYNAMIC_RELAXATION', &
@@ -72,7 +72,7 @@ module deck_schema_tables_m
     ' HCMIN:fw HCMAX:fw HMMIN:fw HMMAX:fw HNTMAX:fw HNRMAX:fw HRTMAX:fw HRRMAX:fw']
 
   !> Mesh, parts, materials, curves, sets.
-  character(73), parameter :: table_mesh(*) = [character(73) :: &
+  character(85), parameter :: table_mesh(*) = [character(85) :: &
     'NODE', &
     ' NID:i8 X:f16 Y:f16 Z:f16 TC:i8 RC:is8', &
     'ELEMENT_SHELL', &
@@ -111,7 +111,7 @@ module deck_schema_tables_m
     ' MID:i RO:f G:f E:f PR:f DTF:fr VP:f RATEOP:fr', &
     ' A:f B:f N:f C:f M:f TM:f TR:f EPSO:f', &
     ' CP:f PC:f SPALL:f=2 IT:fs D1:f D2:f D3:f D4:f', &
-    ' D5:f C2_P_XNP_D:fr EROD:fs EFMIN:f=1e-6 NUMINT:fr K:fr EPS1:fr', &
+    ' D5:f C2_P_XNP_D:fr EROD:f EFMIN:f=1e-6 NUMINT:fr K:fr EPS1:fr', &
     'MAT_SIMPLIFIED_JOHNSON_COOK t', &
     ' MID:i RO:f E:f PR:f VP:f', &
     ' A:f B:f N:f C:f PSFAIL:f=1e17 SIGMAX:f=1e28 SIGSAT:f=1e28 EPSO:f=1', &
@@ -122,6 +122,12 @@ module deck_schema_tables_m
     ' MID:i RO:f G:f REF:fr', &
     'MAT_CRUSHABLE_FOAM t', &
     ' MID:i RO:f E:f PR:f LCID:i TSC:f DAMP:fr MODEL:ir', &
+    'MAT_ADD_EROSION t', &
+    ' MID:i EXCL:f MXPRES:f MNEPS:f EFFEPS:f VOLEPS:f NUMFIP:f=1 NCS:f=1', &
+    ' MNPRES:f SIGP1:f SIGVM:f MXEPS:f EPSSH:f SIGTH:f IMPULSE:f FAILTM:f', &
+    ' IDAM:ir -:x -:x -:x -:x -:x -:x LCREGD:ir', &
+    ' LCFLD:ir NSFF:is=10 EPSTHIN:fr ENGCRT:fr RADCRT:fr LCEPS12:ir LCEPS13:ir LCEPSMX:ir', &
+    ' DTEFLT:fw VOLFRAC:fw MXTMP:fr DTMIN:f', &
     'EOS_LINEAR_POLYNOMIAL t', &
     ' EOSID:i C0:f C1:f C2:f C3:f C4:f C5:f C6:f', &
     ' E0:f V0:f=1', &

@@ -10,6 +10,8 @@ module explicit_m
   use contact_account_m, only : report_contact_energies
   use contact_check_m, only : report_contact_end
   use element_dispatch_m, only : add_tile_forces
+  use eroding_tiles_m, only : add_eroding_tile_forces
+  use erosion_account_m, only : report_erosion
   use errors_m, only : error_t
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
   use failure_watch_m, only : report_failures
@@ -59,6 +61,7 @@ contains
     call report_contact_end(model, state, monitor%log)
     call report_contact_energies(model, state, monitor%log)
     call report_failures(model, state, cycle%failures, monitor%log)
+    if (model%erodes) call report_erosion(model, state, monitor%log)
     if (allocated(error)) return
     call judge_energies(monitor%snapshot%energies, monitor%log)
     call judge_ratio(monitor%snapshot%energies, monitor%log)
@@ -119,7 +122,12 @@ contains
     !$omp do schedule(static)
     do i_tile = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i_tile))
-        call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+        if (model%erodes) then
+          call add_eroding_tile_forces(model, tile, state%motion, [state%time, state%dt_before], &
+            state%elements, force)
+        else
+          call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+        end if
         if (cycle%refines) call refine_limits(model, tile, state%motion, state%dt_before, &
           state%elements)
         cycle%checks(i_tile) = check_tile(tile, state%elements)

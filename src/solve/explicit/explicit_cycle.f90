@@ -10,6 +10,7 @@ module explicit_cycle_m
   use contact_inertia_m, only : weigh_contacts
   use cycle_loads_m, only : apply_loads
   use energies_m, only : energy_ratio, total_energy
+  use erosion_account_m, only : settle_elements, release_nodes, note_least_step
   use errors_m, only : error_t
   use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
   use explicit_memory_m, only : write_restarts, take_up_steps
@@ -31,6 +32,7 @@ module explicit_cycle_m
   use motion_sums_m, only : motion_sums_t, plan_sums, count_sums
   use node_damping_m, only : follow_damping
   use node_motion_m, only : leap_t, make_leap
+  use outlines_m, only : follow_outlines
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
   use progress_m, only : show_progress, follow_progress
   use requests_m, only : requests_t, take_requests
@@ -65,6 +67,10 @@ module explicit_cycle_m
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
     real(wp), allocatable :: rates(:, :) !! (2, n_part) D of parts, where the deck damps some
     real(wp) :: ratio = 1.0_wp       !! last energy ratio known
+    integer, allocatable :: told(:)  !! (n_part) eroded elements that interfaces have heard of; only
+                                     !! where elements may leave the mesh
+    integer, allocatable :: freed(:) !! nodes whose last element has left the mesh in this cycle;
+                                     !! there where any element has
     real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
     real(wp), allocatable :: displacement(:) !! (n_motion) u(n) of prescribed motions
     real(wp), allocatable :: common(:, :)    !! (2, n_set) v(n-1/2) of nodes that move alike
@@ -91,6 +97,7 @@ contains
       allocated(state%elements%retardation)
     allocate (cycle%checks(size(model%layout%tiles)))
     cycle%reason = 'termination time reached'
+    if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
     cycle%steps = start_steps(model, state%time)
     call start_watch(monitor%restarts%goes_on, cycle%failures)
     if (monitor%restarts%goes_on) call take_up_steps(model, state, monitor%restarts%source, &
@@ -119,9 +126,15 @@ contains
     do i = 1, size(model%contacts)
       k = told_as(model%contacts, i)
       if (k < i) call hear_tie(state%contacts(k), state%contacts(i))
-      call apply_contact(model%contacts(i), state%motion, state%contact_mass, &
-        state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
-        state%force_special)
+      if (model%erodes) then
+        call apply_contact(state%outlines(i), state%motion, state%contact_mass, &
+          state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
+          state%force_special)
+      else
+        call apply_contact(model%contacts(i), state%motion, state%contact_mass, &
+          state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
+          state%force_special)
+      end if
       if (k < i) call settle_with_tie(state%contacts(i), state%contacts(k))
       call share_contact(monitor%clock, k)
       call follow_contact(model, i, state, monitor%log)
@@ -174,6 +187,7 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
 
     call count_sums(cycle%sums, state%external_work, state%damping_work)
+    if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
     call check_elements(model, state, cycle%error)
     if (state%cycle == 0) call follow_springs(model, state, cycle%steps%springs)
     if (state%cycle == 0 .and. .not. allocated(cycle%error)) &
@@ -183,6 +197,7 @@ contains
       return
     end if
     if (state%cycle == 0) then
+      if (model%erodes) call note_least_step(model%controls, cycle%steps%first_dt, state)
       call report_contact_start(model, state, monitor%log)
       call log_smallest_steps(model, state, monitor%log)
       call judge_damping(model, state%dt, monitor%log)
@@ -262,6 +277,20 @@ contains
     call move_rigids(model, state)
   end subroutine advance_rigids
 
+  !> Elements have left in this cycle: nodes that none holds any more, and surfaces of interfaces.
+  subroutine lose_elements(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(inout) :: cycle
+
+    call release_nodes(model%layout%n_special, cycle%freed, state)
+    associate (n_eroded => state%elements%erosion%n_eroded)
+      call follow_outlines(model, n_eroded > cycle%told, state)
+      cycle%told = n_eroded
+    end associate
+    deallocate (cycle%freed)
+  end subroutine lose_elements
+
   !> Prescribed nodes to their places, health, and on to the next instant.
   subroutine end_cycle(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
@@ -275,6 +304,7 @@ contains
     if (cycle%finished) return
     if (.not. cycle%writes) then
       call count_sums(cycle%sums, state%external_work, state%damping_work)
+      if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
       if (.not. are_sound(cycle%checks, state%contacts)) &
         call check_elements(model, state, cycle%error)
     end if
@@ -288,6 +318,7 @@ contains
       state)
     if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
     if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
+    if (allocated(cycle%freed)) call lose_elements(model, state, cycle)
     state%cycle = state%cycle + 1
     state%former_dt = state%dt_before
     state%dt_before = state%dt

@@ -18,6 +18,7 @@ module start_m
   use mass_scaling_m, only : scales_masses, start_mass_scaling
   use model_log_m, only : log_masses
   use model_m, only : model_t
+  use outlines_m, only : start_outlines
   use rigid_start_m, only : start_rigids
   use state_m, only : state_t
   use stiffness_damping_m, only : start_retardation
@@ -84,6 +85,7 @@ contains
         status_input)
       return
     end do
+    call start_outlines(model, state)
     call weigh_contacts(model, state)
     call set_automatic_penalties(model, state, log, error)
   end subroutine start_state
@@ -112,7 +114,11 @@ contains
     integer :: i, k
 
     do i = 1, size(state%contacts)
-      call resume_contact(model%contacts(i), state%contacts(i))
+      if (model%erodes) then
+        call resume_contact(state%outlines(i), state%contacts(i))
+      else
+        call resume_contact(model%contacts(i), state%contacts(i))
+      end if
       k = told_as(model%contacts, i)
       if (k < i) call hear_tie(state%contacts(k), state%contacts(i))
     end do

@@ -92,6 +92,11 @@ def go_through(run, case, seeds, is_round):
         reached = case.reached(expected) or reached
         pairs.append((of_program(result, part, case.fields),
                       of_driver(expected, driver.volume(history[0], is_round), case.fields)))
+        if case.name.endswith("failure strain"):
+            # An element that has left the mesh has taken its energy along.
+            stays = result.cells("eroded")[:, part - 1].ravel() < 0.5
+            for values in pairs[-1]:
+                values["internal energy"] = np.where(stays, values["internal energy"], 0.0)
     for quantity in pairs[0][0]:
         scales = [scale_of(wanted, quantity) for _, wanted in pairs]
         run.check(f"{case.name}, {shape}: {quantity}",

@@ -1,0 +1,74 @@
+! SPDX-License-Identifier: MIT
+!> The memory of an interface before it has looked at anything: shapes and penalties.
+module contact_preparation_m
+  use contact_dispatch_m, only : formulation_t, formulation_of
+  use contact_law_m, only : pressed_at_slave_nodes
+  use contact_penalty_m, only : set_penalties
+  use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
+    allocate_tractions, allocate_scratch, places_of_segment
+  use contacts_m, only : contact_t, has_friction, is_tied
+  use energy_limit_state_m, only : allocate_limit
+  use facing_look_m, only : has_outline, prepare_facing
+  use friction_state_m, only : allocate_friction
+  use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments
+  use interference_state_m, only : allocate_interference
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use spots_m, only : start_spots
+  implicit none
+  private
+  public :: prepare_contact
+
+contains
+
+  !> The memory of one interface that knows nothing yet.
+  subroutine prepare_contact(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(out) :: memory
+    type(formulation_t) :: formulation
+    real(wp) :: origin(2)
+    integer :: n_slave, n_master, i
+
+    n_slave = contact%slave%n_node
+    n_master = contact%master%n_node
+    memory%n_slave = n_slave
+    memory%n_master = n_master
+    memory%nodes = [contact%slave%nodes, contact%master%nodes]
+    allocate (memory%force(2, n_slave + n_master), memory%places(4, n_slave + n_master), &
+      source=0.0_wp)
+    origin = model%mesh%coordinates(:, memory%nodes(1))
+    if (contact%is_round) origin(1) = 0.0_wp
+    do i = 1, size(memory%nodes)
+      memory%places(1:2, i) = model%mesh%coordinates(:, memory%nodes(i)) - origin
+    end do
+    formulation = formulation_of(contact)
+    memory%contact_law = formulation%contact_law
+    call set_penalties(contact, model, formulation%self_share, memory)
+    call start_spots(formulation%spots, contact%n_gauss, contact%is_round, &
+      has_outline(contact) .and. .not. is_tied(contact), contact%slave, memory)
+    call allocate_slave_tracking(contact, model, memory)
+    if (formulation%has_two_passes) call allocate_master_tracking(contact, model, memory)
+    if (formulation%covers_segments) call allocate_segments(contact, memory)
+    call allocate_points(memory%points, formulation%points_per_slave*memory%slave_tracking%n &
+      + formulation%points_per_master*n_master)
+    if (formulation%where_pressed == pressed_at_slave_nodes) &
+      allocate (memory%node_pressure(n_slave), source=0.0_wp)
+    if (contact%damping > 0.0_wp) then
+      call allocate_loads(memory%points)
+      allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
+    end if
+    if (.not. (model%controls%implicit%is_on .or. is_tied(contact))) &
+      call allocate_limit(memory%limit, n_slave + n_master)
+    if (has_friction(contact)) then
+      call allocate_tractions(memory%points)
+      call allocate_friction(memory%friction, places_of_segment(memory)*n_slave + n_master, &
+        n_slave + n_master)
+    end if
+    if (allocated(contact%interference)) call allocate_interference(memory%interference, &
+      places_of_segment(memory)*n_slave, n_master)
+    call allocate_scratch(memory)
+    if (has_outline(contact)) call prepare_facing(contact, model, memory)
+  end subroutine prepare_contact
+
+end module contact_preparation_m

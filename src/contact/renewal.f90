@@ -1,0 +1,400 @@
+! SPDX-License-Identifier: MIT
+!> An interface whose surfaces have lost elements or come to light anew: its memory is made for the
+!> surfaces that are left, and what it knew of places that remain goes over by nodes and segments.
+module renewal_m
+  use contact_preparation_m, only : prepare_contact
+  use contact_springs_m, only : measure_springs
+  use contact_state_m, only : contact_state_t, tracking_t, make_room, places_of_segment, &
+    n_side
+  use contacts_m, only : contact_t
+  use energy_limit_m, only : form_springs
+  use facing_change_m, only : move_memory
+  use facing_look_m, only : make_present
+  use facing_state_m, only : facing_side_t
+  use gather_m, only : power_of
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use surfaces_m, only : surface_t
+  use tracking_m, only : list_touching
+  implicit none
+  private
+  public :: renew_contact, close_contact, reshape_contact
+
+  !> Where the nodes and segments of a surface have gone, 0: not there any more.
+  type :: passage_t
+    integer, allocatable :: node(:)    !! (n_node)
+    integer, allocatable :: segment(:) !! (n_segment)
+    logical, allocatable :: keeps(:)   !! (n_node) and the segment that starts there is still there
+  end type passage_t
+
+contains
+
+  !> The memory of `contact` out of that of `former`; `lost` is what the springs stored that are not
+  !> there any more.
+  subroutine renew_contact(former, contact, model, motion, memory, lost)
+    type(contact_t), intent(in) :: former, contact
+    type(model_t), intent(in) :: model
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(out) :: lost                    !! J/m
+    type(contact_state_t) :: old
+    type(passage_t) :: sides(2)
+    integer :: stored_at
+
+    old = memory
+    call prepare_contact(contact, model, memory)
+    call match_surface(former%slave, contact%slave, size(motion, 2), sides(1))
+    call match_surface(former%master, contact%master, size(motion, 2), sides(2))
+    memory%places(3:4, :) = motion(1:2, memory%nodes)
+    call carry_scalars(old, memory)
+    call carry_nodes([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], old, memory)
+    if (allocated(old%friction%force)) call carry_places(sides, old, memory)
+    call carry_points([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], contact, old, memory)
+    if (memory%facing%is_used) then
+      call carry_runs(contact, sides, old, memory)
+    else
+      call carry_trackings(sides(1)%segment, sides(2)%segment, sides, old, memory)
+      call list_touching(memory%slave_tracking)
+      if (memory%master_tracking%n > 0) call list_touching(memory%master_tracking)
+    end if
+    call form_springs(memory)
+    stored_at = old%watch%node
+    call measure_springs(old)
+    call measure_springs(memory)
+    lost = max(0.0_wp, old%watch%stored - memory%watch%stored)
+    lost = min(lost, max(0.0_wp, memory%energy + memory%limit%credit))
+    memory%energy = memory%energy - lost
+    memory%watch%node = stored_at
+    memory%watch%is_due = .true.
+  end subroutine renew_contact
+
+  !> An interface that is over keeps its account alone. The forces of the last call have done half
+  !> of the work of a step yet; `lost` is what the interface holds then.
+  subroutine close_contact(contact, model, motion, dt, memory, lost)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
+    real(wp), intent(in) :: dt                       !! of the step behind the forces, s
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(out) :: lost                    !! J/m
+    real(wp) :: damping, friction
+
+    lost = memory%energy
+    if (memory%n_active > 0) lost = lost - 0.5_wp*dt*power_of(memory%nodes, motion, &
+      memory%force)
+    damping = memory%damping_work
+    friction = memory%friction%work
+    call reshape_contact(contact, model, memory)
+    memory%is_stale = .true.
+    memory%damping_work = damping
+    memory%friction%work = friction
+  end subroutine close_contact
+
+  !> A memory of the shapes that the surfaces ask for; it knows nothing.
+  subroutine reshape_contact(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+
+    call prepare_contact(contact, model, memory)
+    if (.not. memory%facing%is_used) return
+    call make_present(contact, memory)
+    if (.not. allocated(memory%spot_xi)) return
+    ! There are no spots where there is no run.
+    memory%slave_tracking%n = 0
+    memory%slave_tracking%chord = 1
+  end subroutine reshape_contact
+
+  !> Numbers moved by an offset; 0 stays.
+  pure function shifted(numbers, offset)
+    integer, intent(in) :: numbers(:), offset
+    integer :: shifted(size(numbers))
+
+    shifted = merge(numbers + offset, 0, numbers > 0)
+  end function shifted
+
+  !> Nodes and segments of a surface on the one that it has become. A node that stands there several
+  !> times is the one of its own segments.
+  pure subroutine match_surface(former, surface, n_node, passage)
+    type(surface_t), intent(in) :: former, surface
+    integer, intent(in) :: n_node !! of the mesh
+    type(passage_t), intent(out) :: passage
+    integer, allocatable :: head(:), any_node(:), next(:)
+    integer :: s, k
+
+    allocate (head(n_node), any_node(n_node), next(surface%n_segment), source=0)
+    do k = surface%n_node, 1, -1
+      any_node(surface%nodes(k)) = k
+    end do
+    do s = surface%n_segment, 1, -1
+      associate (node => surface%nodes(surface%segments(1, s)))
+        next(s) = head(node)
+        head(node) = s
+      end associate
+    end do
+    allocate (passage%node(former%n_node), passage%segment(former%n_segment), source=0)
+    allocate (passage%keeps(former%n_node), source=.false.)
+    do s = 1, former%n_segment
+      k = head(former%nodes(former%segments(1, s)))
+      do while (k > 0)
+        if (surface%segment_element(k) == former%segment_element(s) .and. surface%nodes( &
+          surface%segments(2, k)) == former%nodes(former%segments(2, s))) exit
+        k = next(k)
+      end do
+      passage%segment(s) = k
+    end do
+    do k = 1, former%n_node
+      s = former%outgoing(k)
+      if (s > 0) s = passage%segment(s)
+      passage%keeps(k) = s > 0
+      if (s > 0) then
+        passage%node(k) = surface%segments(1, s)
+        cycle
+      end if
+      s = former%incoming(k)
+      if (s > 0) s = passage%segment(s)
+      if (s > 0) then
+        passage%node(k) = surface%segments(2, s)
+      else
+        passage%node(k) = any_node(former%nodes(k))
+      end if
+    end do
+  end subroutine match_surface
+
+  !> What an interface knows as a whole.
+  pure subroutine carry_scalars(old, memory)
+    type(contact_state_t), intent(in) :: old
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%travel = old%travel
+    memory%is_stale = old%is_stale
+    memory%next_search = old%next_search
+    memory%slave_penalty = old%slave_penalty
+    memory%master_penalty = old%master_penalty
+    memory%node_penalty = old%node_penalty
+    memory%energy = old%energy
+    memory%damping_work = old%damping_work
+    memory%n_active = old%n_active
+    memory%n_released = old%n_released
+    memory%watch = old%watch
+    memory%friction%work = old%friction%work
+    memory%friction%stored = old%friction%stored
+    memory%limit%coming_step = old%limit%coming_step
+    memory%limit%recoil = huge(1.0_wp)
+    memory%limit%credit = old%limit%credit
+    memory%limit%lent = old%limit%lent
+    memory%limit%loan = old%limit%loan
+    memory%limit%largest = old%limit%largest
+    memory%limit%n_loaded = old%limit%n_loaded
+    memory%limit%n_limited = old%limit%n_limited
+    memory%limit%least_factor = old%limit%least_factor
+    memory%limit%least_time = old%limit%least_time
+    memory%limit%recent = old%limit%recent
+    memory%limit%warned = old%limit%warned
+  end subroutine carry_scalars
+
+  !> Values of nodes.
+  pure subroutine carry_nodes(now, old, memory)
+    integer, intent(in) :: now(:) !! (n_slave + n_master) of the former memory
+    type(contact_state_t), intent(in) :: old
+    type(contact_state_t), intent(inout) :: memory
+    integer :: i, k
+
+    do i = 1, size(now)
+      k = now(i)
+      if (k == 0) cycle
+      memory%places(3:4, k) = old%places(3:4, i)
+      memory%force(:, k) = old%force(:, i)
+      if (allocated(old%damping_force)) memory%damping_force(:, k) = old%damping_force(:, i)
+      if (allocated(old%friction%force)) memory%friction%force(:, k) = old%friction%force(:, i)
+      if (allocated(old%limit%velocity)) memory%limit%velocity(:, k) = old%limit%velocity(:, i)
+      if (allocated(old%node_pressure) .and. i <= old%n_slave) &
+        memory%node_pressure(k) = old%node_pressure(i)
+    end do
+  end subroutine carry_nodes
+
+  !> What friction remembers: at nodes, or at the spots of the segment that starts at a node.
+  pure subroutine carry_places(sides, old, memory)
+    type(passage_t), intent(in) :: sides(2)
+    type(contact_state_t), intent(in) :: old
+    type(contact_state_t), intent(inout) :: memory
+    integer :: i, n, q
+
+    n = places_of_segment(old)
+    do i = 1, old%n_slave
+      if (sides(1)%node(i) == 0 .or. (n > 1 .and. .not. sides(1)%keeps(i))) cycle
+      do q = 1, n
+        call carry_place(n*(i - 1) + q, n*(sides(1)%node(i) - 1) + q, old, memory)
+      end do
+    end do
+    do i = 1, old%n_master
+      if (sides(2)%node(i) > 0) call carry_place(n*old%n_slave + i, n*memory%n_slave &
+        + sides(2)%node(i), old, memory)
+    end do
+  end subroutine carry_places
+
+  !> One place.
+  pure subroutine carry_place(from, to, old, memory)
+    integer, intent(in) :: from, to
+    type(contact_state_t), intent(in) :: old
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%friction%traction(to) = old%friction%traction(from)
+    memory%friction%state(to) = old%friction%state(from)
+    memory%friction%slip(to) = old%friction%slip(from)
+  end subroutine carry_place
+
+  !> Points of the last call, but for those whose nodes or segments have gone.
+  pure subroutine carry_points(now, contact, old, memory)
+    integer, intent(in) :: now(:)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: old
+    type(contact_state_t), intent(inout) :: memory
+    integer :: p, q, slave(n_side), master(n_side)
+
+    call make_room(memory%points, old%points%n)
+    associate (from => old%points, to => memory%points)
+      do p = 1, from%n
+        slave = now(from%slave_nodes(:, p))
+        master = now(from%master_nodes(:, p))
+        if (.not. (is_there(slave) .and. is_there(master))) cycle
+        q = to%n + 1
+        to%n = q
+        to%slave_nodes(:, q) = slave
+        to%master_nodes(:, q) = master
+        to%slave_weights(:, q) = from%slave_weights(:, p)
+        to%master_weights(:, q) = from%master_weights(:, p)
+        to%normal(:, q) = from%normal(:, p)
+        to%gap(q) = from%gap(p)
+        to%area(q) = from%area(p)
+        to%stiffness(q) = from%stiffness(p)
+        to%pressure(q) = from%pressure(p)
+        if (allocated(from%load)) to%load(:, q) = from%load(:, p)
+        if (allocated(from%traction)) to%traction(q) = from%traction(p)
+      end do
+    end associate
+
+  contains
+
+    !> Whether both nodes are there, and the segment from one to the other.
+    pure function is_there(nodes) result(there)
+      integer, intent(in) :: nodes(n_side)
+      logical :: there
+
+      there = all(nodes > 0)
+      if (.not. there .or. nodes(1) == nodes(2)) return
+      if (nodes(1) <= memory%n_slave) then
+        there = follows(contact%slave, nodes)
+      else
+        there = follows(contact%master, nodes - memory%n_slave)
+      end if
+    end function is_there
+
+  end subroutine carry_points
+
+  !> Whether a segment leads from one node to the other.
+  pure function follows(surface, nodes)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: nodes(n_side)
+    logical :: follows
+    integer :: s
+
+    s = surface%outgoing(nodes(1))
+    follows = s > 0
+    if (follows) follows = surface%segments(2, s) == nodes(2)
+  end function follows
+
+  !> Runs of a whole outline, and what is known of them; the next call looks who faces whom.
+  pure subroutine carry_runs(contact, sides, old, memory)
+    type(contact_t), intent(in) :: contact
+    type(passage_t), intent(in) :: sides(2)
+    type(contact_state_t), intent(in) :: old
+    type(contact_state_t), intent(inout) :: memory
+    integer, allocatable :: former_slave(:), former_master(:), slave(:), master(:)
+
+    call carry_side(old%facing%slave, sides(1)%segment, memory%facing%slave, slave, former_slave)
+    call carry_side(old%facing%master, sides(2)%segment, memory%facing%master, master, &
+      former_master)
+    call carry_trackings(slave, master, sides, old, memory)
+    memory%facing%n_look = old%facing%n_look
+    memory%facing%n_change = old%facing%n_change
+    memory%facing%next_look = -huge(1.0_wp)
+    call make_present(contact, memory)
+    call move_memory(former_slave, former_master, memory)
+  end subroutine carry_runs
+
+  !> The runs of one side: `place` says where each of their segments stands in the list `left` of
+  !> those that are still there, by present numbers and in the former order.
+  pure subroutine carry_side(old, now, side, place, left)
+    type(facing_side_t), intent(in) :: old
+    integer, intent(in) :: now(:)              !! (n_segment) passage of segments
+    type(facing_side_t), intent(inout) :: side
+    integer, allocatable, intent(out) :: place(:), left(:)
+    logical, allocatable :: is_cut(:), is_in(:)
+    integer :: k, n
+
+    allocate (place(old%n), source=0)
+    allocate (left(count(now(old%segments(:old%n)) > 0)))
+    allocate (is_cut(size(side%segments)), is_in(size(side%segments)), source=.false.)
+    n = 0
+    do k = 1, old%n
+      if (now(old%segments(k)) == 0) cycle
+      n = n + 1
+      place(k) = n
+      left(n) = now(old%segments(k))
+      is_in(left(n)) = .true.
+      is_cut(left(n)) = old%is_cut(k)
+    end do
+    side%n = n
+    side%segments(:n) = pack([(k, k=1, size(is_in))], is_in)
+    side%is_cut(:n) = pack(is_cut, is_in)
+  end subroutine carry_side
+
+  !> Both trackings, and the memory of slave segments.
+  pure subroutine carry_trackings(slave, master, sides, old, memory)
+    integer, intent(in) :: slave(:), master(:) !! present numbers of the segments of the runs, or of
+                                               !! the surfaces
+    type(passage_t), intent(in) :: sides(2)
+    type(contact_state_t), intent(in) :: old
+    type(contact_state_t), intent(inout) :: memory
+    integer, allocatable :: spots(:)
+    integer :: k, q, n
+
+    if (allocated(old%spot_xi)) then
+      n = size(old%spot_xi)
+      allocate (spots(n*size(slave)))
+      do k = 1, size(slave)
+        spots((k - 1)*n + 1:k*n) = [(merge((slave(k) - 1)*n + q, 0, slave(k) > 0), q=1, n)]
+      end do
+    else
+      spots = sides(1)%node
+    end if
+    call carry_tracking(old%slave_tracking, spots, master, memory%slave_tracking)
+    if (memory%master_tracking%n > 0) call carry_tracking(old%master_tracking, sides(2)%node, &
+      slave, memory%master_tracking)
+    if (.not. allocated(old%segments%status)) return
+    do k = 1, size(slave)
+      if (slave(k) > 0) memory%segments%status(slave(k)) = old%segments%status(k)
+    end do
+  end subroutine carry_trackings
+
+  !> Spots that are still there keep their segments if these are; all look round anew.
+  pure subroutine carry_tracking(old, spots, segments, tracking)
+    type(tracking_t), intent(in) :: old
+    integer, intent(in) :: spots(:), segments(:) !! present numbers
+    type(tracking_t), intent(inout) :: tracking
+    integer :: i, k
+
+    do i = 1, min(old%n, size(spots))
+      k = spots(i)
+      if (k == 0 .or. old%segment(i) == 0) cycle
+      if (segments(old%segment(i)) == 0) cycle
+      tracking%segment(k) = segments(old%segment(i))
+      tracking%status(k) = old%status(i)
+      tracking%xi(k) = old%xi(i)
+      tracking%gap(k) = old%gap(i)
+      tracking%normal(:, k) = old%normal(:, i)
+    end do
+  end subroutine carry_tracking
+
+end module renewal_m

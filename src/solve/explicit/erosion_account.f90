@@ -1,0 +1,88 @@
+! SPDX-License-Identifier: MIT
+!> What elements that leave the mesh take along, and their nodes that nothing holds any more.
+module erosion_account_m
+  use controls_m, only : controls_t
+  use element_state_m, only : settle_erosion
+  use kinds_m, only : wp
+  use log_m, only : log_t, write_log, to_text
+  use model_m, only : model_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: settle_elements, release_nodes, note_least_step, report_erosion
+
+contains
+
+  !> The step below which ERODE takes elements: DTMIN times the first step, before TSSFAC.
+  subroutine note_least_step(controls, first_dt, state)
+    type(controls_t), intent(in) :: controls
+    real(wp), intent(in) :: first_dt
+    type(state_t), intent(inout) :: state
+
+    state%elements%erosion%least_step = controls%dt_floor*first_dt/controls%dt_scale
+  end subroutine note_least_step
+
+  !> Elements that have left in this cycle, once all of its forces are known.
+  subroutine settle_elements(model, state, log, freed)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(log_t), intent(inout) :: log
+    integer, allocatable, intent(out) :: freed(:)
+    logical :: is_first
+
+    is_first = sum(state%elements%erosion%n_eroded) == 0
+    call settle_erosion(model, state%time, state%elements%erosion, freed)
+    if (is_first .and. allocated(freed)) call write_log(log, 'the first elements ('// &
+      to_text(sum(state%elements%erosion%n_eroded))//') leave the mesh at cycle ' &
+      //to_text(state%cycle)//', time '//to_text(state%time))
+  end subroutine settle_elements
+
+  !> Nodes without an element stop where they are, after the motion of the cycle: their kinetic
+  !> energy, v(n-1/2).m v(n+1/2)/2, leaves the account, and their mass moves nothing any more. No
+  !> element has pushed them in this cycle; contact has, and does no work on them any more.
+  subroutine release_nodes(n_special, freed, state)
+    integer, intent(in) :: n_special
+    integer, intent(in) :: freed(:)
+    type(state_t), intent(inout) :: state
+    real(wp) :: before(2)
+    integer :: i
+
+    associate (took => state%elements%erosion%took)
+      do i = 1, size(freed)
+        associate (node => freed(i))
+          before = state%motion(3:4, node)
+          if (node <= n_special) before = before - 0.5_wp*(state%dt_before + state%dt) &
+            *state%inverse_mass(:, node)*state%force_special(:, node)
+          took(1) = took(1) + 0.5_wp*state%mass(node)*sum(before*state%motion(3:4, node))
+          state%mass(node) = 0.0_wp
+          state%inverse_mass(:, node) = 0.0_wp
+          state%motion(3:4, node) = 0.0_wp
+        end associate
+      end do
+    end associate
+  end subroutine release_nodes
+
+  !> At the end of a run: how many elements have left, when first, and what they took along.
+  subroutine report_erosion(model, state, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(log_t), intent(inout) :: log
+    integer :: i
+
+    associate (erosion => state%elements%erosion)
+      if (sum(erosion%n_eroded) == 0) then
+        call write_log(log, 'no element has left the mesh')
+        return
+      end if
+      call write_log(log, to_text(sum(erosion%n_eroded))//' elements have left the mesh, the ' &
+        //'first at time '//to_text(erosion%first_time)//'; energies that went with them: ' &
+        //'kinetic '//to_text(erosion%took(1))//', internal '//to_text(erosion%took(2)) &
+        //', hourglass '//to_text(erosion%took(3))//', contact springs '//to_text(erosion%took(4)))
+      do i = 1, size(erosion%n_eroded)
+        if (erosion%n_eroded(i) > 0) call write_log(log, '  part '//to_text(model%parts(i)%id) &
+          //': '//to_text(erosion%n_eroded(i)))
+      end do
+    end associate
+  end subroutine report_erosion
+
+end module erosion_account_m
