@@ -34,10 +34,6 @@ module energy_limit_m
   !> Share of what holds the nodes back that is counted on in the half step to come: it is foretold
   !> from the step before, and falls off where contact opens.
   real(wp), parameter :: relied_on = 0.5_wp
-  !> What is stored, over what the forces would do to the nodes themselves, below which what holds
-  !> the nodes back is taken to turn round: forces are cut down there, and waves of two or three
-  !> steps follow. Springs that stay closed store a quarter at least.
-  real(wp), parameter :: poor = 0.25_wp
   !> How far one limited cycle makes `recent` rise; any other with force lowers it by one.
   integer, parameter :: rise = 20
 
@@ -159,8 +155,7 @@ contains
     returned%recoil = leap*sums%recoil
     returned%pushed = pushed_work(dt, leap, former, present, limit%inverse_mass, velocity &
       - limit%velocity)
-    if (returned%pushed < 0.0_wp) returned%pushed = returned%pushed &
-      *merge(-1.0_wp, relied_on, bound < poor*returned%recoil)
+    if (returned%pushed < 0.0_wp) returned%pushed = relied_on*returned%pushed
     factor = energy_factor(returned, bound)
     limit%recoil = factor**2*limit%recoil
   end subroutine find_factor

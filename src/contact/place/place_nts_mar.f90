@@ -53,18 +53,14 @@ contains
 
   !> Divide the segments of a table among their ends and the master nodes that cut them: half of
   !> each piece to either of its ends, as far as it counts; in axisymmetry weighted with the radius.
-  !> With the strict rule all of it counts but the backs of walls.
+  !> With the strict rule all of it counts.
   pure subroutine share_pieces(contact, table, memory)
     type(contact_t), intent(in) :: contact
     type(piece_table_t), intent(inout) :: table
     type(contact_state_t), intent(inout) :: memory
 
     call halve_pieces(table%n, table%low, table%high, table%length, table%half)
-    if (.not. contact%strict) then
-      table%half(:table%n) = table%half(:table%n)*max(0.0_wp, table%share(:table%n))
-    else if (contact%is_self) then
-      where (table%share(:table%n) < 0.0_wp) table%half(:table%n) = 0.0_wp
-    end if
+    if (.not. contact%strict) table%half(:table%n) = table%half(:table%n)*table%share(:table%n)
     if (contact%is_round) then
       call share_weighted(contact, table, memory)
     else

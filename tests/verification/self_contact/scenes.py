@@ -8,11 +8,11 @@ from meshes import Deck, grid, polygon_quads, rotate
 RHO, YOUNG, POISSON, PENALTY = 1000.0, 1.0e6, 0.3, 3.0e5
 
 
-def with_itself(deck, parts, kind, penalty, unit, friction=0.0, strict=None):
-    """One set of parts, and its contact with itself. `strict`: 1 for the strict rule of type 5."""
+def with_itself(deck, parts, kind, penalty, unit, friction=0.0):
+    """One set of parts, and its contact with itself."""
     parts = list(parts)
     deck.add("*SET_PART_LIST", (9999,), *[parts[k:k + 8] for k in range(0, len(parts), 8)])
-    return deck.add("*CONTACT_2D_SLIDELINE", (9999, 0, kind, 3, penalty, friction), (0.0, 1.0e20, unit, None, None, strict))
+    return deck.add("*CONTACT_2D_SLIDELINE", (9999, 0, kind, 3, penalty, friction), (0.0, 1.0e20, unit))
 
 
 def octagons(rows, columns, seed, order=None, mirrored=False, cells=2, renumbered=False):
@@ -131,7 +131,7 @@ def ring(kind, columns=64, layers=2):
     return with_itself(deck, (1, 2, 3), kind, 10.0, 2).output(plot=0.1, glstat=0.01), *stacked(meshes)
 
 
-def tube(kind, is_round, crushed=0.55, layers=2, points=None, speed=60.0, rows=48, strict=None):
+def tube(kind, is_round, crushed=0.55, layers=2, points=None, speed=60.0, rows=48):
     """Mild steel in mm, ms, N: a tube of radius 20 and thickness 1 (or a strip clamped at its ends), crushed between two
     plates; its upper end goes with the plate. `layers` of elements, with `points` integration points."""
     radius, length, end = 20.0, 40.0, crushed * 40.0 / speed
@@ -147,7 +147,7 @@ def tube(kind, is_round, crushed=0.55, layers=2, points=None, speed=60.0, rows=4
                     speed, end)
     deck.fix(ids[:layers + 1], 1, 1).fix(ids[-layers - 1:], x=1).node_set(8, ids[-layers - 1:])
     deck.add("*BOUNDARY_PRESCRIBED_MOTION_SET", (8, 2, 0, 2, 1.0))
-    return with_itself(deck, (1, 2, 3), kind, 10.0, 2, strict=strict).output(plot=end / 10.0, glstat=end / 200.0), \
+    return with_itself(deck, (1, 2, 3), kind, 10.0, 2).output(plot=end / 10.0, glstat=end / 200.0), \
         *stacked([(x, quads), *others])
 
 
