@@ -324,8 +324,8 @@ contains
     state%dt_before = state%dt
     if (allocated(state%elements%mass_ratio)) call follow_masses(model, state, cycle)
     call follow_springs(model, state, cycle%steps%springs)
-    call next_step(model, minval(cycle%checks%time_limit), monitor%log, state%cycle, cycle%steps, &
-      state%time, state%dt)
+    call next_step(model, element_limit(model, state, cycle), monitor%log, state%cycle, &
+      cycle%steps, state%time, state%dt)
     if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
       state%time, state%dt, cycle%error)
     if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
@@ -334,6 +334,21 @@ contains
     call follow_progress(monitor%progress, monitor%clock, state%cycle, .false., state%time, &
       state%dt, cycle%ratio)
   end subroutine end_cycle
+
+  !> Smallest step of the elements. Where all have left nothing limits it, and it stays as it is.
+  pure function element_limit(model, state, cycle) result(limit)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(explicit_cycle_t), intent(in) :: cycle
+    real(wp) :: limit
+
+    limit = minval(cycle%checks%time_limit)
+    if (.not. model%erodes) return
+    associate (n_gone => state%elements%erosion%n_gone)
+      if (sum(n_gone) == sum(model%layout%chunk_elements(:size(n_gone)))) &
+        limit = state%dt/model%controls%dt_scale
+    end associate
+  end function element_limit
 
   !> Mass for elements that have become too small for DT2MS, where the deck lets it grow.
   subroutine follow_masses(model, state, cycle)
