@@ -157,14 +157,14 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     integer, intent(inout) :: met(chunk_size)
-    real(wp) :: strain(3), mean, u(2, 4)
+    real(wp) :: start(4), strain(3), mean, u(2, 4)
     integer :: i, slot
 
     do i = 1, chunk_size
       slot = (i_chunk - 1)*chunk_size + i
       u = motion(1:2, nodes(:, i))
-      strain(1:2) = plane_strains(elements%reference(slot, 1:4), u(:, 3) - u(:, 1), &
-        u(:, 4) - u(:, 2))
+      start = elements%reference(slot, 1:4)
+      strain(1:2) = plane_strains(start, u(:, 3) - u(:, 1), u(:, 4) - u(:, 2))
       strain(3) = 0.0_wp
       if (size(elements%reference, 2) > 6) strain(3) = log(max(tiny(1.0_wp), 1.0_wp &
         + sum(u(1, :))/elements%reference(slot, reference_sum)))

@@ -313,7 +313,6 @@ def unsupported():
         if not field:
             text = class_of(name)().write()
             deck.append(text if text.count("\n") > 1 else text.rstrip("\n") + "\n         1\n")
-    deck.append(kwd.ControlTimestep(dt2ms=-1.0e-7, erode=1))
     deck.append(kwd.MatPlasticKinematic(mid=12, ro=2700.0, e=7.0e10, pr=0.33, sigy=3.0e8, etan=1.0e9,
                                         src=40.0))
     deck.append(kwd.MatRigid(mid=13, **STEEL, couple=1.0))
@@ -321,7 +320,6 @@ def unsupported():
         "heading": ["with an equation of state"], "pid": [12], "secid": [12], "mid": [12], "eosid": [3],
         "hgid": [0], "grav": [0], "adpopt": [0], "tmid": [0]})))
     deck.append(kwd.SectionShell(secid=12, elform=2))
-    deck.append(kwd.BoundarySpcSet(nsid=1, cid=4, dofx=1))
     deck.append(kwd.InitialVelocity(nsid=1, boxid=9, vx=1.0))
     deck.append(kwd.Contact2DAutomaticSurfaceToSurface(surfa=2, surfb=1, fs=0.2, fd=0.1, sldsoa=1.0e-4))
     return {"": deck}

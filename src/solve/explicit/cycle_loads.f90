@@ -82,8 +82,11 @@ contains
     do i = 1, size(state%contacts)
       call clear(state%contacts(i)%nodes)
     end do
-    if (allocated(model%conditions%skew_supports)) &
-      call clear(model%conditions%skew_supports%node)
+    if (allocated(model%conditions%skew_supports)) then
+      do i = 1, size(model%conditions%skew_supports)
+        call clear([model%conditions%skew_supports(i)%node])
+      end do
+    end if
     if (.not. allocated(state%walls)) return
     do i = 1, size(model%walls)
       call clear(model%walls(i)%nodes)
