@@ -53,8 +53,10 @@ contains
     type(spring_bound_t), intent(out) :: bounds(:)       !! (n_interface)
     type(ratios_t) :: ratios(size(contacts))
     integer :: users(size(mass)), i, n, worst(2)
+    logical :: is_self(size(contacts))
 
     users = 0
+    is_self = contacts%is_self
     do i = 1, size(contacts)
       n = memories(i)%n_slave
       ratios(i)%at = scale(i)*spring_ratios(contacts(i), mass, memories(i))
@@ -72,8 +74,7 @@ contains
       users(memories(i)%nodes(n + 1:)) = users(memories(i)%nodes(n + 1:)) + 1
     end do
     if (any(users > 1)) &
-      call join_interfaces(is_tied(contacts), contacts%is_self, memories, ratios, bounds, &
-      size(mass))
+      call join_interfaces(is_tied(contacts), is_self, memories, ratios, bounds, size(mass))
   end subroutine bound_springs
 
   !> Interfaces that share nodes: the c of each in turn evens out its sides, as the others stand.

@@ -167,7 +167,7 @@ contains
     type(snapshot_t), intent(inout) :: snapshot
     real(wp) :: internal(size(model%parts)), hourglass(size(model%parts)), &
       viscous(size(model%parts)), v(2, block_size)
-    real(wp) :: added(size(model%parts)), own(size(model%parts))
+    real(wp) :: added(size(model%parts)), own(size(model%parts)), total
     integer :: first, n
 
     internal = 0.0_wp
@@ -187,7 +187,8 @@ contains
         call find_velocities(model%layout%n_special, state, damping, first, n, snapshot, v)
         call add_motion(n, state%mass(first), v, energies%kinetic, snapshot%mean_velocity)
       end do
-      snapshot%mean_velocity = snapshot%mean_velocity/sum(state%mass)
+      total = sum(state%mass) ! none where all elements have left
+      if (total > 0.0_wp) snapshot%mean_velocity = snapshot%mean_velocity/total
       energies%damping = state%damping_work
       if (allocated(state%elements%damping_work)) energies%damping = energies%damping &
         + sum(state%elements%damping_work)
