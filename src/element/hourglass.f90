@@ -5,13 +5,14 @@ module hourglass_m
   use kinds_m, only : wp
   use assumed_strain_m, only : largest_spread
   use layout_m, only : chunk_size
+  use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t
   use parts_m, only : hourglass_t, hourglass_viscous, hourglass_assumed
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
   public :: resist_viscously, resist_elastically, hourglass_steps, harmless_coefficient, &
-    add_viscous_works, add_elastic_works
+    note_works
 
   !> Coefficient up to which hourglass control never asks for less than L/c in a convex quad of its
   !> initial area (doc/theory/elements.md).
@@ -74,6 +75,25 @@ contains
     end do
     work = 0.5_wp*work
   end subroutine resist_elastically
+
+  !> Works element by element, where these may leave.
+  pure subroutine note_works(i_chunk, hourglass, stress, elements, chunk)
+    integer, intent(in) :: i_chunk
+    type(hourglass_t), intent(in) :: hourglass
+    type(stress_chunk_t), intent(in) :: stress
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(in) :: chunk
+    integer :: slot, first
+
+    slot = (i_chunk - 1)*chunk_size + 1
+    if (hourglass%form == hourglass_viscous) then
+      call add_viscous_works(stress%dt, chunk, elements%erosion%hourglass(slot))
+    else
+      first = elements%hourglass_start(i_chunk)
+      call add_elastic_works(stress, chunk, elements%hourglass_strain(first), &
+        elements%hourglass_strain(first + chunk_size), elements%erosion%hourglass(slot))
+    end if
+  end subroutine note_works
 
   !> Works of the viscous forces, element by element.
   pure subroutine add_viscous_works(dt, chunk, works)

@@ -7,7 +7,7 @@ module round_one_point_m
   use deformation_gradient_m, only : form_rubber_forces
   use element_chunk_m, only : element_chunk_t
   use eos_pressure_m, only : finish_limits
-  use hourglass_m, only : add_viscous_works, add_elastic_works
+  use hourglass_m, only : note_works
   use law_pressure_m, only : load_round_state, form_element_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
@@ -144,24 +144,5 @@ contains
     elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
     if (allocated(elements%erosion)) call note_works(i_chunk, hourglass, stress, elements, chunk)
   end subroutine resist
-
-  !> Works element by element, where these may leave.
-  pure subroutine note_works(i_chunk, hourglass, stress, elements, chunk)
-    integer, intent(in) :: i_chunk
-    type(hourglass_t), intent(in) :: hourglass
-    type(stress_chunk_t), intent(in) :: stress
-    type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(in) :: chunk
-    integer :: slot, first
-
-    slot = (i_chunk - 1)*chunk_size + 1
-    if (hourglass%form == hourglass_viscous) then
-      call add_viscous_works(stress%dt, chunk, elements%erosion%hourglass(slot))
-    else
-      first = elements%hourglass_start(i_chunk)
-      call add_elastic_works(stress, chunk, elements%hourglass_strain(first), &
-        elements%hourglass_strain(first + chunk_size), elements%erosion%hourglass(slot))
-    end if
-  end subroutine note_works
 
 end module round_one_point_m

@@ -122,3 +122,16 @@ def test_check_counts_in_words(exe, tmp_path):
     (tmp_path / "one.k").write_text(deck.text())
     done = subprocess.run([exe, "check", "one.k"], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0 and "1 element, 4 nodes, 1 interface, 1 warning\n" in done.stdout, done.stdout
+
+
+@pytest.mark.parametrize("form", (13, 15))
+@pytest.mark.parametrize("control", (2, 4))
+def test_hourglass_work_leaves_with_its_elements(slideline, tmp_path, form, control):
+    """The works of single elements add up to that of all: none is left where every element is gone."""
+    deck = block(("*MAT_ELASTIC", (1, 7850.0, 2.1e11, 0.3)), ("*CONTROL_HOURGLASS", (control, 0.1)),
+                 ("*MAT_ADD_EROSION", (1,), (None,) * 7 + (3.0e-5,)), eos=0, n=1, end=4.0e-5, form=(form, None))
+    deck.curve(1, [(0.0, 0.0), (4.0e-5, 2.0e-3)]).prescribe(1, 1, 2, 1).prescribe(4, 1, 2, 1)
+    log_of(slideline, tmp_path, deck)
+    time, work, gone = (numbers(tmp_path / "r" / "job.glstat.csv", name) for name in ("time", "hourglass", "eroded"))
+    assert gone[-1] > 0.0 and time[gone > 0.0][0] >= 3.0e-5
+    assert abs(work[-1]) < 1.0e-9 * work.max()
