@@ -5,14 +5,14 @@
 module ranks_m
   use errors_m, only : error_t, raise
   use kinds_m, only : wp
-  use mpi, only : mpi_allgather, mpi_allgatherv, mpi_allreduce, mpi_bcast, mpi_character, &
+  use mpi, only : mpi_allgatherv, mpi_allreduce, mpi_bcast, mpi_character, &
     mpi_comm_rank, mpi_comm_size, mpi_comm_world, mpi_datatype_null, mpi_double_precision, &
     mpi_finalize, mpi_gatherv, mpi_in_place, mpi_init_thread, mpi_integer, mpi_min, &
     mpi_thread_funneled
   implicit none
   private
-  public :: ranks_t, join_ranks, leave_ranks, bring_reals, bring_integers, share_records, &
-    spread_values, share_error
+  public :: ranks_t, join_ranks, leave_ranks, bring_reals, bring_integers, spread_values, &
+    share_error
 
   !> This process among those of the run.
   type :: ranks_t
@@ -93,17 +93,6 @@ contains
     counts = width*(starts(1:ranks%n) - starts(0:ranks%n - 1))
     places = width*(starts(0:ranks%n - 1) - 1)
   end subroutine lay_out
-
-  !> The record of each process to all.
-  subroutine share_records(ranks, record, records)
-    type(ranks_t), intent(in) :: ranks
-    real(wp), intent(in), contiguous :: record(:)
-    real(wp), intent(out), contiguous :: records(:, :) !! (size of a record, n)
-    integer :: status
-
-    if (ranks%n > 0) call mpi_allgather(record, size(record), mpi_double_precision, records, &
-      size(record), mpi_double_precision, mpi_comm_world, status)
-  end subroutine share_records
 
   !> Values of the first process to all.
   subroutine spread_values(ranks, values)

@@ -7,8 +7,8 @@ module ranks_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: ranks_t, join_ranks, leave_ranks, bring_reals, bring_integers, share_records, &
-    spread_values, share_error
+  public :: ranks_t, join_ranks, leave_ranks, bring_reals, bring_integers, spread_values, &
+    share_error
 
   !> This process among those of the run.
   type :: ranks_t
@@ -46,15 +46,6 @@ contains
     logical, intent(in) :: to_all
     integer, intent(inout) :: values(*)
   end subroutine bring_integers
-
-  !> The record of each process to all.
-  subroutine share_records(ranks, record, records)
-    type(ranks_t), intent(in) :: ranks
-    real(wp), intent(in), contiguous :: record(:)
-    real(wp), intent(out), contiguous :: records(:, :) !! (size of a record, n)
-
-    records(:, 1) = record
-  end subroutine share_records
 
   !> Values of the first process to all.
   subroutine spread_values(ranks, values)

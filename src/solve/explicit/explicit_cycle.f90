@@ -35,10 +35,10 @@ module explicit_cycle_m
   use outlines_m, only : follow_outlines
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
   use progress_m, only : show_progress, follow_progress
-  use rank_exchange_m, only : exchange_forces, exchange_checks, exchange_erosion, exchange_limits, &
-    gather_motion, gather_state, judge_elements
+  use rank_exchange_m, only : parcel_t, plan_parcel, exchange_parcel, write_record, read_records, &
+    exchange_erosion, exchange_limits, gather_motion, gather_state, judge_elements
   use rank_shares_m, only : shares_t, share_out
-  use ranks_m, only : ranks_t, bring_reals, share_error, spread_values
+  use ranks_m, only : ranks_t, share_error, spread_values
   use requests_m, only : requests_t, take_requests
   use restart_plan_m, only : wanted_files
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
@@ -60,6 +60,7 @@ module explicit_cycle_m
     logical :: plots = .false.       !! this cycle writes a plot state because someone asked for it
     type(due_t) :: due
     type(shares_t) :: shares         !! tiles of each process
+    type(parcel_t) :: parcel         !! what they exchange in each cycle
     type(requests_t) :: asked        !! what someone asks for, heard in this cycle
     type(leap_t) :: leap             !! motion factors of this cycle
     type(step_plan_t) :: steps
@@ -105,6 +106,7 @@ contains
     associate (ranks => monitor%ranks)
       cycle%shares = share_out(model%layout, ranks%mine, ranks%n)
       allocate (cycle%checks(max(size(model%layout%tiles), ranks%n)))
+      if (ranks%n > 1) call plan_parcel(cycle%shares, cycle%sums, cycle%parcel)
     end associate
     cycle%reason = 'termination time reached'
     if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
@@ -196,14 +198,16 @@ contains
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
     integer :: n_gone
+    logical :: has_error
 
     associate (ranks => monitor%ranks, shares => cycle%shares)
       if (ranks%mine == 0) call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, &
         cycle%error)
-      call exchange_forces(ranks, shares, state)
-      call exchange_checks(ranks, state%elements, cycle%checks, n_gone, cycle%asked, cycle%error)
-      if (allocated(cycle%sums%parts)) &
-        call bring_reals(ranks, shares%tiles, 4, .true., cycle%sums%parts)
+      call write_record(shares, ranks%mine, cycle%checks, state%elements, cycle%asked, &
+        allocated(cycle%error), cycle%parcel)
+      call exchange_parcel(ranks, shares, cycle%parcel, state, cycle%sums)
+      call read_records(cycle%parcel, cycle%checks, cycle%asked, n_gone, has_error)
+      if (has_error) call share_error(ranks, cycle%error)
       if (model%erodes) then
         if (n_gone > sum(state%elements%erosion%n_eroded)) &
           call exchange_erosion(ranks, shares, state%elements)

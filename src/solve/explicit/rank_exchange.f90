@@ -10,61 +10,149 @@ module rank_exchange_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use model_m, only : model_t
+  use motion_sums_m, only : motion_sums_t
   use rank_shares_m, only : shares_t, stream_starts
-  use ranks_m, only : ranks_t, bring_reals, bring_integers, share_records, share_error
+  use ranks_m, only : ranks_t, bring_reals, bring_integers, share_error
   use requests_m, only : requests_t
   use state_m, only : state_t
   implicit none
   private
-  public :: exchange_forces, exchange_checks, exchange_erosion, exchange_limits, gather_motion, &
-    gather_state, judge_elements
+  public :: parcel_t, plan_parcel, exchange_parcel, write_record, read_records, exchange_erosion, &
+    exchange_limits, gather_motion, gather_state, judge_elements
 
-  !> Values of a record: limit, checksum, volumes, elements gone, requests (4), an error.
-  integer, parameter :: n_value = 9
+  !> Values of a record: limit, checksum, volumes, elements gone, requests (4), an error; and of the
+  !> sums over the nodes of a tile.
+  integer, parameter :: n_value = 9, n_sum = 4
+
+  !> What is exchanged in each cycle, process by process.
+  type :: parcel_t
+    integer, allocatable :: starts(:)      !! (n + 1) where the piece of each process starts
+    real(wp), allocatable :: values(:)
+    real(wp), allocatable :: records(:, :) !! (n_value, n) what each process says of its tiles
+    real(wp) :: own(n_value) = 0.0_wp      !! the record of this process
+  end type parcel_t
 
 contains
 
-  !> Forces of all tiles on special nodes; failed points of their chunks.
-  subroutine exchange_forces(ranks, shares, state)
+  !> Room for what is exchanged in each cycle.
+  pure subroutine plan_parcel(shares, sums, parcel)
+    type(shares_t), intent(in) :: shares
+    type(motion_sums_t), intent(in) :: sums
+    type(parcel_t), intent(out) :: parcel
+    integer :: i
+
+    associate (n => ubound(shares%tiles, 1))
+      parcel%starts = n_value*[(i, i=0, n)] + 2*(shares%force_slots - 1) + 1
+      if (allocated(sums%parts)) parcel%starts = parcel%starts + n_sum*(shares%tiles - 1)
+      ! The assignment has made the lower bound 1.
+      allocate (parcel%values(parcel%starts(n + 1) - 1), source=0.0_wp)
+      allocate (parcel%records(n_value, n), source=0.0_wp)
+    end associate
+  end subroutine plan_parcel
+
+  !> Records of all processes, forces of all tiles on special nodes and, where they are formed, sums
+  !> over the nodes of all tiles, in one message.
+  subroutine exchange_parcel(ranks, shares, parcel, state, sums)
     type(ranks_t), intent(in) :: ranks
     type(shares_t), intent(in) :: shares
+    type(parcel_t), intent(inout) :: parcel
     type(state_t), intent(inout) :: state
+    type(motion_sums_t), intent(inout) :: sums
+    integer :: rank
 
-    call bring_reals(ranks, shares%force_slots, 2, .true., state%force_slots)
+    call fill_piece(ranks%mine, .true.)
+    call bring_reals(ranks, parcel%starts, 1, .true., parcel%values)
+    do rank = 0, ranks%n - 1
+      if (rank /= ranks%mine) call fill_piece(rank, .false.)
+    end do
+    parcel%records(:, ranks%mine + 1) = parcel%own
     if (allocated(state%elements%n_failed)) call bring_integers(ranks, shares%chunks, 1, .true., &
       state%elements%n_failed)
-  end subroutine exchange_forces
 
-  !> What the elements of each process have come to, in place of what those of single tiles have;
-  !> what was asked of the first process; whether any has an error, which then is that of all.
-  subroutine exchange_checks(ranks, elements, checks, n_gone, asked, error)
-    type(ranks_t), intent(in) :: ranks
+  contains
+
+    !> Put the piece of a process into the parcel, or take it out.
+    subroutine fill_piece(rank, puts)
+      integer, intent(in) :: rank
+      logical, intent(in) :: puts
+      integer :: at, first, last
+
+      at = parcel%starts(rank + 1)
+      if (puts) then
+        parcel%values(at:at + n_value - 1) = parcel%own
+      else
+        parcel%records(:, rank + 1) = parcel%values(at:at + n_value - 1)
+      end if
+      at = at + n_value
+      first = shares%force_slots(rank)
+      last = shares%force_slots(rank + 1) - 1
+      if (last >= first) call copy_columns(puts, last - first + 1, 2, state%force_slots(1, first), &
+        parcel%values(at))
+      at = at + 2*(last - first + 1)
+      first = shares%tiles(rank)
+      last = shares%tiles(rank + 1) - 1
+      if (allocated(sums%parts) .and. last >= first) call copy_columns(puts, last - first + 1, &
+        n_sum, sums%parts(1, first), parcel%values(at))
+    end subroutine fill_piece
+
+  end subroutine exchange_parcel
+
+  !> Columns of a table into the parcel, or out of it.
+  pure subroutine copy_columns(puts, n, width, table, values)
+    logical, intent(in) :: puts
+    integer, intent(in) :: n, width
+    real(wp), intent(inout) :: table(width, n), values(width, n)
+
+    if (puts) then
+      values = table
+    else
+      table = values
+    end if
+  end subroutine copy_columns
+
+  !> What the elements of this process have come to, and what is asked of it, for its record.
+  pure subroutine write_record(shares, mine, checks, elements, asked, has_error, parcel)
+    type(shares_t), intent(in) :: shares
+    integer, intent(in) :: mine                   !! number of this process
+    type(tile_check_t), intent(in) :: checks(:)
     type(block_state_t), intent(in) :: elements
-    type(tile_check_t), intent(inout) :: checks(:)  !! one a tile at least, and one a process
-    integer, intent(out) :: n_gone                  !! elements of all processes that are not there
-    type(requests_t), intent(inout) :: asked
-    type(error_t), allocatable, intent(inout) :: error
-    real(wp) :: record(n_value), records(n_value, ranks%n)
+    type(requests_t), intent(in) :: asked
+    logical, intent(in) :: has_error
+    type(parcel_t), intent(inout) :: parcel
 
-    record(1) = minval(checks%time_limit)
-    record(2) = sum(checks%checksum)
-    record(3) = merge(1.0_wp, 0.0_wp, all(checks%has_volume))
-    record(4) = 0.0_wp
-    if (allocated(elements%erosion)) record(4) = sum(elements%erosion%n_gone)
-    record(5:8) = merge(1.0_wp, 0.0_wp, [asked%dump, asked%plot, asked%stop, asked%signalled])
-    record(9) = merge(1.0_wp, 0.0_wp, allocated(error))
-    call share_records(ranks, record, records)
-    checks = tile_check_t()
-    checks(:ranks%n)%time_limit = records(1, :)
-    checks(:ranks%n)%checksum = records(2, :)
-    checks(:ranks%n)%has_volume = records(3, :) > 0.0_wp
-    n_gone = nint(sum(records(4, :)))
-    asked%dump = records(5, 1) > 0.0_wp
-    asked%plot = records(6, 1) > 0.0_wp
-    asked%stop = records(7, 1) > 0.0_wp
-    asked%signalled = records(8, 1) > 0.0_wp
-    if (any(records(9, :) > 0.0_wp)) call share_error(ranks, error)
-  end subroutine exchange_checks
+    associate (record => parcel%own, own => checks(shares%first_tile:shares%last_tile))
+      record(1) = minval(own%time_limit)
+      record(2) = sum(own%checksum)
+      record(3) = merge(1.0_wp, 0.0_wp, all(own%has_volume))
+      record(4) = 0.0_wp
+      if (allocated(elements%erosion)) record(4) = real(sum(elements%erosion%n_gone( &
+        shares%chunks(mine):shares%chunks(mine + 1) - 1)), wp)
+      record(5:8) = merge(1.0_wp, 0.0_wp, [asked%dump, asked%plot, asked%stop, asked%signalled])
+      record(9) = merge(1.0_wp, 0.0_wp, has_error)
+    end associate
+  end subroutine write_record
+
+  !> The records of all: what elements have come to, one check a process, and what is asked of the
+  !> first one.
+  pure subroutine read_records(parcel, checks, asked, n_gone, has_error)
+    type(parcel_t), intent(in) :: parcel
+    type(tile_check_t), intent(out) :: checks(:)  !! one a process at least
+    type(requests_t), intent(out) :: asked
+    integer, intent(out) :: n_gone                !! elements of all that are not there
+    logical, intent(out) :: has_error             !! some process has one
+
+    associate (records => parcel%records, n => size(parcel%records, 2))
+      checks(:n)%time_limit = records(1, :)
+      checks(:n)%checksum = records(2, :)
+      checks(:n)%has_volume = records(3, :) > 0.0_wp
+      n_gone = nint(sum(records(4, :)))
+      asked%dump = records(5, 1) > 0.0_wp
+      asked%plot = records(6, 1) > 0.0_wp
+      asked%stop = records(7, 1) > 0.0_wp
+      asked%signalled = records(8, 1) > 0.0_wp
+      has_error = any(records(9, :) > 0.0_wp)
+    end associate
+  end subroutine read_records
 
   !> Elements that have left in this cycle, and what they take along.
   subroutine exchange_erosion(ranks, shares, elements)
