@@ -36,7 +36,7 @@ module explicit_cycle_m
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
   use progress_m, only : show_progress, follow_progress
   use rank_exchange_m, only : parcel_t, plan_parcel, exchange_parcel, write_record, read_records, &
-    exchange_erosion, exchange_limits, gather_motion, gather_state, judge_elements
+    exchange_erosion, exchange_limits, exchange_history, gather_motion, gather_state, judge_elements
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t, share_error, spread_values
   use requests_m, only : requests_t, take_requests
@@ -213,6 +213,11 @@ contains
           call exchange_erosion(ranks, shares, state%elements)
       end if
       if (state%cycle == 0) call exchange_limits(ranks, shares, state%elements)
+      if (allocated(state%elements%n_failed)) then
+        ! The log names the first one.
+        if (cycle%failures%told == 0 .and. any(state%elements%n_failed > 0)) &
+          call exchange_history(ranks, shares, state%elements)
+      end if
       if (cycle%writes) call gather_state(ranks, shares, .false., state)
     end associate
     call lap(monitor%clock, phase_nodes)

@@ -18,7 +18,7 @@ module rank_exchange_m
   implicit none
   private
   public :: parcel_t, plan_parcel, exchange_parcel, write_record, read_records, exchange_erosion, &
-    exchange_limits, gather_motion, gather_state, judge_elements
+    exchange_limits, exchange_history, gather_motion, gather_state, judge_elements
 
   !> Values of a record: limit, checksum, volumes, elements gone, requests (4), an error; and of the
   !> sums over the nodes of a tile.
@@ -176,6 +176,16 @@ contains
 
     call bring_reals(ranks, shares%chunks, 1, .true., elements%time_limit)
   end subroutine exchange_limits
+
+  !> The history of all elements, for what looks for one of them.
+  subroutine exchange_history(ranks, shares, elements)
+    type(ranks_t), intent(in) :: ranks
+    type(shares_t), intent(in) :: shares
+    type(block_state_t), intent(inout) :: elements
+
+    call bring_reals(ranks, stream_starts(shares%chunks, elements%history_start, &
+      size(elements%history)), 1, .true., elements%history)
+  end subroutine exchange_history
 
   !> Motion of all interior nodes.
   subroutine gather_motion(ranks, shares, to_all, state)
