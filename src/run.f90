@@ -105,8 +105,8 @@ contains
     type(ranks_t), intent(in) :: ranks
     type(error_t), allocatable, intent(inout) :: error
 
-    if (ranks%n > 1 .and. model%controls%implicit%is_on) call raise(error, 'the deck asks for the ' &
-      //'implicit method (*CONTROL_IMPLICIT_GENERAL) and the command for '//to_text(ranks%n) &
+    if (ranks%n > 1 .and. model%controls%implicit%is_on) call raise(error, 'the deck asks for ' &
+      //'the implicit method (*CONTROL_IMPLICIT_GENERAL) and the command for '//to_text(ranks%n) &
       //' processes: implicit runs have one, with threads (ncpu=)', status_input)
   end subroutine refuse_several
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# usage: tools/build.sh [release|debug|counted|package]
+# usage: tools/build.sh [release|debug|counted|mpi|package]
 # Installs what is missing and builds build/release/slideline or build/debug/slideline.
 # counted: build/counted/slideline, for x86-64-v3, whose instructions callgrind can count.
+# mpi: build/mpi/slideline, whose explicit runs `mpirun -n N` shares among N processes.
 # package: builds for x86-64-v2, v3 and v4 and a launcher that picks the fastest, as
 # build/package/slideline-VERSION and that as .tar.gz, for machines with the same distribution.
 set -uo pipefail
@@ -42,11 +43,15 @@ make_package() {
 
 type=${1:-release}
 case $type in
-  release | debug | counted | package) ;;
-  *) complain "usage: tools/build.sh [release|debug|counted|package]"; exit 1 ;;
+  release | debug | counted | mpi | package) ;;
+  *) complain "usage: tools/build.sh [release|debug|counted|mpi|package]"; exit 1 ;;
 esac
 lock
-install_packages
+if [ "$type" = mpi ]; then
+  install_packages mpi
+else
+  install_packages
+fi
 if [ "$type" = package ]; then
   make_package
   exit 0

@@ -36,7 +36,7 @@ unlock() {
   exec 9>&-
 }
 
-# lacking: one line "package: what it is for" for each thing that is not on this machine.
+# lacking [mpi]: one line "package: what it is for" for each thing that is not on this machine.
 lacking() {
   if ! command -v gfortran >/dev/null || ! echo end | gfortran -x f95 - -o /dev/null 2>/dev/null; then
     echo "gfortran: Fortran compiler"
@@ -58,6 +58,13 @@ lacking() {
   elif ! python3 -c 'import venv, ensurepip' 2>/dev/null; then
     echo "python3-venv: Python's virtual environments"
   fi
+  [ "${1:-}" != mpi ] || mpi_packages
+}
+
+# What several processes take, where it is not there.
+mpi_packages() {
+  command -v mpif90 >/dev/null || echo "libopenmpi-dev: Open MPI"
+  command -v mpirun >/dev/null || echo "openmpi-bin: what starts its processes"
 }
 
 # useful [test]: as `lacking`, for what the program, or its tests, are better with but do without.
@@ -68,6 +75,7 @@ useful() {
   if [ "${1:-}" = test ] && ! command -v ccx >/dev/null; then
     echo "calculix-ccx: CalculiX, which friction is compared with"
   fi
+  [ "${1:-}" != test ] || mpi_packages
 }
 
 cmake_is_new() {
@@ -92,10 +100,10 @@ package_names() {
   printf '%s\n' "$1" | sed 's/:.*//' | tr '\n' ' ' | sed 's/ $//'
 }
 
-# install_packages [test]: the system packages that are missing, then those that are only useful.
+# install_packages [test|mpi]: the system packages that are missing, then those that are only useful.
 install_packages() {
   local missing as_root
-  missing=$(lacking)
+  missing=$(lacking "$@")
   if [ -z "$missing" ]; then
     install_useful "$@"
     return 0
@@ -114,7 +122,7 @@ install_packages() {
     tail -n 5 "$root/build/packages.log" >&2
     give_up "apt-get failed; its output is in build/packages.log." "$missing"
   fi
-  missing=$(lacking)
+  missing=$(lacking "$@")
   [ -z "$missing" ] || give_up "Still missing after apt-get:" "$missing"
   install_useful "$@"
 }
@@ -171,7 +179,7 @@ install_tools() {
   printf '%s\n' "$want" >"$stamp"
 }
 
-# build TYPE [TARGET]: release, debug or counted; the program, or the target `all` for the tests too.
+# build TYPE [TARGET]: release, debug, counted or mpi; the program, or the target `all` for the tests too.
 build() {
   local type=$1 target=${2:-slideline} folder name log
   local -a more=()
@@ -180,7 +188,8 @@ build() {
     release) name=Release ;;
     debug) name=Debug ;;
     counted) name=Release more=(-DSLIDELINE_ARCH=x86-64-v3 -DSLIDELINE_TESTS=OFF) ;;
-    *) complain "no such build: $type (release, debug or counted)"; exit 1 ;;
+    mpi) name=Release more=(-DSLIDELINE_MPI=ON -DSLIDELINE_TESTS=OFF) ;;
+    *) complain "no such build: $type (release, debug, counted or mpi)"; exit 1 ;;
   esac
   mkdir -p "$root/build"
   log="$root/build/$type.log"

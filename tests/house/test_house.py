@@ -104,6 +104,21 @@ def test_folders_of_src_are_the_layers():
     assert folders <= set(LAYERS)
 
 
+def interfaces_of(path):
+    """Procedure -> its arguments and their declarations; and the type."""
+    text = path.read_text()
+    found = {name: (arguments, [line.split("!!")[0].strip() for line in body.splitlines() if "intent(" in line])
+             for name, arguments, body in re.findall(r"^  subroutine (\w+)\((.*?)\)\n(.*?)^  end subroutine", text, re.M | re.S)}
+    found["ranks_t"] = re.search(r"type :: ranks_t.*?end type", text, re.S).group()
+    return found
+
+
+def test_both_modules_of_processes_are_called_alike():
+    """What is compiled with the one of a single process is linked with the one of MPI (slideline_mpi)."""
+    serial, several = (interfaces_of(ROOT / "src/parallel" / kind / "ranks.f90") for kind in ("serial", "mpi"))
+    assert len(serial) > 5 and serial == {name: several[name] for name in serial}
+
+
 def test_build_gives_each_layer_what_the_table_gives_it():
     text = (ROOT / "CMakeLists.txt").read_text()
     built = {words[0].replace("/", "_"): set(words[1:])

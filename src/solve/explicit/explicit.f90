@@ -14,7 +14,8 @@ module explicit_m
   use erosion_account_m, only : report_erosion
   use errors_m, only : error_t
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, &
-    report_cycle, end_cycle
+    end_cycle
+  use explicit_report_m, only : report_cycle
   use failure_watch_m, only : report_failures
   use health_m, only : check_tile, judge_energies, judge_ratio
   use kinds_m, only : wp
@@ -208,9 +209,9 @@ contains
           call move_damped(model, cycle%leap, tile%first_owned, tile%last_owned, state)
           cycle
         end if
-        if (tile%last_node >= tile%first_node .and. is_own) call move_tile_nodes(cycle%leap, tile%first_node, &
-          tile%last_node, state%internal_force(1, tile%first_node), state%inverse_mass, &
-          state%motion)
+        if (tile%last_node >= tile%first_node .and. is_own) call move_tile_nodes(cycle%leap, &
+          tile%first_node, tile%last_node, state%internal_force(1, tile%first_node), &
+          state%inverse_mass, state%motion)
         call move_special_nodes(cycle%leap, tile%first_owned, tile%last_owned, state)
       end associate
     end do

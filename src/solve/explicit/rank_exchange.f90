@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> What the processes of an explicit run exchange. Each computes the elements of its tiles and moves
-!> their interior nodes; special nodes and all that acts on them are everywhere the same, so that in
-!> a cycle it is forces on special nodes (raw, slot by slot: they are added in their fixed order) and
-!> what the elements have come to. The first process gathers the rest where files ask for it.
+!> their interior nodes; special nodes and all that acts on them are everywhere the same. So in each
+!> cycle all hear the forces on special nodes (raw, slot by slot: they are added in their fixed
+!> order) and what the elements have come to. The first process gathers the rest where files ask
+!> for it.
 module rank_exchange_m
   use block_state_m, only : block_state_t
   use errors_m, only : error_t
