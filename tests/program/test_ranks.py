@@ -68,11 +68,11 @@ def with_cycles(text, cycles, dump=None):
     return text.rsplit("*END", 1)[0] + (f"*DATABASE_BINARY_D3DUMP\n{dump},\n" if dump else "") + "*END\n"
 
 
-def run(folder, processes, *words, status=0):
+def run(folder, processes, *words, status=0, program=(PROGRAM,)):
     """The program on so many processes; what it says."""
     # Launchers that start at the same time get into each other's way in one folder.
     environment = {**ENVIRONMENT, "OMPI_MCA_orte_tmpdir_base": str(folder)}
-    done = subprocess.run([*LAUNCH, str(processes), PROGRAM, *words, "perthread=1"], cwd=folder, env=environment,
+    done = subprocess.run([*LAUNCH, str(processes), *program, *words, "perthread=1"], cwd=folder, env=environment,
                           capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == status, done.stderr + done.stdout
     return done
@@ -151,6 +151,13 @@ def test_an_error_ends_all_processes_and_is_told_once(tmp_path):
     (tmp_path / "implicit.k").write_text(text if isinstance(text, str) else text.text(), encoding="ascii")
     assert "implicit runs have one" in run(tmp_path, 2, "i=implicit.k", "d=none", status=1).stderr
     assert not (tmp_path / "none").exists()
+
+
+def test_a_disk_that_takes_no_more_ends_all_processes(tmp_path):
+    (tmp_path / "job.k").write_text(with_cycles(everything(3), 40), encoding="ascii")
+    limited = ["sh", "-c", "ulimit -f 300; trap '' XFSZ; exec \"$@\"", "sh", PROGRAM]
+    said = run(tmp_path, 2, "i=job.k", "d=full", program=limited, status=3).stderr
+    assert said.count("full/job.") == 1, said
 
 
 def test_a_process_that_is_killed_ends_the_run_and_leaves_files_that_can_be_read(tmp_path):
