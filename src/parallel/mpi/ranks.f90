@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Processes that share one run: all that is exchanged between them goes through here, by MPI.
 !> src/parallel/serial has the same module for builds without it, with the same declarations: what
-!> is compiled with one of them may be linked with the other. Only one thread of a process comes here.
-!> A process that ends without `leave_ranks` ends the run: the launcher stops the others.
+!> is compiled with one of them may be linked with the other. Only one thread of a process comes
+!> here. A process that ends without `leave_ranks` ends the run: the launcher stops the others.
 module ranks_m
   use errors_m, only : error_t, raise
   use kinds_m, only : wp
