@@ -35,7 +35,7 @@ def site_paths():
     pages["tools/README.md"] = "tools.md"
     for path in sorted((ROOT / "tests/verification").glob("*/README.md")):
         case = path.parent.name
-        pages[f"tests/verification/{case}/README.md"] = f"verification/{case}.md"
+        pages[f"tests/verification/{case}/README.md"] = f"cases/{case}.md"
     return pages
 
 
@@ -111,8 +111,8 @@ def navigation(folder, keywords):
                       {"Example decks": "examples/index.md"},
                       *({group: entries} for group, entries in groups.items())]},
         {"Theory": pages("theory/*.md", theory)},
-        {"Verification": [{"Table of all checks": "verification.md"},
-                          {"Cases": pages("verification/*.md")}]},
+        {"Verification": ["verification.md", {"Cases": pages("cases/*.md")},
+                          {"All checks": pages("verification/*.md")}]},
         {"Studies": pages("studies/*.md", ["studies/index.md"])},
         {"Extend": ["architecture.md", "add_a_formulation.md", "add_a_material.md", "add_a_history.md",
                     {"Fortran interface": "fortran_interface.md"}]},
