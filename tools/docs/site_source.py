@@ -103,7 +103,8 @@ def navigation(folder, keywords):
     theory = [f"theory/{name}.md" for name in
               ("contact", "elements", "materials", "time_integration", "implicit", "rigid_bodies")]
     return [
-        {"Start": ["index.md", {"Quick start": "quick_start.md"}, {"Building": "building.md"},
+        {"Start": ["index.md", {"Quick start": "quick_start.md"}, {"First steps": "first_steps.md"},
+                   {"Choose": "choose.md"}, {"Building": "building.md"},
                    {"Tutorial": "tutorial.md"},
                    {"Coming from LS-DYNA": "coming_from_ls_dyna.md"},
                    {"Results": "results.md"}, {"Python tools": "tools.md"}]},
