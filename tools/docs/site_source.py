@@ -106,7 +106,7 @@ def navigation(folder, keywords):
         {"Start": ["index.md", {"Quick start": "quick_start.md"}, {"First steps": "first_steps.md"},
                    {"Choose": "choose.md"}, {"Building": "building.md"},
                    {"Tutorial": "tutorial.md"},
-                   {"Coming from LS-DYNA": "coming_from_ls_dyna.md"},
+                   {"Meshes": "meshes.md"}, {"Coming from LS-DYNA": "coming_from_ls_dyna.md"},
                    {"Results": "results.md"}, {"Python tools": "tools.md"}]},
         {"Keywords": ["keywords/index.md", {"All on one page": "keywords.md"},
                       {"Example decks": "examples/index.md"},
