@@ -283,7 +283,7 @@ contains
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(inout) :: cycle
 
-    call release_nodes(model%layout%n_special, cycle%freed, state)
+    call release_nodes(model, cycle%leap, cycle%freed, state)
     associate (n_eroded => state%elements%erosion%n_eroded)
       call follow_outlines(model, n_eroded > cycle%told, state)
       cycle%told = n_eroded
