@@ -27,7 +27,7 @@ module element_chunk_m
     real(wp), dimension(chunk_size) :: law_mean, law_energy, law_bulk, law_shear !! where the law
                                                           !! gives the pressure: see `law_pressure`
     real(wp), dimension(chunk_size) :: qx, qy             !! hourglass force amplitude
-    real(wp) :: force(4, chunk_size) !! node 3 x, y without hourglass; node 4 x, y
+    real(wp), dimension(2, chunk_size) :: force3, force4 !! x, y of nodes 3, 4 without hourglass
     real(wp) :: swing(2, chunk_size) !! hourglass amplitude q_x, q_y
   end type element_chunk_t
 
@@ -45,6 +45,7 @@ contains
 
     !GCC$ NOVECTOR
     do i = 1, chunk_size
+      !$omp simd simdlen(4)
       do k = 1, 4
         d31(k) = motion(k, nodes(3, i)) - motion(k, nodes(1, i))
         d42(k) = motion(k, nodes(4, i)) - motion(k, nodes(2, i))
@@ -74,19 +75,19 @@ contains
       n = local(:, i)
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(1)) = force(k, n(1)) + (chunk%swing(k, i) - chunk%force(k, i))
+        force(k, n(1)) = force(k, n(1)) + (chunk%swing(k, i) - chunk%force3(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(2)) = force(k, n(2)) - (chunk%swing(k, i) + chunk%force(k + 2, i))
+        force(k, n(2)) = force(k, n(2)) - (chunk%swing(k, i) + chunk%force4(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(3)) = force(k, n(3)) + (chunk%swing(k, i) + chunk%force(k, i))
+        force(k, n(3)) = force(k, n(3)) + (chunk%swing(k, i) + chunk%force3(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(4)) = force(k, n(4)) - (chunk%swing(k, i) - chunk%force(k + 2, i))
+        force(k, n(4)) = force(k, n(4)) - (chunk%swing(k, i) - chunk%force4(k, i))
       end do
     end do
   end subroutine scatter_chunk
