@@ -49,6 +49,7 @@ contains
     status%start_cycle = status%cycle
     status%start_seconds = elapsed_seconds(clock)
     call write_status(status, clock, 'running')
+    call wait_for_next(status)
   end subroutine start_status
 
   !> Take new numbers, and write them when the last file is old enough.
@@ -57,17 +58,26 @@ contains
     type(clock_t), intent(in) :: clock
     integer, intent(in) :: cycle
     real(wp), intent(in) :: time, dt, ratio
-    integer(long) :: now, rate
+    integer(long) :: now
 
     status%cycle = cycle
     status%time = time
     status%dt = dt
     status%ratio = ratio
-    call system_clock(now, rate)
+    call system_clock(now)
     if (now < status%next_tick) return
-    status%next_tick = now + int(file_interval*real(rate, wp), long)
+    call wait_for_next(status)
     call write_status(status, clock, 'running')
   end subroutine keep_status
+
+  !> The next file is due after the interval.
+  subroutine wait_for_next(status)
+    type(status_t), intent(inout) :: status
+    integer(long) :: now, rate
+
+    call system_clock(now, rate)
+    status%next_tick = now + int(file_interval*real(rate, wp), long)
+  end subroutine wait_for_next
 
   !> Write the file.
   subroutine write_status(status, clock, state)
