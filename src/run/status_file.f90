@@ -10,7 +10,8 @@ module status_file_m
   use log_m, only : to_text
   implicit none
   private
-  public :: status_t, start_status, keep_status, write_status, seconds_to_go, duration
+  public :: status_t, start_status, keep_status, write_status, done_share, seconds_to_go, &
+    duration
 
   !> Seconds between two files at least.
   real(wp), parameter :: file_interval = 1.0_wp
@@ -130,11 +131,9 @@ contains
       //' '//hour(1:2)//':'//hour(3:4)//':'//hour(5:6)//n
   end function status_text
 
-  !> Seconds until the end at the pace since this run began; -1 where nothing has been done yet.
-  pure function seconds_to_go(status, elapsed) result(seconds)
+  !> Share of the run that has been done, by time or by cycles.
+  pure function done_share(status) result(share)
     type(status_t), intent(in) :: status
-    real(wp), intent(in) :: elapsed
-    real(wp) :: seconds
     real(wp) :: share
 
     share = 0.0_wp
@@ -142,6 +141,16 @@ contains
       share = (status%time - status%start_time)/(status%end_time - status%start_time)
     if (status%end_cycle > status%start_cycle) share = max(share, &
       real(status%cycle - status%start_cycle, wp)/(status%end_cycle - status%start_cycle))
+  end function done_share
+
+  !> Seconds until the end at the pace since this run began; -1 where nothing has been done yet.
+  pure function seconds_to_go(status, elapsed) result(seconds)
+    type(status_t), intent(in) :: status
+    real(wp), intent(in) :: elapsed
+    real(wp) :: seconds
+    real(wp) :: share
+
+    share = done_share(status)
     seconds = -1.0_wp
     if (share > 0.0_wp) seconds = max(0.0_wp, &
       (elapsed - status%start_seconds)*(1.0_wp - share)/share)
