@@ -3,6 +3,7 @@
 module run_m
   use, intrinsic :: iso_fortran_env, only : output_unit
   use contacts_m, only : n_told
+  use controls_m, only : is_asked
   use arguments_m, only : arguments_t, file_stem, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
@@ -152,7 +153,7 @@ contains
     info%build = build_type//', '//compiler//', '//flags
     info%options = arguments%line
     info%source = source_version
-    info%machine = processor_name()
+    if (is_asked(model%controls%output%plot)) info%machine = processor_name()
     info%checksum = restarts%effective_deck_checksum
   end subroutine describe_run
 

@@ -27,7 +27,6 @@ program=${SLIDELINE:-$here/../../build/release/slideline}
 # run_line OUT LINE INPUTS: one run.
 run_line() {
   out=$1 now=$3
-  tab=$(printf '\t')
   set -f
   IFS=$tab
   # shellcheck disable=SC2086  # the fields between tabs
@@ -46,7 +45,7 @@ run_line() {
       return 0
     fi
   fi
-  if [ "$fresh" = no ] && [ "$(first_line "$folder/run.status")" = 0 ] \
+  if [ "$fresh" = no ] && [ -e "$folder/run.status" ] && [ "$(first_line "$folder/run.status")" = 0 ] \
     && [ "$(first_line "$folder/run.inputs")" = "$now" ]; then
     echo "== $name: has run already"
     return 0
@@ -86,7 +85,7 @@ with_inputs() {
 # run_lines OUT IDENTITY LINE...: some runs, one after the other. Most of what goes before a run is done once for all of
 # them: beside a small run every process counts.
 run_lines() {
-  out=$1 identity=$2
+  out=$1 identity=$2 tab=$(printf '\t')
   shift 2
   locks=no
   if command -v flock >/dev/null; then locks=yes; fi
