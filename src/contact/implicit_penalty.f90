@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Springs on the weighted gaps of type 7 whose forces are those of the end of the step (PUNIT 4;
-!> doc/theory/contact.md, section 6.3): no stiffness makes them unstable at the step of the
+!> doc/theory/contact.md, section 6.6): no stiffness makes them unstable at the step of the
 !> elements. The points are placed with the other interfaces; pressures follow here, once the
 !> velocities are known that the nodes would have without them.
 module implicit_penalty_m

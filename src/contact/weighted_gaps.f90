@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Weighted gaps of slave nodes as rows over the nodes of an interface, and what forces along some
-!> rows change in others (doc/theory/contact.md, section 6.3). A row over its area kappa is a mean
+!> rows change in others (doc/theory/contact.md, section 6.6). A row over its area kappa is a mean
 !> gap: its shares of the slave side sum to the mean normal, those of the master to minus that.
 module weighted_gaps_m
   use contact_state_m, only : contact_points_t, n_side

@@ -70,7 +70,7 @@ contains
         end associate
       end do
       do i = 1, size(model%rigids)
-        call refuse_shared(deck, entry, is_own, model%rigids(i)%nodes, 'rigid body of part ' &
+        call refuse_shared(deck, entry, is_own, model%rigids(i)%nodes, 'the rigid body of part ' &
           //to_text(model%parts(model%rigids(i)%part)%id), model)
       end do
       if (allocated(model%walls)) then
@@ -82,11 +82,11 @@ contains
       if (allocated(model%conditions%common_motions)) then
         do i = 1, size(model%conditions%common_motions)
           call refuse_shared(deck, entry, is_own, model%conditions%common_motions(i)%nodes, &
-            'set of nodes that move alike', model)
+            'a set of nodes that move alike', model)
         end do
       end if
       if (allocated(model%conditions%skew_supports)) call refuse_shared(deck, entry, is_own, &
-        model%conditions%skew_supports%node, 'support along neither x nor y', model)
+        model%conditions%skew_supports%node, 'a support along neither x nor y', model)
     end associate
   end subroutine check_nodes
 
@@ -103,7 +103,7 @@ contains
     do i = 1, size(nodes)
       if (.not. is_own(nodes(i))) cycle
       call refuse(deck, entry, 'share no nodes with others: node ' &
-        //to_text(model%mesh%node_id(nodes(i)))//' has a '//whose//' too')
+        //to_text(model%mesh%node_id(nodes(i)))//' belongs to '//whose//' too')
       return
     end do
   end subroutine refuse_shared
