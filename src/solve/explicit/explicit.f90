@@ -13,7 +13,8 @@ module explicit_m
   use eroding_tiles_m, only : add_eroding_tile_forces
   use erosion_account_m, only : report_erosion
   use errors_m, only : error_t
-  use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
+  use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, press_cycle, &
+    report_cycle, end_cycle
   use failure_watch_m, only : report_failures
   use health_m, only : check_tile, judge_energies, judge_ratio
   use kinds_m, only : wp
@@ -89,7 +90,11 @@ contains
       !$omp master
       call lap(monitor%clock, phase_elements)
       !$omp end master
-      call advance_special_nodes(model, state, cycle)
+      if (cycle%presses) then
+        call advance_pressed_nodes(model, state, monitor, cycle)
+      else
+        call advance_special_nodes(model, state, cycle)
+      end if
       if (writes) then
         !$omp master
         call lap(monitor%clock, phase_nodes)
@@ -160,20 +165,57 @@ contains
       associate (first => model%layout%tiles(i_tile)%first_owned, &
         last => model%layout%tiles(i_tile)%last_owned)
         call sum_special_forces(model%layout, state%force_slots, first, last, state%internal_force)
-        if (.not. cycle%writes) then
-          if (allocated(state%walls)) call hold_nodes(model, cycle%leap, first, last, state)
-          if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, cycle%leap, &
-            first, last, state)
-          if (allocated(state%node_damping)) then
-            call move_damped(model, cycle%leap, first, last, state)
-          else
-            call move_special_nodes(cycle%leap, first, last, state)
-          end if
-        end if
+        if (.not. cycle%writes) call leap_special_nodes(model, cycle%leap, first, last, state)
       end associate
     end do
     !$omp end do
   end subroutine advance_special_nodes
+
+  !> The same where contact forces of some interface follow all others: all sums, then these forces,
+  !> then the motion.
+  subroutine advance_pressed_nodes(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+    integer :: i_tile
+
+    !$omp do schedule(static)
+    do i_tile = 1, size(model%layout%tiles)
+      call sum_special_forces(model%layout, state%force_slots, &
+        model%layout%tiles(i_tile)%first_owned, model%layout%tiles(i_tile)%last_owned, &
+        state%internal_force)
+    end do
+    !$omp end do
+    !$omp master
+    call press_cycle(model, state, monitor, cycle)
+    !$omp end master
+    !$omp barrier
+    if (cycle%writes) return
+    !$omp do schedule(static)
+    do i_tile = 1, size(model%layout%tiles)
+      call leap_special_nodes(model, cycle%leap, model%layout%tiles(i_tile)%first_owned, &
+        model%layout%tiles(i_tile)%last_owned, state)
+    end do
+    !$omp end do
+  end subroutine advance_pressed_nodes
+
+  !> Move special nodes whose forces are known.
+  subroutine leap_special_nodes(model, leap, first, last, state)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
+    type(state_t), intent(inout) :: state
+
+    if (allocated(state%walls)) call hold_nodes(model, leap, first, last, state)
+    if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, leap, first, last, &
+      state)
+    if (allocated(state%node_damping)) then
+      call move_damped(model, leap, first, last, state)
+    else
+      call move_special_nodes(leap, first, last, state)
+    end if
+  end subroutine leap_special_nodes
 
   !> Nodes of damped parts whose internal forces stand in the nodal array.
   subroutine move_damped(model, leap, first, last, state)

@@ -8,13 +8,14 @@ module explicit_cycle_m
   use contact_check_m, only : report_contact_start
   use behind_ties_m, only : hear_tie, settle_with_tie
   use contact_inertia_m, only : weigh_contacts
+  use contact_pressing_m, only : press_contacts
   use cycle_loads_m, only : apply_loads
   use energies_m, only : energy_ratio, total_energy
   use erosion_account_m, only : settle_elements, release_nodes, note_least_step
   use errors_m, only : error_t
   use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
   use explicit_memory_m, only : write_restarts, take_up_steps
-  use contacts_m, only : told_as
+  use contacts_m, only : told_as, penalty_implicit
   use explicit_prescribed_m, only : find_prescribed_velocities, start_prescribed, &
     impose_prescribed, prescribed_work
   use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
@@ -46,7 +47,7 @@ module explicit_cycle_m
   use time_step_m, only : step_plan_t, start_steps, first_step, next_step, is_last, follow_springs
   implicit none
   private
-  public :: explicit_cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
+  public :: explicit_cycle_t, start_cycles, begin_cycle, press_cycle, report_cycle, end_cycle
 
   !> Shared by the team, written by one thread between barriers.
   type :: explicit_cycle_t
@@ -59,6 +60,7 @@ module explicit_cycle_m
     type(step_plan_t) :: steps
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
     logical, allocatable :: active(:)  !! (n_motion) which of them hold, once that has been asked
+    logical :: presses = .false.     !! contact forces of some interface follow all other forces
     logical :: refines = .false.     !! steps of elements are not those of their density alone
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
     type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
@@ -93,6 +95,7 @@ contains
         motions%death < model%controls%end_time)
     end associate
     call plan_sums(model, cycle%sums)
+    cycle%presses = any(model%contacts%penalty_unit == penalty_implicit)
     cycle%refines = allocated(state%elements%mass_ratio) .or. &
       allocated(state%elements%retardation)
     allocate (cycle%checks(size(model%layout%tiles)))
@@ -137,7 +140,7 @@ contains
       end if
       if (k < i) call settle_with_tie(state%contacts(i), state%contacts(k))
       call share_contact(monitor%clock, k)
-      call follow_contact(model, i, state, monitor%log)
+      if (.not. state%contacts(i)%scratch%waits) call follow_contact(model, i, state, monitor%log)
     end do
     if (state%cycle > 0) call prepare_leap(model, state, cycle)
     call lap(monitor%clock, phase_nodes)
@@ -160,6 +163,17 @@ contains
     call find_prescribed_velocities(model, state, cycle%velocity)
     if (allocated(model%conditions%common_motions)) call remember_common(model, state, cycle%common)
   end subroutine prepare_leap
+
+  !> Contact forces that follow all others. The step of cycle zero is found later on.
+  subroutine press_cycle(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+
+    if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
+      cycle%velocity, monitor%clock, monitor%log, state)
+  end subroutine press_cycle
 
   !> Inverse masses where some prescribed motion has just started or ended.
   subroutine follow_activity(model, state, cycle)
@@ -198,11 +212,12 @@ contains
     end if
     if (state%cycle == 0) then
       if (model%erodes) call note_least_step(model%controls, cycle%steps%first_dt, state)
+      call prepare_leap(model, state, cycle)
+      call start_prescribed(model, cycle%velocity, state)
+      if (cycle%presses) call press_cycle(model, state, monitor, cycle)
       call report_contact_start(model, state, monitor%log)
       call log_smallest_steps(model, state, monitor%log)
       call judge_damping(model, state%dt, monitor%log)
-      call prepare_leap(model, state, cycle)
-      call start_prescribed(model, cycle%velocity, state)
     end if
     call report_rigids(model, state, cycle)
     call report_walls(model, state, monitor, cycle)
