@@ -46,10 +46,9 @@ contains
     if (.not. flow%is_viscoplastic) call scale_by_rate(flow%c, ratio, known)
     growth = 0.0_wp
     call form_flow(flow, strain, growth, ratio, known, stress, slope)
-    call open_search(shear, mises, stress, search)
+    call open_search(shear, mises, stress, slope, search)
     if (.not. any(search%todo > 0.0_wp)) return
-    call bound_by_power(flow, mises, strain, known, search%high)
-    search%growth = search%high
+    call bound_by_power(flow, mises, strain, known, search)
     near = merge(1.0e-12_wp, sqrt(epsilon(1.0_wp)), has_corners(flow))
     do i_round = 1, most_rounds
       call form_flow(flow, strain, search%growth, ratio, known, stress, slope)
@@ -59,10 +58,11 @@ contains
     growth = search%growth
   end subroutine find_growth
 
-  !> Bounds where the trial stress is above the flow stress at the start.
-  pure subroutine open_search(shear, mises, stress, search)
+  !> Bounds where the trial stress is above the flow stress at the start, and what the slope there
+  !> makes of it.
+  pure subroutine open_search(shear, mises, stress, slope, search)
     real(wp), intent(in) :: shear
-    real(wp), intent(in), dimension(n_lane) :: mises, stress
+    real(wp), intent(in), dimension(n_lane) :: mises, stress, slope !! at the start
     type(search_t), intent(inout) :: search
     integer :: i
 
@@ -70,6 +70,7 @@ contains
     do i = 1, n_lane
       search%low(i) = 0.0_wp
       search%high(i) = max(0.0_wp, mises(i) - stress(i))/(3.0_wp*shear)
+      search%growth(i) = max(0.0_wp, mises(i) - stress(i))/(3.0_wp*shear + slope(i))
       search%todo(i) = merge(1.0_wp, 0.0_wp, mises(i) > stress(i))
     end do
   end subroutine open_search
@@ -141,31 +142,35 @@ contains
     end do
   end subroutine form_rate
 
-  !> What B (p + g)^n alone allows, where p is smaller than g may be and Newton's method would come
-  !> from far outside; not where a bound of the flow stress comes before.
-  pure subroutine bound_by_power(flow, mises, strain, factor, high)
+  !> Where p is smaller than g may be the slope at the start says nothing: there the start is what
+  !> B (p + g)^n alone allows, if no bound of the flow stress comes before.
+  pure subroutine bound_by_power(flow, mises, strain, factor, search)
     type(johnson_cook_t), intent(in) :: flow
     real(wp), intent(in), dimension(n_lane) :: mises, strain, factor
-    real(wp), intent(inout) :: high(n_lane)
+    type(search_t), intent(inout) :: search
     real(wp), dimension(n_lane) :: over, under, log_over, log_under, bound
     real(wp), parameter :: base = sqrt(tiny(1.0_wp)), wider = 1.0001_wp !! than round-off
     integer :: i
 
-    if (.not. (flow%b > 0.0_wp .and. flow%n > least_power .and. any(strain < high))) return
-    !$omp simd
-    do i = 1, n_lane
-      over(i) = max(base, mises(i) - factor(i)*flow%a)
-      under(i) = max(base, factor(i)*flow%b)
-    end do
-    call form_logarithms(n_lane, over, log_over)
-    call form_logarithms(n_lane, under, log_under)
-    call form_exponentials(n_lane, (log_over - log_under)/flow%n, bound)
-    !$omp simd
-    do i = 1, n_lane
-      high(i) = merge(min(high(i), max(0.0_wp, wider*bound(i) - strain(i))), high(i), &
-        strain(i) < high(i) .and. mises(i) <= flow%most &
-        .and. mises(i) <= flow%most_static*min(1.0_wp, factor(i)))
-    end do
+    if (.not. any(strain < search%high)) return
+    bound = search%high + strain
+    if (flow%b > 0.0_wp .and. flow%n > least_power) then
+      over = max(base, mises - factor*flow%a)
+      under = max(base, factor*flow%b)
+      call form_logarithms(n_lane, over, log_over)
+      call form_logarithms(n_lane, under, log_under)
+      call form_exponentials(n_lane, (log_over - log_under)/flow%n, bound)
+    end if
+    associate (high => search%high)
+      !$omp simd
+      do i = 1, n_lane
+        bound(i) = min(high(i), max(0.0_wp, wider*bound(i) - strain(i)))
+        bound(i) = merge(bound(i), high(i), mises(i) <= flow%most &
+          .and. mises(i) <= flow%most_static*min(1.0_wp, factor(i)))
+        search%growth(i) = merge(bound(i), search%growth(i), strain(i) < high(i))
+        high(i) = merge(bound(i), high(i), strain(i) < high(i))
+      end do
+    end associate
   end subroutine bound_by_power
 
   !> One step of Newton's method for the points that are still open. It converges by squares, so

@@ -24,9 +24,11 @@ COPPER = (8930.0, 46.0e9, 124.0e9, 0.34)
 CALLS = 400  # a round; more would melt what heats
 
 
-def cards(*keywords, eos=0):
-    """A law by its keywords: (name, (fields, values...), ...) each."""
+def cards(*keywords, eos=0, curve=()):
+    """A law by its keywords: (name, (fields, values...), ...) each; and a curve 1."""
     def write(deck):
+        if curve:
+            deck.curve(1, "of the law", curve)
         for name, *lines in keywords:
             deck.keyword(name)
             for fields, *values in lines:
@@ -35,12 +37,22 @@ def cards(*keywords, eos=0):
     return write
 
 
-def johnson_cook(damage=(), spall=0.0):
+def johnson_cook(damage=(), spall=0.0, first=9.0e5):
     rho, shear, young, poisson = COPPER
     return ("MAT_JOHNSON_COOK", ("mid ro g e pr", 1, rho, shear, young, poisson),
-            ("a b n c m tm tr epso", 9.0e5, 2.92e8, 0.31, 0.025, 1.09, 1356.0, 293.0, 1.0),
+            ("a b n c m tm tr epso", first, 2.92e8, 0.31, 0.025, 1.09, 1356.0, 293.0, 1.0),
             ("cp pc spall it d1 d2 d3 d4", 383.0, -1.0e12 if spall else 0.0, spall, 0.0, *(damage or (0.0,) * 4)),
             ("d5", 1.0 if damage else 0.0))
+
+
+def simplified(rate_form=0.0, first=9.0e5):
+    return ("MAT_SIMPLIFIED_JOHNSON_COOK", ("mid ro e pr vp", 1, COPPER[0], *COPPER[2:], rate_form),
+            ("a b n c psfail sigmax sigsat epso", first, 2.92e8, 0.31, 0.025, 0.0, 0.0, 0.0, 1.0))
+
+
+def piecewise(*rate):
+    return ("MAT_PIECEWISE_LINEAR_PLASTICITY", ("mid ro e pr sigy etan", 1, COPPER[0], *COPPER[2:], 1.0e5, 1.0e9),
+            *([("c p", *rate)] if rate else []))
 
 
 def plastic(tangent=0.0, beta=1.0, failure=0.0):
@@ -51,28 +63,43 @@ def plastic(tangent=0.0, beta=1.0, failure=0.0):
 GRUNEISEN = ("EOS_GRUNEISEN", ("eosid c s1 s2 s3 gamao a e0", 1, 3940.0, 1.489, 0.0, 0.0, 1.99, 0.47, 0.0), ("v0", 1.0))
 POLYNOMIAL = ("EOS_LINEAR_POLYNOMIAL", ("eosid c0 c1 c2 c3 c4 c5 c6", 1, 0.0, 1.4e11, 2.0e11, 3.0e11, 2.0, 2.0, 0.0),
               ("e0 v0", 0.0, 1.0))
+ELASTIC = ", elastic"  # nothing yields
+RUBBER = ("MAT_MOONEY-RIVLIN_RUBBER", ("mid ro pr a b", 1, 1100.0, 0.499, 4.0e5, 1.0e5))
+BLATZ_KO = ("MAT_BLATZ-KO_RUBBER", ("mid ro g", 1, 1100.0, 1.0e6))
+FOAM = ("MAT_CRUSHABLE_FOAM", ("mid ro e pr lcid tsc", 1, 100.0, 1.0e7, 0.1, 1, 1.0e5))
 VISCOUS = ("MAT_NULL", ("mid ro pc mu", 1, 8930.0, 0.0, 1.0))
 LAWS = {
     "001 elastic": cards(("MAT_ELASTIC", ("mid ro e pr", 1, COPPER[0], *COPPER[2:]))),
     "003 isotropic": cards(plastic()),
     "003 kinematic": cards(plastic(1.0e9, 0.5)),
     "003 isotropic, FAIL": cards(plastic(failure=10.0)),
-    "024": cards(("MAT_PIECEWISE_LINEAR_PLASTICITY", ("mid ro e pr sigy etan", 1, COPPER[0], *COPPER[2:], 1.0e5, 1.0e9))),
-    "098": cards(("MAT_SIMPLIFIED_JOHNSON_COOK", ("mid ro e pr", 1, COPPER[0], *COPPER[2:]),
-                  ("a b n c psfail sigmax sigsat epso", 9.0e5, 2.92e8, 0.31, 0.025, 0.0, 0.0, 0.0, 1.0))),
+    "024": cards(piecewise()),
+    "024, Cowper and Symonds": cards(piecewise(40.0, 5.0)),
+    "098": cards(simplified()),
+    "098, VP 1": cards(simplified(1.0)),
+    "098" + ELASTIC: cards(simplified(first=1.0e12)),
     "015": cards(johnson_cook()),
+    "015" + ELASTIC: cards(johnson_cook(first=1.0e12)),
     "015, damage": cards(johnson_cook((100.0, 100.0, -1.5, 0.01))),
     "015, Gruneisen": cards(johnson_cook(), GRUNEISEN, eos=1),
     "015, damage, SPALL 2, Gruneisen": cards(johnson_cook((100.0, 100.0, -1.5, 0.01), 2.0), GRUNEISEN, eos=1),
     "010, Gruneisen": cards(("MAT_ELASTIC_PLASTIC_HYDRO", ("mid ro g sigy eh", 1, *COPPER[:2], 1.0e5, 1.0e9)), GRUNEISEN, eos=1),
     "009, viscous, Gruneisen": cards(VISCOUS, GRUNEISEN, eos=1),
     "009, viscous, linear polynomial": cards(VISCOUS, POLYNOMIAL, eos=1),
+    "027": cards(RUBBER),
+    "007": cards(BLATZ_KO),
+    "063": cards(FOAM, curve=[(0.0, 1.0e5), (0.5, 2.0e5), (0.9, 2.0e6)]),
 }
 
 
-def time_routine(kernel, deck):
+def words_of(name):
+    """What the program of the routine is to be told of a law."""
+    return ["elastic"] if name.endswith(ELASTIC) else []
+
+
+def time_routine(kernel, deck, words):
     """ns per element, the best of the rounds of one run."""
-    said = subprocess.run([kernel, deck, "1", "1000", str(CALLS)], check=True, capture_output=True, text=True).stdout
+    said = subprocess.run([kernel, deck, "1", "1000", str(CALLS), *words], check=True, capture_output=True, text=True).stdout
     return float(re.search(r"routine_ns,(\S+)", said)[1])
 
 
@@ -88,12 +115,12 @@ def measure(kernel, counted, folder, rounds):
     for number, (name, law) in enumerate(LAWS.items()):
         decks[name] = folder / f"law_{number}.k"
         elements.write_deck(decks[name], 64, False, law=law)
-    counted_laws = {name: counts.count_routine(counted, deck, folder) for name, deck in decks.items()}
+    counted_laws = {name: counts.count_routine(counted, deck, folder, words_of(name)) for name, deck in decks.items()}
     times, shares = ({name: [] for name in decks} for _ in range(2))
     for _ in range(rounds):
         for name, deck in decks.items():
             unit = measure_yardstick(words)
-            times[name].append(time_routine(kernel or counted, deck))
+            times[name].append(time_routine(kernel or counted, deck, words_of(name)))
             shares[name].append(2.0 * times[name][-1] / (unit + measure_yardstick(words)))
     return [(name, found, found - counted_laws["001 elastic"],
              statistics.median(times[name]) if rounds else float("nan"),
