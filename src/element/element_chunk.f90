@@ -3,7 +3,7 @@
 !> diagonals d31 = x3 - x1, d42 = x4 - x2 and from h.x = x1 - x2 + x3 - x4.
 module element_chunk_m
   use kinds_m, only : wp
-  use layout_m, only : chunk_size
+  use layout_m, only : chunk_size, local_kind
   implicit none
   private
   public :: element_chunk_t, gather_chunk, scatter_chunk
@@ -66,7 +66,7 @@ contains
   !> Padding is left out: all of it has one node, where each sum would wait for the one before.
   pure subroutine scatter_chunk(n_element, local, chunk, force)
     integer, intent(in) :: n_element             !! elements, in the first slots
-    integer, intent(in) :: local(4, chunk_size)  !! local numbers in the tile
+    integer(local_kind), intent(in) :: local(4, chunk_size) !! local numbers in the tile
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes
     integer :: i, k, n(4)

@@ -11,8 +11,8 @@ module quad_plain_m
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use hourglass_m, only : harmless_coefficient
   use layout_m, only : chunk_size
-  use material_dispatch_m, only : history_size
-  use parts_m, only : hourglass_t, material_t, hourglass_viscous, law_elastic, law_plastic
+  use material_dispatch_m, only : is_elastic, returns_radially
+  use parts_m, only : hourglass_t, material_t, hourglass_viscous
   use quad_kinematics_m, only : form_present_shape
   use volumetric_m, only : atanh_series, log_ratio
   implicit none
@@ -53,9 +53,7 @@ contains
     type(block_state_t), intent(in) :: elements
     logical :: yes
 
-    yes = (material%law == law_elastic .or. (material%law == law_plastic .and. &
-      history_size(material) == 1)) .and. .not. allocated(material%eos) &
-      .and. .not. material%failure_strain < huge(1.0_wp) &
+    yes = (is_elastic(material) .or. returns_radially(material)) &
       .and. hourglass%form == hourglass_viscous &
       .and. .not. hourglass%coefficient > harmless_coefficient &
       .and. .not. (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) &
@@ -83,7 +81,7 @@ contains
     n_slot = size(elements%reference, 1)
     call gather_diagonals(nodes, motion, diagonals)
     call form_shape(dt, n_slot, elements%reference(first, 1), diagonals, shape)
-    if (material%law == law_elastic) then
+    if (is_elastic(material)) then
       call strain_elastic(material%shear, shape, n_slot, elements%deviator(first, 1), work)
     else
       call strain_plastic(material, shape, n_slot, elements%deviator(first, 1), &
@@ -240,8 +238,8 @@ contains
     real(wp), intent(inout) :: deviator(n_slot, *)
     real(wp), intent(inout) :: plastic_strain(chunk_size)
     real(wp), intent(out) :: work
-    real(wp) :: modulus, yield, hardening, inverse, mean, half, shear, old, density, mises, growth, &
-      factor
+    real(wp) :: modulus, yield, hardening, inverse, mean, half, shear, old, density, mises, &
+      growth, factor
     integer :: i
 
     modulus = material%shear
