@@ -79,14 +79,17 @@ def node_lines(text):
     return start, stop
 
 
-def test_more_mistakes_than_are_told(slideline):
-    """1100 sets that are not there: the first thousand in words, all of them in the sum."""
+def test_more_mistakes_than_are_told(slideline, tmp_path):
+    """1100 sets that are not there: the first in words, all of them in its count and in the sum."""
     text = drop().text().rsplit("*END", 1)[0]
     text += "".join(f"*BOUNDARY_SPC_SET\n{1000 + k},0,1,1\n" for k in range(1100)) + "*END\n"
     done = slideline("d=out", deck=text)
     assert done.returncode == 1
     assert "refused, 1100 errors" in done.stderr
-    assert done.stderr.count("BOUNDARY_SPC_SET card") == 1000
+    assert done.stderr.count("BOUNDARY_SPC_SET card") == 1
+    first = len(drop().text().rsplit("*END", 1)[0].splitlines()) + 2
+    places = ", ".join(f"{tmp_path / 'job.k'}:{first + 2 * k}" for k in range(3))
+    assert f"\n  | 1100 times: {places} and so on\n" in done.stderr
 
 
 def test_names_of_the_alternative_spelling(slideline, tmp_path):
