@@ -14,17 +14,17 @@ module implicit_penalty_m
   use weighted_gaps_m, only : rows_t, choose_rows, form_shares, gap_rates, fill_band
   implicit none
   private
-  public :: trial_t, press_ahead
+  public :: coming_step_t, press_ahead
 
   !> The step ahead at the nodes of an interface.
-  type :: trial_t
+  type :: coming_step_t
     real(wp) :: dt = 0.0_wp                 !! to the end of the step, s
     real(wp) :: dt_before = 0.0_wp          !! of the step behind, s
     integer :: cycle = 0
     real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) v(n+1/2) without the
                                             !! interface
     real(wp), allocatable :: mobility(:, :) !! (2, n_slave + n_master) velocity from a force of 1
-  end type trial_t
+  end type coming_step_t
 
   !> Part of a penetration that is taken back in a step where springs have no compliance.
   real(wp), parameter :: recovered = 0.1_wp
@@ -32,8 +32,8 @@ module implicit_penalty_m
 contains
 
   !> Pressures, nodal forces added to `force`, and the work of the step behind.
-  pure subroutine press_ahead(trial, motion, memory, force)
-    type(trial_t), intent(in) :: trial
+  pure subroutine press_ahead(step, motion, memory, force)
+    type(coming_step_t), intent(in) :: step
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u(n), v(n-1/2)
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
@@ -41,27 +41,27 @@ contains
     memory%scratch%waits = .false.
     if (memory%points%n > 0) then
       call average_gaps(memory%points, memory%n_slave, memory%scratch%nodal)
-      call find_pressures(trial, memory)
+      call find_pressures(step, memory)
       call share_out(memory%points%n, memory%points%slave_nodes, memory%points%slave_weights, &
         memory%node_pressure, memory%points%pressure)
-      if (memory%watch%is_due .or. trial%cycle == 0) call measure_springs(memory)
+      if (memory%watch%is_due .or. step%cycle == 0) call measure_springs(memory)
       ! Loaded at time zero they hold energy that no force has put in.
-      if (trial%cycle == 0) memory%energy = memory%watch%stored
+      if (step%cycle == 0) memory%energy = memory%watch%stored
       call scatter_forces(memory)
     else
       memory%node_pressure = 0.0_wp
     end if
     associate (had_force => memory%scratch%had_force)
       if (memory%n_active > 0 .or. had_force) &
-        call hand_over(trial%dt_before, motion, apart_t(), memory, force)
+        call hand_over(step%dt_before, motion, apart_t(), memory, force)
       call end_look(had_force, memory%n_active > 0, memory%watch)
     end associate
   end subroutine press_ahead
 
   !> Pressures of the slave nodes: P = kappa p >= 0, and what is left of each mean gap at the end of
   !> the step beside the spring, r + W P >= 0, one of them zero.
-  pure subroutine find_pressures(trial, memory)
-    type(trial_t), intent(in) :: trial
+  pure subroutine find_pressures(step, memory)
+    type(coming_step_t), intent(in) :: step
     type(contact_state_t), intent(inout) :: memory
     type(rows_t) :: rows
     type(outcome_t) :: outcome
@@ -75,17 +75,17 @@ contains
         .and. (gap < memory%closed_gap .or. memory%node_pressure > 0.0_wp), rows)
       call form_shares(memory%points, kappa, rows)
       allocate (band(0:rows%width, rows%n), rate(rows%n), pressing(rows%n), acts(rows%n))
-      call fill_band(rows, trial%mobility, band)
+      call fill_band(rows, step%mobility, band)
       do i = 1, rows%n
         acts(i) = memory%node_pressure(rows%slave(i)) > 0.0_wp
-        rate(i) = gap(rows%slave(i))/trial%dt
+        rate(i) = gap(rows%slave(i))/step%dt
         if (memory%slave_penalty > 0.0_wp) then
-          band(0, i) = band(0, i) + 1.0_wp/(memory%slave_penalty*kappa(rows%slave(i))*trial%dt)
+          band(0, i) = band(0, i) + 1.0_wp/(memory%slave_penalty*kappa(rows%slave(i))*step%dt)
         else if (rate(i) < 0.0_wp) then
           rate(i) = recovered*rate(i)
         end if
       end do
-      call gap_rates(rows, trial%velocity, rate)
+      call gap_rates(rows, step%velocity, rate)
       call solve_complementarity(rows%n, rows%width, band, rate, acts, pressing, outcome)
       memory%node_pressure = 0.0_wp
       do i = 1, rows%n

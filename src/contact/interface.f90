@@ -174,7 +174,6 @@ contains
     type(clock_t), intent(inout) :: clock
     type(contact_state_t), intent(inout) :: memory
     type(ahead_t) :: ahead
-    type(apart_t) :: apart
 
     memory%scratch%had_force = memory%n_active > 0
     memory%scratch%waits = .true.
@@ -182,7 +181,10 @@ contains
     call search_pairs(contact, cycle, memory)
     call look_ahead(contact, memory, ahead)
     call lap(clock, phase_contact_search)
-    call set_forces_aside(motion, memory%scratch%had_force, memory, apart)
+    memory%n_active = 0
+    memory%watch%has_looked = .false.
+    call begin_look(memory%scratch%had_force, memory%watch)
+    if (memory%scratch%had_force) call keep_former(memory)
     call place_points(contact, memory)
     call look_back(ahead, memory)
     call lap(clock, phase_contact_pairing)

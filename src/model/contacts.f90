@@ -37,6 +37,7 @@ module contacts_m
     character(40) :: name = ''        !! name in messages
     logical :: uses_gauss_points = .false. !! whether NGAUSS has a meaning
     logical :: has_strict_rule = .false.   !! whether IPF has a meaning
+    logical :: has_implicit_springs = .false. !! whether PUNIT may be 4
   end type contact_kind_t
 
   !> Regularised Coulomb friction: mu = FD + (FS - FD) exp(-DC speed).

@@ -35,7 +35,7 @@ SCENES = {
     "oblique": (lambda kind: scenes.oblique(ctype=kind), 280, 155),
     "collision with friction": (lambda kind: scenes.collision(1, ctype=kind), 200, 90, "fs=0.4", "fd=0.2", "dc=0.01"),
     "oblique with friction": (lambda kind: scenes.oblique(ctype=kind), 280, 155, "fs=0.3", "tfac=0.5"),
-    "implicit penalty": (lambda kind: scenes.collision(1, ctype=kind), 200, 90, "punit=4", "pen=10"),
+    "implicit penalty": (lambda kind: scenes.collision(1, ctype=kind), 100, 68, "punit=4", "pen=10"),
     "patch": (lambda kind: scenes.patch(ctype=kind), 300, 170),
     "rings": (lambda kind: rings(kind, 16, end=0.03), 60, 20),
     "plate": (lambda kind: scenes.symmetric_plate(16, 8, True), 300, 170),

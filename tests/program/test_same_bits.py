@@ -175,7 +175,7 @@ def test_impact_has_the_same_bits(exe, is_debug, tmp_path, points):
 
 def test_implicit_penalty_has_the_same_bits(exe, is_debug, tmp_path):
     """Contact forces that follow all others, on one thread between two pieces of work of all."""
-    found = check_same(exe, is_debug, tmp_path, collision(2, 7), ("endtim=1e-5", "p:dtplot=5e-6", "p:dthist=1e-6", "punit=4", "pen=10"))
+    found = check_same(exe, is_debug, tmp_path, collision(2, 7), ("endtim=7.5e-6", "p:dtplot=5e-6", "p:dthist=1e-6", "punit=4", "pen=10"))
     assert last_force(found) > 0.0, "no contact in this run"
 
 

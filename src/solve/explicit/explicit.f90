@@ -90,11 +90,8 @@ contains
       !$omp master
       call lap(monitor%clock, phase_elements)
       !$omp end master
-      if (cycle%presses) then
-        call advance_pressed_nodes(model, state, monitor, cycle)
-      else
-        call advance_special_nodes(model, state, cycle)
-      end if
+      if (cycle%presses) call press_nodes(model, state, monitor, cycle)
+      call advance_special_nodes(model, state, cycle)
       if (writes) then
         !$omp master
         call lap(monitor%clock, phase_nodes)
@@ -152,28 +149,8 @@ contains
     !$omp end do
   end subroutine advance_tiles
 
-  !> Sum the forces of special nodes; they move at once unless this cycle writes. Each thread has
-  !> the nodes of its own tiles: what it reads here it has mostly written itself.
-  subroutine advance_special_nodes(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(in) :: cycle
-    integer :: i_tile
-
-    !$omp do schedule(static)
-    do i_tile = 1, size(model%layout%tiles)
-      associate (first => model%layout%tiles(i_tile)%first_owned, &
-        last => model%layout%tiles(i_tile)%last_owned)
-        call sum_special_forces(model%layout, state%force_slots, first, last, state%internal_force)
-        if (.not. cycle%writes) call leap_special_nodes(model, cycle%leap, first, last, state)
-      end associate
-    end do
-    !$omp end do
-  end subroutine advance_special_nodes
-
-  !> The same where contact forces of some interface follow all others: all sums, then these forces,
-  !> then the motion.
-  subroutine advance_pressed_nodes(model, state, monitor, cycle)
+  !> Contact forces that follow all others: these are summed now, and once more where nodes move.
+  subroutine press_nodes(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -191,31 +168,35 @@ contains
     call press_cycle(model, state, monitor, cycle)
     !$omp end master
     !$omp barrier
-    if (cycle%writes) return
+  end subroutine press_nodes
+
+  !> Sum the forces of special nodes; they move at once unless this cycle writes. Each thread has
+  !> the nodes of its own tiles: what it reads here it has mostly written itself.
+  subroutine advance_special_nodes(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(in) :: cycle
+    integer :: i_tile
+
     !$omp do schedule(static)
     do i_tile = 1, size(model%layout%tiles)
-      call leap_special_nodes(model, cycle%leap, model%layout%tiles(i_tile)%first_owned, &
-        model%layout%tiles(i_tile)%last_owned, state)
+      associate (first => model%layout%tiles(i_tile)%first_owned, &
+        last => model%layout%tiles(i_tile)%last_owned)
+        call sum_special_forces(model%layout, state%force_slots, first, last, state%internal_force)
+        if (.not. cycle%writes) then
+          if (allocated(state%walls)) call hold_nodes(model, cycle%leap, first, last, state)
+          if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, cycle%leap, &
+            first, last, state)
+          if (allocated(state%node_damping)) then
+            call move_damped(model, cycle%leap, first, last, state)
+          else
+            call move_special_nodes(cycle%leap, first, last, state)
+          end if
+        end if
+      end associate
     end do
     !$omp end do
-  end subroutine advance_pressed_nodes
-
-  !> Move special nodes whose forces are known.
-  subroutine leap_special_nodes(model, leap, first, last, state)
-    type(model_t), intent(in) :: model
-    type(leap_t), intent(in) :: leap
-    integer, intent(in) :: first, last
-    type(state_t), intent(inout) :: state
-
-    if (allocated(state%walls)) call hold_nodes(model, leap, first, last, state)
-    if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, leap, first, last, &
-      state)
-    if (allocated(state%node_damping)) then
-      call move_damped(model, leap, first, last, state)
-    else
-      call move_special_nodes(leap, first, last, state)
-    end if
-  end subroutine leap_special_nodes
+  end subroutine advance_special_nodes
 
   !> Nodes of damped parts whose internal forces stand in the nodal array.
   subroutine move_damped(model, leap, first, last, state)

@@ -140,7 +140,7 @@ contains
       end if
       if (k < i) call settle_with_tie(state%contacts(i), state%contacts(k))
       call share_contact(monitor%clock, k)
-      if (.not. state%contacts(i)%scratch%waits) call follow_contact(model, i, state, monitor%log)
+      call follow_contact(model, i, state, monitor%log)
     end do
     if (state%cycle > 0) call prepare_leap(model, state, cycle)
     call lap(monitor%clock, phase_nodes)
