@@ -145,6 +145,29 @@ def check_walls(run):
         run.true(f"{name}: all have left", table["kinetic"][-1] == 0.0 and table["eroded"][-1] > 0.0)
 
 
+def check_common(run):
+    """Nodes of two squares move alike: the one that leaves first takes nothing from the other, and after both the run goes on."""
+    deck, step, speed = Deck("two squares that move alike"), 1.0e-6, 100.0
+    deck.control(30 * step, dt=step)
+    deck.add("*SECTION_SHELL", (1, 13), (1.0,))
+    nodes = []
+    for k, leaves in enumerate((10.5, 20.5), 1):
+        deck.add("*PART", f"square {k}", (k, 1, k))
+        deck.elastic(RHO, YOUNG, POISSON, material=k)
+        deck.add("*MAT_ADD_EROSION", (k,), (None,) * 7 + (leaves * step,))
+        nodes.append(deck.mesh(*grid(1, 1, 0.02, 0.02, (0.1 * k, 0.0)), part=k))
+    deck.node_set(1, [nodes[0][1], nodes[1][0], nodes[1][3]])
+    deck.add("*CONSTRAINED_NODE_SET", (1, 1))
+    deck.node_set(2, [*nodes[0], *nodes[1]])
+    deck.add("*INITIAL_VELOCITY", (2,), (speed, 0.0))
+    result = run.program(deck.output(glstat=step, matsum=step), name="common")
+    second = result.table("matsum").where(part=2)
+    run.check("common: velocity of the square that stays", second["momentum_x"][:20] / second["mass"][:20], speed, 1e-12)
+    table = result.table("glstat")
+    run.check("common: balance", table["total"], table["total"][0], 1e-12)
+    run.true("common: both have left", table["kinetic"][-1] == 0.0 and table["eroded"][-1] > 0.0)
+
+
 def plate_and_rod(speed, is_round, is_rigid, radius=0.04, fail=0.4, is_self=False):
     """A blunt rod, 80 mm long and of 10 mm radius, on a clamped plate of 12 mm."""
     deck = Deck("penetration")
@@ -208,4 +231,5 @@ def check(run):
     check_criteria(run)
     check_least_step(run)
     check_walls(run)
+    check_common(run)
     check_penetration(run)
