@@ -13,7 +13,7 @@ module explicit_m
   use eroding_tiles_m, only : add_eroding_tile_forces
   use erosion_account_m, only : report_erosion
   use errors_m, only : error_t
-  use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, press_cycle, &
+  use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, press_cycle, &
     report_cycle, end_cycle
   use failure_watch_m, only : report_failures
   use health_m, only : check_tile, judge_energies, judge_ratio
@@ -89,7 +89,11 @@ contains
       call advance_tiles(model, state, cycle, force)
       !$omp master
       call lap(monitor%clock, phase_elements)
+      if (monitor%ranks%n > 1) call exchange_tiles(model, state, monitor, cycle)
       !$omp end master
+      if (monitor%ranks%n > 1) then
+        !$omp barrier
+      end if
       if (cycle%presses) call press_nodes(model, state, monitor, cycle)
       call advance_special_nodes(model, state, cycle)
       if (writes) then
@@ -122,7 +126,7 @@ contains
     sums = allocated(cycle%sums%parts)
     if (sums) call sum_blocks(model%layout, state, cycle%sums)
     !$omp do schedule(static)
-    do i_tile = 1, size(model%layout%tiles)
+    do i_tile = cycle%shares%first_tile, cycle%shares%last_tile
       associate (tile => model%layout%tiles(i_tile))
         if (model%erodes) then
           call add_eroding_tile_forces(model, tile, state%motion, [state%time, state%dt_before], &
@@ -215,16 +219,18 @@ contains
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(in) :: cycle
     integer :: i_tile
+    logical :: is_own !! a tile of this process
 
     !$omp do schedule(static)
     do i_tile = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i_tile))
+        is_own = i_tile >= cycle%shares%first_tile .and. i_tile <= cycle%shares%last_tile
         if (allocated(state%node_damping)) then
-          call move_damped(model, cycle%leap, tile%first_node, tile%last_node, state)
+          if (is_own) call move_damped(model, cycle%leap, tile%first_node, tile%last_node, state)
           call move_damped(model, cycle%leap, tile%first_owned, tile%last_owned, state)
           cycle
         end if
-        if (tile%last_node >= tile%first_node) call move_tile_nodes(cycle%leap, tile%first_node, &
+        if (tile%last_node >= tile%first_node .and. is_own) call move_tile_nodes(cycle%leap, tile%first_node, &
           tile%last_node, state%internal_force(1, tile%first_node), state%inverse_mass, &
           state%motion)
         call move_special_nodes(cycle%leap, tile%first_owned, tile%last_owned, state)
