@@ -77,9 +77,32 @@ contains
     type(stress_chunk_t), intent(inout) :: chunk
     real(wp), intent(inout), optional :: history(chunk_size, *) !! history_size(material) columns;
                                                                 !! absent for a law without history
+
+    if (material%failure_strain < huge(1.0_wp)) then
+      call update_failing(material, chunk, history)
+    else
+      call update_law(material, chunk, history)
+    end if
+  end subroutine update_stress
+
+  !> The same where points may fail; apart, since other laws have no use for its array.
+  pure subroutine update_failing(material, chunk, history)
+    type(material_t), intent(in) :: material
+    type(stress_chunk_t), intent(inout) :: chunk
+    real(wp), intent(inout) :: history(chunk_size, *)
     real(wp) :: before(chunk_size)
 
-    if (material%failure_strain < huge(1.0_wp)) before = history(:, 1)
+    before = history(:, 1)
+    call update_law(material, chunk, history)
+    call fail(material%failure_strain, before, chunk, history(:, 1))
+  end subroutine update_failing
+
+  !> Advance the deviator, whatever fails.
+  pure subroutine update_law(material, chunk, history)
+    type(material_t), intent(in) :: material
+    type(stress_chunk_t), intent(inout) :: chunk
+    real(wp), intent(inout), optional :: history(chunk_size, *)
+
     select case (material%law)
     case (law_elastic)
       call update_elastic(material%shear, chunk)
@@ -106,9 +129,7 @@ contains
     case (law_crushable_foam)
       call update_crushable_foam(material, chunk, history(:, 1))
     end select
-    if (material%failure_strain < huge(1.0_wp)) call fail(material%failure_strain, before, chunk, &
-      history(:, 1))
-  end subroutine update_stress
+  end subroutine update_law
 
   !> Points whose plastic strain has reached that of failure carry no stress; it stays what it was.
   pure subroutine fail(limit, before, chunk, plastic_strain)
