@@ -45,7 +45,7 @@ module layout_m
     integer, allocatable :: slot_nodes(:, :) !! (4, n_slot) node indices; all equal in padding
     integer(local_kind), allocatable :: slot_local(:, :) !! (4, n_slot) local numbers in the tile:
                                              !! interior nodes from 1, then its special nodes;
-                                             !! 0 in padding
+                                             !! all equal in padding
     integer, allocatable :: special_node(:)  !! (force slots) node of each force slot, tile by tile
     integer, allocatable :: node_slots(:)    !! (n_special + 1) where each special node's list
                                              !! starts ...

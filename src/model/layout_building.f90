@@ -182,7 +182,7 @@ contains
       do slot = first_slot(tile), last_slot(tile)
         if (layout%slot_element(slot) /= 0) cycle
         layout%slot_nodes(:, slot) = layout%slot_nodes(1, slot - 1)
-        layout%slot_local(:, slot) = 0_local_kind
+        layout%slot_local(:, slot) = layout%slot_local(1, slot - 1)
       end do
       layout%n_local = max(layout%n_local, n_interior + n_special_slots - first_special + 1)
     end associate
