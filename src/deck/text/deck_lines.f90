@@ -12,8 +12,8 @@ module deck_lines_m
   private
   public :: deck_t, source_t, block_t, place_t, line_text, block_of_line, where_text, line_error, &
     deck_error, line_warning, replace_line, written_text, line_spot, keyword_of_line, shown_text, &
-    marked_line, layout_mark, format_standard, format_long, format_i10, flag_comma, flag_parameter, &
-    flag_blank, max_source
+    marked_line, layout_mark, format_standard, format_long, format_i10, flag_comma, &
+    flag_parameter, flag_blank, max_source
 
   !> Column layout of a block.
   integer, parameter :: format_standard = 0, format_long = 1, format_i10 = 2
