@@ -57,7 +57,7 @@ contains
       call allocate_loads(memory%points)
       allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
     end if
-    ! Forces of the end of the step need no limit.
+    ! Forces of the end of the step have a limit of their own.
     if (.not. (model%controls%implicit%is_on .or. is_tied(contact) &
       .or. contact%penalty_unit == penalty_implicit)) &
       call allocate_limit(memory%limit, n_slave + n_master)

@@ -9,6 +9,7 @@ module implicit_penalty_m
   use contact_springs_m, only : measure_springs, end_look
   use contact_state_m, only : contact_state_t
   use contact_work_m, only : apart_t, hand_over
+  use energy_limit_m, only : energy_factor, scale_forces, count_cycle, returned_t, slack
   use kinds_m, only : wp
   use nodal_average_m, only : average_gaps, share_out
   use weighted_gaps_m, only : rows_t, choose_rows, form_shares, gap_rates, fill_band
@@ -21,6 +22,8 @@ module implicit_penalty_m
     real(wp) :: dt = 0.0_wp                 !! to the end of the step, s
     real(wp) :: dt_before = 0.0_wp          !! of the step behind, s
     integer :: cycle = 0
+    real(wp) :: time = 0.0_wp               !! of u(n), s
+    real(wp) :: loan = 0.0_wp               !! what may be made in any case, J/m
     real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) v(n+1/2) without the
                                             !! interface
     real(wp), allocatable :: mobility(:, :) !! (2, n_slave + n_master) velocity from a force of 1
@@ -48,6 +51,7 @@ contains
       ! Loaded at time zero they hold energy that no force has put in.
       if (step%cycle == 0) memory%energy = memory%watch%stored
       call scatter_forces(memory)
+      if (memory%n_active > 0 .and. step%cycle > 0) call limit_return(step, motion, memory)
     else
       memory%node_pressure = 0.0_wp
     end if
@@ -57,6 +61,35 @@ contains
       call end_look(had_force, memory%n_active > 0, memory%watch)
     end associate
   end subroutine press_ahead
+
+  !> Contact never returns more than it took (section 6.1): areas and normals change while corners
+  !> turn. The step to come is known here, and so is what it returns.
+  pure subroutine limit_return(step, motion, memory)
+    type(coming_step_t), intent(in) :: step
+    real(wp), intent(in), contiguous :: motion(:, :)
+    type(contact_state_t), intent(inout) :: memory
+    type(returned_t) :: returned
+    real(wp) :: before, bound, factor
+    integer :: i
+
+    before = 0.0_wp
+    do i = 1, size(memory%nodes)
+      associate (force => memory%force(:, i), v => motion(3:4, memory%nodes(i)))
+        returned%behind = returned%behind + dot_product(force, v)
+        returned%ahead = returned%ahead + dot_product(force, step%velocity(:, i))
+        returned%recoil = returned%recoil + sum(force**2*step%mobility(:, i))
+        if (memory%scratch%had_force) &
+          before = before + dot_product(memory%scratch%former_force(:, i), v)
+      end associate
+    end do
+    returned%behind = 0.5_wp*step%dt_before*returned%behind
+    returned%ahead = 0.5_wp*step%dt*returned%ahead
+    returned%recoil = 0.5_wp*step%dt*returned%recoil
+    bound = memory%energy - 0.5_wp*step%dt_before*before + slack*memory%limit%largest + step%loan
+    factor = energy_factor(returned, bound)
+    call count_cycle(factor, step%time, memory%limit)
+    if (factor < 1.0_wp) call scale_forces(factor, memory)
+  end subroutine limit_return
 
   !> Pressures of the slave nodes: P = kappa p >= 0, and what is left of each mean gap at the end of
   !> the step beside the spring, r + W P >= 0, one of them zero.

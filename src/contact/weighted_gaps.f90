@@ -60,16 +60,52 @@ contains
     type(contact_points_t), intent(in) :: points
     real(wp), intent(in) :: kappa(:)     !! (n_slave) m
     type(rows_t), intent(inout) :: rows
-    integer :: p, k, m, i
-    real(wp) :: part(2)
+    real(wp) :: share(2, 2*n_side, n_side)
+    integer :: nodes(2*n_side), first, last, i, k, m, low, high
 
-    do p = 1, points%n
+    call count_shares(points%n, points%slave_nodes, points%master_nodes, rows)
+    m = rows%first(size(rows%first)) - 1
+    allocate (rows%row(m), rows%share(2, m))
+    last = 0
+    do while (last < points%n)
+      first = last + 1
+      last = last_alike(points%n, points%slave_nodes, points%master_nodes, first)
+      nodes = [points%slave_nodes(:, first), points%master_nodes(:, first)]
+      if (all(rows%place(nodes(:n_side)) == 0)) cycle
+      call sum_shares(last - first + 1, points%slave_weights(1, first), &
+        points%master_weights(1, first), points%area(first), points%normal(1, first), share)
       do k = 1, n_side
-        if (rows%place(points%slave_nodes(k, p)) == 0) cycle
-        do m = 1, n_side
-          call raise_by_one(rows%first(points%slave_nodes(m, p) + 1))
-          call raise_by_one(rows%first(points%master_nodes(m, p) + 1))
+        if (rows%place(nodes(k)) == 0) cycle
+        do m = 1, 2*n_side
+          call add_share(rows%place(nodes(k)), share(:, m, k)/kappa(nodes(k)), &
+            rows%first(nodes(m)), rows%last(nodes(m)), rows%row, rows%share)
         end do
+      end do
+    end do
+    do i = 1, size(rows%last)
+      low = rows%n
+      high = 1
+      do k = rows%first(i), rows%last(i)
+        low = min(low, rows%row(k))
+        high = max(high, rows%row(k))
+      end do
+      rows%width = max(rows%width, high - low)
+    end do
+  end subroutine form_shares
+
+  !> Room for the shares at each node: those of points in a row with the same nodes are one.
+  pure subroutine count_shares(n, slave_nodes, master_nodes, rows)
+    integer, intent(in) :: n, slave_nodes(n_side, *), master_nodes(n_side, *)
+    type(rows_t), intent(inout) :: rows
+    integer :: p, i, k, n_row
+
+    p = 0
+    do while (p < n)
+      p = last_alike(n, slave_nodes, master_nodes, p + 1)
+      n_row = count(rows%place(slave_nodes(:, p)) > 0)
+      do k = 1, n_side
+        rows%first(slave_nodes(k, p) + 1) = rows%first(slave_nodes(k, p) + 1) + n_row
+        rows%first(master_nodes(k, p) + 1) = rows%first(master_nodes(k, p) + 1) + n_row
       end do
     end do
     rows%first(1) = 1
@@ -77,53 +113,60 @@ contains
       rows%last(i) = rows%first(i) - 1
       rows%first(i + 1) = rows%first(i) + rows%first(i + 1)
     end do
-    m = rows%first(size(rows%first)) - 1
-    allocate (rows%row(m), source=0)
-    allocate (rows%share(2, m), source=0.0_wp)
-    do p = 1, points%n
+  end subroutine count_shares
+
+  !> The last of the points in a row that have the nodes of one of them.
+  pure function last_alike(n, slave_nodes, master_nodes, first) result(last)
+    integer, intent(in) :: n, slave_nodes(n_side, *), master_nodes(n_side, *), first
+    integer :: last
+
+    last = first
+    do while (last < n)
+      if (any(slave_nodes(:, last + 1) /= slave_nodes(:, first)) &
+        .or. any(master_nodes(:, last + 1) /= master_nodes(:, first))) return
+      last = last + 1
+    end do
+  end function last_alike
+
+  !> Shares of points with the same nodes, before they are divided by kappa: (:, node, row), slave
+  !> nodes first.
+  pure subroutine sum_shares(n, slave_weights, master_weights, area, normal, share)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: slave_weights(n_side, n), master_weights(n_side, n), area(n), &
+      normal(2, n)
+    real(wp), intent(out) :: share(2, 2*n_side, n_side)
+    real(wp) :: part(2)
+    integer :: p, k, m
+
+    share = 0.0_wp
+    do p = 1, n
       do k = 1, n_side
-        i = points%slave_nodes(k, p)
-        if (rows%place(i) == 0) cycle
-        part = (points%slave_weights(k, p)*points%area(p)/kappa(i))*points%normal(:, p)
+        part = (slave_weights(k, p)*area(p))*normal(:, p)
         do m = 1, n_side
-          call add_share(rows%place(i), points%slave_nodes(m, p), &
-            points%slave_weights(m, p)*part, rows)
-          call add_share(rows%place(i), points%master_nodes(m, p), &
-            -points%master_weights(m, p)*part, rows)
+          share(:, m, k) = share(:, m, k) + slave_weights(m, p)*part
+          share(:, n_side + m, k) = share(:, n_side + m, k) - master_weights(m, p)*part
         end do
       end do
     end do
-    do i = 1, size(rows%last)
-      if (rows%last(i) < rows%first(i)) cycle
-      associate (meeting => rows%row(rows%first(i):rows%last(i)))
-        rows%width = max(rows%width, maxval(meeting) - minval(meeting))
-      end associate
-    end do
-  end subroutine form_shares
-
-  !> Count.
-  pure subroutine raise_by_one(n)
-    integer, intent(inout) :: n
-
-    n = n + 1
-  end subroutine raise_by_one
+  end subroutine sum_shares
 
   !> Add a share to what its row has at a node. Points of a row follow each other.
-  pure subroutine add_share(row, node, part, rows)
-    integer, intent(in) :: row, node
+  pure subroutine add_share(row, part, first, last, rows, share)
+    integer, intent(in) :: row, first
     real(wp), intent(in) :: part(2)
-    type(rows_t), intent(inout) :: rows
+    integer, intent(inout) :: last          !! share of the node
+    integer, intent(inout) :: rows(*)       !! of all shares
+    real(wp), intent(inout) :: share(2, *)
     integer :: k
 
-    do k = rows%last(node), rows%first(node), -1
-      if (rows%row(k) /= row) cycle
-      rows%share(:, k) = rows%share(:, k) + part
+    do k = last, first, -1
+      if (rows(k) /= row) cycle
+      share(:, k) = share(:, k) + part
       return
     end do
-    k = rows%last(node) + 1
-    rows%last(node) = k
-    rows%row(k) = row
-    rows%share(:, k) = part
+    last = last + 1
+    rows(last) = row
+    share(:, last) = part
   end subroutine add_share
 
   !> Rates of the mean gaps by velocities of the nodes.
@@ -145,19 +188,31 @@ contains
     type(rows_t), intent(in) :: rows
     real(wp), intent(in) :: mobility(:, :)          !! (2, n_node) velocity from a force of 1
     real(wp), intent(out) :: band(0:rows%width, rows%n) !! W(j + i, j) in row i of column j
-    integer :: i, k, m, low, high
+    integer :: i
 
     band = 0.0_wp
     do i = 1, size(rows%last)
-      do k = rows%first(i), rows%last(i)
-        do m = k, rows%last(i)
-          low = min(rows%row(k), rows%row(m))
-          high = max(rows%row(k), rows%row(m))
-          band(high - low, low) = band(high - low, low) &
-            + sum(mobility(:, i)*rows%share(:, k)*rows%share(:, m))
-        end do
-      end do
+      if (rows%last(i) >= rows%first(i)) call fill_node(rows%last(i) - rows%first(i) + 1, &
+        rows%row(rows%first(i)), rows%share(1, rows%first(i)), mobility(:, i), rows%width, band)
     end do
   end subroutine fill_band
+
+  !> The part of one node.
+  pure subroutine fill_node(n, row, share, mobility, width, band)
+    integer, intent(in) :: n, row(n), width
+    real(wp), intent(in) :: share(2, n), mobility(2)
+    real(wp), intent(inout) :: band(0:width, *)
+    real(wp) :: pushed(2)
+    integer :: k, m, low
+
+    do k = 1, n
+      pushed = mobility*share(:, k)
+      do m = k, n
+        low = min(row(k), row(m))
+        band(abs(row(m) - row(k)), low) = band(abs(row(m) - row(k)), low) &
+          + (pushed(1)*share(1, m) + pushed(2)*share(2, m))
+      end do
+    end do
+  end subroutine fill_node
 
 end module weighted_gaps_m
