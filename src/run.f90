@@ -3,6 +3,7 @@
 module run_m
   use, intrinsic :: iso_fortran_env, only : output_unit
   use contacts_m, only : n_told
+  use controls_m, only : is_asked
   use arguments_m, only : arguments_t, file_stem, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
@@ -17,7 +18,7 @@ module run_m
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use go_on_m, only : take_up_deck
   use heap_m, only : give_back_memory
-  use log_m, only : open_log, close_log, write_log, to_text
+  use log_m, only : open_log, close_log, write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name
@@ -32,7 +33,7 @@ module run_m
   use result_names_m, only : check_names
   use results_file_m, only : run_info_t
   use sense_switch_m, only : forget_switch
-  use signals_m, only : catch_stops
+  use signals_m, only : catch_stops, limit_processor
   use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t
@@ -62,10 +63,14 @@ contains
     monitor%log%is_mute = ranks%mine > 0
     call start_clock(monitor%clock)
     monitor%clock%is_on = arguments%timing /= timing_off
+    monitor%progress%is_quiet = arguments%quiet
     call catch_stops()
+    if (arguments%cpu_seconds > 0) call limit_processor(arguments%cpu_seconds)
     call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler &
       //', source '//source_version//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
+    if (len(arguments%ignored) > 0) call warn(monitor%log, &
+      'of the command line have no effect here: '//arguments%ignored)
     call make_request(arguments, monitor, request, error)
     call share_error(ranks, error)
     if (allocated(error)) return
@@ -74,6 +79,7 @@ contains
     call share_error(ranks, error)
     if (allocated(error)) return
     if (allocated(request%text)) deallocate (request%text)
+    if (arguments%no_dump) model%controls%output%dump_cycles = -1
     if (arguments%timing == timing_by_interface) &
       call split_contact(monitor%clock, n_told(model%contacts))
     call renumber_model(model)
@@ -177,7 +183,7 @@ contains
     info%build = build_type//', '//compiler//', '//flags
     info%options = arguments%line
     info%source = source_version
-    info%machine = processor_name()
+    if (is_asked(model%controls%output%plot)) info%machine = processor_name()
     info%checksum = restarts%effective_deck_checksum
   end subroutine describe_run
 

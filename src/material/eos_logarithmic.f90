@@ -4,6 +4,7 @@ module eos_logarithmic_m
   use eos_chunk_m, only : eos_chunk_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
+  use vector_functions_m, only : form_log_ratios
   implicit none
   private
   public :: form_logarithmic
@@ -15,17 +16,15 @@ contains
     real(wp), intent(in) :: stiffness           !! K
     real(wp), intent(in) :: stretch(chunk_size) !! v - 1
     type(eos_chunk_t), intent(inout) :: state
-    real(wp) :: z
+    real(wp), parameter :: least = -1.0_wp + epsilon(1.0_wp)
+    real(wp), dimension(chunk_size) :: safe, logarithm
     integer :: i
 
+    safe = max(least, stretch)
+    call form_log_ratios(chunk_size, safe, logarithm)
+    !$omp simd
     do i = 1, chunk_size
-      z = stretch(i)/(2.0_wp + stretch(i))
-      ! ln(1 + s) = 2 atanh(s/(2 + s)) keeps the digits of a small strain.
-      if (stretch(i) > -1.0_wp) then
-        state%a(i) = -2.0_wp*stiffness*atanh(z)
-      else
-        state%a(i) = stiffness*huge(1.0_wp)**0.25_wp
-      end if
+      state%a(i) = -stiffness*merge(logarithm(i), -huge(1.0_wp)**0.25_wp, stretch(i) > -1.0_wp)
       state%a_slope(i) = stiffness*(1.0_wp + stretch(i))
       state%b(i) = 0.0_wp
       state%b_slope(i) = 0.0_wp

@@ -6,6 +6,7 @@ module material_blatz_ko_m
   use layout_m, only : chunk_size
   use rubbers_m, only : rubber_t
   use stress_chunk_m, only : stress_chunk_t
+  use vector_functions_m, only : form_excesses, form_log_ratios
   implicit none
   private
   public :: update_blatz_ko
@@ -18,16 +19,18 @@ contains
     type(stress_chunk_t), intent(inout) :: chunk
     type(volumetric_t) :: volumetric
     real(wp), parameter :: least = -1.0_wp + 1.0e-12_wp !! the run ends before
-    real(wp) :: shear, s, x, share, half
+    real(wp), dimension(chunk_size) :: safe, power, excess
+    real(wp) :: shear, share
     integer :: i
 
     shear = 2.0_wp*rubber%a
+    safe = max(chunk%stretch, least)
+    call form_log_ratios(chunk_size, safe, power)
+    power = -rubber%exponent*power ! ln(J^-m)
+    call form_excesses(chunk_size, power, excess)
+    !$omp simd private(share)
     do i = 1, chunk_size
-      s = max(chunk%stretch(i), least)
-      x = 2.0_wp*rubber%exponent*atanh(s/(2.0_wp + s)) ! m ln(J)
-      ! 1 - J^-m keeps the digits of a small strain.
-      half = tanh(0.5_wp*max(-1.0_wp, min(1.0_wp, x)))
-      share = merge(2.0_wp*half/(1.0_wp + half), 1.0_wp - exp(-x), abs(x) < 1.0_wp)
+      share = -excess(i)
       volumetric%excess(i) = shear*share
       volumetric%potential(i) = shear*(0.5_wp*chunk%stretch(i)*(2.0_wp + chunk%stretch(i)) &
         - share/rubber%exponent)

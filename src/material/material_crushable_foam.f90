@@ -7,6 +7,7 @@ module material_crushable_foam_m
   use layout_m, only : chunk_size
   use parts_m, only : material_t
   use stress_chunk_m, only : stress_chunk_t
+  use vector_functions_m, only : form_log_ratios
   implicit none
   private
   public :: update_crushable_foam
@@ -21,21 +22,24 @@ contains
     type(material_t), intent(in) :: material
     type(stress_chunk_t), intent(inout) :: chunk
     real(wp), intent(inout) :: mean(chunk_size) !! stress of the point, start to end
-    real(wp) :: crush(chunk_size), third, growth, oxx, oyy, oxy, middle, root, half, xy, xx, yy, zz
+    real(wp), dimension(chunk_size) :: crush, share, growth
+    real(wp) :: third, push, oxx, oyy, oxy, middle, root, half, xy, xx, yy, zz
     integer :: i
 
     call find_crush(material%crush, chunk%stretch, crush)
+    ! ln(J1/J0) = ln(1 + (J1 - J0)/J0).
+    share = max(least, (chunk%stretch - chunk%former)/(1.0_wp + chunk%former))
+    call form_log_ratios(chunk_size, share, growth)
+    !$omp simd private(third, push, oxx, oyy, oxy, middle, root, half, xy, xx, yy, zz)
     do i = 1, chunk_size
       third = (1.0_wp/3.0_wp)*(chunk%dxx(i) + chunk%dyy(i))
-      ! ln(J1/J0) = 2 atanh((J1 - J0)/(J1 + J0)).
-      growth = 2.0_wp*atanh(max(least, (chunk%stretch(i) - chunk%former(i))/(2.0_wp &
-        + (chunk%stretch(i) + chunk%former(i)))))
+      push = mean(i) + material%bulk*growth(i)
       oxx = chunk%sxx(i)
       oyy = chunk%syy(i)
       oxy = chunk%sxy(i)
-      xx = mean(i) + material%bulk*growth + oxx + 2.0_wp*material%shear*(chunk%dxx(i) - third)
-      yy = mean(i) + material%bulk*growth + oyy + 2.0_wp*material%shear*(chunk%dyy(i) - third)
-      zz = mean(i) + material%bulk*growth - (oxx + oyy) - 2.0_wp*material%shear*third
+      xx = push + oxx + 2.0_wp*material%shear*(chunk%dxx(i) - third)
+      yy = push + oyy + 2.0_wp*material%shear*(chunk%dyy(i) - third)
+      zz = push - (oxx + oyy) - 2.0_wp*material%shear*third
       xy = oxy + 2.0_wp*material%shear*chunk%dxy(i)
       ! Principal values are cut, their axes stay.
       middle = 0.5_wp*(xx + yy)

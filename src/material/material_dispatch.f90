@@ -19,7 +19,8 @@ module material_dispatch_m
   implicit none
   private
   public :: update_stress, form_tangent, history_size, find_failed, break_points, &
-    column_temperature, column_damage, has_plastic_strain
+    column_temperature, column_damage, has_plastic_strain, &
+    is_elastic, returns_radially
 
   !> Columns of the history of the heated law of Johnson and Cook: rise of temperature, damage.
   integer, parameter :: column_temperature = 2, column_damage = 3
@@ -53,15 +54,55 @@ contains
     yes = history_size(material) > 0 .and. material%law /= law_crushable_foam
   end function has_plastic_strain
 
+  !> Whether a law is elasticity with a pressure K ln(J) and nothing else.
+  pure function is_elastic(material) result(yes)
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = material%law == law_elastic .and. .not. allocated(material%eos)
+  end function is_elastic
+
+  !> Whether it is that with `update_j2_isotropic`, and no failure.
+  pure function returns_radially(material) result(yes)
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = material%law == law_plastic .and. .not. allocated(material%eos)
+    if (yes) yes = has_no_back_stress(material) .and. .not. material%failure_strain < huge(1.0_wp)
+  end function returns_radially
+
   !> Advance the deviator of one chunk by its law.
   pure subroutine update_stress(material, chunk, history)
     type(material_t), intent(in) :: material
     type(stress_chunk_t), intent(inout) :: chunk
     real(wp), intent(inout), optional :: history(chunk_size, *) !! history_size(material) columns;
                                                                 !! absent for a law without history
+
+    if (material%failure_strain < huge(1.0_wp)) then
+      call update_failing(material, chunk, history)
+    else
+      call update_law(material, chunk, history)
+    end if
+  end subroutine update_stress
+
+  !> The same where points may fail; apart, since other laws have no use for its array.
+  pure subroutine update_failing(material, chunk, history)
+    type(material_t), intent(in) :: material
+    type(stress_chunk_t), intent(inout) :: chunk
+    real(wp), intent(inout) :: history(chunk_size, *)
     real(wp) :: before(chunk_size)
 
-    if (material%failure_strain < huge(1.0_wp)) before = history(:, 1)
+    before = history(:, 1)
+    call update_law(material, chunk, history)
+    call fail(material%failure_strain, before, chunk, history(:, 1))
+  end subroutine update_failing
+
+  !> Advance the deviator, whatever fails.
+  pure subroutine update_law(material, chunk, history)
+    type(material_t), intent(in) :: material
+    type(stress_chunk_t), intent(inout) :: chunk
+    real(wp), intent(inout), optional :: history(chunk_size, *)
+
     select case (material%law)
     case (law_elastic)
       call update_elastic(material%shear, chunk)
@@ -88,9 +129,7 @@ contains
     case (law_crushable_foam)
       call update_crushable_foam(material, chunk, history(:, 1))
     end select
-    if (material%failure_strain < huge(1.0_wp)) call fail(material%failure_strain, before, chunk, &
-      history(:, 1))
-  end subroutine update_stress
+  end subroutine update_law
 
   !> Points whose plastic strain has reached that of failure carry no stress; it stays what it was.
   pure subroutine fail(limit, before, chunk, plastic_strain)

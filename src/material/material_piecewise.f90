@@ -13,6 +13,7 @@ module material_piecewise_m
   use material_j2_m, only : tangent_of_return, trial_mises
   use stress_chunk_m, only : stress_chunk_t
   use stress_point_m, only : stress_point_t
+  use vector_functions_m, only : form_powers
   implicit none
   private
   public :: update_piecewise, tangent_piecewise, form_trial, return_to_surface
@@ -194,7 +195,7 @@ contains
     real(wp), intent(in) :: shear
     real(wp), intent(in), dimension(chunk_size) :: rate, mises, plastic_strain
     real(wp), intent(out) :: factor(chunk_size)
-    real(wp) :: growth(chunk_size)
+    real(wp), dimension(chunk_size) :: growth, share, power
     integer :: i
 
     factor = 1.0_wp
@@ -205,9 +206,12 @@ contains
     else if (hardening%rate_constant > 0.0_wp) then
       call grow(size(hardening%strain), hardening%strain, hardening%stress, hardening%slope, &
         shear, mises, plastic_strain, growth)
+      if (.not. any(growth > 0.0_wp)) return
+      share = max(tiny(1.0_wp), rate/hardening%rate_constant)
+      call form_powers(chunk_size, share, hardening%rate_exponent, power)
+      !$omp simd
       do i = 1, chunk_size
-        if (growth(i) > 0.0_wp) factor(i) = 1.0_wp &
-          + (rate(i)/hardening%rate_constant)**hardening%rate_exponent
+        factor(i) = merge(1.0_wp + power(i), 1.0_wp, growth(i) > 0.0_wp .and. rate(i) > 0.0_wp)
       end do
     end if
   end subroutine find_factors

@@ -31,10 +31,10 @@ def count_yardstick(folder):
                       YARDSTICK_WORK * (second - first), folder)
 
 
-def count_routine(kernel, deck, folder):
-    """Of the element routine alone, per element."""
+def count_routine(kernel, deck, folder, words=()):
+    """Of the element routine alone, per element; `words`: what else the program is told."""
     first, second = ROUTINE_CALLS
-    return difference([[kernel, deck, "1", "1000", str(calls)] for calls in (first, second)],
+    return difference([[kernel, deck, "1", "1000", str(calls), *words] for calls in (first, second)],
                       ROUTINE_WORK * (second - first), folder)
 
 

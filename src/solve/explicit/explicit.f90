@@ -14,7 +14,7 @@ module explicit_m
   use erosion_account_m, only : report_erosion
   use errors_m, only : error_t
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, &
-    end_cycle
+    press_cycle, end_cycle
   use explicit_report_m, only : report_cycle
   use failure_watch_m, only : report_failures
   use health_m, only : check_tile, judge_energies, judge_ratio
@@ -95,6 +95,7 @@ contains
       if (monitor%ranks%n > 1) then
         !$omp barrier
       end if
+      if (cycle%presses) call press_nodes(model, state, monitor, cycle)
       call advance_special_nodes(model, state, cycle)
       if (writes) then
         !$omp master
@@ -152,6 +153,27 @@ contains
     end do
     !$omp end do
   end subroutine advance_tiles
+
+  !> Contact forces that follow all others: these are summed now, and once more where nodes move.
+  subroutine press_nodes(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+    integer :: i_tile
+
+    !$omp do schedule(static)
+    do i_tile = 1, size(model%layout%tiles)
+      call sum_special_forces(model%layout, state%force_slots, &
+        model%layout%tiles(i_tile)%first_owned, model%layout%tiles(i_tile)%last_owned, &
+        state%internal_force)
+    end do
+    !$omp end do
+    !$omp master
+    call press_cycle(model, state, monitor, cycle)
+    !$omp end master
+    !$omp barrier
+  end subroutine press_nodes
 
   !> Sum the forces of special nodes; they move at once unless this cycle writes. Each thread has
   !> the nodes of its own tiles: what it reads here it has mostly written itself.

@@ -7,12 +7,13 @@ module explicit_cycle_m
   use contact_account_m, only : plan_looks, follow_contact
   use behind_ties_m, only : hear_tie, settle_with_tie
   use contact_inertia_m, only : weigh_contacts
+  use contact_pressing_m, only : press_contacts
   use cycle_loads_m, only : apply_loads
   use erosion_account_m, only : settle_elements, release_nodes
   use errors_m, only : error_t
   use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
   use explicit_memory_m, only : write_restarts, take_up_steps
-  use contacts_m, only : told_as
+  use contacts_m, only : told_as, penalty_implicit
   use explicit_prescribed_m, only : find_prescribed_velocities, impose_prescribed, &
     prescribed_work
   use health_m, only : tile_check_t, are_sound, check_step, check_cycle
@@ -41,7 +42,8 @@ module explicit_cycle_m
   use time_step_m, only : step_plan_t, start_steps, next_step, is_last, follow_springs
   implicit none
   private
-  public :: explicit_cycle_t, start_cycles, begin_cycle, prepare_leap, exchange_tiles, end_cycle
+  public :: explicit_cycle_t, start_cycles, begin_cycle, prepare_leap, exchange_tiles, press_cycle, &
+    end_cycle
 
   !> Shared by the team, written by one thread between barriers.
   type :: explicit_cycle_t
@@ -57,6 +59,7 @@ module explicit_cycle_m
     type(step_plan_t) :: steps
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
     logical, allocatable :: active(:)  !! (n_motion) which of them hold, once that has been asked
+    logical :: presses = .false.     !! contact forces of some interface follow all other forces
     logical :: refines = .false.     !! steps of elements are not those of their density alone
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
     type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
@@ -92,6 +95,7 @@ contains
         motions%death < model%controls%end_time)
     end associate
     call plan_sums(model, cycle%sums)
+    cycle%presses = any(model%contacts%penalty_unit == penalty_implicit)
     cycle%refines = allocated(state%elements%mass_ratio) .or. &
       allocated(state%elements%retardation)
     associate (ranks => monitor%ranks)
@@ -164,6 +168,17 @@ contains
     if (allocated(model%conditions%common_motions)) call remember_common(model, state, cycle%common)
   end subroutine prepare_leap
 
+  !> Contact forces that follow all others. The step of cycle zero is found later on.
+  subroutine press_cycle(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+
+    if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
+      cycle%velocity, monitor%clock, monitor%log, state)
+  end subroutine press_cycle
+
   !> Inverse masses where some prescribed motion has just started or ended.
   subroutine follow_activity(model, state, cycle)
     type(model_t), intent(in) :: model
@@ -232,7 +247,7 @@ contains
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(inout) :: cycle
 
-    call release_nodes(model%layout%n_special, cycle%freed, state)
+    call release_nodes(model, cycle%leap, cycle%freed, state)
     associate (n_eroded => state%elements%erosion%n_eroded)
       call follow_outlines(model, n_eroded > cycle%told, state)
       cycle%told = n_eroded

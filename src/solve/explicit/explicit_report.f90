@@ -26,7 +26,8 @@ module explicit_report_m
   use wall_motion_m, only : hold_nodes, count_walls, fill_walls
   use support_forces_m, only : fill_explicit_reactions
   use time_step_m, only : first_step, follow_springs
-  use explicit_cycle_m, only : explicit_cycle_t, prepare_leap
+  use explicit_cycle_m, only : explicit_cycle_t, prepare_leap, press_cycle
+  use node_motion_m, only : leap_t
   implicit none
   private
   public :: report_cycle
@@ -39,6 +40,7 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
+    real(wp), allocatable :: held(:, :)
 
     call count_sums(cycle%sums, state%external_work, state%damping_work)
     if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
@@ -52,26 +54,27 @@ contains
     end if
     if (state%cycle == 0) then
       if (model%erodes) call note_least_step(model%controls, cycle%steps%first_dt, state)
+      call prepare_leap(model, state, cycle)
+      call start_prescribed(model, cycle%velocity, state)
+      if (cycle%presses) call press_cycle(model, state, monitor, cycle)
       call report_contact_start(model, state, monitor%log)
       call log_smallest_steps(model, state, monitor%log)
       call judge_damping(model, state%dt, monitor%log)
-      call prepare_leap(model, state, cycle)
-      call start_prescribed(model, cycle%velocity, state)
     end if
     call report_rigids(model, state, cycle)
     call report_walls(model, state, monitor, cycle)
-    if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, cycle%leap, 1, &
-      model%layout%n_special, state)
+    if (allocated(model%conditions%skew_supports)) call report_skew(model, cycle%leap, state, held)
     state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
       cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
-    if (monitor%ranks%mine == 0) call write_report(model, state, monitor, cycle)
+    if (monitor%ranks%mine == 0) call write_report(model, held, state, monitor, cycle)
     if (monitor%ranks%n > 1) call hear_report(model, state, monitor, cycle)
     cycle%finished = cycle%last .or. allocated(cycle%error)
   end subroutine report_cycle
 
   !> Fill the snapshot with what is due, and write it.
-  subroutine write_report(model, state, monitor, cycle)
+  subroutine write_report(model, held, state, monitor, cycle)
     type(model_t), intent(in) :: model
+    real(wp), allocatable, intent(in) :: held(:, :) !! by skew supports, where there are any
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
@@ -92,7 +95,7 @@ contains
     if (any(cycle%due%tables([table_rcforc, table_sleout]))) &
       call fill_interfaces(model, state, monitor%snapshot)
     if (cycle%due%tables(table_spcforc)) &
-      call fill_explicit_reactions(model, state, monitor%snapshot)
+      call fill_explicit_reactions(model, state, monitor%snapshot, held)
     if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
     call write_due(model, cycle%due, state%dt, monitor, cycle%error)
     if (cycle%due%tables(table_glstat)) cycle%ratio = energy_ratio(monitor%snapshot%energies)
@@ -120,6 +123,26 @@ contains
     state%initial_energy = energy(1)
     call share_error(monitor%ranks, cycle%error)
   end subroutine hear_report
+
+  !> Skew supports in a cycle that writes: their nodes are held, and by what force.
+  subroutine report_skew(model, leap, state, held)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    type(state_t), intent(inout) :: state
+    real(wp), allocatable, intent(out) :: held(:, :) !! (2, n_skew)
+
+    integer :: i, n
+
+    n = size(model%conditions%skew_supports)
+    allocate (held(2, n))
+    do i = 1, n
+      held(:, i) = -state%force_special(:, model%conditions%skew_supports(i)%node)
+    end do
+    call hold_skew_nodes(model, leap, 1, model%layout%n_special, state)
+    do i = 1, n
+      held(:, i) = held(:, i) + state%force_special(:, model%conditions%skew_supports(i)%node)
+    end do
+  end subroutine report_skew
 
   !> Rigid bodies in a cycle that writes: what their forces ask for, and the work of
   !> prescribed motion so far.

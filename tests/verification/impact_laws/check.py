@@ -262,8 +262,9 @@ def check_isentrope(run):
 
 
 def check_spall(run):
-    """Cut-offs in expansion."""
-    path = (np.zeros(401), np.linspace(0.0, 0.05, 401))
+    """Cut-offs in expansion. The largest stress is 2/3 of the flow stress above the mean one, some steps' worth, so that 2 and 3 break
+    at steps of their own."""
+    path, broke = (np.zeros(401), np.linspace(0.0, 0.05, 401)), {}
     for spall in (1, 2, 3):
         result = run.program(element(lambda deck, spall=spall: gruneisen(johnson_cook(deck, pc=-2.0e9, spall=float(spall))),
                                      path, eos=1), name=f"spall_{spall}")
@@ -276,7 +277,12 @@ def check_spall(run):
         watched = largest if spall == 2 else mean
         n = int(np.argmax(watched > 2.0e9))
         run.true(f"spall {spall}: it breaks on the way", 20 < n < 380)
+        run.check(f"spall {spall}: it stands till then", q[:n].argmin(), 0, 0.0, "abs")
+        run.check(f"spall {spall}: mean stress at the break", mean[n], 2.0e9 - (2.0 / 3.0 * q[n] if spall == 2 else 0.0),
+                  mean[n] - mean[n - 1], "abs", source="one step at most beyond the limit")
+        broke[spall] = n
         run.check(f"spall {spall}: nothing behind", result.cells("stress")[n + 1:, 0, :3], 0.0, 0.0, "abs")
+    run.check("the largest stress breaks before the mean one", broke[3] - broke[2], 3, 0, "min")
     fluid = run.program(element(lambda deck: gruneisen(deck.add("*MAT_NULL", (1, RHO, -1.0e8))), path, eos=1), name="cavity")
     run.check("fluid: least pressure", -scalar(fluid, "pressure")[-1], 1.0e8, 1e-12)
 
