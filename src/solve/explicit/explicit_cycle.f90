@@ -42,8 +42,8 @@ module explicit_cycle_m
   use time_step_m, only : step_plan_t, start_steps, next_step, is_last, follow_springs
   implicit none
   private
-  public :: explicit_cycle_t, start_cycles, begin_cycle, prepare_leap, exchange_tiles, press_cycle, &
-    end_cycle
+  public :: explicit_cycle_t, start_cycles, begin_cycle, prepare_leap, exchange_tiles, &
+    press_cycle, end_cycle
 
   !> Shared by the team, written by one thread between barriers.
   type :: explicit_cycle_t
