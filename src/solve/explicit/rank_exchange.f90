@@ -188,7 +188,7 @@ contains
       size(elements%history)), 1, .true., elements%history)
   end subroutine exchange_history
 
-  !> Motion of all interior nodes.
+  !> Motion of all interior nodes, with the velocities that damped runs keep.
   subroutine gather_motion(ranks, shares, to_all, state)
     type(ranks_t), intent(in) :: ranks
     type(shares_t), intent(in) :: shares
@@ -196,6 +196,8 @@ contains
     type(state_t), intent(inout) :: state
 
     call bring_reals(ranks, shares%nodes, 4, to_all, state%motion)
+    if (allocated(state%former_velocity)) &
+      call bring_reals(ranks, shares%nodes, 2, to_all, state%former_velocity)
   end subroutine gather_motion
 
   !> The whole state for the first process, or for all.
@@ -207,8 +209,6 @@ contains
 
     call gather_motion(ranks, shares, to_all, state)
     call bring_reals(ranks, shares%nodes, 2, to_all, state%internal_force)
-    if (allocated(state%former_velocity)) &
-      call bring_reals(ranks, shares%nodes, 2, to_all, state%former_velocity)
     if (allocated(state%former_damping)) &
       call bring_reals(ranks, shares%nodes, 2, to_all, state%former_damping)
     call gather_chunks(ranks, shares, to_all, state%elements)
