@@ -122,9 +122,9 @@ contains
       if (model%parts(k)%material == 0) cycle
       associate (material => model%materials(model%parts(k)%material))
         if (material%is_rigid .or. any(can_go == material%law)) cycle
-        call line_warning(deck, line, 'ERODE and part '//to_text(model%parts(k)%id), 'ERODE takes ' &
-          //'no elements of part '//to_text(model%parts(k)%id)//', which is rubber or foam: a step ' &
-          //'of theirs below DTMIN ends the run')
+        call line_warning(deck, line, 'ERODE and part '//to_text(model%parts(k)%id), &
+          'ERODE takes no elements of part '//to_text(model%parts(k)%id)//', which is rubber or ' &
+          //'foam: a step of theirs below DTMIN ends the run')
       end associate
     end do
   end subroutine name_what_stays

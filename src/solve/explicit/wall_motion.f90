@@ -159,7 +159,7 @@ contains
     end do
   end subroutine count_walls
 
-  !> What of that work on one node belongs to the half step after the instant, with that of friction.
+  !> What of that work on one node belongs to the half step after the instant, friction included.
   pure function wall_work_ahead(model, node, state) result(work)
     type(model_t), intent(in) :: model
     integer, intent(in) :: node
