@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> The command line:
 !> `i=DECK r=FILE d=DIR jobid=NAME ncpu=N perthread=N timing=... memory=... OVERRIDES`;
-!> a bare path works as i=.
+!> a bare path works as i=. Words of LS-DYNA mean what they mean there, or are told to be without
+!> effect.
 module arguments_m
   use errors_m, only : error_t, raise, status_input
   implicit none
@@ -31,6 +32,10 @@ module arguments_m
     integer :: thread_share = 300           !! elements for each of several threads, at least:
                                             !! below, waiting costs more than sharing saves
     integer :: timing = timing_by_phase     !! one of the `timing_` constants
+    logical :: quiet = .false.              !! nothing on the screen but how the run has ended
+    logical :: no_dump = .false.            !! no numbered restart files (d=nodump)
+    integer :: cpu_seconds = 0              !! processor time after which to stop (c=), 0 = no limit
+    character(:), allocatable :: ignored    !! words of LS-DYNA that have no effect here
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
   end type arguments_t
 
@@ -52,6 +57,7 @@ contains
 
     allocate (arguments%overrides(0))
     arguments%line = ''
+    arguments%ignored = ''
     mistakes = ''
     do i = 1, command_argument_count()
       call get_command_argument(i, word, length=length)
@@ -117,6 +123,9 @@ contains
     else if (word == '--json') then
       arguments%json = .true.
       return
+    else if (lower(word) == 'case') then
+      call ignore('case', arguments%ignored)
+      return
     else if (equals == 0 .and. word(1:min(1, len(word))) /= '-') then
       call take(arguments%deck, word, 'deck', mistakes)
       return
@@ -129,18 +138,28 @@ contains
     case ('r')
       call take(arguments%restart, value, 'r=', mistakes)
     case ('d')
-      call take(arguments%directory, value, 'd=', mistakes)
+      arguments%no_dump = arguments%no_dump .or. lower(value) == 'nodump'
+      if (lower(value) /= 'nodump') call take(arguments%directory, value, 'd=', mistakes)
     case ('jobid')
       call take(arguments%job, value, 'jobid=', mistakes)
       if (index(value, '/') > 0) mistakes = mistakes//'jobid="'//value &
         //'": expected a name without /'//new_line('a')
     case ('ncpu')
-      call read_count(word, 1024, arguments%n_thread, mistakes)
+      call read_count(name//'='//value(1 + index(value(:min(1, len(value))), '-'):), 1024, &
+        arguments%n_thread, mistakes)
+    case ('c')
+      call read_count(word, 1000000000, arguments%cpu_seconds, mistakes)
+    case ('quiet')
+      arguments%quiet = value == '1'
+      if (value /= '0' .and. value /= '1') mistakes = mistakes//'quiet="'//value &
+        //'": expected 0 or 1'//new_line('a')
     case ('perthread')
       call read_count(word, 1000000000, arguments%thread_share, mistakes)
     case ('timing')
       call read_timing(value, arguments%timing, mistakes)
     case ('memory', 'memory2')
+    case ('o', 'g', 's', 'f', 'a', 'x', 'para')
+      call ignore(name//'=', arguments%ignored)
     case default
       if (is_override(name)) then
         arguments%overrides = [character(argument_length) :: arguments%overrides, word]
@@ -149,6 +168,16 @@ contains
       end if
     end select
   end subroutine read_word
+
+  !> Note a word of LS-DYNA that has no effect, once.
+  pure subroutine ignore(word, ignored)
+    character(*), intent(in) :: word
+    character(:), allocatable, intent(inout) :: ignored
+
+    if (index(' '//ignored//' ', ' '//word//' ') > 0) return
+    if (len(ignored) > 0) ignored = ignored//' '
+    ignored = ignored//word
+  end subroutine ignore
 
   !> Understand `name=N` with a number from 1 to `most`.
   subroutine read_count(word, most, count, mistakes)
@@ -286,7 +315,12 @@ contains
       '  timing=HOW    phase: wall clock by phase (default); interface: contact phases of '// &
         'each'//n// &
       '                interface too; off: the total alone'//n// &
-      '  memory=...    and memory2=...: accepted and ignored'//n//n// &
+      '  quiet=1       one line on the screen: how the run has ended'//n// &
+      '  c=SECONDS     processor time after which the run stops as by a signal'//n// &
+      '  d=nodump      no numbered restart files, whatever the deck asks for'//n// &
+      '  memory=...    and memory2=...: accepted and ignored; so are, with a warning, '// &
+        'LS-DYNA''s o= g='//n// &
+      '                s= f= a= x= para= and case'//n//n// &
       'overrides, for sweeps:'//n// &
       '  ctype=T ngauss=N pen=P      contact of every interface; ctype.2=T of interface 2'//n// &
       '  punit=U pent=P vdc=D        unit of the penalty, that of the master pass, damping'//n// &

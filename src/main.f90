@@ -8,6 +8,7 @@ program slideline
   use endings_m, only : watch_end, announce_end, error_ending
   use errors_m, only : error_t
   use files_m, only : fill_standard_streams
+  use ranks_m, only : ranks_t, join_ranks, leave_ranks
   use run_m, only : run_deck
   use screen_m, only : show, complain
   use signals_m, only : catch_requests
@@ -23,16 +24,20 @@ program slideline
   end interface
 
   type(arguments_t) :: arguments
+  type(ranks_t) :: ranks
   type(error_t), allocatable :: error
   integer(c_int) :: status
   logical :: has_ended = .true. !! no end is left to be told
 
+  call join_ranks(ranks)
   call catch_requests()
   call watch_end()
   call fill_standard_streams()
   call read_arguments(arguments, error)
   if (.not. allocated(error)) then
-    if (arguments%help) then
+    if (ranks%mine > 0 .and. (arguments%help .or. arguments%version .or. arguments%check)) then
+      continue ! the first process answers
+    else if (arguments%help) then
       call show(help_text())
     else if (arguments%version) then
       call show('slideline '//version//' (source '//source_version//')')
@@ -42,13 +47,16 @@ program slideline
     else if (arguments%check) then
       call check_deck(arguments, error)
     else
-      call run_deck(arguments, has_ended, error)
+      call run_deck(arguments, ranks, has_ended, error)
     end if
   end if
   call announce_end()
-  if (allocated(error)) then
+  if (allocated(error) .and. ranks%mine == 0) then
     call complain(error%message)
     if (.not. has_ended) call show(error_ending)
+  end if
+  call leave_ranks()
+  if (allocated(error)) then
     status = int(error%status, c_int)
     deallocate (error)
     call c_exit(status)

@@ -3,13 +3,14 @@
 module run_m
   use, intrinsic :: iso_fortran_env, only : output_unit
   use contacts_m, only : n_told
+  use controls_m, only : is_asked
   use arguments_m, only : arguments_t, file_stem, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
   use clock_m, only : lap, start_clock, look_at_clock, split_contact, phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
-  use errors_m, only : error_t, raise, status_stopped
+  use errors_m, only : error_t, raise, status_input, status_stopped
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
   use files_m, only : make_directory, remove_file, join_path, unfinished
@@ -17,11 +18,12 @@ module run_m
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use go_on_m, only : take_up_deck
   use heap_m, only : give_back_memory
-  use log_m, only : open_log, close_log, write_log, to_text
+  use log_m, only : open_log, close_log, write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name
   use progress_m, only : show_end
+  use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, leave_relaxation
   use renumber_m, only : renumber_model, forget_start
   use restart_m, only : forget_files
@@ -31,7 +33,7 @@ module run_m
   use result_names_m, only : check_names
   use results_file_m, only : run_info_t
   use sense_switch_m, only : forget_switch
-  use signals_m, only : catch_stops
+  use signals_m, only : catch_stops, limit_processor
   use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t
@@ -44,8 +46,9 @@ module run_m
 contains
 
   !> Run what the command line asks for.
-  subroutine run_deck(arguments, has_ended, error)
+  subroutine run_deck(arguments, ranks, has_ended, error)
     type(arguments_t), intent(inout) :: arguments !! gets the job name of a restart file
+    type(ranks_t), intent(in) :: ranks
     logical, intent(out) :: has_ended             !! how the run ended has been told
     type(error_t), allocatable, intent(out) :: error
     type(model_t) :: model
@@ -56,37 +59,43 @@ contains
     character(:), allocatable :: prefix
 
     has_ended = .false.
+    monitor%ranks = ranks
+    monitor%log%is_mute = ranks%mine > 0
     call start_clock(monitor%clock)
     monitor%clock%is_on = arguments%timing /= timing_off
+    monitor%progress%is_quiet = arguments%quiet
     call catch_stops()
+    if (arguments%cpu_seconds > 0) call limit_processor(arguments%cpu_seconds)
     call write_log(monitor%log, 'slideline '//version//' ('//build_type//', '//compiler &
       //', source '//source_version//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
+    if (len(arguments%ignored) > 0) call warn(monitor%log, &
+      'of the command line have no effect here: '//arguments%ignored)
     call make_request(arguments, monitor, request, error)
+    call share_error(ranks, error)
     if (allocated(error)) return
     call read_deck(request, contact_kinds, monitor%log, model, info%effective_deck, error)
+    if (.not. allocated(error)) call refuse_several(model, ranks, error)
+    call share_error(ranks, error)
     if (allocated(error)) return
     if (allocated(request%text)) deallocate (request%text)
+    if (arguments%no_dump) model%controls%output%dump_cycles = -1
     if (arguments%timing == timing_by_interface) &
       call split_contact(monitor%clock, n_told(model%contacts))
     call renumber_model(model)
     prefix = join_path(arguments%directory, arguments%job)
     if (monitor%restarts%goes_on) then
       call take_up_run(model, prefix, state, monitor%restarts, error)
+      call share_error(ranks, error)
       if (allocated(error)) return
     end if
-    call make_directory(arguments%directory, error)
-    monitor%restarts%directory = arguments%directory
-    monitor%restarts%job = arguments%job
-    monitor%restarts%prefix = prefix
-    if (.not. allocated(error)) call check_names(monitor%restarts, error)
-    if (.not. allocated(error)) &
-      call open_log(monitor%log, prefix//'.log', monitor%restarts%goes_on, error)
+    if (ranks%mine == 0) call claim_folder(arguments, prefix, monitor, error)
+    call share_error(ranks, error)
     if (allocated(error)) return
     call begin_run(arguments, prefix, model, info, state, monitor, error)
     call lap(monitor%clock, phase_input)
     if (allocated(error)) then
-      call give_up(model, prefix, state, monitor, error)
+      if (ranks%mine == 0) call give_up(model, prefix, state, monitor, error)
     else
       call drive(arguments, model, prefix, state, monitor, error)
     end if
@@ -95,6 +104,33 @@ contains
     if (.not. allocated(error) .and. allocated(monitor%log%trouble)) &
       call move_alloc(monitor%log%trouble, error)
   end subroutine run_deck
+
+  !> Several processes share explicit runs alone.
+  subroutine refuse_several(model, ranks, error)
+    type(model_t), intent(in) :: model
+    type(ranks_t), intent(in) :: ranks
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (ranks%n > 1 .and. model%controls%implicit%is_on) call raise(error, 'the deck asks for the ' &
+      //'implicit method (*CONTROL_IMPLICIT_GENERAL) and the command for '//to_text(ranks%n) &
+      //' processes: implicit runs have one, with threads (ncpu=)', status_input)
+  end subroutine refuse_several
+
+  !> The folder of the results and the log in it, which no other run may have.
+  subroutine claim_folder(arguments, prefix, monitor, error)
+    type(arguments_t), intent(in) :: arguments
+    character(*), intent(in) :: prefix
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+
+    call make_directory(arguments%directory, error)
+    monitor%restarts%directory = arguments%directory
+    monitor%restarts%job = arguments%job
+    monitor%restarts%prefix = prefix
+    if (.not. allocated(error)) call check_names(monitor%restarts, error)
+    if (.not. allocated(error)) &
+      call open_log(monitor%log, prefix//'.log', monitor%restarts%goes_on, error)
+  end subroutine claim_folder
 
   !> The state of the restart file, and whether all that is read later can be; before any file of an
   !> earlier run is touched.
@@ -147,7 +183,7 @@ contains
     info%build = build_type//', '//compiler//', '//flags
     info%options = arguments%line
     info%source = source_version
-    info%machine = processor_name()
+    if (is_asked(model%controls%output%plot)) info%machine = processor_name()
     info%checksum = restarts%effective_deck_checksum
   end subroutine describe_run
 
@@ -161,10 +197,13 @@ contains
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
 
-    call write_deck(arguments, prefix, info%effective_deck, monitor, error)
-    if (allocated(error)) return
-    call describe_run(arguments, model, monitor%restarts, info)
-    call open_files(model, prefix, info, monitor, error)
+    if (monitor%ranks%mine == 0) &
+      call write_deck(arguments, prefix, info%effective_deck, monitor, error)
+    if (.not. allocated(error)) then
+      if (monitor%ranks%mine == 0) call describe_run(arguments, model, monitor%restarts, info)
+      call open_files(model, prefix, info, monitor, error)
+    end if
+    call share_error(monitor%ranks, error)
     if (allocated(error)) return
     deallocate (info%effective_deck)
     if (.not. monitor%restarts%goes_on) call start_state(model, monitor%log, state, error)
@@ -178,7 +217,9 @@ contains
     call give_back_memory()
     monitor%progress%first_cycle = state%cycle
     if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
-    if (.not. allocated(error)) call begin_status(model, state, monitor)
+    call share_error(monitor%ranks, error)
+    if (.not. allocated(error) .and. monitor%ranks%mine == 0) &
+      call begin_status(model, state, monitor)
   end subroutine begin_run
 
   !> Make the effective deck, which restart files will hold.
@@ -254,16 +295,19 @@ contains
     else if (model%controls%implicit%is_on) then
       call advance_implicit(model, state, monitor, reason, error)
     else
-      call advance_explicit(model, useful_threads(arguments, model%mesh%n_element), state, &
-        monitor, reason, error)
+      call advance_explicit(model, useful_threads(arguments, &
+        model%mesh%n_element/monitor%ranks%n), state, monitor, reason, error)
     end if
     stopped = reason == 'stopped on request'
     if (stopped) reason = reason//' (exit status '//to_text(status_stopped)//') before the ' &
       //'termination time '//to_text(model%controls%end_time)
-    call finish_monitor(monitor, closing_error)
-    if (.not. allocated(error) .and. allocated(closing_error)) &
-      call move_alloc(closing_error, error)
-    call tell_end(model, prefix, state, reason, monitor, error)
+    if (monitor%ranks%mine == 0) then
+      call finish_monitor(monitor, closing_error)
+      if (.not. allocated(error) .and. allocated(closing_error)) &
+        call move_alloc(closing_error, error)
+      call tell_end(model, prefix, state, reason, monitor, error)
+    end if
+    call share_error(monitor%ranks, error)
     if (stopped .and. .not. allocated(error)) call raise(error, &
       'stopped on request at time '//to_text(state%time), status_stopped)
   end subroutine drive

@@ -51,7 +51,7 @@ if [ "$type" = package ]; then
   make_package
   exit 0
 fi
-install_tools
 build "$type"
+install_tools || :
 unlock
 say "the program is build/$type/slideline"

@@ -26,6 +26,7 @@ place=("d=$folder")
 job=$case_name
 for argument in "$@"; do
   case $argument in
+    [dD]=[nN][oO][dD][uU][mM][pP]) ;;
     [dD]=*)
       folder=${argument#*=}
       place=()
@@ -36,8 +37,8 @@ done
 
 lock
 install_packages
-install_tools
 build release
+install_tools || :
 unlock
 say "running $case_name"
 "$root/build/release/slideline" "i=$deck" "${place[@]}" "$@"

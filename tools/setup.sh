@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Shared by build.sh, run.sh and test.sh, which source it: installs what is missing and builds.
+# Shared by build.sh, run.sh and test.sh, which source it: installs what is missing and builds. The program comes
+# first; the Python tools, which come over the network, follow.
 # Needs bash; sets `root`, the top of the source tree.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -83,13 +84,14 @@ give_up() {
   complain "$1"
   complain "Please install these, then run this script again:"
   printf '%s\n' "$2" | sed 's/^\([^:]*\): \(.*\)$/  \1  (\2)/' >&2
-  complain "On Debian or Ubuntu:"
-  complain "  sudo apt-get update && sudo apt-get install -y $(package_names "$2")"
+  complain "On Debian or Ubuntu, with what the program is better with:"
+  complain "  sudo apt-get update && sudo apt-get install -y $(package_names "$2
+$(useful)")"
   exit 1
 }
 
 package_names() {
-  printf '%s\n' "$1" | sed 's/:.*//' | tr '\n' ' ' | sed 's/ $//'
+  printf '%s\n' "$1" | sed 's/:.*//; /^$/d' | tr '\n' ' ' | sed 's/ $//'
 }
 
 # install_packages [test]: the system packages that are missing, then those that are only useful.
@@ -146,34 +148,52 @@ apt_install() {
       --no-install-recommends $packages; } >"$root/build/$1" 2>&1
 }
 
-# install_tools [EXTRA]: the Python package of tools/ in the private environment, with an extra.
+# make_environment: the private Python environment, empty. It holds absolute paths, so it is made anew when the tree has
+# moved. Needs no network.
+make_environment() {
+  if [ -x "$venv/bin/python" ] && "$venv/bin/python" -c '' 2>/dev/null &&
+     { grep -qsxF "$root" "$venv/made" || grep -qsF "$root " "$venv"/installed*; }; then
+    return 0
+  fi
+  say "making the Python environment build/venv"
+  rm -rf "$venv"
+  python3 -m venv "$venv" >"$root/build/venv.log" 2>&1 && printf '%s\n' "$root" >"$venv/made"
+}
+
+# install_tools [EXTRA]: the Python package of tools/ in the private environment, with an extra. False, and says what is
+# missing then, where that fails: the program needs none of it.
 install_tools() {
   local extra=${1:-} stamp want
   stamp="$venv/installed${extra:+-$extra}"
-  # The environment holds absolute paths, so it is made anew when the tree has moved.
   want="$root $(cksum <"$root/tools/pyproject.toml")"
   if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$want" ] && "$venv/bin/python" -c '' 2>/dev/null; then
     return 0
   fi
-  if [ ! -x "$venv/bin/python" ] || ! "$venv/bin/python" -c '' 2>/dev/null ||
-     ! grep -qsF "$root " "$venv"/installed*; then
-    say "making the Python environment build/venv"
-    rm -rf "$venv"
-    python3 -m venv "$venv" || { complain "python3 -m venv failed"; exit 1; }
+  if ! make_environment; then
+    tail -n 5 "$root/build/venv.log" >&2
+    without_tools "python3 -m venv failed; its output is in build/venv.log."
+    return 1
   fi
   say "installing the Python tools${extra:+ and what the tests need}"
   if ! (cd "$root" && "$venv/bin/python" -m pip install --disable-pip-version-check \
         -e "./tools${extra:+[$extra]}") >"$root/build/pip.log" 2>&1; then
     tail -n 15 "$root/build/pip.log" >&2
-    complain "pip failed; its output is in build/pip.log."
-    exit 1
+    without_tools "pip failed; its output is in build/pip.log."
+    return 1
   fi
   printf '%s\n' "$want" >"$stamp"
 }
 
+# without_tools REASON: what is missing without the Python tools.
+without_tools() {
+  complain "$1"
+  complain "The program works without the Python tools. Missing are slideline-tools (plots, reports, decks of the"
+  complain "scenes), the picture of tools/run.sh, the studies and the tests. Run this script again to install them."
+}
+
 # build TYPE [TARGET]: release, debug or counted; the program, or the target `all` for the tests too.
 build() {
-  local type=$1 target=${2:-slideline} folder name log
+  local type=$1 target=${2:-slideline} folder name log python
   local -a more=()
   folder="$root/build/$type"
   case $type in
@@ -184,15 +204,19 @@ build() {
   esac
   mkdir -p "$root/build"
   log="$root/build/$type.log"
+  python=$venv/bin/python
+  make_environment || python=$(command -v python3)
   if ! grep -qsF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
     say "configuring build/$type"
     rm -rf "$folder"
     if ! cmake -S "$root" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=$name "${more[@]}" \
-         -DPython3_EXECUTABLE="$venv/bin/python" >"$log" 2>&1; then
+         -DPython3_EXECUTABLE="$python" >"$log" 2>&1; then
       cat "$log" >&2
       rm -f "$folder/CMakeCache.txt"
       exit 1
     fi
+  elif ! grep -qs "^Python3_EXECUTABLE:.*=$python\$" "$folder/CMakeCache.txt"; then
+    cmake "$folder" -DPython3_EXECUTABLE="$python" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }
   fi
   say "building build/$type${2:+ with its tests}"
   [ -t 1 ] || say "this takes minutes the first time; how far it is stands in build/$type.log"

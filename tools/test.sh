@@ -11,7 +11,6 @@ help_or_go_on "$@"
 
 lock
 install_packages test
-install_tools test
 failed=0
 
 # run_tests TYPE [ctest arguments...]
@@ -32,6 +31,7 @@ if [ "${SLIDELINE_FULL:-0}" = 1 ]; then
 fi
 
 build release all
+install_tools test || exit 1
 unlock
 if [ $# -gt 0 ]; then
   run_tests release "$@"

@@ -3,10 +3,12 @@
 !> state) and the question whether a person watches. A signal handler has no argument to carry a
 !> state, so that it is saved here.
 module signals_m
-  use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_funptr, c_funloc, c_null_funptr
+  use, intrinsic :: iso_c_binding, only : c_int, c_intptr_t, c_long, c_funptr, c_funloc, &
+    c_null_funptr
   implicit none
   private
-  public :: catch_requests, catch_stops, stop_requested, take_signals, output_is_terminal
+  public :: catch_requests, catch_stops, limit_processor, stop_requested, take_signals, &
+    output_is_terminal
 
   !> Numbers of the signals, as Linux has them.
   integer(c_int), parameter :: signal_hang_up = 1, signal_interrupt = 2, signal_user_1 = 10, &
@@ -14,6 +16,8 @@ module signals_m
     signal_file_limit = 25
   !> The handler that ignores (SIG_IGN of all C libraries).
   integer(c_intptr_t), parameter :: ignore = 1
+  !> The resource of limits (RLIMIT_CPU of Linux).
+  integer(c_int), parameter :: processor_time = 0
   !> Signals received: a stop, a restart file, a plot state; 0 = none.
   integer(c_int), volatile, save :: received(3) = 0
 
@@ -25,6 +29,23 @@ module signals_m
       type(c_funptr), value :: handler
       type(c_funptr) :: previous
     end function c_signal
+
+    !> POSIX getrlimit; 0 on success. A limit is two numbers (struct rlimit): the one that sends a
+    !> signal and the one that kills.
+    function c_getrlimit(resource, limits) bind(c, name='getrlimit') result(status)
+      import :: c_int, c_long
+      integer(c_int), value :: resource
+      integer(c_long), intent(inout) :: limits(2)
+      integer(c_int) :: status
+    end function c_getrlimit
+
+    !> POSIX setrlimit; 0 on success.
+    function c_setrlimit(resource, limits) bind(c, name='setrlimit') result(status)
+      import :: c_int, c_long
+      integer(c_int), value :: resource
+      integer(c_long), intent(in) :: limits(2)
+      integer(c_int) :: status
+    end function c_setrlimit
 
     !> C library: whether a file descriptor is a terminal.
     function c_isatty(descriptor) bind(c, name='isatty') result(answer)
@@ -57,6 +78,20 @@ contains
     previous = c_signal(signal_terminate, c_funloc(note_signal))
     previous = c_signal(signal_cpu_limit, c_funloc(note_signal))
   end subroutine catch_stops
+
+  !> After so much processor time the system asks for a stop (SIGXCPU); a lower limit that is set
+  !> already stays.
+  subroutine limit_processor(seconds)
+    integer, intent(in) :: seconds
+    integer(c_long) :: limits(2)
+    integer(c_int) :: ignored
+
+    if (c_getrlimit(processor_time, limits) /= 0) return
+    ! No limit is the largest number without sign, which is -1 here.
+    if (limits(1) < 0) limits(1) = huge(limits)
+    limits(1) = min(limits(1), int(seconds, c_long))
+    ignored = c_setrlimit(processor_time, limits)
+  end subroutine limit_processor
 
   !> A signal that was ignored when the program started stays so: SIGHUP under nohup, SIGINT in a
   !> job that a script has put behind itself.

@@ -52,7 +52,8 @@ module contact_dispatch_m
       covers_segments=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_mortar, 'mortar', uses_gauss_points=.true.), &
       spots=spots_at_gauss_points, where_pressed=pressed_at_slave_nodes), &
-    formulation_t(contact_kind_t(type_segmented_mortar, 'segmented mortar'), &
+    formulation_t(contact_kind_t(type_segmented_mortar, 'segmented mortar', &
+      has_implicit_springs=.true.), &
       covers_segments=.true., where_pressed=pressed_at_slave_nodes, points_per_slave=2, &
       points_per_master=2)]
 

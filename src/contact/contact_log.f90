@@ -2,10 +2,10 @@
 !> What the log says about an interface.
 module contact_log_m
   use contact_dispatch_m, only : formulation_t, formulation_of
-  use contact_penalty_m, only : mean_length, built_in_penalty
+  use contact_penalty_m, only : mean_length, built_in_penalty, side_stiffness
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, breaks, kind_text, &
-    penalty_share
+    penalty_share, penalty_implicit
   use friction_state_m, only : is_open, is_broken
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text
@@ -26,6 +26,9 @@ module contact_log_m
   real(wp), parameter :: dear_share = 0.5_wp
   !> Share of the built-in penalty, which is that of ten elements, below which a tie holds little.
   real(wp), parameter :: soft_tie = 0.1_wp
+  !> Slave over master from where on implicit springs alternate: segments shorter by the one factor,
+  !> elements stiffer by the other; and the factor on K L/A that softens it.
+  real(wp), parameter :: finer = 0.75_wp, stiffer = 2.0_wp, soft_factor = 1.0_wp
   !> Nodes that a message names.
   integer, parameter :: most_named = 5
 
@@ -58,6 +61,8 @@ contains
     end if
     if (contact%penalty_unit == penalty_share) then
       call write_log(log, '  penalty: '//to_text(contact%penalty)//' of the largest stable one')
+    else if (contact%penalty_unit == penalty_implicit) then
+      call log_implicit(contact, model, memory%slave_penalty, log)
     else
       call write_log(log, '  penalty: '//penalty_text(contact, model, memory))
     end if
@@ -83,6 +88,31 @@ contains
         memory%slave_tracking%spot_depth))//' m or less')
     end if
   end subroutine log_contact
+
+  !> Implicit springs, and a warning where the slave is both finer and stiffer: its nodes take turns
+  !> then.
+  subroutine log_implicit(contact, model, penalty, log)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: penalty !! N/m^2
+    type(log_t), intent(inout) :: log
+    real(wp) :: lengths(2), rows(2)
+
+    if (penalty > 0.0_wp) then
+      call write_log(log, '  penalty: implicit springs of '//to_text(penalty)//' N/m^2, ' &
+        //to_text(contact%penalty)//' times K L/A of the softer side')
+    else
+      call write_log(log, '  penalty: implicit, without compliance')
+    end if
+    lengths = [mean_length(contact%slave, model), mean_length(contact%master, model)]
+    ! K L^2/A: of square elements their bulk modulus.
+    rows = lengths*[side_stiffness(contact%slave, model), side_stiffness(contact%master, model)]
+    if (lengths(1) < finer*lengths(2) .and. rows(1) > stiffer*rows(2) &
+      .and. .not. (penalty > 0.0_wp .and. contact%penalty <= soft_factor)) call warn(log, &
+      'interface '//to_text(contact%id)//': its slave is both finer and stiffer than its master, ' &
+      //'so that pressures may alternate from node to node; exchange the sides, or take a PEN of ' &
+      //to_text(soft_factor)//' or less')
+  end subroutine log_implicit
 
   !> Contact of what ties have let go; the rest has been told of the tie.
   subroutine log_behind(contact, memory, log)

@@ -6,7 +6,7 @@ module contact_preparation_m
   use contact_penalty_m, only : set_penalties
   use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
     allocate_tractions, allocate_scratch, places_of_segment
-  use contacts_m, only : contact_t, has_friction, is_tied
+  use contacts_m, only : contact_t, has_friction, is_tied, penalty_implicit
   use energy_limit_state_m, only : allocate_limit
   use facing_look_m, only : has_outline, prepare_facing
   use friction_state_m, only : allocate_friction
@@ -57,7 +57,9 @@ contains
       call allocate_loads(memory%points)
       allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
     end if
-    if (.not. (model%controls%implicit%is_on .or. is_tied(contact))) &
+    ! Forces of the end of the step have a limit of their own.
+    if (.not. (model%controls%implicit%is_on .or. is_tied(contact) &
+      .or. contact%penalty_unit == penalty_implicit)) &
       call allocate_limit(memory%limit, n_slave + n_master)
     if (has_friction(contact)) then
       call allocate_tractions(memory%points)

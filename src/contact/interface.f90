@@ -14,7 +14,7 @@ module interface_m
   use contact_springs_m, only : begin_look, measure_springs, end_look
   use contact_work_m, only : apart_t, take_apart, hand_over, count_work
   use contact_state_m, only : contact_state_t, is_free
-  use contacts_m, only : contact_t, is_tied
+  use contacts_m, only : contact_t, is_tied, penalty_implicit
   use crossing_m, only : crossings_t, find_crossings, catch_crossings
   use damping_m, only : damp_points
   use energy_limit_m, only : keep_former_springs, form_springs, limit_forces, lend
@@ -25,6 +25,7 @@ module interface_m
   use gather_m, only : gather_places, take_force, keep_former
   use interference_m, only : begin_growth
   use kinds_m, only : wp
+  use look_ahead_m, only : ahead_t, look_ahead, look_back
   use log_m, only : log_t
   use model_m, only : model_t
   use spots_m, only : move_spots
@@ -124,6 +125,10 @@ contains
     type(apart_t) :: apart
     logical :: had_force, is_born
 
+    if (contact%penalty_unit == penalty_implicit) then
+      call place_ahead(contact, motion, cycle, clock, memory)
+      return
+    end if
     formulation = formulation_of(contact)
     had_force = memory%n_active > 0
     is_born = memory%is_stale .and. cycle > 0
@@ -159,6 +164,31 @@ contains
     call end_look(had_force, memory%n_active > 0, memory%watch)
     call lap(clock, phase_contact_force)
   end subroutine apply_between
+
+  !> Implicit penalties: the points, of all that may touch in the step ahead. Their forces follow
+  !> (implicit_penalty).
+  subroutine place_ahead(contact, motion, cycle, clock, memory)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: motion(:, :)
+    integer, intent(in) :: cycle
+    type(clock_t), intent(inout) :: clock
+    type(contact_state_t), intent(inout) :: memory
+    type(ahead_t) :: ahead
+
+    memory%scratch%had_force = memory%n_active > 0
+    memory%scratch%waits = .true.
+    call gather_spots(contact, motion, memory)
+    call search_pairs(contact, cycle, memory)
+    call look_ahead(contact, memory, ahead)
+    call lap(clock, phase_contact_search)
+    memory%n_active = 0
+    memory%watch%has_looked = .false.
+    call begin_look(memory%scratch%had_force, memory%watch)
+    if (memory%scratch%had_force) call keep_former(memory)
+    call place_points(contact, memory)
+    call look_back(ahead, memory)
+    call lap(clock, phase_contact_pairing)
+  end subroutine place_ahead
 
   !> Before the points are placed: the forces of the last call stand aside, for their half of the
   !> work of the step.

@@ -21,7 +21,7 @@ module deck_m
   use deck_override_apply_m, only : apply_overrides
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
   use deck_raw_m, only : raw_t, lost_t, start_raw
-  use deck_mesh_m, only : read_nodes, read_elements, read_set, read_history_ids
+  use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
   use deck_rubber_m, only : read_mooney_rivlin, read_blatz_ko
   use deck_rigid_m, only : read_rigid
@@ -213,6 +213,8 @@ contains
       call read_nodes(deck, parameters, i, raw)
     case ('ELEMENT_SHELL')
       call read_elements(deck, parameters, i, raw)
+    case ('ELEMENT_BEAM')
+      call read_beams(deck, parameters, i, raw)
     case ('SET_NODE_LIST', 'SET_NODE_LIST_GENERATE', 'SET_NODE_GENERAL', 'SET_PART_LIST', &
         'SET_PART_LIST_GENERATE', 'SET_SEGMENT', 'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
       call read_set(deck, parameters, i, raw)

@@ -3,7 +3,7 @@
 !> diagonals d31 = x3 - x1, d42 = x4 - x2 and from h.x = x1 - x2 + x3 - x4.
 module element_chunk_m
   use kinds_m, only : wp
-  use layout_m, only : chunk_size
+  use layout_m, only : chunk_size, local_kind
   implicit none
   private
   public :: element_chunk_t, gather_chunk, scatter_chunk
@@ -27,7 +27,7 @@ module element_chunk_m
     real(wp), dimension(chunk_size) :: law_mean, law_energy, law_bulk, law_shear !! where the law
                                                           !! gives the pressure: see `law_pressure`
     real(wp), dimension(chunk_size) :: qx, qy             !! hourglass force amplitude
-    real(wp) :: force(4, chunk_size) !! node 3 x, y without hourglass; node 4 x, y
+    real(wp), dimension(2, chunk_size) :: force3, force4 !! x, y of nodes 3, 4 without hourglass
     real(wp) :: swing(2, chunk_size) !! hourglass amplitude q_x, q_y
   end type element_chunk_t
 
@@ -45,6 +45,7 @@ contains
 
     !GCC$ NOVECTOR
     do i = 1, chunk_size
+      !$omp simd simdlen(4)
       do k = 1, 4
         d31(k) = motion(k, nodes(3, i)) - motion(k, nodes(1, i))
         d42(k) = motion(k, nodes(4, i)) - motion(k, nodes(2, i))
@@ -65,7 +66,7 @@ contains
   !> Padding is left out: all of it has one node, where each sum would wait for the one before.
   pure subroutine scatter_chunk(n_element, local, chunk, force)
     integer, intent(in) :: n_element             !! elements, in the first slots
-    integer, intent(in) :: local(4, chunk_size)  !! local numbers in the tile
+    integer(local_kind), intent(in) :: local(4, chunk_size) !! local numbers in the tile
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes
     integer :: i, k, n(4)
@@ -74,19 +75,19 @@ contains
       n = local(:, i)
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(1)) = force(k, n(1)) + (chunk%swing(k, i) - chunk%force(k, i))
+        force(k, n(1)) = force(k, n(1)) + (chunk%swing(k, i) - chunk%force3(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(2)) = force(k, n(2)) - (chunk%swing(k, i) + chunk%force(k + 2, i))
+        force(k, n(2)) = force(k, n(2)) - (chunk%swing(k, i) + chunk%force4(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(3)) = force(k, n(3)) + (chunk%swing(k, i) + chunk%force(k, i))
+        force(k, n(3)) = force(k, n(3)) + (chunk%swing(k, i) + chunk%force3(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(4)) = force(k, n(4)) - (chunk%swing(k, i) - chunk%force(k + 2, i))
+        force(k, n(4)) = force(k, n(4)) - (chunk%swing(k, i) - chunk%force4(k, i))
       end do
     end do
   end subroutine scatter_chunk

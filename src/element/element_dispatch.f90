@@ -4,7 +4,7 @@ module element_dispatch_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t, scatter_chunk
-  use layout_m, only : chunk_size, tile_t
+  use layout_m, only : chunk_size, local_kind, tile_t
   use model_m, only : model_t
   use parts_m, only : section_t, form_one_point, form_full, form_round_one_point, form_round_full
   use quad_full_m, only : advance_full
@@ -42,13 +42,15 @@ contains
     real(wp), intent(inout) :: force(2, model%layout%n_local) !! set here
     type(element_chunk_t) :: chunk
     type(round_chunk_t) :: round
-    integer :: i_chunk, first
+    real(wp) :: near(4, model%layout%n_local)
+    integer :: i_chunk, first, numbers(4, chunk_size)
 
+    call take_motion(tile, model%layout%special_node, motion, near)
     force = 0.0_wp
     do i_chunk = tile%first_chunk, tile%last_chunk
       first = (i_chunk - 1)*chunk_size + 1
-      call advance_chunk(model, i_chunk, model%layout%slot_nodes(1, first), motion, dt, elements, &
-        chunk, round)
+      call widen(model%layout%slot_local(1, first), numbers)
+      call advance_chunk(model, i_chunk, numbers, near, dt, elements, chunk, round)
       if (model%is_round) then
         call scatter_round(model%layout%chunk_elements(i_chunk), &
           model%layout%slot_local(1, first), round, force)
@@ -59,12 +61,53 @@ contains
     end do
   end subroutine add_tile_forces
 
+  !> Motion of a tile's nodes by their local numbers. It is read in order here, and local numbers
+  !> take half of the memory of global ones.
+  pure subroutine take_motion(tile, special_node, motion, near)
+    type(tile_t), intent(in) :: tile
+    integer, intent(in) :: special_node(*)
+    real(wp), intent(in) :: motion(4, *)       !! of all nodes
+    real(wp), intent(inout) :: near(4, *)
+    integer :: i, n_interior
+
+    n_interior = tile%last_node - tile%first_node + 1
+    do i = 1, n_interior
+      call take_node(motion(1, tile%first_node + i - 1), near(1, i))
+    end do
+    do i = tile%first_special, tile%last_special
+      call take_node(motion(1, special_node(i)), near(1, n_interior + i - tile%first_special + 1))
+    end do
+  end subroutine take_motion
+
+  !> Motion of one node: for a loop over the four the compiler would call a routine.
+  pure subroutine take_node(motion, near)
+    real(wp), intent(in) :: motion(4)
+    real(wp), intent(inout) :: near(4)
+
+    near(1) = motion(1)
+    near(2) = motion(2)
+    near(3) = motion(3)
+    near(4) = motion(4)
+  end subroutine take_node
+
+  !> Local numbers of a chunk as ordinary integers.
+  pure subroutine widen(local, numbers)
+    integer(local_kind), intent(in) :: local(4*chunk_size)
+    integer, intent(out) :: numbers(4*chunk_size)
+    integer :: i
+
+    !$omp simd
+    do i = 1, 4*chunk_size
+      numbers(i) = local(i)
+    end do
+  end subroutine widen
+
   !> Advance one chunk by its form; its forces stand in `round` in round bodies, else in `chunk`.
   subroutine advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk, round)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
-    integer, intent(in) :: nodes(4, chunk_size)
-    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node)
+    integer, intent(in) :: nodes(4, chunk_size)        !! by their numbers in `motion`
+    real(wp), intent(in), contiguous :: motion(:, :)   !! of all nodes, or of those of a tile
     real(wp), intent(in) :: dt
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk

@@ -178,7 +178,7 @@ contains
       swing = round%swing(:, i)
       hoop = round%hoop(i)
     else
-      f = chunk%force(:, i)
+      f = [chunk%force3(:, i), chunk%force4(:, i)]
       swing = chunk%swing(:, i)
       hoop = 0.0_wp
     end if
@@ -246,7 +246,8 @@ contains
         round%swing(:, i) = 0.0_wp
         round%hoop(i) = 0.0_wp
       else
-        chunk%force(:, i) = 0.0_wp
+        chunk%force3(:, i) = 0.0_wp
+        chunk%force4(:, i) = 0.0_wp
         chunk%swing(:, i) = 0.0_wp
       end if
     end do

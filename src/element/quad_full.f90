@@ -55,7 +55,8 @@ contains
     call gather_chunk(nodes, motion, chunk)
     call form_present_shape(elements%reference(first, 1), n_slot, chunk)
     call form_mean_pressure(i_chunk, material, hourglass, dt, elements, chunk)
-    chunk%force = 0.0_wp
+    chunk%force3 = 0.0_wp
+    chunk%force4 = 0.0_wp
     chunk%swing = 0.0_wp
     deviator = 0.0_wp
     point%hu = 0.0_wp
@@ -98,10 +99,10 @@ contains
     !$omp simd private(half)
     do i = 1, chunk_size
       half = 0.5_wp*chunk%pressure(i)
-      chunk%force(1, i) = chunk%force(1, i) + half*chunk%y42(i)
-      chunk%force(2, i) = chunk%force(2, i) - half*chunk%x42(i)
-      chunk%force(3, i) = chunk%force(3, i) - half*chunk%y31(i)
-      chunk%force(4, i) = chunk%force(4, i) + half*chunk%x31(i)
+      chunk%force3(1, i) = chunk%force3(1, i) + half*chunk%y42(i)
+      chunk%force3(2, i) = chunk%force3(2, i) - half*chunk%x42(i)
+      chunk%force4(1, i) = chunk%force4(1, i) - half*chunk%y31(i)
+      chunk%force4(2, i) = chunk%force4(2, i) + half*chunk%x31(i)
     end do
     call full_step(now, hourglass, nodes, chunk, sums, elements%time_limit(i_chunk), &
       elements%volume_limit(i_chunk))

@@ -98,7 +98,7 @@ contains
   !> part of gamma joins the stress.
   pure subroutine form_forces(stress, chunk)
     type(stress_chunk_t), intent(in) :: stress
-    type(element_chunk_t), intent(inout) :: chunk !! `force` and `swing` out
+    type(element_chunk_t), intent(inout) :: chunk !! `force3`, `force4` and `swing` out
     real(wp) :: wx, wy, txx, txy, tyx, tyy
     integer :: i
 
@@ -110,10 +110,10 @@ contains
       txy = 0.5_wp*(stress%sxy(i) - chunk%qx(i)*wy)
       tyx = 0.5_wp*(stress%sxy(i) - chunk%qy(i)*wx)
       tyy = 0.5_wp*((stress%syy(i) + chunk%pressure(i)) - chunk%qy(i)*wy)
-      chunk%force(1, i) = txx*chunk%y42(i) - txy*chunk%x42(i)
-      chunk%force(2, i) = tyx*chunk%y42(i) - tyy*chunk%x42(i)
-      chunk%force(3, i) = txy*chunk%x31(i) - txx*chunk%y31(i)
-      chunk%force(4, i) = tyy*chunk%x31(i) - tyx*chunk%y31(i)
+      chunk%force3(1, i) = txx*chunk%y42(i) - txy*chunk%x42(i)
+      chunk%force3(2, i) = tyx*chunk%y42(i) - tyy*chunk%x42(i)
+      chunk%force4(1, i) = txy*chunk%x31(i) - txx*chunk%y31(i)
+      chunk%force4(2, i) = tyy*chunk%x31(i) - tyx*chunk%y31(i)
       chunk%swing(1, i) = chunk%qx(i)
       chunk%swing(2, i) = chunk%qy(i)
     end do

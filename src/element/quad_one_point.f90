@@ -13,6 +13,7 @@ module quad_one_point_m
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
   use parts_m, only : hourglass_t, material_t, hourglass_viscous, hourglass_assumed
+  use quad_plain_m, only : is_plain, advance_plain
   use quad_kinematics_m, only : form_present_shape, form_increments, form_forces
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure
@@ -40,6 +41,11 @@ contains
     real(wp) :: work
     integer :: first, n_slot
 
+    if (is_plain(material, hourglass, length_rule, elements)) then
+      call advance_plain(i_chunk, nodes, motion, material, hourglass%coefficient, dt, elements, &
+        chunk)
+      return
+    end if
     first = (i_chunk - 1)*chunk_size + 1
     n_slot = size(elements%reference, 1)
     call gather_chunk(nodes, motion, chunk)

@@ -60,14 +60,14 @@ contains
 
     !$omp simd
     do i = 1, chunk_size
-      element%force(1, i) = element%force(1, i) + 0.25_wp*point%force(1, i)
-      element%force(2, i) = element%force(2, i) + 0.25_wp*point%force(2, i)
-      element%force(3, i) = element%force(3, i) + 0.25_wp*point%force(3, i)
-      element%force(4, i) = element%force(4, i) + 0.25_wp*point%force(4, i)
+      element%force3(1, i) = element%force3(1, i) + 0.25_wp*point%force3(1, i)
+      element%force3(2, i) = element%force3(2, i) + 0.25_wp*point%force3(2, i)
+      element%force4(1, i) = element%force4(1, i) + 0.25_wp*point%force4(1, i)
+      element%force4(2, i) = element%force4(2, i) + 0.25_wp*point%force4(2, i)
       element%swing(1, i) = element%swing(1, i) &
-        + (0.25_wp*shift(1, k)*point%force(1, i) + 0.25_wp*shift(2, k)*point%force(3, i))
+        + (0.25_wp*shift(1, k)*point%force3(1, i) + 0.25_wp*shift(2, k)*point%force4(1, i))
       element%swing(2, i) = element%swing(2, i) &
-        + (0.25_wp*shift(1, k)*point%force(2, i) + 0.25_wp*shift(2, k)*point%force(4, i))
+        + (0.25_wp*shift(1, k)*point%force3(2, i) + 0.25_wp*shift(2, k)*point%force4(2, i))
     end do
   end subroutine add_point_force
 

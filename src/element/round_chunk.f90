@@ -6,7 +6,7 @@
 module round_chunk_m
   use kinds_m, only : wp
   use element_chunk_m, only : element_chunk_t
-  use layout_m, only : chunk_size
+  use layout_m, only : chunk_size, local_kind
   implicit none
   private
   public :: round_chunk_t, n_round_reference, reference_sum, reference_inverse, &
@@ -76,7 +76,7 @@ contains
   !> the hoop stress on all four.
   pure subroutine scatter_round(n_element, local, round, force)
     integer, intent(in) :: n_element            !! elements, in the first slots
-    integer, intent(in) :: local(4, chunk_size) !! local numbers in the tile
+    integer(local_kind), intent(in) :: local(4, chunk_size) !! local numbers in the tile
     type(round_chunk_t), intent(in) :: round
     real(wp), intent(inout) :: force(2, *)      !! internal force of the local nodes
     real(wp), parameter :: to_r(2) = [1.0_wp, 0.0_wp]

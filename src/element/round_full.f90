@@ -52,7 +52,8 @@ contains
     call gather_round(nodes, motion, chunk, round)
     call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
     call form_mean_pressure(i_chunk, material, hourglass, dt, elements, chunk, round)
-    chunk%force = 0.0_wp
+    chunk%force3 = 0.0_wp
+    chunk%force4 = 0.0_wp
     chunk%swing = 0.0_wp
     round%hoop = 0.0_wp
     do k = 1, n_point
@@ -64,7 +65,8 @@ contains
       call finish_with_eos(i_chunk, material, hourglass, points, round, elements, chunk)
       return
     end if
-    round%force = chunk%force
+    round%force(1:2, :) = chunk%force3
+    round%force(3:4, :) = chunk%force4
     round%swing = chunk%swing
     call round_full_step(material, hourglass, elements%reference(first, reference_mass), n_slot, &
       chunk, points, elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
@@ -88,10 +90,10 @@ contains
       *round%inverse_volume, elements, chunk, now)
     associate (p => chunk%pressure)
       do i = 1, chunk_size
-        round%force(1, i) = chunk%force(1, i) + p(i)*(round%rad_a(i) + round%mean_a(i))
-        round%force(2, i) = chunk%force(2, i) + p(i)*round%axi_a(i)
-        round%force(3, i) = chunk%force(3, i) + p(i)*(round%rad_b(i) + round%mean_b(i))
-        round%force(4, i) = chunk%force(4, i) + p(i)*round%axi_b(i)
+        round%force(1, i) = chunk%force3(1, i) + p(i)*(round%rad_a(i) + round%mean_a(i))
+        round%force(2, i) = chunk%force3(2, i) + p(i)*round%axi_a(i)
+        round%force(3, i) = chunk%force4(1, i) + p(i)*(round%rad_b(i) + round%mean_b(i))
+        round%force(4, i) = chunk%force4(2, i) + p(i)*round%axi_b(i)
         round%swing(1, i) = chunk%swing(1, i) + p(i)*round%rad_h(i)
         round%swing(2, i) = chunk%swing(2, i) + p(i)*round%axi_h(i)
         round%hoop(i) = round%hoop(i) + p(i)*round%mean_s(i)

@@ -94,13 +94,13 @@ contains
 
     !$omp simd private(force)
     do i = 1, chunk_size
-      point%force(1, i) = place%radius(i)*point%force(1, i)
-      point%force(2, i) = place%radius(i)*point%force(2, i)
-      point%force(3, i) = place%radius(i)*point%force(3, i)
-      point%force(4, i) = place%radius(i)*point%force(4, i)
+      point%force3(1, i) = place%radius(i)*point%force3(1, i)
+      point%force3(2, i) = place%radius(i)*point%force3(2, i)
+      point%force4(1, i) = place%radius(i)*point%force4(1, i)
+      point%force4(2, i) = place%radius(i)*point%force4(2, i)
       force = 0.25_wp*point%area(i)*(point%pressure(i) - (stress%sxx(i) + stress%syy(i)))
-      chunk%force(1, i) = chunk%force(1, i) + along_a(k)*force
-      chunk%force(3, i) = chunk%force(3, i) + along_b(k)*force
+      chunk%force3(1, i) = chunk%force3(1, i) + along_a(k)*force
+      chunk%force4(1, i) = chunk%force4(1, i) + along_b(k)*force
       chunk%swing(1, i) = chunk%swing(1, i) + along_h(k)*force
       round%hoop(i) = round%hoop(i) + 0.25_wp*force
     end do

@@ -5,7 +5,7 @@ module volumetric_m
   use layout_m, only : chunk_size
   implicit none
   private
-  public :: volumetric_stress, volumetric_energy, log_ratio
+  public :: volumetric_stress, volumetric_energy, log_ratio, atanh_series
 
 contains
 

@@ -19,7 +19,8 @@ module material_dispatch_m
   implicit none
   private
   public :: update_stress, form_tangent, history_size, find_failed, break_points, &
-    column_temperature, column_damage, has_plastic_strain
+    column_temperature, column_damage, has_plastic_strain, &
+    is_elastic, returns_radially
 
   !> Columns of the history of the heated law of Johnson and Cook: rise of temperature, damage.
   integer, parameter :: column_temperature = 2, column_damage = 3
@@ -52,6 +53,23 @@ contains
 
     yes = history_size(material) > 0 .and. material%law /= law_crushable_foam
   end function has_plastic_strain
+
+  !> Whether a law is elasticity with a pressure K ln(J) and nothing else.
+  pure function is_elastic(material) result(yes)
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = material%law == law_elastic .and. .not. allocated(material%eos)
+  end function is_elastic
+
+  !> Whether it is that with `update_j2_isotropic`, and no failure.
+  pure function returns_radially(material) result(yes)
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = material%law == law_plastic .and. .not. allocated(material%eos)
+    if (yes) yes = has_no_back_stress(material) .and. .not. material%failure_strain < huge(1.0_wp)
+  end function returns_radially
 
   !> Advance the deviator of one chunk by its law.
   pure subroutine update_stress(material, chunk, history)

@@ -9,12 +9,16 @@ module contacts_m
   private
   public :: contact_t, contact_kind_t, transducer_t, friction_rule_t, has_friction, is_tied, &
     breaks, has_shear, n_told, told_as, kind_text, most_gauss, penalty_per_node, &
-    penalty_distributed, penalty_factor, penalty_share, tie_none, tie_always, tie_breaks, tie_factor
+    penalty_distributed, penalty_factor, penalty_share, &
+    penalty_implicit, implicit_factor, tie_none, tie_always, tie_breaks, tie_factor
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
-  !> share of the largest stable penalty.
+  !> share of the largest stable penalty, factor on K L/A of springs whose forces are those of the
+  !> end of the step.
   integer, parameter :: penalty_per_node = 0, penalty_distributed = 1, penalty_factor = 2, &
-    penalty_share = 3
+    penalty_share = 3, penalty_implicit = 4
+  !> PEN of such springs where the deck gives none.
+  real(wp), parameter :: implicit_factor = 10.0_wp
 
   !> What holds the surfaces together (TIE): nothing, springs that stay, or springs that break at
   !> their strengths.
@@ -33,6 +37,7 @@ module contacts_m
     character(40) :: name = ''        !! name in messages
     logical :: uses_gauss_points = .false. !! whether NGAUSS has a meaning
     logical :: has_strict_rule = .false.   !! whether IPF has a meaning
+    logical :: has_implicit_springs = .false. !! whether PUNIT may be 4
   end type contact_kind_t
 
   !> Regularised Coulomb friction: mu = FD + (FS - FD) exp(-DC speed).

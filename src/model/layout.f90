@@ -10,9 +10,13 @@
 !> forces on special nodes go into one force slot per tile and node and are added in a fixed order,
 !> so that the result has the same bits at any number of threads.
 module layout_m
+  use, intrinsic :: iso_fortran_env, only : int16
   implicit none
   private
-  public :: layout_t, tile_t, chunk_size, slot_part, first_slot, last_slot
+  public :: layout_t, tile_t, chunk_size, local_kind, slot_part, first_slot, last_slot
+
+  !> Kind of local numbers: a tile has at most 512 elements with 2048 nodes.
+  integer, parameter :: local_kind = int16
 
   !> Elements per chunk; from 32 to 128 the speed hardly differs, beyond that
   !> chunks leave the L1 cache.
@@ -39,8 +43,9 @@ module layout_m
     integer, allocatable :: slot_element(:)  !! (n_slot) element index, 0 for padding
     integer, allocatable :: element_slot(:)  !! (n_element) slot of each element
     integer, allocatable :: slot_nodes(:, :) !! (4, n_slot) node indices; all equal in padding
-    integer, allocatable :: slot_local(:, :) !! (4, n_slot) local numbers in the tile: interior
-                                             !! nodes from 1, then its special nodes; 0 in padding
+    integer(local_kind), allocatable :: slot_local(:, :) !! (4, n_slot) local numbers in the tile:
+                                             !! interior nodes from 1, then its special nodes;
+                                             !! all equal in padding
     integer, allocatable :: special_node(:)  !! (force slots) node of each force slot, tile by tile
     integer, allocatable :: node_slots(:)    !! (n_special + 1) where each special node's list
                                              !! starts ...

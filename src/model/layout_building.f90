@@ -3,7 +3,8 @@
 !> their nodes in the tiles.
 module layout_building_m
   use kinds_m, only : wp, long
-  use layout_m, only : layout_t, tile_t, chunk_size, first_slot, last_slot
+  use layout_m, only : layout_t, tile_t, chunk_size, local_kind, first_slot, &
+    last_slot
   use mesh_m, only : mesh_t
   use sorting_m, only : sorted_order
   implicit none
@@ -140,7 +141,7 @@ contains
     integer :: slot
 
     do slot = last_slot(layout%tiles(size(layout%tiles))) + 1, layout%n_slot
-      layout%slot_local(:, slot) = 0
+      layout%slot_local(:, slot) = 0_local_kind
       if (layout%slot_element(slot) > 0) then
         layout%slot_nodes(:, slot) = mesh%element_nodes(:, layout%slot_element(slot))
       else
@@ -169,9 +170,10 @@ contains
           node = mesh%element_nodes(k, layout%slot_element(slot))
           layout%slot_nodes(k, slot) = node
           if (node > layout%n_special) then
-            layout%slot_local(k, slot) = node - tile%first_node + 1
+            layout%slot_local(k, slot) = int(node - tile%first_node + 1, local_kind)
           else
-            layout%slot_local(k, slot) = n_interior + local(node) - first_special + 1
+            layout%slot_local(k, slot) = int(n_interior + local(node) - first_special + 1, &
+              local_kind)
           end if
         end do
       end do
@@ -180,7 +182,7 @@ contains
       do slot = first_slot(tile), last_slot(tile)
         if (layout%slot_element(slot) /= 0) cycle
         layout%slot_nodes(:, slot) = layout%slot_nodes(1, slot - 1)
-        layout%slot_local(:, slot) = 0
+        layout%slot_local(:, slot) = layout%slot_local(1, slot - 1)
       end do
       layout%n_local = max(layout%n_local, n_interior + n_special_slots - first_special + 1)
     end associate

@@ -22,15 +22,23 @@ contains
     end do
   end function mark_meshed_nodes
 
-  !> (n_node) nodes with mass and a fixed degree of freedom.
+  !> (n_node) nodes with mass and a fixed degree of freedom, or held along an axis that is neither x
+  !> nor y.
   pure function mark_supports(model) result(is_support)
     type(model_t), intent(in) :: model
     logical :: is_support(model%mesh%n_node)
+    integer :: i
 
     is_support = .false.
-    if (.not. allocated(model%conditions%fixed_nodes)) return
-    is_support(model%conditions%fixed_nodes) = .true.
-    is_support = is_support .and. mark_meshed_nodes(model)
+    associate (conditions => model%conditions)
+      if (allocated(conditions%fixed_nodes)) is_support(conditions%fixed_nodes) = .true.
+      if (allocated(conditions%skew_supports)) then
+        do i = 1, size(conditions%skew_supports)
+          is_support(conditions%skew_supports(i)%node) = .true.
+        end do
+      end if
+    end associate
+    if (any(is_support)) is_support = is_support .and. mark_meshed_nodes(model)
   end function mark_supports
 
 end module supports_m

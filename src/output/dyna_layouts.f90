@@ -48,7 +48,7 @@ contains
     case (table_glstat)
       names = 'time,cycle,dt,kinetic,internal,hourglass,viscous,damping,contact,external_work,'// &
         'total,energy_ratio,leapfrog,velocity_x,velocity_y,element,element_part,'// &
-        'friction'
+        'friction,eroded_kinetic,eroded_internal,eroded_hourglass,eroded_contact'
     case (table_rcforc)
       names = 'time,interface,side,fx,fy'
     case (table_nodout)
@@ -104,7 +104,8 @@ contains
   end subroutine form_block
 
   !> Energies. DYNA counts the work of the bulk viscosity as internal energy; so the
-  !> lines add up to the total but for what leap-frog adds (doc/results.md).
+  !> lines add up to the total but for what leap-frog adds (doc/results.md). Springs of contact that
+  !> went with elements stay with those that are there: DYNA has no line for them.
   pure subroutine form_glstat(row, control, lines, n_line)
     real(wp), intent(in) :: row(:)
     character(*), intent(in) :: control
@@ -112,6 +113,7 @@ contains
     integer, intent(inout) :: n_line
     real(wp) :: values(n_label)
     character(line_size) :: line
+    real(wp) :: share
     integer :: i
 
     call add_line('', lines, n_line)
@@ -123,8 +125,10 @@ contains
       call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by '//control, lines, n_line)
     end if
     call add_line('', lines, n_line)
+    share = 1.0_wp
+    if (abs(row(11)) > 0.0_wp) share = 1.0_wp - sum(row(19:22))/row(11)
     values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), &
-      row(9) + row(18), row(10), 0.0_wp, 0.0_wp, 0.0_wp, row(11), row(12), row(12), row(14), &
+      row(9) + row(18) + row(22), row(10), row(19:21), row(11), row(12), share*row(12), row(14), &
       row(15), 0.0_wp]
     do i = 1, n_label
       write (line, '(ss,a,es14.5)') labels(i), tidy(values(i))

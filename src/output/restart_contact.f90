@@ -59,6 +59,8 @@ contains
     call keep_limit(archive, 'limit', contact%limit)
     call keep(archive, 'n_active', contact%n_active)
     call keep(archive, 'n_released', contact%n_released)
+    call keep(archive, 'n_swept', contact%n_swept)
+    call keep(archive, 'n_dropped', contact%n_dropped)
     call leave(archive)
   end subroutine keep_contact
 

@@ -7,11 +7,30 @@ module common_motion_m
   use state_m, only : state_t
   implicit none
   private
-  public :: common_drive, fill_common
+  public :: common_drive, common_velocity, fill_common
 
 contains
 
-  !> Of one set along one direction: acceleration by all but damping, and the mean D.
+  !> Velocity of one set: nodes that have lost their mass with their last element stand still.
+  pure function common_velocity(model, i_set, state) result(velocity)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_set
+    type(state_t), intent(in) :: state
+    real(wp) :: velocity(2)
+    integer :: i
+
+    velocity = 0.0_wp
+    associate (nodes => model%conditions%common_motions(i_set)%nodes)
+      do i = 1, size(nodes)
+        if (.not. state%mass(nodes(i)) > 0.0_wp) cycle
+        velocity = state%motion(3:4, nodes(i))
+        return
+      end do
+    end associate
+  end function common_velocity
+
+  !> Of one set along one direction: acceleration by all but damping, and the mean D. A set without
+  !> mass has none.
   pure subroutine common_drive(model, i_set, k, state, damping, push, rate)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_set, k
@@ -32,6 +51,11 @@ contains
           rate = rate + state%mass(nodes(i))*state%node_damping(k, nodes(i))
       end do
     end associate
+    if (.not. mass > 0.0_wp) then
+      push = 0.0_wp
+      rate = 0.0_wp
+      return
+    end if
     push = push/mass + state%body_acceleration(k)
     rate = rate/mass
     if (.not. allocated(state%node_damping)) rate = damping(k)
@@ -43,17 +67,18 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: damping(2)
     real(wp), intent(inout) :: velocity(:, :), acceleration(:, :) !! (2, n_node)
-    real(wp) :: push, rate, a
+    real(wp) :: push, rate, a, before(2)
     integer :: i, k
 
     do i = 1, size(model%conditions%common_motions)
+      before = common_velocity(model, i, state)
       associate (nodes => model%conditions%common_motions(i)%nodes)
         do k = 1, 2
           if (.not. model%conditions%common_motions(i)%along(k)) cycle
           call common_drive(model, i, k, state, damping, push, rate)
-          a = (push - rate*state%motion(2 + k, nodes(1)))/(1.0_wp + 0.5_wp*rate*state%dt_before)
+          a = (push - rate*before(k))/(1.0_wp + 0.5_wp*rate*state%dt_before)
           acceleration(k, nodes) = a
-          velocity(k, nodes) = state%motion(2 + k, nodes(1)) + 0.5_wp*state%dt_before*a
+          velocity(k, nodes) = before(k) + 0.5_wp*state%dt_before*a
         end do
       end associate
     end do

@@ -3,7 +3,7 @@
 module contact_check_m
   use contact_log_m, only : report_initial_contact, report_released, report_tie_step, &
     report_broken
-  use contacts_m, only : is_tied
+  use contacts_m, only : is_tied, penalty_implicit
   use contact_overhang_m, only : report_overhang
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
     opening_step, binding_bound, fitting_scale
@@ -38,7 +38,8 @@ contains
     ! Contact behind ties has no place yet that these do not hold.
     if (.not. model%controls%implicit%is_on .and. (limits_step .or. any(is_tied(model%contacts)))) &
       call bound_springs(model%contacts, state%contact_mass, state%contacts, &
-      merge(0.0_wp, 1.0_wp, model%contacts%behind > 0), bounds)
+      merge(0.0_wp, 1.0_wp, model%contacts%behind > 0 &
+      .or. model%contacts%penalty_unit == penalty_implicit), bounds)
     do i = 1, size(model%contacts)
       if (is_tied(model%contacts(i))) then
         if (limits_step) then
@@ -53,7 +54,7 @@ contains
       call report_initial_contact(model%contacts(i), model, state%contacts(i), log)
       if (model%contacts(i)%behind > 0) cycle
       call report_overhang(model%contacts(i), model, state%contacts(i), log)
-      if (.not. limits_step) cycle
+      if (.not. limits_step .or. model%contacts(i)%penalty_unit == penalty_implicit) cycle
       if (state%dt <= stable_step(element_limit, bounds(i))*(1.0_wp + round_off)) cycle
       call warn_of_step(model, i, state%dt, element_limit, bounds(i), log)
     end do

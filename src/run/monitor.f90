@@ -13,6 +13,7 @@ module monitor_m
   use model_m, only : model_t
   use output_schedule_m, only : schedule_t, start_schedule, is_due, mark_written
   use progress_m, only : progress_t, start_progress
+  use ranks_m, only : ranks_t
   use restart_plan_m, only : restarts_t, plan_restarts
   use results_file_m, only : results_file_t, run_info_t, open_results, append_state, finish_results
   use snapshot_m, only : snapshot_t
@@ -39,6 +40,7 @@ module monitor_m
     type(clock_t) :: clock
     type(progress_t) :: progress
     type(restarts_t) :: restarts
+    type(ranks_t) :: ranks        !! the first process alone has files
     logical :: has_plot = .false. !! the deck asks for plot states
     logical :: told_radii = .false. !! the log tells of nodes beyond the axis
     logical :: only_checks = .false. !! the state at time zero is made, and no file
@@ -55,6 +57,10 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     monitor%has_plot = is_asked(model%controls%output%plot)
+    if (monitor%ranks%mine > 0) then
+      call plan_histories(monitor%histories, model)
+      return
+    end if
     call open_histories(monitor%histories, prefix, model, error)
     if (allocated(error)) return
     if (monitor%has_plot) &
@@ -146,7 +152,7 @@ contains
       do k = 1, n_table
         if (due%tables(k)) call append_rows(histories%tables(k), k, model, shot)
       end do
-      if (due%plot) then
+      if (due%plot .and. monitor%ranks%mine == 0) then
         call append_state(monitor%results, model, shot, error)
         if (allocated(error)) return
         call flush_histories(histories, error)

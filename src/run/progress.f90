@@ -10,7 +10,8 @@ module progress_m
   use log_m, only : log_t, write_log
   use screen_m, only : show, show_part
   use signals_m, only : output_is_terminal
-  use status_file_m, only : status_t, keep_status, write_status, seconds_to_go, duration
+  use status_file_m, only : status_t, keep_status, write_status, done_share, &
+    seconds_to_go, duration
   implicit none
   private
   public :: progress_t, start_progress, follow_progress, show_progress, show_note, show_end
@@ -19,11 +20,15 @@ module progress_m
   integer, parameter :: look_cycles = 64
   !> Seconds between two refreshes on a terminal, and between two lines in a pipe.
   real(wp), parameter :: terminal_interval = 0.25_wp, pipe_interval = 10.0_wp
+  !> Lines in a pipe before the end of a run, at most: thousands of runs write into one file.
+  integer, parameter :: most_lines = 20
 
   !> What the lines need to know.
   type :: progress_t
     logical :: terminal = .false.
+    logical :: is_quiet = .false.   !! nothing but how the run has ended
     logical :: line_open = .false.  !! an updating line waits for its end
+    integer :: n_line = 0           !! lines written into a pipe
     integer :: status_interval = 0  !! cycles between lines, 0 = by time only
     real(wp) :: end_time = 0.0_wp
     integer :: first_cycle = 0      !! from which this run goes on
@@ -36,7 +41,7 @@ contains
 
   !> Set up the lines.
   subroutine start_progress(progress, end_time, status_interval)
-    type(progress_t), intent(out) :: progress
+    type(progress_t), intent(inout) :: progress
     real(wp), intent(in) :: end_time
     integer, intent(in) :: status_interval
     integer(long) :: now, rate
@@ -80,13 +85,15 @@ contains
   end function wants_line
 
   !> One line. `event` says what was written, blank for none; `ratio` is
-  !> the last energy ratio known.
-  subroutine show_progress(progress, clock, cycle, time, dt, ratio, event)
+  !> the last energy ratio known. A pipe gets a line where the next share of the run is done, or
+  !> where one was asked for (`is_asked`).
+  subroutine show_progress(progress, clock, cycle, time, dt, ratio, event, is_asked)
     type(progress_t), intent(inout) :: progress
     type(clock_t), intent(in) :: clock
     integer, intent(in) :: cycle
     real(wp), intent(in) :: time, dt, ratio
     character(*), intent(in) :: event
+    logical, intent(in), optional :: is_asked
     real(wp) :: share, to_go
     integer(long) :: now
     character(120) :: line
@@ -96,6 +103,7 @@ contains
     call system_clock(now)
     progress%next_tick = now + progress%wait
     call keep_status(progress%status, clock, cycle, time, dt, ratio)
+    if (progress%is_quiet) return
     if (progress%terminal) then
       share = min(1.0_wp, time/progress%end_time)
       to_go = max(0.0_wp, seconds_to_go(progress%status, elapsed_seconds(clock)))
@@ -104,6 +112,10 @@ contains
       call show_part(trim(line)//' '//duration(to_go)//'   ')
       progress%line_open = .true.
     else
+      if (.not. present(is_asked)) then
+        if ((most_lines - 1)*done_share(progress%status) < progress%n_line) return
+      end if
+      progress%n_line = progress%n_line + 1
       call date_and_time(date, hour)
       write (line, '(ss,i10,a,es10.4,a,es8.2,1x,a22,10x,a)') cycle, ' t ', time, ' dt ', dt, &
         event, date(5:6)//'/'//date(7:8)//'/'//date(3:4)//' '//hour(1:2)//':'//hour(3:4)//':' &
@@ -120,7 +132,10 @@ contains
 
     if (progress%line_open) call show('')
     progress%line_open = .false.
-    call say(log, text)
+    call write_log(log, text)
+    if (progress%is_quiet .or. (.not. progress%terminal .and. progress%n_line >= most_lines)) return
+    progress%n_line = progress%n_line + 1
+    call show(text)
   end subroutine show_note
 
   !> The end of the run: how it ended, problem time, cycles, cost and the timing table.
@@ -134,6 +149,7 @@ contains
     real(wp), intent(in) :: time
     integer, intent(in) :: n_element
     real(wp) :: seconds(n_phase), elapsed, cost
+    character(:), allocatable :: lines, ending
     character(100) :: line
 
     if (progress%line_open) call show('')
@@ -148,25 +164,35 @@ contains
     if (cycle > progress%first_cycle) cost = 1.0e9_wp &
       *(total_seconds(clock) - sum(seconds([phase_output, phase_input])))/real(cycle &
       - progress%first_cycle, wp)/n_element
-    call say(log, '')
-    call say(log, ' *** '//reason//' ***')
-    call say(log, trim(merge(normal_ending, error_ending//'  ', normal)))
-    call say(log, '')
+    ending = trim(merge(normal_ending, error_ending//'  ', normal))
+    lines = ''
+    call add(lines, '')
+    call add(lines, ' *** '//reason//' ***')
+    call add(lines, ending)
+    call add(lines, '')
     write (line, '(ss,a,es16.8)') ' Problem time        = ', time
-    call say(log, trim(line))
+    call add(lines, line)
     write (line, '(ss,a,i0)') ' Problem cycle       = ', cycle
-    call say(log, trim(line))
-    call say(log, ' Elapsed time        = '//fixed(elapsed, 3)//' seconds')
-    call say(log, ' Time per zone cycle = '//fixed(cost, 2)//' nanoseconds (output and input ' &
+    call add(lines, line)
+    call add(lines, ' Elapsed time        = '//fixed(elapsed, 3)//' seconds')
+    call add(lines, ' Time per zone cycle = '//fixed(cost, 2)//' nanoseconds (output and input ' &
       //trim(merge('apart   ', 'included', clock%is_on))//')')
     write (line, '(ss,a,i0)') ' Warnings            = ', log%n_warning
-    call say(log, trim(line))
-    if (clock%is_on) call show_timing(log, clock, seconds)
+    call add(lines, line)
+    if (clock%is_on) call add_timing(lines, clock, seconds)
+    ! In one piece: beside a small run each line of its own would be felt.
+    lines = lines(:len(lines) - 1)
+    if (progress%is_quiet) then
+      call show(ending)
+    else
+      call show(lines)
+    end if
+    call write_log(log, lines)
   end subroutine show_end
 
   !> The timing table, and what the timing itself took.
-  subroutine show_timing(log, clock, seconds)
-    type(log_t), intent(inout) :: log
+  subroutine add_timing(lines, clock, seconds)
+    character(:), allocatable, intent(inout) :: lines
     type(clock_t), intent(in) :: clock
     real(wp), intent(in) :: seconds(n_phase)
     character(100) :: line
@@ -174,29 +200,29 @@ contains
     integer :: i
 
     total = max(sum(seconds), tiny(1.0_wp))
-    call say(log, '')
-    call say(log, ' T i m i n g   i n f o r m a t i o n      seconds   share %        calls')
+    call add(lines, '')
+    call add(lines, &
+      ' T i m i n g   i n f o r m a t i o n      seconds   share %        calls')
     do i = 1, n_phase
       if (clock%calls(i) == 0) cycle
       write (line, '(ss,a,a24,f17.4,f10.2,i13)') '  ', phase_names(i), seconds(i), &
         100.0_wp*seconds(i)/total, clock%calls(i)
-      call say(log, trim(line))
+      call add(lines, line)
     end do
     each = lap_seconds()
     write (line, '(ss,a,i0,a,f0.1,a,f0.2,a)') ' Clock               = ', sum(clock%calls), &
       ' laps of ', 1.0e9_wp*each, ' nanoseconds, ', 100.0_wp*each*sum(clock%calls)/total, &
       ' % of the time'
-    call say(log, trim(line))
-  end subroutine show_timing
+    call add(lines, line)
+  end subroutine add_timing
 
-  !> One line to standard output and to the log.
-  subroutine say(log, text)
-    type(log_t), intent(inout) :: log
+  !> One line more.
+  pure subroutine add(lines, text)
+    character(:), allocatable, intent(inout) :: lines
     character(*), intent(in) :: text
 
-    call show(text)
-    call write_log(log, text)
-  end subroutine say
+    lines = lines//trim(text)//new_line('a')
+  end subroutine add
 
   !> The first line of a text.
   pure function first_line(text) result(line)

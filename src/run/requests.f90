@@ -53,7 +53,7 @@ contains
     select case (switch)
     case (switch_status)
       call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, &
-        ratio, 'status (sw2)')
+        ratio, 'status (sw2)', .true.)
     case (switch_flush)
       if (.not. allocated(error)) call flush_histories(monitor%histories, error)
     case (switch_unknown)

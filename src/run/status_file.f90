@@ -10,7 +10,8 @@ module status_file_m
   use log_m, only : to_text
   implicit none
   private
-  public :: status_t, start_status, keep_status, write_status, seconds_to_go, duration
+  public :: status_t, start_status, keep_status, write_status, done_share, seconds_to_go, &
+    duration
 
   !> Seconds between two files at least.
   real(wp), parameter :: file_interval = 1.0_wp
@@ -49,6 +50,7 @@ contains
     status%start_cycle = status%cycle
     status%start_seconds = elapsed_seconds(clock)
     call write_status(status, clock, 'running')
+    call wait_for_next(status)
   end subroutine start_status
 
   !> Take new numbers, and write them when the last file is old enough.
@@ -57,17 +59,26 @@ contains
     type(clock_t), intent(in) :: clock
     integer, intent(in) :: cycle
     real(wp), intent(in) :: time, dt, ratio
-    integer(long) :: now, rate
+    integer(long) :: now
 
     status%cycle = cycle
     status%time = time
     status%dt = dt
     status%ratio = ratio
-    call system_clock(now, rate)
+    call system_clock(now)
     if (now < status%next_tick) return
-    status%next_tick = now + int(file_interval*real(rate, wp), long)
+    call wait_for_next(status)
     call write_status(status, clock, 'running')
   end subroutine keep_status
+
+  !> The next file is due after the interval.
+  subroutine wait_for_next(status)
+    type(status_t), intent(inout) :: status
+    integer(long) :: now, rate
+
+    call system_clock(now, rate)
+    status%next_tick = now + int(file_interval*real(rate, wp), long)
+  end subroutine wait_for_next
 
   !> Write the file.
   subroutine write_status(status, clock, state)
@@ -120,11 +131,9 @@ contains
       //' '//hour(1:2)//':'//hour(3:4)//':'//hour(5:6)//n
   end function status_text
 
-  !> Seconds until the end at the pace since this run began; -1 where nothing has been done yet.
-  pure function seconds_to_go(status, elapsed) result(seconds)
+  !> Share of the run that has been done, by time or by cycles.
+  pure function done_share(status) result(share)
     type(status_t), intent(in) :: status
-    real(wp), intent(in) :: elapsed
-    real(wp) :: seconds
     real(wp) :: share
 
     share = 0.0_wp
@@ -132,6 +141,16 @@ contains
       share = (status%time - status%start_time)/(status%end_time - status%start_time)
     if (status%end_cycle > status%start_cycle) share = max(share, &
       real(status%cycle - status%start_cycle, wp)/(status%end_cycle - status%start_cycle))
+  end function done_share
+
+  !> Seconds until the end at the pace since this run began; -1 where nothing has been done yet.
+  pure function seconds_to_go(status, elapsed) result(seconds)
+    type(status_t), intent(in) :: status
+    real(wp), intent(in) :: elapsed
+    real(wp) :: seconds
+    real(wp) :: share
+
+    share = done_share(status)
     seconds = -1.0_wp
     if (share > 0.0_wp) seconds = max(0.0_wp, &
       (elapsed - status%start_seconds)*(1.0_wp - share)/share)

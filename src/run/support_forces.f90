@@ -50,10 +50,11 @@ contains
   end subroutine fill_reactions
 
   !> Reactions of the explicit method; a body load pulls at the mass of fixed nodes too.
-  pure subroutine fill_explicit_reactions(model, state, snapshot)
+  pure subroutine fill_explicit_reactions(model, state, snapshot, held)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
+    real(wp), intent(in), optional :: held(:, :) !! (2, n_skew) forces of skew supports on nodes
     real(wp) :: reaction(2, model%mesh%n_node)
     integer :: k
 
@@ -65,6 +66,23 @@ contains
       reaction(:, :n) = reaction(:, :n) - state%force_special(:, :n)
     end associate
     call fill_reactions(model, reaction, snapshot)
+    if (present(held)) call add_skew(model, held, snapshot)
   end subroutine fill_explicit_reactions
+
+  !> Forces of supports along axes that are neither x nor y.
+  pure subroutine add_skew(model, held, snapshot)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: held(:, :)
+    type(snapshot_t), intent(inout) :: snapshot
+    integer :: row(model%mesh%n_node), i
+
+    row = 0
+    row(snapshot%supports) = [(i, i=1, size(snapshot%supports))]
+    do i = 1, size(held, 2)
+      associate (k => row(model%conditions%skew_supports(i)%node))
+        if (k > 0) snapshot%reaction(:, k) = snapshot%reaction(:, k) + held(:, i)
+      end associate
+    end do
+  end subroutine add_skew
 
 end module support_forces_m

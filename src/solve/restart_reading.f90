@@ -130,6 +130,7 @@ contains
       error = monitor%restarts%source%error
       return
     end if
+    if (monitor%ranks%mine > 0) return
     call show_note(monitor%progress, monitor%log, 'restart from '//monitor%restarts%source%path &
       //place_text(state))
     if (.not. monitor%has_plot) return

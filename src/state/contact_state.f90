@@ -137,6 +137,10 @@ module contact_state_m
     logical :: has_freed = .false.          !! any
     integer :: n_held = 0                   !! places that the tie holds
     real(wp) :: taken = 0.0_wp              !! what springs hold that were freed pressed, J/m
+    logical :: waits = .false.              !! points are placed, forces follow once all others are
+                                            !! known
+    logical :: had_force = .false.          !! the call before had some; both only of implicit
+                                            !! penalties
     type(piece_table_t), allocatable :: pieces !! lent to the placement while it works
   end type contact_scratch_t
 
@@ -181,6 +185,8 @@ module contact_state_m
     type(energy_limit_t) :: limit           !! that they give back no more
     integer :: n_active = 0                 !! points that carry pressure
     integer :: n_released = 0               !! first contacts deeper than the limit that were let go
+    integer :: n_swept = 0                  !! calls in which sweeps had to settle which nodes press
+    integer :: n_dropped = 0                !! calls in which some pressures depended on others
     type(contact_scratch_t) :: scratch
   end type contact_state_t
 

@@ -12,6 +12,7 @@ from fortran_source import ROOT, read_source, without_strings
 LAYERS = {
     "base": set(),
     "linear": {"base"},
+    "parallel": {"base"},
     "model": {"base"},
     "deck_text": {"base", "model"}, "deck_schema": {"base"},
     "deck_cards": {"base", "model", "deck_text", "deck_schema"},
@@ -31,15 +32,15 @@ LAYERS = {
                 "contact_place", "contact_law", "contact_tangent"},
     "loads": {"base", "model"},
     "output": {"base", "model", "state"},
-    "run": {"base", "model", "state", "element", "contact", "loads", "output"},
+    "run": {"base", "parallel", "model", "state", "element", "contact", "loads", "output"},
     "solve_start": {"base", "model", "state", "element", "contact", "contact_law", "loads"},
-    "solve_explicit": {"base", "model", "state", "element", "contact", "contact_law", "loads", "output", "run", "solve_start"},
+    "solve_explicit": {"base", "parallel", "model", "state", "element", "contact", "contact_law", "loads", "output", "run", "solve_start"},
     "solve_implicit": {"base", "linear", "model", "state", "element", "contact", "contact_law", "loads", "output",
                        "run"},
-    "solve": {"base", "model", "state", "output", "run", "solve_start", "solve_explicit", "solve_implicit"},
+    "solve": {"base", "parallel", "model", "state", "output", "run", "solve_start", "solve_explicit", "solve_implicit"},
 }
 #: modules from outside -> layers that may use them
-OUTSIDE = {"hdf5": {"output"}, "omp_lib": {"state", "element", "contact", "solve_explicit", ""}}
+OUTSIDE = {"hdf5": {"output"}, "mpi": {"parallel"}, "omp_lib": {"state", "element", "contact", "solve_explicit", ""}}
 #: what decides between kinds -> the one file that may ask for it
 DISPATCHERS = {
     "contact_type": "contact_dispatch.f90",

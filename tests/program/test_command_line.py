@@ -53,7 +53,45 @@ def test_memory_is_accepted_and_ignored(slideline, tmp_path):
     assert (tmp_path / "m/job.glstat.csv").read_bytes() == (tmp_path / "n/job.glstat.csv").read_bytes()
 
 
-@pytest.mark.parametrize("word, said", [("nonsense=1", "nonsense"), ("--nonsense", "nonsense"),
+def test_words_of_ls_dyna(slideline, tmp_path):
+    """Those without effect are told once, in one warning; the results are those of a run without them."""
+    deck = drop(end_time=0.002).text().replace("*END", "*DATABASE_BINARY_D3DUMP\n10,\n*END")
+    words = ["o=d3hsp", "g=d3plot", "s=intfor", "f=d3thdt", "a=runrsf", "x=7", "x=8", "para=1", "case"]
+    done = slideline("d=dyna", "d=nodump", "c=3600", "memory2=20m", "ncpu=-2", *words, deck=deck)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == "warning: of the command line have no effect here: o= g= s= f= a= x= para= case\n"
+    assert "Warnings            = 1" in done.stdout
+    assert slideline("d=own", "ncpu=2", deck=deck).returncode == 0
+    names = {folder: {path.name for path in (tmp_path / folder).iterdir()} for folder in ("dyna", "own")}
+    assert names["own"] - names["dyna"] == {"job.dump01.h5", "job.dump02.h5"} and not (tmp_path / "nodump").exists()
+    for name in ("job.glstat.csv", "job.rcforc.csv", "job.nodout.csv"):
+        assert (tmp_path / "dyna" / name).read_bytes() == (tmp_path / "own" / name).read_bytes()
+    assert not list(tmp_path.glob("d3*"))
+
+
+def test_processor_time_has_a_limit(slideline, tmp_path):
+    """c=1: a run that would take minutes stops as by a signal, with all its files."""
+    done = slideline("d=c", "c=1", "endtim=1000.0", deck=drop(), timeout=100)
+    assert done.returncode == 4 and "stopped on request" in done.stdout, done.stderr
+    assert len(numbers(tmp_path / "c" / "job.glstat.csv", "time")) > 1
+
+
+def test_a_pipe_gets_twenty_lines_and_the_end(slideline, tmp_path):
+    """However many states are written; quiet=1 leaves the line that says how the run has ended."""
+    deck = drop(end_time=0.02).text().replace("*DATABASE_BINARY_D3PLOT\n0.002", "*DATABASE_BINARY_D3PLOT\n0.0002")
+    done = slideline("d=l", deck=deck)
+    assert done.returncode == 0, done.stderr
+    lines = re.findall(r"(?m)^ *\d+ t (\S+) dt", done.stdout)
+    assert len(lines) == 20 and float(lines[0]) == 0.0 and float(lines[-1]) == pytest.approx(0.02)
+    assert max(np.diff(np.array(lines, float))) < 0.0014, "one for each share of the run"
+    done = slideline("d=q", "quiet=1", deck=deck)
+    assert (done.returncode, done.stdout, done.stderr) == (0, f" {NORMAL}\n", "")
+    log = (tmp_path / "q" / "job.log").read_text()
+    assert "Problem time" in log and "contact_search" in log
+
+
+@pytest.mark.parametrize("word, said", [("nonsense=1", "nonsense"), ("quiet=2", "expected 0 or 1"),
+                                        ("c=0", "from 1 to"), ("ncpu=-0", "ncpu"), ("--nonsense", "nonsense"),
                                         ("ctype=two", "two"), ("ctype.7=2", "interface 7"),
                                         ("ncpu=0", "ncpu"), ("ncpu=1025", "1024"), ("ncpu=two", "ncpu"), ("perthread=0", "perthread"), ("timing=often", "phase, interface or off"), ("endtim=", "endtim"),
                                         ("endtim=soon", "soon"), ("p:nowhere=3", "nowhere"),

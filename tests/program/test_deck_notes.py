@@ -36,6 +36,23 @@ def test_cards_without_effect_are_named(slideline, tmp_path, cards, words):
     assert said.count("warning: ") > 0
 
 
+@pytest.mark.parametrize("law, stays", [
+    ("*MAT_MOONEY-RIVLIN_RUBBER\n2,1000.0,0.49,3.0e5,1.0e5", True), ("*MAT_BLATZ-KO_RUBBER\n2,1000.0,7.0e5", True),
+    ("*MAT_CRUSHABLE_FOAM\n2,1000.0,1.0e6,0.0,9,1.0e4\n*DEFINE_CURVE\n9,\n0.0,1.0e5\n0.9,1.0e6", True),
+    ("*MAT_ELASTIC\n2,1000.0,1.0e6,0.3", False), ("*MAT_RIGID\n2,1000.0,1.0e6,0.3", False)])
+def test_what_erode_passes_over_is_named(slideline, tmp_path, law, stays):
+    """Rubber and foam stay in the mesh: the deck is told so, whatever else may leave."""
+    deck = Deck("two squares").add("*CONTROL_TERMINATION", (1.0e-4,)).add("*CONTROL_TIMESTEP", (0.0, 0.9, 0, 0.0, 0.0, 0, 1))
+    deck.add("*SECTION_SHELL", (1, 13), (1.0,)).elastic(1000.0, 1.0e6, 0.3)
+    for part in (1, 2):
+        deck.add("*PART", f"square {part}", (part, 1, part)).mesh(*grid(1, 1, origin=(2.0 * part, 0.0)), part=part)
+    deck.add(law)
+    done = slideline("d=out", deck=deck)
+    assert done.returncode == 0, done.stderr
+    said = (tmp_path / "out" / "job.log").read_text()
+    assert ("ERODE takes no elements of part 2, which is rubber or foam" in said) == stays, said
+
+
 @pytest.mark.parametrize("cards, words, line", [
     ("*PARAMETER_EXPRESSION\n,2*3", "a parameter needs a name", ()),
     ("*PARAMETER\nR stiff,2.0", 'p:STIFF on the command line: "hard" is not a number', ("p:stiff=hard",)),
@@ -79,14 +96,17 @@ def node_lines(text):
     return start, stop
 
 
-def test_more_mistakes_than_are_told(slideline):
-    """1100 sets that are not there: the first thousand in words, all of them in the sum."""
+def test_more_mistakes_than_are_told(slideline, tmp_path):
+    """1100 sets that are not there: the first in words, all of them in its count and in the sum."""
     text = drop().text().rsplit("*END", 1)[0]
     text += "".join(f"*BOUNDARY_SPC_SET\n{1000 + k},0,1,1\n" for k in range(1100)) + "*END\n"
     done = slideline("d=out", deck=text)
     assert done.returncode == 1
     assert "refused, 1100 errors" in done.stderr
-    assert done.stderr.count("BOUNDARY_SPC_SET card") == 1000
+    assert done.stderr.count("BOUNDARY_SPC_SET card") == 1
+    first = len(drop().text().rsplit("*END", 1)[0].splitlines()) + 2
+    places = ", ".join(f"{tmp_path / 'job.k'}:{first + 2 * k}" for k in range(3))
+    assert f"\n  | 1100 times: {places} and so on\n" in done.stderr
 
 
 def test_names_of_the_alternative_spelling(slideline, tmp_path):

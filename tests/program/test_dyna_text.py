@@ -6,6 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 from conftest import columns, drop, numbers
+from erosion_decks import penetration
 from meshes import Deck, grid
 
 NAMES = ("glstat", "rcforc", "nodout", "matsum", "sleout", "spcforc")
@@ -54,9 +55,10 @@ def test_head_has_the_title_and_lines_are_short(run, name):
     assert (run / f"drop.{name}").read_bytes().endswith(b"\n")
 
 
-def test_glstat(run):
+def blocks_of(lines):
+    """Cycles of glstat, and label and number of each line."""
     blocks, cycles = [], []
-    for line in lines_of(run, "glstat"):
+    for line in lines:
         found = re.match(r" dt of cycle\s*(\d+) is controlled by (load curve|shell\s+\d+ of part\s+\d+)$",
                          line)
         if found:
@@ -64,6 +66,27 @@ def test_glstat(run):
             blocks.append({})
         elif blocks and len(line) > 33 and line[1] != " ":
             blocks[-1][line[1:32].rstrip(". ")] = line[32:46]
+    return cycles, blocks
+
+
+def test_glstat_of_a_run_that_loses_elements(slideline, tmp_path):
+    """The lines add up to the total without what leap-frog adds; of the ratio without what has gone too."""
+    done = slideline("d=out", deck=penetration(5, n=4))
+    assert done.returncode == 0, done.stderr
+    blocks = [{label: float(number) for label, number in block.items()}
+              for block in blocks_of((tmp_path / "out" / "job.glstat").read_text().splitlines())[1]]
+    csv = {name: numbers(tmp_path / "out" / "job.glstat.csv", name) for name in ("total", "leapfrog", "eroded", "energy_ratio")}
+    gone = [sum(block[f"eroded {kind} energy"] for kind in ("kinetic", "internal", "hourglass")) for block in blocks]
+    assert min(blocks[-1][f"eroded {kind} energy"] for kind in ("kinetic", "internal", "hourglass")) > 0.0
+    kept = [sum(block[f"{kind} energy"] for kind in ("kinetic", "internal", "hourglass", "system damping", "sliding interface"))
+            for block in blocks]
+    assert np.add(kept, gone) == pytest.approx(csv["total"] - csv["leapfrog"], rel=3e-5)
+    assert [block["energy ratio w/o eroded energy"] for block in blocks] == pytest.approx(
+        csv["energy_ratio"] * (1.0 - csv["eroded"] / csv["total"]), rel=1e-5)
+
+
+def test_glstat(run):
+    cycles, blocks = blocks_of(lines_of(run, "glstat"))
     csv = {name: numbers(run / "drop.glstat.csv", name) for name in columns(run / "drop.glstat.csv")}
     assert cycles == csv["cycle"].astype(int).tolist()
     wanted = {"time": csv["time"], "time step": csv["dt"], "kinetic energy": csv["kinetic"],

@@ -216,6 +216,35 @@ def test_automatic_step_is_cut_and_goes_on(slideline, tmp_path):
     assert "no equilibrium after 3 iterations" in (tmp_path / "x" / "job.log").read_text()
 
 
+def tilted_on_another(automatic):
+    """One element, tilted, pressed upon three and pushed along them in two steps: Newton's method goes to and fro between
+    the same states of friction (type 6, mu 0.8)."""
+    deck = implicit(1.0, 0.5, automatic=automatic, most_iterations=40)
+    deck.part(1, points=4).elastic(1000.0, 1.0e6, 0.45, 1).part(2, points=4).elastic(1000.0, 3.0e6, 0.3, 2)
+    upper, quads = grid(1, 1, 1.4, 0.5, (0.6, 0.0))
+    upper[:, 1] += 0.02 * (upper[:, 0] - 0.6)
+    upper, lower = deck.mesh(upper, quads, part=1), deck.mesh(*grid(3, 1, 3.0, 0.6, (0.0, -0.6)), part=2)
+    deck.fix(lower[:4], x=1, y=1).node_set(1, upper[:2]).node_set(2, lower[:-5:-1]).curve(1, [(0.0, 0.0), (1.0, 1.0)])
+    for node in upper[2:]:
+        deck.prescribe(int(node), 2, 2, 1, -0.04).prescribe(int(node), 1, 2, 1, -0.1)
+    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, 6, 3, 1.0e9, 0.8))
+    return deck.output(glstat=1.0e-9, plot=1.0e9)
+
+
+@pytest.mark.parametrize("automatic", [None, (1.0e-4, 0.5)])
+def test_stick_and_slip_that_cycle_end_the_attempt(slideline, tmp_path, automatic):
+    """Before the last of 40 iterations; a step that may be cut is, and the run goes on."""
+    done = slideline("d=x", deck=tilted_on_another(automatic))
+    assert done.returncode == (0 if automatic else 2), done.stderr
+    told = re.findall(r"no equilibrium after (\d+) iterations, the last of which cycle between the same states of stick and slip",
+                      (tmp_path / "x" / "job.log").read_text())
+    assert told and max(map(int, told)) < 40
+    if automatic:
+        assert last_state(tmp_path / "x") == (1.0, 1.0)
+        steps = numbers(tmp_path / "x" / "job.glstat.csv", "time")
+        assert min(b - a for a, b in zip(steps, steps[1:])) < 0.3, "cut"
+
+
 def test_a_linear_run_iterates_once(slideline, tmp_path):
     """NSOLVR = 1, whatever the tolerances ask for."""
     deck = pulled(4.0e5, dt=0.5)

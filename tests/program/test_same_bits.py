@@ -173,6 +173,12 @@ def test_impact_has_the_same_bits(exe, is_debug, tmp_path, points):
     assert damage.max() >= 1.0 and np.frombuffer(found["VTKHDF/CellData/temperature"]).max() > 310.0
 
 
+def test_implicit_penalty_has_the_same_bits(exe, is_debug, tmp_path):
+    """Contact forces that follow all others, on one thread between two pieces of work of all."""
+    found = check_same(exe, is_debug, tmp_path, collision(2, 7), ("endtim=7.5e-6", "p:dtplot=5e-6", "p:dthist=1e-6", "punit=4", "pen=10"))
+    assert last_force(found) > 0.0, "no contact in this run"
+
+
 @pytest.mark.parametrize("is_self", [False, True])
 def test_erosion_has_the_same_bits(exe, is_debug, tmp_path, is_self):
     """Elements leave the mesh, and surfaces of contact follow."""

@@ -105,6 +105,21 @@ def test_what_has_ended_well_is_passed_over(place, decks):
     assert len(told(results / "first one")) == 4
 
 
+def test_many_runs_share_what_goes_before_them(place):
+    """Several lines a call: each still has its own inputs, lock and folder, and one that can not begin costs no other."""
+    for number in range(40):
+        deck(place / "many" / f"run {number}.k", 2 if number == 7 else 0)
+    (place / "many" / "results").mkdir()
+    (place / "many" / "results" / "run 3").write_text("in the way\n")
+    done = call(place, "run_folder.sh", "-j", 2, "many")
+    rows = summary(place / "many" / "results")
+    assert done.returncode == 1 and len(rows) == 40
+    assert {name for name, row in rows.items() if row["status"] != "0"} == {"run 3", "run 7"}
+    deck(place / "many" / "run 20.k", 0, 3.0)
+    call(place, "run_folder.sh", "-j", 2, "many")
+    assert {number for number in range(40) if number != 3 and len(told(place / "many" / "results" / f"run {number}")) == 2} == {7, 20}
+
+
 def test_another_build_runs_anew(place, decks):
     """A build from edited sources may say the same of itself."""
     program = place / "the program"

@@ -57,3 +57,9 @@ def test_folder_of_its_own_where_none_is_named(run, tmp_path):
     said, drawn = run("results/block", "block", "block.k", "ncpu=2")
     assert said == ["i=block.k", f"d={tmp_path}/results/block", "ncpu=2"]
     assert drawn[1] == f"{tmp_path}/results/block/block.vtkhdf"
+
+
+def test_nodump_names_no_folder(run, tmp_path):
+    said, drawn = run("results/block", "block", "block.k", "d=nodump")
+    assert said == ["i=block.k", f"d={tmp_path}/results/block", "d=nodump"]
+    assert drawn[1] == f"{tmp_path}/results/block/block.vtkhdf"

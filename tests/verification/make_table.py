@@ -1,26 +1,41 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Write doc/verification.md from the results of the verification runs.
+"""Write doc/verification.md and a page for each case in doc/verification/ from the results of the runs.
 
 `make_table.py --results DIR [--output doc/verification.md]`, where DIR holds
 the <case>.json files left by run_case.py (`SLIDELINE_FULL=1 ctest -L verification`
-for the page: it says which cases were run with a covering design instead).
+for the pages: the front page says which cases were run with a covering design instead).
 """
 import argparse
 import json
 import pathlib
+import re
 import sys
+import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HEAD = """# Verification
 
-Each case is a folder of `tests/verification`; its README.md says where the expected value comes
-from and why the tolerance is what it is. No expected value comes from this program. This page is
-written by `tests/verification/make_table.py` from the results of the runs: do not edit it.
-
-`error` is relative for kind `rel` (arrays: largest difference over largest expected value, the
+No expected value comes from this program: closed forms, conservation laws, symmetry, differences, other programs and
+published figures. Each case is a folder of `tests/verification`; its README.md says where the expected values come
+from and why the tolerances are what they are. Behind each name below are all checks of the case, with their number.
+These pages are written by `tests/verification/make_table.py` from the results of the runs: do not edit them.
+"""
+CASE_HEAD = """`error` is relative for kind `rel` (arrays: largest difference over largest expected value, the
 worst entry shown) and absolute for kind `abs`; `min` and `max` are bounds on what was found.
 """
+#: subject -> the cases that belong to it; a case goes to the first that fits
+SUBJECTS = {
+    "Friction": "friction|cattaneo|ironing|sliding_flutter|wall_friction",
+    "Ties, self contact, interference": "tie|self_contact|interference|press_fit|closed_chains",
+    "Bodies of revolution": "round|punch|hertz_spheres|taylor_bar|ring$",
+    "Materials of impact, erosion": "impact_laws|rubber|erosion|expanding|plate_impact|taylor_johnson",
+    "Quasi-static help": "dynamic_relaxation|mass_scaling|part_damping|constraints",
+    "Implicit": "implicit|contact_patch_static",
+    "Rigid bodies, walls, loads": "rigid|gravity|spin",
+    "Elements and waves": "element|assumed|hourglass|integration|bar_wave|free_flight|symmetric_plate|stable_step|energy_balance",
+    "Contact": ".",
+}
 
 
 def number(value):
@@ -31,8 +46,10 @@ def cell(text):
     return text.replace("|", "\\|").replace("\n", " ")
 
 
-def case_section(report):
-    lines = [f"\n## {report['case']}\n",
+def case_page(report):
+    """All checks of a case."""
+    lines = [f"# {report['case']}\n",
+             f"[What the case is](../../tests/verification/{report['case']}/README.md). {CASE_HEAD}",
              "| quantity | expected | found | error | tolerance | kind | verdict |",
              "|---|---|---|---|---|---|---|"]
     for check in report["checks"]:
@@ -58,6 +75,15 @@ def coverage(reports):
     return f"Run with covering designs, as in CI, not in full: {which}."
 
 
+def by_subject(reports):
+    """Subject -> reports, in the order of SUBJECTS."""
+    groups = {subject: [] for subject in SUBJECTS}
+    for report in reports:
+        subject = next(name for name, pattern in SUBJECTS.items() if re.search(pattern, report["case"]))
+        groups[subject].append(report)
+    return {subject: members for subject, members in groups.items() if members}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--results", required=True, type=pathlib.Path)
@@ -69,14 +95,21 @@ def main():
         return 1
     checks = [check for report in reports for check in report["checks"]]
     lines = [HEAD, f"{len(reports)} cases, {len(checks)} checks, "
-             f"{sum(check['passed'] for check in checks)} passed. {coverage(reports)}",
-             "\n| case | checks | passed |", "|---|---|---|"]
-    lines += [f"| {report['case']} | {len(report['checks'])} | "
-              f"{sum(check['passed'] for check in report['checks'])} |" for report in reports]
-    for report in reports:
-        lines += case_section(report)
+             f"{sum(check['passed'] for check in checks)} passed. {coverage(reports)}"]
+    for subject, members in by_subject(reports).items():
+        found = [check["passed"] for report in members for check in report["checks"]]
+        lines.append(f"\n**{subject}** ({sum(found)} of {len(found)} checks passed):")
+        cases = ", ".join(f"[{report['case']}](verification/{report['case']}.md) {len(report['checks'])}"
+                          for report in members)
+        lines.append(textwrap.fill(cases + ".", 120, break_long_words=False, break_on_hyphens=False))
     options.output.parent.mkdir(parents=True, exist_ok=True)
     options.output.write_text("\n".join(lines) + "\n")
+    folder = options.output.with_suffix("")
+    folder.mkdir(exist_ok=True)
+    for path in folder.glob("*.md"):
+        path.unlink()
+    for report in reports:
+        (folder / f"{report['case']}.md").write_text("\n".join(case_page(report)) + "\n")
     print(f"{options.output}: {len(checks)} checks of {len(reports)} cases")
     return 0
 

@@ -24,10 +24,9 @@ here=$(cd "$(dirname "$0")" && pwd)
 help_or_go_on "$@"
 program=${SLIDELINE:-$here/../../build/release/slideline}
 
-# run_line OUT LINE: one run.
+# run_line OUT LINE INPUTS: one run.
 run_line() {
-  out=$1
-  tab=$(printf '\t')
+  out=$1 now=$3
   set -f
   IFS=$tab
   # shellcheck disable=SC2086  # the fields between tabs
@@ -37,28 +36,71 @@ run_line() {
   name=$1 deck=$2
   shift 2
   folder=$out/$name
-  mkdir -p "$folder" || return 1
+  [ -d "$folder" ] || return 1
   # A batch that is called while another one is at this run leaves it alone.
-  if command -v flock >/dev/null; then
+  if [ "$locks" = yes ]; then
     exec 9>"$folder/run.lock"
     if ! flock -n 9; then
       echo "== $name: another batch is running it"
       return 0
     fi
   fi
-  now=$({ printf '%s\n' "$deck" | files_of | cut -c 2- | tr '\n' '\0' | xargs -0 cksum --; printf '%s\n' "$@"; "$program" --version
-    cksum <"$(command -v "$program")"; } | cksum)
-  if [ "$fresh" = no ] && [ "$(cat "$folder/run.status" 2>/dev/null)" = 0 ] \
-    && [ "$(cat "$folder/run.inputs" 2>/dev/null)" = "$now" ]; then
+  if [ "$fresh" = no ] && [ -e "$folder/run.status" ] && [ "$(first_line "$folder/run.status")" = 0 ] \
+    && [ "$(first_line "$folder/run.inputs")" = "$now" ]; then
     echo "== $name: has run already"
     return 0
   fi
   echo "== $name"
-  rm -f "$folder/run.status"
-  printf '%s\n' "$now" >"$folder/run.inputs"
+  [ ! -e "$folder/run.status" ] || rm -f "$folder/run.status" || return 1
+  printf '%s\n' "$now" >"$folder/run.inputs" || return 1
   status=0
   "$program" i="$deck" d="$folder" jobid="$name" "$@" >"$folder/said.txt" 2>&1 </dev/null || status=$?
   echo "$status" >"$folder/run.status"
+}
+
+# first_line FILE: its first line, nothing where there is none.
+first_line() {
+  [ -r "$1" ] || return 0
+  IFS= read -r line <"$1" || :
+  printf '%s' "$line"
+}
+
+# with_inputs IDENTITY LINE...: each line, and behind it on a line of its own all that its run depends on: program, files
+# with their checksums, options.
+with_inputs() {
+  identity=$1
+  shift
+  held=$(printf '%s\n' "$@" | cut -f 2 | files_of)
+  {
+    printf '%s\n' "$held" | cut -c 2- | LC_ALL=C sort -u | tr '\n' '\0' | xargs -0 cksum -- || :
+    printf '\n%s\n\n' "$held"
+    printf '%s\n' "$@"
+  } | IDENTITY=$identity LC_ALL=C awk '
+    /^$/ { part++; next }
+    !part { match($0, /^[0-9]+ [0-9]+ /); sum[substr($0, RLENGTH + 1)] = substr($0, 1, RLENGTH); next }
+    part == 1 { if (/^=/) k++; path = substr($0, 2); inputs[k] = inputs[k] "\t" sum[path] path; next }
+    { print; sub(/^[^\t]*\t[^\t]*/, ""); print ENVIRON["IDENTITY"] inputs[++r] "\t" $0 }'
+}
+
+# run_lines OUT IDENTITY LINE...: some runs, one after the other. Most of what goes before a run is done once for all of
+# them: beside a small run every process counts.
+run_lines() {
+  out=$1 identity=$2 tab=$(printf '\t')
+  shift 2
+  locks=no
+  if command -v flock >/dev/null; then locks=yes; fi
+  printf '%s\n' "$@" | cut -f 1 | { cd "$out" && tr '\n' '\0' | xargs -0 mkdir -p --; } || :
+  set -f
+  IFS='
+'
+  # shellcheck disable=SC2046  # lines become words
+  set -- $(with_inputs "$identity" "$@")
+  unset IFS
+  set +f
+  while [ $# -gt 1 ]; do
+    (run_line "$out" "$1" "$2") || :
+    shift 2
+  done
 }
 
 # collect LIST OUT: the table of all runs, on the screen and in OUT/summary.csv; false when one has not ended well. Names
@@ -131,10 +173,11 @@ collect() {
   return "$status"
 }
 
-if [ "${1:-}" = --one ]; then
-  [ $# -gt 3 ] || exit 0
+if [ "${1:-}" = --some ]; then
+  [ $# -gt 4 ] || exit 0
   fresh=$2
-  run_line "$3" "$4"
+  shift 2
+  run_lines "$@"
   exit 0
 fi
 
@@ -174,10 +217,14 @@ if [ "$runs" = yes ]; then
     echo "$program: no such program; build it with tools/build.sh, or say SLIDELINE=..." >&2
     exit 2
   fi
+  identity=$({ "$program" --version; cksum <"$(command -v "$program")"; } | cksum)
+  # One to sixteen lines a call, and at least eight calls for each of the runs at a time, so that they end together.
+  some=$(LC_ALL=C awk -v k="$k" -v n="$n" -v jobs="$jobs" '(NR - 1) % n == k && NF { lines++ }
+    END { some = int(lines/(8*jobs)); print(some < 1 ? 1 : some > 16 ? 16 : some) }' "$1")
   # Lines become arguments by null bytes, so that blanks and quotes in them mean nothing. A run that can not even
   # begin is no reason to leave the others out.
   LC_ALL=C awk -v k="$k" -v n="$n" '(NR - 1) % n == k && NF' "$1" | tr '\n' '\0' \
-    | xargs -0 -n 1 -P "$jobs" "$here/run_list.sh" --one "$fresh" "$2" || :
+    | xargs -0 -n "$some" -P "$jobs" "$here/run_list.sh" --some "$fresh" "$2" "$identity" || :
   [ "$part" = 0/1 ] || exit 0
 fi
 collect "$1" "$2"

@@ -35,7 +35,7 @@ def site_paths():
     pages["tools/README.md"] = "tools.md"
     for path in sorted((ROOT / "tests/verification").glob("*/README.md")):
         case = path.parent.name
-        pages[f"tests/verification/{case}/README.md"] = f"verification/{case}.md"
+        pages[f"tests/verification/{case}/README.md"] = f"cases/{case}.md"
     return pages
 
 
@@ -103,16 +103,17 @@ def navigation(folder, keywords):
     theory = [f"theory/{name}.md" for name in
               ("contact", "elements", "materials", "time_integration", "implicit", "rigid_bodies")]
     return [
-        {"Start": ["index.md", {"Quick start": "quick_start.md"}, {"Building": "building.md"},
+        {"Start": ["index.md", {"Quick start": "quick_start.md"}, {"First steps": "first_steps.md"},
+                   {"Choose": "choose.md"}, {"Building": "building.md"},
                    {"Tutorial": "tutorial.md"},
-                   {"Coming from LS-DYNA": "coming_from_ls_dyna.md"},
+                   {"Meshes": "meshes.md"}, {"Coming from LS-DYNA": "coming_from_ls_dyna.md"},
                    {"Results": "results.md"}, {"Python tools": "tools.md"}]},
         {"Keywords": ["keywords/index.md", {"All on one page": "keywords.md"},
                       {"Example decks": "examples/index.md"},
                       *({group: entries} for group, entries in groups.items())]},
         {"Theory": pages("theory/*.md", theory)},
-        {"Verification": [{"Table of all checks": "verification.md"},
-                          {"Cases": pages("verification/*.md")}]},
+        {"Verification": ["verification.md", {"Cases": pages("cases/*.md")},
+                          {"All checks": pages("verification/*.md")}]},
         {"Studies": pages("studies/*.md", ["studies/index.md"])},
         {"Extend": ["architecture.md", "add_a_formulation.md", "add_a_material.md", "add_a_history.md",
                     {"Fortran interface": "fortran_interface.md"}]},

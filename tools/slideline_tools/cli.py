@@ -11,6 +11,7 @@ import tempfile
 from slideline_tools import UserError, __version__
 from slideline_tools.commands import completion, help_texts
 from slideline_tools.commands import draw as draw_command
+from slideline_tools.commands import from_mesh as from_mesh_command
 from slideline_tools.commands import dyna as dyna_command
 from slideline_tools.commands import make_deck as make_deck_command
 from slideline_tools.commands import report as report_command
@@ -225,7 +226,7 @@ def build_parser():
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for add in (add_info, add_plot, add_animate, add_compare, add_advise, report_command.add,
                 draw_command.add, dyna_command.add_binout, dyna_command.add_d3plot,
-                make_deck_command.add, add_bless, completion.add):
+                make_deck_command.add, from_mesh_command.add, add_bless, completion.add):
         add(commands)
     help_texts.add_examples(parser, commands)
     return parser

@@ -3,13 +3,13 @@
 module contact_penalty_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, penalty_per_node, penalty_distributed, penalty_factor, &
-    penalty_share
+    penalty_share, penalty_implicit
   use kinds_m, only : wp
   use model_m, only : model_t
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: set_penalties, built_in_penalty, mean_length
+  public :: set_penalties, built_in_penalty, softer_side, side_stiffness, mean_length
 
 contains
 
@@ -37,6 +37,10 @@ contains
       estimate = built_in_penalty(contact, model)
       memory%slave_penalty = contact%penalty*estimate
       memory%master_penalty = master_value*estimate
+    case (penalty_implicit)
+      ! Below 0: no compliance, which 0 stands for.
+      memory%slave_penalty = max(0.0_wp, contact%penalty)*softer_side(contact, model)
+      memory%master_penalty = memory%slave_penalty
     end select
     ! Each pair of runs meets twice, either one being the slave once.
     if (contact%is_self) memory%slave_penalty = self_share*memory%slave_penalty
@@ -49,9 +53,17 @@ contains
     type(model_t), intent(in) :: model
     real(wp) :: estimate
 
-    estimate = model%controls%penalty_scale*min(side_stiffness(contact%slave, model), &
-      side_stiffness(contact%master, model))
+    estimate = model%controls%penalty_scale*softer_side(contact, model)
   end function built_in_penalty
+
+  !> K L/A of the softer side, N/m^2.
+  pure function softer_side(contact, model) result(stiffness)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    real(wp) :: stiffness
+
+    stiffness = min(side_stiffness(contact%slave, model), side_stiffness(contact%master, model))
+  end function softer_side
 
   !> Mean length of the segments of a surface at time zero, m.
   pure function mean_length(surface, model) result(length)

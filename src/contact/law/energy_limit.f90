@@ -11,7 +11,7 @@ module energy_limit_m
   implicit none
   private
   public :: keep_former_springs, form_springs, limit_forces, follow_largest, lend, energy_factor, &
-    returned_t
+    scale_forces, count_cycle, returned_t, slack
 
   !> Work of forces with the factor one, J/m.
   type :: returned_t

@@ -11,7 +11,7 @@ module friction_m
   use kinds_m, only : wp
   use law_friction_m, only : find_limits, return_tractions
   use lengths_m, only : competence_length
-  use nodal_average_m, only : average_values, share_out
+  use nodal_average_m, only : average_more, share_out
   implicit none
   private
   public :: start_trial_slip, take_trial_motion, set_tractions_aside, rub_places, place_of_point, &
@@ -379,7 +379,7 @@ contains
       call find_slips(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
         points%master_weights, points%normal, points%gap, memory%scratch%increment, &
         memory%places, points%traction)
-      call average_values(points, points%traction, memory%n_slave, nodal)
+      call average_more(points, points%traction, memory%n_slave, nodal)
       rubs%stiffness = rule%stiffness*memory%slave_penalty
       if (rule%most > 0.0_wp) rubs%most = rule%most
       n = 0

@@ -5,7 +5,7 @@ module nodal_average_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: average_gaps, average_values, share_out
+  public :: average_gaps, average_values, average_more, share_out
 
 contains
 
@@ -36,6 +36,23 @@ contains
       nodal(1, node) = nodal(1, node)/max(nodal(2, node), tiny(1.0_wp))
     end do
   end subroutine average_values
+
+  !> The same of other values of points, where the areas are known.
+  pure subroutine average_more(points, values, n_slave, nodal)
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(in), contiguous :: values(:) !! (points%n or more)
+    integer, intent(in) :: n_slave
+    real(wp), intent(inout) :: nodal(2, *) !! (2, n_slave or more) out: (1, :); in: (2, :) areas, m
+    integer :: node
+
+    do node = 1, n_slave
+      nodal(1, node) = 0.0_wp
+    end do
+    call sum_more(points%n, points%slave_nodes, points%slave_weights, points%area, values, nodal)
+    do node = 1, n_slave
+      nodal(1, node) = nodal(1, node)/max(nodal(2, node), tiny(1.0_wp))
+    end do
+  end subroutine average_more
 
   !> Values of points from those of the slave nodes, by the slave shape functions.
   pure subroutine share_out(n, slave_nodes, slave_weights, at_node, at_point)
@@ -78,5 +95,31 @@ contains
       sum_1 = 0.0_wp; area_1 = 0.0_wp; sum_2 = 0.0_wp; area_2 = 0.0_wp
     end do
   end subroutine sum_values
+
+  !> Sums of weight times area times value alone.
+  pure subroutine sum_more(n, slave_nodes, slave_weights, area, values, nodal)
+    integer, intent(in) :: n, slave_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), area(*), values(*)
+    real(wp), intent(inout) :: nodal(2, *)
+    real(wp) :: sum_1, sum_2
+    integer :: p, a, b
+
+    if (n == 0) return
+    a = slave_nodes(1, 1); b = slave_nodes(2, 1)
+    sum_1 = 0.0_wp; sum_2 = 0.0_wp
+    !GCC$ NOVECTOR
+    do p = 1, n
+      if (slave_nodes(1, p) /= a .or. slave_nodes(2, p) /= b) then
+        nodal(1, a) = nodal(1, a) + sum_1
+        nodal(1, b) = nodal(1, b) + sum_2
+        a = slave_nodes(1, p); b = slave_nodes(2, p)
+        sum_1 = 0.0_wp; sum_2 = 0.0_wp
+      end if
+      sum_1 = sum_1 + slave_weights(1, p)*(area(p)*values(p))
+      sum_2 = sum_2 + slave_weights(2, p)*(area(p)*values(p))
+    end do
+    nodal(1, a) = nodal(1, a) + sum_1
+    nodal(1, b) = nodal(1, b) + sum_2
+  end subroutine sum_more
 
 end module nodal_average_m

@@ -23,6 +23,8 @@ module pieces_m
   !> Deepest piece of a surface in contact with itself, by the depth of a first contact, like that
   !> of what is looked for (self_search).
   real(wp), parameter :: behind = 1.5_wp
+  !> Share of a piece on the back of a wall: it counts nowhere, whatever faces whom.
+  real(wp), parameter :: is_back = -1.0_wp
 
 contains
 
@@ -302,7 +304,7 @@ contains
       place = table%way(:, k) + 0.5_wp*(table%low(k) + table%high(k))*table%own(:, k)
       gap = table%other(2, k)*place(1) - table%other(1, k)*place(2)
       if (gap < -behind*segment_depth(table%master(k))*norm2(table%other(:, k))) &
-        table%share(k) = 0.0_wp
+        table%share(k) = is_back
     end do
   end subroutine drop_backs
 

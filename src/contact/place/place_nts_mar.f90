@@ -53,7 +53,7 @@ contains
 
   !> Divide the segments of a table among their ends and the master nodes that cut them: half of
   !> each piece to either of its ends, as far as it counts; in axisymmetry weighted with the radius.
-  !> With the strict rule all of it counts.
+  !> With the strict rule all of it counts but the backs of walls.
   pure subroutine share_pieces(contact, table, memory)
     type(contact_t), intent(in) :: contact
     type(piece_table_t), intent(inout) :: table
@@ -61,6 +61,9 @@ contains
 
     call halve_pieces(table%n, table%low, table%high, table%length, table%half)
     if (.not. contact%strict) table%half(:table%n) = table%half(:table%n)*table%share(:table%n)
+    if (contact%is_self) then
+      where (table%share(:table%n) < 0.0_wp) table%half(:table%n) = 0.0_wp
+    end if
     if (contact%is_round) then
       call share_weighted(contact, table, memory)
     else

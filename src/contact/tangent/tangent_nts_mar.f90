@@ -68,6 +68,7 @@ contains
     call cut_pieces(contact, memory, table)
     do k = 1, table%n
       if (.not. table%high(k) > table%low(k)) cycle
+      if (table%share(k) < 0.0_wp) cycle
       if (.not. contact%strict .and. .not. table%share(k) > 0.0_wp) cycle
       call vary_halves(contact, memory, table, k, point, halves)
       call add_both_ends(contact, memory, table, k, point, halves, equations, matrix, has_area)

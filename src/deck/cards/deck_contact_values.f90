@@ -4,7 +4,8 @@
 module deck_contact_values_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : contact_kind_t, most_gauss, penalty_per_node, penalty_share
+  use contacts_m, only : contact_kind_t, kind_text, most_gauss, penalty_per_node, penalty_share, &
+    penalty_implicit, implicit_factor
   use deck_lines_m, only : deck_t, deck_error
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, report_field
@@ -57,6 +58,8 @@ contains
       call override_integer(overrides, 'PUNIT', id, contact%penalty_unit, given(of_unit))
       call override_real(overrides, 'VDC', id, entry%per_cent, given(of_damping))
       contact%damping = entry%per_cent/100.0_wp
+      if (contact%penalty_unit == penalty_implicit .and. .not. abs(contact%penalty) > 0.0_wp) &
+        contact%penalty = implicit_factor
       contact%chosen_by_keyword = contact%chosen_by_keyword .and. .not. given(of_type)
       if (given(of_unit)) entry%unit_place%line = 0
       entry%overridden = any(given)
@@ -78,10 +81,15 @@ contains
         'is not a contact type'//kind_names(kinds))
       if (contact%n_gauss < 1 .or. contact%n_gauss > most_gauss) call refuse(of_gauss, &
         'is not a number of Gauss points from 1 to '//to_text(most_gauss))
-      if (contact%penalty <= 0.0_wp) call refuse(of_penalty, 'is not a penalty (more than 0)')
-      if (contact%penalty_unit < penalty_per_node .or. contact%penalty_unit > penalty_share) &
+      if (contact%penalty <= 0.0_wp .and. contact%penalty_unit /= penalty_implicit) &
+        call refuse(of_penalty, 'is not a penalty (more than 0)')
+      if (contact%penalty_unit < penalty_per_node .or. contact%penalty_unit > penalty_implicit) &
         call refuse(of_unit, 'is not a unit of the penalty (0 N/m per contact node, 1 N/m^2, ' &
-        //'2 factor on the built-in estimate, 3 share of the largest stable one)')
+        //'2 factor on the built-in estimate, 3 share of the largest stable one, 4 factor on ' &
+        //'K L/A of implicit springs)')
+      if (contact%penalty_unit == penalty_implicit .and. any(kinds%number == contact%contact_type &
+        .and. .not. kinds%has_implicit_springs)) call refuse(of_unit, &
+        'asks for implicit springs'//implicit_names(kinds))
       if (entry%per_cent < 0.0_wp) call refuse(of_damping, 'is negative')
       if (entry%per_cent > most_damping) call refuse(of_damping, &
         'is not a damping in per cent of critical (0 to 100)')
@@ -122,6 +130,21 @@ contains
     end subroutine refuse
 
   end subroutine check_values
+
+  !> `, which only name (type n) has`.
+  pure function implicit_names(kinds) result(text)
+    type(contact_kind_t), intent(in) :: kinds(:)
+    character(:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(kinds)
+      if (.not. kinds(i)%has_implicit_springs) cycle
+      if (len(text) > 0) text = text//' and '
+      text = text//kind_text(kinds(i))
+    end do
+    text = ', which only '//text//' has (CTYPE)'
+  end function implicit_names
 
   !> ` (1 name, 2 name, ...)`.
   pure function kind_names(kinds) result(text)

@@ -3,7 +3,7 @@
 module deck_mesh_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use deck_lines_m, only : deck_t
+  use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t, field_text
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field, &
@@ -15,7 +15,7 @@ module deck_mesh_m
   use text_m, only : upper_case
   implicit none
   private
-  public :: read_nodes, read_elements, read_set, read_history_ids
+  public :: read_nodes, read_elements, read_beams, read_set, read_history_ids
 
 contains
 
@@ -99,6 +99,68 @@ contains
       raw%element_line(n) = card%line
     end do
   end subroutine read_elements
+
+  !> *ELEMENT_BEAM, as mesh generators write the edges of a plane mesh: no elements here, but the
+  !> segment set and the node set of the number of their part.
+  subroutine read_beams(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    logical :: found
+    integer :: part, first, k
+
+    call open_cursor(deck, i_block, cursor)
+    part = find_field(cursor, 1, 'PID')
+    first = find_field(cursor, 1, 'N1')
+    do
+      call next_row(deck, parameters, cursor, 1, card, found)
+      if (.not. found) exit
+      if (card%i(part) < 1) call report_field(deck, cursor, card, part, &
+        'is not a part number (1 or more)')
+      do k = first, first + 1
+        if (card%i(k) < 1) call report_field(deck, cursor, card, k, &
+          'is not a node number (1 or more)')
+      end do
+      if (card%bad(part) .or. any(card%bad(first:first + 1))) raw%lost%sets = .true.
+      if (card%bad(part) .or. any(card%bad(first:first + 1))) cycle
+      call line_warning(deck, card%line, 'beams', 'beams are no elements of a plane mesh: the ' &
+        //'edges of each of their parts are the segment set, and the node set, of its number')
+      do k = first, first + 1
+        call append_to_beam_set(raw%segment_sets, raw%n_segment_set, .false., card%i(part), &
+          card%i(k), card%line, k)
+        call append_to_beam_set(raw%node_sets, raw%n_node_set, .true., card%i(part), card%i(k), &
+          card%line, k)
+      end do
+    end do
+  end subroutine read_beams
+
+  !> One more node of the set that the beams of a part make; the last made is mostly the one.
+  subroutine append_to_beam_set(sets, n, once, id, node, line, field)
+    type(raw_set_t), allocatable, intent(inout) :: sets(:)
+    integer, intent(inout) :: n
+    logical, intent(in) :: once      !! a node that is there already is not taken again
+    integer, intent(in) :: id, node, line, field
+    type(raw_set_t) :: set
+    integer :: i
+
+    do i = n, 1, -1
+      if (sets(i)%of_beams .and. sets(i)%id == id) exit
+    end do
+    if (i == 0) then
+      set%id = id
+      set%line = line
+      set%of_beams = .true.
+      call append_set(sets, n, set)
+      i = n
+    end if
+    if (once .and. sets(i)%n > 0) then
+      if (any(sets(i)%members(:sets(i)%n) == node)) return
+    end if
+    call append_member(sets(i), node, line, field)
+  end subroutine append_to_beam_set
 
   !> A set of nodes, parts or segments: its number, then its members.
   subroutine read_set(deck, parameters, i_block, raw)

@@ -19,6 +19,7 @@ module deck_raw_sets_m
     logical :: generate = .false.
     logical :: damaged = .false.        !! some of its cards were refused
     integer :: n = 0
+    logical :: of_beams = .false.       !! from beams of a mesh, not from a card of sets
     integer :: boundary = 0             !! of a segment set: `of_part`, `of_part_set`, or its edges
     integer, allocatable :: members(:), lines(:), fields(:)
     integer, allocatable :: actions(:)  !! of general node sets alone: `add_all` and so on
@@ -54,6 +55,7 @@ contains
     to%line = from%line
     to%generate = from%generate
     to%damaged = from%damaged
+    to%of_beams = from%of_beams
     to%boundary = from%boundary
     to%n = from%n
     if (.not. allocated(from%members)) return

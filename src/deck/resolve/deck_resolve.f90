@@ -8,8 +8,9 @@ module deck_resolve_m
   use history_tables_m, only : n_table
   use model_m, only : model_t
   use conditions_m, only : motion_acceleration
-  use contacts_m, only : penalty_share
+  use contacts_m, only : penalty_share, penalty_implicit
   use deck_cards_m, only : reject_field, warn_of_field
+  use deck_implicit_penalty_m, only : check_implicit_penalties
   use deck_lines_m, only : deck_t, place_t, line_error, deck_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, &
@@ -101,18 +102,26 @@ contains
       'static velocity', 'an initial velocity has no effect in statics')
   end subroutine warn_of_explicit
 
-  !> An automatic penalty is made for an explicit step.
+  !> Automatic and implicit penalties are made for explicit steps.
   subroutine check_penalty_unit(deck, entry)
     type(deck_t), intent(inout) :: deck
     type(raw_contact_t), intent(in) :: entry
-    character(*), parameter :: reason = 'asks for a share of the largest stable penalty of an ' &
-      //'explicit step, which the implicit method does not have (0, 1 or 2)'
+    character(:), allocatable :: reason
 
-    if (entry%contact%penalty_unit /= penalty_share) return
+    select case (entry%contact%penalty_unit)
+    case (penalty_share)
+      reason = 'asks for a share of the largest stable penalty of an explicit step'
+    case (penalty_implicit)
+      reason = 'asks for the implicit springs of explicit steps'
+    case default
+      return
+    end select
+    reason = reason//', which the implicit method does not have (0, 1 or 2)'
     if (entry%unit_place%line > 0) then
       call reject_field(deck, entry%unit_place, reason)
     else
-      call deck_error(deck, '"punit=3" on the command line '//reason)
+      call deck_error(deck, '"punit='//to_text(entry%contact%penalty_unit) &
+        //'" on the command line '//reason)
     end if
   end subroutine check_penalty_unit
 
@@ -165,6 +174,7 @@ contains
     if (sound) then
       call resolve_contacts(deck, raw, maps, model)
       call check_eroding_contacts(deck, raw, model)
+      call check_implicit_penalties(deck, raw, model)
       call resolve_transducers(deck, raw, maps, model)
       if (model%is_round) call mark_round_contacts(model)
     else

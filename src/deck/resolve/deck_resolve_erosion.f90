@@ -9,7 +9,7 @@ module deck_resolve_erosion_m
   use parts_m, only : material_t, law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
     law_hot_johnson_cook, law_null, hourglass_assumed
   use deck_cards_m, only : reject_field
-  use deck_lines_m, only : deck_t, line_error
+  use deck_lines_m, only : deck_t, line_error, line_warning
   use deck_maps_m, only : maps_t, resolve_id
   use deck_raw_m, only : raw_t
   implicit none
@@ -107,7 +107,27 @@ contains
           //'IHQ 1 to 5')
       end associate
     end do
+    if (raw%erodes_by_step .and. .not. model%controls%implicit%is_on) call name_what_stays(deck, &
+      raw%step_line, model)
   end subroutine check_erosion_points
+
+  !> Parts that ERODE passes over: rubber and foam can not lose their pressure.
+  subroutine name_what_stays(deck, line, model)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line    !! of the card with ERODE
+    type(model_t), intent(in) :: model
+    integer :: k
+
+    do k = 1, size(model%parts)
+      if (model%parts(k)%material == 0) cycle
+      associate (material => model%materials(model%parts(k)%material))
+        if (material%is_rigid .or. any(can_go == material%law)) cycle
+        call line_warning(deck, line, 'ERODE and part '//to_text(model%parts(k)%id), 'ERODE takes ' &
+          //'no elements of part '//to_text(model%parts(k)%id)//', which is rubber or foam: a step ' &
+          //'of theirs below DTMIN ends the run')
+      end associate
+    end do
+  end subroutine name_what_stays
 
   !> Ties and initial overlaps do not follow surfaces that change.
   subroutine check_eroding_contacts(deck, raw, model)

@@ -190,12 +190,13 @@ contains
   !> none is so near, or where the name is one that the table of others has for itself.
   function nearest_keyword(given) result(nearest)
     character(*), intent(in) :: given   !! upper case
-    character(40) :: nearest
+    character(40) :: nearest, longer
     integer, parameter :: near = 2, least_length = 6
     integer :: least, i
     character(len(given)) :: base
 
     nearest = ''
+    longer = ''
     if (len_trim(given) < least_length) return
     do i = 1, size(table_others)
       if (.not. matches(table_others(i)(:index(table_others(i), ' ') - 1), given)) cycle
@@ -210,6 +211,8 @@ contains
     call compare(table_conditions)
     call compare(table_contact)
     call compare(table_database)
+    ! A name that stops early: the shortest that goes on.
+    if (len_trim(nearest) == 0) nearest = longer
 
   contains
 
@@ -221,6 +224,8 @@ contains
       do k = 1, size(table)
         if (table(k)(1:1) == ' ') cycle
         n = index(table(k), ' ') - 1
+        if (index(base, '_') > 0 .and. index(table(k)(:n), trim(base)) == 1 &
+          .and. (len_trim(longer) == 0 .or. n < len_trim(longer))) longer = table(k)(:n)
         if (abs(n - len_trim(base)) >= least) cycle
         distance = edit_distance(table(k)(:n), trim(base))
         if (distance >= least) cycle

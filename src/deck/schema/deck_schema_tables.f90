@@ -77,6 +77,8 @@ module deck_schema_tables_m
     ' NID:i8 X:f16 Y:f16 Z:f16 TC:i8 RC:is8', &
     'ELEMENT_SHELL', &
     ' EID:i8 PID:i8 N1:i8 N2:i8 N3:i8 N4:i8 N5:ir8 N6:ir8 N7:ir8 N8:ir8', &
+    'ELEMENT_BEAM', &
+    ' EID:is8 PID:i8 N1:i8 N2:i8 N3:is8 RT1:is8 RR1:is8 RT2:is8 RR2:is8 LOCAL:is8', &
     'ELEMENT_MASS', &
     ' EID:is8 NID:i8 MASS:f16 PID:is8', &
     'ELEMENT_MASS_NODE_SET', &

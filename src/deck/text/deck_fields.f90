@@ -6,9 +6,9 @@ module deck_fields_m
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
   use deck_card_specs_m, only : card_spec_t, field_number, max_field
-  use deck_report_m, only : spot_t, add_error, is_full
+  use deck_report_m, only : spot_t, add_error, count_only
   use deck_lines_m, only : deck_t, place_t, line_text, where_text, line_warning, line_spot, &
-    written_text, shown_text, marked_line, flag_comma
+    keyword_of_line, written_text, shown_text, marked_line, flag_comma
   implicit none
   private
   public :: card_t, cut_card, read_numbers, field_text, field_error, place_error, place_field, &
@@ -213,12 +213,11 @@ contains
     integer, intent(in) :: k
     character(*), intent(in) :: message
     character(:), allocatable :: text, written
+    logical :: is_done
 
     card%bad(k) = .true.
-    if (is_full(deck%report)) then
-      deck%report%n_error = deck%report%n_error + 1
-      return
-    end if
+    call count_only(deck%report, keyword_of_line(deck, card%line), message, is_done)
+    if (is_done) return
     text = where_text(deck, card%line)//' card '//to_text(spec%number)//' field '//to_text(k) &
       //' ('//trim(spec%names(k))//'): '
     if (card%present .and. .not. card%blank(k)) then

@@ -18,9 +18,8 @@ contains
 
     findings = ''
     if (allocated(report%errors)) &
-      call list_notes(report%errors(:min(report%n_error, size(report%errors))), 'error', findings)
-    if (allocated(report%errors)) &
-      call add_rest('error', report%n_error - size(report%errors), findings)
+      call list_notes(report%errors(:report%n_kept), 'error', findings)
+    call add_rest('error', report%n_error - report%n_kept, findings)
     if (allocated(report%warnings)) &
       call list_notes(report%warnings(:report%n_warning), 'warning', findings)
     call add_rest('warning', report%n_dropped, findings)

@@ -11,9 +11,9 @@ module deck_lines_m
   implicit none
   private
   public :: deck_t, source_t, block_t, place_t, line_text, block_of_line, where_text, line_error, &
-    deck_error, line_warning, replace_line, written_text, line_spot, shown_text, marked_line, &
-    layout_mark, format_standard, format_long, format_i10, flag_comma, flag_parameter, &
-    flag_blank, max_source
+    deck_error, line_warning, replace_line, written_text, line_spot, keyword_of_line, shown_text, &
+    marked_line, layout_mark, format_standard, format_long, format_i10, flag_comma, &
+    flag_parameter, flag_blank, max_source
 
   !> Column layout of a block.
   integer, parameter :: format_standard = 0, format_long = 1, format_i10 = 2
@@ -176,6 +176,19 @@ contains
     spot%line = deck%number(line)
     spot%keyword = deck%blocks(i_block)%given
   end function line_spot
+
+  !> The keyword that a line belongs to, blank for none.
+  pure function keyword_of_line(deck, line) result(keyword)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: line
+    character(:), allocatable :: keyword
+    integer :: i_block
+
+    keyword = ''
+    if (line < 1) return
+    i_block = block_of_line(deck, line)
+    if (i_block > 0) keyword = deck%blocks(i_block)%given
+  end function keyword_of_line
 
   !> Give a line a new text (free format).
   subroutine replace_line(deck, line, text)

@@ -1,17 +1,22 @@
 ! SPDX-License-Identifier: MIT
-!> All that is wrong or strange in a deck, collected while it is read and shown in deck order.
+!> All that is wrong or strange in a deck, collected while it is read and shown in deck order. The
+!> same mistake many times is one message with a count: errors of one keyword whose messages differ
+!> in numbers alone are of one kind.
 module deck_report_m
   use errors_m, only : error_t, raise, status_input
   use log_m, only : log_t, warn, to_text
   implicit none
   private
-  public :: report_t, note_t, spot_t, add_error, has_error, add_warning, is_full, &
+  public :: report_t, note_t, spot_t, add_error, count_only, has_error, add_warning, is_full, &
     emit_warnings, emit_errors, deck_order
 
-  !> Messages kept of each kind; what comes later is counted.
-  integer, parameter :: max_kept = 1000
-  !> Errors shown; the rest is counted.
-  integer, parameter :: max_shown = 1000
+  !> Errors kept, and warnings; what comes later is counted. Of a kind of errors that comes later
+  !> the first ones are kept too, so that none goes untold.
+  integer, parameter :: max_kept = 1000, first_kept = 3
+  !> Kinds of errors that are told apart.
+  integer, parameter :: max_kinds = 200
+  !> Errors of a kind that are shown one by one; more are one message with their count.
+  integer, parameter :: most_told = 10
 
   !> Where a message points to, for programs that read it. Unset: the deck as a whole.
   type :: spot_t
@@ -31,12 +36,23 @@ module deck_report_m
     integer :: line = 0                !! index of the line in the deck, for the order
     character(:), allocatable :: text
     character(:), allocatable :: key   !! what makes a warning the same as another
+    integer :: kind = 0                !! of an error, 0: of none that is told apart
     type(spot_t) :: spot
   end type note_t
+
+  !> One kind of errors.
+  type :: kind_t
+    character(:), allocatable :: key   !! keyword and message, numbers apart
+    integer :: n = 0                   !! errors
+    integer :: n_kept = 0              !! of these with their message
+  end type kind_t
 
   !> Messages so far.
   type :: report_t
     integer :: n_error = 0
+    integer :: n_kept = 0              !! errors with their message
+    integer :: n_kind = 0
+    type(kind_t), allocatable :: kinds(:)
     integer :: n_warning = 0           !! kept
     integer :: n_dropped = 0           !! warnings beyond these, the same ones more than once
     type(note_t), allocatable :: errors(:)
@@ -51,14 +67,86 @@ contains
     integer, intent(in) :: line
     character(*), intent(in) :: text
     type(spot_t), intent(in) :: spot
+    integer :: k
+    logical :: is_kept
 
-    if (.not. allocated(report%errors)) allocate (report%errors(max_kept))
+    if (.not. allocated(report%errors)) &
+      allocate (report%errors(max_kept + first_kept*max_kinds), report%kinds(max_kinds))
     report%n_error = report%n_error + 1
-    if (report%n_error > max_kept) return
-    report%errors(report%n_error)%line = line
-    report%errors(report%n_error)%text = text
-    report%errors(report%n_error)%spot = spot
+    if (allocated(spot%keyword)) then
+      call find_kind(report, key_of(spot%keyword, spot%message), k)
+    else
+      call find_kind(report, key_of('', text), k)
+    end if
+    is_kept = report%n_kept < max_kept
+    if (k > 0) then
+      report%kinds(k)%n = report%kinds(k)%n + 1
+      is_kept = is_kept .or. report%kinds(k)%n <= first_kept
+    end if
+    if (.not. is_kept) return
+    if (k > 0) report%kinds(k)%n_kept = report%kinds(k)%n_kept + 1
+    report%n_kept = report%n_kept + 1
+    associate (note => report%errors(report%n_kept))
+      note%line = line
+      note%text = text
+      note%spot = spot
+      note%kind = k
+    end associate
   end subroutine add_error
+
+  !> Count an error whose message need not be made, since enough of its kind are kept; false in
+  !> `is_done` where it has to be added.
+  subroutine count_only(report, keyword, message, is_done)
+    type(report_t), intent(inout) :: report
+    character(*), intent(in) :: keyword, message
+    logical, intent(out) :: is_done
+    integer :: k
+
+    is_done = is_full(report)
+    if (.not. is_done) return
+    call find_kind(report, key_of(keyword, message), k)
+    if (k > 0) is_done = report%kinds(k)%n >= first_kept
+    if (.not. is_done) return
+    report%n_error = report%n_error + 1
+    if (k > 0) report%kinds(k)%n = report%kinds(k)%n + 1
+  end subroutine count_only
+
+  !> The kind of a key, a new one where there is room; 0: none.
+  subroutine find_kind(report, key, k)
+    type(report_t), intent(inout) :: report
+    character(*), intent(in) :: key
+    integer, intent(out) :: k
+
+    do k = 1, report%n_kind
+      if (report%kinds(k)%key == key) return
+    end do
+    k = 0
+    if (report%n_kind == max_kinds) return
+    report%n_kind = report%n_kind + 1
+    k = report%n_kind
+    report%kinds(k)%key = key
+  end subroutine find_kind
+
+  !> What errors of one kind share: keyword and message, a # for each whole number in it.
+  pure function key_of(keyword, message) result(key)
+    character(*), intent(in) :: keyword, message
+    character(:), allocatable :: key
+    character(len(message)) :: short
+    integer :: i, n
+    logical :: is_digit, was_digit
+
+    n = 0
+    was_digit = .false.
+    do i = 1, len(message)
+      is_digit = message(i:i) >= '0' .and. message(i:i) <= '9'
+      if (.not. (is_digit .and. was_digit)) then
+        n = n + 1
+        short(n:n) = merge('#', message(i:i), is_digit)
+      end if
+      was_digit = is_digit
+    end do
+    key = keyword//' '//short(:n)
+  end function key_of
 
   !> Whether an error of this text, which belongs to no line, is kept.
   pure function has_error(report, text) result(found)
@@ -68,7 +156,7 @@ contains
     integer :: i
 
     found = .false.
-    do i = 1, min(report%n_error, max_kept)
+    do i = 1, report%n_kept
       if (report%errors(i)%line > 0) cycle
       found = report%errors(i)%text == text
       if (found) return
@@ -80,7 +168,7 @@ contains
     type(report_t), intent(in) :: report
     logical :: full
 
-    full = report%n_error >= max_kept
+    full = report%n_kept >= max_kept
   end function is_full
 
   !> One more warning; warnings of the same key are given once.
@@ -141,20 +229,69 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer, allocatable :: order(:)
     character(:), allocatable :: text
-    integer :: i
+    logical :: is_told(report%n_kind)
+    integer :: i, k, n_rest
 
     if (report%n_error == 0) return
-    order = deck_order(report%errors(:min(report%n_error, max_kept)))
+    order = deck_order(report%errors(:report%n_kept))
+    is_told = .false.
+    n_rest = report%n_error
     text = ''
-    do i = 1, min(size(order), max_shown)
-      text = text//report%errors(order(i))%text//new_line('a')
+    do i = 1, size(order)
+      k = report%errors(order(i))%kind
+      if (.not. is_many(report, k)) then
+        text = text//report%errors(order(i))%text//new_line('a')
+        n_rest = n_rest - 1
+      else if (.not. is_told(k)) then
+        text = text//report%errors(order(i))%text//new_line('a')//count_text(report, order(i:), k)
+        is_told(k) = .true.
+        n_rest = n_rest - report%kinds(k)%n
+      end if
     end do
-    if (report%n_error > max_shown) text = text//path//': and ' &
-      //to_text(report%n_error - max_shown)//' more errors'//new_line('a')
+    if (n_rest > 0) text = text//path//': and '//to_text(n_rest)//' more errors'//new_line('a')
     text = text//path//': refused, '//to_text(report%n_error)
     text = text//merge(' error ', ' errors', report%n_error == 1)
     call raise(error, trim(text), status_input)
   end subroutine emit_errors
+
+  !> Whether the errors of a kind are one message: so many, or some of them without their text.
+  pure function is_many(report, k) result(many)
+    type(report_t), intent(in) :: report
+    integer, intent(in) :: k  !! 0: none
+    logical :: many
+
+    many = .false.
+    if (k > 0) many = report%kinds(k)%n > most_told .or. report%kinds(k)%n > report%kinds(k)%n_kept
+  end function is_many
+
+  !> The line with the count of a kind and its first places.
+  pure function count_text(report, order, k) result(text)
+    type(report_t), intent(in) :: report
+    integer, intent(in) :: order(:) !! of the errors, from the first of the kind on
+    integer, intent(in) :: k
+    character(:), allocatable :: text
+    character(:), allocatable :: place, before
+    integer :: i, n
+
+    text = '  | '//to_text(report%kinds(k)%n)//' times'
+    before = ''
+    n = 0
+    do i = 1, size(order)
+      associate (note => report%errors(order(i)))
+        if (note%kind /= k .or. .not. allocated(note%spot%file)) cycle
+        place = note%spot%file//':'//to_text(note%spot%line)
+      end associate
+      if (place == before) cycle
+      if (n == 3) then
+        text = text//' and so on'
+        exit
+      end if
+      n = n + 1
+      text = text//trim(merge(': ', ', ', n == 1))//' '//place
+      before = place
+    end do
+    text = text//new_line('a')
+  end function count_text
 
   !> Order of the notes by line, equal lines as they came, those of no line (0) last.
   pure function deck_order(notes) result(order)

@@ -3,6 +3,7 @@
 !> (doc/theory/contact.md, section 6).
 !> Explicit runs alone: there the trapezoidal rule is the work that the scheme itself does.
 module contact_account_m
+  use contacts_m, only : penalty_implicit
   use contact_watch_m, only : has_made, has_lost
   use energy_limit_state_m, only : energy_limit_t
   use kinds_m, only : wp
@@ -11,7 +12,7 @@ module contact_account_m
   use state_m, only : state_t
   implicit none
   private
-  public :: plan_looks, follow_contact, report_contact_energies
+  public :: plan_looks, follow_contact, report_contact_energies, lent_share
 
   !> Cycles between two looks at springs; at more of them the sum over all points would show in the
   !> time of a step.
@@ -80,6 +81,8 @@ contains
         abs(watch%balance) <= noticed_share*state%largest_energy) return
       ! While an overlap grows there is nothing yet to hold it against.
       if (allocated(contact%interference%depth) .and. contact%interference%left > 0.0_wp) return
+      ! What impacts take of implicit springs is no fault of theirs; the end tells it.
+      if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) return
       watch%changes(sign_of)%warned = .true.
       call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
         //to_text(state%cycle)//', time '//to_text(state%time)//', the contact springs have ' &
@@ -127,7 +130,9 @@ contains
         id => model%contacts(i)%id)
         if (limit%n_limited > 0) call write_log(log, 'interface '//to_text(id)//limit_text(limit))
         sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
-        if (abs(watch%balance) > noticed_share*state%largest_energy .and. state%cycle > 0) then
+        if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) then
+          call report_impacts(model, i, state, log)
+        else if (abs(watch%balance) > noticed_share*state%largest_energy .and. state%cycle > 0) then
           call warn(log, 'interface '//to_text(id)//': in the whole run the contact springs have ' &
             //amount_text(model, i, sign_of, state))
         else if (any(watch%changes%warned)) then
@@ -137,6 +142,26 @@ contains
       end associate
     end do
   end subroutine report_contact_energies
+
+  !> What implicit springs have taken: impact is plastic within the first row of elements.
+  subroutine report_impacts(model, i, state, log)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    type(state_t), intent(in) :: state
+    type(log_t), intent(inout) :: log
+
+    if (.not. state%contacts(i)%watch%balance > 0.0_wp) return
+    call write_log(log, 'interface '//to_text(model%contacts(i)%id)//': impacts have taken ' &
+      //to_text(state%contacts(i)%watch%balance)//' J/m, ' &
+      //percent(state%contacts(i)%watch%balance, state%largest_energy) &
+      //' of the largest energy so far; finer meshes lose less')
+    if (state%contacts(i)%n_swept > 0) call write_log(log, 'interface ' &
+      //to_text(model%contacts(i)%id)//': in '//to_text(state%contacts(i)%n_swept) &
+      //' cycles sweeps had to settle which nodes press')
+    if (state%contacts(i)%n_dropped > 0) call write_log(log, 'interface ' &
+      //to_text(model%contacts(i)%id)//': in '//to_text(state%contacts(i)%n_dropped) &
+      //' cycles pressures depended on each other, and some were left to the others')
+  end subroutine report_impacts
 
   !> How much, of what, and where most of it.
   function amount_text(model, i, sign_of, state) result(text)

@@ -6,7 +6,9 @@ module erosion_account_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
+  use node_motion_m, only : leap_t, find_factors
   use state_m, only : state_t
+  use wall_motion_m, only : wall_work_ahead
   implicit none
   private
   public :: settle_elements, release_nodes, note_least_step, report_erosion
@@ -39,21 +41,33 @@ contains
 
   !> Nodes without an element stop where they are, after the motion of the cycle: their kinetic
   !> energy, v(n-1/2).m v(n+1/2)/2, leaves the account, and their mass moves nothing any more. No
-  !> element has pushed them in this cycle; contact has, and does no work on them any more.
-  subroutine release_nodes(n_special, freed, state)
-    integer, intent(in) :: n_special
+  !> element has pushed them in this cycle; contact has, and does no work on them any more. Walls
+  !> and prescribed motion have done theirs over the half step ahead, too.
+  subroutine release_nodes(model, leap, freed, state)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap     !! of this cycle
     integer, intent(in) :: freed(:)
     type(state_t), intent(inout) :: state
-    real(wp) :: before(2)
+    real(wp) :: before(2), after(2), half(2), keep(2), push(2)
     integer :: i
 
     associate (took => state%elements%erosion%took)
       do i = 1, size(freed)
-        associate (node => freed(i))
-          before = state%motion(3:4, node)
-          if (node <= n_special) before = before - 0.5_wp*(state%dt_before + state%dt) &
-            *state%inverse_mass(:, node)*state%force_special(:, node)
-          took(1) = took(1) + 0.5_wp*state%mass(node)*sum(before*state%motion(3:4, node))
+        associate (node => freed(i), mass => state%mass(freed(i)))
+          after = state%motion(3:4, node)
+          call find_factors(leap, state, node, half, keep)
+          push = merge(leap%body, 0.0_wp, state%inverse_mass(:, node) > 0.0_wp)
+          if (node <= model%layout%n_special) push = push + state%inverse_mass(:, node) &
+            *state%force_special(:, node)
+          before = after - half*push
+          if (allocated(state%former_velocity)) then
+            before = merge(state%former_velocity(:, node), after, state%inverse_mass(:, node) &
+              > 0.0_wp)
+            state%damping_work = state%damping_work + 0.5_wp*state%dt_before*mass &
+              *sum((1.0_wp/half - 1.0_wp/leap%mean)*(before + after)*before)
+          end if
+          took(1) = took(1) + 0.5_wp*mass*sum(before*after)
+          if (allocated(state%walls)) took(1) = took(1) + wall_work_ahead(model, node, state)
           state%mass(node) = 0.0_wp
           state%inverse_mass(:, node) = 0.0_wp
           state%motion(3:4, node) = 0.0_wp

@@ -13,7 +13,8 @@ module explicit_m
   use eroding_tiles_m, only : add_eroding_tile_forces
   use erosion_account_m, only : report_erosion
   use errors_m, only : error_t
-  use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
+  use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, press_cycle, &
+    report_cycle, end_cycle
   use failure_watch_m, only : report_failures
   use health_m, only : check_tile, judge_energies, judge_ratio
   use kinds_m, only : wp
@@ -88,7 +89,12 @@ contains
       call advance_tiles(model, state, cycle, force)
       !$omp master
       call lap(monitor%clock, phase_elements)
+      if (monitor%ranks%n > 1) call exchange_tiles(model, state, monitor, cycle)
       !$omp end master
+      if (monitor%ranks%n > 1) then
+        !$omp barrier
+      end if
+      if (cycle%presses) call press_nodes(model, state, monitor, cycle)
       call advance_special_nodes(model, state, cycle)
       if (writes) then
         !$omp master
@@ -120,7 +126,7 @@ contains
     sums = allocated(cycle%sums%parts)
     if (sums) call sum_blocks(model%layout, state, cycle%sums)
     !$omp do schedule(static)
-    do i_tile = 1, size(model%layout%tiles)
+    do i_tile = cycle%shares%first_tile, cycle%shares%last_tile
       associate (tile => model%layout%tiles(i_tile))
         if (model%erodes) then
           call add_eroding_tile_forces(model, tile, state%motion, [state%time, state%dt_before], &
@@ -146,6 +152,27 @@ contains
     end do
     !$omp end do
   end subroutine advance_tiles
+
+  !> Contact forces that follow all others: these are summed now, and once more where nodes move.
+  subroutine press_nodes(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+    integer :: i_tile
+
+    !$omp do schedule(static)
+    do i_tile = 1, size(model%layout%tiles)
+      call sum_special_forces(model%layout, state%force_slots, &
+        model%layout%tiles(i_tile)%first_owned, model%layout%tiles(i_tile)%last_owned, &
+        state%internal_force)
+    end do
+    !$omp end do
+    !$omp master
+    call press_cycle(model, state, monitor, cycle)
+    !$omp end master
+    !$omp barrier
+  end subroutine press_nodes
 
   !> Sum the forces of special nodes; they move at once unless this cycle writes. Each thread has
   !> the nodes of its own tiles: what it reads here it has mostly written itself.
@@ -192,16 +219,18 @@ contains
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(in) :: cycle
     integer :: i_tile
+    logical :: is_own !! a tile of this process
 
     !$omp do schedule(static)
     do i_tile = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i_tile))
+        is_own = i_tile >= cycle%shares%first_tile .and. i_tile <= cycle%shares%last_tile
         if (allocated(state%node_damping)) then
-          call move_damped(model, cycle%leap, tile%first_node, tile%last_node, state)
+          if (is_own) call move_damped(model, cycle%leap, tile%first_node, tile%last_node, state)
           call move_damped(model, cycle%leap, tile%first_owned, tile%last_owned, state)
           cycle
         end if
-        if (tile%last_node >= tile%first_node) call move_tile_nodes(cycle%leap, tile%first_node, &
+        if (tile%last_node >= tile%first_node .and. is_own) call move_tile_nodes(cycle%leap, tile%first_node, &
           tile%last_node, state%internal_force(1, tile%first_node), state%inverse_mass, &
           state%motion)
         call move_special_nodes(cycle%leap, tile%first_owned, tile%last_owned, state)

@@ -8,19 +8,20 @@ module explicit_cycle_m
   use contact_check_m, only : report_contact_start
   use behind_ties_m, only : hear_tie, settle_with_tie
   use contact_inertia_m, only : weigh_contacts
+  use contact_pressing_m, only : press_contacts
   use cycle_loads_m, only : apply_loads
   use energies_m, only : energy_ratio, total_energy
   use erosion_account_m, only : settle_elements, release_nodes, note_least_step
   use errors_m, only : error_t
   use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
   use explicit_memory_m, only : write_restarts, take_up_steps
-  use contacts_m, only : told_as
+  use contacts_m, only : told_as, penalty_implicit
   use explicit_prescribed_m, only : find_prescribed_velocities, start_prescribed, &
     impose_prescribed, prescribed_work
   use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
     table_sleout, table_spcforc
-  use health_m, only : tile_check_t, are_sound, check_elements, check_step, check_cycle, &
-    check_energy, check_radii, made_by_springs
+  use health_m, only : tile_check_t, are_sound, check_step, check_cycle, check_energy, check_radii, &
+    made_by_springs
   use interface_m, only : apply_contact
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
@@ -35,6 +36,10 @@ module explicit_cycle_m
   use outlines_m, only : follow_outlines
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
   use progress_m, only : show_progress, follow_progress
+  use rank_exchange_m, only : parcel_t, plan_parcel, exchange_parcel, write_record, read_records, &
+    exchange_erosion, exchange_limits, exchange_history, gather_motion, gather_state, judge_elements
+  use rank_shares_m, only : shares_t, share_out
+  use ranks_m, only : ranks_t, share_error, spread_values
   use requests_m, only : requests_t, take_requests
   use restart_plan_m, only : wanted_files
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
@@ -46,7 +51,8 @@ module explicit_cycle_m
   use time_step_m, only : step_plan_t, start_steps, first_step, next_step, is_last, follow_springs
   implicit none
   private
-  public :: explicit_cycle_t, start_cycles, begin_cycle, report_cycle, end_cycle
+  public :: explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, press_cycle, report_cycle, &
+    end_cycle
 
   !> Shared by the team, written by one thread between barriers.
   type :: explicit_cycle_t
@@ -55,14 +61,19 @@ module explicit_cycle_m
     logical :: last = .false.        !! this cycle is the last one
     logical :: plots = .false.       !! this cycle writes a plot state because someone asked for it
     type(due_t) :: due
+    type(shares_t) :: shares         !! tiles of each process
+    type(parcel_t) :: parcel         !! what they exchange in each cycle
+    type(requests_t) :: asked        !! what someone asks for, heard in this cycle
     type(leap_t) :: leap             !! motion factors of this cycle
     type(step_plan_t) :: steps
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
     logical, allocatable :: active(:)  !! (n_motion) which of them hold, once that has been asked
+    logical :: presses = .false.     !! contact forces of some interface follow all other forces
     logical :: refines = .false.     !! steps of elements are not those of their density alone
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
     type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
-                                                 !! come to
+                                                 !! come to; of several processes theirs, in the
+                                                 !! first ones, once they have exchanged it
     type(failure_watch_t) :: failures !! points that have failed, as far as the log tells of them
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
     real(wp), allocatable :: rates(:, :) !! (2, n_part) D of parts, where the deck damps some
@@ -93,9 +104,14 @@ contains
         motions%death < model%controls%end_time)
     end associate
     call plan_sums(model, cycle%sums)
+    cycle%presses = any(model%contacts%penalty_unit == penalty_implicit)
     cycle%refines = allocated(state%elements%mass_ratio) .or. &
       allocated(state%elements%retardation)
-    allocate (cycle%checks(size(model%layout%tiles)))
+    associate (ranks => monitor%ranks)
+      cycle%shares = share_out(model%layout, ranks%mine, ranks%n)
+      allocate (cycle%checks(max(size(model%layout%tiles), ranks%n)))
+      if (ranks%n > 1) call plan_parcel(cycle%shares, cycle%sums, cycle%parcel)
+    end associate
     cycle%reason = 'termination time reached'
     if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
     cycle%steps = start_steps(model, state%time)
@@ -161,6 +177,17 @@ contains
     if (allocated(model%conditions%common_motions)) call remember_common(model, state, cycle%common)
   end subroutine prepare_leap
 
+  !> Contact forces that follow all others. The step of cycle zero is found later on.
+  subroutine press_cycle(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+
+    if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
+      cycle%velocity, monitor%clock, monitor%log, state)
+  end subroutine press_cycle
+
   !> Inverse masses where some prescribed motion has just started or ended.
   subroutine follow_activity(model, state, cycle)
     type(model_t), intent(in) :: model
@@ -179,16 +206,49 @@ contains
     call weigh_contacts(model, state)
   end subroutine follow_activity
 
+  !> What processes have to know of each other's tiles before special nodes move.
+  subroutine exchange_tiles(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+    integer :: n_gone
+    logical :: has_error
+
+    associate (ranks => monitor%ranks, shares => cycle%shares)
+      if (ranks%mine == 0) call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, &
+        cycle%error)
+      call write_record(shares, ranks%mine, cycle%checks, state%elements, cycle%asked, &
+        allocated(cycle%error), cycle%parcel)
+      call exchange_parcel(ranks, shares, cycle%parcel, state, cycle%sums)
+      call read_records(cycle%parcel, cycle%checks, cycle%asked, n_gone, has_error)
+      if (has_error) call share_error(ranks, cycle%error)
+      if (model%erodes) then
+        if (n_gone > sum(state%elements%erosion%n_eroded)) &
+          call exchange_erosion(ranks, shares, state%elements)
+      end if
+      if (state%cycle == 0) call exchange_limits(ranks, shares, state%elements)
+      if (allocated(state%elements%n_failed)) then
+        ! The log names the first one.
+        if (cycle%failures%told == 0 .and. any(state%elements%n_failed > 0)) &
+          call exchange_history(ranks, shares, state%elements)
+      end if
+      if (cycle%writes) call gather_state(ranks, shares, .false., state)
+    end associate
+    call lap(monitor%clock, phase_nodes)
+  end subroutine exchange_tiles
+
   !> Write what is due, unless the state has gone wrong; the first cycle first finds its step.
   subroutine report_cycle(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
+    real(wp), allocatable :: held(:, :)
 
     call count_sums(cycle%sums, state%external_work, state%damping_work)
     if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
-    call check_elements(model, state, cycle%error)
+    call judge_elements(monitor%ranks, model, state, cycle%error)
     if (state%cycle == 0) call follow_springs(model, state, cycle%steps%springs)
     if (state%cycle == 0 .and. .not. allocated(cycle%error)) &
       call first_step(model, state%elements, monitor%log, cycle%steps, state%dt, cycle%error)
@@ -198,18 +258,30 @@ contains
     end if
     if (state%cycle == 0) then
       if (model%erodes) call note_least_step(model%controls, cycle%steps%first_dt, state)
+      call prepare_leap(model, state, cycle)
+      call start_prescribed(model, cycle%velocity, state)
+      if (cycle%presses) call press_cycle(model, state, monitor, cycle)
       call report_contact_start(model, state, monitor%log)
       call log_smallest_steps(model, state, monitor%log)
       call judge_damping(model, state%dt, monitor%log)
-      call prepare_leap(model, state, cycle)
-      call start_prescribed(model, cycle%velocity, state)
     end if
     call report_rigids(model, state, cycle)
     call report_walls(model, state, monitor, cycle)
-    if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, cycle%leap, 1, &
-      model%layout%n_special, state)
+    if (allocated(model%conditions%skew_supports)) call report_skew(model, cycle%leap, state, held)
     state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
       cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
+    if (monitor%ranks%mine == 0) call write_report(model, state, monitor, cycle)
+    if (monitor%ranks%n > 1) call hear_report(model, state, monitor, cycle)
+    cycle%finished = cycle%last .or. allocated(cycle%error)
+  end subroutine report_cycle
+
+  !> Fill the snapshot with what is due, and write it.
+  subroutine write_report(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+
     call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
     call fill_rigids(model, state, monitor%snapshot)
     if (any(cycle%due%tables([table_glstat, table_matsum]))) call fill_energies(model, state, &
@@ -226,7 +298,7 @@ contains
     if (any(cycle%due%tables([table_rcforc, table_sleout]))) &
       call fill_interfaces(model, state, monitor%snapshot)
     if (cycle%due%tables(table_spcforc)) &
-      call fill_explicit_reactions(model, state, monitor%snapshot)
+      call fill_explicit_reactions(model, state, monitor%snapshot, held)
     if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
     call write_due(model, cycle%due, state%dt, monitor, cycle%error)
     if (cycle%due%tables(table_glstat)) cycle%ratio = energy_ratio(monitor%snapshot%energies)
@@ -235,8 +307,45 @@ contains
     if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) &
       call check_energy(model%controls, monitor%snapshot%energies, made_by_springs, cycle%error)
     call check_radii(model, state, monitor%told_radii, monitor%log)
-    cycle%finished = cycle%last .or. allocated(cycle%error)
-  end subroutine report_cycle
+  end subroutine write_report
+
+  !> What a process that writes nothing has to know of the report, and what came of it.
+  subroutine hear_report(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+    real(wp) :: energy(1)
+
+    if (monitor%ranks%mine > 0) then
+      monitor%snapshot%time = state%time
+      call write_due(model, cycle%due, state%dt, monitor, cycle%error)
+    end if
+    energy = state%initial_energy
+    if (state%cycle == 0) call spread_values(monitor%ranks, energy)
+    state%initial_energy = energy(1)
+    call share_error(monitor%ranks, cycle%error)
+  end subroutine hear_report
+
+  !> Skew supports in a cycle that writes: their nodes are held, and by what force.
+  subroutine report_skew(model, leap, state, held)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    type(state_t), intent(inout) :: state
+    real(wp), allocatable, intent(out) :: held(:, :) !! (2, n_skew)
+
+    integer :: i, n
+
+    n = size(model%conditions%skew_supports)
+    allocate (held(2, n))
+    do i = 1, n
+      held(:, i) = -state%force_special(:, model%conditions%skew_supports(i)%node)
+    end do
+    call hold_skew_nodes(model, leap, 1, model%layout%n_special, state)
+    do i = 1, n
+      held(:, i) = held(:, i) + state%force_special(:, model%conditions%skew_supports(i)%node)
+    end do
+  end subroutine report_skew
 
   !> Rigid bodies in a cycle that writes: what their forces ask for, and the work of
   !> prescribed motion so far.
@@ -283,7 +392,7 @@ contains
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(inout) :: cycle
 
-    call release_nodes(model%layout%n_special, cycle%freed, state)
+    call release_nodes(model, cycle%leap, cycle%freed, state)
     associate (n_eroded => state%elements%erosion%n_eroded)
       call follow_outlines(model, n_eroded > cycle%told, state)
       cycle%told = n_eroded
@@ -305,8 +414,10 @@ contains
     if (.not. cycle%writes) then
       call count_sums(cycle%sums, state%external_work, state%damping_work)
       if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
-      if (.not. are_sound(cycle%checks, state%contacts)) &
-        call check_elements(model, state, cycle%error)
+      if (.not. are_sound(cycle%checks, state%contacts)) then
+        if (monitor%ranks%n > 1) call gather_state(monitor%ranks, cycle%shares, .false., state)
+        call judge_elements(monitor%ranks, model, state, cycle%error)
+      end if
     end if
     if (size(cycle%velocity) > 0) then
       before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
@@ -318,11 +429,14 @@ contains
       state)
     if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
     if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
-    if (allocated(cycle%freed)) call lose_elements(model, state, cycle)
+    if (allocated(cycle%freed)) then
+      if (monitor%ranks%n > 1) call gather_motion(monitor%ranks, cycle%shares, .true., state)
+      call lose_elements(model, state, cycle)
+    end if
     state%cycle = state%cycle + 1
     state%former_dt = state%dt_before
     state%dt_before = state%dt
-    if (allocated(state%elements%mass_ratio)) call follow_masses(model, state, cycle)
+    if (allocated(state%elements%mass_ratio)) call follow_masses(model, monitor%ranks, state, cycle)
     call follow_springs(model, state, cycle%steps%springs)
     call next_step(model, element_limit(model, state, cycle), monitor%log, state%cycle, &
       cycle%steps, state%time, state%dt)
@@ -331,7 +445,8 @@ contains
     if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     cycle%finished = allocated(cycle%error)
     if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
-    call follow_progress(monitor%progress, monitor%clock, state%cycle, .false., state%time, &
+    if (monitor%ranks%mine == 0) call follow_progress(monitor%progress, monitor%clock, &
+      state%cycle, .false., state%time, &
       state%dt, cycle%ratio)
   end subroutine end_cycle
 
@@ -351,14 +466,16 @@ contains
   end function element_limit
 
   !> Mass for elements that have become too small for DT2MS, where the deck lets it grow.
-  subroutine follow_masses(model, state, cycle)
+  subroutine follow_masses(model, ranks, state, cycle)
     type(model_t), intent(in) :: model
+    type(ranks_t), intent(in) :: ranks
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(inout) :: cycle
     logical :: has_grown
 
     if (model%controls%masses_stay) return
     if (minval(cycle%checks%time_limit) >= abs(model%controls%mass_step)) return
+    if (ranks%n > 1) call gather_state(ranks, cycle%shares, .true., state)
     call grow_state_masses(model, state, has_grown)
     if (has_grown .and. allocated(cycle%rates)) deallocate (cycle%rates)
     ! The places of the next cycle have been looked at.
@@ -374,19 +491,33 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    type(requests_t) :: asked
     logical :: ends
 
-    call take_requests(state, cycle%ratio, .false., monitor, asked, cycle%error)
-    cycle%plots = asked%plot
+    if (monitor%ranks%n == 1) &
+      call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, cycle%error)
+    cycle%plots = cycle%asked%plot
     ends = is_last(cycle%steps, state%cycle, state%time)
-    if (.not. allocated(cycle%error)) call write_restarts(wanted_files(monitor%restarts, &
-      state%cycle, asked%dump, ends, asked%signalled .and. .not. ends), state, monitor, &
-      cycle%steps, cycle%damping, cycle%ratio, cycle%error)
+    if (.not. allocated(cycle%error)) call write_files(wanted_files(monitor%restarts, &
+      state%cycle, cycle%asked%dump, ends, cycle%asked%signalled .and. .not. ends), state, &
+      monitor, cycle)
     cycle%finished = allocated(cycle%error)
-    if (ends .or. .not. asked%stop) return
+    if (ends .or. .not. cycle%asked%stop) return
     cycle%last = .true.
     cycle%reason = 'stopped on request'
   end subroutine heed_requests
+
+  !> Restart files, by the first process.
+  subroutine write_files(wanted, state, monitor, cycle)
+    logical, intent(in) :: wanted(:)   !! numbered_file, running_file
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+
+    if (.not. any(wanted)) return
+    if (monitor%ranks%n > 1) call gather_state(monitor%ranks, cycle%shares, .false., state)
+    if (monitor%ranks%mine == 0) call write_restarts(wanted, state, monitor, cycle%steps, &
+      cycle%damping, cycle%ratio, cycle%error)
+    if (monitor%ranks%n > 1) call share_error(monitor%ranks, cycle%error)
+  end subroutine write_files
 
 end module explicit_cycle_m

@@ -3,7 +3,7 @@
 !> keeps: v(n-1/2).M v(n+1/2)/2 + U with equal steps (doc/theory/time_integration.md). Formed only
 !> when something is written, by one thread.
 module leapfrog_balance_m
-  use common_motion_m, only : common_drive
+  use common_motion_m, only : common_drive, common_velocity
   use constraints_m, only : is_active
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -88,16 +88,17 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: damping(2)
     real(wp) :: total
-    real(wp) :: push, rate, a
+    real(wp) :: push, rate, a, before(2)
     integer :: i, k
 
     total = 0.0_wp
     do i = 1, size(model%conditions%common_motions)
+      before = common_velocity(model, i, state)
       associate (common => model%conditions%common_motions(i))
         do k = 1, 2
           if (.not. common%along(k)) cycle
           call common_drive(model, i, k, state, damping, push, rate)
-          a = (push - rate*state%motion(2 + k, common%nodes(1)))/(1.0_wp &
+          a = (push - rate*before(k))/(1.0_wp &
             + 0.5_wp*rate*merge(state%dt_before, 0.5_wp*state%dt, state%dt_before > 0.0_wp))
           total = total + sum(state%mass(common%nodes))*a**2
         end do

@@ -2,7 +2,7 @@
 !> Constraints that no inverse mass of x or y can express: nodes that do not move along a skew
 !> direction, and nodes that move alike.
 module skew_motion_m
-  use common_motion_m, only : common_drive
+  use common_motion_m, only : common_drive, common_velocity
   use kinds_m, only : wp
   use model_m, only : model_t
   use node_motion_m, only : leap_t, find_factors
@@ -49,7 +49,7 @@ contains
     associate (sets => model%conditions%common_motions)
       if (.not. allocated(velocity)) allocate (velocity(2, size(sets)))
       do i = 1, size(sets)
-        velocity(:, i) = state%motion(3:4, sets(i)%nodes(1))
+        velocity(:, i) = common_velocity(model, i, state)
       end do
     end associate
   end subroutine remember_common

@@ -7,7 +7,7 @@
 module time_step_m
   use block_state_m, only : block_state_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
-  use contacts_m, only : is_tied
+  use contacts_m, only : is_tied, penalty_implicit
   use friction_state_m, only : is_broken
   use controls_m, only : contact_step_rules, contact_step_free
   use curves_m, only : curve_value, curve_is_constant
@@ -193,7 +193,8 @@ contains
 
     if (.not. has_springs(model)) return
     if (mod(state%cycle, refresh_interval) /= 0) return
-    counts = model%controls%contact_step == contact_step_rules .or. is_tied(model%contacts)
+    counts = (model%controls%contact_step == contact_step_rules &
+      .and. model%contacts%penalty_unit /= penalty_implicit) .or. is_tied(model%contacts)
     do i = 1, size(counts)
       if (model%contacts(i)%behind > 0) counts(i) = counts(i) &
         .or. any(state%contacts(model%contacts(i)%behind)%ties%state == is_broken)

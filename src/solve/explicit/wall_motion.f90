@@ -12,7 +12,7 @@ module wall_motion_m
   use walls_m, only : wall_t, wall_distance, wall_tangent, friction_sticks
   implicit none
   private
-  public :: hold_nodes, count_walls, fill_walls
+  public :: hold_nodes, count_walls, fill_walls, wall_work_ahead
 
   !> Rounds over the walls that one node meets (two in a corner settle at once where
   !> they are at right angles).
@@ -158,6 +158,38 @@ contains
         is_after, state)
     end do
   end subroutine count_walls
+
+  !> What of that work on one node belongs to the half step after the instant, with that of friction.
+  pure function wall_work_ahead(model, node, state) result(work)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: node
+    type(state_t), intent(in) :: state
+    real(wp) :: work
+    integer :: i, k
+
+    work = 0.0_wp
+    do i = 1, size(state%walls)
+      k = model%walls(i)%place(node)
+      if (k == 0) cycle
+      associate (wall => model%walls(i), memory => state%walls(i))
+        if (memory%force(k) > 0.0_wp) work = work + memory%force(k)*ahead(memory%speed(k), &
+          dot_product(wall%normal, state%motion(3:4, node)))
+        if (size(memory%friction) > 0) work = work + memory%friction(k) &
+          *ahead(memory%slip_speed(k), dot_product(wall_tangent(wall), state%motion(3:4, node)))
+      end associate
+    end do
+
+  contains
+
+    !> Way that counts for the half step ahead.
+    pure function ahead(speed, next) result(way)
+      real(wp), intent(in) :: speed, next !! v(n-1/2), v(n+1/2)
+      real(wp) :: way
+
+      way = 0.25_wp*(state%dt_before + state%dt)*(speed + next) - 0.5_wp*state%dt_before*speed
+    end function ahead
+
+  end function wall_work_ahead
 
   !> The same work of the friction of one wall, which is part of the energy account by itself.
   subroutine count_friction(wall, i_wall, is_before, is_after, state)

@@ -15,6 +15,7 @@ module newton_m
   use linear_solver_m, only : report_t, solve_linear
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
+  use slip_cycle_m, only : slip_cycle_t, watch_slips
   use sparse_m, only : sparse_t, compress_matrix
   use state_m, only : state_t
   implicit none
@@ -64,6 +65,7 @@ contains
     type(measure_t) :: first, now
     type(way_t) :: way
     type(report_t) :: report
+    type(slip_cycle_t) :: slip_cycle
     integer :: iteration, node, direction
     logical :: solved
 
@@ -92,10 +94,14 @@ contains
       outcome%converged = is_converged(model%controls%implicit, first, now, &
         norm2(trial%motion(3:4, :)))
       if (outcome%converged) return
+      call watch_slips(trial%contacts, now%residual, slip_cycle)
+      if (slip_cycle%is_found) exit
     end do
     call find_equation(step%equations, now%worst, node, direction)
-    outcome%reason = 'no equilibrium after '//to_text(outcome%iterations) &
-      //' iterations, most force out of balance at node ' &
+    outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations'
+    if (slip_cycle%is_found) outcome%reason = outcome%reason &
+      //', the last of which cycle between the same states of stick and slip'
+    outcome%reason = outcome%reason//', most force out of balance at node ' &
       //to_text(model%mesh%node_id(max(node, 1)))//' in '//merge('x', 'y', direction == 1) &
       //contacts_of(model, max(node, 1))
   end subroutine find_equilibrium

@@ -38,7 +38,8 @@ contains
     end do
   end subroutine weigh_contacts
 
-  !> Nodes that move alike: their own mass, the least that a force on one of them moves.
+  !> Nodes that move alike: their own mass, the least that a force on one of them moves. Nodes that
+  !> have lost theirs with their last element have no contact any more.
   subroutine weigh_common(model, mass, inverse)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: mass(:)            !! (n_node)
@@ -47,8 +48,9 @@ contains
 
     do i = 1, size(model%conditions%common_motions)
       associate (common => model%conditions%common_motions(i))
-        do k = 1, 2
-          if (common%along(k)) inverse(k, common%nodes) = 1.0_wp/mass(common%nodes)
+        do k = 1, size(common%nodes)
+          if (mass(common%nodes(k)) > 0.0_wp) inverse(:, common%nodes(k)) = merge(1.0_wp &
+            /mass(common%nodes(k)), inverse(:, common%nodes(k)), common%along)
         end do
       end associate
     end do

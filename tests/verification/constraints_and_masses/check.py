@@ -148,7 +148,7 @@ def check_incline(run):
         else:
             deck.add("*LOAD_NODE_POINT", *[(int(node), 1, 1, m, 3) for node, m in zip(nodes, mass)])
             a = 9.81
-        result = run.program(deck)
+        result = run.program(deck.add("*DATABASE_SPCFORC", (0.01,)))
         for node in (nodes[0], nodes[4], nodes[8]):
             history = result.node(int(node))
             motion = np.stack([history["ux"], history["uy"]])
@@ -156,6 +156,13 @@ def check_incline(run):
                       source="g sin(angle) t^2/2")
             run.check(f"incline, {name}: across, node {node}", normal @ motion, 0.0, 1e-13, "abs", source="held")
         table = result.table("glstat")
+        forces = result.table("spcforc")
+        rows = len(np.unique(forces["time"])), len(nodes)
+        by_node = mass * (9.81 * np.cos(angle) if fall else 0.0)
+        for axis, expected in ((along, 0.0 * mass), (normal, by_node)):
+            found = (axis[0] * forces["fx"] + axis[1] * forces["fy"]).reshape(rows)
+            run.check(f"incline, {name}: forces of the supports, {'across' if axis is normal else 'along'}", found,
+                      np.broadcast_to(expected, rows), 1e-11 * 9.81 * mass.sum(), "abs", source="m g cos(angle)")
         run.check(f"incline, {name}: balance", table["energy_ratio"], 1.0, 1e-10, "abs", source="the support does no work")
     # axes along x and y are plain supports, both axes hold the node
     texts = []

@@ -114,6 +114,60 @@ def check_least_step(run):
             run.true("and the other element stays", gone[-1, 1] < 0.5)
 
 
+def falling_squares(friction, is_damped, is_round):
+    """Squares that come to a wall in one cycle after another and all leave in the same one."""
+    deck, step, speed, last = Deck("squares on a wall"), 1.0e-6, 100.0, 12
+    deck.control(2 * last * step, dt=step)
+    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
+    deck.add("*PART", "squares", (1, 1, 1))
+    deck.elastic(RHO, YOUNG, POISSON)
+    deck.add("*MAT_ADD_EROSION", (1,), (None,) * 7 + ((last - 0.5) * step,))
+    nodes = []
+    for k in range(last):
+        nodes += list(deck.mesh(*grid(1, 1, 0.02, 0.02, (0.1 * k + 0.05, speed * step * (k + 6.3)))))
+    deck.node_set(1, nodes)
+    deck.add("*INITIAL_VELOCITY", (1,), (30.0, -speed))
+    deck.add("*RIGIDWALL_PLANAR", (0,), (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, friction))
+    if is_damped:
+        deck.add("*DAMPING_GLOBAL", (0, 2.0e4))
+        deck.curve(1, [(0.0, 1.0), (1.0, 1.0)])
+        deck.add("*LOAD_BODY_Y", (1, 1.0e6))
+    return deck.output(glstat=step)
+
+
+def check_walls(run):
+    """Nodes that lose their last element while a wall pushes them: what the wall does on them yet goes with them."""
+    for friction, is_damped, is_round in ((0.0, False, False), (0.3, True, False), (0.3, True, True)):
+        name = f"wall_{friction:g}_{'damped_' if is_damped else ''}{'round' if is_round else 'plane'}"
+        table = run.program(falling_squares(friction, is_damped, is_round), name=name).table("glstat")
+        kept = table["total"] - table["external_work"]
+        run.check(f"{name}: balance of squares that leave as they meet a wall", kept, kept[0], 1e-3)
+        run.true(f"{name}: all have left", table["kinetic"][-1] == 0.0 and table["eroded"][-1] > 0.0)
+
+
+def check_common(run):
+    """Nodes of two squares move alike: the one that leaves first takes nothing from the other, and after both the run goes on."""
+    deck, step, speed = Deck("two squares that move alike"), 1.0e-6, 100.0
+    deck.control(30 * step, dt=step)
+    deck.add("*SECTION_SHELL", (1, 13), (1.0,))
+    nodes = []
+    for k, leaves in enumerate((10.5, 20.5), 1):
+        deck.add("*PART", f"square {k}", (k, 1, k))
+        deck.elastic(RHO, YOUNG, POISSON, material=k)
+        deck.add("*MAT_ADD_EROSION", (k,), (None,) * 7 + (leaves * step,))
+        nodes.append(deck.mesh(*grid(1, 1, 0.02, 0.02, (0.1 * k, 0.0)), part=k))
+    deck.node_set(1, [nodes[0][1], nodes[1][0], nodes[1][3]])
+    deck.add("*CONSTRAINED_NODE_SET", (1, 1))
+    deck.node_set(2, [*nodes[0], *nodes[1]])
+    deck.add("*INITIAL_VELOCITY", (2,), (speed, 0.0))
+    result = run.program(deck.output(glstat=step, matsum=step), name="common")
+    second = result.table("matsum").where(part=2)
+    run.check("common: velocity of the square that stays", second["momentum_x"][:20] / second["mass"][:20], speed, 1e-12)
+    table = result.table("glstat")
+    run.check("common: balance", table["total"], table["total"][0], 1e-12)
+    run.true("common: both have left", table["kinetic"][-1] == 0.0 and table["eroded"][-1] > 0.0)
+
+
 def plate_and_rod(speed, is_round, is_rigid, radius=0.04, fail=0.4, is_self=False):
     """A blunt rod, 80 mm long and of 10 mm radius, on a clamped plate of 12 mm."""
     deck = Deck("penetration")
@@ -176,4 +230,6 @@ def check_penetration(run):
 def check(run):
     check_criteria(run)
     check_least_step(run)
+    check_walls(run)
+    check_common(run)
     check_penetration(run)

@@ -99,7 +99,47 @@ def check_growth(run):
               source="kinetic energy of the new mass is external work")
 
 
+def pair(mass_step, stays, most=0.0):
+    """Two strips with their thin rectangles towards each other, free, at 5 m/s each; most: ENDMAS, per cent."""
+    deck = Deck("two strips")
+    deck.add("*CONTROL_TERMINATION", (0.06, 0, 0.0, 0.0, most))
+    deck.add("*CONTROL_TIMESTEP", (0.0, 0.5, 0, 0.0, mass_step, 0, 0, stays)).hourglass(4, 0.1)
+    deck.add("*SECTION_SHELL", (1, 13), (1.0,)).elastic(RHO, YOUNG, POISSON)
+    for part, side in ((1, -1.0), (2, 1.0)):
+        deck.add("*PART", f"strip {part}", (part, 1, 1))
+        columns = np.sort(side * (0.001 + np.cumsum([0.0, 0.02, 0.05, 0.13, 0.1])))
+        nodes = deck.mesh(np.array([(x, y) for y in (0.0, 0.1) for x in columns]), grid_quads(4, 1), part=part)
+        deck.fix(nodes, y=1).add("*SET_PART_LIST", (part,), (part, None)).node_set(part, nodes)
+        deck.add("*INITIAL_VELOCITY", (part,), (-5.0 * side, 0.0))
+    deck.add("*CONTACT_2D_SLIDELINE", (1, 2, 5, 2, 3.0), (0.0, 1.0e20, 2))
+    return deck.output(glstat=1.0e-6, matsum=1.0e-6, rcforc=1.0e-6)
+
+
+def check_contact(run):
+    """Contact moves the scaled masses; what is crushed between two bodies gets more until ENDMAS ends the run."""
+    target = 0.07 / SPEED
+    result = run.program(pair(-target, 1), name="contact")
+    table, second, force = result.table("glstat"), result.table("matsum").where(part=2), result.table("rcforc").where(side="master")
+    run.check("contact: the first step", table["dt"][0], 0.5 * target, 1e-12, source="TSSFAC |DT2MS|")
+    run.check("contact: they meet and part", force["n_active"][-1] == 0 and second["momentum_x"][-1] > 3.0 * second["mass"][-1], True, 0.0, "abs")
+    steps = np.diff(table["time"])
+    impulse = np.concatenate([[0.0], np.cumsum(0.5 * steps * (force["fx"][1:] + force["fx"][:-1]))])
+    run.check("contact: momentum of the scaled masses", second["momentum_x"] - second["momentum_x"][0], impulse, 1e-10,
+              source="impulse of the contact force")
+    run.check("contact: balance", table["energy_ratio"], 1.0, 1e-3, "abs")
+    for most in (0.0, 1.01):
+        start = table["added_mass"][0] / (second["mass"][0] * 2.0 - table["added_mass"][0])
+        result = run.program(pair(-target, 0, most * 100.0 * start), name=f"endmas_{most:g}", expect_status=2 if most else 0)
+        grown = result.table("glstat")["added_mass"]
+        if most:
+            run.check("ENDMAS: what was added up to the last row", grown[-1], most * table["added_mass"][0], 0.0, "max")
+            run.true("ENDMAS: it ends the run by name", "of ENDMAS" in result.stderr)
+        else:
+            run.check("and without it more is added", grown[-1], 1.02 * table["added_mass"][0], 0.0, "min")
+
+
 def check(run):
+    check_contact(run)
     check_sums(run)
     check_fall(run)
     check_stability(run)

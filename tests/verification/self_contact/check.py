@@ -151,6 +151,21 @@ def check_tube(run, kind, is_round, text="", deep_most=0.3, **words):
               "none behind a face: springs give")
 
 
+def check_mean_force(run, kind, speed=30.0):
+    """The mean force of folds without hardening: Alexander's formula, whose folds close over all of their length, on the
+    shorter way over which folds of this thickness close."""
+    result = run.program(scenes.tube(kind, True, crushed=0.72, speed=speed, hardening=1.0)[0])
+    energies = result.table("glstat")
+    way, diameter, thickness, stress = speed * energies["time"], 40.0, 1.0, 300.0
+    formula = stress * thickness * np.sqrt(np.pi * diameter * thickness / (2.0 * np.sqrt(3.0)))  # of a radian
+    closes = 0.86 - 0.57 * np.sqrt(thickness / diameter)
+    mean = np.interp(np.array([0.4, 0.5, 0.6, 0.7]) * 40.0, way[1:], (energies["external_work"] - energies["kinetic"])[1:] / way[1:])
+    run.check(f"type {kind}, folding tube: mean force over 0.4 to 0.7 of the length", mean, formula / closes, 0.25, "rel",
+              "Alexander 1960, way of Abramowicz and Jones 1984")
+    run.check(f"type {kind}, folding tube: kinetic energy / work", energies["kinetic"][-1] / energies["external_work"][-1], 0.0, 0.1, "max",
+              "nearly static")
+
+
 def check_tumbling(run, kind):
     deck, x, quads = scenes.tumbling_ring(kind)
     result = run.program(deck)
@@ -186,6 +201,7 @@ def check(run):
             check_tube(run, kind, is_round, " one element thick, crushed by 0.9", 0.3 if kind in AVERAGED else 0.15, layers=1,
                        points=4, crushed=0.9, speed=60.0 if is_round else 100.0)
     check_tube(run, 5, True, " of two one-point elements, crushed by 0.9", 0.1, crushed=0.9)
+    check_mean_force(run, 5)
     for kind in (1, 3, 4, 5, 7):
         check_arms(run, kind)
     for kind in (1, 4, 7):

@@ -131,16 +131,16 @@ def ring(kind, columns=64, layers=2):
     return with_itself(deck, (1, 2, 3), kind, 10.0, 2).output(plot=0.1, glstat=0.01), *stacked(meshes)
 
 
-def tube(kind, is_round, crushed=0.55, layers=2, points=None, speed=60.0, rows=48):
+def tube(kind, is_round, crushed=0.55, layers=2, points=None, speed=60.0, rows=48, hardening=500.0):
     """Mild steel in mm, ms, N: a tube of radius 20 and thickness 1 (or a strip clamped at its ends), crushed between two
-    plates; its upper end goes with the plate. `layers` of elements, with `points` integration points."""
+    plates; its upper end goes with the plate. `layers` of elements, with `points` integration points; `hardening`: ETAN."""
     radius, length, end = 20.0, 40.0, crushed * 40.0 / speed
     x, quads = grid(layers, rows, 1.0, length, (radius - 0.5, 0.0))
     x[:, 0] += 0.15 * np.exp(-((x[:, 1] - 0.85 * length) / (0.06 * length)) ** 2)
     deck = Deck(f"a folding {'tube' if is_round else 'strip'}, type {kind}").control(end).hourglass(3, 0.05)
     deck.add("*SECTION_SHELL", (1, 15 if is_round else 13, None, points), (1.0,)).part()
     for material, stress in ((1, 300.0), (2, 3.0e4), (3, 3.0e4)):
-        deck.plastic(7.8e-3, 2.0e5, POISSON, stress, 500.0, material=material)
+        deck.plastic(7.8e-3, 2.0e5, POISSON, stress, hardening, material=material)
     ids = deck.mesh(x, quads)
     across = 1.0e-3
     others = plates(deck, (((radius - 14.0, length + across), 28.0, 2.0, 14), ((radius - 14.0, -2.0 - across), 28.0, 2.0, 14)),

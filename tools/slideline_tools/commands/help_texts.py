@@ -73,6 +73,12 @@ With lasso-python: Binout("binout0000").as_df("rcforc", "y_force").""",
   slideline-tools make-deck hertz --static -o hertz.k
   slideline-tools make-deck patch --mesh 7/5 --penalty 1e4 -o patch.k
   slideline-tools make-deck SCENE --help""",
+    "from-mesh": """Examples:
+
+  slideline-tools from-mesh model.msh                    # model.k: fill in materials, conditions, contact
+  slideline-tools from-mesh model.msh -o decks/first.k
+
+gmsh: recombine to quads, Mesh.ElementOrder 1, physical groups for bodies and edges (doc/meshes.md).""",
     "bless": """Example:
 
   slideline-tools bless collision_type_1 --reason "search reads the clock less often" """,

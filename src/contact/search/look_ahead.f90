@@ -1,0 +1,90 @@
+! SPDX-License-Identifier: MIT
+!> Places that may touch before the step ends. Springs that push by the gaps of the end of the step
+!> need their points before anything is closed: for as long as points are placed, spots that stand
+!> before a face within reach are in contact with it.
+module look_ahead_m
+  use contact_state_m, only : contact_state_t, is_in_front
+  use contacts_m, only : contact_t
+  use foot_m, only : foot_t, face_foot, see_segment
+  use geometry_m, only : segment_length
+  use kinds_m, only : wp
+  use tracking_m, only : list_touching, begin_contact
+  implicit none
+  private
+  public :: ahead_t, look_ahead, look_back
+
+  !> Spots that are in contact for the time being.
+  type :: ahead_t
+    integer :: n = 0
+    integer, allocatable :: spot(:)
+    real(wp), allocatable :: wake(:)  !! when they would have been looked at, m of travel
+  end type ahead_t
+
+  !> How far is looked ahead, as part of the mean slave segment: a node moves by less in a stable
+  !> step.
+  real(wp), parameter :: reach_part = 0.5_wp
+
+contains
+
+  !> Have the placement take gaps within reach as closed.
+  pure subroutine look_ahead(contact, memory, ahead)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(ahead_t), intent(out) :: ahead
+    type(foot_t) :: foot
+    integer :: i, n_released
+
+    memory%closed_gap = reach_of(contact, memory)
+    associate (tracking => memory%slave_tracking, gap => memory%closed_gap, &
+      slave => memory%places(:, :memory%n_slave), master => memory%places(:, memory%n_slave + 1:))
+      allocate (ahead%spot(tracking%n), ahead%wake(tracking%n))
+      do i = 1, tracking%n
+        if (tracking%status(i) /= is_in_front .or. tracking%wake(i) - gap > memory%travel) cycle
+        foot = face_foot(see_segment(contact%master, master, slave(:, i), tracking%segment(i)), &
+          tracking%segment(i))
+        if (.not. foot%is_on .or. foot%gap >= gap) cycle
+        ahead%n = ahead%n + 1
+        ahead%spot(ahead%n) = i
+        ahead%wake(ahead%n) = tracking%wake(i)
+        call begin_contact(tracking, i, foot, n_released)
+      end do
+      if (ahead%n > 0) call list_touching(tracking)
+    end associate
+    if (memory%segments%next_wake - memory%closed_gap > memory%travel) return
+    where (memory%segments%wake - memory%closed_gap <= memory%travel) &
+      memory%segments%wake = -huge(1.0_wp)
+    memory%segments%next_wake = -huge(1.0_wp)
+  end subroutine look_ahead
+
+  !> Once the points are placed: what is not closed stands before its face as it did.
+  pure subroutine look_back(ahead, memory)
+    type(ahead_t), intent(in) :: ahead
+    type(contact_state_t), intent(inout) :: memory
+    integer :: k
+
+    if (ahead%n == 0) return
+    associate (tracking => memory%slave_tracking)
+      do k = 1, ahead%n
+        tracking%status(ahead%spot(k)) = is_in_front
+        tracking%wake(ahead%spot(k)) = ahead%wake(k)
+      end do
+      call list_touching(tracking)
+    end associate
+  end subroutine look_back
+
+  !> How far is looked ahead, m.
+  pure function reach_of(contact, memory) result(reach)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: reach
+    integer :: s
+
+    reach = 0.0_wp
+    do s = 1, contact%slave%n_segment
+      reach = reach + segment_length(memory%places(:, contact%slave%segments(1, s)), &
+        memory%places(:, contact%slave%segments(2, s)))
+    end do
+    reach = reach_part*reach/max(1, contact%slave%n_segment)
+  end function reach_of
+
+end module look_ahead_m

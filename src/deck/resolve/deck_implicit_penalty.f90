@@ -1,0 +1,122 @@
+! SPDX-License-Identifier: MIT
+!> What implicit penalties (PUNIT 4) do not have: refused by name. Called for sound meshes only.
+module deck_implicit_penalty_m
+  use contacts_m, only : has_friction, is_tied, penalty_implicit
+  use deck_cards_m, only : reject_field
+  use deck_lines_m, only : deck_t, deck_error
+  use deck_raw_m, only : raw_t, raw_contact_t
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use model_m, only : model_t
+  implicit none
+  private
+  public :: check_implicit_penalties
+
+contains
+
+  !> All interfaces with such penalties.
+  subroutine check_implicit_penalties(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+    integer :: i
+
+    do i = 1, size(raw%contacts)
+      if (raw%contacts(i)%contact%penalty_unit /= penalty_implicit) cycle
+      call check_kind(deck, raw%contacts(i), model)
+      call check_nodes(deck, raw, i, model)
+    end do
+  end subroutine check_implicit_penalties
+
+  !> What the interface itself asks for.
+  subroutine check_kind(deck, entry, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_contact_t), intent(in) :: entry
+    type(model_t), intent(in) :: model
+
+    associate (contact => entry%contact)
+      if (model%is_round) call refuse(deck, entry, 'are plane: this deck is axisymmetric')
+      if (contact%is_self) call refuse(deck, entry, 'do not act between a surface and itself')
+      if (is_tied(contact)) call refuse(deck, entry, 'only push: a tie (TIE) has other springs')
+      if (has_friction(contact)) call refuse(deck, entry, 'have no friction (FS, FD)')
+      if (contact%damping > 0.0_wp) call refuse(deck, entry, 'have no damping of their own (VDC)')
+      if (entry%interference > 0) call refuse(deck, entry, &
+        'have no initial overlap that grows (LCINT)')
+      if (model%erodes) call refuse(deck, entry, 'do not act where elements may leave the mesh')
+    end associate
+  end subroutine check_kind
+
+  !> What else acts on its nodes.
+  subroutine check_nodes(deck, raw, i_contact, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    integer, intent(in) :: i_contact
+    type(model_t), intent(in) :: model
+    logical :: is_own(model%mesh%n_node)
+    integer :: i
+
+    associate (entry => raw%contacts(i_contact), own => model%contacts(i_contact))
+      is_own = .false.
+      is_own(own%slave%nodes) = .true.
+      is_own(own%master%nodes) = .true.
+      do i = 1, size(raw%contacts)
+        if (i == i_contact) cycle
+        associate (other => model%contacts(i))
+          call refuse_shared(deck, entry, is_own, [other%slave%nodes, other%master%nodes], &
+            'interface '//to_text(other%id), model)
+        end associate
+      end do
+      do i = 1, size(model%rigids)
+        call refuse_shared(deck, entry, is_own, model%rigids(i)%nodes, 'the rigid body of part ' &
+          //to_text(model%parts(model%rigids(i)%part)%id), model)
+      end do
+      if (allocated(model%walls)) then
+        do i = 1, size(model%walls)
+          call refuse_shared(deck, entry, is_own, model%walls(i)%nodes, 'rigid wall ' &
+            //to_text(model%walls(i)%id), model)
+        end do
+      end if
+      if (allocated(model%conditions%common_motions)) then
+        do i = 1, size(model%conditions%common_motions)
+          call refuse_shared(deck, entry, is_own, model%conditions%common_motions(i)%nodes, &
+            'a set of nodes that move alike', model)
+        end do
+      end if
+      if (allocated(model%conditions%skew_supports)) call refuse_shared(deck, entry, is_own, &
+        model%conditions%skew_supports%node, 'a support along neither x nor y', model)
+    end associate
+  end subroutine check_nodes
+
+  !> One error where nodes are among those of the interface.
+  subroutine refuse_shared(deck, entry, is_own, nodes, whose, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_contact_t), intent(in) :: entry
+    logical, intent(in) :: is_own(:)   !! (n_node)
+    integer, intent(in) :: nodes(:)
+    character(*), intent(in) :: whose
+    type(model_t), intent(in) :: model
+    integer :: i
+
+    do i = 1, size(nodes)
+      if (.not. is_own(nodes(i))) cycle
+      call refuse(deck, entry, 'share no nodes with others: node ' &
+        //to_text(model%mesh%node_id(nodes(i)))//' belongs to '//whose//' too')
+      return
+    end do
+  end subroutine refuse_shared
+
+  !> An error where the unit of the penalty was given.
+  subroutine refuse(deck, entry, message)
+    type(deck_t), intent(inout) :: deck
+    type(raw_contact_t), intent(in) :: entry
+    character(*), intent(in) :: message
+    character(*), parameter :: what = 'asks for implicit springs, which in this version '
+
+    if (entry%unit_place%line > 0) then
+      call reject_field(deck, entry%unit_place, what//message)
+    else
+      call deck_error(deck, '"punit=4" on the command line '//what//message)
+    end if
+  end subroutine refuse
+
+end module deck_implicit_penalty_m

@@ -1,0 +1,89 @@
+! SPDX-License-Identifier: MIT
+!> Which process of a run has which tiles, and what goes with them: ranges of chunks, interior nodes
+!> and force slots, since all of these stand tile by tile.
+module rank_shares_m
+  use kinds_m, only : wp
+  use layout_m, only : layout_t
+  implicit none
+  private
+  public :: shares_t, share_out, stream_starts
+
+  !> All arrays (0:n): where the range of each process starts, then one beyond the last.
+  type :: shares_t
+    integer, allocatable :: tiles(:), chunks(:)
+    integer, allocatable :: nodes(:)       !! interior
+    integer, allocatable :: force_slots(:)
+    integer :: first_tile = 1, last_tile = 0 !! of this process
+  end type shares_t
+
+contains
+
+  !> Ranges of tiles with about as many elements each; a process may have none.
+  pure function share_out(layout, mine, n) result(shares)
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: mine, n !! number of this process, and how many there are
+    type(shares_t) :: shares
+    real(wp) :: before, total
+    integer :: i, owner, last
+
+    allocate (shares%tiles(0:n), shares%chunks(0:n), shares%nodes(0:n), shares%force_slots(0:n))
+    associate (tiles => layout%tiles)
+      total = max(1, sum(layout%chunk_elements(:tiles(size(tiles))%last_chunk)))
+      before = 0.0_wp
+      last = -1
+      do i = 1, size(tiles)
+        associate (elements => sum(layout%chunk_elements(tiles(i)%first_chunk:tiles(i)%last_chunk)))
+          owner = min(n - 1, int(n*((before + 0.5_wp*elements)/total)))
+          before = before + elements
+        end associate
+        do while (last < owner)
+          last = last + 1
+          call start_range(last, i)
+        end do
+      end do
+      do while (last < n)
+        last = last + 1
+        call start_range(last, size(tiles) + 1)
+      end do
+    end associate
+    shares%first_tile = shares%tiles(mine)
+    shares%last_tile = shares%tiles(mine + 1) - 1
+
+  contains
+
+    !> What process `rank` has begins with tile `i`.
+    pure subroutine start_range(rank, i)
+      integer, intent(in) :: rank, i
+
+      associate (tiles => layout%tiles)
+        shares%tiles(rank) = i
+        shares%nodes(rank) = layout%n_special + 1 &
+          + sum(tiles(:i - 1)%last_node - tiles(:i - 1)%first_node + 1)
+        shares%force_slots(rank) = 1 &
+          + sum(tiles(:i - 1)%last_special - tiles(:i - 1)%first_special + 1)
+        shares%chunks(rank) = tiles(size(tiles))%last_chunk + 1
+        if (i <= size(tiles)) shares%chunks(rank) = tiles(i)%first_chunk
+      end associate
+    end subroutine start_range
+
+  end function share_out
+
+  !> Ranges of a stream that only some chunks have a part of.
+  pure function stream_starts(chunks, chunk_start, n_value) result(starts)
+    integer, intent(in) :: chunks(0:)      !! ranges of chunks
+    integer, intent(in) :: chunk_start(:)  !! where a chunk's part starts, 0 = none
+    integer, intent(in) :: n_value         !! length of the stream
+    integer :: starts(0:size(chunks) - 1)
+    integer :: rank, i
+
+    do rank = 0, size(chunks) - 1
+      starts(rank) = n_value + 1
+      do i = chunks(rank), size(chunk_start)
+        if (chunk_start(i) == 0) cycle
+        starts(rank) = chunk_start(i)
+        exit
+      end do
+    end do
+  end function stream_starts
+
+end module rank_shares_m

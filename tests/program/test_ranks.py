@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: MIT
+"""Explicit runs on several processes (MPI) write the files of one process, byte for byte.
+
+The program is the one of the tests of a Release build where MPI is installed (slideline_mpi, named by
+SLIDELINE_MPI): the objects of the ordinary program linked with the other module of src/parallel. One process of it
+is held against two and three, more than the machine may have. Each scene has another type and its own features:
+loads, damping, gravity, walls, rigid bodies, points that fail, friction, round bodies, elements that leave, one
+surface with itself, masses that grow; there are more tiles than processes, and fewer.
+"""
+import os
+import re
+import shutil
+import signal
+import subprocess
+import time
+
+import h5py
+import pytest
+from conftest import numbers
+from erosion_decks import penetration
+from impact_decks import plates
+from meshes import Deck, grid
+from round_decks import rings
+from test_same_bits import anvil, everything
+
+from slideline_tools.scenes import block, collision
+
+PROGRAM = os.environ.get("SLIDELINE_MPI", "")
+LAUNCH = ["mpirun", "--oversubscribe", "-n"]
+ENVIRONMENT = {**os.environ, "OMP_WAIT_POLICY": "passive", "OMPI_ALLOW_RUN_AS_ROOT": "1",
+               "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
+pytestmark = pytest.mark.skipif(not PROGRAM or not shutil.which("mpirun"), reason="MPI is not installed")
+
+
+def growing(kind):
+    """A part is damped and gets mass as its elements are crushed."""
+    deck = Deck("mass that grows")
+    deck.control(0.01, scale=0.9)
+    deck.add("*CONTROL_TIMESTEP", (0.0, 0.9, 0, 0.0, -2.2e-4))
+    deck.part(1).elastic(1000.0, 1.0e6, 0.3)
+    deck.part(2).plastic(1000.0, 1.0e6, 0.3, 1.0e4, 1.0e4, 0.5, 2)
+    upper = deck.mesh(*grid(40, 20, 0.4, 0.2, (0.3, 0.0)), part=1)
+    lower = deck.mesh(*grid(60, 24, 1.0, 0.24, (0.0, -0.24)), part=2)
+    deck.node_set(1, upper).node_set(2, upper[:41]).node_set(3, lower[-61:][::-1])
+    deck.contact(2, 3, kind, 2.0e5)
+    deck.fix(lower[:61], x=1, y=1)
+    deck.curve(1, [(0.0, 20.0), (1.0, 20.0)]).add("*DAMPING_PART_MASS", (1, 1))
+    deck.add("*INITIAL_VELOCITY", (1,), (0.0, -12.0))
+    return deck.output(plot=2.0e-3, glstat=2.0e-4, matsum=1.0e-3, rcforc=2.0e-4).text()
+
+
+#: scene -> (deck, cycles, processes, threads, words)
+SCENES = {
+    "rigid body and wall, type 2": (lambda: anvil(2), 60, 3, 1),
+    "points that fail, type 3": (lambda: plates(3), 90, 2, 2),
+    "friction, type 4": (lambda: collision(2, 4), 60, 3, 2, "fs=0.3"),
+    "one surface, type 5": (lambda: penetration(5, is_self=True, n=16), 330, 3, 1),
+    "elements that leave, type 5": (lambda: penetration(5, n=8), 330, 2, 1),
+    "round, type 6": (lambda: rings(6), 60, 3, 1),
+    "mass that grows, type 7": (lambda: growing(7), 60, 2, 1),
+}
+
+
+def with_cycles(text, cycles, dump=None):
+    """A deck of so many cycles, and with restart files."""
+    text = text if isinstance(text, str) else text.text()
+    text = re.sub(r"(\*CONTROL_TERMINATION\n(?:\$.*\n)*) *([^\s,]+).*\n", rf"\g<1>\g<2>,{cycles}\n", text, count=1)
+    return text.rsplit("*END", 1)[0] + (f"*DATABASE_BINARY_D3DUMP\n{dump},\n" if dump else "") + "*END\n"
+
+
+def run(folder, processes, *words, status=0):
+    """The program on so many processes; what it says."""
+    # Launchers that start at the same time get into each other's way in one folder.
+    environment = {**ENVIRONMENT, "OMPI_MCA_orte_tmpdir_base": str(folder)}
+    done = subprocess.run([*LAUNCH, str(processes), PROGRAM, *words, "perthread=1"], cwd=folder, env=environment,
+                          capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode == status, done.stderr + done.stdout
+    return done
+
+
+def contents(folder):
+    """All files but what tells of the run itself: tables and deck as bytes, datasets of the others."""
+    found = {path.name: path.read_bytes() for path in folder.iterdir()
+             if path.suffix not in (".log", ".out", ".vtkhdf", ".h5") and "timing" not in path.name}
+    for path in (*folder.glob("*.vtkhdf"), *folder.glob("*.h5")):
+        with h5py.File(path) as stream:
+            stream.visititems(lambda name, item, path=path: found.update(
+                {f"{path.name}/{name}": (item.shape, item[()].tobytes() if item.shape else str(item[()]))})
+                if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def log_of(folder):
+    """What the log says of the run: not the command, its times and its build."""
+    lines = next(folder.glob("*.log")).read_text().splitlines()
+    return [line for line in lines[:lines.index(" *** termination time reached ***")]
+            if "command line" not in line and not line.startswith("restart file")]
+
+
+def assert_same(one, other):
+    first, second = contents(one), contents(other)
+    assert len(first) > 20 and first.keys() == second.keys()
+    assert not [name for name in first if first[name] != second[name]]
+    assert log_of(one) == log_of(other)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_files_are_those_of_one_process(tmp_path, scene):
+    make, cycles, processes, threads, *words = SCENES[scene]
+    (tmp_path / "job.k").write_text(with_cycles(make(), cycles), encoding="ascii")
+    run(tmp_path, 1, "i=job.k", "d=one", *words)
+    done = run(tmp_path, processes, "i=job.k", "d=several", f"ncpu={threads}", *words)
+    assert done.stdout.count("N o r m a l") == 1, "more than one process speaks"
+    assert_same(tmp_path / "one", tmp_path / "several")
+    log = "\n".join(log_of(tmp_path / "one"))
+    assert "leave" not in scene or "leave the mesh" in log
+    assert "fail" not in scene or "points fail" in log
+    if "grows" in scene:
+        added = numbers(tmp_path / "one" / "job.glstat.csv", "added_mass")
+        assert added[-1] > added[0]
+
+
+def test_restart_files_go_from_two_processes_to_three(tmp_path):
+    (tmp_path / "job.k").write_text(with_cycles(everything(1), 40, 20), encoding="ascii")
+    run(tmp_path, 1, "i=job.k", "d=one")
+    run(tmp_path, 2, "i=job.k", "d=two")
+    assert_same(tmp_path / "one", tmp_path / "two")
+    (tmp_path / "rest").mkdir()
+    for name in ("job.dump01.h5", "job.vtkhdf"):
+        shutil.copy(tmp_path / "two" / name, tmp_path / "rest")
+    run(tmp_path, 3, "r=rest/job.dump01.h5", "ncpu=2")
+    one, rest = contents(tmp_path / "one"), contents(tmp_path / "rest")
+    assert len(rest) > 20 and not [name for name in rest if rest[name] != one[name]]
+
+
+def test_an_error_ends_all_processes_and_is_told_once(tmp_path):
+    """A run that goes wrong, a deck that is refused and a method that has one process."""
+    deck = Deck("crushed").control(0.02)
+    deck.part(1).elastic(1000.0, 1.0e6, 0.3)
+    nodes = deck.mesh(*grid(60, 40, 0.6, 0.4))
+    deck.curve(1, [(0.0, 0.0), (0.01, -30.0), (1.0, -30.0)])
+    deck.fix(nodes[:61], x=1, y=1).prescribe(int(nodes[-1]), 2, 0, 1)
+    (tmp_path / "job.k").write_text(deck.output(glstat=1.0e-3).text(), encoding="ascii")
+    said = [run(tmp_path, n, "i=job.k", f"d=crushed_{n}", status=2) for n in (1, 3)]
+    told = [[line for line in done.stderr.splitlines() if "in element" in line] for done in said]
+    assert len(told[0]) == 1 and told[0] == told[1], said
+    (tmp_path / "bad.k").write_text("*KEYWORD\n*PART\n", encoding="ascii")
+    done = run(tmp_path, 3, "i=bad.k", status=1)
+    assert done.stderr.count("bad.k") == run(tmp_path, 1, "i=bad.k", status=1).stderr.count("bad.k")
+    text = block(2, implicit=True)
+    (tmp_path / "implicit.k").write_text(text if isinstance(text, str) else text.text(), encoding="ascii")
+    assert "implicit runs have one" in run(tmp_path, 2, "i=implicit.k", "d=none", status=1).stderr
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_process_that_is_killed_ends_the_run_and_leaves_files_that_can_be_read(tmp_path):
+    (tmp_path / "job.k").write_text(everything(2).replace("0.004", "4.0", 1), encoding="ascii")
+    command = [*LAUNCH, "3", PROGRAM, "i=job.k", "d=killed", "endtim=4"]
+    environment = {**ENVIRONMENT, "OMPI_MCA_orte_tmpdir_base": str(tmp_path)}
+    with subprocess.Popen(command, cwd=tmp_path, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as going:
+        table = tmp_path / "killed" / "job.glstat.csv"
+        for _ in range(600):
+            time.sleep(0.1)
+            if table.exists() and table.stat().st_size > 2000:
+                break
+        children = subprocess.run(["pgrep", "-P", str(going.pid)], capture_output=True, text=True, check=True).stdout
+        os.kill(int(children.split()[-1]), signal.SIGKILL)
+        assert going.wait(60) != 0
+    lines = table.read_text().splitlines()
+    assert len(lines) > 2 and all(line.count(",") == lines[0].count(",") for line in lines)
+    with h5py.File(tmp_path / "killed" / next((tmp_path / "killed").glob("*.vtkhdf*")).name) as stream:
+        assert stream["VTKHDF/Steps"].attrs["NSteps"] >= 1

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: MIT
+"""The skeleton of a deck from a mesh file (gmsh, Abaqus, VTK and what else meshio reads).
+
+Physical groups become what a deck knows: groups of faces parts, groups of lines segment sets (surfaces
+of contact, edges under pressure) and node sets, groups of points node sets. Faces of no group are one
+part. Materials, contact and times are for the user to fill in: the skeleton says where.
+"""
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+
+import numpy as np
+
+from slideline_tools import UserError
+from slideline_tools.decks import Deck
+
+FACES = {"triangle": 3, "quad": 4}
+#: what is not of a plane mesh of the first order
+REFUSED = ("triangle6", "triangle7", "quad8", "quad9", "line3", "tetra", "hexahedron", "wedge", "pyramid")
+UNGROUPED = "without a group"
+
+
+@dataclasses.dataclass
+class PlaneMesh:
+    """points (n, 2); faces of each part and lines of each set by rows of points, name -> rows."""
+
+    points: np.ndarray
+    parts: dict[str, list[list[int]]]
+    lines: dict[str, np.ndarray]
+    nodes: dict[str, np.ndarray]
+    notes: list[str]
+
+
+def read(path) -> PlaneMesh:
+    """The mesh of a file; everything that cannot be taken is told at once."""
+    try:
+        import meshio
+    except ImportError:
+        raise UserError("reading meshes needs meshio: build/venv/bin/pip install './tools[mesh]'") from None
+    if not pathlib.Path(path).is_file():
+        raise UserError(f"{path}: no such file")
+    try:
+        mesh = meshio.read(path)
+    except (Exception, SystemExit) as trouble:  # meshio ends the interpreter on some files
+        raise UserError(f"{path}: meshio cannot read it: {trouble}") from None
+    check(path, mesh)
+    return gather(mesh)
+
+
+def check(path, mesh) -> None:
+    """Refuses what is no plane mesh of three- and four-node faces, with every reason."""
+    troubles = [f"{len(block.data)} cells of kind {block.type}; only triangle, quad, line and vertex "
+                "(save with Mesh.ElementOrder 1, in two dimensions)"
+                for block in mesh.cells if block.type in REFUSED]
+    if not any(block.type in FACES for block in mesh.cells):
+        troubles.append("no triangles and no quads")
+    used = used_points(mesh)
+    if mesh.points.shape[1] > 2 and len(used):
+        z = mesh.points[used, 2]
+        if np.ptp(z) > 1.0e-9 * max(np.ptp(mesh.points[used, 0]), np.ptp(mesh.points[used, 1])):
+            troubles.append(f"z runs from {z.min():.6g} to {z.max():.6g}; the mesh must lie in a plane of constant z")
+    if troubles:
+        raise UserError(f"{path}: " + "; ".join(troubles))
+
+
+def used_points(mesh) -> np.ndarray:
+    """Points of triangles and quads, ascending."""
+    rows = [block.data.ravel() for block in mesh.cells if block.type in FACES]
+    return np.unique(np.concatenate(rows)) if rows else np.zeros(0, dtype=int)
+
+
+def group_names(mesh) -> dict[tuple[int, int], str]:
+    """(dimension, number) of a physical group -> its name."""
+    return {(int(value[1]), int(value[0])): name for name, value in mesh.field_data.items()}
+
+
+def gather(mesh) -> PlaneMesh:
+    """Parts and sets by the groups of the mesh; points of no face are left out."""
+    used = used_points(mesh)
+    place = np.full(len(mesh.points), -1)
+    place[used] = np.arange(len(used))
+    names = group_names(mesh)
+    points = mesh.points[used, :2]
+    result = PlaneMesh(points, {}, {}, {}, [])
+    if len(used) < len(mesh.points):
+        result.notes.append(f"{len(mesh.points) - len(used)} points of no triangle or quad left out")
+    lines: dict[str, list] = {}
+    numbers = mesh.cell_data.get("gmsh:physical")
+    turned = 0
+    for i, block in enumerate(mesh.cells):
+        groups = numbers[i] if numbers is not None else np.zeros(len(block.data), dtype=int)
+        for row, group in zip(block.data, groups):
+            row = place[row]
+            if block.type in FACES:
+                name = names.get((2, int(group)), f"group {group}" if group else UNGROUPED)
+                walked, is_turned = left_handed(points, row)
+                turned += is_turned
+                result.parts.setdefault(name, []).append(walked)
+            elif (row < 0).any():
+                continue
+            elif block.type == "line" and group:
+                lines.setdefault(names.get((1, int(group)), f"group {group}"), []).append(row)
+            elif block.type == "vertex" and group:
+                name = names.get((0, int(group)), f"group {group}")
+                result.nodes[name] = np.append(result.nodes.get(name, np.zeros(0, dtype=int)), row)
+    if turned:
+        result.notes.append(f"{turned} faces were walked clockwise and are turned")
+    for name, rows in lines.items():
+        result.lines[name] = np.array(rows)
+    take_point_sets(mesh, place, result)
+    return result
+
+
+def take_point_sets(mesh, place, result: PlaneMesh) -> None:
+    """Node sets of formats that have them (Abaqus, Exodus)."""
+    for name, rows in getattr(mesh, "point_sets", {}).items():
+        rows = place[np.asarray(rows, dtype=int)]
+        result.nodes[name] = np.unique(rows[rows >= 0])
+
+
+def left_handed(points, row) -> tuple[list[int], bool]:
+    """Nodes of a face with the face on the left, and whether they had to be turned."""
+    x, y = points[row, 0], points[row, 1]
+    area = 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
+    return (list(row), False) if area > 0.0 else (list(row[::-1]), True)
+
+
+def deck_of(mesh: PlaneMesh, title: str) -> Deck:
+    """The skeleton: parts with a material to fill in, nodes, elements, sets."""
+    deck = Deck(title[:80], [
+        "A skeleton by slideline-tools from-mesh. To fill in: materials, how long, boundary conditions, "
+        "contact (commented out below), what is written. Units are those of the mesh and yours.",
+        *mesh.notes])
+    deck.block("How long, and how often a state is written.")
+    deck.keyword("CONTROL_TERMINATION").card("endtim", 1.0)
+    deck.keyword("DATABASE_BINARY_D3PLOT").card("dt", 0.1)
+    deck.keyword("DATABASE_GLSTAT").card("dt", 0.01)
+    deck.block("Plane strain (ELFORM 13; 15: axisymmetric about x = 0), one point, and a steel for each part.")
+    deck.keyword("SECTION_SHELL").card("secid elform shrf nip", 1, 13, 1.0, 1)
+    for pid, name in enumerate(mesh.parts, start=1):
+        deck.keyword("PART", name[:80]).card("pid secid mid", pid, 1, pid)
+        deck.keyword("MAT_ELASTIC").card("mid ro e pr", pid, 7850.0, 2.1e11, 0.3)
+    add_sets(deck, mesh)
+    deck.block("The mesh.")
+    deck.keyword("NODE").table("nid x y", [8, 16, 16],
+                               [(n + 1, float(x), float(y)) for n, (x, y) in enumerate(mesh.points)])
+    eid = 0
+    rows = []
+    for pid, faces in enumerate(mesh.parts.values(), start=1):
+        for face in faces:
+            eid += 1
+            rows.append((eid, pid, *(n + 1 for n in face), *([face[-1] + 1] if len(face) == 3 else [])))
+    deck.keyword("ELEMENT_SHELL").table("eid pid n1 n2 n3 n4", [8] * 6, rows)
+    return deck
+
+
+def add_sets(deck: Deck, mesh: PlaneMesh) -> None:
+    """Segment and node sets, with the names of their groups, and what to write to use them."""
+    sid = 0
+    surfaces = []
+    for name, rows in mesh.lines.items():
+        sid += 1
+        surfaces.append((sid, name))
+        deck.block(f"{name}: edges (segment set {sid}) and their nodes (node set {sid}).")
+        deck.keyword("SET_SEGMENT_TITLE", name[:80]).card("sid", sid)
+        deck.table("n1 n2", [10, 10], [(a + 1, b + 1) for a, b in rows])
+        add_node_set(deck, sid, name, np.unique(rows))
+    for name, rows in mesh.nodes.items():
+        sid += 1
+        deck.block(f"{name}: nodes (node set {sid}).")
+        add_node_set(deck, sid, name, np.unique(rows))
+    if len(surfaces) > 1:
+        (a, name_a), (b, name_b) = surfaces[:2]
+        deck.block(f"Contact between {name_a} and {name_b}, type 5: take the $ and the blank off the lines below, but for the second.",
+                   "*CONTACT_2D_SLIDELINE",
+                   "surfa, surfb, ctype, ngauss, pen; a positive number is a segment set where no part set has it",
+                   f"{a}, {b}, 5, 0, 1.0", "0, 0, 2")
+
+
+def add_node_set(deck: Deck, sid: int, name: str, nodes) -> None:
+    """*SET_NODE_LIST with eight nodes a card."""
+    deck.keyword("SET_NODE_LIST_TITLE", name[:80]).card("sid", sid)
+    nodes = [int(n) + 1 for n in nodes]
+    deck.table(" ".join(f"nid{i}" for i in range(1, 9)), [10] * 8,
+               [nodes[i:i + 8] for i in range(0, len(nodes), 8)])
