@@ -102,7 +102,8 @@ contains
 
     call put_line(text, ' '//text_of(model%controls%title))
     call put_line(text, '                         slideline (version '//version &
-      //')     plane strain, per unit depth')
+      //')     '//trim(merge('axisymmetric, per radian    ', 'plane strain, per unit depth', &
+      model%is_round)))
     has_legend = .false.
     select case (text%i_table)
     case (table_matsum)
@@ -158,7 +159,10 @@ contains
 
     if (.not. text%is_open) return
     text%n_row = text%n_row + 1
-    text%rows(:, text%n_row) = values(text%columns)
+    do i = 1, size(text%columns)
+      text%rows(i, text%n_row) = 0.0_wp
+      if (text%columns(i) > 0) text%rows(i, text%n_row) = values(text%columns(i))
+    end do
     if (text%n_row < size(text%rows, 2)) return
     text%n_row = 0
     call form_block(text%i_table, text%control, text%rows, text%lines, n_line)
