@@ -32,7 +32,7 @@ module quad_plain_m
     real(wp), dimension(chunk_size) :: m2             !! 2A half a step ago
     real(wp), dimension(chunk_size) :: z              !! (A - A0)/(A + A0), ln(A/A0) = 2 atanh(z)
     real(wp), dimension(chunk_size) :: gx, gy         !! hourglass velocity gamma.v
-    real(wp), dimension(chunk_size) :: cosine, sine   !! of half the rotation of the step
+    real(wp), dimension(chunk_size) :: cosine, sine   !! of the rotation of the step
     real(wp), dimension(chunk_size) :: mean, half, shear !! strain increments (xx + yy)/2,
                                                          !! (xx - yy)/2 and xy in the mid-step frame
   end type shape_t

@@ -134,7 +134,7 @@ contains
     type(conditions_t), intent(inout) :: conditions
     logical, intent(inout) :: fixed(:, :)
     type(skew_support_t) :: support
-    integer :: system, k
+    integer :: system, k, j
     real(wp), parameter :: aligned = 1.0e-12_wp
 
     call resolve_id(deck, maps%systems, row%system, 'coordinate system', &
@@ -153,13 +153,24 @@ contains
     if (.not. allocated(conditions%skew_supports)) allocate (conditions%skew_supports(0))
     do k = 1, size(nodes)
       support%node = nodes(k)
-      if (any(conditions%skew_supports%node == nodes(k))) then
-        fixed(:, nodes(k)) = .true.
-      else
+      do j = size(conditions%skew_supports), 1, -1
+        if (conditions%skew_supports(j)%node == nodes(k)) exit
+      end do
+      if (j == 0) then
         conditions%skew_supports = [conditions%skew_supports, support]
+      else if (.not. is_along(conditions%skew_supports(j)%normal, support%normal)) then
+        fixed(:, nodes(k)) = .true.   ! along two axes; the same axis twice is one
       end if
     end do
   end subroutine fix_along_axes
+
+  !> Whether two unit vectors have one axis.
+  pure function is_along(a, b) result(yes)
+    real(wp), intent(in) :: a(2), b(2)
+    logical :: yes
+
+    yes = abs(a(1)*b(2) - a(2)*b(1)) < 1.0e-12_wp
+  end function is_along
 
   !> What skew supports ask of the rest of the deck.
   subroutine check_skew_supports(deck, raw, model, rows)

@@ -49,6 +49,7 @@ contains
     integer, intent(in) :: freed(:)
     type(state_t), intent(inout) :: state
     real(wp) :: before(2), after(2), half(2), keep(2), push(2)
+    logical :: is_led(2)
     integer :: i
 
     associate (took => state%elements%erosion%took)
@@ -56,25 +57,51 @@ contains
         associate (node => freed(i), mass => state%mass(freed(i)))
           after = state%motion(3:4, node)
           call find_factors(leap, state, node, half, keep)
+          is_led = .not. state%inverse_mass(:, node) > 0.0_wp
           push = merge(leap%body, 0.0_wp, state%inverse_mass(:, node) > 0.0_wp)
           if (node <= model%layout%n_special) push = push + state%inverse_mass(:, node) &
             *state%force_special(:, node)
           before = after - half*push
           if (allocated(state%former_velocity)) then
-            before = merge(state%former_velocity(:, node), after, state%inverse_mass(:, node) &
-              > 0.0_wp)
-            state%damping_work = state%damping_work + 0.5_wp*state%dt_before*mass &
-              *sum((1.0_wp/half - 1.0_wp/leap%mean)*(before + after)*before)
+            before = state%former_velocity(:, node)
+            state%damping_work = state%damping_work + 0.5_wp*mass*sum((1.0_wp/half - 1.0_wp &
+              /leap%mean)*(before + after)*(state%dt_before*before + merge(state%dt*after, &
+              0.0_wp, is_led)))
+            before = merge(after, before, is_led)
           end if
+          ! What leads a node has paid for the half step ahead.
+          state%external_work = state%external_work + 0.5_wp*state%dt*mass*sum(merge(leap%body &
+            *after, 0.0_wp, is_led))
           took(1) = took(1) + 0.5_wp*mass*sum(before*after)
           if (allocated(state%walls)) took(1) = took(1) + wall_work_ahead(model, node, state)
           state%mass(node) = 0.0_wp
           state%inverse_mass(:, node) = 0.0_wp
-          state%motion(3:4, node) = 0.0_wp
+          state%motion(3:4, node) = merge(after, 0.0_wp, is_led)
         end associate
       end do
     end associate
+    if (allocated(model%conditions%common_motions)) call stop_empty_sets(model, state)
   end subroutine release_nodes
+
+  !> Nodes that move alike and have no mass left stand still from here on: the half step ahead for
+  !> which their loads would have paid is not theirs any more.
+  subroutine stop_empty_sets(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    integer :: i, k
+
+    do i = 1, size(model%conditions%common_motions)
+      associate (set => model%conditions%common_motions(i))
+        if (any(state%mass(set%nodes) > 0.0_wp)) cycle
+        do k = 1, 2
+          if (.not. set%along(k)) cycle
+          state%elements%erosion%took(1) = state%elements%erosion%took(1) - 0.5_wp*state%dt &
+            *state%motion(2 + k, set%nodes(1))*sum(state%force_special(k, set%nodes))
+          state%motion(2 + k, set%nodes) = 0.0_wp
+        end do
+      end associate
+    end do
+  end subroutine stop_empty_sets
 
   !> At the end of a run: how many elements have left, when first, and what they took along.
   subroutine report_erosion(model, state, log)

@@ -168,6 +168,40 @@ def check_common(run):
     run.true("common: both have left", table["kinetic"][-1] == 0.0 and table["eroded"][-1] > 0.0)
 
 
+def check_led(run):
+    """Squares that move as a whole, led or alike, with damping, weight or forces on their nodes, and leave: what leads a node pays
+    for the half step ahead, which does not come any more. Nothing strains, so that the balance is exact."""
+    step = 1.0e-6
+    prescribed = ("*BOUNDARY_PRESCRIBED_MOTION_SET", (2, 1, 0, 1, 100.0))
+    alike = ("*CONSTRAINED_NODE_SET", (2, 1))
+    for name, cards in {
+            "led, damped": (prescribed, ("*DAMPING_GLOBAL", (0, 3.0e4))),
+            "led, with weight": (prescribed, ("*LOAD_BODY_X", (1, 3.0e6))),
+            "led, under forces": (prescribed, ("*LOAD_NODE_SET", (2, 1, 1, 1.0e5))),
+            "alike, under forces": (alike, ("*LOAD_NODE_SET", (2, 1, 1, 1.0e5))),
+            "alike, one set each, under forces": (("*CONSTRAINED_NODE_SET", (3, 1)), ("*CONSTRAINED_NODE_SET", (4, 1)),
+                                                  ("*LOAD_NODE_SET", (2, 1, 1, 1.0e5)))}.items():
+        deck = Deck(name)
+        deck.control(30 * step, dt=step)
+        deck.add("*SECTION_SHELL", (1, 13), (1.0,))
+        nodes = []
+        for k, leaves in enumerate((10.5, 20.5), 1):
+            deck.add("*PART", f"square {k}", (k, 1, k))
+            deck.elastic(RHO, YOUNG, POISSON, material=k)
+            deck.add("*MAT_ADD_EROSION", (k,), (None,) * 7 + (leaves * step,))
+            nodes.append(deck.mesh(*grid(1, 1, 0.02, 0.02, (0.1 * k, 0.0)), part=k))
+            deck.node_set(2 + k, nodes[-1])
+        deck.node_set(2, [*nodes[0], *nodes[1]])
+        deck.add("*INITIAL_VELOCITY", (2,), (100.0, 0.0))
+        deck.add("*DEFINE_CURVE", (1,), (0.0, 1.0), (1.0, 1.0))
+        for card in cards:
+            deck.add(*card)
+        table = run.program(deck.output(glstat=step), name=name.replace(" ", "_").replace(",", "")).table("glstat")
+        run.check(f"{name}: balance / largest energy", table["total"] - table["external_work"] - table["total"][0],
+                  0.0, 1e-12 * np.max(np.abs(table["total"])), "abs")
+        run.true(f"{name}: both have left", table["eroded"][-1] > 0.0 and abs(table["kinetic"][-1]) == 0.0)
+
+
 def plate_and_rod(speed, is_round, is_rigid, radius=0.04, fail=0.4, is_self=False):
     """A blunt rod, 80 mm long and of 10 mm radius, on a clamped plate of 12 mm."""
     deck = Deck("penetration")
@@ -232,4 +266,5 @@ def check(run):
     check_least_step(run)
     check_walls(run)
     check_common(run)
+    check_led(run)
     check_penetration(run)
