@@ -34,9 +34,14 @@ contains
     logical :: repeats
 
     call gather_states(contacts, states)
+    if (size(states) == 0) return
     repeats = .false.
-    if (allocated(cycle%before)) repeats = all(states == cycle%before) &
-      .and. any(states /= cycle%last) .and. residual > fallen*cycle%residual_before
+    if (allocated(cycle%before)) then
+      ! Runs of outlines that change have other places.
+      if (size(states) == size(cycle%before) .and. size(states) == size(cycle%last)) &
+        repeats = all(states == cycle%before) .and. any(states /= cycle%last) &
+        .and. residual > fallen*cycle%residual_before
+    end if
     cycle%n_repeat = merge(cycle%n_repeat + 1, 0, repeats)
     cycle%is_found = cycle%n_repeat >= most_repeats
     call move_alloc(cycle%last, cycle%before)
