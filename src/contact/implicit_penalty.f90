@@ -23,7 +23,6 @@ module implicit_penalty_m
     real(wp) :: dt_before = 0.0_wp          !! of the step behind, s
     integer :: cycle = 0
     real(wp) :: time = 0.0_wp               !! of u(n), s
-    real(wp) :: loan = 0.0_wp               !! what may be made in any case, J/m
     real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) v(n+1/2) without the
                                             !! interface
     real(wp), allocatable :: mobility(:, :) !! (2, n_slave + n_master) velocity from a force of 1
@@ -31,6 +30,8 @@ module implicit_penalty_m
 
   !> Part of a penetration that is taken back in a step where springs have no compliance.
   real(wp), parameter :: recovered = 0.1_wp
+  !> Penetration that counts as one from the start, over the gap below which nodes are looked at.
+  real(wp), parameter :: overlap = 1.0e-3_wp
 
 contains
 
@@ -47,12 +48,17 @@ contains
       call find_pressures(step, memory)
       call share_out(memory%points%n, memory%points%slave_nodes, memory%points%slave_weights, &
         memory%node_pressure, memory%points%pressure)
-      if (memory%watch%is_due .or. step%cycle == 0) call measure_springs(memory)
+      if (memory%watch%is_due .or. step%cycle == 0 .or. memory%scratch%is_born) &
+        call measure_springs(memory)
       ! Loaded at time zero they hold energy that no force has put in.
       if (step%cycle == 0) memory%energy = memory%watch%stored
+      call give_credit(step%cycle, any(memory%scratch%nodal(2, :memory%n_slave) > 0.0_wp &
+        .and. memory%scratch%nodal(1, :memory%n_slave) < -overlap*memory%closed_gap), memory)
       call scatter_forces(memory)
-      if (memory%n_active > 0 .and. step%cycle > 0) call limit_return(step, motion, memory)
+      if (memory%n_active > 0 .and. step%cycle > 0 .and. memory%limit%credit < huge(1.0_wp)) &
+        call limit_return(step, motion, memory)
     else
+      call give_credit(step%cycle, .false., memory)
       memory%node_pressure = 0.0_wp
     end if
     associate (had_force => memory%scratch%had_force)
@@ -61,6 +67,26 @@ contains
       call end_look(had_force, memory%n_active > 0, memory%watch)
     end associate
   end subroutine press_ahead
+
+  !> What springs hold that are born loaded may be returned. Without compliance they hold nothing:
+  !> a penetration from the start is taken back whatever that makes, and from then on contact owes
+  !> nothing.
+  pure subroutine give_credit(cycle, overlaps, memory)
+    integer, intent(in) :: cycle
+    logical, intent(in) :: overlaps !! some mean gap is below zero by more than springs leave
+    type(contact_state_t), intent(inout) :: memory
+
+    associate (limit => memory%limit, begins => cycle == 0 .or. memory%scratch%is_born)
+      if (memory%slave_penalty > 0.0_wp) then
+        if (memory%scratch%is_born) limit%credit = memory%watch%stored
+      else if (begins) then
+        if (overlaps) limit%credit = huge(1.0_wp)
+      else if (.not. (overlaps .or. limit%credit < huge(1.0_wp))) then
+        limit%credit = max(0.0_wp, -memory%energy)
+        limit%largest = 0.0_wp
+      end if
+    end associate
+  end subroutine give_credit
 
   !> Contact never returns more than it took (section 6.1): areas and normals change while corners
   !> turn. The step to come is known here, and so is what it returns.
@@ -85,7 +111,8 @@ contains
     returned%behind = 0.5_wp*step%dt_before*returned%behind
     returned%ahead = 0.5_wp*step%dt*returned%ahead
     returned%recoil = 0.5_wp*step%dt*returned%recoil
-    bound = memory%energy - 0.5_wp*step%dt_before*before + slack*memory%limit%largest + step%loan
+    bound = memory%energy + memory%limit%credit - 0.5_wp*step%dt_before*before &
+      + slack*memory%limit%largest + memory%limit%loan
     factor = energy_factor(returned, bound)
     call count_cycle(factor, step%time, memory%limit)
     if (factor < 1.0_wp) call scale_forces(factor, memory)

@@ -177,6 +177,7 @@ contains
 
     memory%scratch%had_force = memory%n_active > 0
     memory%scratch%waits = .true.
+    memory%scratch%is_born = memory%is_stale .and. cycle > 0
     call gather_spots(contact, motion, memory)
     call search_pairs(contact, cycle, memory)
     call look_ahead(contact, memory, ahead)

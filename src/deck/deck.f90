@@ -144,13 +144,19 @@ contains
     integer, allocatable, intent(out) :: known(:)
     character(:), allocatable :: reason
     character(100) :: name
+    logical :: has_beams     !! beams are bodies, not the edges of a mesh
     integer :: i
 
     allocate (known(deck%n_block))
+    has_beams = any([(index(deck%blocks(i)%given, 'SECTION_BEAM') == 1, i=1, deck%n_block)])
     if (deck%n_block == 0) call line_error(deck, 0, 'holds no keyword (a line that starts with *)')
     do i = 1, deck%n_block
       associate (block => deck%blocks(i))
         call find_keyword(block%given, name, known(i), block%titled, reason)
+        if (has_beams .and. name == 'ELEMENT_BEAM') then
+          known(i) = known_refused
+          reason = 'with beams as bodies (*SECTION_BEAM) this element is'
+        end if
         select case (known(i))
         case (known_honoured)
           block%name = name(:len(block%name))

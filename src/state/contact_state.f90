@@ -139,8 +139,9 @@ module contact_state_m
     real(wp) :: taken = 0.0_wp              !! what springs hold that were freed pressed, J/m
     logical :: waits = .false.              !! points are placed, forces follow once all others are
                                             !! known
-    logical :: had_force = .false.          !! the call before had some; both only of implicit
-                                            !! penalties
+    logical :: had_force = .false.          !! the call before had some
+    logical :: is_born = .false.            !! contact begins in this call, after time zero; these
+                                            !! three only of implicit penalties
     type(piece_table_t), allocatable :: pieces !! lent to the placement while it works
   end type contact_scratch_t
 

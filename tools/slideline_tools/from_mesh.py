@@ -16,8 +16,8 @@ from slideline_tools import UserError
 from slideline_tools.decks import Deck
 
 FACES = {"triangle": 3, "quad": 4}
-#: what is not of a plane mesh of the first order
-REFUSED = ("triangle6", "triangle7", "quad8", "quad9", "line3", "tetra", "hexahedron", "wedge", "pyramid")
+#: cells of a plane mesh of the first order
+TAKEN = (*FACES, "line", "vertex")
 UNGROUPED = "without a group"
 
 
@@ -52,7 +52,7 @@ def check(path, mesh) -> None:
     """Refuses what is no plane mesh of three- and four-node faces, with every reason."""
     troubles = [f"{len(block.data)} cells of kind {block.type}; only triangle, quad, line and vertex "
                 "(save with Mesh.ElementOrder 1, in two dimensions)"
-                for block in mesh.cells if block.type in REFUSED]
+                for block in mesh.cells if block.type not in TAKEN]
     if not any(block.type in FACES for block in mesh.cells):
         troubles.append("no triangles and no quads")
     used = used_points(mesh)
@@ -75,6 +75,11 @@ def group_names(mesh) -> dict[tuple[int, int], str]:
     return {(int(value[1]), int(value[0])): name for name, value in mesh.field_data.items()}
 
 
+def heading(name: str) -> str:
+    """A name as a line of text: neither a comment nor a keyword."""
+    return (f"_{name}" if name[:1] in "$*" else name)[:80]
+
+
 def gather(mesh) -> PlaneMesh:
     """Parts and sets by the groups of the mesh; points of no face are left out."""
     used = used_points(mesh)
@@ -94,7 +99,7 @@ def gather(mesh) -> PlaneMesh:
             row = place[row]
             if block.type in FACES:
                 name = names.get((2, int(group)), f"group {group}" if group else UNGROUPED)
-                walked, is_turned = left_handed(points, row)
+                walked, is_turned = walked_left(points, row)
                 turned += is_turned
                 result.parts.setdefault(name, []).append(walked)
             elif (row < 0).any():
@@ -119,7 +124,7 @@ def take_point_sets(mesh, place, result: PlaneMesh) -> None:
         result.nodes[name] = np.unique(rows[rows >= 0])
 
 
-def left_handed(points, row) -> tuple[list[int], bool]:
+def walked_left(points, row) -> tuple[list[int], bool]:
     """Nodes of a face with the face on the left, and whether they had to be turned."""
     x, y = points[row, 0], points[row, 1]
     area = 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
@@ -139,7 +144,7 @@ def deck_of(mesh: PlaneMesh, title: str) -> Deck:
     deck.block("Plane strain (ELFORM 13; 15: axisymmetric about x = 0), one point, and a steel for each part.")
     deck.keyword("SECTION_SHELL").card("secid elform shrf nip", 1, 13, 1.0, 1)
     for pid, name in enumerate(mesh.parts, start=1):
-        deck.keyword("PART", name[:80]).card("pid secid mid", pid, 1, pid)
+        deck.keyword("PART", heading(name)).card("pid secid mid", pid, 1, pid)
         deck.keyword("MAT_ELASTIC").card("mid ro e pr", pid, 7850.0, 2.1e11, 0.3)
     add_sets(deck, mesh)
     deck.block("The mesh.")
@@ -163,7 +168,7 @@ def add_sets(deck: Deck, mesh: PlaneMesh) -> None:
         sid += 1
         surfaces.append((sid, name))
         deck.block(f"{name}: edges (segment set {sid}) and their nodes (node set {sid}).")
-        deck.keyword("SET_SEGMENT_TITLE", name[:80]).card("sid", sid)
+        deck.keyword("SET_SEGMENT_TITLE", heading(name)).card("sid", sid)
         deck.table("n1 n2", [10, 10], [(a + 1, b + 1) for a, b in rows])
         add_node_set(deck, sid, name, np.unique(rows))
     for name, rows in mesh.nodes.items():
@@ -180,7 +185,7 @@ def add_sets(deck: Deck, mesh: PlaneMesh) -> None:
 
 def add_node_set(deck: Deck, sid: int, name: str, nodes) -> None:
     """*SET_NODE_LIST with eight nodes a card."""
-    deck.keyword("SET_NODE_LIST_TITLE", name[:80]).card("sid", sid)
+    deck.keyword("SET_NODE_LIST_TITLE", heading(name)).card("sid", sid)
     nodes = [int(n) + 1 for n in nodes]
     deck.table(" ".join(f"nid{i}" for i in range(1, 9)), [10] * 8,
                [nodes[i:i + 8] for i in range(0, len(nodes), 8)])

@@ -124,8 +124,10 @@ contains
         if (card%i(k) < 1) call report_field(deck, cursor, card, k, &
           'is not a node number (1 or more)')
       end do
-      if (card%bad(part) .or. any(card%bad(first:first + 1))) raw%lost%sets = .true.
-      if (card%bad(part) .or. any(card%bad(first:first + 1))) cycle
+      if (card%bad(part) .or. any(card%bad(first:first + 1))) then
+        raw%lost%sets = .true.
+        cycle
+      end if
       call line_warning(deck, card%line, 'beams', 'beams are no elements of a plane mesh: the ' &
         //'edges of each of their parts are the segment set, and the node set, of its number')
       do k = first, first + 1

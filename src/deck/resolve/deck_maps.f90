@@ -38,11 +38,13 @@ contains
     call map_kind(deck, 'curve', [raw%curves%id], raw%curve_line, 'LCID', maps%curves)
     call map_kind(deck, 'table', [raw%tables%id], [raw%tables%line], 'TBID', maps%tables)
     call map_kind(deck, 'node set', [raw%node_sets(:raw%n_node_set)%id], &
-      [raw%node_sets(:raw%n_node_set)%line], 'SID', maps%node_sets)
+      [raw%node_sets(:raw%n_node_set)%line], 'SID', maps%node_sets, &
+      raw%node_sets(:raw%n_node_set)%of_beams)
     call map_kind(deck, 'part set', [raw%part_sets(:raw%n_part_set)%id], &
       [raw%part_sets(:raw%n_part_set)%line], 'SID', maps%part_sets)
     call map_kind(deck, 'segment set', [raw%segment_sets(:raw%n_segment_set)%id], &
-      [raw%segment_sets(:raw%n_segment_set)%line], 'SID', maps%segment_sets)
+      [raw%segment_sets(:raw%n_segment_set)%line], 'SID', maps%segment_sets, &
+      raw%segment_sets(:raw%n_segment_set)%of_beams)
     call map_kind(deck, 'coordinate system', [raw%systems%id], [raw%systems%line], 'CID', &
       maps%systems)
     all_lost = deck%incomplete
@@ -61,20 +63,24 @@ contains
   end subroutine make_maps
 
   !> One map, with an error for each id that comes again.
-  subroutine map_kind(deck, what, ids, lines, field, map)
+  subroutine map_kind(deck, what, ids, lines, field, map, of_beams)
     type(deck_t), intent(inout) :: deck
     character(*), intent(in) :: what
     integer, intent(in) :: ids(:)
     integer, intent(in) :: lines(:) !! where each stands
     character(*), intent(in) :: field
     type(id_map_t), intent(out) :: map
+    logical, intent(in), optional :: of_beams(:) !! the number of a set is that of a part
     integer, allocatable :: twice(:)
+    character(5) :: name
     integer :: i, first
 
     call map_ids(ids, map, twice)
     do i = 1, size(twice)
       first = index_of(map, ids(twice(i)))
-      call reject_field(deck, place_t(lines(twice(i)), merge(2, 1, what == 'part'), field), &
+      name = field
+      if (present(of_beams)) name = merge('PID  ', name, of_beams(twice(i)))
+      call reject_field(deck, place_t(lines(twice(i)), merge(2, 1, what == 'part'), trim(name)), &
         'is the number of another '//what//' ('//where_text(deck, lines(first))//')')
     end do
   end subroutine map_kind

@@ -34,8 +34,8 @@ contains
       if (allocated(raw%node_sets(i)%actions)) then
         call resolve_general(deck, raw%node_sets(i), maps, model, model%node_sets(i)%nodes)
       else
-        call resolve_members(deck, raw%node_sets(i), maps%nodes, 'node', 2, &
-          model%node_sets(i)%nodes)
+        call resolve_members(deck, raw%node_sets(i), maps%nodes, 'node', &
+          merge(1, 2, raw%node_sets(i)%of_beams), model%node_sets(i)%nodes)
       end if
     end do
     do i = 1, raw%n_part_set
@@ -69,7 +69,7 @@ contains
         segments%parts = [segments%parts, model%part_sets(members(i))%parts]
       end do
     case default
-      call resolve_members(deck, set, maps%nodes, 'node', 2, members)
+      call resolve_members(deck, set, maps%nodes, 'node', merge(1, 2, set%of_beams), members)
       if (size(members) /= set%n) members = members(:0)
       segments%nodes = reshape(members, [2, size(members)/2])
       return

@@ -12,7 +12,7 @@ module contact_account_m
   use state_m, only : state_t
   implicit none
   private
-  public :: plan_looks, follow_contact, report_contact_energies, lent_share
+  public :: plan_looks, follow_contact, report_contact_energies
 
   !> Cycles between two looks at springs; at more of them the sum over all points would show in the
   !> time of a step.

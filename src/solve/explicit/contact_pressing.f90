@@ -4,7 +4,7 @@
 module contact_pressing_m
   use clock_m, only : clock_t, lap, share_contact, phase_contact_force, phase_nodes
   use constraints_m, only : is_active
-  use contact_account_m, only : follow_contact, lent_share
+  use contact_account_m, only : follow_contact
   use contacts_m, only : penalty_implicit
   use implicit_penalty_m, only : coming_step_t, press_ahead
   use kinds_m, only : wp
@@ -58,7 +58,6 @@ contains
     step%dt_before = state%dt_before
     step%cycle = state%cycle
     step%time = state%time
-    step%loan = lent_share*state%largest_energy/size(state%contacts)
     led = 0.0_wp
     do i = 1, size(velocity)
       associate (prescribed => model%conditions%motions(i))
