@@ -21,9 +21,9 @@ N = 50                            # elements of a bar
 STEP = 1.0e-9                     # every cycle
 
 
-def start(title, end, scale, young=(YOUNG, YOUNG), poisson=0.0):
+def start(title, end, scale, young=(YOUNG, YOUNG), poisson=0.0, dt=None):
     deck = Deck(title)
-    deck.control(end, scale=scale).hourglass(4, 0.1)
+    deck.control(end, dt=dt, scale=scale).hourglass(4, 0.1)
     for part in (1, 2):
         deck.part(part).elastic(RHO, young[part - 1], poisson, part)
     return deck
@@ -170,8 +170,27 @@ def check_corners(run):
                   0.01, 0.0, "max", "bodies of about 2 m^2")
 
 
+def check_overlap(run):
+    """Without compliance a tenth of a penetration from the start is taken back in each step, whatever that makes: a block that is
+    led into another one, whose base is held."""
+    depth, step = 5.0e-3, 4.0e-3
+    deck = start("an overlap from the start", 50 * step, 0.9, dt=step)
+    upper = deck.mesh(*grid(4, 4, origin=(0.0, 1.0 - depth)), part=1)
+    lower = deck.mesh(*grid(5, 5), part=2)
+    deck.fix(lower[:6], y=1).curve(1, [(0.0, 1.0), (1.0e3, 1.0)])
+    for node in upper:
+        deck.prescribe(node, 2, 0, 1, -SPEED)
+    deck.node_set(1, upper[:5]).node_set(2, lower[-6:][::-1]).contact(1, 2, 7, RIGID, IMPLICIT)
+    result = run.program(deck.output(glstat=step, plot=step))
+    table = result.table("contact")
+    gaps = np.array([table["gap"][np.isclose(table["time"], k * step)].min() for k in (5, 10, 20, 40)])
+    run.check("overlap: what is left of it after 5, 10, 20 and 40 steps", gaps, -depth * 0.9 ** np.array([5, 10, 20, 40]), 1e-12)
+    run.check("overlap: energy ratio", result.table("glstat")["energy_ratio"], 1.0, 1e-3)
+
+
 def check(run):
     check_corners(run)
+    check_overlap(run)
     check_bars(run)
     check_momentum(run)
     check_held(run)
