@@ -39,12 +39,12 @@ contains
     call map_kind(deck, 'table', [raw%tables%id], [raw%tables%line], 'TBID', maps%tables)
     call map_kind(deck, 'node set', [raw%node_sets(:raw%n_node_set)%id], &
       [raw%node_sets(:raw%n_node_set)%line], 'SID', maps%node_sets, &
-      raw%node_sets(:raw%n_node_set)%of_beams)
+      [raw%node_sets(:raw%n_node_set)%of_beams])
     call map_kind(deck, 'part set', [raw%part_sets(:raw%n_part_set)%id], &
       [raw%part_sets(:raw%n_part_set)%line], 'SID', maps%part_sets)
     call map_kind(deck, 'segment set', [raw%segment_sets(:raw%n_segment_set)%id], &
       [raw%segment_sets(:raw%n_segment_set)%line], 'SID', maps%segment_sets, &
-      raw%segment_sets(:raw%n_segment_set)%of_beams)
+      [raw%segment_sets(:raw%n_segment_set)%of_beams])
     call map_kind(deck, 'coordinate system', [raw%systems%id], [raw%systems%line], 'CID', &
       maps%systems)
     all_lost = deck%incomplete
