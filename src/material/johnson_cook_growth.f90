@@ -23,7 +23,7 @@ module johnson_cook_growth_m
   type :: search_t
     real(wp), dimension(n_lane) :: low, high !! bounds
     real(wp), dimension(n_lane) :: growth    !! between them
-    real(wp), dimension(n_lane) :: todo      !! 1, or 0 where it stands
+    real(wp), dimension(n_lane) :: is_open   !! 1, or 0 where the growth is found
   end type search_t
 
 contains
@@ -47,13 +47,13 @@ contains
     growth = 0.0_wp
     call form_flow(flow, strain, growth, ratio, known, stress, slope)
     call open_search(shear, mises, stress, slope, search)
-    if (.not. any(search%todo > 0.0_wp)) return
+    if (.not. any(search%is_open > 0.0_wp)) return
     call bound_by_power(flow, mises, strain, known, search)
     near = merge(1.0e-12_wp, sqrt(epsilon(1.0_wp)), has_corners(flow))
     do i_round = 1, most_rounds
       call form_flow(flow, strain, search%growth, ratio, known, stress, slope)
       call improve(shear, mises, stress, slope, near, search)
-      if (.not. any(search%todo > 0.0_wp)) exit
+      if (.not. any(search%is_open > 0.0_wp)) exit
     end do
     growth = search%growth
   end subroutine find_growth
@@ -71,7 +71,7 @@ contains
       search%low(i) = 0.0_wp
       search%high(i) = max(0.0_wp, mises(i) - stress(i))/(3.0_wp*shear)
       search%growth(i) = max(0.0_wp, mises(i) - stress(i))/(3.0_wp*shear + slope(i))
-      search%todo(i) = merge(1.0_wp, 0.0_wp, mises(i) > stress(i))
+      search%is_open(i) = merge(1.0_wp, 0.0_wp, mises(i) > stress(i))
     end do
   end subroutine open_search
 
@@ -183,7 +183,7 @@ contains
     real(wp) :: old, rest, next
     integer :: i
 
-    associate (low => search%low, high => search%high, todo => search%todo)
+    associate (low => search%low, high => search%high, is_open => search%is_open)
       !$omp simd private(old, rest, next)
       do i = 1, n_lane
         old = search%growth(i)
@@ -192,9 +192,9 @@ contains
         low(i) = merge(low(i), old, rest > 0.0_wp)
         next = old - rest/(3.0_wp*shear + slope(i))
         next = merge(next, 0.5_wp*(low(i) + high(i)), next > low(i) .and. next < high(i))
-        todo(i) = merge(todo(i), 0.0_wp, abs(rest) > close*mises(i))
-        next = merge(next, old, todo(i) > 0.0_wp)
-        todo(i) = merge(todo(i), 0.0_wp, abs(next - old) > near*old)
+        is_open(i) = merge(is_open(i), 0.0_wp, abs(rest) > close*mises(i))
+        next = merge(next, old, is_open(i) > 0.0_wp)
+        is_open(i) = merge(is_open(i), 0.0_wp, abs(next - old) > near*old)
         search%growth(i) = next
       end do
     end associate

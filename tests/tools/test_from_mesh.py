@@ -48,6 +48,16 @@ def test_groups_become_parts_and_sets(tmp_path, capsys):
     assert cli.main(["from-mesh", str(path)]) == 2, "a deck that is there is not written over unasked"
 
 
+def test_no_cell_is_lost_without_a_word(tmp_path):
+    mesh = meshio.Mesh(POINTS, [("quad", np.array([[0, 1, 4, 3]])), ("triangle10", np.array([list(range(10))]))])
+    with pytest.raises(UserError, match="1 cells of kind triangle10"):
+        from_mesh.check("a mesh", mesh)
+
+
+def test_names_of_groups_are_no_comments_and_no_keywords():
+    assert [from_mesh.heading(name) for name in ("$skin", "*NODE", "body")] == ["_$skin", "_*NODE", "body"]
+
+
 def test_faces_are_walked_with_the_face_on_the_left(tmp_path):
     mesh = from_mesh.read(written(tmp_path))
     for faces in mesh.parts.values():

@@ -13,7 +13,7 @@ module closing_m
   use tracking_m, only : list_touching, most_facing, begin_contact
   implicit none
   private
-  public :: close_contacts, closed_gap_of
+  public :: close_contacts, closed_gap_of, slave_length
 
   !> Gaps smaller than this part of the mean slave segment are closed.
   real(wp), parameter :: closed_part = 1.0e-8_wp
@@ -25,15 +25,23 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     real(wp) :: gap
+
+    gap = closed_part*slave_length(contact, memory)/contact%slave%n_segment
+  end function closed_gap_of
+
+  !> Length of the slave chain as it lies now, m.
+  pure function slave_length(contact, memory) result(length)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: length
     integer :: s
 
-    gap = 0.0_wp
+    length = 0.0_wp
     do s = 1, contact%slave%n_segment
-      gap = gap + segment_length(memory%places(:, contact%slave%segments(1, s)), &
+      length = length + segment_length(memory%places(:, contact%slave%segments(1, s)), &
         memory%places(:, contact%slave%segments(2, s)))
     end do
-    gap = closed_part*gap/contact%slave%n_segment
-  end function closed_gap_of
+  end function slave_length
 
   !> Let all tracked spots with a gap below the given one be in contact, after a search, and the
   !> placement know of it.

@@ -3,10 +3,10 @@
 !> need their points before anything is closed: for as long as points are placed, spots that stand
 !> before a face within reach are in contact with it.
 module look_ahead_m
+  use closing_m, only : slave_length
   use contact_state_m, only : contact_state_t, is_in_front
   use contacts_m, only : contact_t
   use foot_m, only : foot_t, face_foot, see_segment
-  use geometry_m, only : segment_length
   use kinds_m, only : wp
   use tracking_m, only : list_touching, begin_contact
   implicit none
@@ -77,14 +77,8 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     real(wp) :: reach
-    integer :: s
 
-    reach = 0.0_wp
-    do s = 1, contact%slave%n_segment
-      reach = reach + segment_length(memory%places(:, contact%slave%segments(1, s)), &
-        memory%places(:, contact%slave%segments(2, s)))
-    end do
-    reach = reach_part*reach/max(1, contact%slave%n_segment)
+    reach = reach_part*slave_length(contact, memory)/max(1, contact%slave%n_segment)
   end function reach_of
 
 end module look_ahead_m

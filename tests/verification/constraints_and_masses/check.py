@@ -140,7 +140,8 @@ def check_incline(run):
     for name, fall in (("weight", True), ("force along the axes", False)):
         deck, nodes, _, mass = block(f"incline, {name}", n=2, end=0.2, dt=5.0e-4, turn=angle)
         deck.add("*DEFINE_COORDINATE_SYSTEM", (3, 0.0, 0.0, 0.0, *along, 0.0), (*normal, 0.0))
-        deck.add("*BOUNDARY_SPC_NODE", *[(int(node), 3, 0, 1) for node in nodes])
+        # One node twice: along the same axis that is one support.
+        deck.add("*BOUNDARY_SPC_NODE", *[(int(node), 3, 0, 1) for node in [*nodes, nodes[0]]])
         deck.curve(1, [(0.0, 9.81), (1.0, 9.81)])
         if fall:
             deck.add("*LOAD_BODY_Y", (1, 1.0))
