@@ -94,7 +94,7 @@ def log_of(folder):
     """What the log says of the run: not the command, its times and its build."""
     lines = next(folder.glob("*.log")).read_text().splitlines()
     return [line for line in lines[:lines.index(" *** termination time reached ***")]
-            if "command line" not in line and not line.startswith("restart file")]
+            if "command line" not in line and not line.startswith(("restart file", "exchange:"))]
 
 
 def assert_same(one, other):
