@@ -35,7 +35,7 @@ module explicit_cycle_m
     gather_state, judge_elements
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t, share_error
-  use requests_m, only : requests_t, take_requests
+  use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
   use restart_plan_m, only : wanted_files
   use skew_motion_m, only : remember_common, move_common
   use state_m, only : state_t
@@ -58,6 +58,7 @@ module explicit_cycle_m
     type(borders_t) :: borders       !! nodes between them
     type(parcel_t) :: parcel         !! what they exchange in each cycle
     type(requests_t) :: asked        !! what someone asks for, heard in this cycle
+    type(echoes_t) :: echoes         !! what was asked for before, of several processes
     type(leap_t) :: leap             !! motion factors of this cycle
     type(step_plan_t) :: steps
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
@@ -214,9 +215,15 @@ contains
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
 
-    cycle%asked = requests_t()
-    if (monitor%ranks%mine == 0) call take_requests(state, cycle%ratio, .false., monitor, &
-      cycle%asked, cycle%error)
+    type(requests_t) :: before
+
+    before = cycle%asked
+    if (monitor%ranks%mine == 0) then
+      call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, cycle%error)
+    else
+      call hear_signals(cycle%asked)
+    end if
+    call drop_echoes(before, cycle%echoes, cycle%asked)
   end subroutine hear_requests
 
   !> What processes have to know of each other's tiles before special nodes move.

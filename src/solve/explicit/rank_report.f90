@@ -26,11 +26,11 @@ contains
       /real(max(parcel%n_cycle, 1_long), wp)
     call bring_reals(ranks, starts, 4, .false., counts)
     if (ranks%mine > 0) return
-    call write_log(log, 'exchange: '//to_text(ranks%n)//' processes, a cycle: messages ' &
-      //spread_text(counts(1, :))//', bytes '//spread_text(counts(2, :)) &
-      //'; common calls '//to_text(counts(3, 1))//', bytes that come by them ' &
-      //spread_text(counts(4, :))//'; besides, in all: calls '//to_text(rest(1)) &
-      //', bytes to the first process '//to_text(rest(2)))
+    call write_log(log, 'exchange: '//to_text(ranks%n)//' processes; a cycle, mean (most): ' &
+      //'messages '//spread_text(counts(1, :))//', bytes '//spread_text(counts(2, :)) &
+      //', calls of all '//spread_text(counts(3, :))//', bytes by them ' &
+      //spread_text(counts(4, :))//'; besides, first process, in all: calls of all ' &
+      //plain_text(rest(1))//', bytes by them '//plain_text(rest(2)))
   end subroutine report_exchange
 
   !> Mean and largest of what the processes have.
@@ -38,7 +38,17 @@ contains
     real(wp), intent(in) :: values(:)
     character(:), allocatable :: text
 
-    text = to_text(sum(values)/size(values))//' (most '//to_text(maxval(values))//')'
+    text = plain_text(sum(values)/size(values))//' ('//plain_text(maxval(values))//')'
   end function spread_text
+
+  !> A number with two decimals.
+  function plain_text(value) result(text)
+    real(wp), intent(in) :: value
+    character(:), allocatable :: text
+    character(32) :: buffer
+
+    write (buffer, '(f31.2)') value
+    text = trim(adjustl(buffer))
+  end function plain_text
 
 end module rank_report_m

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Which process of a run has which tiles, and what goes with them: ranges of chunks, nodes and force
-!> slots, since all of these stand tile by tile.
+!> Which process of a run has which tiles, and what goes with them: ranges of chunks, nodes and
+!> force slots, since all of these stand tile by tile.
 module rank_shares_m
   use kinds_m, only : wp
   use layout_m, only : layout_t
