@@ -52,6 +52,7 @@ PAGES = {  # quick ones first
     "collision": batch("collision"),
     "sliding": batch("sliding"),
     "exchange": batch("exchange"),
+    "estimates": batch("estimates"),
     "advise": batch("advise", sources=ALL),
     "paper_tables": study("paper-tables"),
     "claims": batch("claims", after=("block_to_block", "sliding", "collision", "paper_tables")),
