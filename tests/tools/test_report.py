@@ -222,7 +222,7 @@ def test_material_with_points_and_rates(tmp_path, slideline):
     (tmp_path / "plate.k").write_text(text.replace(block[0], law))
     folder = run_program(slideline, tmp_path / "plate.k", tmp_path / "run", "endtim=1e-5")
     page = read_page(write_report(folder, tmp_path / "r.html"))
-    tables = re.search(r"<h3>Materials</h3>.*?<h3>", (tmp_path / "r.html").read_text(), re.S)[0]
+    tables = re.search(r"<h3>Materials</h3>.*?(?:<h3>|</section>)", (tmp_path / "r.html").read_text(), re.S)[0]
     heads = [re.findall(r"<th[^>]*>([^<]*)</th>", one) for one in tables.split("</table>")[:-1]]
     assert len(heads) > 1 and all(one[0] == "material" and len(one) <= 9 for one in heads)
     assert [name for one in heads for name in one[1:]][-6:] == [
