@@ -5,8 +5,8 @@
 !> bound is guessed, the others are solved for, and the guess is mended until nothing is left to
 !> mend; where that goes round in circles, sweeps of Gauss-Seidel settle it. Factors of this file's
 !> own: of rows that depend on others the later ones are left out while the band is factorised.
-!> LAPACK's dpbtrf gives up at the first such pivot, and in OpenBLAS its bits depend on the number of
-!> threads where the band is wide. The room is kept from one problem to the next.
+!> LAPACK's dpbtrf gives up at the first such pivot, and in OpenBLAS its bits depend on the number
+!> of threads where the band is wide. The room is kept from one problem to the next.
 module complementarity_m
   use kinds_m, only : wp
   implicit none

@@ -129,8 +129,8 @@ contains
     end do
   end function is_led
 
-  !> Whether nothing starts or pulls one face along the other: initial velocities, loads on nodes and
-  !> bodies, base acceleration.
+  !> Whether nothing starts or pulls one face along the other: initial velocities, loads on nodes
+  !> and bodies, base acceleration.
   pure function is_at_rest(model, contact, along) result(at_rest)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact

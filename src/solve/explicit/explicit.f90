@@ -177,8 +177,8 @@ contains
   end subroutine press_nodes
 
   !> Sum the forces of special nodes, unless contact has asked for them; these move at once unless
-  !> this cycle writes. Each thread has the nodes of its own tiles, run by run: what it reads here it
-  !> has mostly written itself.
+  !> this cycle writes. Each thread has the nodes of its own tiles, run by run: what it reads here
+  !> it has mostly written itself.
   subroutine advance_special_nodes(model, state, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
