@@ -16,7 +16,7 @@ module deck_contact_values_m
   use deck_raw_m, only : raw_contact_t
   implicit none
   private
-  public :: find_commanded, take_overrides, check_values, kind_names, of_penalty, &
+  public :: find_commanded, take_overrides, check_values, kind_names, leaves_type, of_penalty, &
     of_unit, of_master_penalty, of_damping
 
   !> Values by their place in `contact_names`.
@@ -133,12 +133,20 @@ contains
 
   end subroutine check_values
 
+  !> Whether the type is the program's to choose.
+  pure function leaves_type(contact) result(leaves)
+    type(contact_t), intent(in) :: contact
+    logical :: leaves
+
+    leaves = type_chosen == contact%contact_type
+  end function leaves_type
+
   !> Whether the penalty is the program's to choose, with the type.
   pure function leaves_penalty(contact) result(leaves)
     type(contact_t), intent(in) :: contact
     logical :: leaves
 
-    leaves = contact%contact_type == type_chosen .and. .not. abs(contact%penalty) > 0.0_wp &
+    leaves = leaves_type(contact) .and. .not. abs(contact%penalty) > 0.0_wp &
       .and. contact%penalty_unit /= penalty_distributed
   end function leaves_penalty
 

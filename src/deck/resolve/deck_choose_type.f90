@@ -3,9 +3,10 @@
 !> studies (doc/choose.md). The effective deck has the type chosen, so that a restart keeps it.
 module deck_choose_type_m
   use conditions_m, only : conditions_t
-  use contact_types_m, only : type_nts_ar, type_nts_mar, type_segmented_mortar, type_chosen
+  use contact_types_m, only : type_nts_ar, type_nts_mar, type_segmented_mortar
   use contacts_m, only : contact_t, has_friction, is_tied, penalty_factor, penalty_share, &
     penalty_implicit, tie_factor
+  use deck_contact_values_m, only : leaves_type
   use deck_lines_m, only : deck_t
   use deck_override_apply_m, only : contact_text
   use deck_raw_m, only : raw_contact_t
@@ -31,7 +32,7 @@ contains
     type(contact_t), intent(inout) :: contact
     type(raw_contact_t) :: chosen
 
-    if (contact%contact_type /= type_chosen) return
+    if (.not. leaves_type(contact)) return
     call decide(model, contact)
     if (.not. abs(contact%penalty) > 0.0_wp) call take_penalty(model%controls%implicit%is_on, &
       contact)
