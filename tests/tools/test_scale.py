@@ -103,7 +103,7 @@ def test_page(small, tmp_path):
     text = (tmp_path / "doc/studies/scale.md").read_text()
     assert "all 1 runs of" in text and "Not what" not in text
     assert "| strip | 4096 | 4 | 1.50 (2) | 72 (96) | 72 |" in text
-    assert "a step took 10 ns" in text and "here 307 bytes an element" in text
+    assert "a step took 10 ns" in text and "it: 1.0 microseconds" in text and "here 307 bytes an element" in text
     assert re.search(r"two bodies in contact, 1e8 elements: predicted to keep 80 % on \d+ processes", text)
     assert (tmp_path / "doc/pictures/scale.png").exists()
 

@@ -56,8 +56,8 @@ elements is cut here and not run.
 
 A step of a process takes
 
-    T = t_e (N/p) load + m (L + b/(m B)) + log2(p) (L + {record} bytes/B)                         one body
-      + t_c n + log2(p) L + S/B                                                            with contact
+    T = t_e (N/p) load + m L + b/B + log2(p) (L + {record} bytes/B)     one body
+      + t_c n + log2(p) L + S/B                                  with contact
 
 - `t_e` = {step} ns an element and `t_c` = {contact} ns a slave node (type 5): [speed](speed.md), one thread on a quiet machine. The runs of this page share two
   logical cores with others; in them a step took {busy:.0f} ns of processor time an element.
@@ -83,11 +83,12 @@ with contact (dashed).
 
 - **Memory.** Every process holds the whole model: here {bytes_element:.0f} bytes an element at the peak, while the deck is read (two sizes of the square on one process). On a machine
   with 4 GB a process that is {memory_limit:.1f} million elements; at 1e8 each process would need {memory_large:.0f} GB. Beyond, only the first process may read the deck and
-  hand out tiles, and node arrays have to be local to a process: numbers of nodes and slots of the layout become those of its own tiles and their border. The exchange lists (`rank_borders`)
-  already are: they name nothing but what neighbours share.
+  hand out tiles, and node arrays have to be local to a process: numbers of nodes and slots of the layout become those of its own tiles and their border. The lists of
+  border slots (`rank_borders`) already name nothing but what neighbours share.
 - **Start.** Every process reads the whole deck and renumbers it: {start_element:.1f} microseconds of processor time an element here, {start_large:.0f} s at 1e8, whatever p.
-- **Contact** is computed by all. It has to be shared by ranges of slave segments, with forces added range by range, as soon as t_c n nears t_e N/p: at a thousand processes from the beginning.
-- **Loads.** Where a deck has nodal loads or pressures, each process forms them, and their power, over all special nodes of the model (some 9 % of all nodes), not over those that are loaded.
+- **Contact** is computed by all. It has to be shared by ranges of slave segments, with forces added range by range, as soon as t_c n nears t_e N/p: on 1,024 processes it is {contact_share:.1f} times that at 1e6 elements and {contact_large:.2f} times at 1e8.
+- **Loads.** Where a deck has nodal loads or pressures, each process forms them, and their power, over all special nodes of the model ({special:.0f} % of all nodes of the large square), not over those that are loaded. Where elements
+  may leave or points may fail, each looks through the counts of all chunks.
 - **Gravity and damping** send the four sums of every tile to all: {sums:.1f} MB a step at 1e8 elements. A sum of fixed order over ranges would need one number a process.
 - **Output** goes through the first process: a plot state of 1e8 elements is gathered there, about {plot:.0f} GB of motion, forces and stresses. Parallel HDF5, each process its own rows, would write the same file.
 - **Tiles** of {tile} elements are the grain: at a million elements and 1,024 processes a process has two at most, {grain:.2f} on average.
@@ -236,6 +237,11 @@ def limits(constants):
     return "\n".join(words)
 
 
+def contact_share(elements, ranks=1024):
+    """What contact takes on each process over what its elements take."""
+    return CONTACT_NS * math.sqrt(elements / 2) / (STEP_NS * elements / ranks)
+
+
 def slope(runs, name, cycles):
     """What an element more costs, least of the repeats, from the two sizes of COSTS."""
     values = {}
@@ -294,15 +300,18 @@ def write(folder, doc):
     seen, most_messages, factor = model_constants(runs, rows)
     constants = (most_messages, factor)
     few, many = sorted({row["cycles"] for row in runs if row["scene"] in COSTS})
-    start, memory = slope(runs, "processor_seconds", few), 1024.0 * slope(runs, "kilobytes", many)
-    busy = 1e9 * (slope(runs, "processor_seconds", many) - start) / (many - few)
+    memory = 1024.0 * slope(runs, "kilobytes", many)
+    step = (slope(runs, "processor_seconds", many) - slope(runs, "processor_seconds", few)) / (many - few)
+    start = slope(runs, "processor_seconds", few) - few * step
     save_small(draw(seen, constants), doc / "pictures" / "scale.png", colours=64, lines=True)
     write_page(doc, "scale", PAGE.format(
         cycles=CYCLES, record=RECORD_BYTES, counted=counted_table(runs), agreement=agreed, version=metis_version(), cut=cut_table(rows),
-        verdict=verdict(rows), step=STEP_NS, contact=CONTACT_NS, busy=busy, tile=scale_tiles.TILE, most_messages=most_messages,
+        verdict=verdict(rows), step=STEP_NS, contact=CONTACT_NS, busy=1e9 * step, tile=scale_tiles.TILE, most_messages=most_messages,
         factor=factor, fast=network_words("fast"), slow=network_words("slow"), predicted=predicted_table(constants),
         limits=limits(constants), bytes_element=memory, memory_limit=4.0e3 / memory, memory_large=0.1 * memory, start_element=1e6 * start,
-        start_large=1e8 * start, sums=1e8 / scale_tiles.TILE * 32 / 1e6, plot=1e8 * (48 + 40) / 1e9, grain=1e6 / scale_tiles.TILE / 1024))
+        start_large=1e8 * start, sums=1e8 / scale_tiles.TILE * 32 / 1e6, plot=1e8 * (48 + 40) / 1e9, grain=1e6 / scale_tiles.TILE / 1024,
+        contact_share=contact_share(1e6), contact_large=contact_share(1e8),
+        special=100.0 * len(np.unique(cuts["large square"][0][0])) / (LARGE + 1) ** 2))
 
 
 def main(arguments=None):
