@@ -4,9 +4,9 @@
 !> is the one that the elements, and ties, alone would have (TSSFAC times the smallest L/c, or the
 !> curve LCTM). Each such interface may take what that step leaves beside the elements; where
 !> interfaces share nodes, all automatic ones are lowered by the same factor until their sum fits.
-!> A penalty from the built-in estimate (PUNIT 2) may take no more than that either where its surface
-!> is of soft and stiff materials: the mean of these, in springs on nodes of the soft one, would turn
-!> them round within a step.
+!> A penalty from the built-in estimate (PUNIT 2) may take no more than that either where its
+!> surface is of soft and stiff materials: the mean of these, in springs on nodes of the soft one,
+!> would turn them round within a step.
 module automatic_penalty_m
   use contact_log_m, only : penalty_text
   use contact_penalty_m, only : spread_of_stiffness
@@ -102,7 +102,7 @@ contains
     type(contact_state_t), intent(in) :: memory !! with the penalty that it has now
     type(log_t), intent(inout) :: log
 
-    call warn(log, 'interface '//to_text(model%contacts(i)%id)//': one of its surfaces is of soft ' &
+    call warn(log, 'interface '//to_text(model%contacts(i)%id)//': one of its surfaces is of soft '&
       //'and stiff materials, and nodes of the soft ones do not bear the mean penalty of both at ' &
       //'the time step '//to_text(dt)//'; it is lowered to ' &
       //penalty_text(model%contacts(i), model, memory)//'. Stiff parts sink in less with ' &
