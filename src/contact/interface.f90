@@ -183,7 +183,7 @@ contains
     memory%scratch%is_born = memory%is_stale .and. cycle > 0
     call gather_spots(contact, motion, memory)
     call search_pairs(contact, cycle, memory)
-    call look_ahead(contact, memory, ahead)
+    call look_ahead(contact, cycle == 0 .or. memory%scratch%is_born, memory, ahead)
     call lap(clock, phase_contact_search)
     memory%n_active = 0
     memory%watch%has_looked = .false.
