@@ -18,9 +18,9 @@ from KratosMultiphysics.StructuralMechanicsApplication.structural_mechanics_anal
 import numpy as np
 
 import wave
+from calculix import RHO, YOUNG
 
-YOUNG, RHO, PRESSURE = 1.0e6, 1000.0, 1.0
-PUSH = 2.0 * PRESSURE / YOUNG  # of two blocks of 1 m
+PUSH = 2.0 / YOUNG  # of two blocks of 1 m, for 1 Pa
 CONTACT_APPLICATION = "KratosMultiphysics.ContactStructuralMechanicsApplication"
 APPLICATION = "KratosMultiphysics"
 

@@ -229,7 +229,8 @@ def count_collisions(options, rows):
 
 
 def count_contact(options, rows):
-    """Instructions of each process that gave an answer, but of Kratos, most of which is Python's start; `rows`: what `run_contact` gave, whose files are still there."""
+    """Instructions of each process that gave an answer, but of Kratos, most of which is Python's start; `rows`: what
+    `run_contact` gave, whose files are still there."""
     words = {(scene, lower.element.size + upper.element.size): words
              for scene, (lower, upper), _, _, words in contact_scenes(options)}
     found = []

@@ -37,7 +37,7 @@ run ({yardstick}); times over K are medians of these ratios, and depend less on 
 
 *Instructions* are retired ones, of one run: per element and step of the smallest size, and of the whole static process. They do not depend on the load. {counted}
 
-OpenRadioss is not in. It comes as source alone, two programs of some 5,700 files and libraries besides, in no package of the distribution or of PyPI.
+OpenRadioss is not in. It comes as source alone, two programs of some 5,700 files and libraries besides, and in no package of the distribution or of PyPI; it was not built.
 
 ## The element step
 
@@ -58,7 +58,7 @@ control is its default, two by two points are what the others have.
 Explicit contact: two square blocks of elastic quads (plane strain, no lateral contraction, two by two points), n columns above (slave) and 4/5 n below, strike each other flat at the speeds -V/2 and V/2.
 As two bars would they are in contact for 2 L/c and part with exchanged speeds: 1 and -1 times V/2 for the mean speeds of the upper and the lower block, nearly, since waves are left in them.
 The same meshes, lumped masses and constant step (0.3 of a side over the wave speed), 2 times 2 L/c long, and springs of the same slope. slideline's strains are large, Akantu's small. Akantu's contact is
-node to segment, a penalty on the nodal area. Kratos and CalculiX are not in this scene: nobody here has driven them with explicit contact.
+node to segment, a penalty on the nodal area. Kratos and CalculiX are not driven with explicit contact.
 *Momentum*: of both blocks together, over that of one; it is zero at the start, and no outer force acts. Time and instructions are those of all steps but the first, elements and contact, as in the first table.
 
 {collision}
