@@ -8,12 +8,14 @@ import pathlib
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "bench"), str(ROOT / "tests" / "bench" / "peers")]
 
 import calculix  # noqa: E402
+import collision  # noqa: E402
 import counted  # noqa: E402
 import elements  # noqa: E402
 import measuring  # noqa: E402
@@ -212,37 +214,56 @@ def test_mesh_of_the_peers_is_that_of_slideline():
     assert area == pytest.approx(1.0 / 9.0)
 
 
+def test_blocks_of_the_collision_have_the_mass_of_the_grid(capsys):
+    n, m = 10, collision.below(10)
+    assert collision.weights(n).sum() == pytest.approx(1.0) and collision.elements(n) == 164
+    assert collision.steps(n) * collision.step(n) >= 4.0 * collision.LENGTH / collision.C
+    speeds = np.full((n + 1) ** 2, -0.5 * collision.V), np.full((m + 1) ** 2, 0.25 * collision.V)
+    collision.report("Some", "contact", n, 5, 164.0e-8, speeds)
+    found = json.loads(capsys.readouterr().out)
+    assert found["ns"] == pytest.approx(2.0)
+    assert [found[name] for name in ("upper", "lower", "momentum")] == pytest.approx([-1.0, 0.5, -0.5])
+
+
 def test_page_of_peers(tmp_path):
     waves = [{"round": n, "program": program, "element": element, "elements": 100, "steps": 10,
-              "ns": ns * n, "free_side": 0.5 + error, "exact": 0.5}
+              "ns": ns * n, "free_side": 0.5 + error, "exact": 0.5, "yardstick_ns": 2.0 * n}
              for n in (1, 2) for program, element, ns, error in (
                  ("slideline", "one point, large strain", 10.0, 1e-3),
                  ("slideline", "2x2 points, large strain", 30.0, 1e-3),
                  ("Other", "2x2 points", 90.0, 2e-3))]
     contact = [{"round": n, "scene": "patch", "elements": 41, "program": program,
                 "contact": contact, "mean": mean, "exact": 1.0, "deviation": deviation,
-                "processor_seconds": used * n, "seconds": used, "message": message}
+                "processor_seconds": used * n, "seconds": used, "yardstick_ns": 2.0 * n, "message": message}
                for n in (1, 2) for program, contact, mean, deviation, used, message in (
                    ("slideline", "type 5", 1.0, 1e-15, 0.1, ""),
                    ("CalculiX", "node to surface", 1.02, 0.03, 0.25, ""),
                    ("CalculiX", "mortar", "nan", "nan", 0.1, "*ERROR: node 17 is tied"))]
+    strikes = [{"round": n, "program": program, "contact": contact, "elements": 164, "steps": 10, "ns": ns * n, "upper": upper,
+                "lower": -0.9, "momentum": upper - 0.9, "yardstick_ns": 2.0 * n}
+               for n in (1, 2) for program, contact, ns, upper in (
+                   ("slideline", "type 2", 40.0, 0.9), ("Other", "penalty", 120.0, 1.4), ("Third", "penalty", 80.0, 0.9))]
     counts = [{"round": 1, "scene": scene, "elements": elements, "program": program, "what": what, "instructions": count,
                "counted_by": "callgrind, x86-64-v3"} for scene, elements, program, what, count in (
-                   ("step", 100, "Other", "2x2 points", 1234.4), ("patch", 41, "CalculiX", "node to surface", 2.5e8))]
-    for name, rows in (("elements", waves), ("contact", contact), ("counts", counts)):
+                   ("collision", 164, "Other", "penalty", 777.7), ("step", 100, "Other", "2x2 points", 1234.4), ("patch", 41, "CalculiX", "node to surface", 2.5e8))]
+    for name, rows in (("elements", waves), ("collision", strikes), ("contact", contact), ("counts", counts)):
         with open(tmp_path / f"{name}.csv", "w", newline="", encoding="ascii") as stream:
             writer = csv.DictWriter(stream, rows[0].keys())
             writer.writeheader()
             writer.writerows(rows)
-    (tmp_path / "versions.txt").write_text("akantu==1.2.3\nThis is Version 2.20\n")
+    (tmp_path / "versions.txt").write_text("akantu==1.2.3\nslideline 7.8 (source abc)\nflags -O9\nThis is Version 2.20\n")
     assert peers.main([str(tmp_path), str(tmp_path / "doc")]) == 0
     text = (tmp_path / "doc" / "studies" / "peers.md").read_text(encoding="utf-8")
-    assert "| akantu | 1.2.3 | PyPI, wheel |" in text
+    assert "| akantu | 1.2.3 | PyPI, wheel |" in text and "version 7.8 (source abc), built with `-O9`" in text
     assert "Other (2x2 points) takes 3.0 to 3.0 times as long as slideline's element with 2x2 points and 9.0 to 9.0" in text
     assert "within 1e-03 of each other" in text
-    assert "| patch | 41 | CalculiX | node to surface | 1.02 | 2.0e-02 | 3.0e-02 | 0.375 (0.312 to 0.438) | 250 |" in text
+    assert "| patch | 41 | CalculiX | node to surface | 1.02 | 2.0e-02 | 3.0e-02 | 0.375 (0.312 to 0.438) | 125 | 250 |" in text
     assert "| 1234 | 0.50200000 |" in text and "Counted by callgrind, x86-64-v3" in text
     assert "takes 2.50 times the processor time" in text
+    assert "| 164 | Other | penalty | 180 (150 to 210) | 60 | 778 | 1.4000 | -0.9000 | 5.0e-01 |" in text
+    assert "164 elements: Other, penalty, takes 3.0 times as long as slideline with type 2" in text
+    assert text.count("contact forces do not balance") == 1 and "Other's contact forces do not balance: it makes 0.5 times" in text
+    assert "median 3.00 ns, from 2.00 to 4.00" in text
     assert text.count("refused (`*ERROR: node is tied`)") == 1
     (tmp_path / "counts.csv").unlink()
     assert peers.main([str(tmp_path), str(tmp_path / "doc")]) == 0

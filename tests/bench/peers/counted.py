@@ -31,12 +31,16 @@ def row(scene, elements, program, what, found, divisor=1):
              "instructions": found[0] / divisor, "counted_by": found[1]}]
 
 
-def step_row(labels, commands, folder, **options):
-    """A row of an element step; `labels`: its row of elements.csv; `commands`: with its steps, and with MORE times."""
+def difference_row(scene, labels, what, commands, steps, folder, **options):
+    """A row of what so many more steps take in the second command than in the first; `labels`: elements and program."""
     few, many = (count(command, folder, **options) for command in commands)
     difference = (many[0] - few[0], few[1]) if few and many else None
-    return row("step", labels["elements"], labels["program"], labels["element"], difference,
-               labels["elements"] * labels["steps"] * (MORE - 1))
+    return row(scene, labels["elements"], labels["program"], what, difference, labels["elements"] * steps)
+
+
+def step_row(labels, commands, folder, **options):
+    """A row of an element step; `labels`: its row of elements.csv; `commands`: with its steps, and with MORE times."""
+    return difference_row("step", labels, labels["element"], commands, labels["steps"] * (MORE - 1), folder, **options)
 
 
 def slideline_step(program, folder, points, columns, steps):

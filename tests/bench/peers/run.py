@@ -4,9 +4,10 @@
 
 usage: run.py --program SLIDELINE --peers PYTHON --out FOLDER [--counted SLIDELINE] [--rounds 5] [--quick]
 
-PYTHON is that of an environment with akantu, KratosMultiphysics and KratosStructuralMechanicsApplication; ccx is
-CalculiX. All programs run in turn, one thread each, in each round: elements.csv and contact.csv hold every run. With a
-program to be counted, retired instructions of all programs are counted once, into counts.csv.
+PYTHON is that of an environment with akantu and KratosMultiphysics, its structural and its contact application; ccx is
+CalculiX. All programs run in turn, one thread each, in each round, with the yardstick K of the benchmarks before and
+behind each run: elements.csv, collision.csv and contact.csv hold every run. With a program to be counted, retired
+instructions of all programs are counted once, into counts.csv.
 """
 import argparse
 import csv
@@ -21,7 +22,9 @@ from pathlib import Path
 import numpy as np
 
 import calculix
+import collision
 import counted
+import slideline_collision
 from slideline_tools.decks import Deck
 from slideline_tools.results import read
 from slideline_tools.scenes.block import block, block_grids
@@ -31,7 +34,10 @@ HERE = Path(__file__).resolve().parent
 WAVES = ((32, 200), (100, 100), (316, 15))  # columns, steps
 PATCHES = (5, 40)                           # columns of the upper block
 QUICK_WAVE = (8, 20)
+COLLISIONS = (40, 80)                       # columns of the upper block
+QUICK_COLLISION = 10
 TYPES = (2, 5, 7)
+KRATOS_CONTACT = "mortar, augmented Lagrangian"
 PUSH = 1.0e-4                               # of the upper face of the block, m
 ONE = {**os.environ, "OMP_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
 
@@ -47,17 +53,54 @@ def wave_commands(options, columns, steps):
             [options.peers, str(HERE / "kratos_wave.py"), *size]]
 
 
+def collision_commands(options, columns):
+    """The commands of one size."""
+    ours = [sys.executable, str(HERE / "slideline_collision.py"), str(options.program), str(options.runs)]
+    return [*([*ours, str(ctype), str(columns)] for ctype in TYPES),
+            [options.peers, str(HERE / "akantu_collision.py"), str(columns)]]
+
+
+def measure_yardstick():
+    """K now, ns."""
+    done = subprocess.run([HERE.parent / "yardstick" / "run.sh", "native", "500"], capture_output=True, text=True, check=True)
+    return float(done.stdout.split(",")[1])
+
+
+def beside_yardstick(action, *arguments):
+    """What an action returns, and the mean of K before and behind it, ns."""
+    before = measure_yardstick()
+    result = action(*arguments)
+    return result, 0.5 * (before + measure_yardstick())
+
+
+def run_command(command):
+    """The row that a program prints."""
+    done = subprocess.run(command, capture_output=True, text=True, env=ONE, check=False)
+    lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
+    if done.returncode or not lines:
+        raise SystemExit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
+    return json.loads(lines[-1])
+
+
+def run_commands(commands):
+    """One row for each command, with the yardstick beside it."""
+    rows = []
+    for command in commands:
+        row, yardstick = beside_yardstick(run_command, command)
+        rows.append({**row, "yardstick_ns": yardstick})
+    return rows
+
+
 def run_waves(options):
     """One row for each program and size."""
-    rows = []
-    for columns, steps in (QUICK_WAVE,) if options.quick else WAVES:
-        for command in wave_commands(options, columns, steps):
-            done = subprocess.run(command, capture_output=True, text=True, env=ONE, check=False)
-            lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
-            if done.returncode or not lines:
-                raise SystemExit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
-            rows.append(json.loads(lines[-1]))
-    return rows
+    return run_commands(command for columns, steps in ((QUICK_WAVE,) if options.quick else WAVES)
+                        for command in wave_commands(options, columns, steps))
+
+
+def run_collisions(options):
+    """One row for each program, contact and size."""
+    return run_commands(command for columns in ((QUICK_COLLISION,) if options.quick else COLLISIONS)
+                        for command in collision_commands(options, columns))
 
 
 def processor_seconds(action, *arguments):
@@ -114,18 +157,27 @@ def scene_rows(options, scene, grids, text, step, words=()):
     elements = lower.element.size + upper.element.size
     rows = []
     for ctype in TYPES:
-        found, used, clock = processor_seconds(run_slideline, options, f"{scene}_{elements}", text,
-                                               (f"ctype={ctype}", *words))
-        rows.append(contact_row(scene, elements, "slideline", f"type {ctype}", found, used,
-                                clock))
+        (found, used, clock), yardstick = beside_yardstick(
+            processor_seconds, run_slideline, options, f"{scene}_{elements}", text, (f"ctype={ctype}", *words))
+        rows.append({**contact_row(scene, elements, "slideline", f"type {ctype}", found, used, clock),
+                     "yardstick_ns": yardstick})
     for contact in calculix.CONTACTS:
         name = calculix_name(scene, elements, contact)
-        (found, trouble), used, clock = processor_seconds(
-            calculix.run, options.runs, name,
+        ((found, trouble), used, clock), yardstick = beside_yardstick(
+            processor_seconds, calculix.run, options.runs, name,
             calculix.deck(contact, lower, upper, pinned(grids), step))
-        rows.append(contact_row(scene, elements, "CalculiX", contact.lower(), found, used,
-                                clock, trouble))
+        rows.append({**contact_row(scene, elements, "CalculiX", contact.lower(), found, used, clock, trouble),
+                     "yardstick_ns": yardstick})
+    if scene == "patch":
+        rows.append(kratos_row(options, elements, upper.element.shape[0]))
     return rows
+
+
+def kratos_row(options, elements, columns):
+    """Kratos on the patch; its time is that of the analysis alone."""
+    found, yardstick = beside_yardstick(run_command, [options.peers, str(HERE / "kratos_patch.py"), str(columns)])
+    used = found["processor_seconds"]
+    return {**contact_row("patch", elements, "Kratos", KRATOS_CONTACT, found["stress"], used, used), "yardstick_ns": yardstick}
 
 
 def static_block(grids):
@@ -166,12 +218,23 @@ def count_waves(options, rows):
             for row in counted.step_row(labels, commands, options.runs, env=ONE)]
 
 
+def count_collisions(options, rows):
+    """Instructions per element and step of the smallest size, the first step left out; `rows`: what `run_collisions` gave."""
+    columns = QUICK_COLLISION if options.quick else COLLISIONS[0]
+    steps = collision.steps(columns)
+    few, many = ([*(slideline_collision.command(options.counted, options.runs, ctype, columns, number)[0] for ctype in TYPES),
+                  [options.peers, str(HERE / "akantu_collision.py"), str(columns), str(number)]] for number in (1, steps))
+    return [row for labels, *commands in zip(rows, few, many)
+            for row in counted.difference_row("collision", labels, labels["contact"], commands, steps - 1, options.runs, env=ONE)]
+
+
 def count_contact(options, rows):
-    """Instructions of each process that gave an answer; `rows`: what `run_contact` gave, whose files are still there."""
+    """Instructions of each process that gave an answer, but of Kratos, most of which is Python's start; `rows`: what
+    `run_contact` gave, whose files are still there."""
     words = {(scene, lower.element.size + upper.element.size): words
              for scene, (lower, upper), _, _, words in contact_scenes(options)}
     found = []
-    for row in (row for row in rows if not row["message"]):
+    for row in (row for row in rows if not row["message"] and row["program"] != "Kratos"):
         scene, elements, contact = row["scene"], row["elements"], row["contact"]
         name = calculix_name(scene, elements, contact)
         command = ["ccx", name] if row["program"] == "CalculiX" else [
@@ -206,14 +269,15 @@ def main():
     options.runs.mkdir(parents=True, exist_ok=True)
     for number in range(1, 2 if options.quick else options.rounds + 1):
         print(f"round {number}", flush=True)
-        waves, contact = run_waves(options), run_contact(options)
+        waves, collisions, contact = run_waves(options), run_collisions(options), run_contact(options)
         append(options.out / "elements.csv", waves, number)
+        append(options.out / "collision.csv", collisions, number)
         append(options.out / "contact.csv", contact, number)
     (options.out / "counts.csv").unlink(missing_ok=True)
     if options.counted:
         print("instructions", flush=True)
         options.counted = options.counted.resolve()
-        rows = count_waves(options, waves) + count_contact(options, contact)
+        rows = count_waves(options, waves) + count_collisions(options, collisions) + count_contact(options, contact)
         if rows:
             append(options.out / "counts.csv", rows, 1)
 

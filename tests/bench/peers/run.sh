@@ -4,7 +4,8 @@
 # slideline beside Akantu and Kratos (wheels from PyPI, into build/venv-peers, about 200 MB) and CalculiX
 # (the Debian package calculix-ccx, which has to be installed: apt-get install calculix-ccx), all on this machine and in one run: tables in
 # results/peers and the page in results/peers/doc (--publish: doc/studies/peers.md). About ten minutes, and as long again
-# where callgrind counts the retired instructions (tools/slideline_tools/counting.py).
+# where callgrind counts the retired instructions (tools/slideline_tools/counting.py). SLIDELINE_MEASURED: another
+# program than that of the release.
 set -eu
 
 root=$(cd "$(dirname "$0")/../../.." && pwd)
@@ -18,15 +19,18 @@ case ${1:-} in
   --publish) doc=$pages; shift ;;
 esac
 
-"$root/tools/build.sh" release
+program=${SLIDELINE_MEASURED:-$root/build/release/slideline}
+[ -n "${SLIDELINE_MEASURED:-}" ] || "$root/tools/build.sh" release
 command -v ccx >/dev/null || { echo "ccx is missing: apt-get install calculix-ccx" >&2; exit 1; }
 [ -x "$venv/bin/python" ] || python3 -m venv "$venv"
-"$venv/bin/pip" install --quiet akantu KratosMultiphysics KratosStructuralMechanicsApplication
+"$venv/bin/pip" install --quiet akantu KratosMultiphysics KratosStructuralMechanicsApplication \
+  KratosContactStructuralMechanicsApplication
 mkdir -p "$out"
 "$venv/bin/pip" list --format=freeze >"$out/versions.txt"
+"$program" --version >>"$out/versions.txt"
 ccx -v >>"$out/versions.txt" || true  # its exit status is 201
 python=$root/build/venv/bin/python
 counted=$("$python" -m slideline_tools.counting) || echo "instructions are not counted" >&2
-"$python" "$root/tests/bench/peers/run.py" ${counted:+--counted "$counted"} --program "$root/build/release/slideline" \
+"$python" "$root/tests/bench/peers/run.py" ${counted:+--counted "$counted"} --program "$program" \
   --peers "$venv/bin/python" --out "$out" "$@"
 "$python" -m slideline_tools.studies.peers "$out" "$doc"

@@ -3,7 +3,7 @@
 
     python -m slideline_tools.studies.peers FOLDER DOC
 
-FOLDER holds elements.csv, contact.csv and versions.txt, and counts.csv where instructions could be counted.
+FOLDER holds elements.csv, collision.csv, contact.csv and versions.txt, and counts.csv where instructions could be counted.
 """
 import csv
 import math
@@ -17,7 +17,8 @@ from slideline_tools.study.counted import who_counted
 from slideline_tools.study.runner import processor
 from slideline_tools.study.table import COUNTED
 
-PEERS = ("akantu", "KratosMultiphysics", "KratosStructuralMechanicsApplication", "CalculiX")
+PEERS = ("akantu", "KratosMultiphysics", "KratosStructuralMechanicsApplication", "KratosContactStructuralMechanicsApplication",
+         "CalculiX")
 
 PAGE = """# Side by side with other programs
 
@@ -29,9 +30,14 @@ one thread each; times are medians of {rounds}, with the quartiles in brackets. 
 {versions}
 
 {processor}, 1 thread. The times of Akantu and Kratos are those of their released wheels, built for any x86-64 processor;
-slideline is built for this one, as its README says. Akantu and Kratos are driven from Python. The ratios are those of these builds and elements.
+slideline is {built}. Akantu and Kratos are driven from Python. The ratios are those of these builds and elements.
 
-*Instructions* are retired ones, of one run: per element and step of the smallest size, and of the whole process with contact. {counted}
+*K* is the fixed yardstick of [speed](speed.md), the arithmetic of one step of a plastic one-point quad. It was measured before and behind each
+run ({yardstick}); times over K are medians of these ratios, and depend less on what else the machine did.
+
+*Instructions* are retired ones, of one run: per element and step of the smallest size, and of the whole static process. They do not depend on the load. {counted}
+
+OpenRadioss is not in. It comes as source alone, two programs of some 5,700 files and libraries besides, and in no package of the distribution or of PyPI; it was not built.
 
 ## The element step
 
@@ -47,19 +53,32 @@ constant step (half of the side over the wave speed) in all programs. The time i
 Small-strain elements keep the shape functions of the start. slideline's elements are always for large strains; one point with hourglass
 control is its default, two by two points are what the others have.
 
+## Collision
+
+Explicit contact: two square blocks of elastic quads (plane strain, no lateral contraction, two by two points), n columns above (slave) and 4/5 n below, strike each other flat at the speeds -V/2 and V/2.
+As two bars would they are in contact for 2 L/c and part with exchanged speeds: 1 and -1 times V/2 for the mean speeds of the upper and the lower block, nearly, since waves are left in them.
+The same meshes, lumped masses and constant step (0.3 of a side over the wave speed), 2 times 2 L/c long, and springs of the same slope. slideline's strains are large, Akantu's small. Akantu's contact is
+node to segment, a penalty on the nodal area. Kratos and CalculiX are not driven with explicit contact.
+*Momentum*: of both blocks together, over that of one; it is zero at the start, and no outer force acts. Time and instructions are those of all steps but the first, elements and contact, as in the first table.
+
+{collision}
+
+{collision_words}
+
 ## Contact patch and block-to-block
 
 Implicit, one static step; fully integrated plane-strain quads (slideline: NIP 4 with mean dilatation; CalculiX: CPE4), contact springs of the
 same slope: pressure over penetration is the penalty of a node over the length of a slave segment. *Patch*: two blocks of 1 m with n and
 4/5 n columns under a pressure of 1 Pa. *Block*: the meshes of [block-to-block](block_to_block_implicit.md) (51 and 50 columns), the upper face pushed down by 0.1 mm. No
 lateral contraction, so the same s_yy everywhere is exact: the load, or blocks and springs in a row (small strain). *Deviation*: the largest of the elements'
-means of s_yy from their mean over all elements. Processor time is that of the whole process, reading and writing included.
+means of s_yy from their mean over all elements. Processor time is that of the whole process, reading and writing included. Kratos' contact (patch alone; large strain) has no springs but
+multipliers, so its upper face is pushed down by what gives 1 Pa; its time is that of its analysis from reading the mesh on, without the start of Python and its libraries, and its instructions are not counted.
 
 {contact}
 
 {contact_words}
 
-CalculiX prints seven digits of a stress, hence *< 1e-6*. In large strains the block is stiffer than the closed form by
+CalculiX prints seven digits of a stress, hence *< 1e-6*; Kratos' strain of 1e-6 is no smaller an error. In large strains the block is stiffer than the closed form by
 some 3e-5.
 """
 
@@ -113,11 +132,51 @@ def element_table(rows, counts):
             centre, low, high = middle(runs, "ns")
             error = float(runs[0]["free_side"]) - float(runs[0]["exact"])
             count = counts.get(("step", elements, program, element))
-            lines.append([elements, program, element, f"{centre:.3g} ({low:.3g} to {high:.3g})",
+            lines.append([elements, program, element, f"{centre:.3g} ({low:.3g} to {high:.3g})", over_yardstick(runs, "ns"),
                           f"{ratio(runs, ours, 'ns'):.2f}", "" if count is None else f"{count:.0f}", f"{float(runs[0]['free_side']):.8f}",
                           f"{error:+.1e}"])
-    return markdown_table(["elements", "program", "element", "ns per element and step",
+    return markdown_table(["elements", "program", "element", "ns per element and step", "K",
                            "over slideline, 2x2", "instructions", "free side", "error"], lines)
+
+
+def over_yardstick(rows, name, unit=1.0):
+    """Median over the rounds of a column over the yardstick that was measured beside it."""
+    return f"{statistics.median(unit * float(row[name]) / float(row['yardstick_ns']) for row in rows):.3g}"
+
+
+def yardstick_words(*tables):
+    """'K = 2.2 ns, 2.1 to 3.4'."""
+    found = [float(row["yardstick_ns"]) for rows in tables for row in rows]
+    return f"median {statistics.median(found):.2f} ns, from {min(found):.2f} to {max(found):.2f}"
+
+
+def collision_table(rows, counts):
+    """One row per size, program and contact."""
+    lines = []
+    for (elements, program, contact), runs in grouped(rows, "elements", "program", "contact").items():
+        centre, low, high = middle(runs, "ns")
+        count = counts.get(("collision", elements, program, contact))
+        lines.append([elements, program, contact, f"{centre:.3g} ({low:.3g} to {high:.3g})", over_yardstick(runs, "ns"),
+                      "" if count is None else f"{count:.0f}", *(f"{float(runs[0][name]):.4f}" for name in ("upper", "lower")),
+                      f"{float(runs[0]['momentum']):.1e}"])
+    return markdown_table(["elements", "program", "contact", "ns per element and step", "K", "instructions", "upper block", "lower block",
+                           "momentum"], lines)
+
+
+def collision_words(rows):
+    """Ratios of the times, and whose momentum is made, in a list."""
+    lines = []
+    for (elements,), same in grouped(rows, "elements").items():
+        ours = [row for row in same if row["contact"] == "type 2"]
+        for (program, contact), runs in grouped(same, "program", "contact").items():
+            if program == "slideline":
+                continue
+            lines.append(f"- {elements} elements: {program}, {contact}, takes {ratio(runs, ours, 'ns'):.1f} times as long as slideline with "
+                         "type 2, its own node-to-segment contact.")
+            if abs(float(runs[0]["momentum"])) > 0.01:
+                lines.append(f"- {elements} elements: as it is driven here, {program}'s contact forces do not balance: it makes "
+                             f"{float(runs[0]['momentum']):.1f} times the momentum of a block, and its answer is not that of the bars.")
+    return "\n".join(lines)
 
 
 def element_words(rows):
@@ -160,9 +219,9 @@ def contact_table(rows, counts):
             f"{mean:.6g}", size(mean / exact - 1.0), size(deviation)]
         count = counts.get((scene, elements, program, contact))
         lines.append([scene, elements, program, contact, *answer,
-                      f"{used[0]:.3g} ({used[1]:.3g} to {used[2]:.3g})", "" if count is None else f"{1e-6 * count:.0f}"])
+                      f"{used[0]:.3g} ({used[1]:.3g} to {used[2]:.3g})", over_yardstick(runs, "processor_seconds", 1.0e3), "" if count is None else f"{1e-6 * count:.0f}"])
     return markdown_table(["scene", "elements", "program", "contact", "-s_yy, mean, Pa", "error",
-                           "deviation", "processor time, s", "instructions, millions"], lines)
+                           "deviation", "processor time, s", "million K", "instructions, millions"], lines)
 
 
 def size(value):
@@ -207,15 +266,23 @@ def version_rows(path):
                      for name in PEERS if found.get(name))
 
 
+def built_in_words(path):
+    """'version 1.2.3 (source ...), built with `...`' as the program itself says."""
+    said = dict(line.split(maxsplit=1) for line in path.read_text(encoding="utf-8").splitlines()
+                if line.startswith(("slideline ", "flags ")))
+    return f"version {said['slideline']}, built with `{said['flags']}`"
+
+
 def write(folder, doc):
     """The page."""
-    elements, contact = (read_table(folder / f"{name}.csv") for name in ("elements", "contact"))
+    elements, collision, contact = (read_table(folder / f"{name}.csv") for name in ("elements", "collision", "contact"))
     counts, counted = read_counts(folder / "counts.csv")
     write_page(doc, "peers", PAGE.format(
-        counted=counted,
+        counted=counted, built=built_in_words(folder / "versions.txt"), yardstick=yardstick_words(elements, collision, contact),
         rounds=rounds_in_words(max(int(row["round"]) for row in elements)), processor=processor(),
         versions=version_rows(folder / "versions.txt"), elements=element_table(elements, counts),
-        words=element_words(elements), contact=contact_table(contact, counts),
+        words=element_words(elements), collision=collision_table(collision, counts),
+        collision_words=collision_words(collision), contact=contact_table(contact, counts),
         contact_words=contact_words(contact)))
 
 
