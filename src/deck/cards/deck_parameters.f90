@@ -48,8 +48,7 @@ contains
     end do
   end subroutine read_parameters
 
-  !> `; the nearest is NAME`, at most two letters away; nothing where no name of the deck is that
-  !> near.
+  !> `; the nearest is NAME`, at most two letters away; nothing where no name is so near.
   pure function nearest_name(parameters, given) result(text)
     type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: given
