@@ -102,6 +102,22 @@ def results_file(tmp_path):
     return write_results(tmp_path / "three.vtkhdf")
 
 
+def draw_plainly(patch):
+    """Coarse pictures without a search for their layout, for tests of what a page says; tests of charts draw in full."""
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    from slideline_tools import plots
+    for name in ("figure.dpi", "savefig.dpi"):
+        patch.setitem(plots.STYLE, name, 60)
+    patch.setattr(ConstrainedLayoutEngine, "execute", lambda self, figure: None)
+
+
+@pytest.fixture
+def plain_pictures(monkeypatch):
+    """See draw_plainly."""
+    draw_plainly(monkeypatch)
+
+
 @dataclasses.dataclass
 class Finished:
     returncode: int

@@ -42,7 +42,7 @@ def test_row_judges_both_sides(worst, verdict):
     assert row["uniform to 1e-08"] == verdict
 
 
-def test_page_of_a_run(slideline, tmp_path):
+def test_page_of_a_run(slideline, tmp_path, plain_pictures):
     deck = tmp_path / "block.k"
     deck.write_text(scenes.block(2), encoding="ascii")
     folder = tmp_path / "type_2"
@@ -95,7 +95,7 @@ def test_the_counted_run_is_cut_short_as_the_page_says():
     assert "No instructions were counted" in block_implicit.count_section(conftest.ROOT, [1, 5])
 
 
-def test_implicit_page_of_runs(tool, slideline, tmp_path):
+def test_implicit_page_of_runs(tool, slideline, tmp_path, plain_pictures):
     for method, flags in (("implicit", ["--implicit"]), ("explicit", [])):
         deck = tmp_path / f"{method}.k"
         assert tool("make-deck", "block", *flags, "-o", deck).returncode == 0

@@ -2,6 +2,7 @@
 """Pictures come out non-empty, show the right numbers, and wrong requests are named."""
 import shutil
 
+import h5py
 import numpy as np
 import pytest
 from PIL import Image
@@ -107,3 +108,45 @@ def test_mp4_is_made_or_refused_with_the_reason(tmp_path, tool, results_file):
 def test_animation_of_another_kind(tmp_path, tool, results_file):
     finished = tool("animate", results_file, "--output", tmp_path / "x.avi")
     assert finished.returncode == 2 and ".gif or .mp4" in finished.stderr
+
+
+@pytest.mark.parametrize("low, high, beyond", [(0.0, 0.2417, "neither"), (-3.1e8, 3.1e8, "neither"), (0.0, 0.1, "max"),
+                                               (0.05, 1.0, "min"), (0.05, 0.1, "both")])
+def test_colour_bar_has_round_ticks(low, high, beyond):
+    """Multiples of 1, 2, 2.5 or 5 times a power of ten within the scale; pointed where values lie beyond it."""
+    figure, axes = plots.plt.subplots()
+    artist = axes.pcolormesh(np.array([[low, high], [0.02, 0.2417]]))
+    artist.set_clim(low, high)
+    bar = plots.colour_bar(artist, [axes], "stress (deck units)")
+    ticks = np.array([tick for tick in bar.get_ticks() if low <= tick <= high])
+    step = np.diff(ticks)
+    assert 3 <= len(ticks) <= 7 and np.allclose(step, step[0])
+    assert min(abs(step[0] / 10.0 ** np.floor(np.log10(step[0])) - round_one) for round_one in (1, 2, 2.5, 5, 10)) < 1e-9
+    assert np.allclose(ticks / step[0], np.round(ticks / step[0])) and bar.extend == beyond
+    plots.plt.close(figure)
+
+
+def test_round_off_is_drawn_as_zero(results_file):
+    """Beside the largest value of all components of the field, and of all columns of one kind."""
+    with h5py.File(results_file, "r+") as stream:
+        stress = stream["VTKHDF/CellData/stress"]
+        stress[:] = np.where(np.arange(6) == 3, 1e-9, 2e4 * np.ones((9, 6)))
+        stream["history/rcforc/fx"][:] = 1e-14
+    results = read(results_file)
+    assert np.all(scalar_field(results, "stress:xy").values == 0.0)
+    assert np.all(scalar_field(results, "stress:xx").values == 2e4)
+    rows = results.history("rcforc")
+    assert np.all(plots.drawn(rows, "fx", rows) == 0.0) and np.array_equal(
+        plots.drawn(rows, "fy", rows)[1:-2], rows["fy"][1:-2])
+    figure = plots.history_figure(results, ["rcforc:fx"])
+    assert all(np.all(line.get_ydata() == 0.0) for line in figure.axes[0].lines)
+    plots.plt.close(figure)
+
+
+def test_what_a_scale_cuts_is_marked():
+    figure, axes = plots.plt.subplots()
+    axes.set(xlim=(0.0, 4.0), ylim=(-1.0, 1.0))
+    plots.mark_cut(axes, [0.0, 1.0, 2.0, 3.0, 9.0], np.array([5.0, 0.5, -3.0, 2.0, 7.0]), "red")
+    up, down = axes.lines
+    assert (up.get_xdata().tolist(), down.get_xdata().tolist()) == ([0.0, 3.0], [2.0])
+    plots.plt.close(figure)

@@ -3,6 +3,7 @@
 import os
 import re
 
+import conftest
 import numpy as np
 import pytest
 
@@ -168,10 +169,11 @@ def short_study(tmp_path_factory):
     def shortened(options):
         return [simplify.dataclasses.replace(job, options=(
                     *(word for word in job.options if not word.startswith("endtim")),
-                    "endtim=3.0e-5" if "early" in job.name else "endtim=5.0e-5"))
+                    "endtim=1.5e-5" if "early" in job.name else "endtim=2.5e-5"))
                 for job in original(options) if job.labels["variant"].startswith("collision")]
 
     with pytest.MonkeyPatch.context() as patch:
+        conftest.draw_plainly(patch)
         study = simplify.dataclasses.replace(simplify.STUDY, jobs=shortened)
         patch.setattr(command.registry, "load", lambda _: study)
         assert command.main(["simplify", "--quick", "--repeats", "1", "--folder", str(folder)]) == 0

@@ -275,7 +275,7 @@ def test_charts(tmp_path):
         f"block_speed_accuracy.{kind}" for kind in ("svg", "png")}
 
 
-def test_page(tmp_path):
+def test_page(tmp_path, plain_pictures):
     study.page(made_rows(), tmp_path)
     text = (tmp_path / "studies/speed_accuracy.md").read_text()
     assert "**In general type 4 or 5 (VTS-PPT, NTS-mAR).**" in text
@@ -289,7 +289,7 @@ def test_page(tmp_path):
         assert width is None or line.count("|") == width, line
 
 
-def test_page_of_one_type_alone(tmp_path):
+def test_page_of_one_type_alone(tmp_path, plain_pictures):
     pages.page([row for row in made_rows((5,)) if row["scene"] != "collision"], tmp_path)
     assert "In general" not in (tmp_path / "studies/speed_accuracy.md").read_text()
     assert "nan" not in (tmp_path / "studies/speed_accuracy.md").read_text()
@@ -299,7 +299,7 @@ def test_page_of_one_type_alone(tmp_path):
 
 # ---- with the program --------------------------------------------------------------------------
 
-def test_real_runs_of_the_block(slideline, tmp_path):
+def test_real_runs_of_the_block(slideline, tmp_path, plain_pictures):
     arguments = ["speed-accuracy", "--program", slideline, "--folder", str(tmp_path), "--quick",
                  "--types", "1", "3", "5", "--only", "block_1*"]
     assert command.main(arguments) == 0

@@ -8,7 +8,7 @@ import pytest
 from slideline_tools.study import stability_shapes as shapes
 from slideline_tools.study.job import Job, Options
 from slideline_tools.study.stability_shapes import Case, deck_of, grids_of
-from slideline_tools.study.stability_shapes_page import mesh_text
+from slideline_tools.study.stability_shapes_page import draw_shapes, mesh_text
 
 
 @pytest.mark.parametrize("ratio, slave, master", [(0.125, 4, 32), (1.0, 4, 4), (8.0, 32, 4)])
@@ -91,3 +91,16 @@ def test_runs_and_page(slideline, tmp_path, sweep, value, ctype, verdict):
     shapes.page([row], tmp_path / "doc")
     text = (tmp_path / "doc/studies/stability_shapes.md").read_text()
     assert ("No cell failed." in text) == (verdict == "stable")
+
+
+def test_picture_has_one_panel_with_what_fails():
+    """A cell for each sweep and type; written in it what is not stable."""
+    sweeps = {"overhang": ("overhang", {}), "tilt": ("tilt", {})}
+    rows = [{"sweep": name, "type": ctype, "value": value,
+             "verdict": "blown up" if (name, ctype) == ("overhang", 5) and value > 0.5 else "stable"}
+            for name in sweeps for ctype in (1, 5) for value in (0.1, 1.1, 2.5)]
+    figure = draw_shapes(rows, sweeps)
+    assert len(figure.axes) == 1 and len(figure.axes[0].patches) == 4
+    assert [text.get_text() for text in figure.axes[0].texts] == ["", "1.1, 2.5", "", ""]
+    assert [text.get_text() for text in figure.axes[0].get_yticklabels()][0] == "overhang\n3 values from 0.1 to 2.5"
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["stable", "blown up"]

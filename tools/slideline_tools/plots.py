@@ -156,7 +156,7 @@ def mark_cut(axes, x, y, colour):
     for cut, height, marker in ((y > high, 0.985, "^"), (y < low, 0.015, "v")):
         places = np.asarray(x)[cut & inside]
         axes.plot(places, np.full(len(places), height), linestyle="none", marker=marker, markersize=5, color=colour,
-                  markeredgecolor="white", markeredgewidth=0.4, transform=axes.get_xaxis_transform(), clip_on=False,
+                  markeredgecolor="white", markeredgewidth=0.4, transform=axes.get_xaxis_transform(),
                   zorder=5)
 
 
