@@ -58,9 +58,10 @@ contains
       call allocate_loads(memory%points)
       allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
     end if
-    ! Forces of the end of the step have a limit of their own.
+    ! Forces of the end of the step have a limit of their own, which has to know them apart from
+    ! those of friction.
     if (.not. (model%controls%implicit%is_on .or. is_tied(contact) &
-      .or. contact%penalty_unit == penalty_implicit)) &
+      .or. contact%penalty_unit == penalty_implicit .and. .not. has_friction(contact))) &
       call allocate_limit(memory%limit, n_slave + n_master)
     if (has_friction(contact)) then
       call allocate_tractions(memory%points)

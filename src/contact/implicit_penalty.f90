@@ -4,38 +4,23 @@
 !> elements. The points are placed with the other interfaces; pressures follow here, once the
 !> velocities are known that the nodes would have without them.
 module implicit_penalty_m
-  use complementarity_m, only : problem_t, outcome_t, set_size, solve_complementarity, is_low, &
+  use complementarity_m, only : outcome_t, set_size, solve_complementarity, is_low, &
     is_between
   use contact_scatter_m, only : scatter_forces
   use contact_springs_m, only : measure_springs, end_look
   use contact_state_m, only : contact_state_t
-  use contact_work_m, only : apart_t, hand_over
-  use energy_limit_m, only : energy_factor, scale_forces, count_cycle, returned_t, slack
+  use contact_work_m, only : apart_t, take_apart, hand_over
+  use contacts_m, only : friction_rule_t
+  use energy_limit_m, only : energy_factor, scale_forces, count_cycle, returned_t, slack, &
+    keep_former_springs, form_springs
+  use implicit_friction_m, only : rub_ahead
   use kinds_m, only : wp
   use nodal_average_m, only : average_gaps, average_more, share_out
-  use weighted_gaps_m, only : rows_t, choose_rows, form_shares, find_rates, fill_band, along_normal
+  use pressing_m, only : pressing_t, add_compliance
+  use weighted_gaps_m, only : choose_rows, form_shares, find_rates, fill_band, along_normal
   implicit none
   private
-  public :: pressing_t, start_pressing, press_ahead
-
-  !> The step ahead at the nodes of an interface, and room to find its pressures that is kept from
-  !> step to step.
-  type :: pressing_t
-    real(wp) :: dt = 0.0_wp                 !! to the end of the step, s
-    real(wp) :: dt_before = 0.0_wp          !! of the step behind, s
-    integer :: cycle = 0
-    real(wp) :: time = 0.0_wp               !! of u(n), s
-    real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) v(n+1/2) without the
-                                            !! interface
-    real(wp), allocatable :: mobility(:, :) !! (2, n_slave + n_master) velocity from a force of 1
-    integer, allocatable :: led(:, :)       !! (2, :) motions that lead nodes, and these
-    real(wp), allocatable :: gap(:)         !! (n_slave) mean gaps, m
-    real(wp), allocatable :: left(:)        !! (n_slave) what would be left of them, over dt, m/s
-    logical, allocatable :: wanted(:)       !! (n_slave) may press
-    real(wp), allocatable :: rate(:)        !! (points) of gaps, m/s
-    type(rows_t) :: rows
-    type(problem_t) :: problem
-  end type pressing_t
+  public :: press_ahead
 
   !> Part of a penetration that is taken back in a step where springs have no compliance.
   real(wp), parameter :: recovered = 0.1_wp
@@ -47,26 +32,19 @@ module implicit_penalty_m
 
 contains
 
-  !> Room for an interface.
-  pure subroutine start_pressing(memory, step)
-    type(contact_state_t), intent(in) :: memory
-    type(pressing_t), intent(inout) :: step
-
-    associate (n_node => memory%n_slave + memory%n_master, n_slave => memory%n_slave)
-      allocate (step%velocity(2, n_node), step%mobility(2, n_node))
-      allocate (step%gap(n_slave), step%left(n_slave), step%wanted(n_slave))
-      allocate (step%rows%slave(n_slave), step%rows%place(n_slave), step%rows%newest(n_node))
-    end associate
-  end subroutine start_pressing
-
   !> Pressures, nodal forces added to `force`, and the work of the step behind.
-  pure subroutine press_ahead(motion, step, memory, force)
+  pure subroutine press_ahead(rule, motion, step, memory, force)
+    type(friction_rule_t), intent(in) :: rule
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u(n), v(n-1/2)
     type(pressing_t), intent(inout) :: step
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
 
+    type(apart_t) :: apart
+
     memory%scratch%waits = .false.
+    call keep_former_springs(memory%scratch%had_force, memory)
+    call take_apart(motion, memory%scratch%had_force, memory, apart)
     if (memory%points%n > 0) then
       call find_mean_gaps(step, memory)
       call find_pressures(step, memory)
@@ -77,7 +55,13 @@ contains
       ! Loaded at time zero they hold energy that no force has put in.
       if (step%cycle == 0) memory%energy = memory%watch%stored
       call give_credit(step, memory)
+      if (allocated(memory%friction%force)) then
+        memory%limit%velocity = motion(3:4, memory%nodes)
+        memory%points%traction(:memory%points%n) = 0.0_wp
+        if (step%rows%n > 0) call rub_ahead(rule, step, memory)
+      end if
       if (step%rows%n > 0) call scatter_forces(memory)
+      call form_springs(memory)
       if (memory%n_active > 0 .and. step%cycle > 0 .and. memory%limit%credit < huge(1.0_wp)) &
         call limit_return(step, motion, memory)
     else
@@ -87,7 +71,7 @@ contains
     end if
     associate (had_force => memory%scratch%had_force)
       if (memory%n_active > 0 .or. had_force) &
-        call hand_over(step%dt_before, motion, apart_t(), memory, force)
+        call hand_over(step%dt_before, motion, apart, memory, force)
       call end_look(had_force, memory%n_active > 0, memory%watch)
     end associate
   end subroutine press_ahead
@@ -124,20 +108,12 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(returned_t) :: returned
     real(wp) :: before, bound, factor
-    integer :: i
 
-    before = 0.0_wp
-    do i = 1, size(memory%nodes)
-      associate (force => memory%force(:, i), v => motion(3:4, memory%nodes(i)), &
-        former => memory%scratch%former_force(:, i))
-        returned%behind = returned%behind + (force(1)*v(1) + force(2)*v(2))
-        returned%ahead = returned%ahead + (force(1)*step%velocity(1, i) &
-          + force(2)*step%velocity(2, i))
-        returned%recoil = returned%recoil + (force(1)**2*step%mobility(1, i) &
-          + force(2)**2*step%mobility(2, i))
-        before = before + (former(1)*v(1) + former(2)*v(2))
-      end associate
-    end do
+    if (allocated(memory%scratch%spring)) then
+      call sum_returns(memory%scratch%spring, memory%scratch%former_spring, returned, before)
+    else
+      call sum_returns(memory%force, memory%scratch%former_force, returned, before)
+    end if
     returned%behind = 0.5_wp*step%dt_before*returned%behind
     returned%ahead = 0.5_wp*step%dt*returned%ahead
     returned%recoil = 0.5_wp*step%dt*returned%recoil
@@ -145,7 +121,32 @@ contains
       + slack*memory%limit%largest + memory%limit%loan
     factor = energy_factor(returned, bound)
     call count_cycle(factor, step%time, memory%limit)
-    if (factor < 1.0_wp) call scale_forces(factor, memory)
+    if (.not. factor < 1.0_wp) return
+    call scale_forces(factor, memory)
+    call form_springs(memory)
+
+  contains
+
+    !> Sums over all nodes, of the springs alone.
+    pure subroutine sum_returns(forces, formers, returned, before)
+      real(wp), intent(in), contiguous :: forces(:, :), formers(:, :) !! present, of the step before
+      type(returned_t), intent(inout) :: returned
+      real(wp), intent(out) :: before
+      integer :: i
+
+      before = 0.0_wp
+      do i = 1, size(memory%nodes)
+        associate (force => forces(:, i), v => motion(3:4, memory%nodes(i)), former => formers(:, i))
+          returned%behind = returned%behind + (force(1)*v(1) + force(2)*v(2))
+          returned%ahead = returned%ahead + (force(1)*step%velocity(1, i) &
+            + force(2)*step%velocity(2, i))
+          returned%recoil = returned%recoil + (force(1)**2*step%mobility(1, i) &
+            + force(2)**2*step%mobility(2, i))
+          before = before + (former(1)*v(1) + former(2)*v(2))
+        end associate
+      end do
+    end subroutine sum_returns
+
   end subroutine limit_return
 
   !> Mean gaps of the slave nodes, and what would be left of each at the end of the step without
@@ -230,18 +231,5 @@ contains
     end associate
     call choose_rows(memory%n_slave, step%wanted, step%rows)
   end subroutine choose_pressed
-
-  !> What the springs of rows give way by.
-  pure subroutine add_compliance(n, width, slave, nodal, stiffness, band)
-    integer, intent(in) :: n, width, slave(n)
-    real(wp), intent(in) :: nodal(2, *)     !! kappa of slave nodes in (2, :), m
-    real(wp), intent(in) :: stiffness       !! times the step, N s/m^2
-    real(wp), intent(inout) :: band(0:width, n)
-    integer :: i
-
-    do i = 1, n
-      band(0, i) = band(0, i) + 1.0_wp/(stiffness*nodal(2, slave(i)))
-    end do
-  end subroutine add_compliance
 
 end module implicit_penalty_m

@@ -26,7 +26,8 @@ module complementarity_m
     real(wp), allocatable :: r(:)          !! (n)
     real(wp), allocatable :: low(:)        !! (n) <= 0
     real(wp), allocatable :: high(:)       !! (n) >= 0
-    integer, allocatable :: at(:)          !! (n) in: guess, out: where each force is
+    integer, allocatable :: at(:)          !! (n) in: guess, not between like bounds; out: where
+                                           !! each force is
     real(wp), allocatable :: x(:)          !! (n) out: the forces
     integer, allocatable :: place(:)       !! from here on room: (n) rows between bounds
     logical, allocatable :: drops(:)       !! (n) of those, pivots that are zero
@@ -113,6 +114,7 @@ contains
       problem%x(:n) = min(max(problem%x(:n), problem%low(:n)), problem%high(:n))
       if (is_settled) return
       call sweep(problem, outcome%n_sweep)
+      call find_slacks(problem)
       problem%at(:n) = is_between
       where (problem%x(:n) <= problem%low(:n)) problem%at(:n) = is_low
       where (problem%x(:n) >= problem%high(:n) .and. problem%high(:n) > problem%low(:n)) &
@@ -282,9 +284,13 @@ contains
     is_settled = .true.
     do i = 1, problem%n
       associate (at => problem%at(i), x => problem%x(i), slack => problem%slack(i))
+        if (.not. problem%high(i) > problem%low(i)) cycle
         former = at
         if (problem%drops(i)) then
-          if (slack >= 0.0_wp .and. .not. problem%low(i) < 0.0_wp) at = is_low
+          if (slack > 0.0_wp .or. .not. (slack < 0.0_wp .or. problem%low(i) < 0.0_wp)) at = is_low
+          if (slack < 0.0_wp .and. problem%high(i) < huge(1.0_wp)) at = is_high
+          is_settled = is_settled .and. at /= is_high &
+            .and. .not. (at == is_low .and. problem%low(i) < 0.0_wp)
           cycle
         end if
         select case (former)

@@ -26,7 +26,7 @@ module look_ahead_m
   real(wp), parameter :: most_reach = 0.5_wp
   !> How far at least, since the next step may move nodes by more than the last one has: a strain of
   !> that much in one step.
-  real(wp), parameter :: least_reach = 0.1_wp
+  real(wp), parameter :: least_reach = 0.02_wp
   !> Times what they have moved in the last one is added to that.
   real(wp), parameter :: ahead_factor = 2.0_wp
 

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> What implicit penalties (PUNIT 4) do not have: refused by name. Called for sound meshes only.
 module deck_implicit_penalty_m
-  use contacts_m, only : has_friction, is_tied, penalty_implicit
+  use contacts_m, only : is_tied, penalty_implicit
   use deck_cards_m, only : reject_field
   use deck_lines_m, only : deck_t, deck_error
   use deck_raw_m, only : raw_t, raw_contact_t
@@ -35,10 +35,8 @@ contains
     type(model_t), intent(in) :: model
 
     associate (contact => entry%contact)
-      if (model%is_round) call refuse(deck, entry, 'are plane: this deck is axisymmetric')
       if (contact%is_self) call refuse(deck, entry, 'do not act between a surface and itself')
       if (is_tied(contact)) call refuse(deck, entry, 'only push: a tie (TIE) has other springs')
-      if (has_friction(contact)) call refuse(deck, entry, 'have no friction (FS, FD)')
       if (contact%damping > 0.0_wp) call refuse(deck, entry, 'have no damping of their own (VDC)')
       if (entry%interference > 0) call refuse(deck, entry, &
         'have no initial overlap that grows (LCINT)')

@@ -153,8 +153,8 @@ contains
 
     if (.not. state%contacts(i)%watch%balance > 0.0_wp) return
     call write_log(log, 'interface '//to_text(model%contacts(i)%id)//': impacts have taken ' &
-      //to_text(state%contacts(i)%watch%balance)//' J/m, ' &
-      //percent(state%contacts(i)%watch%balance, state%largest_energy) &
+      //to_text(state%contacts(i)%watch%balance)//trim(merge(' J per radian', ' J/m         ', &
+      model%is_round))//', '//percent(state%contacts(i)%watch%balance, state%largest_energy) &
       //' of the largest energy so far; finer meshes lose less')
     if (state%contacts(i)%n_swept > 0) call write_log(log, 'interface ' &
       //to_text(model%contacts(i)%id)//': in '//to_text(state%contacts(i)%n_swept) &

@@ -6,11 +6,12 @@ module contact_pressing_m
   use constraints_m, only : is_active
   use contact_account_m, only : follow_contact
   use contacts_m, only : penalty_implicit
-  use implicit_penalty_m, only : pressing_t, start_pressing, press_ahead
+  use implicit_penalty_m, only : press_ahead
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
   use node_motion_m, only : leap_t, find_factors
+  use pressing_m, only : pressing_t, start_pressing
   use state_m, only : state_t
   implicit none
   private
@@ -46,7 +47,8 @@ contains
       steps(i)%dt_before = state%dt_before
       steps(i)%cycle = state%cycle
       steps(i)%time = state%time
-      call press_ahead(state%motion, steps(i), state%contacts(i), state%force_special)
+      call press_ahead(model%contacts(i)%friction, state%motion, steps(i), state%contacts(i), &
+        state%force_special)
       call lap(clock, phase_contact_force)
       call share_contact(clock, i)
       call follow_contact(model, i, state, log)

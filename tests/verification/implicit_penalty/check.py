@@ -142,6 +142,26 @@ def check_uniform(run):
             run.check(f"{name}: deviation of the {side}", np.abs(pressure - mean[:, None]).max() / mean.max(), 0.0, 1.0e-10, "abs")
 
 
+def check_round(run):
+    """The same of discs: forces over the parts of the circle that nodes have."""
+    for sizes, penalty, young in (((5, 4), RIGID, YOUNG), ((3, 8), DEFAULT, 0.1 * YOUNG)):
+        deck, slave, master = blocks(sizes, penalty, [(0.0, 1.0), (1.0e3, 1.0)], young=young)
+        text, count = re.subn(r"(\*SECTION_SHELL\n1,)13", r"\g<1>15", deck.text())
+        assert count == 1
+        result = run.program(text)
+        force = result.points("contact_force")[:, :, 1]
+        for side, nodes, n, sign in (("slave", slave, sizes[0], 1.0), ("master", master, sizes[1], -1.0)):
+            radius = np.linspace(0.0, 1.0, n + 1)
+            area = np.zeros(n + 1)
+            area[:-1] += (2.0 * radius[:-1] + radius[1:]) / (6.0 * n)
+            area[1:] += (radius[:-1] + 2.0 * radius[1:]) / (6.0 * n)
+            pressure = sign * force[:, nodes] / area
+            mean = pressure.mean(axis=1)
+            name = f"discs {sizes[0]}/{sizes[1]}, PEN {penalty:g}, {side}"
+            run.check(f"{name}: largest mean pressure", mean.max(), 1.0, 0.3, "min")
+            run.check(f"{name}: deviation", np.abs(pressure - mean[:, None]).max() / mean.max(), 0.0, 1.0e-10, "abs")
+
+
 def check_stiffness(run):
     """A tenth of K L/A either way, loaded slowly: the forces of type 7 in each state, and at rest."""
     forces = []
@@ -195,4 +215,5 @@ def check(run):
     check_momentum(run)
     check_held(run)
     check_uniform(run)
+    check_round(run)
     check_stiffness(run)

@@ -1,0 +1,61 @@
+! SPDX-License-Identifier: MIT
+!> What implicit penalties (PUNIT 4) know of the step ahead, with room that is kept from step to
+!> step.
+module pressing_m
+  use complementarity_m, only : problem_t
+  use contact_state_m, only : contact_state_t
+  use kinds_m, only : wp
+  use weighted_gaps_m, only : rows_t
+  implicit none
+  private
+  public :: pressing_t, start_pressing, add_compliance
+
+  !> The step ahead at the nodes of an interface.
+  type :: pressing_t
+    real(wp) :: dt = 0.0_wp                 !! to the end of the step, s
+    real(wp) :: dt_before = 0.0_wp          !! of the step behind, s
+    integer :: cycle = 0
+    real(wp) :: time = 0.0_wp               !! of u(n), s
+    real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) v(n+1/2) without the
+                                            !! interface
+    real(wp), allocatable :: mobility(:, :) !! (2, n_slave + n_master) velocity from a force of 1
+    integer, allocatable :: led(:, :)       !! (2, :) motions that lead nodes, and these
+    real(wp), allocatable :: gap(:)         !! (n_slave) mean gaps, m
+    real(wp), allocatable :: left(:)        !! (n_slave) what would be left of them, over dt, m/s
+    logical, allocatable :: wanted(:)       !! (n_slave) may press
+    real(wp), allocatable :: rate(:)        !! (points) of gaps or slips, m/s
+    real(wp), allocatable :: pressed(:, :)  !! (2, n_slave + n_master) velocities with pressures;
+                                            !! only where there is friction
+    type(rows_t) :: rows
+    type(problem_t) :: problem
+  end type pressing_t
+
+contains
+
+  !> Room for an interface.
+  pure subroutine start_pressing(memory, step)
+    type(contact_state_t), intent(in) :: memory
+    type(pressing_t), intent(inout) :: step
+
+    associate (n_node => memory%n_slave + memory%n_master, n_slave => memory%n_slave)
+      allocate (step%velocity(2, n_node), step%mobility(2, n_node))
+      allocate (step%gap(n_slave), step%left(n_slave), step%wanted(n_slave))
+      if (allocated(memory%friction%force)) allocate (step%pressed(2, n_node))
+      allocate (step%rows%slave(n_slave), step%rows%place(n_slave), step%rows%newest(n_node))
+    end associate
+  end subroutine start_pressing
+
+  !> What the springs of rows give way by.
+  pure subroutine add_compliance(n, width, slave, nodal, stiffness, band)
+    integer, intent(in) :: n, width, slave(n)
+    real(wp), intent(in) :: nodal(2, *)     !! kappa of slave nodes in (2, :), m
+    real(wp), intent(in) :: stiffness       !! times the step, N s/m^2
+    real(wp), intent(inout) :: band(0:width, n)
+    integer :: i
+
+    do i = 1, n
+      band(0, i) = band(0, i) + 1.0_wp/(stiffness*nodal(2, slave(i)))
+    end do
+  end subroutine add_compliance
+
+end module pressing_m
