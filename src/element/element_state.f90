@@ -21,7 +21,8 @@ module element_state_m
   implicit none
   private
   public :: start_elements, lump_mass, element_stresses, element_plastic_strains, &
-    element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone
+    element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone, &
+    stress_of_slot, plastic_strain_of_slot
 
 contains
 
@@ -116,8 +117,7 @@ contains
     integer :: i
 
     do i = 1, size(eroded)
-      eroded(i) = merge(0.0_wp, 1.0_wp, elements%erosion%status(model%layout%element_slot(i)) &
-        == stays)
+      eroded(i) = merge(1.0_wp, 0.0_wp, is_gone(elements, model%layout%element_slot(i)))
     end do
   end subroutine element_erosion
 
@@ -237,29 +237,38 @@ contains
     real(wp), intent(in) :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout) :: stress(:, :) !! (6, n_element)
-    real(wp) :: volumetric, stretch(n_point), start(n_point), now(n_point), s(3)
-    integer :: i, i_eos, n, slot
+    integer :: i, slot
 
     do slot = 1, model%layout%n_slot
       i = model%layout%slot_element(slot)
       if (i == 0) cycle
-      if (is_gone(elements, slot)) then
-        stress(:, i) = 0.0_wp
-        cycle
-      end if
-      associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
-        call volume_ratios(model, motion, elements, slot, n, stretch, start)
-        if (material%is_rigid) stretch = 0.0_wp
-        now(:n) = start(:n)*(1.0_wp + stretch(:n))
-        volumetric = material%bulk*(sum(now(:n)*log_ratio(stretch(:n)))/sum(now(:n)))
-      end associate
-      i_eos = elements%eos_start((slot - 1)/chunk_size + 1)
-      if (i_eos > 0) volumetric = -elements%eos_state(i_eos + chunk_size + mod(slot - 1, &
-        chunk_size))
-      s = elements%deviator(slot, :)
-      stress(1:4, i) = [s(1) + volumetric, s(2) + volumetric, volumetric - (s(1) + s(2)), s(3)]
+      stress(:, i) = 0.0_wp
+      if (.not. is_gone(elements, slot)) &
+        stress(1:4, i) = stress_of_slot(model, motion, elements, slot)
     end do
   end subroutine element_stresses
+
+  !> Cauchy stress of the element in a slot, which has not left the mesh: xx yy zz xy.
+  pure function stress_of_slot(model, motion, elements, slot) result(stress)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: motion(:, :)
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: slot
+    real(wp) :: stress(4)
+    real(wp) :: volumetric, stretch(n_point), start(n_point), now(n_point), s(3)
+    integer :: i_eos, n
+
+    associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
+      call volume_ratios(model, motion, elements, slot, n, stretch, start)
+      if (material%is_rigid) stretch = 0.0_wp
+      now(:n) = start(:n)*(1.0_wp + stretch(:n))
+      volumetric = material%bulk*(sum(now(:n)*log_ratio(stretch(:n)))/sum(now(:n)))
+    end associate
+    i_eos = elements%eos_start((slot - 1)/chunk_size + 1)
+    if (i_eos > 0) volumetric = -elements%eos_state(i_eos + chunk_size + mod(slot - 1, chunk_size))
+    s = elements%deviator(slot, :)
+    stress = [s(1) + volumetric, s(2) + volumetric, volumetric - (s(1) + s(2)), s(3)]
+  end function stress_of_slot
 
   !> Effective plastic strain of all elements in deck order, 0 in elastic parts; the mean over the
   !> initial volume where an element has several points.
@@ -269,14 +278,23 @@ contains
     real(wp), intent(inout) :: plastic_strain(:) !! (n_element)
     integer :: slot
 
-    plastic_strain = 0.0_wp
     do slot = 1, model%layout%n_slot
-      if (model%layout%slot_element(slot) == 0) cycle
-      if (.not. has_plastic_strain(model%materials(model%parts(slot_part(model%layout, &
-        slot))%material))) cycle
-      plastic_strain(model%layout%slot_element(slot)) = history_of_slot(model, elements, slot, 1)
+      if (model%layout%slot_element(slot) > 0) plastic_strain(model%layout%slot_element(slot)) = &
+        plastic_strain_of_slot(model, elements, slot)
     end do
   end subroutine element_plastic_strains
+
+  !> That of the element in a slot.
+  function plastic_strain_of_slot(model, elements, slot) result(plastic_strain)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: slot
+    real(wp) :: plastic_strain
+
+    plastic_strain = 0.0_wp
+    if (has_plastic_strain(model%materials(model%parts(slot_part(model%layout, slot))%material))) &
+      plastic_strain = history_of_slot(model, elements, slot, 1)
+  end function plastic_strain_of_slot
 
   !> Temperature and damage of all elements in deck order, 0 in parts that keep none.
   subroutine element_heats(model, elements, temperature, damage)

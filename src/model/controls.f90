@@ -29,6 +29,7 @@ module controls_m
     type(interval_t) :: histories(n_table)   !! by the `table_` constants; that of contact is
                                              !! unused
     integer, allocatable :: history_nodes(:) !! node indices of *DATABASE_HISTORY_NODE
+    integer, allocatable :: history_elements(:) !! element indices of *DATABASE_HISTORY_SHELL
     integer :: dump_cycles = -1    !! cycles between restart files that stay
                                    !! (*DATABASE_BINARY_D3DUMP), 0 = at the end alone, -1 = none
     integer :: running_cycles = 0  !! cycles between restart files that replace each other (RUNRSF),

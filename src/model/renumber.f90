@@ -56,6 +56,7 @@ contains
       deallocate (model%conditions%initial_velocity)
     if (allocated(model%node_sets)) deallocate (model%node_sets)
     if (allocated(model%segment_sets)) deallocate (model%segment_sets)
+    if (allocated(model%shell_sets)) deallocate (model%shell_sets)
     if (model%controls%implicit%is_on .or. model%erodes) return
     deallocate (model%mesh%element_nodes, model%mesh%element_part)
     if (.not. is_asked(model%controls%output%plot)) deallocate (model%mesh%deck_node)

@@ -14,7 +14,7 @@ module history_file_m
   use kinds_m, only : wp
   use history_tables_m, only : history_tables, n_table, asked_alone, asked_or_states, &
     asked_by_states, each_run, each_contact, each_history_node, each_part, each_wall, &
-    each_support, text_none, text_rows
+    each_support, each_history_element, each_body, text_none, text_rows
   use table_row_m, only : row_t
   implicit none
   private
@@ -131,6 +131,11 @@ contains
       if (allocated(model%walls)) n = size(model%walls)
     case (each_support)
       n = count(mark_supports(model))
+    case (each_history_element)
+      if (allocated(model%controls%output%history_elements)) &
+        n = size(model%controls%output%history_elements)
+    case (each_body)
+      if (allocated(model%rigids)) n = size(model%rigids)
     end select
   end function n_each
 

@@ -7,11 +7,11 @@ module history_rows_m
   use csv_table_m, only : csv_table_t, add_row
   use energies_m, only : total_energy, energy_ratio
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_contact, &
-    table_matsum, table_rwforc, table_sleout, table_spcforc
+    table_matsum, table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout
   use kinds_m, only : wp
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t, interface_result_t, part_result_t, slave_result_t, &
-    wall_result_t, rubbed_t
+    wall_result_t, rubbed_t, element_result_t, body_result_t
   use table_row_m, only : row_t, put, put_side, end_csv
   implicit none
   private
@@ -33,6 +33,8 @@ contains
     type(slave_result_t) :: slave
     type(part_result_t) :: sums
     type(wall_result_t) :: wall
+    type(element_result_t) :: element
+    type(body_result_t) :: body
     real(wp), parameter :: nowhere(2) = 0.0_wp
 
     row%is_named = .true.
@@ -54,6 +56,10 @@ contains
       call put_sleout(row, nothing, 0, result)
     case (table_spcforc)
       call put_spcforc(row, nothing, 0, 0)
+    case (table_elout)
+      call put_elout(row, nothing, 0, element)
+    case (table_rbdout)
+      call put_rbdout(row, nothing, 0, body)
     end select
   end subroutine name_columns
 
@@ -91,6 +97,18 @@ contains
     case (table_spcforc)
       do i = 1, size(snapshot%supports)
         call put_spcforc(row, snapshot, model%mesh%node_id(snapshot%supports(i)), i)
+        call take(table, row)
+      end do
+    case (table_elout)
+      do i = 1, size(snapshot%history_elements)
+        call put_elout(row, snapshot, &
+          model%mesh%element_id(model%controls%output%history_elements(i)), &
+          snapshot%history_elements(i))
+        call take(table, row)
+      end do
+    case (table_rbdout)
+      do i = 1, size(snapshot%bodies)
+        call put_rbdout(row, snapshot, model%parts(model%rigids(i)%part)%id, snapshot%bodies(i))
         call take(table, row)
       end do
     case default
@@ -307,6 +325,40 @@ contains
     call put(row, 'node', id)
     call put(row, 'fx,fy', vector_of(shot%reaction, i))
   end subroutine put_spcforc
+
+  !> Stress and plastic strain of an element.
+  pure subroutine put_elout(row, shot, id, element)
+    type(row_t), intent(inout) :: row
+    type(snapshot_t), intent(in) :: shot
+    integer, intent(in) :: id
+    type(element_result_t), intent(in) :: element
+
+    call put(row, 'time', shot%time)
+    call put(row, 'element', id)
+    call put(row, 'sxx,syy,szz,sxy', element%stress)
+    call put(row, 'plastic_strain', element%plastic_strain)
+    call end_csv(row)
+    call put(row, 'cycle', shot%cycle)
+    call put(row, 'part', element%part)
+    call put(row, 'is_gone', merge(1, 0, element%is_gone))
+  end subroutine put_elout
+
+  !> Motion of a rigid body.
+  pure subroutine put_rbdout(row, shot, part, body)
+    type(row_t), intent(inout) :: row
+    type(snapshot_t), intent(in) :: shot
+    integer, intent(in) :: part           !! user id
+    type(body_result_t), intent(in) :: body
+
+    call put(row, 'time', shot%time)
+    call put(row, 'part', part)
+    call put(row, 'x,y', body%place)
+    call put(row, 'ux,uy,rotation', body%displacement)
+    call put(row, 'vx,vy,spin', body%velocity)
+    call put(row, 'ax,ay,spin_rate', body%acceleration)
+    call end_csv(row)
+    call put(row, 'cycle', shot%cycle)
+  end subroutine put_rbdout
 
   !> One value; 0 of an array that is not there, in the row of nothing.
   pure function value_of(values, i) result(value)

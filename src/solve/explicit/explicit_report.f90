@@ -6,7 +6,8 @@ module explicit_report_m
   use erosion_account_m, only : settle_elements, note_least_step
   use explicit_prescribed_m, only : start_prescribed, prescribed_work
   use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
-    table_sleout, table_spcforc
+    table_sleout, table_spcforc, table_elout, table_rbdout
+  use history_elements_m, only : fill_history_elements
   use health_m, only : check_energy, check_radii, made_by_springs
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
@@ -14,7 +15,8 @@ module explicit_report_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due
   use motion_sums_m, only : count_sums
-  use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, fill_rigids
+  use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, fill_rigids, &
+    fill_bodies
   use progress_m, only : show_progress
   use rank_exchange_m, only : judge_elements
   use ranks_m, only : share_error, spread_values
@@ -96,6 +98,8 @@ contains
       call fill_interfaces(model, state, monitor%snapshot)
     if (cycle%due%tables(table_spcforc)) &
       call fill_explicit_reactions(model, state, monitor%snapshot, held)
+    if (cycle%due%tables(table_elout)) call fill_history_elements(model, state, monitor%snapshot)
+    if (cycle%due%tables(table_rbdout)) call fill_bodies(state, monitor%snapshot)
     if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
     call write_due(model, cycle%due, state%dt, monitor, cycle%error)
     if (cycle%due%tables(table_glstat)) cycle%ratio = energy_ratio(monitor%snapshot%energies)

@@ -12,7 +12,8 @@ module rigid_motion_m
   use state_m, only : state_t
   implicit none
   private
-  public :: solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids
+  public :: solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids, &
+    fill_bodies
 
 contains
 
@@ -191,5 +192,22 @@ contains
       end associate
     end do
   end subroutine fill_rigids
+
+  !> Bodies of the histories (rbdout) at the present instant.
+  subroutine fill_bodies(state, snapshot)
+    type(state_t), intent(in) :: state
+    type(snapshot_t), intent(inout) :: snapshot
+    integer :: i
+
+    if (.not. allocated(snapshot%bodies)) return
+    do i = 1, size(snapshot%bodies)
+      associate (rigid => state%rigids(i), body => snapshot%bodies(i))
+        body%displacement = rigid%place
+        body%place = rigid%centre + rigid%place(1:2)
+        body%velocity = rigid%velocity + 0.5_wp*state%dt_before*rigid%acceleration
+        body%acceleration = rigid%acceleration
+      end associate
+    end do
+  end subroutine fill_bodies
 
 end module rigid_motion_m

@@ -2,7 +2,8 @@
 !> What the implicit driver writes: motion, velocity and acceleration of one instant, energies
 !> with the consistent mass.
 module implicit_report_m
-  use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc
+  use history_elements_m, only : fill_history_elements
+  use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc, table_elout
   use block_state_m, only : block_state_t
   use kinds_m, only : wp
   use clock_m, only : lap, phase_output
@@ -64,6 +65,7 @@ contains
       if (any(due%tables([table_rcforc, table_sleout]))) call fill_interfaces(model, state, shot)
       if (due%tables(table_spcforc)) call fill_reactions(model, &
         force + mass_times(model, shot%acceleration), shot)
+      if (due%tables(table_elout)) call fill_history_elements(model, state, shot)
       if (due%plot) call fill_plot(model, state, shot)
       call write_due(model, due, dt, monitor, error)
       if (due%plot .and. .not. allocated(error)) &
