@@ -37,7 +37,7 @@ module deck_m
   use deck_systems_m, only : read_system
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control, check_step
-  use deck_output_m, only : read_database
+  use deck_output_m, only : read_database, read_force_groups
   use deck_transducer_m, only : read_transducer
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : settle_friction
@@ -321,6 +321,8 @@ contains
       call read_history_ids(deck, parameters, i, raw%history_shells)
     case ('DATABASE_HISTORY_SHELL_SET')
       call read_history_ids(deck, parameters, i, raw%history_shell_sets)
+    case ('DATABASE_NODAL_FORCE_GROUP')
+      call read_force_groups(deck, parameters, i, raw)
     case default
       call read_database(deck, parameters, i, raw)
     end select

@@ -4,9 +4,10 @@
 !> columns that a layout names, in its order; forces and energies per unit depth.
 module dyna_layouts_m
   use dyna_body_layouts_m, only : form_elout, form_rbdout
+  use dyna_force_layouts_m, only : form_bndout, form_nodfor
   use dyna_lines_m, only : line_size, add_line, number, tidy
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_matsum, &
-    table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout
+    table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, table_bndout, table_nodfor
   use kinds_m, only : wp
   implicit none
   private
@@ -64,6 +65,10 @@ contains
       names = 'time,element,sxx,syy,szz,sxy,plastic_strain,cycle,part,is_gone'
     case (table_rbdout)
       names = 'time,part,x,y,ux,uy,rotation,vx,vy,spin,ax,ay,spin_rate,cycle'
+    case (table_bndout)
+      names = 'time,condition,id,fx,fy,moment,work'
+    case (table_nodfor)
+      names = 'time,group,node,fx,fy,work'
     end select
   end function columns_of
 
@@ -82,6 +87,10 @@ contains
       n = 2*n_row + 9
     case (table_rbdout)
       n = 20*n_row + 3
+    case (table_bndout)
+      n = 2*n_row + 45
+    case (table_nodfor)
+      n = 9*n_row + 6
     case default
       n = n_row + 12
     end select
@@ -115,6 +124,10 @@ contains
       call form_elout(rows, lines, n_line)
     case (table_rbdout)
       call form_rbdout(rows, lines, n_line)
+    case (table_bndout)
+      call form_bndout(rows, lines, n_line)
+    case (table_nodfor)
+      call form_nodfor(rows, lines, n_line)
     end select
   end subroutine form_block
 

@@ -114,6 +114,10 @@ module snapshot_m
     type(wall_result_t), allocatable :: walls(:) !! only where the deck has any
     type(element_result_t), allocatable :: history_elements(:) !! only where elout is asked for
     type(body_result_t), allocatable :: bodies(:) !! only where rbdout is asked for
+    real(wp), allocatable :: boundary_force(:, :) !! (3, n_boundary) x, y and moment about z
+    real(wp), allocatable :: boundary_work(:)     !! (n_boundary)
+    real(wp), allocatable :: group_force(:, :)    !! (2, nodes of all force groups)
+    real(wp), allocatable :: group_work(:)
     type(slave_result_t), allocatable :: slaves(:) !! one per interface, then per contact behind a
                                                  !! tie
   end type snapshot_t

@@ -3,7 +3,7 @@
 from meshes import Deck, grid
 
 #: histories that the deck asks for besides the energies
-HISTORIES = ("rwforc", "elout", "rbdout")
+HISTORIES = ("rwforc", "elout", "rbdout", "bndout", "nodfor")
 
 
 def busy_block(end_time=0.02, interval=1.0e-3, binary="", fine=1):
@@ -33,6 +33,7 @@ def busy_block(end_time=0.02, interval=1.0e-3, binary="", fine=1):
     deck.add("*LOAD_SEGMENT", *[(2, 1.0, 0.0, int(b), int(a)) for a, b in zip(top[:3 * fine], top[1:3 * fine + 1])])
     deck.add("*SET_SHELL_LIST_GENERATE", (1,), (1, 3))
     deck.add("*DATABASE_HISTORY_SHELL", (n * m, 2)).add("*DATABASE_HISTORY_SHELL_SET", (1, 0))
+    deck.node_set(4, block[n // 2::n + 1]).add("*DATABASE_NODAL_FORCE_GROUP", (3, 0), (4, 0))
     for name in HISTORIES:
         deck.add(f"*DATABASE_{name.upper()}", f"{interval},{binary}")
     return deck.output(plot=5 * interval, glstat=interval, matsum=interval)

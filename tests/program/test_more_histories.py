@@ -118,6 +118,63 @@ def test_rbdout(whole):
     assert np.allclose(local, along, atol=2e-4)
 
 
+def sections_of(lines, head):
+    """Time and rows (id, fx, fy, energy) of each block of a file of forces, and its sums."""
+    found = []
+    for line in lines:
+        if line.startswith(head):
+            found.append([float(line.split("t=")[1]), [], []])
+        elif re.match(r"( nd#| mt#|mat#)", line):
+            numbers_of = re.findall(r"=\s*(\S+)", line)
+            found[-1][1].append((int(line[4:12]), float(numbers_of[0]), float(numbers_of[1]), float(numbers_of[3])))
+        elif "xtotal=" in line:
+            numbers_of = re.findall(r"=\s*(\S+)", line)
+            found[-1][2].append([float(numbers_of[k]) for k in (0, 1, 3)])
+    return found
+
+
+def test_bndout(whole):
+    lines = (whole / "job.bndout").read_text().splitlines()
+    table = values(whole, "bndout", "time", "condition", "id", "fx", "fy", "work", "moment")
+    assert [int(row) for row in table[:10, 1]] == [1, 2, 3, 3, 3, 3, 4, 4, 4, 5]
+    found = sections_of(lines, " n o d a l   f o r c e/e n e r g y    o u t p u t  t=")
+    assert len(found) == 3 * len(table) / 10
+    rows = np.array([row for block in found for row in block[1]])
+    assert np.array_equal(rows[:, 0], table[:, 2])
+    same(rows[:, 1:], table[:, 3:6], 4)
+    ends = np.cumsum([len(block[1]) for block in found])
+    sums = np.array([table[last - len(block[1]):last, 3:6].sum(axis=0) for last, block in zip(ends, found)])
+    assert np.allclose([block[2][0] for block in found], sums, rtol=1e-4, atol=1e-12)
+    moments = [float(re.findall(r"=\s*(\S+)", line)[2]) for line in lines if "zmoment=" in line]
+    same(moments, table[table[:, 1] == 5, 6], 4)
+    assert np.all(np.any(np.abs(table[10:].reshape(-1, 10, 7)[:, :, 3:]) > 0.0, axis=(0, 2)))
+
+
+def test_nodfor(whole):
+    lines = (whole / "job.nodfor").read_text().splitlines()
+    table = values(whole, "nodfor", "time", "group", "node", "fx", "fy", "work")
+    n = 3 + 9
+    assert [int(group) for group in table[:n, 1]] == 3 * [3] + 9 * [4]
+    found = sections_of(lines, " n o d a l   f o r c e   g r o u p    o u t p u t  t=")
+    assert len(found) == len(table) / n
+    rows = np.array([row for block in found for row in block[1]])
+    assert np.array_equal(rows[:, 0], table[:, 2])
+    same(rows[:, 1:], table[:, 3:], 4)
+    blocks = table.reshape(-1, n, 6)
+    assert np.allclose([block[2] for block in found], [[b[:3, 3:].sum(axis=0), b[3:, 3:].sum(axis=0)] for b in blocks],
+                       rtol=1e-4, atol=1e-6)
+    assert lines.count(" nodal group output number  2") == len(found)
+
+
+def test_works_add_up_to_the_external_work(whole):
+    """Of this run: all that acts but the wall, whose work rwforc has."""
+    table = values(whole, "bndout", "work").reshape(-1, 10)
+    wall = values(whole, "rwforc", "work", "friction")
+    work = numbers(whole / "job.glstat.csv", "external_work")
+    assert table.sum(axis=1) + wall[:, 0] == pytest.approx(work, rel=1e-11, abs=1e-12 * np.abs(work).max())
+    assert np.abs(work).max() > 0.1
+
+
 def test_rwforc(whole):
     lines = (whole / "job.rwforc").read_text().splitlines()
     head = lines.index("    time       wall#   normal-force    x-force        y-force        z-force")

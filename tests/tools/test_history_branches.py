@@ -39,7 +39,8 @@ def binout(run, tmp_path_factory):
                                      "plastic_strain": "plastic_strain"}),
     (("rbdout",), "part", {"global_x": "x", "global_y": "y", "global_dx": "ux", "global_dy": "uy", "global_rdz": "rotation",
                            "global_vx": "vx", "global_vy": "vy", "global_rvz": "spin", "global_ax": "ax",
-                           "global_ay": "ay", "global_raz": "spin_rate"})])
+                           "global_ay": "ay", "global_raz": "spin_rate"}),
+    (("nodfor",), "node", {"x_force": "fx", "y_force": "fy", "energy": "work"})])
 def test_branch_has_the_columns(run, binout, branch, entity, columns):
     table = run.results.history(branch[0])
     times = np.unique(table["time"])
@@ -59,6 +60,27 @@ def test_states_and_parts_of_elements(run, binout):
     assert np.array_equal(state.ravel(), np.where(table["plastic_strain"] > 0.0, 2, 1)) and set(state.ravel()) == {1, 2}
     assert np.all(binout.read("elout", "shell", "mat") == 1)
     assert binout.read("elout", "shell", "legend_ids").tolist() == [96, 2, 1, 3]
+
+
+def test_boundaries(run, binout):
+    table = run.results.history("bndout")
+    n = int(np.sum(table["time"] == table["time"][0]))
+    names = ("discrete/nodes", "discrete/rigidbodies", "pressure", "velocity/nodes", "velocity/rigidbodies")
+    for condition, name in enumerate(names, start=1):
+        branch, rows = ("bndout", *name.split("/")), table["condition"] == condition
+        ids = binout.read(*branch, "ids")
+        assert np.array_equal(ids, table["id"][:n][table["condition"][:n] == condition])
+        for variable, column in (("x_force", "fx"), ("y_force", "fy"), ("energy", "work")):
+            assert np.array_equal(binout.read(*branch, variable).ravel(), table[column][rows]), name
+        assert np.allclose(binout.read(*branch, "etotal"), table["work"][rows].reshape(-1, len(ids)).sum(axis=1))
+    assert np.array_equal(binout.read(*branch, "zmoment").ravel(), table["moment"][rows])
+
+
+def test_groups(run, binout):
+    table = run.results.history("nodfor")
+    assert binout.read("nodfor", "groups").tolist() == [3, 9]
+    of_first = table["group"] == 3
+    assert np.allclose(binout.read("nodfor", "x_total")[:, 0], table["fx"][of_first].reshape(-1, 3).sum(axis=1))
 
 
 def test_axes_of_bodies(run, binout):

@@ -32,6 +32,10 @@ RBDOUT = {"global_{}": ("x", "y", None), "global_d{}": ("ux", "uy", None), "glob
           "global_rv{}": (None, None, "spin"), "global_ra{}": (None, None, "spin_rate")}
 #: states of an element, as DYNA numbers them
 STATES = ("elastic", "plastic", "failed")
+#: condition of bndout -> its branch
+CONDITIONS = {1: "discrete/nodes", 2: "discrete/rigidbodies", 3: "pressure", 4: "velocity/nodes",
+              5: "velocity/rigidbodies"}
+FORCES = {"x_force": "fx", "y_force": "fy", "energy": "work"}
 #: branches below that of their table
 BRANCHES = {"rwforc": "rwforc/forces", "elout": "elout/shell"}
 LEGEND_WIDTH = 70
@@ -51,9 +55,17 @@ def write_binout(run, path):
         raise BinoutError(f"{run.prefix} has no history tables")
     with Writer(path) as file:
         for name, table in tables.items():
-            metadata, states = FORMS[name](table, run)
-            write_branch(file, BRANCHES.get(name, name), {"title": run.title[:80].ljust(80), **metadata}, states)
+            for branch, metadata, states in branches_of(name, table, run):
+                write_branch(file, branch, {"title": run.title[:80].ljust(80), **metadata}, states)
     return list(tables)
+
+
+def branches_of(name, table, run):
+    """(branch, its metadata, its states) of a table: one, of boundaries one for each condition."""
+    if name == "bndout":
+        return [(f"bndout/{CONDITIONS[number]}", *bndout_branch(table.where(condition=number)))
+                for number in CONDITIONS if np.any(table["condition"] == number)]
+    return [(BRANCHES.get(name, name), *FORMS[name](table, run))]
 
 
 def write_branch(file, name, metadata, states):
@@ -202,6 +214,35 @@ def elout_branch(table, _):
     return {"states": ",".join(STATES), "system": "global", **legend(ids, {int(n): "shell" for n in ids})}, states
 
 
+def with_totals(states, blocks):
+    """The same with sums over blocks (slices) of the rows of an instant."""
+    for name, total in (("x_force", "x_total"), ("y_force", "y_total"), ("z_force", "z_total"), ("energy", "etotal")):
+        sums = np.stack([states[name][:, block].sum(axis=1) for block in blocks], axis=1)
+        states[total] = sums if len(blocks) > 1 else sums[:, 0]
+    return states
+
+
+def bndout_branch(table):
+    """Forces on boundaries of one condition, and their work."""
+    ids = entities(table, "id")
+    states = with_totals(with_z(by_instant(table, len(ids), FORCES), "force"), [slice(None)])
+    if table["condition"][0] == 5:
+        states["xmoment"] = states["ymoment"] = np.zeros(states["x_force"].shape)
+        states["zmoment"] = table["moment"].reshape(states["x_force"].shape)
+    return {"ids": ids}, states
+
+
+def nodfor_branch(table, _):
+    """Forces of groups of nodes; all groups behind each other."""
+    nodes = entities(table, "node")
+    states = with_z(by_instant(table, len(nodes), FORCES), "force")
+    group = table["group"][:len(nodes)]
+    starts = np.flatnonzero(np.diff(group, prepend=-1))
+    sizes = np.diff([*starts, len(nodes)])
+    blocks = [slice(start, start + size) for start, size in zip(starts, sizes)]
+    return {"ids": nodes, "groups": sizes, "local": np.zeros(len(sizes), dtype=int)}, with_totals(states, blocks)
+
+
 def rbdout_branch(table, run):
     """Motion of rigid bodies; the directions are those of axes that turn with the body."""
     ids = entities(table, "part")
@@ -221,6 +262,7 @@ def rbdout_branch(table, run):
     return {"ids": ids, "num_nodal": 0, **legend(ids, run.part_titles())}, states
 
 
+#: that of bndout is found by condition (`branches_of`)
 FORMS = {"glstat": glstat_branch, "rcforc": rcforc_branch, "nodout": nodout_branch,
          "matsum": matsum_branch, "sleout": sleout_branch, "spcforc": spcforc_branch, "rwforc": rwforc_branch,
-         "elout": elout_branch, "rbdout": rbdout_branch}
+         "elout": elout_branch, "rbdout": rbdout_branch, "bndout": None, "nodfor": nodfor_branch}

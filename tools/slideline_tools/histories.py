@@ -14,10 +14,11 @@ from slideline_tools import UserError
 if typing.TYPE_CHECKING:
     import pandas
 
-TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact", "rwforc", "sleout", "spcforc", "elout", "rbdout")
+TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact", "rwforc", "sleout", "spcforc", "elout", "rbdout",
+          "bndout", "nodfor")
 TEXT_COLUMNS = ("side", "phase")
-INTEGER_COLUMNS = ("cycle", "interface", "wall", "node", "element", "part", "n_active", "calls")
-ENTITY_COLUMNS = ("interface", "side", "wall", "node", "element", "part")
+INTEGER_COLUMNS = ("cycle", "interface", "wall", "group", "node", "element", "part", "condition", "id", "n_active", "calls")
+ENTITY_COLUMNS = ("interface", "side", "wall", "group", "node", "element", "part", "condition", "id")
 SIDES = {1: "slave", 2: "master"}
 
 

@@ -211,7 +211,8 @@ module deck_raw_m
     type(place_t) :: dt_curve_place
     type(place_t), allocatable :: explicit_only(:) !! fields given that the implicit method leaves
     type(history_t) :: outputs(output_plot:n_table)
-    type(raw_set_t) :: history_nodes, history_node_sets, history_shells, history_shell_sets
+    type(raw_set_t) :: history_nodes, history_node_sets, history_shells, history_shell_sets, &
+      force_groups
   end type raw_t
 
 contains

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Sets with indices in place of ids.
 module deck_resolve_sets_m
+  use force_groups_m, only : force_group_t
   use kinds_m, only : long
   use log_m, only : to_text
   use sets_m, only : segment_set_t
@@ -217,7 +218,33 @@ contains
       members = [members, model%shell_sets(sets(i))%elements]
     end do
     call keep_first(members, model%mesh%n_element, model%controls%output%history_elements)
+    if (raw%force_groups%n > 0) call resolve_groups(deck, raw%force_groups, maps, model)
   end subroutine resolve_history
+
+  !> Force groups: node sets, none of them twice.
+  subroutine resolve_groups(deck, set, maps, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_set_t), intent(in) :: set
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    type(force_group_t) :: group
+    integer :: i, found
+
+    allocate (model%controls%output%force_groups(0))
+    do i = 1, set%n
+      if (any(set%members(:i - 1) == set%members(i))) then
+        call reject_field(deck, place_t(set%lines(i), 1, 'NSID'), &
+          'is the node set of another force group')
+        cycle
+      end if
+      call resolve_id(deck, maps%node_sets, set%members(i), 'node set', &
+        place_t(set%lines(i), 1, 'NSID'), found)
+      if (found == 0) cycle
+      group%id = set%members(i)
+      call keep_first(model%node_sets(found)%nodes, model%mesh%n_node, group%nodes)
+      model%controls%output%force_groups = [model%controls%output%force_groups, group]
+    end do
+  end subroutine resolve_groups
 
   !> Members of a list, each where it comes first.
   pure subroutine keep_first(members, n_all, kept)

@@ -96,10 +96,7 @@ module deck_schema_others_m
     'DATABASE_JNTFORC ignored', &
     'DATABASE_DEFORC ignored', &
     'DATABASE_NCFORC ignored', &
-    'DATABASE_NODFOR ignored', &
-    'DATABASE_BNDOUT ignored', &
     'DATABASE_EXTENT_BINARY ignored', &
-    'DATABASE_NODAL_FORCE_GROUP ignored', &
     'DATABASE_GCEOUT ignored', &
     'DATABASE_SPHOUT ignored', &
     'DATABASE_TPRINT ignored', &

@@ -322,6 +322,10 @@ module deck_schema_tables_m
     ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:is OPTION2:iw OPTION3:is OPTION4:is', &
     'DATABASE_RBDOUT', &
     ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_BNDOUT', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_NODFOR', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_BINARY_D3PLOT', &
     ' DT:f LCDT:i BEAM:is NPLTC:i PSETID:iw', &
     ' IOOPT:is RATE:fs CUTOFF:fs WINDOW:fs TYPE:is PSET:iw', &
@@ -336,6 +340,8 @@ module deck_schema_tables_m
     'DATABASE_HISTORY_SHELL', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_HISTORY_SHELL_SET', &
-    ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i']
+    ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
+    'DATABASE_NODAL_FORCE_GROUP', &
+    ' NSID:i CID:ir']
 
 end module deck_schema_tables_m

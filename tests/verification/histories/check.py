@@ -86,8 +86,67 @@ def check_body(run):
               centre[:, None] + np.array([[0.5], [0.25]]) * time, 1e-12, source="v t")
 
 
+def pushed_bar(static):
+    """A bar under a nodal load and a pressure at one end, prescribed motion at the other; histories of both."""
+    deck = Deck("bar under all boundaries")
+    deck.control(0.02, dt=1.0e-4).part(points=4).elastic(RHO, YOUNG, POISSON)
+    nodes = deck.mesh(*grid(8, 2, 0.8, 0.2))
+    left, right = nodes[::9], nodes[8::9]
+    deck.node_set(1, left).node_set(2, nodes)
+    deck.curve(1, [(0.0, 0.0), (0.02, 0.004)]).curve(2, [(0.0, 0.0), (0.01, 1.0), (1.0, 1.0)])
+    deck.add("*BOUNDARY_PRESCRIBED_MOTION_SET", (1, 1, 2, 1, 1.0))
+    deck.fix([left[0]], y=1)
+    deck.add("*LOAD_NODE_POINT", (int(right[1]), 1, 2, -50.0), (int(right[1]), 2, 2, 20.0))
+    deck.add("*LOAD_SEGMENT", *[(2, 1.0e3, 0.0, int(a), int(b)) for a, b in zip(right[:-1], right[1:])])
+    if static:
+        deck.add("*CONTROL_IMPLICIT_GENERAL", (1, 1.0e-3)).add("*CONTROL_IMPLICIT_SOLUTION", (12, 0, 30, 0.0, 1e-22))
+    deck.add("*DATABASE_NODAL_FORCE_GROUP", (1, 0), (2, 0))
+    for name in ("BNDOUT", "NODFOR", "SPCFORC", "MATSUM"):
+        deck.add(f"*DATABASE_{name}", (1.0e-4,))
+    return deck.output(glstat=1.0e-4)
+
+
+def check_boundaries(run, static):
+    """Works against the energy account; forces against the balance of momentum or of forces."""
+    name = "implicit" if static else "explicit"
+    result = run.program(pushed_bar(static), name=f"bar_{name}")
+    table, energies = result.table("bndout"), result.table("glstat")
+    n = int(np.sum(table["time"] == 0.0))
+    work = table["work"].reshape(-1, n).sum(axis=1)
+    run.check(f"bndout, {name}: sum of all works", work, energies["external_work"], 1e-10, source="external work of glstat")
+    pressure = table.where(condition=3)
+    factor = np.minimum(pressure["time"].reshape(-1, 3)[:, 0] / 0.01, 1.0)
+    stretch = pressure["fx"].reshape(-1, 3).sum(axis=1)
+    run.check(f"bndout, {name}: pressure on the end", -stretch[1:], 1.0e3 * 0.2 * factor[1:], 0.02,
+              source="p times the height; the end stretches a little")
+    load = table.where(condition=1)
+    run.check(f"bndout, {name}: nodal load", np.stack([load["fx"], load["fy"]]), np.stack([-50.0 * factor, 20.0 * factor]), 1e-12,
+              source="its curve")
+    force = np.stack([table[c].reshape(-1, n).sum(axis=1) for c in ("fx", "fy")])
+    support = result.table("spcforc")
+    force[1] += support["fy"]
+    groups = result.table("nodfor")
+    all_nodes = groups.where(group=2)
+    m = int(np.sum(all_nodes["time"] == 0.0))
+    run.check(f"nodfor, {name}: sum over all nodes / load", np.stack([all_nodes[c].reshape(-1, m).sum(axis=1) for c in ("fx", "fy")])
+              / 50.0, np.zeros((2, len(work))), 1e-10, "abs", "forces of the elements balance each other")
+    inner = energies["internal"] + energies["hourglass"] + energies["viscous"]
+    run.check(f"nodfor, {name}: work of all nodes", all_nodes["work"].reshape(-1, m).sum(axis=1), inner, 2e-4 if not static else 2e-2,
+              source="energy of the elements, trapezoidal")
+    if static:
+        run.check("bndout, implicit: forces balance / load", force[:, 1:] / 50.0, np.zeros_like(force[:, 1:]), 1e-6, "abs", "statics")
+        return
+    momentum = result.table("matsum")
+    steps = 0.5 * np.diff(energies["time"]) * (force[:, 1:] + force[:, :-1])
+    run.check("bndout, explicit: impulse of all forces in every step", np.cumsum(steps, axis=1),
+              np.stack([momentum[c][1:] - momentum[c][0] for c in ("momentum_x", "momentum_y")]), 1e-9,
+              source="change of momentum, as leap-frog counts it")
+
+
 def check(run):
     check_stretch(run, None)
     check_stretch(run, 4)
     check_shear(run)
     check_body(run)
+    for static in (False, True):
+        check_boundaries(run, static)
