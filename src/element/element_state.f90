@@ -228,10 +228,8 @@ contains
     end do
   end subroutine lump_mass
 
-  !> Cauchy stress of all elements in deck order: xx yy zz xy (yz and xz stay zero; in round bodies
-  !> rr, zz, hoop and rz);
-  !> the mean over the present volume where an element has several points. The slots are walked,
-  !> whose streams and nodes lie side by side.
+  !> Cauchy stress of all elements in deck order: xx yy zz xy; yz and xz stay zero. The slots are
+  !> walked, whose streams and nodes lie side by side.
   subroutine element_stresses(model, motion, elements, stress)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
@@ -242,13 +240,16 @@ contains
     do slot = 1, model%layout%n_slot
       i = model%layout%slot_element(slot)
       if (i == 0) cycle
-      stress(:, i) = 0.0_wp
-      if (.not. is_gone(elements, slot)) &
+      if (is_gone(elements, slot)) then
+        stress(:, i) = 0.0_wp
+      else
         stress(1:4, i) = stress_of_slot(model, motion, elements, slot)
+      end if
     end do
   end subroutine element_stresses
 
-  !> Cauchy stress of the element in a slot, which has not left the mesh: xx yy zz xy.
+  !> That of the element in a slot: xx yy zz xy, in round bodies rr, zz, hoop and rz; the mean over
+  !> the present volume where an element has several points.
   pure function stress_of_slot(model, motion, elements, slot) result(stress)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
@@ -270,8 +271,7 @@ contains
     stress = [s(1) + volumetric, s(2) + volumetric, volumetric - (s(1) + s(2)), s(3)]
   end function stress_of_slot
 
-  !> Effective plastic strain of all elements in deck order, 0 in elastic parts; the mean over the
-  !> initial volume where an element has several points.
+  !> Effective plastic strain of all elements in deck order.
   subroutine element_plastic_strains(model, elements, plastic_strain)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -284,7 +284,7 @@ contains
     end do
   end subroutine element_plastic_strains
 
-  !> That of the element in a slot.
+  !> That of the element in a slot, 0 in elastic parts.
   function plastic_strain_of_slot(model, elements, slot) result(plastic_strain)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements

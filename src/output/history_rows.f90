@@ -314,6 +314,7 @@ contains
     call put(row, 'traction', rubbed%traction)
     call put(row, 'slip', rubbed%slip)
     call put(row, 'state', rubbed%state)
+    call put(row, 'row_stress', value_of(slave%row_stress, i))
   end subroutine put_contact
 
   !> Sums over a part.
@@ -364,6 +365,9 @@ contains
     call put(row, 'damping', result%damping)
     call put(row, 'stored', result%stored)
     call put(row, 'friction', result%friction)
+    call put(row, 'estimate', result%estimate)
+    call put(row, 'row_energy', result%row_energy)
+    call put(row, 'step_limit', result%step_limit)
   end subroutine put_sleout
 
   !> Force of the constraint on a fixed node.
@@ -416,8 +420,7 @@ contains
   pure subroutine put_bndout(row, shot, condition, id, i)
     type(row_t), intent(inout) :: row
     type(snapshot_t), intent(in) :: shot
-    integer, intent(in) :: condition      !! one of `boundary_`
-    integer, intent(in) :: id             !! of the node, or of the part
+    integer, intent(in) :: condition, id  !! one of `boundary_`; of the node, or of the part
     integer, intent(in) :: i              !! index of the row
     real(wp) :: force(3)
 
@@ -434,8 +437,7 @@ contains
   pure subroutine put_nodfor(row, shot, group, id, i)
     type(row_t), intent(inout) :: row
     type(snapshot_t), intent(in) :: shot
-    integer, intent(in) :: group          !! user number of the node set
-    integer, intent(in) :: id
+    integer, intent(in) :: group, id      !! user numbers of the node set and the node
     integer, intent(in) :: i              !! index of the row
 
     call put(row, 'time', shot%time)

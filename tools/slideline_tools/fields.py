@@ -2,6 +2,7 @@
 """Fields to draw: from a name such as `plastic_strain`, `velocity:y` or `stress:xy` to scalars."""
 import numpy as np
 
+from slideline_tools.names import missing
 from slideline_tools.results import STRESS_COMPONENTS, VECTOR_COMPONENTS, ResultsError
 
 # What the number is, and whether it has a unit (that of the deck, whatever it is).
@@ -58,7 +59,7 @@ def scalar_field(results, name):
         values, at_nodes, components = results.cell_field(base), False, STRESS_COMPONENTS
     else:
         present = results.point_fields + results.cell_fields
-        raise ResultsError(f"no field '{base}'; there are {', '.join(present)}")
+        raise ResultsError(f"no field '{base}'{missing(base, present)}")
     text, has_unit = LABELS.get(base, (base.replace("_", " "), True))
     if values.ndim == 3:
         values, text = pick_component(base, values, component, components, text)

@@ -2,17 +2,14 @@
 """Figures: a field on the deformed mesh, histories, contact pressure along the surface."""
 import textwrap
 
-import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import PolyCollection
 
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.collections import PolyCollection  # noqa: E402
-
-from slideline_tools.fields import default_field, scalar_field  # noqa: E402
-from slideline_tools.results import ResultsError  # noqa: E402
-from slideline_tools.walls import draw_walls, walls_of  # noqa: E402
+from slideline_tools import headless  # noqa: F401
+from slideline_tools.fields import default_field, scalar_field
+from slideline_tools.results import ResultsError
+from slideline_tools.walls import draw_walls, walls_of
 
 STYLE = {
     "figure.dpi": 150, "savefig.dpi": 150, "font.size": 9, "axes.titlesize": 9,
@@ -299,6 +296,24 @@ def report_requests(results):
     elif "nodout" in results.histories and len(results.history("nodout")):
         panels.append(("nodout:uy", "displacement in y"))
     return panels
+
+
+def choose_figure(results, field=None, states=(), scale=1.0, zoom=None, history=(), contact=False, zones=False):
+    """The figure that is asked for: histories, contact pressure, zones of stick and slip, a field, or without any of
+    these a field above the energies and the contact force."""
+    if sum(map(bool, (history, contact, zones))) > 1:
+        raise ResultsError("choose one of history, contact and zones")
+    shown = list(states) or ["-1"]
+    if history:
+        return history_figure(results, list(history))
+    if contact:
+        return contact_figure(results, shown)
+    if zones:
+        from slideline_tools.zones import zones_figure
+        return zones_figure(results, shown)
+    if field or states or zoom:
+        return field_figure(results, field, shown, scale, zoom)
+    return report_figure(results, scale=scale)
 
 
 def save(figure, path):

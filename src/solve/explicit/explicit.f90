@@ -24,6 +24,7 @@ module explicit_m
   use motion_sums_m, only : sum_motion, sum_blocks
   use monitor_m, only : monitor_t
   use node_motion_m, only : leap_t, move_tile_nodes, move_special_nodes, move_damped_nodes
+  use rank_report_m, only : report_exchange
   use skew_motion_m, only : hold_skew_nodes
   use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
@@ -64,6 +65,7 @@ contains
     call report_contact_energies(model, state, monitor%log)
     call report_failures(model, state, cycle%failures, monitor%log)
     if (model%erodes) call report_erosion(model, state, monitor%log)
+    if (monitor%ranks%n > 1) call report_exchange(cycle%parcel, monitor%ranks, monitor%log)
     if (allocated(error)) return
     call judge_energies(monitor%snapshot%energies, monitor%log)
     call judge_ratio(monitor%snapshot%energies, monitor%log)
@@ -160,13 +162,12 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    integer :: i_tile
+    integer :: i
 
     !$omp do schedule(static)
-    do i_tile = 1, size(model%layout%tiles)
-      call sum_special_forces(model%layout, state%force_slots, &
-        model%layout%tiles(i_tile)%first_owned, model%layout%tiles(i_tile)%last_owned, &
-        state%internal_force)
+    do i = 1, size(cycle%borders%runs, 2)
+      call sum_special_forces(model%layout, state%force_slots, cycle%borders%runs(1, i), &
+        cycle%borders%runs(2, i), state%internal_force)
     end do
     !$omp end do
     !$omp master
@@ -176,17 +177,16 @@ contains
   end subroutine press_nodes
 
   !> Sum the forces of special nodes; they move at once unless this cycle writes. Each thread has
-  !> the nodes of its own tiles: what it reads here it has mostly written itself.
+  !> the nodes of its own tiles, run by run: what it reads here it has mostly written itself.
   subroutine advance_special_nodes(model, state, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(in) :: cycle
-    integer :: i_tile
+    integer :: i
 
     !$omp do schedule(static)
-    do i_tile = 1, size(model%layout%tiles)
-      associate (first => model%layout%tiles(i_tile)%first_owned, &
-        last => model%layout%tiles(i_tile)%last_owned)
+    do i = 1, size(cycle%borders%runs, 2)
+      associate (first => cycle%borders%runs(1, i), last => cycle%borders%runs(2, i))
         call sum_special_forces(model%layout, state%force_slots, first, last, state%internal_force)
         if (.not. cycle%writes) then
           if (allocated(state%walls)) call hold_nodes(model, cycle%leap, first, last, state)
@@ -219,22 +219,28 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(in) :: cycle
-    integer :: i_tile
-    logical :: is_own !! a tile of this process
+    integer :: i
 
     !$omp do schedule(static)
-    do i_tile = 1, size(model%layout%tiles)
-      associate (tile => model%layout%tiles(i_tile))
-        is_own = i_tile >= cycle%shares%first_tile .and. i_tile <= cycle%shares%last_tile
+    do i = cycle%shares%first_tile, cycle%shares%last_tile
+      associate (tile => model%layout%tiles(i))
         if (allocated(state%node_damping)) then
-          if (is_own) call move_damped(model, cycle%leap, tile%first_node, tile%last_node, state)
-          call move_damped(model, cycle%leap, tile%first_owned, tile%last_owned, state)
-          cycle
+          call move_damped(model, cycle%leap, tile%first_node, tile%last_node, state)
+        else if (tile%last_node >= tile%first_node) then
+          call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, &
+            state%internal_force(1, tile%first_node), state%inverse_mass, state%motion)
         end if
-        if (tile%last_node >= tile%first_node .and. is_own) call move_tile_nodes(cycle%leap, &
-          tile%first_node, tile%last_node, state%internal_force(1, tile%first_node), &
-          state%inverse_mass, state%motion)
-        call move_special_nodes(cycle%leap, tile%first_owned, tile%last_owned, state)
+      end associate
+    end do
+    !$omp end do
+    !$omp do schedule(static)
+    do i = 1, size(cycle%borders%runs, 2)
+      associate (first => cycle%borders%runs(1, i), last => cycle%borders%runs(2, i))
+        if (allocated(state%node_damping)) then
+          call move_damped(model, cycle%leap, first, last, state)
+        else
+          call move_special_nodes(cycle%leap, first, last, state)
+        end if
       end associate
     end do
     !$omp end do

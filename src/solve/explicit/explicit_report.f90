@@ -4,12 +4,13 @@ module explicit_report_m
   use boundary_account_m, only : count_boundary_motions, count_boundary_bodies, count_groups
   use boundary_filling_m, only : fill_boundaries
   use contact_check_m, only : report_contact_start
+  use contact_judging_m, only : judge_contacts
   use energies_m, only : energy_ratio, total_energy
   use erosion_account_m, only : settle_elements, note_least_step
   use explicit_prescribed_m, only : start_prescribed, prescribed_work
   use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
-    table_sleout, table_spcforc, table_elout, table_rbdout, &
-    table_bndout, table_nodfor
+    table_sleout, table_spcforc, table_contact, table_elout, table_rbdout, table_bndout, &
+    table_nodfor
   use history_elements_m, only : fill_history_elements
   use health_m, only : check_energy, check_radii, made_by_springs
   use kinds_m, only : wp
@@ -100,7 +101,7 @@ contains
     if (cycle%due%tables(table_matsum)) call fill_parts(model, state%elements, &
       monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call find_slowest(model, state, monitor%snapshot)
-    if (any(cycle%due%tables([table_rcforc, table_sleout]))) &
+    if (any(cycle%due%tables([table_rcforc, table_sleout, table_contact]))) &
       call fill_interfaces(model, state, monitor%snapshot)
     if (cycle%due%tables(table_spcforc)) &
       call fill_explicit_reactions(model, state, monitor%snapshot, held)
@@ -109,6 +110,8 @@ contains
       call fill_boundaries(state, monitor%snapshot)
     if (cycle%due%tables(table_rbdout)) call fill_bodies(state, monitor%snapshot)
     if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
+    if (any(cycle%due%tables([table_sleout, table_contact]))) call judge_contacts(model, state, &
+      cycle%due%plot, monitor%rows, monitor%snapshot)
     call write_due(model, cycle%due, state%dt, monitor, cycle%error)
     if (cycle%due%tables(table_glstat)) cycle%ratio = energy_ratio(monitor%snapshot%energies)
     if (cycle%due%plot .and. .not. allocated(cycle%error)) call show_progress(monitor%progress, &

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import pathlib
 
 # The names of draw.picture.WHAT, here without its slow imports.
@@ -50,8 +49,7 @@ def run(options) -> int:
     deck = pathlib.Path(options.deck)
     output = pathlib.Path(options.output or f"{stem(deck)}.png")
     output.parent.mkdir(parents=True, exist_ok=True)
-    program = options.program or os.environ.get("SLIDELINE") or default_program()
-    model = draw(deck, output, program, options.overrides, options.show, options.zoom)
+    model = draw(deck, output, options.program, options.overrides, options.show, options.zoom)
     print(f"wrote {output} ({len(model.points)} nodes, {len(model.cells)} elements, "
           f"{len(model.parts)} parts, {len(model.interfaces)} interfaces)")
     for words in model.warnings:
@@ -68,9 +66,3 @@ def stem(deck: pathlib.Path) -> str:
         if name.endswith(ending):
             return name.removesuffix(ending)
     return name
-
-
-def default_program() -> str:
-    """The program of the repository that holds these tools; else that of the path."""
-    built = pathlib.Path(__file__).resolve().parents[3] / "build" / "release" / "slideline"
-    return str(built) if built.exists() else "slideline"

@@ -6,19 +6,15 @@ symbols are thinned out to what can be told apart.
 """
 from __future__ import annotations
 
-import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
-from matplotlib.lines import Line2D  # noqa: E402
-from matplotlib.patches import Patch  # noqa: E402
-
-from slideline_tools.draw.chains import Surface, normals  # noqa: E402
-from slideline_tools.draw.model import Arrows, Model  # noqa: E402
-from slideline_tools.plots import STYLE, edge_width, save  # noqa: E402, F401
+from slideline_tools.draw.chains import Surface, normals
+from slideline_tools.draw.model import Arrows, Model
+from slideline_tools.plots import STYLE, edge_width, save  # noqa: F401
 
 WHAT = ("mesh", "sets", "surfaces", "boundary", "motion", "velocity", "loads", "walls", "history")
 PART_COLOURS = ("#dbe7f3", "#f6e6cf", "#dff0dc", "#ecdff1", "#f7dcd8", "#d9eeee", "#eee9c9",

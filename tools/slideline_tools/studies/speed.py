@@ -16,7 +16,7 @@ from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.studies.common import (TYPES, colour, label, markdown_table, page_main, save_small,
                                             write_page)
 
-BYTES = 320.0  # moved per element and step, as in tests/bench/measuring.py
+BYTES = 216.0  # moved per element and step, as in tests/bench/measuring.py
 IN_MEMORY = 20000  # elements: from there on a model is larger than the caches of a core
 AT_ONCE = ", 2 runs at once"
 ROUTINE_GOAL, SMALL_GOAL = 2.0, 4.5  # element routine, step of 300 elements over K
