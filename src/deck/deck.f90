@@ -37,7 +37,7 @@ module deck_m
   use deck_systems_m, only : read_system
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control, check_step
-  use deck_output_m, only : read_database
+  use deck_output_m, only : read_database, read_force_groups
   use deck_transducer_m, only : read_transducer
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : settle_friction
@@ -222,7 +222,8 @@ contains
     case ('ELEMENT_BEAM')
       call read_beams(deck, parameters, i, raw)
     case ('SET_NODE_LIST', 'SET_NODE_LIST_GENERATE', 'SET_NODE_GENERAL', 'SET_PART_LIST', &
-        'SET_PART_LIST_GENERATE', 'SET_SEGMENT', 'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
+        'SET_PART_LIST_GENERATE', 'SET_SHELL_LIST', 'SET_SHELL_LIST_GENERATE', 'SET_SEGMENT', &
+        'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
       call read_set(deck, parameters, i, raw)
     case ('PART')
       call read_part(deck, parameters, i, raw)
@@ -272,10 +273,6 @@ contains
       call read_condition(deck, parameters, i, raw)
     case ('RIGIDWALL_PLANAR')
       call read_wall(deck, parameters, i, raw)
-    case ('DATABASE_HISTORY_NODE')
-      call read_history_ids(deck, parameters, i, raw%history_nodes)
-    case ('DATABASE_HISTORY_NODE_SET')
-      call read_history_ids(deck, parameters, i, raw%history_node_sets)
     case default
       call read_family(deck, parameters, i, kinds, overrides, raw)
     end select
@@ -296,7 +293,7 @@ contains
     case ('CONTROL_')
       call read_control(deck, parameters, i, raw)
     case ('DATABASE_')
-      call read_database(deck, parameters, i, raw)
+      call read_output(deck, parameters, i, raw)
     case ('CONTACT_')
       if (deck%blocks(i)%name == 'CONTACT_2D_FORCE_TRANSDUCER') then
         call read_transducer(deck, parameters, i, raw)
@@ -307,6 +304,29 @@ contains
       call read_condition(deck, parameters, i, raw)
     end select
   end subroutine read_family
+
+  !> What is written, of which nodes and elements, and how often.
+  subroutine read_output(deck, parameters, i, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i
+    type(raw_t), intent(inout) :: raw
+
+    select case (deck%blocks(i)%name)
+    case ('DATABASE_HISTORY_NODE')
+      call read_history_ids(deck, parameters, i, raw%history_nodes)
+    case ('DATABASE_HISTORY_NODE_SET')
+      call read_history_ids(deck, parameters, i, raw%history_node_sets)
+    case ('DATABASE_HISTORY_SHELL')
+      call read_history_ids(deck, parameters, i, raw%history_shells)
+    case ('DATABASE_HISTORY_SHELL_SET')
+      call read_history_ids(deck, parameters, i, raw%history_shell_sets)
+    case ('DATABASE_NODAL_FORCE_GROUP')
+      call read_force_groups(deck, parameters, i, raw)
+    case default
+      call read_database(deck, parameters, i, raw)
+    end select
+  end subroutine read_output
 
   !> *TITLE: the first line that is not blank.
   subroutine read_title(deck, i, raw)

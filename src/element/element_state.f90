@@ -20,8 +20,9 @@ module element_state_m
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
-  public :: start_elements, lump_mass, element_stresses, stress_of_slot, element_plastic_strains, &
-    element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone
+  public :: start_elements, lump_mass, element_stresses, element_plastic_strains, &
+    element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone, &
+    stress_of_slot, plastic_strain_of_slot
 
 contains
 
@@ -116,8 +117,7 @@ contains
     integer :: i
 
     do i = 1, size(eroded)
-      eroded(i) = merge(0.0_wp, 1.0_wp, elements%erosion%status(model%layout%element_slot(i)) &
-        == stays)
+      eroded(i) = merge(1.0_wp, 0.0_wp, is_gone(elements, model%layout%element_slot(i)))
     end do
   end subroutine element_erosion
 
@@ -228,10 +228,8 @@ contains
     end do
   end subroutine lump_mass
 
-  !> Cauchy stress of all elements in deck order: xx yy zz xy (yz and xz stay zero; in round bodies
-  !> rr, zz, hoop and rz);
-  !> the mean over the present volume where an element has several points. The slots are walked,
-  !> whose streams and nodes lie side by side.
+  !> Cauchy stress of all elements in deck order: xx yy zz xy; yz and xz stay zero. The slots are
+  !> walked, whose streams and nodes lie side by side.
   subroutine element_stresses(model, motion, elements, stress)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
@@ -250,7 +248,8 @@ contains
     end do
   end subroutine element_stresses
 
-  !> That of the element in a slot: xx yy zz xy, or rr, zz, hoop and rz.
+  !> That of the element in a slot: xx yy zz xy, in round bodies rr, zz, hoop and rz; the mean over
+  !> the present volume where an element has several points.
   pure function stress_of_slot(model, motion, elements, slot) result(stress)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
@@ -272,22 +271,30 @@ contains
     stress = [s(1) + volumetric, s(2) + volumetric, volumetric - (s(1) + s(2)), s(3)]
   end function stress_of_slot
 
-  !> Effective plastic strain of all elements in deck order, 0 in elastic parts; the mean over the
-  !> initial volume where an element has several points.
+  !> Effective plastic strain of all elements in deck order.
   subroutine element_plastic_strains(model, elements, plastic_strain)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout) :: plastic_strain(:) !! (n_element)
     integer :: slot
 
-    plastic_strain = 0.0_wp
     do slot = 1, model%layout%n_slot
-      if (model%layout%slot_element(slot) == 0) cycle
-      if (.not. has_plastic_strain(model%materials(model%parts(slot_part(model%layout, &
-        slot))%material))) cycle
-      plastic_strain(model%layout%slot_element(slot)) = history_of_slot(model, elements, slot, 1)
+      if (model%layout%slot_element(slot) > 0) plastic_strain(model%layout%slot_element(slot)) = &
+        plastic_strain_of_slot(model, elements, slot)
     end do
   end subroutine element_plastic_strains
+
+  !> That of the element in a slot, 0 in elastic parts.
+  function plastic_strain_of_slot(model, elements, slot) result(plastic_strain)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: slot
+    real(wp) :: plastic_strain
+
+    plastic_strain = 0.0_wp
+    if (has_plastic_strain(model%materials(model%parts(slot_part(model%layout, slot))%material))) &
+      plastic_strain = history_of_slot(model, elements, slot, 1)
+  end function plastic_strain_of_slot
 
   !> Temperature and damage of all elements in deck order, 0 in parts that keep none.
   subroutine element_heats(model, elements, temperature, damage)

@@ -7,7 +7,7 @@ module external_force_m
   use model_m, only : model_t
   implicit none
   private
-  public :: form_external_force, body_acceleration, damping_rate
+  public :: form_external_force, add_nodal_loads, add_pressures, body_acceleration, damping_rate
 
 contains
 
@@ -17,19 +17,39 @@ contains
     real(wp), intent(in) :: motion(:, :)    !! (4, n_node)
     real(wp), intent(in) :: time
     real(wp), intent(inout) :: force(:, :)  !! (2, n_special), set here
-    integer :: i
 
     force = 0.0_wp
+    call add_nodal_loads(model, time, force)
+    call add_pressures(model, motion, time, force)
+  end subroutine form_external_force
+
+  !> Nodal loads at `time`.
+  subroutine add_nodal_loads(model, time, force)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: time
+    real(wp), intent(inout) :: force(:, :)
+    integer :: i
+
     associate (loads => model%conditions%nodal_loads)
       do i = 1, size(loads)
         force(loads(i)%direction, loads(i)%node) = force(loads(i)%direction, loads(i)%node) &
           + loads(i)%scale*curve_value(model%curves(loads(i)%curve), time)
       end do
     end associate
+  end subroutine add_nodal_loads
+
+  !> Pressures at `time` on the present geometry.
+  subroutine add_pressures(model, motion, time, force)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: motion(:, :)    !! (4, n_node)
+    real(wp), intent(in) :: time
+    real(wp), intent(inout) :: force(:, :)
+    integer :: i
+
     do i = 1, size(model%conditions%pressures)
       call add_pressure(model, model%conditions%pressures(i), motion, time, force)
     end do
-  end subroutine form_external_force
+  end subroutine add_pressures
 
   !> Pressure on one edge, half of it to each node: against the outward normal (t_y, -t_x). On a
   !> round body per radian: with the edge times (2 r_a + r_b)/6 to node a.

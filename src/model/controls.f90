@@ -1,6 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Controls of the run: end, time step and output plan.
 module controls_m
+  use boundary_rows_m, only : boundary_rows_t
+  use force_groups_m, only : force_group_t
   use history_tables_m, only : n_table
   use kinds_m, only : wp
   implicit none
@@ -29,6 +31,9 @@ module controls_m
     type(interval_t) :: histories(n_table)   !! by the `table_` constants; that of contact is
                                              !! unused
     integer, allocatable :: history_nodes(:) !! node indices of *DATABASE_HISTORY_NODE
+    integer, allocatable :: history_elements(:) !! element indices of *DATABASE_HISTORY_SHELL
+    type(boundary_rows_t) :: boundaries      !! only where *DATABASE_BNDOUT asks for them
+    type(force_group_t), allocatable :: force_groups(:) !! only where the deck has any
     integer :: dump_cycles = -1    !! cycles between restart files that stay
                                    !! (*DATABASE_BINARY_D3DUMP), 0 = at the end alone, -1 = none
     integer :: running_cycles = 0  !! cycles between restart files that replace each other (RUNRSF),

@@ -11,7 +11,7 @@ module model_m
   use parts_m, only : part_t, section_t, material_t
   use mesh_m, only : mesh_t
   use layout_m, only : layout_t
-  use sets_m, only : node_set_t, segment_set_t, part_set_t
+  use sets_m, only : node_set_t, segment_set_t, part_set_t, shell_set_t
   use conditions_m, only : conditions_t
   use contacts_m, only : contact_t, transducer_t
   use rigids_m, only : rigid_t
@@ -32,6 +32,7 @@ module model_m
     type(node_set_t), allocatable :: node_sets(:)
     type(segment_set_t), allocatable :: segment_sets(:)
     type(part_set_t), allocatable :: part_sets(:)
+    type(shell_set_t), allocatable :: shell_sets(:)
     type(conditions_t) :: conditions
     type(contact_t), allocatable :: contacts(:)
     type(transducer_t), allocatable :: transducers(:) !! only where the deck has any

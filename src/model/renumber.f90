@@ -1,7 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Puts a finished model into the order of the step: nodes renumbered everywhere, layout built.
 module renumber_m
+  use boundary_rows_m, only : list_boundaries
   use controls_m, only : is_asked
+  use history_tables_m, only : table_bndout
   use kinds_m, only : long
   use layout_building_m, only : build_slots, build_local_numbers
   use model_m, only : model_t
@@ -45,6 +47,10 @@ contains
     call renumber_rigids(model, new_index)
     if (allocated(model%walls)) call renumber_walls(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
+    associate (output => model%controls%output)
+      if (is_asked(output%histories(table_bndout))) call list_boundaries(model%conditions, &
+        model%mesh%node_id, [model%parts(model%rigids%part)%id], output%boundaries)
+    end associate
   end subroutine renumber_model
 
   !> Give up what only the start of an explicit run reads: elements stand in the layout, initial
@@ -56,6 +62,7 @@ contains
       deallocate (model%conditions%initial_velocity)
     if (allocated(model%node_sets)) deallocate (model%node_sets)
     if (allocated(model%segment_sets)) deallocate (model%segment_sets)
+    if (allocated(model%shell_sets)) deallocate (model%shell_sets)
     if (model%controls%implicit%is_on .or. model%erodes) return
     deallocate (model%mesh%element_nodes, model%mesh%element_part)
     if (.not. is_asked(model%controls%output%plot)) deallocate (model%mesh%deck_node)
@@ -84,6 +91,12 @@ contains
     do i = 1, size(model%conditions%pressures)
       is_special(model%conditions%pressures(i)%nodes) = .true.
     end do
+    if (allocated(model%controls%output%force_groups)) then
+      ! Their forces are asked for in every cycle.
+      do i = 1, size(model%controls%output%force_groups)
+        is_special(model%controls%output%force_groups(i)%nodes) = .true.
+      end do
+    end if
     if (.not. allocated(model%walls)) return
     do i = 1, size(model%walls)
       is_special(model%walls(i)%nodes) = .true.
@@ -154,6 +167,11 @@ contains
       if (allocated(conditions%initial_velocity)) &
         conditions%initial_velocity = conditions%initial_velocity(:, order)
       output%history_nodes = new_index(output%history_nodes)
+      if (allocated(output%force_groups)) then
+        do i = 1, size(output%force_groups)
+          output%force_groups(i)%nodes = new_index(output%force_groups(i)%nodes)
+        end do
+      end if
     end associate
     do i = 1, size(model%node_sets)
       model%node_sets(i)%nodes = new_index(model%node_sets(i)%nodes)

@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Node, segment and part sets, with indices in place of user ids.
+!> Node, segment, part and element sets, with indices in place of user ids.
 module sets_m
   implicit none
   private
-  public :: node_set_t, segment_set_t, part_set_t
+  public :: node_set_t, segment_set_t, part_set_t, shell_set_t
 
   !> *SET_NODE: members in the order of the deck (walking order where a surface is meant).
   type :: node_set_t
@@ -25,5 +25,11 @@ module sets_m
     integer :: id = 0
     integer, allocatable :: parts(:) !! indices into model%parts
   end type part_set_t
+
+  !> *SET_SHELL.
+  type :: shell_set_t
+    integer :: id = 0
+    integer, allocatable :: elements(:) !! element indices
+  end type shell_set_t
 
 end module sets_m

@@ -3,16 +3,16 @@
 !> for all rows of one instant. Rows are those of the history tables (`history_rows_m`), with the
 !> columns that a layout names, in its order; forces and energies per unit depth.
 module dyna_layouts_m
-  use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+  use dyna_body_layouts_m, only : form_elout, form_rbdout
+  use dyna_force_layouts_m, only : form_bndout, form_nodfor
+  use dyna_lines_m, only : line_size, add_line, number, tidy
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_matsum, &
-    table_sleout, table_spcforc
+    table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, table_bndout, table_nodfor
   use kinds_m, only : wp
   implicit none
   private
-  public :: line_size, columns_of, n_line_of, form_block
+  public :: columns_of, n_line_of, form_block
 
-  !> Bytes of the longest line.
-  integer, parameter :: line_size = 160
   !> Labels of glstat, each with its dots.
   integer, parameter :: n_label = 19
   character(32), parameter :: labels(n_label) = [character(32) :: &
@@ -59,6 +59,16 @@ contains
       names = 'time,cycle,interface,energy,damping,friction'
     case (table_spcforc)
       names = 'time,node,fx,fy'
+    case (table_rwforc)
+      names = 'time,wall,normal_force,fx,fy'
+    case (table_elout)
+      names = 'time,element,sxx,syy,szz,sxy,plastic_strain,cycle,part,is_gone'
+    case (table_rbdout)
+      names = 'time,part,x,y,ux,uy,rotation,vx,vy,spin,ax,ay,spin_rate,cycle'
+    case (table_bndout)
+      names = 'time,condition,id,fx,fy,moment,work'
+    case (table_nodfor)
+      names = 'time,group,node,fx,fy,work'
     end select
   end function columns_of
 
@@ -73,6 +83,14 @@ contains
       n = n_label + 5
     case (table_matsum)
       n = 4*n_row + 3
+    case (table_elout)
+      n = 2*n_row + 9
+    case (table_rbdout)
+      n = 20*n_row + 3
+    case (table_bndout)
+      n = 2*n_row + 45
+    case (table_nodfor)
+      n = 9*n_row + 6
     case default
       n = n_row + 12
     end select
@@ -100,6 +118,16 @@ contains
       call form_sleout(rows, lines, n_line)
     case (table_spcforc)
       call form_spcforc(rows, lines, n_line)
+    case (table_rwforc)
+      call form_rwforc(rows, lines, n_line)
+    case (table_elout)
+      call form_elout(rows, lines, n_line)
+    case (table_rbdout)
+      call form_rbdout(rows, lines, n_line)
+    case (table_bndout)
+      call form_bndout(rows, lines, n_line)
+    case (table_nodfor)
+      call form_nodfor(rows, lines, n_line)
     end select
   end subroutine form_block
 
@@ -224,17 +252,6 @@ contains
     if (len(field) < 8) field = field//repeat(' ', 8 - len(field))
   end function part_field
 
-  !> A whole number at the right of `width` columns, or of as many as it needs.
-  pure function number(value, width) result(text)
-    real(wp), intent(in) :: value
-    integer, intent(in) :: width
-    character(:), allocatable :: text
-    character(12) :: digits
-
-    write (digits, '(ss,i12)') nint(value)
-    text = digits(min(13 - width, verify(digits, ' ')):)
-  end function number
-
   !> Energies of interfaces. Penalty springs act between the sides: each interface has one number,
   !> as DYNA's single-sided contacts do.
   pure subroutine form_sleout(rows, lines, n_line)
@@ -285,26 +302,19 @@ contains
     call add_line(line, lines, n_line)
   end subroutine form_spcforc
 
-  !> One more line.
-  pure subroutine add_line(line, lines, n_line)
-    character(*), intent(in) :: line
+  !> Forces of rigid walls.
+  pure subroutine form_rwforc(rows, lines, n_line)
+    real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
+    character(line_size) :: line
+    integer :: i
 
-    n_line = n_line + 1
-    lines(n_line) = line
-  end subroutine add_line
-
-  !> A number whose exponent has two digits, which the columns are made for; NaN stays.
-  pure elemental function tidy(value) result(printed)
-    real(wp), intent(in) :: value
-    real(wp) :: printed
-    real(wp), parameter :: least = 1.0e-99_wp, most = 9.9e99_wp
-
-    printed = value
-    if (ieee_is_nan(value)) return
-    if (abs(value) < least) printed = 0.0_wp
-    if (abs(value) > most) printed = sign(most, value)
-  end function tidy
+    do i = 1, size(rows, 2)
+      write (line, '(ss,es12.5,a,4es15.6)') tidy(rows(1, i)), number(rows(2, i), 8), &
+        tidy([rows(3:5, i), 0.0_wp])
+      call add_line(line, lines, n_line)
+    end do
+  end subroutine form_rwforc
 
 end module dyna_layouts_m

@@ -5,9 +5,11 @@
 module dyna_text_m
   use contacts_m, only : n_told
   use build_info_m, only : version
-  use dyna_layouts_m, only : line_size, columns_of, n_line_of, form_block
+  use dyna_layouts_m, only : columns_of, n_line_of, form_block
+  use dyna_lines_m, only : line_size
   use errors_m, only : error_t
-  use history_tables_m, only : table_rcforc, table_nodout, table_matsum, table_spcforc
+  use history_tables_m, only : table_rcforc, table_nodout, table_matsum, table_rwforc, &
+    table_spcforc, table_elout
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use kinds_m, only : wp, long
   use model_m, only : model_t
@@ -61,10 +63,16 @@ contains
     text%is_open = .true.
     call system_clock(text%flushed)
     call write_head(text, model)
-    if (i_table == table_spcforc) then
+    select case (i_table)
+    case (table_spcforc)
       call put_line(text, ' single point constraint forces')
       call put_line(text, '')
-    end if
+    case (table_rwforc)
+      call put_line(text, '')
+      call put_line(text, '')
+      call put_line(text, '    time       wall#   normal-force    x-force        y-force        ' &
+        //'z-force')
+    end select
     call flush_dyna_text(text, error)
   end subroutine open_dyna_text
 
@@ -124,6 +132,11 @@ contains
       do i = 1, size(model%controls%output%history_nodes)
         call put_entity(text, has_legend, &
           model%mesh%node_id(model%controls%output%history_nodes(i)), 'node')
+      end do
+    case (table_elout)
+      do i = 1, size(model%controls%output%history_elements)
+        call put_entity(text, has_legend, &
+          model%mesh%element_id(model%controls%output%history_elements(i)), 'shell')
       end do
     end select
     if (.not. has_legend) return

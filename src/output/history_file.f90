@@ -14,7 +14,8 @@ module history_file_m
   use kinds_m, only : wp
   use history_tables_m, only : history_tables, n_table, asked_alone, asked_or_states, &
     asked_by_states, each_run, each_contact, each_history_node, each_part, each_wall, &
-    each_support, text_none, text_rows
+    each_support, each_history_element, each_body, each_boundary, each_group_node, text_none, &
+    text_rows
   use table_row_m, only : row_t
   implicit none
   private
@@ -114,7 +115,7 @@ contains
   pure function n_each(model, i_table) result(n)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_table
-    integer :: n
+    integer :: n, i
 
     n = 0
     select case (history_tables(i_table)%each)
@@ -131,6 +132,18 @@ contains
       if (allocated(model%walls)) n = size(model%walls)
     case (each_support)
       n = count(mark_supports(model))
+    case (each_history_element)
+      if (allocated(model%controls%output%history_elements)) &
+        n = size(model%controls%output%history_elements)
+    case (each_body)
+      if (allocated(model%rigids)) n = size(model%rigids)
+    case (each_boundary)
+      if (allocated(model%controls%output%boundaries%where)) &
+        n = size(model%controls%output%boundaries%where)
+    case (each_group_node)
+      if (allocated(model%controls%output%force_groups)) n = sum([(size( &
+        model%controls%output%force_groups(i)%nodes), i=1, &
+        size(model%controls%output%force_groups))])
     end select
   end function n_each
 

@@ -3,16 +3,18 @@
 !> Rows for a table that is not open are ignored, so that a driver may hand every snapshot to every
 !> table that is due.
 module history_rows_m
+  use boundary_rows_m, only : boundary_body_load, boundary_body_motion
   use contacts_m, only : n_told
   use csv_table_m, only : csv_table_t, add_row
   use energies_m, only : total_energy, energy_ratio
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_contact, &
-    table_matsum, table_rwforc, table_sleout, table_spcforc
+    table_matsum, table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, &
+    table_bndout, table_nodfor
   use kinds_m, only : wp
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t, interface_result_t, part_result_t, slave_result_t, &
-    wall_result_t, rubbed_t
-  use table_row_m, only : row_t, put, put_side, end_csv
+    wall_result_t, rubbed_t, element_result_t, body_result_t
+  use table_row_m, only : row_t, put, put_side, end_csv, value_of, vector_of
   implicit none
   private
   public :: name_columns, append_rows
@@ -33,6 +35,8 @@ contains
     type(slave_result_t) :: slave
     type(part_result_t) :: sums
     type(wall_result_t) :: wall
+    type(element_result_t) :: element
+    type(body_result_t) :: body
     real(wp), parameter :: nowhere(2) = 0.0_wp
 
     row%is_named = .true.
@@ -54,6 +58,14 @@ contains
       call put_sleout(row, nothing, 0, result)
     case (table_spcforc)
       call put_spcforc(row, nothing, 0, 0)
+    case (table_elout)
+      call put_elout(row, nothing, 0, element)
+    case (table_rbdout)
+      call put_rbdout(row, nothing, 0, body)
+    case (table_bndout)
+      call put_bndout(row, nothing, 0, 0, 0)
+    case (table_nodfor)
+      call put_nodfor(row, nothing, 0, 0, 0)
     end select
   end subroutine name_columns
 
@@ -93,10 +105,68 @@ contains
         call put_spcforc(row, snapshot, model%mesh%node_id(snapshot%supports(i)), i)
         call take(table, row)
       end do
+    case (table_elout)
+      do i = 1, size(snapshot%history_elements)
+        call put_elout(row, snapshot, &
+          model%mesh%element_id(model%controls%output%history_elements(i)), &
+          snapshot%history_elements(i))
+        call take(table, row)
+      end do
+    case (table_rbdout)
+      do i = 1, size(snapshot%bodies)
+        call put_rbdout(row, snapshot, model%parts(model%rigids(i)%part)%id, snapshot%bodies(i))
+        call take(table, row)
+      end do
+    case (table_bndout)
+      call append_boundaries(table, model, snapshot)
+    case (table_nodfor)
+      call append_groups(table, model, snapshot)
     case default
       call append_interfaces(table, i_table, model, snapshot)
     end select
   end subroutine append_rows
+
+  !> Append the rows of all boundaries.
+  subroutine append_boundaries(table, model, snapshot)
+    type(csv_table_t), intent(inout) :: table
+    type(model_t), intent(in) :: model
+    type(snapshot_t), intent(in) :: snapshot
+    type(row_t) :: row
+    integer :: i, id
+
+    associate (rows => model%controls%output%boundaries)
+      do i = 1, size(rows%where)
+        select case (rows%condition(i))
+        case (boundary_body_load, boundary_body_motion)
+          id = model%parts(model%rigids(rows%where(i))%part)%id
+        case default
+          id = model%mesh%node_id(rows%where(i))
+        end select
+        call put_bndout(row, snapshot, rows%condition(i), id, i)
+        call take(table, row)
+      end do
+    end associate
+  end subroutine append_boundaries
+
+  !> Append the rows of the nodes of all force groups.
+  subroutine append_groups(table, model, snapshot)
+    type(csv_table_t), intent(inout) :: table
+    type(model_t), intent(in) :: model
+    type(snapshot_t), intent(in) :: snapshot
+    type(row_t) :: row
+    integer :: i, k, n
+
+    n = 0
+    do i = 1, size(model%controls%output%force_groups)
+      associate (group => model%controls%output%force_groups(i))
+        do k = 1, size(group%nodes)
+          n = n + 1
+          call put_nodfor(row, snapshot, group%id, model%mesh%node_id(group%nodes(k)), n)
+          call take(table, row)
+        end do
+      end associate
+    end do
+  end subroutine append_groups
 
   !> Append the rows of all interfaces to a table.
   subroutine append_interfaces(table, i_table, model, snapshot)
@@ -312,24 +382,69 @@ contains
     call put(row, 'fx,fy', vector_of(shot%reaction, i))
   end subroutine put_spcforc
 
-  !> One value; 0 of an array that is not there, in the row of nothing.
-  pure function value_of(values, i) result(value)
-    real(wp), allocatable, intent(in) :: values(:)
-    integer, intent(in) :: i
-    real(wp) :: value
+  !> Stress and plastic strain of an element.
+  pure subroutine put_elout(row, shot, id, element)
+    type(row_t), intent(inout) :: row
+    type(snapshot_t), intent(in) :: shot
+    integer, intent(in) :: id
+    type(element_result_t), intent(in) :: element
 
-    value = 0.0_wp
-    if (allocated(values)) value = values(i)
-  end function value_of
+    call put(row, 'time', shot%time)
+    call put(row, 'element', id)
+    call put(row, 'sxx,syy,szz,sxy', element%stress)
+    call put(row, 'plastic_strain', element%plastic_strain)
+    call end_csv(row)
+    call put(row, 'cycle', shot%cycle)
+    call put(row, 'part', element%part)
+    call put(row, 'is_gone', merge(1, 0, element%is_gone))
+  end subroutine put_elout
 
-  !> One vector; 0 of an array that is not there, in the row of nothing.
-  pure function vector_of(values, i) result(value)
-    real(wp), allocatable, intent(in) :: values(:, :)
-    integer, intent(in) :: i
-    real(wp) :: value(2)
+  !> Motion of a rigid body.
+  pure subroutine put_rbdout(row, shot, part, body)
+    type(row_t), intent(inout) :: row
+    type(snapshot_t), intent(in) :: shot
+    integer, intent(in) :: part           !! user id
+    type(body_result_t), intent(in) :: body
 
-    value = 0.0_wp
-    if (allocated(values)) value = values(:, i)
-  end function vector_of
+    call put(row, 'time', shot%time)
+    call put(row, 'part', part)
+    call put(row, 'x,y', body%place)
+    call put(row, 'ux,uy,rotation', body%displacement)
+    call put(row, 'vx,vy,spin', body%velocity)
+    call put(row, 'ax,ay,spin_rate', body%acceleration)
+    call end_csv(row)
+    call put(row, 'cycle', shot%cycle)
+  end subroutine put_rbdout
+
+  !> Force and work of what acts on a node or a rigid body.
+  pure subroutine put_bndout(row, shot, condition, id, i)
+    type(row_t), intent(inout) :: row
+    type(snapshot_t), intent(in) :: shot
+    integer, intent(in) :: condition, id  !! one of `boundary_`; of the node, or of the part
+    integer, intent(in) :: i              !! index of the row
+    real(wp) :: force(3)
+
+    force = 0.0_wp
+    if (allocated(shot%boundary_force)) force = shot%boundary_force(:, i)
+    call put(row, 'time', shot%time)
+    call put(row, 'condition', condition)
+    call put(row, 'id', id)
+    call put(row, 'fx,fy,moment', force)
+    call put(row, 'work', value_of(shot%boundary_work, i))
+  end subroutine put_bndout
+
+  !> Force of a node of a force group, and its work.
+  pure subroutine put_nodfor(row, shot, group, id, i)
+    type(row_t), intent(inout) :: row
+    type(snapshot_t), intent(in) :: shot
+    integer, intent(in) :: group, id      !! user numbers of the node set and the node
+    integer, intent(in) :: i              !! index of the row
+
+    call put(row, 'time', shot%time)
+    call put(row, 'group', group)
+    call put(row, 'node', id)
+    call put(row, 'fx,fy', vector_of(shot%group_force, i))
+    call put(row, 'work', value_of(shot%group_work, i))
+  end subroutine put_nodfor
 
 end module history_rows_m

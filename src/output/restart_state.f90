@@ -3,11 +3,12 @@
 !> declarations. A component that is missing here is noticed by
 !> tests/house/test_restart_components.py.
 module restart_state_m
-  use archive_m, only : keep, keep_fixed, keep_same
+  use archive_m, only : keep, keep_fixed, keep_growing, keep_same
   use archive_file_m, only : archive_t, enter, leave
   use block_state_m, only : block_state_t
   use contact_estimate_m, only : contact_estimate_t
   use erosion_state_m, only : erosion_state_t
+  use kinds_m, only : wp
   use log_m, only : to_text
   use restart_contact_m, only : keep_contact
   use rigid_state_m, only : rigid_state_t
@@ -50,12 +51,44 @@ contains
     call keep_estimates(archive, 'estimates', state)
     call keep_rigids(archive, 'rigids', state)
     call keep_walls(archive, 'walls', state)
+    call keep_columns(archive, 'boundary_force', state%boundary_force)
+    call keep_column(archive, 'boundary_work', state%boundary_work)
+    call keep_columns(archive, 'group_force', state%group_force)
+    call keep_columns(archive, 'group_velocity', state%group_velocity)
+    call keep_column(archive, 'group_work', state%group_work)
     call keep(archive, 'external_work', state%external_work)
     call keep(archive, 'damping_work', state%damping_work)
     call keep(archive, 'initial_energy', state%initial_energy)
     call keep(archive, 'largest_energy', state%largest_energy)
     call leave(archive)
   end subroutine keep_state
+
+  !> Vectors that a history asks for. The run that goes on may ask for them anew: they begin at 0
+  !> then.
+  subroutine keep_columns(archive, name, values)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    real(wp), allocatable, intent(inout) :: values(:, :)
+    real(wp), allocatable :: kept(:, :)
+
+    if (allocated(values)) kept = values
+    call keep_growing(archive, name, kept)
+    if (.not. allocated(values) .or. .not. allocated(kept)) return
+    if (all(shape(kept) == shape(values))) values = kept
+  end subroutine keep_columns
+
+  !> Values that a history asks for, in the same way.
+  subroutine keep_column(archive, name, values)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    real(wp), allocatable, intent(inout) :: values(:)
+    real(wp), allocatable :: kept(:)
+
+    if (allocated(values)) kept = values
+    call keep_growing(archive, name, kept)
+    if (.not. allocated(values) .or. .not. allocated(kept)) return
+    if (size(kept) == size(values)) values = kept
+  end subroutine keep_column
 
   !> Element history.
   subroutine keep_elements(archive, name, elements)

@@ -6,7 +6,7 @@ module table_row_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: row_t, put, put_side, end_csv
+  public :: row_t, put, put_side, end_csv, value_of, vector_of
 
   !> Columns of a row at most.
   integer, parameter :: most_column = 32
@@ -106,5 +106,25 @@ contains
       list = names
     end if
   end subroutine join
+
+  !> One value; 0 of an array that is not there, in the row of nothing.
+  pure function value_of(values, i) result(value)
+    real(wp), allocatable, intent(in) :: values(:)
+    integer, intent(in) :: i
+    real(wp) :: value
+
+    value = 0.0_wp
+    if (allocated(values)) value = values(i)
+  end function value_of
+
+  !> One vector; 0 of an array that is not there, in the row of nothing.
+  pure function vector_of(values, i) result(value)
+    real(wp), allocatable, intent(in) :: values(:, :)
+    integer, intent(in) :: i
+    real(wp) :: value(2)
+
+    value = 0.0_wp
+    if (allocated(values)) value = values(:, i)
+  end function vector_of
 
 end module table_row_m

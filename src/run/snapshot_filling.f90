@@ -12,7 +12,8 @@ module snapshot_filling_m
     element_heats, element_erosion
   use contacts_m, only : transducer_t, has_shear, n_told, told_as
   use controls_m, only : is_asked
-  use history_tables_m, only : table_matsum
+  use history_elements_m, only : find_history_elements
+  use history_tables_m, only : table_matsum, table_rbdout
   use layout_m, only : slot_part
   use mass_scaling_m, only : scales_masses, added_masses
   use model_m, only : model_t
@@ -51,6 +52,9 @@ contains
     if (allocated(model%transducers)) allocate (snapshot%transducers(size(model%transducers)))
     allocate (snapshot%interfaces(n_told(model%contacts)), snapshot%slaves(size(model%contacts)))
     call find_supports(model, snapshot)
+    call find_history_elements(model, snapshot)
+    if (is_asked(model%controls%output%histories(table_rbdout))) &
+      allocate (snapshot%bodies(size(model%rigids)))
     if (.not. is_asked(model%controls%output%plot)) return
     allocate (snapshot%stress(6, n_element), source=0.0_wp)
     if (has_history) &

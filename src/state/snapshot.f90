@@ -7,7 +7,7 @@ module snapshot_m
   implicit none
   private
   public :: snapshot_t, interface_result_t, part_result_t, slave_result_t, wall_result_t, &
-    rubbed_t
+    rubbed_t, element_result_t, body_result_t
 
   !> Resultants of one interface.
   type :: interface_result_t
@@ -43,6 +43,22 @@ module snapshot_m
     real(wp) :: tangential_force = 0.0_wp
     real(wp) :: dissipated = 0.0_wp
   end type wall_result_t
+
+  !> One element of the histories.
+  type :: element_result_t
+    integer :: part = 0                !! user id
+    real(wp) :: stress(4) = 0.0_wp     !! xx yy zz xy; of round bodies rr zz hoop rz
+    real(wp) :: plastic_strain = 0.0_wp
+    logical :: is_gone = .false.       !! it has left the mesh
+  end type element_result_t
+
+  !> Motion of one rigid body: x and y of its centre of mass, and the turn about z.
+  type :: body_result_t
+    real(wp) :: place(2) = 0.0_wp
+    real(wp) :: displacement(3) = 0.0_wp
+    real(wp) :: velocity(3) = 0.0_wp
+    real(wp) :: acceleration(3) = 0.0_wp
+  end type body_result_t
 
   !> Friction at a node of an interface.
   type :: rubbed_t
@@ -100,6 +116,12 @@ module snapshot_m
                                                  !! any
     type(part_result_t), allocatable :: parts(:)
     type(wall_result_t), allocatable :: walls(:) !! only where the deck has any
+    type(element_result_t), allocatable :: history_elements(:) !! only where elout is asked for
+    type(body_result_t), allocatable :: bodies(:) !! only where rbdout is asked for
+    real(wp), allocatable :: boundary_force(:, :) !! (3, n_boundary) x, y and moment about z
+    real(wp), allocatable :: boundary_work(:)     !! (n_boundary)
+    real(wp), allocatable :: group_force(:, :)    !! (2, nodes of all force groups)
+    real(wp), allocatable :: group_work(:)
     type(slave_result_t), allocatable :: slaves(:) !! one per interface, then per contact behind a
                                                  !! tie
   end type snapshot_t

@@ -53,6 +53,14 @@ module state_m
                                                !! where elements may leave the mesh
     type(rigid_state_t), allocatable :: rigids(:)
     type(wall_state_t), allocatable :: walls(:) !! only where the deck has any
+    real(wp), allocatable :: boundary_force(:, :) !! (3, n_boundary) x, y and moment about z of the
+                                               !! rows of bndout; this and the next only where the
+                                               !! deck asks for it
+    real(wp), allocatable :: boundary_work(:)  !! (n_boundary) what they have done so far
+    real(wp), allocatable :: group_force(:, :) !! (2, n) internal force of the nodes of nodfor; this
+                                               !! and the next two only where the deck asks for it
+    real(wp), allocatable :: group_velocity(:, :) !! (2, n) v(n-1/2)
+    real(wp), allocatable :: group_work(:)     !! (n)
     real(wp) :: external_work = 0.0_wp
     real(wp) :: damping_work = 0.0_wp
     real(wp) :: initial_energy = 0.0_wp

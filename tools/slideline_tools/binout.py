@@ -24,6 +24,20 @@ NODOUT = {"x_displacement": "ux", "y_displacement": "uy", "x_velocity": "vx", "y
           "x_acceleration": "ax", "y_acceleration": "ay", "x_coordinate": "x", "y_coordinate": "y"}
 MATSUM = {"kinetic_energy": "kinetic", "internal_energy": "internal", "hourglass_energy": "hourglass",
           "x_momentum": "momentum_x", "y_momentum": "momentum_y", "mass": "mass"}
+RWFORC = {"x_force": "fx", "y_force": "fy", "normal_force": "normal_force"}
+ELOUT = {"sig_xx": "sxx", "sig_yy": "syy", "sig_zz": "szz", "sig_xy": "sxy", "plastic_strain": "plastic_strain"}
+#: variable in binout -> columns along x, along y, and about z
+RBDOUT = {"global_{}": ("x", "y", None), "global_d{}": ("ux", "uy", None), "global_v{}": ("vx", "vy", None),
+          "global_a{}": ("ax", "ay", None), "global_rd{}": (None, None, "rotation"),
+          "global_rv{}": (None, None, "spin"), "global_ra{}": (None, None, "spin_rate")}
+#: states of an element, as DYNA numbers them
+STATES = ("elastic", "plastic", "failed")
+#: condition of bndout -> its branch
+CONDITIONS = {1: "discrete/nodes", 2: "discrete/rigidbodies", 3: "pressure", 4: "velocity/nodes",
+              5: "velocity/rigidbodies"}
+FORCES = {"x_force": "fx", "y_force": "fy", "energy": "work"}
+#: branches below that of their table
+BRANCHES = {"rwforc": "rwforc/forces", "elout": "elout/shell"}
 LEGEND_WIDTH = 70
 
 
@@ -41,9 +55,17 @@ def write_binout(run, path):
         raise BinoutError(f"{run.prefix} has no history tables")
     with Writer(path) as file:
         for name, table in tables.items():
-            metadata, states = FORMS[name](table, run)
-            write_branch(file, name, {"title": run.title[:80].ljust(80), **metadata}, states)
+            for branch, metadata, states in branches_of(name, table, run):
+                write_branch(file, branch, {"title": run.title[:80].ljust(80), **metadata}, states)
     return list(tables)
+
+
+def branches_of(name, table, run):
+    """(branch, its metadata, its states) of a table: one, of boundaries one for each condition."""
+    if name == "bndout":
+        return [(f"bndout/{CONDITIONS[number]}", *bndout_branch(table.where(condition=number)))
+                for number in CONDITIONS if np.any(table["condition"] == number)]
+    return [(BRANCHES.get(name, name), *FORMS[name](table, run))]
 
 
 def write_branch(file, name, metadata, states):
@@ -169,5 +191,78 @@ def spcforc_branch(table, _):
     return {"force_ids": ids, "ids": ids}, states
 
 
+def rwforc_branch(table, _):
+    """Forces of rigid walls on the nodes."""
+    ids = entities(table, "wall")
+    return {"ids": ids}, with_z(by_instant(table, len(ids), RWFORC), "force")
+
+
+def elout_branch(table, _):
+    """Stress of elements: shells with one point through the thickness, as DYNA's 2D solids."""
+    ids = entities(table, "element")
+    states = by_instant(table, len(ids), ELOUT)
+    zero = np.zeros(states["sig_xx"].shape)
+    states["sig_yz"] = states["sig_zx"] = zero
+    plastic = states["plastic_strain"] > 0.0
+    gone = table["is_gone"].reshape(plastic.shape) > 0 if "is_gone" in table else zero > 0.0
+    states["state"] = np.where(gone, 3, np.where(plastic, 2, 1))
+    states["ids"] = np.broadcast_to(ids, zero.shape)
+    states["nip"] = states["iop"] = np.ones(zero.shape, dtype=int)
+    if "part" in table:
+        states["mat"] = table["part"].reshape(zero.shape)
+        states["cycle"] = table["cycle"].reshape(zero.shape)[:, 0]
+    return {"states": ",".join(STATES), "system": "global", **legend(ids, {int(n): "shell" for n in ids})}, states
+
+
+def with_totals(states, blocks):
+    """The same with sums over blocks (slices) of the rows of an instant."""
+    for name, total in (("x_force", "x_total"), ("y_force", "y_total"), ("z_force", "z_total"), ("energy", "etotal")):
+        sums = np.stack([states[name][:, block].sum(axis=1) for block in blocks], axis=1)
+        states[total] = sums if len(blocks) > 1 else sums[:, 0]
+    return states
+
+
+def bndout_branch(table):
+    """Forces on boundaries of one condition, and their work."""
+    ids = entities(table, "id")
+    states = with_totals(with_z(by_instant(table, len(ids), FORCES), "force"), [slice(None)])
+    if table["condition"][0] == 5:
+        states["xmoment"] = states["ymoment"] = np.zeros(states["x_force"].shape)
+        states["zmoment"] = table["moment"].reshape(states["x_force"].shape)
+    return {"ids": ids}, states
+
+
+def nodfor_branch(table, _):
+    """Forces of groups of nodes; all groups behind each other."""
+    nodes = entities(table, "node")
+    states = with_z(by_instant(table, len(nodes), FORCES), "force")
+    group = table["group"][:len(nodes)]
+    starts = np.flatnonzero(np.diff(group, prepend=-1))
+    sizes = np.diff([*starts, len(nodes)])
+    blocks = [slice(start, start + size) for start, size in zip(starts, sizes)]
+    return {"ids": nodes, "groups": sizes, "local": np.zeros(len(sizes), dtype=int)}, with_totals(states, blocks)
+
+
+def rbdout_branch(table, run):
+    """Motion of rigid bodies; the directions are those of axes that turn with the body."""
+    ids = entities(table, "part")
+    states = {"time": table["time"].reshape(-1, len(ids))[:, 0]}
+    shape = table["x"].reshape(-1, len(ids)).shape
+    for name, columns in RBDOUT.items():
+        for axis, column in zip("xyz", columns):
+            states[name.format(axis)] = table[column].reshape(shape) if column else np.zeros(shape)
+    for row in (1, 2, 3):
+        for column in (1, 2, 3):
+            states[f"dircos_{row}{column}"] = np.full(shape, float(row == column))
+    angle = table["rotation"].reshape(shape)
+    states["dircos_11"] = states["dircos_22"] = np.cos(angle)
+    states["dircos_12"], states["dircos_21"] = -np.sin(angle), np.sin(angle)
+    if "cycle" in table:
+        states["cycle"] = table["cycle"].reshape(shape)[:, 0]
+    return {"ids": ids, "num_nodal": 0, **legend(ids, run.part_titles())}, states
+
+
+#: that of bndout is found by condition (`branches_of`)
 FORMS = {"glstat": glstat_branch, "rcforc": rcforc_branch, "nodout": nodout_branch,
-         "matsum": matsum_branch, "sleout": sleout_branch, "spcforc": spcforc_branch}
+         "matsum": matsum_branch, "sleout": sleout_branch, "spcforc": spcforc_branch, "rwforc": rwforc_branch,
+         "elout": elout_branch, "rbdout": rbdout_branch, "bndout": None, "nodfor": nodfor_branch}

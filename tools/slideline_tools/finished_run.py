@@ -9,7 +9,7 @@ from slideline_tools import UserError
 from slideline_tools.histories import TABLES, History, read_csv
 from slideline_tools.results import read
 
-NOT_WRITTEN = ("contact", "rwforc")  # tables without a branch in the binout
+NOT_WRITTEN = ("contact",)  # tables without a branch in the binout
 
 
 class RunError(UserError):

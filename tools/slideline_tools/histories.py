@@ -16,10 +16,11 @@ from slideline_tools.names import missing, one_line
 if typing.TYPE_CHECKING:
     import pandas
 
-TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact", "rwforc", "sleout", "spcforc")
+TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact", "rwforc", "sleout", "spcforc", "elout", "rbdout",
+          "bndout", "nodfor")
 TEXT_COLUMNS = ("side", "phase")
-INTEGER_COLUMNS = ("cycle", "interface", "wall", "node", "part", "n_active", "calls")
-ENTITY_COLUMNS = ("interface", "side", "wall", "node", "part")
+INTEGER_COLUMNS = ("cycle", "interface", "wall", "group", "node", "element", "part", "condition", "id", "n_active", "calls")
+ENTITY_COLUMNS = ("interface", "side", "wall", "group", "node", "element", "part", "condition", "id")
 SIDES = {1: "slave", 2: "master"}
 
 
@@ -30,8 +31,7 @@ class HistoryError(UserError):
 class History:
     """One table: equally long columns by name.
 
-    Columns that name an entity (`interface`, `side`, `wall`, `node`, `part`) split the rows into one
-    series per entity. Values are in the units of the deck; `time` is in its unit of time.
+    Columns that name an entity (ENTITY_COLUMNS) split the rows into one series per entity. Values are in the units of the deck; `time` is in its unit of time.
     """
 
     def __init__(self, name: str, columns: dict[str, np.ndarray]) -> None:

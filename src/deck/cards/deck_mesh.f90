@@ -164,7 +164,7 @@ contains
     call append_member(sets(i), node, line, field)
   end subroutine append_to_beam_set
 
-  !> A set of nodes, parts or segments: its number, then its members.
+  !> A set of nodes, parts, elements or segments: its number, then its members.
   subroutine read_set(deck, parameters, i_block, raw)
     type(deck_t), intent(inout) :: deck
     type(parameters_t), intent(in) :: parameters
@@ -204,6 +204,8 @@ contains
       call append_set(raw%segment_sets, raw%n_segment_set, set)
     case ('SET_PART_LIST', 'SET_PART_LIST_GENERATE')
       call append_set(raw%part_sets, raw%n_part_set, set)
+    case ('SET_SHELL_LIST', 'SET_SHELL_LIST_GENERATE')
+      call append_set(raw%shell_sets, raw%n_shell_set, set)
     case default
       call append_set(raw%node_sets, raw%n_node_set, set)
     end select
@@ -308,7 +310,7 @@ contains
     end do
   end subroutine check_edge
 
-  !> *DATABASE_HISTORY_NODE and _NODE_SET.
+  !> *DATABASE_HISTORY_NODE, _NODE_SET, _SHELL and _SHELL_SET.
   subroutine read_history_ids(deck, parameters, i_block, set)
     type(deck_t), intent(inout) :: deck
     type(parameters_t), intent(in) :: parameters

@@ -5,14 +5,15 @@ module deck_output_m
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field
-  use deck_values_m, only : integer_of, real_of, place_of
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, check_rest, report_field
+  use deck_values_m, only : integer_of, real_of, place_of, is_bad
   use deck_checks_m, only : refuse_negative, refuse_outside
   use deck_raw_m, only : raw_t, history_t, output_plot
+  use deck_raw_sets_m, only : append_member
   use history_tables_m, only : history_tables, table_of_keyword, text_none
   implicit none
   private
-  public :: read_database
+  public :: read_database, read_force_groups
 
   !> Most cycles between two restart files.
   real(wp), parameter :: most_cycles = 2.0e9_wp
@@ -67,6 +68,27 @@ contains
     end if
     raw%outputs(file) = history
   end subroutine read_database
+
+  !> *DATABASE_NODAL_FORCE_GROUP: a node set in each row.
+  subroutine read_force_groups(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    logical :: found
+
+    call open_cursor(deck, i_block, cursor)
+    do
+      call next_row(deck, parameters, cursor, 1, card, found)
+      if (.not. found) exit
+      if (integer_of(card, 'NSID') < 1) call report_field(deck, cursor, card, 'NSID', &
+        'is not a node set number (1 or more)')
+      if (.not. is_bad(card, 'NSID')) call append_member(raw%force_groups, &
+        integer_of(card, 'NSID'), card%line, 1)
+    end do
+  end subroutine read_force_groups
 
   !> Cycles between two restart files.
   subroutine take_cycles(deck, cursor, card, cycles)

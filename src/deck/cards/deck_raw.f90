@@ -184,8 +184,8 @@ module deck_raw_m
     type(hourglass_t) :: hourglass_default
     type(curve_t), allocatable :: curves(:)
     integer, allocatable :: curve_line(:)
-    type(raw_set_t), allocatable :: node_sets(:), part_sets(:), segment_sets(:)
-    integer :: n_node_set = 0, n_part_set = 0, n_segment_set = 0
+    type(raw_set_t), allocatable :: node_sets(:), part_sets(:), segment_sets(:), shell_sets(:)
+    integer :: n_node_set = 0, n_part_set = 0, n_segment_set = 0, n_shell_set = 0
     type(row_t), allocatable :: rows(:)
     integer :: n_row = 0
     type(node_velocity_t), allocatable :: node_velocities(:)
@@ -211,7 +211,8 @@ module deck_raw_m
     type(place_t) :: dt_curve_place
     type(place_t), allocatable :: explicit_only(:) !! fields given that the implicit method leaves
     type(history_t) :: outputs(output_plot:n_table)
-    type(raw_set_t) :: history_nodes, history_node_sets
+    type(raw_set_t) :: history_nodes, history_node_sets, history_shells, history_shell_sets, &
+      force_groups
   end type raw_t
 
 contains
@@ -228,7 +229,7 @@ contains
       raw%contacts(0), raw%transducers(0), raw%walls(0), raw%systems(0), raw%rows(64), &
       raw%node_velocities(0), &
       raw%node_sets(16), raw%part_sets(16), &
-      raw%segment_sets(16), raw%explicit_only(0))
+      raw%segment_sets(16), raw%shell_sets(4), raw%explicit_only(0))
     call reserve_nodes(raw, 0)
     call reserve_elements(raw, 0)
   end subroutine start_raw

@@ -12,7 +12,7 @@ module deck_maps_m
   !> Maps from user id to index.
   type :: maps_t
     type(id_map_t) :: nodes, elements, parts, sections, materials, equations, hourglasses, &
-      curves, tables, node_sets, part_sets, segment_sets, systems
+      curves, tables, node_sets, part_sets, segment_sets, shell_sets, systems
   end type maps_t
 
 contains
@@ -45,6 +45,8 @@ contains
     call map_kind(deck, 'segment set', [raw%segment_sets(:raw%n_segment_set)%id], &
       [raw%segment_sets(:raw%n_segment_set)%line], 'SID', maps%segment_sets, &
       [raw%segment_sets(:raw%n_segment_set)%of_beams])
+    call map_kind(deck, 'shell set', [raw%shell_sets(:raw%n_shell_set)%id], &
+      [raw%shell_sets(:raw%n_shell_set)%line], 'SID', maps%shell_sets)
     call map_kind(deck, 'coordinate system', [raw%systems%id], [raw%systems%line], 'CID', &
       maps%systems)
     all_lost = deck%incomplete
@@ -60,6 +62,8 @@ contains
     maps%node_sets%incomplete = raw%lost%sets .or. all_lost
     maps%part_sets%incomplete = raw%lost%sets .or. all_lost
     maps%segment_sets%incomplete = raw%lost%sets .or. all_lost
+    maps%shell_sets%incomplete = raw%lost%sets .or. all_lost
+    maps%elements%incomplete = raw%lost%elements .or. raw%n_element == 0 .or. all_lost
   end subroutine make_maps
 
   !> One map, with an error for each id that comes again.

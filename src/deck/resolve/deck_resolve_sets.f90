@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Sets with indices in place of ids.
 module deck_resolve_sets_m
+  use force_groups_m, only : force_group_t
   use kinds_m, only : long
   use log_m, only : to_text
   use sets_m, only : segment_set_t
@@ -28,7 +29,7 @@ contains
     integer :: i
 
     allocate (model%node_sets(raw%n_node_set), model%part_sets(raw%n_part_set), &
-      model%segment_sets(raw%n_segment_set))
+      model%segment_sets(raw%n_segment_set), model%shell_sets(raw%n_shell_set))
     do i = 1, raw%n_node_set
       model%node_sets(i)%id = raw%node_sets(i)%id
       if (allocated(raw%node_sets(i)%title)) model%node_sets(i)%title = raw%node_sets(i)%title
@@ -43,6 +44,11 @@ contains
       model%part_sets(i)%id = raw%part_sets(i)%id
       call resolve_members(deck, raw%part_sets(i), maps%parts, 'part', 2, &
         model%part_sets(i)%parts)
+    end do
+    do i = 1, raw%n_shell_set
+      model%shell_sets(i)%id = raw%shell_sets(i)%id
+      call resolve_members(deck, raw%shell_sets(i), maps%elements, 'element', 2, &
+        model%shell_sets(i)%elements)
     end do
     do i = 1, raw%n_segment_set
       model%segment_sets(i)%id = raw%segment_sets(i)%id
@@ -192,31 +198,73 @@ contains
       set%line, 'the set is empty')
   end subroutine resolve_members
 
-  !> Nodes of *DATABASE_HISTORY_NODE and _NODE_SET, each once, in deck order.
+  !> Nodes and elements of *DATABASE_HISTORY_, each once, in deck order.
   subroutine resolve_history(deck, raw, maps, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
-    integer, allocatable :: nodes(:), sets(:), all_nodes(:)
+    integer, allocatable :: members(:), sets(:)
+    integer :: i
+
+    call resolve_members(deck, raw%history_nodes, maps%nodes, 'node', 1, members)
+    call resolve_members(deck, raw%history_node_sets, maps%node_sets, 'node set', 1, sets)
+    do i = 1, size(sets)
+      members = [members, model%node_sets(sets(i))%nodes]
+    end do
+    call keep_first(members, model%mesh%n_node, model%controls%output%history_nodes)
+    call resolve_members(deck, raw%history_shells, maps%elements, 'element', 1, members)
+    call resolve_members(deck, raw%history_shell_sets, maps%shell_sets, 'shell set', 1, sets)
+    do i = 1, size(sets)
+      members = [members, model%shell_sets(sets(i))%elements]
+    end do
+    call keep_first(members, model%mesh%n_element, model%controls%output%history_elements)
+    if (raw%force_groups%n > 0) call resolve_groups(deck, raw%force_groups, maps, model)
+  end subroutine resolve_history
+
+  !> Force groups: node sets, none of them twice.
+  subroutine resolve_groups(deck, set, maps, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_set_t), intent(in) :: set
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    type(force_group_t) :: group
+    integer :: i, found
+
+    allocate (model%controls%output%force_groups(0))
+    do i = 1, set%n
+      if (any(set%members(:i - 1) == set%members(i))) then
+        call reject_field(deck, place_t(set%lines(i), 1, 'NSID'), &
+          'is the node set of another force group')
+        cycle
+      end if
+      call resolve_id(deck, maps%node_sets, set%members(i), 'node set', &
+        place_t(set%lines(i), 1, 'NSID'), found)
+      if (found == 0) cycle
+      group%id = set%members(i)
+      call keep_first(model%node_sets(found)%nodes, model%mesh%n_node, group%nodes)
+      model%controls%output%force_groups = [model%controls%output%force_groups, group]
+    end do
+  end subroutine resolve_groups
+
+  !> Members of a list, each where it comes first.
+  pure subroutine keep_first(members, n_all, kept)
+    integer, intent(in) :: members(:)
+    integer, intent(in) :: n_all           !! members are 1 to this
+    integer, allocatable, intent(out) :: kept(:)
     logical, allocatable :: listed(:)
     integer :: i, n
 
-    call resolve_members(deck, raw%history_nodes, maps%nodes, 'node', 1, nodes)
-    call resolve_members(deck, raw%history_node_sets, maps%node_sets, 'node set', 1, sets)
-    all_nodes = nodes
-    do i = 1, size(sets)
-      all_nodes = [all_nodes, model%node_sets(sets(i))%nodes]
-    end do
-    allocate (listed(model%mesh%n_node), source=.false.)
+    allocate (listed(n_all), source=.false.)
+    kept = members
     n = 0
-    do i = 1, size(all_nodes)
-      if (listed(all_nodes(i))) cycle
-      listed(all_nodes(i)) = .true.
+    do i = 1, size(members)
+      if (listed(members(i))) cycle
+      listed(members(i)) = .true.
       n = n + 1
-      all_nodes(n) = all_nodes(i)
+      kept(n) = members(i)
     end do
-    model%controls%output%history_nodes = all_nodes(:n)
-  end subroutine resolve_history
+    kept = kept(:n)
+  end subroutine keep_first
 
 end module deck_resolve_sets_m

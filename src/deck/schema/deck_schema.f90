@@ -146,6 +146,10 @@ contains
       name = 'SET_PART_LIST'
     case ('SET_PART_GENERATE')
       name = 'SET_PART_LIST_GENERATE'
+    case ('SET_SHELL')
+      name = 'SET_SHELL_LIST'
+    case ('SET_SHELL_GENERATE')
+      name = 'SET_SHELL_LIST_GENERATE'
     case ('DATABASE_D3PLOT')
       name = 'DATABASE_BINARY_D3PLOT'
     case ('INCLUDE_PATH_RELATIVE')

@@ -95,14 +95,8 @@ module deck_schema_others_m
     'DATABASE_ABSTAT* ignored', &
     'DATABASE_JNTFORC ignored', &
     'DATABASE_DEFORC ignored', &
-    'DATABASE_ELOUT ignored', &
     'DATABASE_NCFORC ignored', &
-    'DATABASE_NODFOR ignored', &
-    'DATABASE_BNDOUT ignored', &
-    'DATABASE_RBDOUT ignored', &
     'DATABASE_EXTENT_BINARY ignored', &
-    'DATABASE_HISTORY_SHELL* ignored', &
-    'DATABASE_NODAL_FORCE_GROUP ignored', &
     'DATABASE_GCEOUT ignored', &
     'DATABASE_SPHOUT ignored', &
     'DATABASE_TPRINT ignored', &

@@ -164,6 +164,12 @@ module deck_schema_tables_m
     'SET_PART_LIST_GENERATE t', &
     ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as', &
     ' B1BEG:i B1END:i B2BEG:i B2END:i B3BEG:i B3END:i B4BEG:i B4END:i', &
+    'SET_SHELL_LIST t', &
+    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs', &
+    ' EID1:i EID2:i EID3:i EID4:i EID5:i EID6:i EID7:i EID8:i', &
+    'SET_SHELL_LIST_GENERATE t', &
+    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs', &
+    ' B1BEG:i B1END:i B2BEG:i B2END:i B3BEG:i B3END:i B4BEG:i B4END:i', &
     'SET_SEGMENT t', &
     ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
     ' N1:i N2:i N3:i N4:i A1:fs A2:fs A3:fs A4:fs', &
@@ -297,7 +303,7 @@ module deck_schema_tables_m
     //' FRCSCL:fw=0.1 ONEWAY:fr']
 
   !> Output.
-  character(60), parameter :: table_database(*) = [character(60) :: &
+  character(76), parameter :: table_database(*) = [character(76) :: &
     'DATABASE_GLSTAT', &
     ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_MATSUM', &
@@ -307,10 +313,18 @@ module deck_schema_tables_m
     'DATABASE_NODOUT', &
     ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_RWFORC', &
-    ' DT:f BINARY:is LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_SLEOUT', &
     ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_SPCFORC', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_ELOUT', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:is OPTION2:iw OPTION3:is OPTION4:is', &
+    'DATABASE_RBDOUT', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_BNDOUT', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_NODFOR', &
     ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_BINARY_D3PLOT', &
     ' DT:f LCDT:i BEAM:is NPLTC:i PSETID:iw', &
@@ -322,6 +336,12 @@ module deck_schema_tables_m
     'DATABASE_HISTORY_NODE', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_HISTORY_NODE_SET', &
-    ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i']
+    ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
+    'DATABASE_HISTORY_SHELL', &
+    ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
+    'DATABASE_HISTORY_SHELL_SET', &
+    ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
+    'DATABASE_NODAL_FORCE_GROUP', &
+    ' NSID:i CID:ir']
 
 end module deck_schema_tables_m

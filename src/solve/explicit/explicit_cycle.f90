@@ -3,6 +3,8 @@
 !> and health after them.
 module explicit_cycle_m
   use clock_m, only : lap, share_contact, phase_nodes
+  use boundary_account_m, only : count_boundary_loads, count_boundary_motions, &
+    count_boundary_bodies, count_groups
   use constraints_m, only : fix_nodes, update_activity, is_active
   use contact_account_m, only : plan_looks, follow_contact
   use behind_ties_m, only : hear_tie, settle_with_tie
@@ -140,6 +142,7 @@ contains
     cycle%plots = .false.
     cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
     call apply_loads(model, state, cycle%damping, cycle%sums)
+    if (allocated(state%boundary_work)) call count_boundary_loads(model, state)
     if (allocated(state%node_damping)) call follow_damping(model, cycle%damping, cycle%rates, state)
     ! What ended the cycle before is in this lap, or without contact in the one below.
     if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
@@ -265,10 +268,14 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(in) :: cycle
+    real(wp) :: before
 
     if (.not. cycle%writes) call solve_rigids(model, cycle%damping, state)
-    state%external_work = state%external_work + rigid_work(model, state, cycle%damping, &
-      merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes), 0.5_wp*state%dt)
+    before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
+    state%external_work = state%external_work + rigid_work(model, state, cycle%damping, before, &
+      0.5_wp*state%dt)
+    if (allocated(state%boundary_work)) call count_boundary_bodies(model, cycle%damping, before, &
+      0.5_wp*state%dt, state)
     call move_rigids(model, state)
   end subroutine advance_rigids
 
@@ -310,12 +317,15 @@ contains
       before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
       state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
         cycle%damping, before, 0.5_wp*state%dt)
+      if (allocated(state%boundary_work)) call count_boundary_motions(model, cycle%velocity, &
+        cycle%damping, before, 0.5_wp*state%dt, state)
       call impose_prescribed(model, cycle%velocity, cycle%displacement, state)
     end if
     if (allocated(cycle%common)) call move_common(model, cycle%leap, cycle%damping, cycle%common, &
       state)
     if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
     if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
+    if (allocated(state%group_work)) call count_groups(model, .not. cycle%writes, .true., state)
     if (allocated(cycle%freed)) then
       if (monitor%ranks%n > 1) call gather_motion(cycle%shares, cycle%borders, .true., &
         monitor%ranks, state)

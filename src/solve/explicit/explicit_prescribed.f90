@@ -9,7 +9,8 @@ module explicit_prescribed_m
   use state_m, only : state_t
   implicit none
   private
-  public :: find_prescribed_velocities, start_prescribed, impose_prescribed, prescribed_work
+  public :: find_prescribed_velocities, start_prescribed, impose_prescribed, prescribed_work, &
+    prescribed_reaction
 
 contains
 
@@ -73,23 +74,33 @@ contains
     real(wp), intent(in) :: damping(2)             !! D per direction
     real(wp), intent(in) :: factor_old, factor_new !! times v(n-1/2) and v(n+1/2)
     real(wp) :: work
-    real(wp) :: reaction, d(2)
     integer :: i
 
     work = 0.0_wp
     do i = 1, size(model%conditions%motions)
-      associate (prescribed => model%conditions%motions(i), old => state%prescribed_velocity(i))
-        if (.not. is_active(prescribed, state%time)) cycle
-        associate (node => prescribed%node, k => prescribed%direction)
-          d = damping_at(state, damping, node)
-          reaction = state%mass(node)*((velocity(i) - old)/(0.5_wp*(state%dt + state%dt_before)) &
-            - state%body_acceleration(k) + 0.5_wp*d(k)*(velocity(i) + old)) &
-            + state%internal_force(k, node) - state%force_special(k, node)
-        end associate
-        work = work + reaction*(factor_old*old + factor_new*velocity(i))
-      end associate
+      if (.not. is_active(model%conditions%motions(i), state%time)) cycle
+      work = work + prescribed_reaction(model%conditions%motions(i), state, damping, &
+        state%prescribed_velocity(i), velocity(i))*(factor_old*state%prescribed_velocity(i) &
+        + factor_new*velocity(i))
     end do
   end function prescribed_work
+
+  !> Reaction of one prescribed motion, from its velocities before and behind the instant.
+  pure function prescribed_reaction(prescribed, state, damping, old, next) result(reaction)
+    type(prescribed_motion_t), intent(in) :: prescribed
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)  !! D per direction
+    real(wp), intent(in) :: old, next   !! v(n-1/2) and v(n+1/2)
+    real(wp) :: reaction
+    real(wp) :: d(2)
+
+    associate (node => prescribed%node, k => prescribed%direction)
+      d = damping_at(state, damping, node)
+      reaction = state%mass(node)*((next - old)/(0.5_wp*(state%dt + state%dt_before)) &
+        - state%body_acceleration(k) + 0.5_wp*d(k)*(next + old)) &
+        + state%internal_force(k, node) - state%force_special(k, node)
+    end associate
+  end function prescribed_reaction
 
   !> Put prescribed nodes where they belong; `displacement` is u(n), from before the nodes moved.
   subroutine impose_prescribed(model, velocity, displacement, state)

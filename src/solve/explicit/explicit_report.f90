@@ -1,13 +1,17 @@
 ! SPDX-License-Identifier: MIT
 !> A cycle of an explicit run that writes: what the elements have come to, and what is due from it.
 module explicit_report_m
+  use boundary_account_m, only : count_boundary_motions, count_boundary_bodies, count_groups
+  use boundary_filling_m, only : fill_boundaries
   use contact_check_m, only : report_contact_start
   use contact_judging_m, only : judge_contacts
   use energies_m, only : energy_ratio, total_energy
   use erosion_account_m, only : settle_elements, note_least_step
   use explicit_prescribed_m, only : start_prescribed, prescribed_work
   use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
-    table_sleout, table_spcforc, table_contact
+    table_sleout, table_spcforc, table_contact, table_elout, table_rbdout, table_bndout, &
+    table_nodfor
+  use history_elements_m, only : fill_history_elements
   use health_m, only : check_energy, check_radii, made_by_springs
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
@@ -15,7 +19,8 @@ module explicit_report_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due
   use motion_sums_m, only : count_sums
-  use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, fill_rigids
+  use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, fill_rigids, &
+    fill_bodies
   use progress_m, only : show_progress
   use rank_exchange_m, only : judge_elements
   use ranks_m, only : share_error, spread_values
@@ -67,6 +72,9 @@ contains
     if (allocated(model%conditions%skew_supports)) call report_skew(model, cycle%leap, state, held)
     state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
       cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
+    if (allocated(state%boundary_work)) call count_boundary_motions(model, cycle%velocity, &
+      cycle%damping, 0.5_wp*state%dt_before, 0.0_wp, state)
+    if (allocated(state%group_work)) call count_groups(model, .true., .false., state)
     if (monitor%ranks%mine == 0) call write_report(model, held, state, monitor, cycle)
     if (monitor%ranks%n > 1) call hear_report(model, state, monitor, cycle)
     cycle%finished = cycle%last .or. allocated(cycle%error)
@@ -97,6 +105,10 @@ contains
       call fill_interfaces(model, state, monitor%snapshot)
     if (cycle%due%tables(table_spcforc)) &
       call fill_explicit_reactions(model, state, monitor%snapshot, held)
+    if (cycle%due%tables(table_elout)) call fill_history_elements(model, state, monitor%snapshot)
+    if (any(cycle%due%tables([table_bndout, table_nodfor]))) &
+      call fill_boundaries(state, monitor%snapshot)
+    if (cycle%due%tables(table_rbdout)) call fill_bodies(state, monitor%snapshot)
     if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
     if (any(cycle%due%tables([table_sleout, table_contact]))) call judge_contacts(model, state, &
       cycle%due%plot, monitor%rows, monitor%snapshot)
@@ -159,6 +171,8 @@ contains
     if (state%cycle == 0) call start_rigid_motions(model, state)
     state%external_work = state%external_work + rigid_work(model, state, cycle%damping, &
       0.5_wp*state%dt_before, 0.0_wp)
+    if (allocated(state%boundary_work)) call count_boundary_bodies(model, cycle%damping, &
+      0.5_wp*state%dt_before, 0.0_wp, state)
   end subroutine report_rigids
 
   !> Rigid walls in a cycle that writes: their forces, and their work so far.

@@ -12,6 +12,7 @@ module implicit_m
   use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
+  use implicit_boundary_m, only : count_step_boundaries
   use implicit_forces_m, only : trial_t, start_trial, net_force
   use implicit_memory_m, only : implicit_memory_t, write_restarts
   use implicit_prescribed_m, only : prescribe_step
@@ -232,11 +233,13 @@ contains
       velocity = new_velocity(state, step, acceleration)
       state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
         attempt, reshape([state%motion(3:4, :), velocity], [2, size(velocity, 2), 2]))
+      call count_step_boundaries(model, trial, attempt, step%time, velocity, state)
       state%motion(3:4, :) = velocity
       state%acceleration = acceleration
     else
       state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
         attempt)
+      call count_step_boundaries(model, trial, attempt, step%time, velocity, state)
     end if
     state%motion(1:2, :) = attempt%motion(1:2, :)
     state%elements = attempt%elements

@@ -2,9 +2,12 @@
 !> What the implicit driver writes: motion, velocity and acceleration of one instant, energies
 !> with the consistent mass.
 module implicit_report_m
+  use boundary_filling_m, only : fill_boundaries
   use contact_judging_m, only : judge_contacts
+  use implicit_boundary_m, only : find_reactions
+  use history_elements_m, only : fill_history_elements
   use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc, &
-    table_contact
+    table_contact, table_elout, table_bndout, table_nodfor
   use block_state_m, only : block_state_t
   use kinds_m, only : wp
   use clock_m, only : lap, phase_output
@@ -67,6 +70,11 @@ contains
         call fill_interfaces(model, state, shot)
       if (due%tables(table_spcforc)) call fill_reactions(model, &
         force + mass_times(model, shot%acceleration), shot)
+      if (any(due%tables([table_bndout, table_nodfor]))) then
+        call find_reactions(model, force + mass_times(model, shot%acceleration), state)
+        call fill_boundaries(state, shot)
+      end if
+      if (due%tables(table_elout)) call fill_history_elements(model, state, shot)
       if (due%plot) call fill_plot(model, state, shot)
       if (any(due%tables([table_sleout, table_contact]))) call judge_contacts(model, state, &
         due%plot, monitor%rows, shot)

@@ -11,7 +11,9 @@ module start_m
   use element_log_m, only : log_elements
   use element_state_m, only : start_elements, lump_mass
   use contacts_m, only : is_tied, n_told, told_as
+  use controls_m, only : is_asked
   use errors_m, only : error_t, raise, status_input
+  use history_tables_m, only : table_nodfor
   use initial_values_m, only : start_motion
   use log_m, only : log_t, to_text
   use mass_log_m, only : log_added_mass
@@ -76,6 +78,7 @@ contains
     end do
     call start_rigids(model, log, state)
     call start_walls(model, state)
+    call start_works(model, state)
     allocate (state%contacts(size(model%contacts)), state%estimates(n_told(model%contacts)))
     do i = 1, size(model%contacts)
       call start_contact(model%contacts(i), model, log, state%contacts(i))
@@ -89,6 +92,35 @@ contains
     call weigh_contacts(model, state)
     call set_automatic_penalties(model, state, log, error)
   end subroutine start_state
+
+  !> Forces and works that histories ask for.
+  subroutine start_works(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    integer :: i, n
+
+    associate (output => model%controls%output)
+      if (allocated(output%boundaries%where)) then
+        n = size(output%boundaries%where)
+        allocate (state%boundary_force(3, n), state%boundary_work(n), source=0.0_wp)
+      end if
+      if (.not. allocated(output%force_groups)) return
+      if (.not. is_asked(output%histories(table_nodfor))) return
+      n = 0
+      do i = 1, size(output%force_groups)
+        n = n + size(output%force_groups(i)%nodes)
+      end do
+      allocate (state%group_force(2, n), state%group_work(n), source=0.0_wp)
+      allocate (state%group_velocity(2, n))
+      n = 0
+      do i = 1, size(output%force_groups)
+        associate (nodes => output%force_groups(i)%nodes)
+          state%group_velocity(:, n + 1:n + size(nodes)) = state%motion(3:4, nodes)
+          n = n + size(nodes)
+        end associate
+      end do
+    end associate
+  end subroutine start_works
 
   !> Memories of the walls, where the deck has any.
   subroutine start_walls(model, state)

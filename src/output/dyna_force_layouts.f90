@@ -1,0 +1,149 @@
+! SPDX-License-Identifier: MIT
+!> The layouts of DYNA's text files of forces on boundaries and of groups of nodes (see
+!> `dyna_layouts_m`).
+module dyna_force_layouts_m
+  use boundary_rows_m, only : boundary_load, boundary_body_load, boundary_pressure, &
+    boundary_motion, boundary_body_motion
+  use dyna_lines_m, only : line_size, add_line, number, tidy
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: form_bndout, form_nodfor
+
+contains
+
+  !> Loads, pressures and prescribed motions, each with its sums; what there is none of is left out.
+  pure subroutine form_bndout(rows, lines, n_line)
+    real(wp), intent(in) :: rows(:, :)
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+
+    call form_section('discrete nodal point forces', [boundary_load, boundary_body_load], rows, &
+      lines, n_line)
+    call form_section('pressure boundary condition forces', [boundary_pressure], rows, lines, &
+      n_line)
+    call form_section('velocity boundary condition forces/rigid body moments', [boundary_motion, &
+      boundary_body_motion], rows, lines, n_line)
+  end subroutine form_bndout
+
+  !> The rows of some conditions.
+  pure subroutine form_section(title, conditions, rows, lines, n_line)
+    character(*), intent(in) :: title
+    integer, intent(in) :: conditions(:)
+    real(wp), intent(in) :: rows(:, :)
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    character(line_size) :: line
+    real(wp) :: total(3)
+    integer :: i
+
+    if (.not. any([(any(nint(rows(2, i)) == conditions), i=1, size(rows, 2))])) return
+    call add_blanks(5, lines, n_line)
+    write (line, '(ss,2a,es12.5)') ' n o d a l   f o r c e/e n e r g y', '    o u t p u t  t=', &
+      tidy(rows(1, 1))
+    call add_line(line, lines, n_line)
+    call add_blanks(4, lines, n_line)
+    call add_line(' '//title, lines, n_line)
+    call add_line('', lines, n_line)
+    total = 0.0_wp
+    do i = 1, size(rows, 2)
+      if (.not. any(nint(rows(2, i)) == conditions)) cycle
+      total = total + [rows(4:5, i), rows(7, i)]
+      call add_force(head_of(nint(rows(2, i)))//number(rows(3, i), 8), [rows(4:5, i), rows(7, i)], &
+        lines, n_line)
+      if (nint(rows(2, i)) /= boundary_body_motion) cycle
+      write (line, '(ss,3(a,es13.4))') '             xmoment=', 0.0_wp, '  ymoment=', 0.0_wp, &
+        ' zmoment=', tidy(rows(6, i))
+      call add_line(line, lines, n_line)
+    end do
+    call add_total(total, lines, n_line)
+  end subroutine form_section
+
+  !> What a row of a condition begins with.
+  pure function head_of(condition) result(head)
+    integer, intent(in) :: condition
+    character(4) :: head
+
+    select case (condition)
+    case (boundary_body_load)
+      head = ' mt#'
+    case (boundary_body_motion)
+      head = 'mat#'
+    case default
+      head = ' nd#'
+    end select
+  end function head_of
+
+  !> Forces of groups of nodes, and their sums. The rows of a group come together.
+  pure subroutine form_nodfor(rows, lines, n_line)
+    real(wp), intent(in) :: rows(:, :)
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    character(line_size) :: line
+    real(wp) :: total(3)
+    integer :: i, n_group
+    logical :: is_first, is_last
+
+    call add_blanks(5, lines, n_line)
+    write (line, '(ss,2a,es12.5)') ' n o d a l   f o r c e   g r o u p', '    o u t p u t  t=', &
+      tidy(rows(1, 1))
+    call add_line(line, lines, n_line)
+    n_group = 0
+    total = 0.0_wp
+    do i = 1, size(rows, 2)
+      is_first = i == 1
+      if (.not. is_first) is_first = nint(rows(2, i)) /= nint(rows(2, i - 1))
+      is_last = i == size(rows, 2)
+      if (.not. is_last) is_last = nint(rows(2, i)) /= nint(rows(2, i + 1))
+      if (is_first) then
+        n_group = n_group + 1
+        total = 0.0_wp
+        call add_blanks(5, lines, n_line)
+        write (line, '(ss,a,i2)') ' nodal group output number ', n_group
+        call add_line(line, lines, n_line)
+        call add_line('', lines, n_line)
+      end if
+      total = total + rows(4:6, i)
+      call add_force(' nd#'//number(rows(3, i), 8), rows(4:6, i), lines, n_line)
+      if (is_last) call add_total(total, lines, n_line)
+    end do
+  end subroutine form_nodfor
+
+  !> One line of a node or a body.
+  pure subroutine add_force(head, values, lines, n_line)
+    character(*), intent(in) :: head
+    real(wp), intent(in) :: values(3)  !! force along x and y, energy
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    character(line_size) :: line
+
+    write (line, '(ss,a,4(a,es13.4))') head, '  xforce=', tidy(values(1)), '   yforce=', &
+      tidy(values(2)), '  zforce=', 0.0_wp, '   energy=', tidy(values(3))
+    call add_line(line, lines, n_line)
+  end subroutine add_force
+
+  !> Sums of some lines.
+  pure subroutine add_total(values, lines, n_line)
+    real(wp), intent(in) :: values(3)  !! as in `add_force`
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    character(line_size) :: line
+
+    write (line, '(ss,4(a,es13.4))') '              xtotal=', tidy(values(1)), '   ytotal=', &
+      tidy(values(2)), '  ztotal=', 0.0_wp, '   etotal=', tidy(values(3))
+    call add_line(line, lines, n_line)
+  end subroutine add_total
+
+  !> Some empty lines.
+  pure subroutine add_blanks(n, lines, n_line)
+    integer, intent(in) :: n
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    integer :: i
+
+    do i = 1, n
+      call add_line('', lines, n_line)
+    end do
+  end subroutine add_blanks
+
+end module dyna_force_layouts_m

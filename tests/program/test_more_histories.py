@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: MIT
+"""Histories of elements, rigid bodies, walls and boundaries: threads, restarts, and their text files against the CSV files."""
+import re
+import shutil
+import subprocess
+
+import h5py
+import numpy as np
+import pytest
+from conftest import numbers
+from history_decks import HISTORIES, busy_block
+
+
+def files_of(folder):
+    """Name -> bytes of all tables and text files of the histories."""
+    found = {path.name: path.read_bytes() for name in HISTORIES + ("glstat",)
+             for path in (folder / f"job.{name}.csv", folder / f"job.{name}")}
+    assert len(found) == 2 * len(HISTORIES) + 2
+    return found
+
+
+@pytest.fixture(scope="module")
+def whole(exe, tmp_path_factory):
+    """A run on one thread that leaves a restart file halfway."""
+    folder = tmp_path_factory.mktemp("busy")
+    text = busy_block().text().rsplit("*END", 1)[0] + "*DATABASE_BINARY_D3DUMP\n70,\n*END\n"
+    (folder / "job.k").write_text(text)
+    done = subprocess.run([exe, "i=job.k", "d=whole"], capture_output=True, text=True, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    assert numbers(folder / "whole" / "job.glstat.csv", "cycle")[-1] > 120
+    return folder / "whole"
+
+
+def values(folder, name, *wanted):
+    return np.column_stack([numbers(folder / f"job.{name}.csv", column) for column in wanted])
+
+
+def same(printed, exact, digits):
+    """Printed values are the exact ones rounded to so many digits behind the point."""
+    printed, exact = np.asarray(printed, float), np.asarray(exact, float)
+    assert printed.shape == exact.shape and printed.size > 0
+    room = 0.501 * 10.0 ** -digits * 10.0 ** np.floor(np.log10(np.maximum(np.abs(exact), 1e-98)))
+    assert np.all(np.abs(printed - exact) <= room + 1e-15 * np.abs(exact))
+
+
+def test_threads_and_restart_write_the_same_bytes(whole, exe, tmp_path):
+    expected = files_of(whole)
+    (tmp_path / "job.k").write_bytes((whole.parent / "job.k").read_bytes())
+    done = subprocess.run([exe, "i=job.k", "d=three", "ncpu=3", "perthread=1"], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert files_of(tmp_path / "three") == expected
+    (tmp_path / "rest").mkdir()
+    for name in ("job.dump01.h5", "job.vtkhdf"):
+        shutil.copy(whole / name, tmp_path / "rest" / name)
+    done = subprocess.run([exe, "r=rest/job.dump01.h5"], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert files_of(tmp_path / "rest") == expected
+
+
+def test_binary_2_leaves_text_out(slideline, tmp_path):
+    done = slideline("d=out", "endtim=1e-3", deck=busy_block(binary="2"))
+    assert done.returncode == 0, done.stderr
+    for name in HISTORIES:
+        assert (tmp_path / "out" / f"job.{name}.csv").exists() and not (tmp_path / "out" / f"job.{name}").exists()
+
+
+def test_elout(whole):
+    lines = (whole / "job.elout").read_text().splitlines()
+    heads = [line for line in lines if line.startswith(" e l e m e n t   s t r e s s   c a l c u l a t i o n s   f o r   t i m e  s t e p")]
+    table = values(whole, "elout", "time", "element", "sxx", "syy", "szz", "sxy", "plastic_strain")
+    order = [96, 2, 1, 3]
+    assert table[:4, 1].astype(int).tolist() == order
+    same([re.search(r"\( at time\s*(\S+) \)", line)[1] for line in heads], table[::4, 0], 5)
+    ids = [re.fullmatch(r"\s*(\d+)-\s*(\d+)", line) for line in lines]
+    rows = [(int(found[1]), *lines[k + 1][17:].split()) for k, found in enumerate(ids) if found]
+    assert all(found[2] == "1" for found in ids if found)
+    assert [row[0] for row in rows] == table[:, 1].astype(int).tolist()
+    same([row[1:5] for row in rows], table[:, 2:6], 4)
+    same([row[7] for row in rows], table[:, 6], 4)
+    states = [lines[k + 1][9:17].strip() for k, found in enumerate(ids) if found]
+    assert [state == "plastic" for state in states] == (table[:, 6] > 0.0).tolist()
+    assert {"plastic", "elastic"} == set(states)
+
+
+def test_elout_is_the_cell_fields(whole):
+    with h5py.File(whole / "job.vtkhdf") as stream:
+        times = stream["VTKHDF/Steps/Values"][()]
+        stress = stream["VTKHDF/CellData/stress"][()].reshape(len(times), -1, 6)
+        strain = stream["VTKHDF/CellData/plastic_strain"][()].reshape(len(times), -1)
+    table = values(whole, "elout", "time", "element", "sxx", "syy", "szz", "sxy", "plastic_strain")
+    for state, time in enumerate(times):
+        rows = table[table[:, 0] == time]
+        cells = rows[:, 1].astype(int) - 1
+        assert len(rows) == 4
+        assert np.array_equal(rows[:, 2:6], stress[state, cells, :4])
+        assert np.array_equal(rows[:, 6], strain[state, cells])
+
+
+def test_rbdout(whole):
+    lines = (whole / "job.rbdout").read_text().splitlines()
+    table = values(whole, "rbdout", "time", "part", "x", "y", "ux", "uy", "rotation", "vx", "vy", "spin", "ax", "ay", "spin_rate")
+    heads = [re.match(r"  r i g i d   b o d y   m o t i o n   a t  cycle=\s*(\d+)\s+time=\s*(\S+)", line) for line in lines]
+    same([found[2] for found in heads if found], table[::2, 0], 6)
+    starts = [k for k, line in enumerate(lines) if line.startswith(" rigid body")]
+    assert [int(lines[k].split()[-1]) for k in starts] == table[:, 1].astype(int).tolist() and set(table[:, 1]) == {2, 3}
+    same([lines[k + 2].split()[1:3] for k in starts], table[:, 2:4], 4)
+    for line, first in ((3, 4), (4, 7), (5, 10)):
+        rows = np.array([lines[k + line].split()[1:] for k in starts], float)
+        same(rows[:, [0, 1, 5]], table[:, first:first + 3], 4)
+        assert not np.any(rows[:, 2:5])
+    # Local axes turn with the body.
+    turned = np.array([[float(lines[k + 9].split()[2]), float(lines[k + 10].split()[2])] for k in starts])
+    assert np.allclose(turned, np.column_stack([np.cos(table[:, 6]), np.sin(table[:, 6])]), atol=1e-4)
+    assert np.abs(table[-1, 6]) > 1.0e-3 and np.abs(table[-2, 6]) > 1.0e-2
+    local = np.array([lines[k + 16].split()[1:3] for k in starts], float)
+    along = np.column_stack([np.sum(turned * table[:, 7:9], axis=1),
+                             turned[:, 0] * table[:, 8] - turned[:, 1] * table[:, 7]])
+    assert np.allclose(local, along, atol=2e-4)
+
+
+def sections_of(lines, head):
+    """Time and rows (id, fx, fy, energy) of each block of a file of forces, and its sums."""
+    found = []
+    for line in lines:
+        if line.startswith(head):
+            found.append([float(line.split("t=")[1]), [], []])
+        elif re.match(r"( nd#| mt#|mat#)", line):
+            numbers_of = re.findall(r"=\s*(\S+)", line)
+            found[-1][1].append((int(line[4:12]), float(numbers_of[0]), float(numbers_of[1]), float(numbers_of[3])))
+        elif "xtotal=" in line:
+            numbers_of = re.findall(r"=\s*(\S+)", line)
+            found[-1][2].append([float(numbers_of[k]) for k in (0, 1, 3)])
+    return found
+
+
+def test_bndout(whole):
+    lines = (whole / "job.bndout").read_text().splitlines()
+    table = values(whole, "bndout", "time", "condition", "id", "fx", "fy", "work", "moment")
+    assert [int(row) for row in table[:10, 1]] == [1, 2, 3, 3, 3, 3, 4, 4, 4, 5]
+    found = sections_of(lines, " n o d a l   f o r c e/e n e r g y    o u t p u t  t=")
+    assert len(found) == 3 * len(table) / 10
+    rows = np.array([row for block in found for row in block[1]])
+    assert np.array_equal(rows[:, 0], table[:, 2])
+    same(rows[:, 1:], table[:, 3:6], 4)
+    ends = np.cumsum([len(block[1]) for block in found])
+    sums = np.array([table[last - len(block[1]):last, 3:6].sum(axis=0) for last, block in zip(ends, found)])
+    assert np.allclose([block[2][0] for block in found], sums, rtol=1e-4, atol=1e-12)
+    moments = [float(re.findall(r"=\s*(\S+)", line)[2]) for line in lines if "zmoment=" in line]
+    same(moments, table[table[:, 1] == 5, 6], 4)
+    assert np.all(np.any(np.abs(table[10:].reshape(-1, 10, 7)[:, :, 3:]) > 0.0, axis=(0, 2)))
+
+
+def test_nodfor(whole):
+    lines = (whole / "job.nodfor").read_text().splitlines()
+    table = values(whole, "nodfor", "time", "group", "node", "fx", "fy", "work")
+    n = 3 + 9
+    assert [int(group) for group in table[:n, 1]] == 3 * [3] + 9 * [4]
+    found = sections_of(lines, " n o d a l   f o r c e   g r o u p    o u t p u t  t=")
+    assert len(found) == len(table) / n
+    rows = np.array([row for block in found for row in block[1]])
+    assert np.array_equal(rows[:, 0], table[:, 2])
+    same(rows[:, 1:], table[:, 3:], 4)
+    blocks = table.reshape(-1, n, 6)
+    assert np.allclose([block[2] for block in found], [[b[:3, 3:].sum(axis=0), b[3:, 3:].sum(axis=0)] for b in blocks],
+                       rtol=1e-4, atol=1e-6)
+    assert lines.count(" nodal group output number  2") == len(found)
+
+
+def test_works_add_up_to_the_external_work(whole):
+    """Of this run: all that acts but the wall, whose work rwforc has."""
+    table = values(whole, "bndout", "work").reshape(-1, 10)
+    wall = values(whole, "rwforc", "work", "friction")
+    work = numbers(whole / "job.glstat.csv", "external_work")
+    assert table.sum(axis=1) + wall[:, 0] == pytest.approx(work, rel=1e-11, abs=1e-12 * np.abs(work).max())
+    assert np.abs(work).max() > 0.1
+
+
+def test_rwforc(whole):
+    lines = (whole / "job.rwforc").read_text().splitlines()
+    head = lines.index("    time       wall#   normal-force    x-force        y-force        z-force")
+    rows = np.array([line.split() for line in lines[head + 1:]], float)
+    table = values(whole, "rwforc", "time", "wall", "normal_force", "fx", "fy")
+    same(rows[:, 0], table[:, 0], 5)
+    assert np.array_equal(rows[:, 1], table[:, 1])
+    same(rows[:, 2:5], table[:, 2:5], 6)
+    assert table[:, 2].max() > 100.0
