@@ -98,7 +98,7 @@ contains
     type(side_t), intent(inout) :: side
     real(wp), allocatable, intent(inout) :: row_stress(:) !! of its nodes
     real(wp) :: area(surface%n_node), at(2, 2), share(2), stress
-    integer :: s, k
+    integer :: s, k, nodes(2)
 
     if (allocated(row_stress)) deallocate (row_stress)
     allocate (row_stress(surface%n_node), source=0.0_wp)
@@ -106,10 +106,10 @@ contains
     do s = 1, surface%n_segment
       associate (element => surface%segment_element(s), ends => surface%segments(:, s))
         if (.not. has_stress(model, state, element)) cycle
-        stress = face_pressure(model, state, rows, element, surface%nodes(ends))
+        nodes = surface%nodes(ends)
+        stress = face_pressure(model, state, rows, element, nodes)
         do k = 1, 2
-          at(:, k) = model%mesh%coordinates(:, surface%nodes(ends(k))) &
-            + state%motion(1:2, surface%nodes(ends(k)))
+          at(:, k) = model%mesh%coordinates(:, nodes(k)) + state%motion(1:2, nodes(k))
         end do
         share = 0.5_wp*norm2(at(:, 2) - at(:, 1))
         if (model%is_round) share = share*(at(1, :) + sum(at(1, :)))/3.0_wp

@@ -98,6 +98,21 @@ def collision(tmp_path_factory):
                        "p:endtim=4e-5", "p:dthist=1e-6")
 
 
+def test_report_shows_how_good_the_answer_of_contact_is(tmp_path):
+    """Curves and figures of sleout, where it was written; a run without has none (`written`)."""
+    if "SLIDELINE" not in os.environ:
+        pytest.skip("SLIDELINE is not set")
+    deck = tmp_path / "block.k"
+    text = (conftest.ROOT / "input" / "block" / "block.k").read_text(encoding="utf-8")
+    deck.write_text(text.replace("*END", "*DATABASE_SLEOUT\n1.0e-3,\n*END"), encoding="utf-8")
+    folder = run_program(os.environ["SLIDELINE"], deck, tmp_path / "run")
+    page, sleout = read_page(write_report(folder)), read_csv(folder / "block.sleout.csv")
+    assert {"How good the answer of interface 1 is", "Energy that contact of interface 1 has lost"} <= {
+        one["alt"] for one in page.pictures}
+    assert f"largest estimate {sleout['estimate'].max():.4g}" in page.text
+    assert 0.0 < sleout["estimate"].max()
+
+
 @pytest.fixture(scope="module")
 def written(collision):
     """Its report in the default place."""

@@ -86,6 +86,19 @@ def pressures(contact: History, times: list[float]):
     return figure
 
 
+def estimates(sleout: History):
+    """How far pressure and the stress behind it differ, and springs over the elements beside them, of one interface."""
+    loaded = sleout["row_energy"] > 0.0
+    ratio = np.divide(sleout["stored"], sleout["row_energy"], out=np.zeros(len(loaded)), where=loaded)
+    return lines([("pressure against stress", sleout["time"], sleout["estimate"]),
+                  ("energy of springs over elements", sleout["time"], ratio)], "estimate")
+
+
+def made(sleout: History):
+    """What the springs of one interface have lost (above 0) or made (below 0) so far."""
+    return lines([("", sleout["time"], sleout["energy"] - sleout["stored"])], "energy lost by contact")
+
+
 def zones(contact: History):
     """Stick and slip along the slave surface over time, of one interface."""
     chains = zone_pictures.chains_of(contact)

@@ -180,6 +180,11 @@ def one_interface(run: Gathered, number: int, states: list[int]) -> str:
             if run.results is not None and states:
                 pictures += picture(charts.tractions(run.results, chain, number, states),
                                     f"Friction traction along the slave surface of interface {number}; broken: what friction allows")
+    if (sleout := run.rows("sleout")) is not None and "estimate" in sleout \
+            and np.any((judged := sleout.where(interface=number))["estimate"]):
+        pictures += picture(charts.estimates(judged), f"How good the answer of interface {number} is")
+        pictures += picture(charts.made(judged), f"Energy that contact of interface {number} has lost")
+        rows += estimate_rows(judged)
     rows += friction_rows(run, number)
     if not rows:
         return paragraph("Neither forces (*DATABASE_RCFORC) nor pressures (plot states) were written.")
@@ -219,6 +224,16 @@ def friction_rows(run: Gathered, number: int) -> list[list[str]]:
     if not len(rows) or (one is None and not np.any(rows["friction"])):
         return []
     return [["frictional work", figures(float(rows["friction"][-1]), 6), figures(float(rows["time"][-1]), 4), ""]]
+
+
+def estimate_rows(judged) -> list[list[str]]:
+    """The estimate where springs hold the most energy, and the largest."""
+    rows = []
+    for name, at in (("estimate at the largest energy of the springs", int(np.argmax(judged["stored"]))),
+                     ("largest estimate", int(np.argmax(judged["estimate"])))):
+        rows.append([name, figures(float(judged["estimate"][at]), 4), figures(float(judged["time"][at]), 4),
+                     "pressure against the stress behind it"])
+    return rows
 
 
 def pressure_rows(chain) -> list[list[str]]:
