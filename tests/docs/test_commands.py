@@ -19,10 +19,14 @@ from conftest import ROOT
 
 #: page -> fewest commands that it is known to have: a page that loses its blocks fails
 FEWEST = {"README.md": 4, "doc/first_steps.md": 12, "doc/tutorial.md": 12, "tools/README.md": 2}
-FEW_STATES = "build/release/slideline i=input/collision/collision.k d=results/collision p:dtplot=1e-4"
+FEW_STATES = "build/release/slideline i=input/collision/collision.k d=results/collision p:dtplot=2e-4"
+FEW_OF_FIRST = ("build/release/slideline i=results/first.k d=results/few jobid=first endtim=4e-3 quiet=1 && "
+                "$(echo '{command}' | sed 's,results/first/,results/few/,')")
 #: beginnings of commands that take too long for a test -> what runs in their place
 SHORTER = {
     "build/venv/bin/slideline-tools animate results/collision/": f"{FEW_STATES} && {{command}}",
+    "build/venv/bin/slideline-tools animate results/first/": FEW_OF_FIRST,
+    "tools/run.sh input/taylor/": "{command} endtim=2e-5",
     "tools/test.sh": "test -x tools/test.sh",  # this test is part of it
     "tools/study.sh": "{command} --list",      # tests/tools runs studies
     "tools/docs.sh": "bash -n tools/docs.sh",  # installs from the network

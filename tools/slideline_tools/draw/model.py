@@ -277,4 +277,6 @@ def check_deck(deck: str | os.PathLike, program: str | os.PathLike, overrides: t
         raise ModelError(f"{program} tells no model of {deck}: {done.stderr.strip() or 'is it an older one?'}") from None
     if "model" not in answer:
         raise ModelError(f"{deck} was refused by {program}:\n{done.stderr.strip()}")
-    return Model(answer["model"], [one["message"] for one in answer["findings"] if one["severity"] == "warning"])
+    # What can be read may still not start: that is told with the warnings.
+    return Model(answer["model"], [("" if one["severity"] == "warning" else "it would not run: ") + one["message"]
+                                   for one in answer["findings"]])
