@@ -25,6 +25,21 @@ LABELS = {
 }
 
 
+#: what is smaller beside the largest value of its kind is round-off
+ROUND_OFF = 1.0e-12
+
+
+def largest(values):
+    """The largest size of finite values; 0 without any."""
+    sizes = np.abs(values[np.isfinite(values)])
+    return float(sizes.max()) if sizes.size else 0.0
+
+
+def without_round_off(values, scale):
+    """The values with zero in place of those that are round-off beside `scale`."""
+    return np.where(np.abs(values) < ROUND_OFF * scale, 0.0, values)
+
+
 class ScalarField:
     """One scalar per node or cell and state.
 
@@ -61,6 +76,7 @@ def scalar_field(results, name):
         present = results.point_fields + results.cell_fields
         raise ResultsError(f"no field '{base}'{missing(base, present)}")
     text, has_unit = LABELS.get(base, (base.replace("_", " "), True))
+    values = without_round_off(values, largest(values))
     if values.ndim == 3:
         values, text = pick_component(base, values, component, components, text)
     elif component:

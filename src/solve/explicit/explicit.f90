@@ -156,7 +156,7 @@ contains
     !$omp end do
   end subroutine advance_tiles
 
-  !> Contact forces that follow all others: these are summed now, and once more where nodes move.
+  !> Contact forces that follow all others, which are summed before.
   subroutine press_nodes(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -176,8 +176,9 @@ contains
     !$omp barrier
   end subroutine press_nodes
 
-  !> Sum the forces of special nodes; they move at once unless this cycle writes. Each thread has
-  !> the nodes of its own tiles, run by run: what it reads here it has mostly written itself.
+  !> Sum the forces of special nodes, unless contact has asked for them; these move at once unless
+  !> this cycle writes. Each thread has the nodes of its own tiles, run by run: what it reads here
+  !> it has mostly written itself.
   subroutine advance_special_nodes(model, state, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -187,7 +188,8 @@ contains
     !$omp do schedule(static)
     do i = 1, size(cycle%borders%runs, 2)
       associate (first => cycle%borders%runs(1, i), last => cycle%borders%runs(2, i))
-        call sum_special_forces(model%layout, state%force_slots, first, last, state%internal_force)
+        if (.not. cycle%presses) call sum_special_forces(model%layout, state%force_slots, first, &
+          last, state%internal_force)
         if (.not. cycle%writes) then
           if (allocated(state%walls)) call hold_nodes(model, cycle%leap, first, last, state)
           if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, cycle%leap, &

@@ -7,7 +7,7 @@ module explicit_cycle_m
   use contact_account_m, only : plan_looks, follow_contact
   use behind_ties_m, only : hear_tie, settle_with_tie
   use contact_inertia_m, only : weigh_contacts
-  use contact_pressing_m, only : press_contacts
+  use contact_pressing_m, only : pressing_t, press_contacts
   use cycle_loads_m, only : apply_loads
   use erosion_account_m, only : settle_elements, release_nodes
   use errors_m, only : error_t
@@ -64,6 +64,7 @@ module explicit_cycle_m
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
     logical, allocatable :: active(:)  !! (n_motion) which of them hold, once that has been asked
     logical :: presses = .false.     !! contact forces of some interface follow all other forces
+    type(pressing_t), allocatable :: pressing(:) !! (interfaces) where these are found
     logical :: refines = .false.     !! steps of elements are not those of their density alone
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
     type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
@@ -101,6 +102,7 @@ contains
     end associate
     call plan_sums(model, cycle%sums)
     cycle%presses = any(model%contacts%penalty_unit == penalty_implicit)
+    if (cycle%presses) allocate (cycle%pressing(size(model%contacts)))
     cycle%refines = allocated(state%elements%mass_ratio) .or. &
       allocated(state%elements%retardation)
     associate (ranks => monitor%ranks)
@@ -188,7 +190,7 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
 
     if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
-      cycle%velocity, monitor%clock, monitor%log, state)
+      cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
   end subroutine press_cycle
 
   !> Inverse masses where some prescribed motion has just started or ended.

@@ -20,8 +20,8 @@ def add(commands) -> None:
                     "direction and outward normals, held nodes, motions, initial velocities, loads, "
                     "pressures, rigid bodies. The program reads the deck, so that the picture shows "
                     "what would run.", epilog=EPILOG)
-    parser.add_argument("deck", metavar="DECK", help="keyword deck; or a results folder or "
-                                                     "<job>.effective.k, which need no program")
+    parser.add_argument("deck", metavar="DECK", help="keyword deck; or a results folder, whose deck as run is "
+                                                     "drawn")
     parser.add_argument("overrides", nargs="*", metavar="OVERRIDE",
                         help="as for the program, for example p:ctype=5")
     parser.add_argument("--output", "-o", metavar="FILE",
@@ -54,8 +54,8 @@ def run(options) -> int:
           f"{len(model.parts)} parts, {len(model.interfaces)} interfaces)")
     for words in model.warnings:
         print(f"warning: {words}")
-    if model.unread:
-        print("not drawn: " + ", ".join(f"*{name}" for name in model.unread))
+    if model.not_drawn:
+        print("not drawn: " + ", ".join(model.not_drawn))
     return 0
 
 

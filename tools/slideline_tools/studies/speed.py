@@ -346,8 +346,8 @@ def draw_steps(axes, bench):
         yardstick = [row["yardstick_ns"] for row in rows]
         memory = [BYTES / row["bandwidth_gb_s"] if row["size"] >= IN_MEMORY else 0.0 for row in rows]
         axes.plot(sizes, [max(pair) for pair in zip(yardstick, memory)], color="black", lw=1.6,
-                  label="roofline: larger of K and R")
-        axes.plot(sizes, yardstick, color="black", lw=0.8, ls=":", label="K, the yardstick")
+                  label="roofline of 1 thread: larger of K and R")
+        axes.plot(sizes, yardstick, color="black", lw=0.8, ls=":", label="K, the yardstick, 1 thread")
         axes.plot(sizes, [GOAL_YARDSTICKS * k + r * GOAL_BYTES / BYTES for k, r in zip(yardstick, memory)], color="grey", lw=0.8,
                   ls="--", label=f"{GOAL_YARDSTICKS:g} K + R of {GOAL_BYTES:.0f} bytes")
     axes.set_xlabel("elements")

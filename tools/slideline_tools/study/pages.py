@@ -64,6 +64,7 @@ PAGES = {  # quick ones first
     "speed_accuracy": study("speed-accuracy"),
     "speed_accuracy_friction": study("speed-accuracy-friction"),
     "simplify": study("simplify", ALL),
+    "scale": batch("scale", "--publish", sources=("parallel",)),
     "peers": Page(("tests/bench/peers/run.sh", "--publish")),
     "speed_laws": Page(("tests/bench/laws.sh", "--publish"), ("material",)),
     "speed": Page(("tests/bench/run.sh", "--publish"), ALL),
