@@ -29,7 +29,7 @@ SUBJECTS = {
     "Friction": "friction|cattaneo|ironing|sliding_flutter|wall_friction",
     "Ties, self contact, interference": "tie|self_contact|interference|press_fit|closed_chains",
     "Bodies of revolution": "round|punch|hertz_spheres|taylor_bar|ring$",
-    "Materials of impact, erosion": "impact_laws|rubber|erosion|expanding|plate_impact|taylor_johnson",
+    "Materials of impact, erosion": "impact_laws|rubber|erosion|penetration|expanding|plate_impact|taylor_johnson",
     "Quasi-static help": "dynamic_relaxation|mass_scaling|part_damping|constraints",
     "Implicit": "implicit|contact_patch_static",
     "Rigid bodies, walls, loads": "rigid|gravity|spin",
