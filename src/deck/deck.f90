@@ -37,6 +37,7 @@ module deck_m
   use deck_systems_m, only : read_system
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control, check_step
+  use deck_ends_m, only : read_ends
   use deck_output_m, only : read_database, read_force_groups
   use deck_transducer_m, only : read_transducer
   use deck_contact_m, only : read_contact
@@ -300,6 +301,8 @@ contains
       else
         call read_contact(deck, parameters, i, kinds, overrides, raw)
       end if
+    case ('TERMINATION_')
+      call read_ends(deck, parameters, i, raw)
     case ('BOUNDARY_', 'INITIAL_', 'LOAD_', 'DAMPING_')
       call read_condition(deck, parameters, i, raw)
     end select

@@ -2,6 +2,7 @@
 !> Controls of the run: end, time step and output plan.
 module controls_m
   use boundary_rows_m, only : boundary_rows_t
+  use end_conditions_m, only : end_condition_t
   use force_groups_m, only : force_group_t
   use history_tables_m, only : n_table
   use kinds_m, only : wp
@@ -86,6 +87,7 @@ module controls_m
     real(wp) :: dt_floor = 0.0_wp            !! DTMIN, as a factor on the first step
     real(wp) :: energy_limit = 0.0_wp        !! ENDENG: change of the energy ratio in per cent, 0 =
                                              !! off
+    type(end_condition_t), allocatable :: ends(:) !! *TERMINATION_, only where the deck has any
     logical :: check_only = .false.          !! NOSOL: stop after initialisation
     real(wp) :: dt_initial = 0.0_wp          !! DTINIT, 0 = computed
     real(wp) :: dt_scale = 0.9_wp            !! TSSFAC

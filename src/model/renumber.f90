@@ -3,6 +3,7 @@
 module renumber_m
   use boundary_rows_m, only : list_boundaries
   use controls_m, only : is_asked
+  use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch
   use history_tables_m, only : table_bndout
   use kinds_m, only : long
   use layout_building_m, only : build_slots, build_local_numbers
@@ -47,6 +48,7 @@ contains
     call renumber_rigids(model, new_index)
     if (allocated(model%walls)) call renumber_walls(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
+    if (allocated(model%controls%ends)) call renumber_ends(new_index, model%controls%ends)
     associate (output => model%controls%output)
       if (is_asked(output%histories(table_bndout))) call list_boundaries(model%conditions, &
         model%mesh%node_id, [model%parts(model%rigids%part)%id], output%boundaries)
@@ -91,6 +93,13 @@ contains
     do i = 1, size(model%conditions%pressures)
       is_special(model%conditions%pressures(i)%nodes) = .true.
     end do
+    if (allocated(model%controls%ends)) then
+      do i = 1, size(model%controls%ends)
+        associate (ending => model%controls%ends(i))
+          if (ending%kind == end_node_place) is_special(ending%where) = .true.
+        end associate
+      end do
+    end if
     if (allocated(model%controls%output%force_groups)) then
       ! Their forces are asked for in every cycle.
       do i = 1, size(model%controls%output%force_groups)
@@ -181,6 +190,18 @@ contains
       model%segment_sets(i)%nodes(2, :) = new_index(model%segment_sets(i)%nodes(2, :))
     end do
   end subroutine renumber_conditions
+
+  !> Nodes that end the run.
+  pure subroutine renumber_ends(new_index, ends)
+    integer, intent(in) :: new_index(:)
+    type(end_condition_t), intent(inout) :: ends(:)
+    integer :: i
+
+    do i = 1, size(ends)
+      if (any(ends(i)%kind == [end_node_place, end_node_touch])) &
+        ends(i)%where = new_index(ends(i)%where)
+    end do
+  end subroutine renumber_ends
 
   !> Contact surfaces.
   subroutine renumber_surfaces(model, new_index)

@@ -12,11 +12,12 @@ module deck_raw_m
   use history_tables_m, only : n_table
   use walls_m, only : wall_t
   use deck_lines_m, only : place_t
+  use end_conditions_m, only : end_condition_t
   use deck_raw_sets_m, only : raw_set_t, lengthen
   implicit none
   private
   public :: raw_t, lost_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_contact_t, &
-    raw_erosion_t, raw_wall_t, raw_foam_t, row_t, history_t, reserve_rows, &
+    raw_erosion_t, raw_wall_t, raw_foam_t, raw_end_t, row_t, history_t, reserve_rows, &
     append_row, reserve_velocities, append_velocity, &
     reserve_nodes, reserve_elements, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
     row_velocity, row_velocity_node, row_velocity_generation, row_load_node, row_load_set, &
@@ -125,6 +126,12 @@ module deck_raw_m
     logical :: overridden = .false.     !! the command line changes values
   end type raw_contact_t
 
+  !> One row of *TERMINATION_.
+  type :: raw_end_t
+    type(end_condition_t) :: condition
+    type(place_t) :: id_place           !! NID, PID, CID
+  end type raw_end_t
+
   !> One *RIGIDWALL_PLANAR.
   type :: raw_wall_t
     type(wall_t) :: wall
@@ -193,6 +200,7 @@ module deck_raw_m
     type(raw_contact_t), allocatable :: contacts(:)
     type(raw_contact_t), allocatable :: transducers(:) !! with one side
     type(raw_wall_t), allocatable :: walls(:)
+    type(raw_end_t), allocatable :: ends(:)
     type(raw_system_t), allocatable :: systems(:)
     type(controls_t) :: controls
     type(friction_rule_t) :: friction          !! of *CONTROL_CONTACT
@@ -226,8 +234,8 @@ contains
       raw%equations(0), raw%equation_line(0), raw%erosions(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
       raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%foams(0), raw%tables(0), &
-      raw%contacts(0), raw%transducers(0), raw%walls(0), raw%systems(0), raw%rows(64), &
-      raw%node_velocities(0), &
+      raw%contacts(0), raw%transducers(0), raw%walls(0), raw%ends(0), raw%systems(0), &
+      raw%rows(64), raw%node_velocities(0), &
       raw%node_sets(16), raw%part_sets(16), &
       raw%segment_sets(16), raw%shell_sets(4), raw%explicit_only(0))
     call reserve_nodes(raw, 0)

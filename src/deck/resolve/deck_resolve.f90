@@ -28,6 +28,7 @@ module deck_resolve_m
   use deck_resolve_round_m, only : settle_form, settle_axis, mark_round_contacts, &
     check_loads_of_round, check_velocities_of_round
   use deck_resolve_velocity_m, only : resolve_velocity
+  use deck_resolve_ends_m, only : resolve_ends
   use deck_resolve_contacts_m, only : resolve_contacts, check_references
   use deck_resolve_transducers_m, only : resolve_transducers
   use deck_resolve_walls_m, only : resolve_walls
@@ -176,6 +177,7 @@ contains
       call check_eroding_contacts(deck, raw, model)
       call check_implicit_penalties(deck, raw, model)
       call resolve_transducers(deck, raw, maps, model)
+      call resolve_ends(deck, raw, maps, model)
       if (model%is_round) call mark_round_contacts(model)
     else
       call check_references(deck, raw, maps)

@@ -8,7 +8,7 @@ module deck_schema_others_m
   !> First match counts: without effect here, or the beginning of `... not part of this version`. An
   !> asterisk stands for any ending. `unknown` keeps names of a family that holds honoured keywords
   !> from the lines below it: a misspelt one must not pass for another.
-  character(80), parameter :: table_others(*) = [character(80) :: &
+  character(84), parameter :: table_others(*) = [character(84) :: &
     'MAT_* this material is', &
     'EOS_* this equation of state is', &
     'ELEMENT_MASS_PART* masses of whole parts are', &
@@ -114,7 +114,9 @@ module deck_schema_others_m
     'DATABASE_CROSS_SECTION_* ignored', &
     'INTERFACE_* ignored', &
     'COMPONENT_* ignored', &
-    'CASE_* several cases in one deck are', &
+    'CASE several cases in one deck (sweep *PARAMETER by p:NAME=VALUE instead) are', &
+    'CASE_* several cases in one deck (sweep *PARAMETER by p:NAME=VALUE instead) are', &
+    'TERMINATION_* this end of a run is', &
     'PERTURBATION_* perturbations are', &
     'AIRBAG_* airbags are', &
     'ALE_* ALE is', &

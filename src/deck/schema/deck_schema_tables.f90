@@ -28,6 +28,12 @@ module deck_schema_tables_m
     ' DFLAG:i', &
     'CONTROL_TERMINATION', &
     ' ENDTIM:f ENDCYC:i DTMIN:f ENDENG:f ENDMAS:f NOSOL:i', &
+    'TERMINATION_NODE', &
+    ' NID:i STOP:i MAXC:f MINC:f', &
+    'TERMINATION_BODY', &
+    ' PID:i STOP:i MAXC:f MINC:f', &
+    'TERMINATION_CONTACT', &
+    ' CID:i ACTIM:f DUR:f THRES:f DOF:i', &
     'CONTROL_TIMESTEP', &
     ' DTINIT:f TSSFAC:f ISDO:i TSLIMT:fw DT2MS:f LCTM:i ERODE:i MS1ST:i', &
     ' DT2MSF:fw DT2MSLC:iw IMSCL:iw -:x -:x RMSCL:fw EMSCL:fw IHDO:iw', &

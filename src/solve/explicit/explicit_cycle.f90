@@ -12,6 +12,7 @@ module explicit_cycle_m
   use contact_pressing_m, only : pressing_t, press_contacts
   use cycle_loads_m, only : apply_loads
   use erosion_account_m, only : settle_elements, release_nodes
+  use early_end_m, only : find_early_end
   use errors_m, only : error_t
   use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
   use explicit_memory_m, only : write_restarts, take_up_steps
@@ -93,7 +94,7 @@ contains
   !> Set up the cycles.
   subroutine start_cycles(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
+    type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(out) :: cycle
 
@@ -125,6 +126,8 @@ contains
     call start_watch(monitor%restarts%goes_on, cycle%failures)
     if (monitor%restarts%goes_on) call take_up_steps(model, state, monitor%restarts%source, &
       cycle%steps, cycle%damping, cycle%ratio, cycle%error)
+    if (monitor%restarts%goes_on .and. allocated(model%controls%ends)) &
+      call heed_ends(model, state, cycle)
   end subroutine start_cycles
 
   !> Forces on the special nodes at u(n), and what this cycle has to write.
@@ -342,6 +345,7 @@ contains
       state%time, state%dt, cycle%error)
     if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     cycle%finished = allocated(cycle%error)
+    if (allocated(model%controls%ends)) call heed_ends(model, state, cycle)
     if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
     if (monitor%ranks%mine == 0) call follow_progress(monitor%progress, monitor%clock, &
       state%cycle, .false., state%time, &
@@ -394,7 +398,7 @@ contains
     if (monitor%ranks%n == 1) &
       call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, cycle%error)
     cycle%plots = cycle%asked%plot
-    ends = is_last(cycle%steps, state%cycle, state%time)
+    ends = is_last(cycle%steps, state%cycle, state%time) .or. cycle%last
     if (.not. allocated(cycle%error)) call write_files(wanted_files(monitor%restarts, &
       state%cycle, cycle%asked%dump, ends, cycle%asked%signalled .and. .not. ends), state, &
       monitor, cycle)
@@ -403,6 +407,19 @@ contains
     cycle%last = .true.
     cycle%reason = 'stopped on request'
   end subroutine heed_requests
+
+  !> What ends the run before its time: the cycle to come is then the last one.
+  subroutine heed_ends(model, state, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(inout) :: cycle
+    character(:), allocatable :: reason
+
+    call find_early_end(model, state, reason)
+    if (.not. allocated(reason) .or. cycle%last) return
+    cycle%last = .true.
+    cycle%reason = reason
+  end subroutine heed_ends
 
   !> Restart files, by the first process.
   subroutine write_files(wanted, state, monitor, cycle)

@@ -8,6 +8,7 @@ module implicit_m
   use contact_springs_m, only : measure_springs
   use contacts_m, only : breaks
   use contact_work_m, only : count_step
+  use early_end_m, only : find_early_end
   use energies_m, only : energy_ratio
   use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
@@ -55,11 +56,12 @@ contains
     reason = 'termination time reached'
     call begin_steps(model, state, monitor, memory, last, error)
     if (allocated(error) .or. monitor%only_checks) return
+    if (monitor%restarts%goes_on) call heed_ends(model, state, last, reason)
     call report_instant(model, state, last, .false., monitor, memory, error)
     do while (.not. last .and. .not. allocated(error))
       call take_step(model, state, monitor, memory%control, memory%step, memory%trial, error)
       if (allocated(error)) exit
-      call heed_requests(model, state, monitor, memory, asked, last, error)
+      call heed_requests(model, state, monitor, memory, asked, last, reason, error)
       if (allocated(error)) exit
       if (asked%stop) reason = 'stopped on request'
       call report_instant(model, state, last, asked%plot, monitor, memory, error)
@@ -72,6 +74,21 @@ contains
     end if
     call report_contact_end(model, state, monitor%log)
   end subroutine advance_implicit
+
+  !> What ends the run before its time.
+  subroutine heed_ends(model, state, last, reason)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    logical, intent(inout) :: last
+    character(:), allocatable, intent(inout) :: reason
+    character(:), allocatable :: found
+
+    if (.not. allocated(model%controls%ends)) return
+    call find_early_end(model, state, found)
+    if (.not. allocated(found) .or. last) return
+    last = .true.
+    reason = found
+  end subroutine heed_ends
 
   !> Write what is due of the state.
   subroutine report_instant(model, state, last, plots, monitor, memory, error)
@@ -90,13 +107,14 @@ contains
 
   !> After a step: what someone asks for, the plan of the next step, and the restart files that are
   !> due. A run that goes on from one reports the state as this one is about to.
-  subroutine heed_requests(model, state, monitor, memory, asked, last, error)
+  subroutine heed_requests(model, state, monitor, memory, asked, last, reason, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(implicit_memory_t), intent(inout) :: memory
     type(requests_t), intent(out) :: asked  !! a stop only where there was a step left
     logical, intent(out) :: last            !! the state is the last one
+    character(:), allocatable, intent(inout) :: reason !! of the end
     type(error_t), allocatable, intent(inout) :: error
     type(step_control_t) :: planned
     logical :: ends
@@ -105,6 +123,7 @@ contains
     call take_requests(state, memory%ratio, .true., monitor, asked, error)
     if (allocated(error)) return
     last = has_ended(model, state, memory%control)
+    call heed_ends(model, state, last, reason)
     asked%stop = asked%stop .and. .not. last
     asked%signalled = asked%signalled .and. .not. last
     last = last .or. asked%stop

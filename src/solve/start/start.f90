@@ -79,6 +79,8 @@ contains
     call start_rigids(model, log, state)
     call start_walls(model, state)
     call start_works(model, state)
+    if (allocated(model%controls%ends)) &
+      allocate (state%quiet_since(size(model%controls%ends)), source=-1.0_wp)
     allocate (state%contacts(size(model%contacts)), state%estimates(n_told(model%contacts)))
     do i = 1, size(model%contacts)
       call start_contact(model%contacts(i), model, log, state%contacts(i))
