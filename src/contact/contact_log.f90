@@ -2,7 +2,7 @@
 !> What the log says about an interface.
 module contact_log_m
   use contact_dispatch_m, only : formulation_t, formulation_of
-  use contact_penalty_m, only : mean_length, built_in_penalty, side_stiffness
+  use contact_penalty_m, only : rigid_factor, mean_length, built_in_penalty, side_stiffness
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, breaks, kind_text, &
     penalty_share, penalty_implicit
@@ -99,7 +99,11 @@ contains
     type(log_t), intent(inout) :: log
     real(wp) :: lengths(2), rows(2)
 
-    if (penalty > 0.0_wp) then
+    if (penalty > 0.0_wp .and. contact%penalty < 0.0_wp) then
+      call warn(log, 'interface '//to_text(contact%id)//': nodes of its slave are rigid, so that ' &
+        //'pressures without compliance may depend on each other: implicit springs of ' &
+        //to_text(rigid_factor)//' times K L/A of the softer side are taken')
+    else if (penalty > 0.0_wp) then
       call write_log(log, '  penalty: implicit springs of '//to_text(penalty)//' N/m^2, ' &
         //to_text(contact%penalty)//' times K L/A of the softer side')
     else

@@ -12,7 +12,7 @@ module implicit_friction_m
   use kinds_m, only : wp
   use law_friction_m, only : find_limits
   use nodal_average_m, only : average_more, share_out
-  use pressing_m, only : pressing_t, add_compliance
+  use pressing_m, only : pressing_t, add_compliance, fill_columns
   use weighted_gaps_m, only : rows_t, fill_band, along_tangent
   implicit none
   private
@@ -27,9 +27,16 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(outcome_t) :: outcome
     real(wp) :: limit(step%rows%n)
+    integer :: k
 
     call find_limits_ahead(rule, step, memory, limit)
     call press_velocities(step%rows, step%mobility, step%problem%x, step%velocity, step%pressed)
+    do k = 1, step%n_mode
+      associate (n => step%problem%n)
+        step%pressed = step%pressed + step%modes(:, :, k)*dot_product( &
+          step%problem%column((k - 1)*n + 1:k*n), step%problem%x(:n))
+      end associate
+    end do
     call average_slips(step%pressed, step%rate, memory)
     call set_up(rule, step, limit, memory)
     call solve_complementarity(step%problem, outcome)
@@ -104,8 +111,9 @@ contains
     stiffness = rule%stiffness*memory%slave_penalty*step%dt
     associate (rows => step%rows, problem => step%problem, nodal => memory%scratch%nodal, &
       former => memory%scratch%former_traction)
-      call set_size(problem, rows%n, rows%width, 0)
+      call set_size(problem, rows%n, rows%width, step%n_mode)
       call fill_band(rows, along_tangent, step%mobility, problem%band)
+      call fill_columns(step, along_tangent)
       if (stiffness > 0.0_wp) call add_compliance(rows%n, rows%width, rows%slave, nodal, &
         stiffness, problem%band)
       do i = 1, rows%n

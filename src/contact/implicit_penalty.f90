@@ -16,7 +16,7 @@ module implicit_penalty_m
   use implicit_friction_m, only : rub_ahead
   use kinds_m, only : wp
   use nodal_average_m, only : average_gaps, average_more, share_out
-  use pressing_m, only : pressing_t, add_compliance
+  use pressing_m, only : pressing_t, add_compliance, fill_columns
   use weighted_gaps_m, only : choose_rows, form_shares, find_rates, fill_band, along_normal
   implicit none
   private
@@ -132,11 +132,12 @@ contains
       real(wp), intent(in), contiguous :: forces(:, :), formers(:, :) !! present, of the step before
       type(returned_t), intent(inout) :: returned
       real(wp), intent(out) :: before
-      integer :: i
+      integer :: i, k
 
       before = 0.0_wp
       do i = 1, size(memory%nodes)
-        associate (force => forces(:, i), v => motion(3:4, memory%nodes(i)), former => formers(:, i))
+        associate (force => forces(:, i), v => motion(3:4, memory%nodes(i)), &
+          former => formers(:, i))
           returned%behind = returned%behind + (force(1)*v(1) + force(2)*v(2))
           returned%ahead = returned%ahead + (force(1)*step%velocity(1, i) &
             + force(2)*step%velocity(2, i))
@@ -144,6 +145,9 @@ contains
             + force(2)**2*step%mobility(2, i))
           before = before + (former(1)*v(1) + former(2)*v(2))
         end associate
+      end do
+      do k = 1, step%n_mode
+        returned%recoil = returned%recoil + sum(step%modes(:, :, k)*forces)**2
       end do
     end subroutine sum_returns
 
@@ -190,8 +194,9 @@ contains
       kappa => memory%scratch%nodal(2, :memory%n_slave))
       if (rows%n > 0) then
         call form_shares(memory%points, memory%scratch%nodal, rows)
-        call set_size(problem, rows%n, rows%width, 0)
+        call set_size(problem, rows%n, rows%width, step%n_mode)
         call fill_band(rows, along_normal, step%mobility, problem%band)
+        call fill_columns(step, along_normal)
         if (memory%slave_penalty > 0.0_wp) call add_compliance(rows%n, rows%width, rows%slave, &
           memory%scratch%nodal, memory%slave_penalty*step%dt, problem%band)
         do i = 1, rows%n

@@ -5,10 +5,10 @@ module pressing_m
   use complementarity_m, only : problem_t
   use contact_state_m, only : contact_state_t
   use kinds_m, only : wp
-  use weighted_gaps_m, only : rows_t
+  use weighted_gaps_m, only : rows_t, along_normal
   implicit none
   private
-  public :: pressing_t, start_pressing, add_compliance
+  public :: pressing_t, start_pressing, add_compliance, fill_columns
 
   !> The step ahead at the nodes of an interface.
   type :: pressing_t
@@ -20,6 +20,10 @@ module pressing_m
                                             !! interface
     real(wp), allocatable :: mobility(:, :) !! (2, n_slave + n_master) velocity from a force of 1
     integer, allocatable :: led(:, :)       !! (2, :) motions that lead nodes, and these
+    integer, allocatable :: riders(:, :)    !! (3, :) rigid bodies, their nodes, and these
+    integer :: n_mode = 0                   !! free motions of rigid bodies
+    real(wp), allocatable :: modes(:, :, :) !! (2, n_slave + n_master, n_mode or more) velocities of
+                                            !! them, times the root of what a unit force makes
     real(wp), allocatable :: gap(:)         !! (n_slave) mean gaps, m
     real(wp), allocatable :: left(:)        !! (n_slave) what would be left of them, over dt, m/s
     logical, allocatable :: wanted(:)       !! (n_slave) may press
@@ -57,5 +61,31 @@ contains
       band(0, i) = band(0, i) + 1.0_wp/(stiffness*nodal(2, slave(i)))
     end do
   end subroutine add_compliance
+
+  !> How the rows move rigid bodies.
+  pure subroutine fill_columns(step, direction)
+    type(pressing_t), intent(inout) :: step
+    integer, intent(in) :: direction !! along_normal or along_tangent
+    real(wp) :: along(2)
+    integer :: i, k, m
+
+    if (step%n_mode == 0) return
+    associate (n => step%problem%n, column => step%problem%column, rows => step%rows)
+      column(:n*step%n_mode) = 0.0_wp
+      do i = 1, size(rows%newest)
+        k = rows%newest(i)
+        do while (k > 0)
+          along = rows%share(:, k)
+          if (direction /= along_normal) along = [-along(2), along(1)]
+          do m = 1, step%n_mode
+            associate (one => column((m - 1)*n + rows%row(k)))
+              one = one + dot_product(along, step%modes(:, i, m))
+            end associate
+          end do
+          k = rows%next(k)
+        end do
+      end do
+    end associate
+  end subroutine fill_columns
 
 end module pressing_m

@@ -6,11 +6,15 @@ module contact_penalty_m
     penalty_share, penalty_implicit
   use kinds_m, only : wp
   use model_m, only : model_t
+  use rigids_m, only : mark_rigid_nodes
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: set_penalties, built_in_penalty, softer_side, side_stiffness, &
+  public :: set_penalties, rigid_factor, built_in_penalty, softer_side, side_stiffness, &
     mean_length, spread_of_stiffness
+
+  !> Times K L/A of the softer side: implicit springs of a rigid slave without compliance.
+  real(wp), parameter :: rigid_factor = 1000.0_wp
 
 contains
 
@@ -23,7 +27,7 @@ contains
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: self_share !! part that either pass of a surface with itself has
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: master_value, estimate
+    real(wp) :: master_value, estimate, factor
 
     master_value = contact%master_penalty
     if (.not. master_value > 0.0_wp) master_value = contact%penalty
@@ -39,14 +43,26 @@ contains
       memory%slave_penalty = contact%penalty*estimate
       memory%master_penalty = master_value*estimate
     case (penalty_implicit)
-      ! Below 0: no compliance, which 0 stands for.
-      memory%slave_penalty = max(0.0_wp, contact%penalty)*softer_side(contact, model)
+      ! Below 0: no compliance, which 0 stands for. Rows of a rigid slave may depend on others.
+      factor = max(0.0_wp, contact%penalty)
+      if (.not. factor > 0.0_wp .and. is_rigid(contact%slave, model)) factor = rigid_factor
+      memory%slave_penalty = factor*softer_side(contact, model)
       memory%master_penalty = memory%slave_penalty
     end select
     ! Each pair of runs meets twice, either one being the slave once.
     if (contact%is_self) memory%slave_penalty = self_share*memory%slave_penalty
     memory%node_penalty = memory%slave_penalty*mean_length(contact%slave, model)
   end subroutine set_penalties
+
+  !> Whether nodes of a surface belong to a rigid body.
+  pure logical function is_rigid(surface, model)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    logical :: of_body(model%mesh%n_node)
+
+    of_body = mark_rigid_nodes(model%rigids, model%mesh%n_node)
+    is_rigid = any(of_body(surface%nodes))
+  end function is_rigid
 
   !> The built-in estimate of the distributed penalty, N/m^2: SLSFAC K L/A of the softer side.
   pure function built_in_penalty(contact, model) result(estimate)

@@ -64,10 +64,6 @@ contains
             'interface '//to_text(other%id), model)
         end associate
       end do
-      do i = 1, size(model%rigids)
-        call refuse_shared(deck, entry, is_own, model%rigids(i)%nodes, 'the rigid body of part ' &
-          //to_text(model%parts(model%rigids(i)%part)%id), model)
-      end do
       if (allocated(model%walls)) then
         do i = 1, size(model%walls)
           call refuse_shared(deck, entry, is_own, model%walls(i)%nodes, 'rigid wall ' &

@@ -12,6 +12,9 @@ module contact_pressing_m
   use model_m, only : model_t
   use node_motion_m, only : leap_t, find_factors
   use pressing_m, only : pressing_t, start_pressing
+  use part_damping_m, only : part_damping_rate
+  use rigid_motion_m, only : solve_rigids, damping_of
+  use rigid_pressing_m, only : list_riders, ride
   use state_m, only : state_t
   implicit none
   private
@@ -21,9 +24,10 @@ contains
 
   !> Pressures and forces of all such interfaces. One thread: what an interface is given by another
   !> has to be known.
-  subroutine press_contacts(model, leap, velocity, clock, log, state, steps)
+  subroutine press_contacts(model, leap, damping, velocity, clock, log, state, steps)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
+    real(wp), intent(in) :: damping(2)         !! D per direction
     real(wp), intent(in) :: velocity(:)        !! (n_motion) v(n+1/2) of prescribed motions
     type(clock_t), intent(inout) :: clock
     type(log_t), intent(inout) :: log
@@ -38,12 +42,14 @@ contains
       if (.not. allocated(steps(i)%velocity)) then
         call start_pressing(state%contacts(i), steps(i))
         call list_led(model, state%contacts(i)%nodes, steps(i))
+        call list_riders(model, state%contacts(i)%nodes, steps(i))
       end if
+      steps(i)%dt = leap%dt
       if (state%contacts(i)%points%n > 0) then
         call foresee(leap, state%contacts(i)%nodes, state, steps(i))
         call lead(model, velocity, state%time, steps(i))
+        if (size(steps(i)%riders, 2) > 0) call carry(model, leap, damping, state, steps(i))
       end if
-      steps(i)%dt = leap%dt
       steps(i)%dt_before = state%dt_before
       steps(i)%cycle = state%cycle
       steps(i)%time = state%time
@@ -78,6 +84,25 @@ contains
       end do
     end do
   end subroutine foresee
+
+  !> Nodes of rigid bodies, by the forces that are known.
+  subroutine carry(model, leap, damping, state, step)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    real(wp), intent(in) :: damping(2) !! D per direction
+    type(state_t), intent(inout) :: state
+    type(pressing_t), intent(inout) :: step
+    real(wp) :: half(3, size(model%rigids)), rate(3)
+    integer :: i
+
+    call solve_rigids(model, damping, state)
+    do i = 1, size(model%rigids)
+      rate = damping_of(state%rigids(i), damping + part_damping_rate(model, &
+        model%rigids(i)%part, state%time))
+      half(:, i) = leap%mean/(1.0_wp + 0.5_wp*rate*leap%mean)
+    end do
+    call ride(model, half, state, step)
+  end subroutine carry
 
   !> Which motions lead which nodes of an interface.
   subroutine list_led(model, nodes, step)

@@ -196,7 +196,7 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
 
     if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
-      cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
+      cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
   end subroutine press_cycle
 
   !> Inverse masses where some prescribed motion has just started or ended.

@@ -12,7 +12,7 @@ module rigid_motion_m
   use state_m, only : state_t
   implicit none
   private
-  public :: solve_rigids, start_rigid_motions, rigid_work, move_rigids, fill_rigids, &
+  public :: solve_rigids, damping_of, start_rigid_motions, rigid_work, move_rigids, fill_rigids, &
     fill_bodies, rigid_reaction
 
 contains

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: MIT
+"""Rigid bodies in contact whose springs push by the gaps of the end of the step (PUNIT 4)."""
+import numpy as np
+
+from meshes import Deck, grid
+
+RHO, YOUNG, LENGTH, SPEED, N = 1000.0, 1.0e6, 1.0, 0.1, 50
+SOUND = np.sqrt(YOUNG / RHO)
+RIGID, DEFAULT = -1.0, 0.0        # PEN with PUNIT 4: no compliance, ten times K L/A
+STEP = 1.0e-9                     # every cycle
+
+
+def scene(penalty, sizes, held, exchanged, scale=0.9):
+    """A rigid block of the size of an element column runs into a bar, or a bar into it where it is held."""
+    height = LENGTH / N
+    deck = Deck("rigid body and bar").control(1.5 * LENGTH / SOUND, scale=scale).hourglass(4, 0.1)
+    deck.part(1).part(2).elastic(RHO, YOUNG, 0.0, 1)
+    deck.add("*MAT_RIGID", (2, RHO, YOUNG, 0.0), (1.0, 7, 7) if held else (1.0, 0, 0))
+    bar = deck.mesh(*grid(N, sizes[0], LENGTH, height), part=1)
+    body = deck.mesh(*grid(10, sizes[1], 0.2, height, (-0.2, 0.0)), part=2)
+    if held:
+        deck.node_set(3, bar).add("*INITIAL_VELOCITY", (3,), (-SPEED, 0.0))
+    else:
+        deck.node_set(3, body).add("*INITIAL_VELOCITY", (3,), (SPEED, 0.0))
+    deck.node_set(1, bar[::N + 1][::-1]).node_set(2, body[10::11])
+    return deck.contact(*((2, 1) if exchanged else (1, 2)), 7, penalty, 4).output(glstat=STEP, rcforc=STEP, matsum=STEP)
+
+
+def check(run):
+    height = LENGTH / N
+    for penalty, sizes, held, exchanged in ((RIGID, (1, 1), True, False), (DEFAULT, (2, 5), True, True), (RIGID, (1, 3), True, True),
+                                            (RIGID, (1, 1), False, False), (DEFAULT, (2, 5), False, True), (RIGID, (3, 1), False, False), (RIGID, (1, 3), False, True)):
+        result = run.program(scene(penalty, sizes, held, exchanged))
+        force, table, parts = result.table("rcforc").where(side="slave"), result.table("glstat"), result.table("matsum")
+        name = f"{'held' if held else 'free'} body, elements {sizes[0]}/{sizes[1]}, {'slave' if exchanged else 'master'}, PEN {penalty:g}"
+        impedance = RHO * SOUND * height
+        decay = 0.0 if held else impedance / (RHO * 0.2 * height)
+        expected = impedance * SPEED * np.exp(-decay * force["time"])
+        inside = (force["time"] > 0.1 * LENGTH / SOUND) & (force["time"] < 1.4 * LENGTH / SOUND)
+        run.check(f"{name}: force / (rho c v), rms of the difference", np.sqrt(np.mean((np.abs(force["fx"]) - expected)[inside]**2)) / impedance / SPEED,
+                  0.0, 4.0e-3 if penalty == RIGID else 1.0e-2, "abs", "Z v exp(-Z t/M)")
+        run.check(f"{name}: energy ratio", table["energy_ratio"][-1], 1.0, 1.0e-4)
+        if not held:
+            total = sum(parts.where(part=part)["momentum_x"] for part in (1, 2))
+            run.check(f"{name}: momentum / initial", np.ptp(total) / total[0], 0.0, 1.0e-12, "abs")
