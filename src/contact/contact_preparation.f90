@@ -15,6 +15,7 @@ module contact_preparation_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use spots_m, only : start_spots
+  use tips_m, only : has_folds
   implicit none
   private
   public :: prepare_contact
@@ -45,7 +46,7 @@ contains
     formulation = formulation_of(contact)
     memory%contact_law = formulation%contact_law
     call set_penalties(contact, model, formulation%self_share, memory)
-    call start_spots(formulation%spots, contact%n_gauss, contact%is_round, contact%is_self, &
+    call start_spots(formulation%spots, contact%n_gauss, contact%is_round, has_folds(contact), &
       contact%slave, memory)
     call allocate_slave_tracking(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_tracking(contact, model, memory)

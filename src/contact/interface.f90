@@ -29,7 +29,7 @@ module interface_m
   use log_m, only : log_t
   use model_m, only : model_t
   use spots_m, only : move_spots
-  use tips_m, only : find_tips
+  use tips_m, only : has_folds, find_tips
   use tied_interface_m, only : start_ties, apply_ties, evaluate_ties
   use tracking_m, only : update_tracking, wake_all, forget_pairs
   implicit none
@@ -136,7 +136,7 @@ contains
     call gather_spots(contact, motion, memory)
     call search_pairs(contact, cycle, memory)
     call lap(clock, phase_contact_search)
-    if (contact%is_self .and. formulation%where_pressed == pressed_at_slave_nodes) &
+    if (has_folds(contact) .and. formulation%where_pressed == pressed_at_slave_nodes) &
       call find_tips(contact%slave, memory)
     call set_forces_aside(motion, had_force, memory, apart)
     call place_points(contact, memory)
@@ -277,7 +277,7 @@ contains
     call search_pairs(contact, 0, memory)
     call catch_crossings(contact, crossings, memory)
     if (is_first) call close_contacts(contact, closed_gap_of(contact, memory), memory)
-    if (contact%is_self .and. formulation%where_pressed == pressed_at_slave_nodes) &
+    if (has_folds(contact) .and. formulation%where_pressed == pressed_at_slave_nodes) &
       call find_tips(contact%slave, memory, motion)
     call place_points(contact, memory)
     if (memory%points%n == 0) return

@@ -9,7 +9,7 @@ module place_mortar_m
   use geometry_m, only : separation
   use kinds_m, only : wp
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
-  use tips_m, only : belongs_to
+  use tips_m, only : has_folds, belongs_to
   implicit none
   private
   public :: place_mortar
@@ -107,7 +107,7 @@ contains
         memory%spot_share, feet%normal(1, k), block%xi(k), block%area(k), all_face)
     end associate
     block%n = block%n + m*n
-    if (contact%is_self) then
+    if (has_folds(contact)) then
       all_face = .false.
       do place = block%n - m*n + 1, block%n, m
         call move_to_ends(memory, place, place + m - 1, block)
@@ -249,7 +249,7 @@ contains
         block%nodes(:, k) = memory%n_slave + contact%master%segments(:, feet%segment(k))
       end do
     end associate
-    if (contact%is_self .and. block%n > 1) call move_to_ends(memory, 1, block%n, block)
+    if (has_folds(contact) .and. block%n > 1) call move_to_ends(memory, 1, block%n, block)
     call take_shares(memory, 1, block)
   end subroutine add_others
 

@@ -4,18 +4,26 @@
 !> points of the segment give way to its two nodes (doc/theory/contact.md, section 5.7).
 module tips_m
   use contact_state_m, only : contact_state_t, make_room, is_touching, is_behind
-  use contacts_m, only : contact_t
+  use contacts_m, only : contact_t, is_tied
   use foot_m, only : foot_t, near_foot
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: find_tips, sharpen_tips, belongs_to
+  public :: has_folds, find_tips, sharpen_tips, belongs_to
 
   !> Cosines of the turn at a node up to which nothing changes, and from which on all gives way.
   real(wp), parameter :: gentle = 0.99026806874157036_wp, sharp = 0.95105651629515353_wp
 
 contains
+
+  !> Whether tips of folds count as such, where averages do: a surface in contact with itself.
+  elemental function has_folds(contact)
+    type(contact_t), intent(in) :: contact
+    logical :: has_folds
+
+    has_folds = contact%is_self .and. .not. is_tied(contact)
+  end function has_folds
 
   !> Let the points of segments at tips of folds give way to their nodes.
   pure subroutine sharpen_tips(contact, memory)

@@ -14,6 +14,7 @@ module tangent_mortar_m
   use pieces_m, only : clear_pieces, list_segment, cut_pieces
   use place_segmented_mortar_m, only : gauss_xi, least_cut
   use sparse_m, only : sparse_t
+  use tips_m, only : has_folds
   use variation_m, only : varied_point_t, spot_foot, put_foot, length_between, take_piece, &
     piece_ends, vary_share, vary_radius
   implicit none
@@ -76,7 +77,7 @@ contains
         if (table%high(k) > table%low(k) .and. table%share(k) > 0.0_wp) &
           call vary_piece(contact, memory, table, s, k, list)
       end do
-      if (contact%is_self) call vary_ends(memory, contact%slave%segments(:, s), s, list)
+      if (has_folds(contact)) call vary_ends(memory, contact%slave%segments(:, s), s, list)
     end do
     call add_nodal_tangent(contact, memory, list, equations, matrix)
     if (allocated(memory%friction%force)) &
