@@ -18,7 +18,7 @@ module explicit_cycle_m
     prescribed_work
   use health_m, only : tile_check_t, are_sound, check_step, check_cycle
   use interface_m, only : apply_contact
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   use mass_growth_m, only : grow_state_masses
   use mass_log_m, only : check_added_mass
   use model_m, only : model_t
@@ -30,12 +30,13 @@ module explicit_cycle_m
   use rigid_motion_m, only : solve_rigids, rigid_work, move_rigids
   use progress_m, only : follow_progress
   use rank_exchange_m, only : parcel_t, plan_parcel, exchange_parcel, write_record, &
-    read_records, exchange_erosion, exchange_limits, exchange_history, gather_motion, &
-    gather_state, judge_elements
+    read_records, value_skipped, exchange_erosion, exchange_limits, exchange_history, &
+    gather_motion, gather_state, judge_elements
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t, share_error
   use requests_m, only : requests_t, take_requests
   use restart_plan_m, only : wanted_files
+  use resting_tiles_m, only : rest_t, plan_rest, follow_rest, n_skipped_so_far
   use skew_motion_m, only : remember_common, move_common
   use state_m, only : state_t
   use wall_motion_m, only : count_walls
@@ -62,6 +63,7 @@ module explicit_cycle_m
     logical :: presses = .false.     !! contact forces of some interface follow all other forces
     logical :: refines = .false.     !! steps of elements are not those of their density alone
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
+    type(rest_t) :: rest             !! tiles that need no step
     type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
                                                  !! come to; of several processes theirs, in the
                                                  !! first ones, once they have exchanged it
@@ -102,6 +104,7 @@ contains
       cycle%shares = share_out(model%layout, ranks%mine, ranks%n)
       allocate (cycle%checks(max(size(model%layout%tiles), ranks%n)))
       if (ranks%n > 1) call plan_parcel(cycle%shares, cycle%sums, cycle%parcel)
+      call plan_rest(model, cycle%shares, ranks%n > 1 .or. allocated(cycle%sums%parts), cycle%rest)
     end associate
     cycle%reason = 'termination time reached'
     if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
@@ -211,8 +214,10 @@ contains
         cycle%error)
       call write_record(shares, ranks%mine, cycle%checks, state%elements, cycle%asked, &
         allocated(cycle%error), cycle%parcel)
+      cycle%parcel%own(value_skipped) = real(n_skipped_so_far(cycle%rest), wp)
       call exchange_parcel(ranks, shares, cycle%parcel, state, cycle%sums)
       call read_records(cycle%parcel, cycle%checks, cycle%asked, n_gone, has_error)
+      cycle%rest%n_told = nint(sum(cycle%parcel%records(value_skipped, :)), long)
       if (has_error) call share_error(ranks, cycle%error)
       if (model%erodes) then
         if (n_gone > sum(state%elements%erosion%n_eroded)) &
@@ -265,6 +270,7 @@ contains
 
     if (allocated(state%elements%n_failed)) call follow_failures(model, state, cycle%failures, &
       monitor%log)
+    call follow_rest(model, cycle%rest)
     if (cycle%finished) return
     if (.not. cycle%writes) then
       call count_sums(cycle%sums, state%external_work, state%damping_work)

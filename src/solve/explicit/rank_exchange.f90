@@ -18,12 +18,12 @@ module rank_exchange_m
   use state_m, only : state_t
   implicit none
   private
-  public :: parcel_t, plan_parcel, exchange_parcel, write_record, read_records, exchange_erosion, &
-    exchange_limits, exchange_history, gather_motion, gather_state, judge_elements
+  public :: parcel_t, plan_parcel, exchange_parcel, write_record, read_records, value_skipped, &
+    exchange_erosion, exchange_limits, exchange_history, gather_motion, gather_state, judge_elements
 
-  !> Values of a record: limit, checksum, volumes, elements gone, requests (4), an error; and of the
-  !> sums over the nodes of a tile.
-  integer, parameter :: n_value = 9, n_sum = 4
+  !> Values of a record: limit, checksum, volumes, elements gone, requests (4), an error, steps of
+  !> tiles that were not taken; and of the sums over the nodes of a tile.
+  integer, parameter :: n_value = 10, value_skipped = 10, n_sum = 4
 
   !> What is exchanged in each cycle, process by process.
   type :: parcel_t
