@@ -3,25 +3,24 @@
 !> to the last bit, has left every value of its elements as it was and no force: the next step
 !> would then do the same, for elements see only differences of their nodes. It wakes as soon as one
 !> of its special nodes moves otherwise, which nothing but contact, loads and tiles around it can
-!> bring about, and is stepped from then on. Tiles that rest at velocity zero amid others that
-!> do are not even looked at.
+!> bring about, and is stepped from then on. Tiles that rest at velocity zero amid others that do
+!> are not even looked at.
 module resting_tiles_m
   use kinds_m, only : wp, long
   use layout_m, only : layout_t, tile_t
   use log_m, only : log_t, write_log
   use model_m, only : model_t
   use rank_shares_m, only : shares_t
-  use renumber_m, only : mark_touched_nodes
-  use rigids_m, only : mark_rigid_nodes
   use state_m, only : state_t
+  use tile_neighbours_m, only : neighbours_t, find_neighbours
   use tile_values_m, only : take_values, same_bits
   implicit none
   private
-  public :: rest_t, plan_rest, is_tried, rests, is_flying, remember_tile, judge_tile, look_at_tile, &
-    follow_rest, n_skipped_so_far, report_rest
+  public :: rest_t, plan_rest, is_tried, rests, is_flying, remember_tile, judge_tile, &
+    look_at_tile, follow_rest, n_skipped_so_far, report_rest
 
-  !> Status of a tile: stepped in each cycle, or not; where it is above zero, so many cycles are left
-  !> in which it may come to rest.
+  !> Status of a tile: stepped in each cycle, or not; above zero so many cycles are left in which it
+  !> may come to rest.
   integer, parameter :: awake = 0, resting = -1, flying = -2
 
   !> Cycles in which a tile may come to rest: signs of zeros may change in the first ones.
@@ -34,10 +33,8 @@ module resting_tiles_m
     integer, allocatable :: stepped(:)   !! tiles to step, of this process
     integer, allocatable :: watched(:)   !! resting ones that may wake, or whose nodes move
     integer, allocatable :: summed(:)    !! tiles whose special nodes are summed and moved
-    logical, allocatable :: is_touched(:) !! (tiles) special nodes feel more than their elements
-    integer, allocatable :: first_near(:) !! (tiles + 1) where the neighbours of each tile start ...
-    integer, allocatable :: near(:)       !! ... in this list
-    real(wp), allocatable :: no_force(:, :) !! (2, n_local)
+    type(neighbours_t) :: neighbours     !! asked for once tiles rest
+    real(wp), allocatable :: no_force(:, :) !! (2, n_local), likewise
     logical :: watches_all = .false.     !! tiles that rest are all looked at
     integer :: n_resting = 0             !! at the start of the cycle
     integer :: n_woken = 0, n_fallen = 0 !! since
@@ -61,16 +58,16 @@ contains
       ! Where all bodies are rigid the one tile is empty.
       if (may_rest(model)) rest%status(first:last) = merge(n_try, awake, &
         model%layout%tiles(first:last)%last_chunk >= model%layout%tiles(first:last)%first_chunk)
-      allocate (rest%stepped(last - first + 1), source=[(i, i=first, last)])
+      allocate (rest%stepped(last - first + 1), source=[(i, i = first, last)])
       allocate (rest%watched(0))
-      allocate (rest%summed(n), source=[(i, i=1, n)])
+      allocate (rest%summed(n), source=[(i, i = 1, n)])
     end associate
     rest%first_tile = shares%first_tile
     rest%last_tile = shares%last_tile
     rest%watches_all = watches_all
   end subroutine plan_rest
 
-  !> Whether nothing but the motion of its nodes can change the next step of a tile: no body load, no
+  !> Whether nothing but motion of its nodes can change the next step of a tile: no body load, no
   !> mass that grows, no element that leaves the mesh at a given time.
   pure function may_rest(model) result(may)
     type(model_t), intent(in) :: model
@@ -254,7 +251,10 @@ contains
     rest%n_resting = rest%n_resting - rest%n_woken + rest%n_fallen
     rest%n_woken = 0
     rest%n_fallen = 0
-    if (.not. allocated(rest%no_force)) call know_neighbours(model, rest)
+    if (.not. allocated(rest%no_force)) then
+      allocate (rest%no_force(2, model%layout%n_local), source=0.0_wp)
+      call find_neighbours(model, rest%neighbours)
+    end if
     call list_tiles(rest)
   end subroutine follow_rest
 
@@ -266,67 +266,6 @@ contains
     n = rest%n_skipped + rest%n_resting - rest%n_woken
   end function n_skipped_so_far
 
-  !> Which tiles share nodes, and which have nodes that feel more than elements; asked for once the
-  !> first ones rest.
-  subroutine know_neighbours(model, rest)
-    type(model_t), intent(in) :: model
-    type(rest_t), intent(inout) :: rest
-    logical, allocatable :: is_touched(:)
-    integer :: i
-
-    allocate (rest%no_force(2, model%layout%n_local), source=0.0_wp)
-    allocate (is_touched(model%mesh%n_node))
-    is_touched = mark_rigid_nodes(model%rigids, model%mesh%n_node)
-    call mark_touched_nodes(model, is_touched)
-    associate (layout => model%layout, n => size(model%layout%tiles))
-      allocate (rest%is_touched(n))
-      do i = 1, n
-        rest%is_touched(i) = any(is_touched(layout%special_node(layout%tiles(i)%first_special: &
-          layout%tiles(i)%last_special)))
-      end do
-      ! The last one has the nodes without element, too.
-      rest%is_touched(n) = .true.
-      call list_neighbours(layout, rest%first_near, rest%near)
-    end associate
-  end subroutine know_neighbours
-
-  !> For each tile those that have special nodes with it in common.
-  subroutine list_neighbours(layout, first, near)
-    type(layout_t), intent(in) :: layout
-    integer, allocatable, intent(out) :: first(:), near(:)
-    integer, allocatable :: tile_of(:), last_met(:)
-    integer :: i, k, m, n, pass
-
-    allocate (tile_of(size(layout%special_node)))
-    do i = 1, size(layout%tiles)
-      tile_of(layout%tiles(i)%first_special:layout%tiles(i)%last_special) = i
-    end do
-    allocate (first(size(layout%tiles) + 1))
-    allocate (last_met(size(layout%tiles)))
-    do pass = 1, 2
-      if (pass == 2) allocate (near(n))
-      last_met = 0
-      n = 0
-      do i = 1, size(layout%tiles)
-        first(i) = n + 1
-        last_met(i) = i
-        do k = layout%tiles(i)%first_special, layout%tiles(i)%last_special
-          associate (node => layout%special_node(k))
-            do m = layout%node_slots(node), layout%node_slots(node + 1) - 1
-              associate (other => tile_of(layout%slot_list(m)))
-                if (last_met(other) == i) cycle
-                last_met(other) = i
-                n = n + 1
-                if (pass == 2) near(n) = other
-              end associate
-            end do
-          end associate
-        end do
-      end do
-      first(size(first)) = n + 1
-    end do
-  end subroutine list_neighbours
-
   !> The tiles of the next cycle. A resting one is looked at if it may wake, for its nodes may have
   !> moved, or a neighbour may, which would then push its nodes.
   subroutine list_tiles(rest)
@@ -334,14 +273,17 @@ contains
     logical, dimension(size(rest%status)) :: may_wake, is_watched, is_stepped
     integer :: i
 
-    do i = 1, size(rest%status)
-      may_wake(i) = rest%status(i) < awake .and. (rest%watches_all .or. rest%is_touched(i) &
-        .or. any(rest%status(rest%near(rest%first_near(i):rest%first_near(i + 1) - 1)) >= awake))
-    end do
-    do i = 1, size(rest%status)
-      is_watched(i) = rest%status(i) < awake .and. (may_wake(i) .or. rest%status(i) == flying &
-        .or. any(may_wake(rest%near(rest%first_near(i):rest%first_near(i + 1) - 1))))
-    end do
+    associate (first => rest%neighbours%first, near => rest%neighbours%near)
+      do i = 1, size(rest%status)
+        may_wake(i) = rest%status(i) < awake .and. (rest%watches_all &
+          .or. rest%neighbours%is_touched(i) &
+          .or. any(rest%status(near(first(i):first(i + 1) - 1)) >= awake))
+      end do
+      do i = 1, size(rest%status)
+        is_watched(i) = rest%status(i) < awake .and. (may_wake(i) .or. rest%status(i) == flying &
+          .or. any(may_wake(near(first(i):first(i + 1) - 1))))
+      end do
+    end associate
     is_stepped = .false.
     is_stepped(rest%first_tile:rest%last_tile) = &
       rest%status(rest%first_tile:rest%last_tile) >= awake
