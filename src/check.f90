@@ -12,6 +12,7 @@ module check_m
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
   use log_m, only : log_t, to_text
+  use model_json_m, only : model_json
   use model_m, only : model_t
   use monitor_m, only : monitor_t
   use renumber_m, only : renumber_model
@@ -33,7 +34,7 @@ contains
     type(model_t) :: model
     type(monitor_t) :: monitor
     type(error_t), allocatable :: failure
-    character(:), allocatable :: effective, findings
+    character(:), allocatable :: effective, findings, told
 
     request%path = arguments%deck
     request%overrides = arguments%overrides
@@ -44,12 +45,13 @@ contains
     else
       ! The deck's warnings are findings already.
       if (allocated(monitor%log%waiting)) deallocate (monitor%log%waiting)
+      if (arguments%json) told = model_json(model)
       call start_run(model, monitor, error)
       call add_warnings(monitor%log, findings)
       if (allocated(error)) call add_message('error', error%message, findings)
     end if
     if (arguments%json) then
-      call show(findings_text(arguments%deck, findings, allocated(error)), failure)
+      call show(findings_text(arguments%deck, findings, allocated(error), told), failure)
       ! Who asked for these lines has not got them: that counts more than what they would have said.
       if (allocated(failure)) call raise(error, failure%message, status_files)
     else if (.not. allocated(error)) then
@@ -116,17 +118,20 @@ contains
     call add_finding(severity, spot, findings)
   end subroutine add_message
 
-  !> One JSON object.
-  pure function findings_text(deck, findings, refused) result(text)
+  !> One JSON object: the findings and, where the deck could be read, its model.
+  pure function findings_text(deck, findings, refused, told) result(text)
     character(*), intent(in) :: deck, findings
     logical, intent(in) :: refused
+    character(:), allocatable, intent(in) :: told
     character(:), allocatable :: text
     character(1), parameter :: n = new_line('a')
 
     text = '{'//n//'  "deck": '//json_text(deck)//','//n//'  "accepted": ' &
       //trim(merge('false', 'true ', refused))//','//n//'  "findings": ['//n
     if (len(findings) > 0) text = text//findings//n
-    text = text//'  ]'//n//'}'
+    text = text//'  ]'
+    if (allocated(told)) text = text//','//n//'  "model": '//told
+    text = text//n//'}'
   end function findings_text
 
 end module check_m

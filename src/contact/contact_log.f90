@@ -51,7 +51,8 @@ contains
     if (allocated(contact%title)) title = contact%title
     if (len(title) > 0) title = ' "'//title//'"'
     call write_log(log, 'interface '//to_text(contact%id)//title//': '//kind_text(kind) &
-      //trim(merge(', chosen by keyword', '                   ', contact%chosen_by_keyword)))
+      //trim(merge(', chosen by keyword', '                   ', contact%chosen_by_keyword)) &
+      //choice_text(contact))
     if (contact%is_self) then
       call write_log(log, '  a surface with itself: '//surface_text(contact%slave, model) &
         //', met from either side by '//self_share_text(contact)//' of the penalty')
@@ -336,5 +337,14 @@ contains
     call warn(log, 'interface '//to_text(contact%id)//': '//to_text(memory%n_released) &
       //' first contacts were deeper than the limit and were released; SRCH sets the limit')
   end subroutine report_released
+
+  !> Why the program chose the type of an interface, where it did.
+  pure function choice_text(contact) result(text)
+    type(contact_t), intent(in) :: contact
+    character(:), allocatable :: text
+
+    text = ''
+    if (allocated(contact%reason)) text = ', chosen by the program (CTYPE 0): '//contact%reason
+  end function choice_text
 
 end module contact_log_m

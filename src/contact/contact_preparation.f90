@@ -45,7 +45,8 @@ contains
     formulation = formulation_of(contact)
     memory%contact_law = formulation%contact_law
     call set_penalties(contact, model, formulation%self_share, memory)
-    call start_spots(formulation%spots, contact%n_gauss, contact%is_round, contact%slave, memory)
+    call start_spots(formulation%spots, contact%n_gauss, contact%is_round, contact%is_self, &
+      contact%slave, memory)
     call allocate_slave_tracking(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_tracking(contact, model, memory)
     if (formulation%covers_segments) call allocate_segments(contact, memory)

@@ -7,7 +7,7 @@ module interface_m
   use closing_m, only : close_contacts, closed_gap_of
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
   use behind_ties_m, only : leave_to_tie, take_over
-  use contact_law_m, only : press_places
+  use contact_law_m, only : press_places, pressed_at_slave_nodes
   use contact_log_m, only : log_contact
   use contact_preparation_m, only : prepare_contact
   use contact_scatter_m, only : scatter_forces, join_passes
@@ -29,6 +29,7 @@ module interface_m
   use log_m, only : log_t
   use model_m, only : model_t
   use spots_m, only : move_spots
+  use tips_m, only : find_tips
   use tied_interface_m, only : start_ties, apply_ties, evaluate_ties
   use tracking_m, only : update_tracking, wake_all, forget_pairs
   implicit none
@@ -135,6 +136,8 @@ contains
     call gather_spots(contact, motion, memory)
     call search_pairs(contact, cycle, memory)
     call lap(clock, phase_contact_search)
+    if (contact%is_self .and. formulation%where_pressed == pressed_at_slave_nodes) &
+      call find_tips(contact%slave, memory)
     call set_forces_aside(motion, had_force, memory, apart)
     call place_points(contact, memory)
     call lap(clock, phase_contact_pairing)
@@ -180,7 +183,7 @@ contains
     memory%scratch%is_born = memory%is_stale .and. cycle > 0
     call gather_spots(contact, motion, memory)
     call search_pairs(contact, cycle, memory)
-    call look_ahead(contact, memory, ahead)
+    call look_ahead(contact, cycle == 0 .or. memory%scratch%is_born, memory, ahead)
     call lap(clock, phase_contact_search)
     memory%n_active = 0
     memory%watch%has_looked = .false.
@@ -274,6 +277,8 @@ contains
     call search_pairs(contact, 0, memory)
     call catch_crossings(contact, crossings, memory)
     if (is_first) call close_contacts(contact, closed_gap_of(contact, memory), memory)
+    if (contact%is_self .and. formulation%where_pressed == pressed_at_slave_nodes) &
+      call find_tips(contact%slave, memory, motion)
     call place_points(contact, memory)
     if (memory%points%n == 0) return
     call press_places(memory%contact_law, formulation%where_pressed, memory)

@@ -20,7 +20,7 @@ module element_state_m
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
-  public :: start_elements, lump_mass, element_stresses, element_plastic_strains, &
+  public :: start_elements, lump_mass, element_stresses, stress_of_slot, element_plastic_strains, &
     element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone
 
 contains
@@ -237,29 +237,40 @@ contains
     real(wp), intent(in) :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     real(wp), intent(inout) :: stress(:, :) !! (6, n_element)
-    real(wp) :: volumetric, stretch(n_point), start(n_point), now(n_point), s(3)
-    integer :: i, i_eos, n, slot
+    integer :: i, slot
 
     do slot = 1, model%layout%n_slot
       i = model%layout%slot_element(slot)
       if (i == 0) cycle
       if (is_gone(elements, slot)) then
         stress(:, i) = 0.0_wp
-        cycle
+      else
+        stress(1:4, i) = stress_of_slot(model, motion, elements, slot)
       end if
-      associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
-        call volume_ratios(model, motion, elements, slot, n, stretch, start)
-        if (material%is_rigid) stretch = 0.0_wp
-        now(:n) = start(:n)*(1.0_wp + stretch(:n))
-        volumetric = material%bulk*(sum(now(:n)*log_ratio(stretch(:n)))/sum(now(:n)))
-      end associate
-      i_eos = elements%eos_start((slot - 1)/chunk_size + 1)
-      if (i_eos > 0) volumetric = -elements%eos_state(i_eos + chunk_size + mod(slot - 1, &
-        chunk_size))
-      s = elements%deviator(slot, :)
-      stress(1:4, i) = [s(1) + volumetric, s(2) + volumetric, volumetric - (s(1) + s(2)), s(3)]
     end do
   end subroutine element_stresses
+
+  !> That of the element in a slot: xx yy zz xy, or rr, zz, hoop and rz.
+  pure function stress_of_slot(model, motion, elements, slot) result(stress)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: motion(:, :)
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: slot
+    real(wp) :: stress(4)
+    real(wp) :: volumetric, stretch(n_point), start(n_point), now(n_point), s(3)
+    integer :: i_eos, n
+
+    associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
+      call volume_ratios(model, motion, elements, slot, n, stretch, start)
+      if (material%is_rigid) stretch = 0.0_wp
+      now(:n) = start(:n)*(1.0_wp + stretch(:n))
+      volumetric = material%bulk*(sum(now(:n)*log_ratio(stretch(:n)))/sum(now(:n)))
+    end associate
+    i_eos = elements%eos_start((slot - 1)/chunk_size + 1)
+    if (i_eos > 0) volumetric = -elements%eos_state(i_eos + chunk_size + mod(slot - 1, chunk_size))
+    s = elements%deviator(slot, :)
+    stress = [s(1) + volumetric, s(2) + volumetric, volumetric - (s(1) + s(2)), s(3)]
+  end function stress_of_slot
 
   !> Effective plastic strain of all elements in deck order, 0 in elastic parts; the mean over the
   !> initial volume where an element has several points.

@@ -1,14 +1,41 @@
 ! SPDX-License-Identifier: MIT
-!> Forces that only push: x >= 0 and s = r + W x >= 0, of each pair one being zero, with W a
-!> symmetric band without negative eigenvalues. Which forces act is guessed, solved for and mended
-!> until nothing is left to mend; where that goes round in circles, sweeps of Gauss-Seidel settle
-!> it. Factors of this file's own: of rows that depend on others the later ones are left out while
-!> the band is factorised, and no library can change the bits.
+!> Forces within bounds, low <= x <= high, with slacks s = r + W x: zero where x lies between its
+!> bounds, not below zero where x is low, not above zero where it is high. W is symmetric without
+!> negative eigenvalues: a band, and what a few columns couple, B + V V^T. Which forces are at a
+!> bound is guessed, the others are solved for, and the guess is mended until nothing is left to
+!> mend; where that goes round in circles, sweeps of Gauss-Seidel settle it. Factors of this file's
+!> own: of rows that depend on others the later ones are left out while the band is factorised.
+!> LAPACK's dpbtrf gives up at the first such pivot, and in OpenBLAS its bits depend on the number
+!> of threads where the band is wide. The room is kept from one problem to the next.
 module complementarity_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: solve_complementarity, outcome_t, most_passes
+  public :: problem_t, outcome_t, set_size, solve_complementarity, is_low, is_between, is_high
+
+  !> Where a force is.
+  integer, parameter :: is_low = -1, is_between = 0, is_high = 1
+
+  !> A problem, its solution and room to solve it; arrays may be longer than they have to be.
+  type :: problem_t
+    integer :: n = 0                       !! forces
+    integer :: width = 0                   !! of the band
+    integer :: n_column = 0
+    real(wp), allocatable :: band(:)       !! (0:width, n) B(j + i, j) in row i of column j
+    real(wp), allocatable :: column(:)     !! (n, n_column) V
+    real(wp), allocatable :: r(:)          !! (n)
+    real(wp), allocatable :: low(:)        !! (n) <= 0
+    real(wp), allocatable :: high(:)       !! (n) >= 0
+    integer, allocatable :: at(:)          !! (n) in: guess, out: where each force is
+    real(wp), allocatable :: x(:)          !! (n) out: the forces
+    integer, allocatable :: place(:)       !! from here on room: (n) rows between bounds
+    logical, allocatable :: drops(:)       !! (n) of those, pivots that are zero
+    real(wp), allocatable :: factor(:)     !! (0:width, n)
+    real(wp), allocatable :: diagonal(:)   !! (n) before the band is factorised
+    real(wp), allocatable :: solved(:)     !! (n, n_column + 1)
+    real(wp), allocatable :: slack(:)      !! (n)
+    real(wp), allocatable :: terms(:)      !! (n)
+  end type problem_t
 
   !> What a solution has taken.
   type :: outcome_t
@@ -28,55 +55,123 @@ module complementarity_m
 
 contains
 
-  !> Solve for x. `acts` is the guess, and comes back as the forces that act.
-  pure subroutine solve_complementarity(n, width, band, r, acts, x, outcome)
-    integer, intent(in) :: n, width
-    real(wp), intent(in) :: band(0:width, n) !! W(j + i, j) in row i of column j
-    real(wp), intent(in) :: r(n)
-    logical, intent(inout) :: acts(n)
-    real(wp), intent(out) :: x(n)
+  !> Make room. What was in it is lost where it was too small.
+  pure subroutine set_size(problem, n, width, n_column)
+    type(problem_t), intent(inout) :: problem
+    integer, intent(in) :: n, width, n_column
+
+    problem%n = n
+    problem%width = width
+    problem%n_column = n_column
+    call provide(problem%band, (width + 1)*n)
+    call provide(problem%factor, (width + 1)*n)
+    call provide(problem%column, n*n_column)
+    call provide(problem%solved, n*(n_column + 1))
+    call provide(problem%x, n)
+    if (size(problem%x) == size_of(problem%r)) return
+    if (allocated(problem%r)) deallocate (problem%r, problem%low, problem%high, problem%at, &
+      problem%place, problem%drops, problem%diagonal, problem%slack, problem%terms)
+    associate (m => size(problem%x))
+      allocate (problem%r(m), problem%low(m), problem%high(m), problem%diagonal(m), &
+        problem%slack(m), problem%terms(m), problem%at(m), problem%place(m), problem%drops(m))
+    end associate
+  end subroutine set_size
+
+  !> A list with room for so many numbers, and some more where it has to be made.
+  pure subroutine provide(list, n)
+    real(wp), allocatable, intent(inout) :: list(:)
+    integer, intent(in) :: n
+
+    if (size_of(list) >= n .and. allocated(list)) return
+    if (allocated(list)) deallocate (list)
+    allocate (list(n + n/2))
+  end subroutine provide
+
+  !> Size of a list, 0 of none.
+  pure integer function size_of(list)
+    real(wp), allocatable, intent(in) :: list(:)
+
+    size_of = 0
+    if (allocated(list)) size_of = size(list)
+  end function size_of
+
+  !> Solve for x.
+  pure subroutine solve_complementarity(problem, outcome)
+    type(problem_t), intent(inout) :: problem
     type(outcome_t), intent(out) :: outcome
-    real(wp) :: slack(n)
-    logical :: drops(n), was(n)
+    logical :: is_settled
     integer :: pass
 
     do pass = 1, most_passes
       outcome%n_pass = pass
-      call solve_guess(n, width, band, r, acts, x, drops)
-      outcome%n_dropped = count(drops)
-      slack = slacks(n, width, band, r, x)
-      was = acts
-      acts = (was .and. .not. drops .and. x >= 0.0_wp) .or. (.not. was .and. slack < 0.0_wp)
-      ! What depends on forces that act goes with them.
-      where (drops) acts = slack < 0.0_wp
-      if (all(acts .or. drops .eqv. was)) then
-        x = max(x, 0.0_wp)
-        return
-      end if
+      call solve_guess(problem, outcome%n_dropped)
+      call find_slacks(problem)
+      call mend_guess(problem, is_settled)
+      if (is_settled) exit
     end do
-    x = max(x, 0.0_wp)
-    call sweep(n, width, band, r, x, outcome%n_sweep)
-    acts = x > 0.0_wp
+    associate (n => problem%n)
+      problem%x(:n) = min(max(problem%x(:n), problem%low(:n)), problem%high(:n))
+      if (is_settled) return
+      call sweep(problem, outcome%n_sweep)
+      problem%at(:n) = is_between
+      where (problem%x(:n) <= problem%low(:n)) problem%at(:n) = is_low
+      where (problem%x(:n) >= problem%high(:n) .and. problem%high(:n) > problem%low(:n)) &
+        problem%at(:n) = is_high
+    end associate
   end subroutine solve_complementarity
 
-  !> All forces of the guess that make their slacks zero; the others are zero.
-  pure subroutine solve_guess(n, width, band, r, acts, x, drops)
-    integer, intent(in) :: n, width
-    real(wp), intent(in) :: band(0:width, n), r(n)
-    logical, intent(in) :: acts(n)
-    real(wp), intent(out) :: x(n)
-    logical, intent(out) :: drops(n) !! forces of the guess that depend on others
-    real(wp) :: factor(0:width, n), y(n)
-    logical :: is_zero(n)
-    integer :: place(n), i, j, m
+  !> The forces between their bounds that make their slacks zero; the others are at their bounds.
+  pure subroutine solve_guess(problem, n_dropped)
+    type(problem_t), intent(inout) :: problem
+    integer, intent(out) :: n_dropped !! forces of the guess that depend on others
+    integer :: i, m
+    logical :: has_bounds
 
     m = 0
-    do i = 1, n
-      if (.not. acts(i)) cycle
-      m = m + 1
-      place(m) = i
-      y(m) = -r(i)
+    has_bounds = .false.
+    do i = 1, problem%n
+      problem%drops(i) = .false.
+      select case (problem%at(i))
+      case (is_low)
+        problem%x(i) = problem%low(i)
+      case (is_high)
+        problem%x(i) = problem%high(i)
+      case default
+        problem%x(i) = 0.0_wp
+        m = m + 1
+        problem%place(m) = i
+      end select
+      has_bounds = has_bounds .or. abs(problem%x(i)) > 0.0_wp
     end do
+    n_dropped = 0
+    if (m == 0) return
+    if (has_bounds) call find_slacks(problem)
+    do i = 1, m
+      associate (j => problem%place(i))
+        problem%solved(i) = -problem%r(j)
+        if (has_bounds) problem%solved(i) = -problem%slack(j)
+      end associate
+    end do
+    call take_rows(m, problem%width, problem%place, problem%band, problem%factor)
+    call factorise(m, problem%width, problem%factor, problem%diagonal, problem%drops)
+    call substitute(m, problem%width, problem%factor, problem%drops, problem%solved)
+    if (problem%n_column > 0) call add_columns(m, problem)
+    do i = m, 1, -1
+      problem%x(problem%place(i)) = problem%solved(i)
+      if (problem%drops(i)) n_dropped = n_dropped + 1
+      if (problem%place(i) == i) cycle
+      problem%drops(problem%place(i)) = problem%drops(i)
+      problem%drops(i) = .false.
+    end do
+  end subroutine solve_guess
+
+  !> The band of some rows.
+  pure subroutine take_rows(m, width, place, band, factor)
+    integer, intent(in) :: m, width, place(m)
+    real(wp), intent(in) :: band(0:width, *)
+    real(wp), intent(inout) :: factor(0:width, m)
+    integer :: i, j
+
     do j = 1, m
       factor(:, j) = 0.0_wp
       do i = j, min(j + width, m)
@@ -84,23 +179,15 @@ contains
         factor(i - j, j) = band(place(i) - place(j), place(j))
       end do
     end do
-    call factorise(m, width, factor, is_zero)
-    call substitute(m, width, factor, is_zero, y)
-    x = 0.0_wp
-    drops = .false.
-    do j = 1, m
-      x(place(j)) = y(j)
-      drops(place(j)) = is_zero(j)
-    end do
-  end subroutine solve_guess
+  end subroutine take_rows
 
   !> Cholesky factors of a band. A row whose pivot is zero takes no part.
-  pure subroutine factorise(n, width, factor, is_zero)
+  pure subroutine factorise(n, width, factor, diagonal, is_zero)
     integer, intent(in) :: n, width
-    real(wp), intent(inout) :: factor(0:width, *)
-    logical, intent(out) :: is_zero(*)
-    real(wp) :: diagonal(n)
-    integer :: j, k
+    real(wp), intent(inout) :: factor(0:width, n)
+    real(wp), intent(inout) :: diagonal(n)
+    logical, intent(inout) :: is_zero(n)
+    integer :: j, k, m
 
     do j = 1, n
       diagonal(j) = factor(0, j)
@@ -113,9 +200,11 @@ contains
         cycle
       end if
       factor(0, j) = sqrt(factor(0, j))
-      factor(1:, j) = factor(1:, j)/factor(0, j)
+      factor(1:, j) = factor(1:, j)*(1.0_wp/factor(0, j))
       do k = 1, min(width, n - j)
-        factor(0:width - k, j + k) = factor(0:width - k, j + k) - factor(k, j)*factor(k:width, j)
+        do m = 0, width - k
+          factor(m, j + k) = factor(m, j + k) - factor(k, j)*factor(k + m, j)
+        end do
       end do
     end do
   end subroutine factorise
@@ -123,9 +212,9 @@ contains
   !> Solve with the factors, in place.
   pure subroutine substitute(n, width, factor, is_zero, y)
     integer, intent(in) :: n, width
-    real(wp), intent(in) :: factor(0:width, *)
-    logical, intent(in) :: is_zero(*)
-    real(wp), intent(inout) :: y(*)
+    real(wp), intent(in) :: factor(0:width, n)
+    logical, intent(in) :: is_zero(n)
+    real(wp), intent(inout) :: y(n)
     integer :: j, k
 
     do j = 1, n
@@ -144,65 +233,179 @@ contains
     end do
   end subroutine substitute
 
+  !> What the columns change in a solution with the band alone: y - Z (1 + V^T Z)^-1 V^T y with
+  !> Z = B^-1 V (Woodbury).
+  pure subroutine add_columns(m, problem)
+    integer, intent(in) :: m !! rows between bounds
+    type(problem_t), intent(inout) :: problem
+    real(wp) :: core(problem%n_column**2), pushed(problem%n_column), diagonal(problem%n_column)
+    logical :: none(problem%n_column)
+    real(wp) :: total
+    integer :: i, k, l
+
+    associate (n => problem%n, width => problem%n_column - 1, column => problem%column, &
+      solved => problem%solved, place => problem%place)
+      do k = 1, problem%n_column
+        do i = 1, m
+          solved(k*m + i) = column((k - 1)*n + place(i))
+        end do
+        call substitute(m, problem%width, problem%factor, problem%drops, solved(k*m + 1:(k + 1)*m))
+      end do
+      core = 0.0_wp
+      do k = 1, problem%n_column
+        do l = 0, problem%n_column
+          if (l > 0 .and. l < k) cycle
+          total = 0.0_wp
+          do i = 1, m
+            if (.not. problem%drops(i)) total = total + column((k - 1)*n + place(i))*solved(l*m + i)
+          end do
+          if (l == 0) pushed(k) = total
+          if (l == k) total = 1.0_wp + total
+          if (l > 0) core((k - 1)*(width + 1) + l - k + 1) = total
+        end do
+      end do
+      call factorise(problem%n_column, width, core, diagonal, none)
+      call substitute(problem%n_column, width, core, none, pushed)
+      do k = 1, problem%n_column
+        solved(:m) = solved(:m) - pushed(k)*solved(k*m + 1:(k + 1)*m)
+      end do
+    end associate
+  end subroutine add_columns
+
+  !> Forces beyond a bound stay there, those that their slacks draw off one are freed. What depends
+  !> on others goes with them.
+  pure subroutine mend_guess(problem, is_settled)
+    type(problem_t), intent(inout) :: problem
+    logical, intent(out) :: is_settled
+    integer :: i, former
+
+    is_settled = .true.
+    do i = 1, problem%n
+      associate (at => problem%at(i), x => problem%x(i), slack => problem%slack(i))
+        former = at
+        if (problem%drops(i)) then
+          if (slack >= 0.0_wp .and. .not. problem%low(i) < 0.0_wp) at = is_low
+          cycle
+        end if
+        select case (former)
+        case (is_low)
+          if (slack < 0.0_wp) at = is_between
+        case (is_high)
+          if (slack > 0.0_wp) at = is_between
+        case default
+          if (x < problem%low(i)) at = is_low
+          if (x > problem%high(i)) at = is_high
+        end select
+        is_settled = is_settled .and. at == former
+      end associate
+    end do
+  end subroutine mend_guess
+
   !> r + W x; 0 where that is nothing but round-off.
-  pure function slacks(n, width, band, r, x) result(slack)
+  pure subroutine find_slacks(problem)
+    type(problem_t), intent(inout) :: problem
+    real(wp) :: total
+    integer :: i, k
+
+    associate (n => problem%n)
+      do i = 1, n
+        problem%slack(i) = problem%r(i)
+        problem%terms(i) = abs(problem%r(i))
+      end do
+      call add_band(n, problem%width, problem%band, problem%x, problem%slack, problem%terms)
+      do k = 1, problem%n_column
+        associate (column => problem%column((k - 1)*n + 1:k*n))
+          total = dot_product(column, problem%x(:n))
+          problem%slack(:n) = problem%slack(:n) + total*column
+          problem%terms(:n) = problem%terms(:n) + abs(total*column)
+        end associate
+      end do
+      total = 0.0_wp
+      do i = 1, n
+        total = max(total, problem%terms(i))
+      end do
+      total = round_off*total
+      do i = 1, n
+        if (abs(problem%slack(i)) <= total) problem%slack(i) = 0.0_wp
+      end do
+    end associate
+  end subroutine find_slacks
+
+  !> What the band makes of the forces, and the sum of the magnitudes of all terms.
+  pure subroutine add_band(n, width, band, x, slack, terms)
     integer, intent(in) :: n, width
-    real(wp), intent(in) :: band(0:width, n), r(n), x(n)
-    real(wp) :: slack(n)
-    real(wp) :: terms(n)
+    real(wp), intent(in) :: band(0:width, n), x(n)
+    real(wp), intent(inout) :: slack(n), terms(n)
     integer :: j, k
 
-    slack = r
-    terms = abs(r)
     do j = 1, n
-      if (.not. abs(x(j)) > 0.0_wp) cycle
-      call add(band(0, j)*x(j), slack(j), terms(j))
+      slack(j) = slack(j) + band(0, j)*x(j)
+      terms(j) = terms(j) + abs(band(0, j)*x(j))
       do k = 1, min(width, n - j)
-        call add(band(k, j)*x(j), slack(j + k), terms(j + k))
-      end do
-      do k = 1, min(width, j - 1)
-        call add(band(k, j - k)*x(j), slack(j - k), terms(j - k))
+        slack(j + k) = slack(j + k) + band(k, j)*x(j)
+        terms(j + k) = terms(j + k) + abs(band(k, j)*x(j))
+        slack(j) = slack(j) + band(k, j)*x(j + k)
+        terms(j) = terms(j) + abs(band(k, j)*x(j + k))
       end do
     end do
-    where (abs(slack) <= round_off*maxval([terms, 0.0_wp])) slack = 0.0_wp
-  end function slacks
-
-  !> Add a term to a sum and to that of magnitudes.
-  pure subroutine add(term, total, magnitude)
-    real(wp), intent(in) :: term
-    real(wp), intent(inout) :: total, magnitude
-
-    total = total + term
-    magnitude = magnitude + abs(term)
-  end subroutine add
+  end subroutine add_band
 
   !> Force by force, each as the others stand, until none changes.
-  pure subroutine sweep(n, width, band, r, x, n_sweep)
-    integer, intent(in) :: n, width
-    real(wp), intent(in) :: band(0:width, n), r(n)
-    real(wp), intent(inout) :: x(n)
+  pure subroutine sweep(problem, n_sweep)
+    type(problem_t), intent(inout) :: problem
     integer, intent(out) :: n_sweep
-    real(wp) :: change, wanted, total
-    integer :: j, k
+    real(wp) :: change, wanted, diagonal
+    integer :: j
 
     do n_sweep = 1, most_sweeps
       change = 0.0_wp
-      do j = 1, n
-        if (.not. band(0, j) > 0.0_wp) cycle
-        total = r(j)
-        do k = 1, min(width, n - j)
-          total = total + band(k, j)*x(j + k)
-        end do
-        do k = 1, min(width, j - 1)
-          total = total + band(k, j - k)*x(j - k)
-        end do
-        wanted = max(0.0_wp, -total/band(0, j))
-        change = max(change, abs(wanted - x(j)))
-        x(j) = wanted
+      do j = 1, problem%n
+        associate (x => problem%x(j))
+          diagonal = diagonal_at(problem, j)
+          if (.not. diagonal > 0.0_wp) cycle
+          wanted = min(max(x - slack_at(problem, j)/diagonal, problem%low(j)), problem%high(j))
+          change = max(change, abs(wanted - x))
+          x = wanted
+        end associate
       end do
-      if (change <= settled*maxval(x)) exit
+      if (change <= settled*maxval(abs(problem%x(:problem%n)))) exit
     end do
     n_sweep = min(n_sweep, most_sweeps)
   end subroutine sweep
+
+  !> W(j, j).
+  pure function diagonal_at(problem, j) result(diagonal)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: j
+    real(wp) :: diagonal
+    integer :: k
+
+    diagonal = problem%band((problem%width + 1)*(j - 1) + 1)
+    do k = 0, problem%n_column - 1
+      diagonal = diagonal + problem%column(k*problem%n + j)**2
+    end do
+  end function diagonal_at
+
+  !> The slack of one force.
+  pure function slack_at(problem, j) result(slack)
+    type(problem_t), intent(in) :: problem
+    integer, intent(in) :: j
+    real(wp) :: slack
+    integer :: k
+
+    slack = problem%r(j)
+    associate (n => problem%n, width => problem%width, x => problem%x)
+      do k = max(1, j - width), j - 1
+        slack = slack + problem%band((width + 1)*(k - 1) + j - k + 1)*x(k)
+      end do
+      do k = j, min(n, j + width)
+        slack = slack + problem%band((width + 1)*(j - 1) + k - j + 1)*x(k)
+      end do
+      do k = 0, problem%n_column - 1
+        slack = slack + problem%column(k*n + j) &
+          *dot_product(problem%column(k*n + 1:(k + 1)*n), x(:n))
+      end do
+    end associate
+  end function slack_at
 
 end module complementarity_m

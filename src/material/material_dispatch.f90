@@ -20,7 +20,7 @@ module material_dispatch_m
   private
   public :: update_stress, form_tangent, history_size, find_failed, break_points, &
     column_temperature, column_damage, has_plastic_strain, &
-    is_elastic, returns_radially
+    is_elastic, returns_radially, law_name
 
   !> Columns of the history of the heated law of Johnson and Cook: rise of temperature, damage.
   integer, parameter :: column_temperature = 2, column_damage = 3
@@ -45,6 +45,20 @@ contains
       n = 0
     end select
   end function history_size
+
+  !> What a law is called where a model is told.
+  pure function law_name(material) result(name)
+    type(material_t), intent(in) :: material
+    character(:), allocatable :: name
+    character(24), parameter :: names(*) = [character(24) :: 'elastic', 'elastic-plastic', &
+      'piecewise linear plastic', 'Johnson-Cook', 'crushable foam', 'heated Johnson-Cook', &
+      'fluid', 'Mooney-Rivlin rubber', 'Blatz-Ko rubber']
+    integer, parameter :: laws(*) = [law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
+      law_crushable_foam, law_hot_johnson_cook, law_null, law_mooney_rivlin, law_blatz_ko]
+
+    name = 'rigid'
+    if (.not. material%is_rigid) name = trim(names(findloc(laws, material%law, dim=1)))
+  end function law_name
 
   !> Whether the history of a law starts with a plastic strain.
   pure function has_plastic_strain(material) result(yes)

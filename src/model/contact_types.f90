@@ -8,4 +8,7 @@ module contact_types_m
   integer, parameter, public :: type_nts = 1, type_nts_ar = 2, type_two_pass_ar = 3, &
     type_vts_ppt = 4, type_nts_mar = 5, type_mortar = 6, type_segmented_mortar = 7
 
+  !> What stands in place of a type in decks: the program chooses; there is none.
+  integer, parameter, public :: type_chosen = 0, type_missing = -1
+
 end module contact_types_m

@@ -55,6 +55,7 @@ module contacts_m
     character(:), allocatable :: title     !! heading of the _TITLE option
     integer :: contact_type = 0            !! CTYPE
     logical :: chosen_by_keyword = .false. !! a stock keyword chose the type
+    character(:), allocatable :: reason    !! why the program chose it (CTYPE 0); else none
     type(surface_t) :: slave, master       !! SURFA, SURFB
     integer :: n_gauss = 2                 !! NGAUSS
     integer :: penalty_unit = penalty_per_node !! one of the `penalty_` constants

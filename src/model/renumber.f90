@@ -10,7 +10,7 @@ module renumber_m
   use sorting_m, only : sorted_order
   implicit none
   private
-  public :: renumber_model, forget_start, mark_touched_nodes
+  public :: renumber_model, mark_touched_nodes, forget_start
 
 contains
 

@@ -8,6 +8,7 @@ module sets_m
   !> *SET_NODE: members in the order of the deck (walking order where a surface is meant).
   type :: node_set_t
     integer :: id = 0
+    character(:), allocatable :: title !! only where the deck gives one
     integer, allocatable :: nodes(:) !! node indices
   end type node_set_t
 

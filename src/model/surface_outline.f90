@@ -22,18 +22,23 @@ contains
   pure subroutine surface_left(mesh, is_left, former, surface)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_left(:)     !! (n_element)
-    type(surface_t), intent(in) :: former
+    type(surface_t), intent(in) :: former !! of the deck, before anything left
     type(surface_t), intent(out) :: surface
     type(boundary_t) :: boundary
-    logical, allocatable :: chosen_part(:), all_nodes(:)
+    logical, allocatable :: chosen_part(:), is_chosen(:)
 
     if (allocated(former%parts)) then
       allocate (chosen_part(maxval(mesh%element_part)), source=.false.)
       chosen_part(former%parts) = .true.
-      allocate (all_nodes(size(mesh%coordinates, 2)), source=.true.)
-      call find_boundary(mesh%element_nodes, is_left .and. chosen_part(mesh%element_part), &
-        all_nodes, boundary)
-      call walk_outline(mesh, is_left .and. chosen_part(mesh%element_part), boundary, surface)
+      is_chosen = chosen_part(mesh%element_part)
+      if (.not. any(is_chosen .and. .not. is_left)) then
+        surface = former
+        return
+      end if
+      is_chosen = is_chosen .and. is_left
+      call find_boundary(mesh%element_nodes, is_chosen, near_surface(mesh, is_left, former), &
+        boundary)
+      call walk_outline(mesh, is_chosen, boundary, surface)
       surface%parts = former%parts
     else
       call take_left(is_left, former, surface)
@@ -41,6 +46,22 @@ contains
     if (allocated(former%is_on_axis)) surface%is_on_axis = &
       .not. mesh%coordinates(1, surface%nodes) > 0.0_wp
   end subroutine surface_left
+
+  !> Nodes that the outline of what is left can have: those of the deck's outline, and of elements
+  !> that have gone.
+  pure function near_surface(mesh, is_left, former) result(is_near)
+    type(mesh_t), intent(in) :: mesh
+    logical, intent(in) :: is_left(:)
+    type(surface_t), intent(in) :: former !! of the deck
+    logical :: is_near(size(mesh%coordinates, 2))
+    integer :: i
+
+    is_near = .false.
+    is_near(former%nodes) = .true.
+    do i = 1, size(is_left)
+      if (.not. is_left(i)) is_near(mesh%element_nodes(:, i)) = .true.
+    end do
+  end function near_surface
 
   !> Segments of a surface whose elements are left.
   pure subroutine take_left(is_left, former, surface)

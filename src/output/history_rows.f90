@@ -244,6 +244,7 @@ contains
     call put(row, 'traction', rubbed%traction)
     call put(row, 'slip', rubbed%slip)
     call put(row, 'state', rubbed%state)
+    call put(row, 'row_stress', value_of(slave%row_stress, i))
   end subroutine put_contact
 
   !> Sums over a part.
@@ -294,6 +295,9 @@ contains
     call put(row, 'damping', result%damping)
     call put(row, 'stored', result%stored)
     call put(row, 'friction', result%friction)
+    call put(row, 'estimate', result%estimate)
+    call put(row, 'row_energy', result%row_energy)
+    call put(row, 'step_limit', result%step_limit)
   end subroutine put_sleout
 
   !> Force of the constraint on a fixed node.

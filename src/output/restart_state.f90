@@ -6,6 +6,7 @@ module restart_state_m
   use archive_m, only : keep, keep_fixed, keep_same
   use archive_file_m, only : archive_t, enter, leave
   use block_state_m, only : block_state_t
+  use contact_estimate_m, only : contact_estimate_t
   use erosion_state_m, only : erosion_state_t
   use log_m, only : to_text
   use restart_contact_m, only : keep_contact
@@ -46,6 +47,7 @@ contains
     call keep_fixed(archive, 'body_acceleration', state%body_acceleration)
     call keep_elements(archive, 'elements', state%elements)
     call keep_contacts(archive, 'contacts', state)
+    call keep_estimates(archive, 'estimates', state)
     call keep_rigids(archive, 'rigids', state)
     call keep_walls(archive, 'walls', state)
     call keep(archive, 'external_work', state%external_work)
@@ -135,6 +137,46 @@ contains
     end do
     call leave(archive)
   end subroutine keep_contacts
+
+  !> What is known of the quality of interfaces, numbered from 1.
+  subroutine keep_estimates(archive, name, state)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(state_t), intent(inout) :: state
+    integer :: i, n
+
+    n = 0
+    if (allocated(state%estimates)) n = size(state%estimates)
+    call enter(archive, name)
+    call keep_same(archive, 'n', n)
+    do i = 1, n
+      call keep_estimate(archive, to_text(i), state%estimates(i))
+    end do
+    call leave(archive)
+  end subroutine keep_estimates
+
+  !> That of one interface.
+  subroutine keep_estimate(archive, name, estimate)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(contact_estimate_t), intent(inout) :: estimate
+
+    call enter(archive, name)
+    call keep(archive, 'cycle', estimate%cycle)
+    call keep(archive, 'n', estimate%n)
+    call keep(archive, 'misfit', estimate%misfit)
+    call keep(archive, 'load', estimate%load)
+    call keep(archive, 'heaviest', estimate%heaviest)
+    call keep(archive, 'at_heaviest', estimate%at_heaviest)
+    call keep(archive, 'springs', estimate%springs)
+    call keep(archive, 'rows', estimate%rows)
+    call keep_fixed(archive, 'force', estimate%force)
+    call keep_fixed(archive, 'former', estimate%former)
+    call keep(archive, 'jumps', estimate%jumps)
+    call keep(archive, 'forces', estimate%forces)
+    call keep(archive, 'least_margin', estimate%least_margin)
+    call leave(archive)
+  end subroutine keep_estimate
 
   !> Rigid bodies, numbered from 1.
   subroutine keep_rigids(archive, name, state)

@@ -4,6 +4,7 @@ module contact_check_m
   use contact_log_m, only : report_initial_contact, report_released, report_tie_step, &
     report_broken
   use contacts_m, only : is_tied, penalty_implicit
+  use contact_judging_m, only : report_estimates
   use contact_overhang_m, only : report_overhang
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
     opening_step, binding_bound, fitting_scale
@@ -99,13 +100,14 @@ contains
     end if
   end subroutine warn_of_step
 
-  !> First contacts that were released.
+  !> First contacts that were released, and how good the answer is.
   subroutine report_contact_end(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(log_t), intent(inout) :: log
     integer :: i
 
+    call report_estimates(model, state, log)
     do i = 1, size(model%contacts)
       call report_released(model%contacts(i), state%contacts(i), log)
       call report_broken(model%contacts(i), state%contacts(i), log)

@@ -5,7 +5,7 @@
 module requests_m
   use errors_m, only : error_t
   use history_file_m, only : flush_histories
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   use log_m, only : warn
   use monitor_m, only : monitor_t
   use progress_m, only : show_progress
@@ -16,7 +16,7 @@ module requests_m
   use state_m, only : state_t
   implicit none
   private
-  public :: requests_t, take_requests
+  public :: requests_t, take_requests, echoes_t, hear_signals, drop_echoes
 
   !> What is asked for.
   type :: requests_t
@@ -26,7 +26,36 @@ module requests_m
     logical :: signalled = .false. !! a signal asks for that end
   end type requests_t
 
+  !> A launcher hands SIGUSR1 and SIGUSR2 to every process of a run, and these hear them in
+  !> different cycles: what comes within a second of what was done is not asked again.
+  type :: echoes_t
+    integer(long) :: done(2) = -huge(1_long) !! tick after the last restart file, plot state
+  end type echoes_t
+
 contains
+
+  !> What is asked of a process that has no files: signals alone.
+  subroutine hear_signals(asked)
+    type(requests_t), intent(out) :: asked
+
+    call take_signals(asked%dump, asked%plot)
+    asked%signalled = stop_requested()
+    asked%stop = asked%signalled
+  end subroutine hear_signals
+
+  !> Leave out what has just been done.
+  subroutine drop_echoes(before, echoes, asked)
+    type(requests_t), intent(in) :: before    !! done since the last call
+    type(echoes_t), intent(inout) :: echoes
+    type(requests_t), intent(inout) :: asked
+    integer(long) :: now, rate
+
+    if (.not. any([before%dump, before%plot, asked%dump, asked%plot])) return
+    call system_clock(now, rate)
+    where ([before%dump, before%plot]) echoes%done = now
+    asked%dump = asked%dump .and. now - rate > echoes%done(1)
+    asked%plot = asked%plot .and. now - rate > echoes%done(2)
+  end subroutine drop_echoes
 
   !> Look whether anything is asked for: for signals always, for d3kil twice a second, or
   !> always where steps are long.

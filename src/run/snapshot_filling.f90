@@ -24,7 +24,7 @@ module snapshot_filling_m
   implicit none
   private
   public :: start_snapshot, fill_motion, find_motion, damping_at, fill_energies, fill_parts, &
-    fill_interfaces, fill_plot
+    fill_interfaces, fill_plot, fill_slaves, join_slaves
 
   !> Nodes whose motion is summed at a time.
   integer, parameter :: block_size = 512
@@ -364,15 +364,8 @@ contains
       snapshot%contact_slip = 0.0_wp
       snapshot%contact_state = 0.0_wp
     end if
+    call fill_slaves(model, state, snapshot)
     do i = 1, size(model%contacts)
-      if (model%erodes) then
-        ! Its nodes may be others than those of the state before.
-        snapshot%slaves(i) = slave_result_t()
-        call slave_rows(state%outlines(i), state%motion, state%contacts(i), snapshot%slaves(i))
-      else
-        call slave_rows(model%contacts(i), state%motion, state%contacts(i), &
-          snapshot%slaves(i))
-      end if
       associate (memory => state%contacts(i), rows => snapshot%slaves(i))
         do k = 1, size(memory%nodes)
           snapshot%contact_force(:, memory%nodes(k)) = snapshot%contact_force(:, memory%nodes(k)) &
@@ -393,10 +386,37 @@ contains
         if (allocated(rows%rubbed)) call fill_friction(memory%nodes, rows%rubbed, snapshot)
       end associate
     end do
+    call join_slaves(model, snapshot)
+  end subroutine fill_plot
+
+  !> Rows of slave nodes, of each interface of the model alone.
+  subroutine fill_slaves(model, state, snapshot)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(snapshot_t), intent(inout) :: snapshot
+    integer :: i
+
+    do i = 1, size(model%contacts)
+      if (model%erodes) then
+        ! Its nodes may be others than those of the state before.
+        snapshot%slaves(i) = slave_result_t()
+        call slave_rows(state%outlines(i), state%motion, state%contacts(i), snapshot%slaves(i))
+      else
+        call slave_rows(model%contacts(i), state%motion, state%contacts(i), snapshot%slaves(i))
+      end if
+    end do
+  end subroutine fill_slaves
+
+  !> Those of contact behind ties, to the interfaces that are told.
+  subroutine join_slaves(model, snapshot)
+    type(model_t), intent(in) :: model
+    type(snapshot_t), intent(inout) :: snapshot
+    integer :: i
+
     do i = n_told(model%contacts) + 1, size(model%contacts)
       call join_rows(snapshot%slaves(i), snapshot%slaves(told_as(model%contacts, i)))
     end do
-  end subroutine fill_plot
+  end subroutine join_slaves
 
   !> Friction at the nodes of an interface. Nodes of several have the sum of their tractions, the
   !> largest slip and the last of their states.

@@ -19,6 +19,9 @@ module snapshot_m
     real(wp) :: friction = 0.0_wp !! dissipated by friction
     real(wp) :: damping = 0.0_wp !! minus that of the damping of contact
     real(wp) :: stored = 0.0_wp  !! potential of the springs
+    real(wp) :: estimate = 0.0_wp !! root of sum (p - row stress)^2 a over sum p^2 a
+    real(wp) :: row_energy = 0.0_wp !! elastic energy of the elements behind what is pressed
+    real(wp) :: step_limit = 0.0_wp !! stable step of elements and its springs; 0: none is known
   end type interface_result_t
 
   !> Sums over one part.
@@ -56,6 +59,7 @@ module snapshot_m
     real(wp), allocatable :: pressure(:)   !! normal force / competence length, 0 where inactive
     real(wp), allocatable :: force(:, :)   !! (2, n_slave) contact force from all points
     real(wp), allocatable :: length(:)     !! competence length, current
+    real(wp), allocatable :: row_stress(:) !! pressure of the elements behind, carried to the face
     real(wp), allocatable :: master_pressure(:) !! (n_master) as `pressure`, on the other side
     type(rubbed_t), allocatable :: rubbed(:) !! (n_slave + n_master) nodes of both sides; only where
                                              !! there is friction

@@ -9,6 +9,7 @@
 module state_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
+  use contact_estimate_m, only : contact_estimate_t
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use rigid_state_m, only : rigid_state_t
@@ -47,6 +48,7 @@ module state_m
     real(wp) :: body_acceleration(2) = 0.0_wp  !! of *LOAD_BODY at `time`
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)
+    type(contact_estimate_t), allocatable :: estimates(:) !! of the interfaces of the deck
     type(contact_t), allocatable :: outlines(:) !! interfaces with the surfaces that are left; only
                                                !! where elements may leave the mesh
     type(rigid_state_t), allocatable :: rigids(:)

@@ -11,6 +11,7 @@ from fortran_source import ROOT, read_source
 KEPT = {
     "state_t": ("state/state.f90", "output/restart_state.f90", "state%", {
         "contacts": "kept one by one", "rigids": "kept one by one", "walls": "kept one by one",
+        "estimates": "kept one by one",
         "outlines": "made of the deck and the status of elements"}),
     "erosion_state_t": ("state/erosion_state.f90", "output/restart_state.f90", "erosion%", {}),
     "rigid_state_t": ("state/rigid_state.f90", "output/restart_state.f90", "rigid%", {}),
@@ -19,6 +20,7 @@ KEPT = {
         "n_failed": "counted in each step"}),
     "contact_state_t": ("state/contact_state.f90", "output/restart_contact.f90", "contact%", {
         "scratch": "nothing in it lasts to the next step"}),
+    "contact_estimate_t": ("state/contact_estimate.f90", "output/restart_state.f90", "estimate%", {}),
     "contact_watch_t": ("state/contact_watch.f90", "output/restart_contact.f90", "watch%", {
         "changes": "kept one by one"}),
     "contact_change_t": ("state/contact_watch.f90", "output/restart_contact.f90", "change%", {}),
@@ -42,16 +44,16 @@ KEPT = {
     "histories_t": ("output/history_file.f90", "output/restart_history.f90", "histories%", {
         "tables": "kept one by one"}),
     "monitor_t": ("run/monitor.f90", "run/restart_run.f90", "monitor%", {
-        "results": "times of its states are kept", "snapshot": "filled anew before it is written",
+        "results": "times of its states are kept", "snapshot": "filled anew before it is written", "rows": "of the mesh",
         "log": "of each run", "told_radii": "of its log", "clock": "of each run", "progress": "of each run",
         "restarts": "n_dump is kept", "has_plot": "from the deck", "only_checks": "of a check",
         "ranks": "of each run", "tables": "kept one by one"}),
     "explicit_cycle_t": ("solve/explicit/explicit_cycle.f90", "solve/explicit/explicit_memory.f90", "", {
         "writes": "set in each cycle", "finished": "not when a file is written",
         "last": "found again", "plots": "of the run that was asked", "due": "set in each cycle",
-        "leap": "made in each cycle", "sums": "formed in each cycle", "rest": "found anew in the first cycles", "refines": "from the deck", "presses": "from the deck", "common": "made in each cycle", "rates": "asked anew in the first cycle",
+        "leap": "made in each cycle", "sums": "formed in each cycle", "rest": "found anew in the first cycles", "refines": "from the deck", "presses": "from the deck", "pressing": "formed anew in each cycle", "common": "made in each cycle", "rates": "asked anew in the first cycle",
         "checks": "filled in each cycle", "failures": "of each log, counted anew", "steps": "kept as step_plan_t",
-        "shares": "of each run", "parcel": "filled in each cycle", "asked": "heard in each cycle",
+        "shares": "of each run", "borders": "of each run", "n_check": "of each run", "parcel": "filled in each cycle", "echoes": "of a second", "asked": "heard in each cycle",
         "told": "of the state", "freed": "not when a file is written",
         "timed_motions": "from the deck", "active": "asked anew in the first cycle", "velocity": "made in each cycle",
         "displacement": "made in each cycle", "reason": "of each run", "error": "of each run"}),

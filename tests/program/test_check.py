@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
 """`slideline check`: messages without a run, for people and for programs."""
 import json
+from pathlib import Path
 
 from conftest import drop
+
+ROOT = Path(__file__).resolve().parents[2]
 
 WRONG = """*KEYWORD
 *PARAMETER
@@ -31,6 +34,57 @@ def test_a_sound_deck_is_accepted_and_nothing_is_written(slideline, tmp_path):
     assert "accepted" in done.stdout and "16 elements" in done.stdout
     assert [path.name for path in tmp_path.iterdir()] == ["deck.k"]
     assert findings(slideline("check", "i=deck.k", "--json")) == (True, [])
+
+
+def told_model(done):
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)["model"]
+
+
+def test_the_model_is_that_of_every_example(slideline):
+    """As many nodes, elements and numbers of them as the cards say, columns of one length, curves and parts that exist."""
+    for deck in sorted((ROOT / "doc" / "examples").glob("*.k")):
+        model = told_model(slideline("check", deck, "--json"))
+        nodes, parts = set(model["node_ids"]), {one["id"] for one in model["parts"]}
+        curves = {one["id"] for one in model["curves"]}
+        assert len(model["x"]) == len(model["y"]) == len(nodes) == len(model["node_ids"]), deck
+        assert len(model["element_nodes"]) == 4 * len(model["element_ids"]) and set(model["element_nodes"]) <= nodes
+        assert set(model["element_parts"]) <= parts and len(model["element_parts"]) == len(model["element_ids"])
+        for name in ("fixed", "motions", "body_motions", "nodal_loads", "rigid_loads", "pressures", "body_loads"):
+            columns = model.get(name, {})
+            assert len({len(column) for column in columns.values()}) <= 1, (deck, name)
+            assert set(columns.get("curve", ())) <= curves and set(columns.get("node", ())) <= nodes
+        for one in model["interfaces"]:
+            assert len(one["slave"]) % 2 == 0 and set(one["slave"]) | set(one["master"]) <= nodes
+            assert one["slave"] and one["master"] and 1 <= one["type"] <= 7
+
+
+def test_the_model_has_what_the_deck_says(slideline, tmp_path):
+    """Numbers to the last bit, overrides and factors of curves applied, titles with marks of JSON in them."""
+    deck = drop().text().replace("*END", """*SET_NODE_LIST_TITLE
+ the "last" \\ ones
+        77
+         1         2
+*DEFINE_CURVE
+        78         0       2.0       3.0       0.5       0.0
+                 1.0               0.125
+                 2.0        0.1000000001
+*DATABASE_HISTORY_NODE
+         2
+*END""")
+    (tmp_path / "deck.k").write_text(deck)
+    model = told_model(slideline("check", "deck.k", "--json", "ctype=5"))
+    title, nodes = next((one["title"].strip(), one["nodes"]) for one in model["node_sets"] if one["id"] == 77)
+    assert title == 'the "last" \\ ones' and nodes == [1, 2]
+    curve = next(one for one in model["curves"] if one["id"] == 78)
+    assert curve["x"] == [2.0 * 1.5, 2.0 * 2.5] and curve["y"] == [3.0 * 0.125, 3.0 * 0.1000000001]
+    assert model["history_nodes"] == [1, 13, 20, 2] and [one["type"] for one in model["interfaces"]] == [5]
+    assert len(model["element_ids"]) == 16
+
+
+def test_a_refused_deck_has_no_model(slideline, tmp_path):
+    (tmp_path / "wrong.k").write_text(WRONG)
+    assert "model" not in json.loads(slideline("check", "wrong.k", "--json").stdout)
 
 
 def test_messages_say_where(slideline, tmp_path):

@@ -3,11 +3,13 @@
 
 The program is the one of the tests of a Release build where MPI is installed (slideline_mpi, named by
 SLIDELINE_MPI): the objects of the ordinary program linked with the other module of src/parallel. One process of it
-is held against two and three, more than the machine may have. Each scene has another type and its own features:
+is held against two to eight, more than the machine may have. Each scene has another type and its own features:
 loads, damping, gravity, walls, rigid bodies, points that fail, friction, round bodies, elements that leave, one
 surface with itself, masses that grow; there are more tiles than processes, and fewer.
 """
+import contextlib
 import os
+import pathlib
 import re
 import shutil
 import signal
@@ -21,6 +23,7 @@ from erosion_decks import penetration
 from impact_decks import plates
 from meshes import Deck, grid
 from round_decks import rings
+from test_requests import wait_for
 from test_same_bits import anvil, everything
 
 from slideline_tools.scenes import block, collision
@@ -49,6 +52,18 @@ def growing(kind):
     return deck.output(plot=2.0e-3, glstat=2.0e-4, matsum=1.0e-3, rcforc=2.0e-4).text()
 
 
+def settling():
+    """Gravity and damping, whose work is summed over blocks of nodes, between a dozen tiles that nothing else touches."""
+    deck = Deck("gravity and damping").control(0.01)
+    deck.part(1).elastic(1000.0, 1.0e6, 0.3)
+    nodes = deck.mesh(*grid(100, 60, 1.0, 0.6))
+    deck.fix(nodes[:101], x=1, y=1)
+    deck.curve(1, [(0.0, 10.0), (1.0, 10.0)]).add("*LOAD_BODY_Y", (1,))
+    deck.curve(2, [(0.0, 20.0), (1.0, 20.0)]).add("*DAMPING_GLOBAL", (2,))
+    deck.add("*INITIAL_VELOCITY", (0,), (1.0, -2.0))
+    return deck.output(plot=2.0e-3, glstat=2.0e-4, matsum=1.0e-3).text()
+
+
 #: scene -> (deck, cycles, processes, threads, words)
 SCENES = {
     "rigid body and wall, type 2": (lambda: anvil(2), 60, 3, 1),
@@ -56,8 +71,9 @@ SCENES = {
     "friction, type 4": (lambda: collision(2, 4), 60, 3, 2, "fs=0.3"),
     "one surface, type 5": (lambda: penetration(5, is_self=True, n=16), 330, 3, 1),
     "elements that leave, type 5": (lambda: penetration(5, n=8), 330, 2, 1),
-    "round, type 6": (lambda: rings(6), 60, 3, 1),
+    "round, type 6": (lambda: rings(6), 60, 4, 2),
     "mass that grows, type 7": (lambda: growing(7), 60, 2, 1),
+    "no contact, gravity": (settling, 60, 5, 1),
 }
 
 
@@ -94,7 +110,7 @@ def log_of(folder):
     """What the log says of the run: not the command, its times and its build."""
     lines = next(folder.glob("*.log")).read_text().splitlines()
     return [line for line in lines[:lines.index(" *** termination time reached ***")]
-            if "command line" not in line and not line.startswith("restart file")]
+            if "command line" not in line and not line.startswith(("restart file", "exchange:"))]
 
 
 def assert_same(one, other):
@@ -133,6 +149,32 @@ def test_restart_files_go_from_two_processes_to_three(tmp_path):
     assert len(rest) > 20 and not [name for name in rest if rest[name] != one[name]]
 
 
+def test_restart_files_go_from_three_processes_to_eight(tmp_path):
+    """Nodes between the tiles of others are as old as the start where nobody has gathered them."""
+    (tmp_path / "job.k").write_text(with_cycles(settling(), 40, 20), encoding="ascii")
+    run(tmp_path, 1, "i=job.k", "d=one")
+    run(tmp_path, 3, "i=job.k", "d=rest")
+    for name in ("job.dump02.h5", "job.dump03.h5"):
+        (tmp_path / "rest" / name).unlink(missing_ok=True)
+    run(tmp_path, 8, "r=rest/job.dump01.h5")
+    one, rest = contents(tmp_path / "one"), contents(tmp_path / "rest")
+    assert len(rest) > 20 and not [name for name in rest if rest[name] != one[name]]
+
+
+def test_forces_go_to_neighbours_alone(tmp_path):
+    """The bytes that are counted are those of the nodes between the parts: 16 a node and tile, from each to the others."""
+    deck = Deck("a strip").control(0.01)
+    deck.part(1).elastic(1000.0, 1.0e6, 0.3)
+    nodes = deck.mesh(*grid(2048, 2, 204.8, 0.2))
+    deck.fix(nodes[::2049], x=1, y=1)
+    (tmp_path / "job.k").write_text(with_cycles(deck.output(plot=1.0, glstat=1.0).text(), 10), encoding="ascii")
+    run(tmp_path, 8, "i=job.k", "d=out")
+    told = re.search(r"messages (\S+) \((\S+)\), bytes (\S+) \((\S+)\), calls of all 1.00 \(1.00\), bytes by them 72.00 \(72.00\)",
+                     (tmp_path / "out" / "job.log").read_text())
+    # Eight tiles side by side, each with a column of three nodes in common with the next.
+    assert [float(word) for word in told.groups()] == [14 / 8, 2.0, 14 * 48 / 8, 96.0]
+
+
 def test_an_error_ends_all_processes_and_is_told_once(tmp_path):
     """A run that goes wrong, a deck that is refused and a method that has one process."""
     deck = Deck("crushed").control(0.02)
@@ -160,20 +202,54 @@ def test_a_disk_that_takes_no_more_ends_all_processes(tmp_path):
     assert said.count("full/job.") == 1, said
 
 
+@contextlib.contextmanager
+def going_run(folder, processes):
+    """A run of minutes that has begun to write, and its processes in the order of their numbers."""
+    (folder / "job.k").write_text(everything(2).replace("0.004", "4.0", 1), encoding="ascii")
+    command = [*LAUNCH, str(processes), PROGRAM, "i=job.k", "d=out", "endtim=4"]
+    environment = {**ENVIRONMENT, "OMPI_MCA_orte_tmpdir_base": str(folder)}
+    with subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+        table = folder / "out" / "job.glstat.csv"
+        wait_for(lambda: table.exists() and table.stat().st_size > 2000, 60.0)
+        children = subprocess.run(["pgrep", "-P", str(run.pid)], capture_output=True, text=True, check=True).stdout
+        of_rank = {}
+        for child in map(int, children.split()):
+            told = pathlib.Path(f"/proc/{child}/environ").read_bytes().split(b"\0")
+            of_rank.update({int(word.partition(b"=")[2]): child for word in told
+                            if word.startswith(b"OMPI_COMM_WORLD_RANK=")})
+        try:
+            yield run, [of_rank[rank] for rank in range(processes)]
+        finally:
+            run.kill()
+
+
+def test_signals_reach_the_run_through_any_process(tmp_path):
+    """A restart file once though all hear of it, a plot state, and an end."""
+    with going_run(tmp_path, 3) as (run, processes):
+        out = tmp_path / "out"
+        for process in processes:
+            os.kill(process, signal.SIGUSR1)
+        wait_for((out / "job.dump01.h5").exists)
+        os.kill(processes[2], signal.SIGUSR2)
+        time.sleep(1.2)
+        assert not (out / "job.dump02.h5").exists()
+        os.kill(processes[2], signal.SIGUSR1)
+        wait_for((out / "job.dump02.h5").exists)
+        os.kill(processes[1], signal.SIGTERM)
+        assert run.wait(60) == 4
+        assert "stopped on request" in run.stderr.read().decode()
+    with h5py.File(out / "job.vtkhdf") as stream:
+        times = stream["VTKHDF/Steps/Values"][()]
+    # That which was asked for and the last one are not multiples of the interval.
+    assert len(times) >= 3
+
+
 def test_a_process_that_is_killed_ends_the_run_and_leaves_files_that_can_be_read(tmp_path):
-    (tmp_path / "job.k").write_text(everything(2).replace("0.004", "4.0", 1), encoding="ascii")
-    command = [*LAUNCH, "3", PROGRAM, "i=job.k", "d=killed", "endtim=4"]
-    environment = {**ENVIRONMENT, "OMPI_MCA_orte_tmpdir_base": str(tmp_path)}
-    with subprocess.Popen(command, cwd=tmp_path, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as going:
-        table = tmp_path / "killed" / "job.glstat.csv"
-        for _ in range(600):
-            time.sleep(0.1)
-            if table.exists() and table.stat().st_size > 2000:
-                break
-        children = subprocess.run(["pgrep", "-P", str(going.pid)], capture_output=True, text=True, check=True).stdout
-        os.kill(int(children.split()[-1]), signal.SIGKILL)
-        assert going.wait(60) != 0
-    lines = table.read_text().splitlines()
+    with going_run(tmp_path, 3) as (run, processes):
+        os.kill(processes[2], signal.SIGKILL)
+        assert run.wait(60) != 0
+    out = tmp_path / "out"
+    lines = (out / "job.glstat.csv").read_text().splitlines()
     assert len(lines) > 2 and all(line.count(",") == lines[0].count(",") for line in lines)
-    with h5py.File(tmp_path / "killed" / next((tmp_path / "killed").glob("*.vtkhdf*")).name) as stream:
+    with h5py.File(out / next(out.glob("*.vtkhdf*")).name) as stream:
         assert stream["VTKHDF/Steps"].attrs["NSteps"] >= 1

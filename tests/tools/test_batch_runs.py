@@ -201,6 +201,21 @@ def test_arrays_share_the_work(place, decks):
     assert all(len(told(path.parent)) == 1 for path in (decks / "results").glob("*/told.txt"))
 
 
+def test_job_of_many_processes(place):
+    """The launcher gets the program with its words and the threads of a task; without a program nothing is launched."""
+    (place / "launch").write_text("""#!/bin/sh
+printf '%s|' "$@" >launched.txt
+""")
+    (place / "launch").chmod(0o755)
+    (place / "tools").symlink_to(ROOT / "tools")
+    words = {"LAUNCH": "./launch -n 8", "SLURM_SUBMIT_DIR": ".", "SLURM_CPUS_PER_TASK": "2"}
+    assert call(place, "ranks_job.sh", "i=one deck.k", "d=out", **words).returncode == 0
+    assert (place / "launched.txt").read_text() == f"-n|8|{place / 'the program'}|i=one deck.k|d=out|ncpu=2|"
+    (place / "launched.txt").unlink()
+    done = call(place, "ranks_job.sh", "i=one deck.k", program="none", **words)
+    assert done.returncode == 2 and "no such program" in done.stderr and not (place / "launched.txt").exists()
+
+
 @pytest.mark.parametrize("script, words", [
     ("run_folder.sh", []), ("run_folder.sh", ["none"]), ("run_folder.sh", ["empty"]),
     ("run_list.sh", ["none", "out"]), ("sweep.sh", ["-o", "out", "none.k", "a=1"]),

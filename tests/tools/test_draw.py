@@ -10,9 +10,7 @@ import pytest
 
 from slideline_tools import UserError, scenes
 from slideline_tools.draw import picture, resolve
-from slideline_tools.draw.cards import real_number, whole_number
-from slideline_tools.draw.chains import list_surface, normals, parts_surface
-from slideline_tools.draw.model import ModelError, read_model
+from slideline_tools.draw.model import ModelError
 from slideline_tools.histories import read_csv
 from slideline_tools.results import read
 
@@ -137,7 +135,7 @@ def test_mesh_and_parts(model):
     first, second = corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1]
     assert np.all(first[:, 0] * second[:, 1] > first[:, 1] * second[:, 0])
     assert {part.id: (part.title, part.n_element, part.law) for part in model.parts.values()} == {
-        1: ("ring", 8, "MAT_ELASTIC"), 2: ("block", 3, "MAT_RIGID")}
+        1: ("ring", 8, "elastic"), 2: ("block", 3, "rigid")}
     assert model.parts[2].is_rigid and model.parts[2].turn_held
     assert model.parts[2].held == (True, False)
 
@@ -149,7 +147,7 @@ def test_sets_and_conditions(model):
             if flags.any()}
     assert held == {**{number: [True, True] for number in (97, 98, 99, 100)}, 88: [True, False]}
     assert numbers(model, model.history_nodes) == [200]
-    assert not model.unread
+    assert model.not_drawn == []
     assert len(model.warnings) >= 1 and "numbered clockwise" in model.warnings[0]
 
 
@@ -174,19 +172,20 @@ def test_initial_velocity(model):
     np.testing.assert_allclose(model.velocity[model.part_nodes([2])], 0.0)
 
 
-def test_velocity_of_a_rigid_body():
+def test_velocity_of_a_rigid_body(tmp_path, slideline):
     """Translation and spin about the centre of mass, before what its nodes get; held directions stay at rest."""
-    text = (conftest.ROOT / "doc/examples/initial_velocity_rigid_body.k").read_text()
-    node = "*INITIAL_VELOCITY_NODE\n         4       9.0       9.0\n*DEFINE_TABLE\n         5\n       0.0\n*END\n"
-    model = read_model(text.replace("*END\n", node))
-    assert model.unread == []
+    text = (EXAMPLES / "initial_velocity_rigid_body.k").read_text()
+
+    def read_model(deck):
+        (tmp_path / "deck.k").write_text(deck)
+        return resolve(tmp_path / "deck.k", slideline)
+
+    model = read_model(text.replace("*END\n", "*INITIAL_VELOCITY_NODE\n         4       9.0       9.0\n*END\n"))
     np.testing.assert_allclose(model.velocity[model.index(4)], [1.0 - 10.0 * 0.5, 10.0 * 0.5])
     np.testing.assert_allclose(model.velocity.mean(axis=0), [1.0, 0.0], atol=1e-12)
     rigid = "         1    1000.0    2.1E11       0.3\n"
     held = read_model(text.replace(rigid, rigid + "       1.0       1.0       7.0\n"))
     np.testing.assert_allclose(held.velocity, 0.0)
-    other = read_model(text.replace("*END\n", "*INITIAL_VELOCITY_OTHER\n         1\n*END\n"))
-    assert other.unread == ["INITIAL_VELOCITY_OTHER"]
 
 
 def test_surfaces_of_part_sets(model):
@@ -196,7 +195,7 @@ def test_surfaces_of_part_sets(model):
     assert sorted(len(chain) - 1 for chain in interface.slave.chains) == [4, 12]
     assert [len(chain) - 1 for chain in interface.master.chains] == [7]
     middle = model.points[interface.slave.segments].mean(axis=1)
-    outward = normals(model.points, interface.slave.segments)
+    outward = interface.slave.normals(model.points)
     inside = np.all(np.abs(middle - 1.5) < 0.6, axis=1)
     toward = np.sum(outward * (middle - 1.5), axis=1)
     assert inside.sum() == 4 and np.all(toward[inside] < 0.0) and np.all(toward[~inside] > 0.0)
@@ -216,8 +215,9 @@ def test_surfaces_by_other_sets_are_those_of_the_program(tmp_path, slideline, na
     deck = deck.replace("*CONTACT_2D", "*SET_SEGMENT\n        77\n        21        42\n*CONTACT_2D", 1)
     for k, text in enumerate((deck, deck.replace("         1         2\n*", "        77         2\n*"))):
         (tmp_path / f"deck{k}.k").write_text(text)
-        model = read_model(run(tmp_path / f"deck{k}.k", f"job{k}"))
-        assert len(model.interfaces) == 1 and not model.unread
+        run(tmp_path / f"deck{k}.k", f"job{k}")
+        model = resolve(tmp_path / f"deck{k}.k", slideline)
+        assert len(model.interfaces) == 1
         rows = read_csv(tmp_path / f"job{k}.contact.csv").where(time=0.0)
         walked, drawn = rows["node"].astype(int).tolist(), numbers(model, model.interfaces[0].slave.nodes)
         assert from_lowest(walked) == from_lowest(drawn)
@@ -244,23 +244,20 @@ def from_lowest(chain):
     return chain[start:] + chain[:start]
 
 
-def test_chains_of_lists(model):
-    """As given, turned, put in order, broken."""
-    def made(*nodes):
-        surface = list_surface(model.cells, model.indices(nodes), "")
-        return numbers(model, surface.chains[0]), surface.how
-    assert made(88, 92, 96, 100) == ([88, 92, 96, 100], "")     # down the left side
-    assert made(100, 96, 92, 88) == ([88, 92, 96, 100], "turned")
-    assert made(96, 100, 88, 92) == ([88, 92, 96, 100], "put in order")
-    assert made(88, 96, 100)[1] == "broken"
-    inner = [95, 91, 90, 94]                                     # round the hole, clockwise
-    assert made(*inner, 95) == ([*inner, 95], "")
-    assert made(*inner[::-1], 94) == ([94, 95, 91, 90, 94], "turned")
-
-
-def test_boundary_that_touches_itself():
-    cells = np.array([[0, 1, 4, 3], [4, 5, 8, 7]])
-    assert parts_surface(cells, "").how == "broken"
+def test_a_list_of_nodes_is_walked_counter_clockwise(tmp_path, slideline):
+    """Whatever its order: the left side of the ring and the ring round the hole."""
+    inner = "".join(f"{node:10d}" for node in (94, 90, 91, 95, 94))
+    lists = f"*SET_NODE_LIST\n         8\n{inner}\n*SET_NODE_LIST\n         9\n       200       201       202\n"
+    contact = "*CONTACT_2D_SLIDELINE\n{:10d}        -9         5         2     1.0E6\n"
+    for number, walked, closed in ((-7, [88, 92, 96, 100], False), (-8, [90, 94, 95, 91], True)):
+        deck = write_deck(tmp_path)
+        text = deck.read_text()
+        start = text.index("*CONTACT_2D")
+        deck.write_text(text[:start] + lists + contact.format(number) + "*END\n")
+        chains = [numbers(model, chain) for model in [resolve(deck, slideline)] for chain in model.interfaces[0].slave.chains]
+        assert len(chains) == 1 and (chains[0][0] == chains[0][-1]) == closed
+        found = chains[0][:-1] if closed else chains[0]
+        assert (from_lowest(found) if closed else found) == walked
 
 
 def test_model_of_a_scene_is_that_of_the_results(tmp_path, slideline):
@@ -297,21 +294,9 @@ def test_program_that_is_not_there(tmp_path):
         resolve(write_deck(tmp_path), tmp_path / "none")
 
 
-def test_deck_without_a_mesh():
-    with pytest.raises(ModelError, match="no mesh"):
-        read_model("*KEYWORD\n*END\n")
-
-
-def test_long_and_comma_fields():
-    text = ("*KEYWORD LONG=Y\n*NODE\n" + "".join(
-        f"{k:20d}{x:20.12g}{y:20.12g}\n" for k, (x, y) in
-        enumerate([(0, 0), (1, 0), (1, 1), (0, 1)], start=1))
-        + "*ELEMENT_SHELL\n1,4,1,2,3,4\n*PART\n\n" + f"{4:20d}{1:20d}{9:20d}\n*MAT_NEW\n9,\n*END\n")
-    model = read_model(text)
-    assert model.points.tolist() == [[0, 0], [1, 0], [1, 1], [0, 1]]
-    assert model.parts[4].material == 9 and model.parts[4].law == "MAT_NEW"
-    assert real_number("8.9-3") == 8.9e-3 and real_number("1.0D0") == 1.0
-    assert whole_number(" 3.0 ") == 3 and whole_number("") == 0
+def test_program_that_tells_no_model(tmp_path):
+    with pytest.raises(ModelError, match="tells no model"):
+        resolve(write_deck(tmp_path), "true")
 
 
 # ---- the picture --------------------------------------------------------------------------------
@@ -323,7 +308,7 @@ def labels(figure):
 def test_legend_names_everything(model):
     found = "\n".join(labels(picture.model_figure(model)))
     for words in ('part 1 "ring": 8 elements', "held: x, turn", 'set 1 "foot of the ring": 4 nodes',
-                  "slave, part set 1, 16 segments", "master, part set 2, 7 segments",
+                  "slave, 16 segments", "master, 7 segments",
                   "held in x: 1", "held in x and y: 4", "initial velocity, largest", "pressure",
                   "body load in y", "load on node 96", "velocity of part 2", "history of nodes: 1"):
         assert words in found
@@ -348,10 +333,10 @@ def test_command(tmp_path, slideline, tool, monkeypatch):
     assert tool("draw", deck, "--show", "everything").returncode == 2
 
 
-def test_command_on_a_results_folder_needs_no_program(tmp_path, slideline, tool):
+def test_command_on_a_results_folder(tmp_path, slideline, tool):
     subprocess.run([slideline, f"i={write_deck(tmp_path)}", f"d={tmp_path / 'run'}", "endtim=1e-9"],
                    capture_output=True, check=True)
-    finished = tool("draw", tmp_path / "run", "--program", "/nowhere", "-o", tmp_path / "y.png")
+    finished = tool("draw", tmp_path / "run", "--program", slideline, "-o", tmp_path / "y.png")
     assert finished.returncode == 0, finished.stderr
     assert is_png(tmp_path / "y.png")
 

@@ -42,7 +42,8 @@ def test_plot(tmp_path, tool, results_file, options):
     (["--history", "glstat"], "with columns of cycle, internal, kinetic, total"),
     (["--history", "glstat:heat"], "no column 'heat'"),
     (["--history", "elout:x"], "no history 'elout'"),
-    (["--history", "rcforc:fy@side=left"], "no rows"),
+    (["--history", "rcforc:fy@side=left"], "no side 'left'"),
+    (["--history", "rcforc:fy@interface=9"], "no rows"),
     (["--contact", "--history", "glstat:total"], "choose one")])
 def test_plot_refusals(tmp_path, tool, results_file, options, message):
     finished = tool("plot", results_file, *options, "--output", tmp_path / "x.png")

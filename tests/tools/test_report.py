@@ -98,6 +98,21 @@ def collision(tmp_path_factory):
                        "p:endtim=4e-5", "p:dthist=1e-6")
 
 
+def test_report_shows_how_good_the_answer_of_contact_is(tmp_path):
+    """Curves and figures of sleout, where it was written; a run without has none (`written`)."""
+    if "SLIDELINE" not in os.environ:
+        pytest.skip("SLIDELINE is not set")
+    deck = tmp_path / "block.k"
+    text = (conftest.ROOT / "input" / "block" / "block.k").read_text(encoding="utf-8")
+    deck.write_text(text.replace("*END", "*DATABASE_SLEOUT\n1.0e-3,\n*END"), encoding="utf-8")
+    folder = run_program(os.environ["SLIDELINE"], deck, tmp_path / "run")
+    page, sleout = read_page(write_report(folder)), read_csv(folder / "block.sleout.csv")
+    assert {"How good the answer of interface 1 is", "Energy that contact of interface 1 has lost"} <= {
+        one["alt"] for one in page.pictures}
+    assert f"largest estimate {sleout['estimate'].max():.4g}" in page.text
+    assert 0.0 < sleout["estimate"].max()
+
+
 @pytest.fixture(scope="module")
 def written(collision):
     """Its report in the default place."""
@@ -122,7 +137,7 @@ def test_report_holds_the_numbers_of_the_run(collision, written):
         "mass": f"{matsum.where(part=2)['mass'][-1]:.5g}",
         "cycles": "400 cycles", "ending": "normal termination termination time reached",
         "title": "collision of a projectile with a plate", "mesh": "310 nodes, 240 elements, 2 parts",
-        "law": "*MAT_PLASTIC_KINEMATIC", "density": "7850", "interface": "Interface 1 (NTS-AR, type 2)",
+        "law": "1 elastic-plastic", "density": "7850", "interface": "Interface 1 (NTS-AR, type 2)",
         "machine": f"machine {results.run['machine']}", "source": f"source {results.run['source']}",
         "deck": "*CONTACT_2D_SLIDELINE",
     }
@@ -130,7 +145,8 @@ def test_report_holds_the_numbers_of_the_run(collision, written):
     assert not missing
     assert {"energies", "contact", "fields", "nodes", "model", "timing"} <= set(page.ids)
     lines = [one["alt"] for one in page.pictures if one["src"].startswith("data:image/svg+xml")]
-    assert len(lines) == 8
+    assert len(lines) == 7  # none of the time step, which is constant
+    assert "The time step is 1e-07 throughout" in page.text
     fields = [one["alt"] for one in page.pictures if one["src"].startswith("data:image/png")]
     top = min(read(collision / "collision.vtkhdf").times,
               key=lambda time: abs(time - slave["time"][np.argmax(slave["fy"])]))
@@ -221,8 +237,10 @@ def test_material_with_points_and_rates(tmp_path, slideline):
     (tmp_path / "plate.k").write_text(text.replace(block[0], law))
     folder = run_program(slideline, tmp_path / "plate.k", tmp_path / "run", "endtim=1e-5")
     page = read_page(write_report(folder, tmp_path / "r.html"))
-    heads = re.search(r"<h3>Materials</h3>.*?</tr>", (tmp_path / "r.html").read_text(), re.S)[0]
-    assert re.findall(r"<th[^>]*>([^<]*)</th>", heads)[-6:] == [
+    tables = re.search(r"<h3>Materials</h3>.*?(?:<h3>|</section>)", (tmp_path / "r.html").read_text(), re.S)[0]
+    heads = [re.findall(r"<th[^>]*>([^<]*)</th>", one) for one in tables.split("</table>")[:-1]]
+    assert len(heads) > 1 and all(one[0] == "material" and len(one) <= 9 for one in heads)
+    assert [name for one in heads for name in one[1:]][-6:] == [
         "points of hardening", "last plastic strain", "last plastic modulus", "strain rates", "lowest strain rate",
         "highest strain rate"]
     assert "Keywords that this report does not read" not in page.text

@@ -49,7 +49,7 @@ def cell(text):
 def case_page(report):
     """All checks of a case."""
     lines = [f"# {report['case']}\n",
-             f"[What the case is](../../tests/verification/{report['case']}/README.md). {CASE_HEAD}",
+             f"[What the case is](../../tests/verification/{report['case']}/README.md).\n{CASE_HEAD}",
              "| quantity | expected | found | error | tolerance | kind | verdict |",
              "|---|---|---|---|---|---|---|"]
     for check in report["checks"]:

@@ -3,7 +3,7 @@
 
     build/venv/bin/python tools/docs/figures.py [--program build/release/slideline]
 
-writes doc/pictures/first_deck.svg, first_model.png,
+writes doc/pictures/collision.png, draw.png, first_deck.svg, first_model.png,
 first_stress.png, first_history.png and contact_points.svg.
 """
 import argparse
@@ -19,13 +19,14 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from slideline_tools import cli  # noqa: E402
+from slideline_tools import cli, plots  # noqa: E402
 from slideline_tools.contact_types import TYPES  # noqa: E402
 from slideline_tools.results import read  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "doc/pictures"
 SLAVE, MASTER, INK = "#c8553d", "#33658a", "#333333"
+IMPACT = "1e-5"   # s, of the head picture: the projectile pushes the plate with its largest force
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
 N_SLAVE, N_MASTER = 4, 5
 
@@ -119,6 +120,16 @@ def first_deck(program, folder):
                    "rcforc:fy@side=slave", "--output", str(PICTURES / "first_history.png")]):
         if cli.main(words):
             sys.exit("the picture could not be drawn")
+
+
+def collision(program, folder):
+    """The head picture, in the middle of the impact, and the model."""
+    deck = ROOT / "input/collision/collision.k"
+    path = run(program, deck, folder / "collision", f"p:dtplot={IMPACT}", "ctype=5")
+    figure = plots.report_figure(read(path), IMPACT, "mises")
+    plots.save(figure, PICTURES / "collision.png")
+    if cli.main(["draw", str(deck), "--program", str(program), "--output", str(PICTURES / "draw.png")]):
+        sys.exit("the picture could not be drawn")
 
 
 # --- contact points of the seven formulations ------------------------------------------------
@@ -216,6 +227,7 @@ def main():
     parser.add_argument("--program", default=str(ROOT / "build/release/slideline"))
     program = parser.parse_args().program
     with tempfile.TemporaryDirectory() as folder:
+        collision(program, pathlib.Path(folder))
         first_deck(program, pathlib.Path(folder))
         contact_points(program, pathlib.Path(folder))
 

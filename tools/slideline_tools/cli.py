@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+# PYTHON_ARGCOMPLETE_OK
 """The command `slideline-tools`: info, plot, animate, compare, advise and bless are here, the other
 commands in the package `commands`."""
 import argparse
@@ -79,20 +80,8 @@ def add_plot(commands):
 def plot(options):
     from slideline_tools import plots
     results = opened(options)
-    states = options.state or ["-1"]
-    if sum(map(bool, (options.history, options.contact, options.zones))) > 1:
-        raise ToolError("choose one of --history, --contact and --zones")
-    if options.history:
-        figure = plots.history_figure(results, options.history)
-    elif options.contact:
-        figure = plots.contact_figure(results, states)
-    elif options.zones:
-        from slideline_tools import zones
-        figure = zones.zones_figure(results, states)
-    elif options.field or options.state or options.zoom:
-        figure = plots.field_figure(results, options.field, states, options.scale, options.zoom)
-    else:
-        figure = plots.report_figure(results, scale=options.scale)
+    figure = plots.choose_figure(results, options.field, options.state or (), options.scale, options.zoom,
+                                 options.history or (), options.contact, options.zones)
     plots.save(figure, made_folder(options.output))
     print(f"wrote {options.output}")
     return OK
@@ -240,7 +229,9 @@ def one_line(problem):
 def main(arguments=None):
     """Entry point: returns 0 when done, 1 when a comparison failed, 2 when it could not be done,
     141 when whoever reads the output went away."""
-    options = build_parser().parse_args(arguments)
+    parser = build_parser()
+    completion.offer(parser)
+    options = parser.parse_args(arguments)
     try:
         status = options.run(options)
         sys.stdout.flush()

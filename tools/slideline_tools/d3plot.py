@@ -6,6 +6,8 @@
 
 Single precision, as in DYNA. Elements are 2D solids, which d3plot stores among the shells: the stress and plastic strain of
 the element stand at each of three through-thickness points, as DYNA writes them.
+
+Written here and not by lasso-python: of the same arrays that makes a family which VTK's reader refuses (version word 0).
 """
 import pathlib
 

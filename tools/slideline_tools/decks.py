@@ -4,6 +4,7 @@
 A deck is text: `Deck` puts keywords, cards and comments together and writes above each
 card the names of its fields. Numbers are cut to the width of their field, never beyond.
 """
+import functools
 import textwrap
 
 import numpy as np
@@ -30,11 +31,12 @@ def field(value, width=WIDTH):
     return text.rjust(width)
 
 
+@functools.lru_cache(1 << 16)  # the lines of a grid have few coordinates
 def real(value, width):
     """Text of a real with all its digits, or with the most digits that fit."""
     if value == 0.0:
         return "0.0"
-    for digits in range(17, 0, -1):
+    for digits in range(min(17, width), 0, -1):
         fitting = [text for text in _spellings(value, digits) if len(text) <= width]
         if fitting:
             return fitting[0]

@@ -2,6 +2,7 @@
 """Fields to draw: from a name such as `plastic_strain`, `velocity:y` or `stress:xy` to scalars."""
 import numpy as np
 
+from slideline_tools.names import missing
 from slideline_tools.results import STRESS_COMPONENTS, VECTOR_COMPONENTS, ResultsError
 
 # What the number is, and whether it has a unit (that of the deck, whatever it is).
@@ -22,6 +23,21 @@ LABELS = {
     "contact_slip": ("slip", True),
     "contact_state": ("0 open, 1 stick, 2 slip, 3 tied, 4 broken", False),
 }
+
+
+#: what is smaller beside the largest value of its kind is round-off
+ROUND_OFF = 1.0e-12
+
+
+def largest(values):
+    """The largest size of finite values; 0 without any."""
+    sizes = np.abs(values[np.isfinite(values)])
+    return float(sizes.max()) if sizes.size else 0.0
+
+
+def without_round_off(values, scale):
+    """The values with zero in place of those that are round-off beside `scale`."""
+    return np.where(np.abs(values) < ROUND_OFF * scale, 0.0, values)
 
 
 class ScalarField:
@@ -58,8 +74,9 @@ def scalar_field(results, name):
         values, at_nodes, components = results.cell_field(base), False, STRESS_COMPONENTS
     else:
         present = results.point_fields + results.cell_fields
-        raise ResultsError(f"no field '{base}'; there are {', '.join(present)}")
+        raise ResultsError(f"no field '{base}'{missing(base, present)}")
     text, has_unit = LABELS.get(base, (base.replace("_", " "), True))
+    values = without_round_off(values, largest(values))
     if values.ndim == 3:
         values, text = pick_component(base, values, component, components, text)
     elif component:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import csv
 import os
 import pathlib
+import types
 import typing
 
 import numpy as np
 
 from slideline_tools import UserError
+from slideline_tools.names import missing, one_line
 
 if typing.TYPE_CHECKING:
     import pandas
@@ -39,12 +41,15 @@ class History:
         if len({len(column) for column in self.columns.values()}) > 1:
             raise HistoryError(f"{name}: columns of different length")
 
+    def __repr__(self) -> str:
+        span = f", time {self['time'][0]:.4g} to {self['time'][-1]:.4g}" if "time" in self and len(self) else ""
+        return one_line(f"History {self.name}: {len(self)} rows{span}; {', '.join(self.columns)}")
+
     def __getitem__(self, column: str) -> np.ndarray:
         try:
             return self.columns[column]
         except KeyError:
-            raise HistoryError(f"{self.name} has no column '{column}'; "
-                               f"it has {', '.join(self.columns)}") from None
+            raise HistoryError(f"{self.name} has no column '{column}'{missing(column, self.columns)}") from None
 
     def __contains__(self, column: str) -> bool:
         return column in self.columns
@@ -69,11 +74,7 @@ class History:
 
         pandas is an extra: build/venv/bin/pip install './tools[frames]'. HistoryError without it.
         """
-        try:
-            import pandas
-        except ImportError:
-            raise HistoryError("frames need pandas: build/venv/bin/pip install './tools[frames]'") from None
-        frame = pandas.DataFrame(self.columns)
+        frame = require_pandas().DataFrame(self.columns)
         frame.attrs["table"] = self.name
         return frame
 
@@ -81,6 +82,8 @@ class History:
         """The rows in which each named column has the given value."""
         keep = np.ones(len(self), dtype=bool)
         for name, value in wanted.items():
+            if name == "side" and value not in SIDES.values():
+                raise HistoryError(f"{self.name} has no side '{value}'{missing(value, SIDES.values())}")
             keep &= self[name] == value
         return self.rows(keep)
 
@@ -93,7 +96,7 @@ class History:
         names = self.entity_columns
         if not names:
             return [((), self)]
-        rows_of = {}
+        rows_of: dict[tuple, list[int]] = {}
         for row, key in enumerate(zip(*(self[name].tolist() for name in names))):
             rows_of.setdefault(key, []).append(row)
         return [(key, self.rows(rows)) for key, rows in rows_of.items()]
@@ -102,6 +105,15 @@ class History:
         """Text for one entity, for example 'interface 1, slave'."""
         return ", ".join(str(value) if name == "side" else f"{name} {value}"
                          for name, value in zip(self.entity_columns, entity))
+
+
+def require_pandas() -> types.ModuleType:
+    """The module pandas. HistoryError without it."""
+    try:
+        import pandas
+    except ImportError:
+        raise HistoryError("frames need pandas: build/venv/bin/pip install './tools[frames]'") from None
+    return pandas
 
 
 def read_csv(path: str | os.PathLike) -> History:

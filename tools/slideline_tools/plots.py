@@ -2,17 +2,15 @@
 """Figures: a field on the deformed mesh, histories, contact pressure along the surface."""
 import textwrap
 
-import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import PolyCollection
+from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.collections import PolyCollection  # noqa: E402
-
-from slideline_tools.fields import default_field, scalar_field  # noqa: E402
-from slideline_tools.results import ResultsError  # noqa: E402
-from slideline_tools.walls import draw_walls, walls_of  # noqa: E402
+from slideline_tools import headless  # noqa: F401
+from slideline_tools.fields import default_field, largest, scalar_field, without_round_off
+from slideline_tools.results import ResultsError
+from slideline_tools.walls import draw_walls, walls_of
 
 STYLE = {
     "figure.dpi": 150, "savefig.dpi": 150, "font.size": 9, "axes.titlesize": 9,
@@ -24,6 +22,10 @@ PAGE_WIDTH = 7.0
 COLOURS = ("#0b559f", "#c23b22", "#2e7d32", "#7b3f99", "#b8860b", "#00838f", "#5d4037", "#555555")
 MARKERS = ("s", ">", "o", "v", "^", "D", "P", "X")
 LINES = ("-", "--", "-.", ":")
+#: columns that are compared with each other: what is round-off beside the largest of them is drawn as zero
+ALIKE = (("kinetic", "internal", "hourglass", "viscous", "damping", "contact", "external_work", "total", "leapfrog",
+          "friction", "energy"), ("fx", "fy"), ("ux", "uy"), ("vx", "vy"), ("ax", "ay"),
+         ("momentum_x", "momentum_y"), ("pressure", "traction"))
 
 
 # ---- a field on the deformed mesh --------------------------------------------------------------
@@ -125,14 +127,37 @@ def state_title(results, state, scale):
 
 
 def colour_bar(artist, panels, label):
-    """A colour bar beside the panels, with ticks from the lowest to the highest value."""
-    bar = panels[0].figure.colorbar(artist, ax=panels, aspect=12 * len(panels), pad=0.02)
+    """A colour bar beside the panels, with round ticks in one notation; pointed where values lie beyond its ends."""
+    bar = panels[0].figure.colorbar(artist, ax=panels, aspect=12 * len(panels), pad=0.02,
+                                    extend=beyond(panels, artist.get_clim()), extendfrac=0.03)
     bar.outline.set_linewidth(0.4)
-    ticks = np.linspace(*artist.get_clim(), 5)
-    bar.set_ticks(ticks, labels=[f"{tick:.3g}" for tick in ticks])
+    bar.locator = MaxNLocator(5, steps=[1, 2, 2.5, 5, 10])
+    bar.formatter = ScalarFormatter()
+    bar.update_ticks()
     head, unit, _ = label.partition("(deck units)")
     lines = textwrap.wrap(head, 24) + ([unit] if unit else [])
     bar.set_label("\n".join(lines), fontsize=8)
+    return bar
+
+
+def beyond(panels, limits):
+    """Which ends of a colour scale the values in the panels pass: for `extend` of a colour bar."""
+    shown = [artist.get_array() for axes in panels for artist in axes.collections if artist.get_array() is not None]
+    spare = 1.0e-9 * (limits[1] - limits[0])
+    low = any(np.min(values) < limits[0] - spare for values in shown)
+    high = any(np.max(values) > limits[1] + spare for values in shown)
+    return {(False, False): "neither", (True, False): "min", (False, True): "max"}.get((low, high), "both")
+
+
+def mark_cut(axes, x, y, colour):
+    """Arrow heads at the edge of a panel where points lie above or below its scale; to be called once that is set."""
+    low, high = axes.get_ylim()
+    inside = (np.asarray(x) >= axes.get_xlim()[0]) & (np.asarray(x) <= axes.get_xlim()[1])
+    for cut, height, marker in ((y > high, 0.985, "^"), (y < low, 0.015, "v")):
+        places = np.asarray(x)[cut & inside]
+        axes.plot(places, np.full(len(places), height), linestyle="none", marker=marker, markersize=5, color=colour,
+                  markeredgecolor="white", markeredgewidth=0.4, transform=axes.get_xaxis_transform(), clip_on=False,
+                  zorder=5)
 
 
 def run_title(results):
@@ -200,7 +225,7 @@ def draw_history(axes, results, request):
         for column in columns:
             name = column.replace("_", " ")
             label = f"{history.entity_label(entity)}: {name}" if entity else name
-            axes.plot(rows["time"], rows[column], label=label, color=COLOURS[count % len(COLOURS)],
+            axes.plot(rows["time"], drawn(rows, column, history), label=label, color=COLOURS[count % len(COLOURS)],
                       linestyle=LINES[(count // len(COLOURS)) % len(LINES)])
             count += 1
     axes.set_xlabel("time")
@@ -213,6 +238,15 @@ def draw_history(axes, results, request):
         axes.legend(loc="best")
     else:
         axes.set_ylabel(label)
+
+
+def drawn(rows, column, history):
+    """A column to draw: round-off, beside the largest value of all columns of its kind, is zero."""
+    kind = next((kind for kind in ALIKE if column in kind), (column,))
+    values = rows[column]
+    if values.dtype.kind != "f":
+        return values
+    return without_round_off(values, max(largest(history[name]) for name in kind if name in history))
 
 
 def history_figure(results, requests):
@@ -299,6 +333,24 @@ def report_requests(results):
     elif "nodout" in results.histories and len(results.history("nodout")):
         panels.append(("nodout:uy", "displacement in y"))
     return panels
+
+
+def choose_figure(results, field=None, states=(), scale=1.0, zoom=None, history=(), contact=False, zones=False):
+    """The figure that is asked for: histories, contact pressure, zones of stick and slip, a field, or without any of
+    these a field above the energies and the contact force."""
+    if sum(map(bool, (history, contact, zones))) > 1:
+        raise ResultsError("choose one of history, contact and zones")
+    shown = list(states) or ["-1"]
+    if history:
+        return history_figure(results, list(history))
+    if contact:
+        return contact_figure(results, shown)
+    if zones:
+        from slideline_tools.zones import zones_figure
+        return zones_figure(results, shown)
+    if field or states or zoom:
+        return field_figure(results, field, shown, scale, zoom)
+    return report_figure(results, scale=scale)
 
 
 def save(figure, path):

@@ -23,6 +23,7 @@ import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.histories import TABLES, History, from_hdf5, read_csv
+from slideline_tools.names import missing, one_line
 
 if typing.TYPE_CHECKING:
     import pandas
@@ -74,11 +75,26 @@ class Results:
     `version`       of the VTKHDF format
     """
 
+    path: pathlib.Path
+    times: np.ndarray
+    n_node: int
+    n_cell: int
+    point_fields: list[str]
+    cell_fields: list[str]
+    histories: list[str]
+    run: dict[str, str]
+    version: tuple[int, ...]
+
     def __init__(self, path: str | os.PathLike) -> None:
         self.path = pathlib.Path(path)
         self._arrays: dict = {}
         with self.reading("") as stream:
             self._read_structure(stream)
+
+    def __repr__(self) -> str:
+        span = f" to t = {self.times[-1]:.4g}" if self.n_state else ""
+        return one_line(f"Results {self.path.stem}: {self.n_state} states{span}, {self.n_node} nodes, "
+                        f"{self.n_cell} elements, {len(self.histories)} histories")
 
     @contextlib.contextmanager
     def reading(self, what: str) -> typing.Iterator[h5py.File]:
@@ -170,8 +186,7 @@ class Results:
 
     def _require(self, name: str, present: list[str], kind: str) -> None:
         if name not in present:
-            raise ResultsError(f"{self.path}: no {kind} field '{name}'; "
-                               f"there are {', '.join(present) or 'none'}")
+            raise ResultsError(f"{self.path}: no {kind} field '{name}'{missing(name, present)}")
 
     @property
     def cells(self) -> np.ndarray:
@@ -205,8 +220,7 @@ class Results:
         killed run, they are read from the CSV files beside it. Columns and units: doc/results.md.
         """
         if name not in self.histories:
-            raise ResultsError(f"{self.path}: no history '{name}'; "
-                               f"there are {', '.join(self.histories) or 'none'}")
+            raise ResultsError(f"{self.path}: no history '{name}'{missing(name, self.histories)}")
         if name not in self._arrays:
             if name in self._in_file:
                 with self.reading(f"the history {name}") as stream:

@@ -12,7 +12,7 @@ COLOUR = "#333333"
 
 def walls_of(deck: str) -> list[Wall]:
     """The walls of a deck as run; none where a card can not be read."""
-    found = []
+    found: list[Wall] = []
     if "*RIGIDWALL_PLANAR" not in deck.upper():
         return found
     for block in read_blocks(deck):

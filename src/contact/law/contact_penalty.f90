@@ -9,7 +9,8 @@ module contact_penalty_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: set_penalties, built_in_penalty, softer_side, side_stiffness, mean_length
+  public :: set_penalties, built_in_penalty, softer_side, side_stiffness, &
+    mean_length, spread_of_stiffness
 
 contains
 
@@ -113,6 +114,25 @@ contains
     end do
     stiffness = stiffness/total
   end function side_stiffness
+
+  !> Largest bulk modulus behind a surface over the smallest.
+  pure function spread_of_stiffness(surface, model) result(ratio)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    real(wp) :: ratio
+    real(wp) :: low, high
+    integer :: i
+
+    low = huge(1.0_wp)
+    high = 0.0_wp
+    do i = 1, surface%n_segment
+      associate (part => model%parts(model%mesh%element_part(surface%segment_element(i))))
+        low = min(low, model%materials(part%material)%bulk)
+        high = max(high, model%materials(part%material)%bulk)
+      end associate
+    end do
+    ratio = high/low
+  end function spread_of_stiffness
 
   !> Area of an element at time zero, m^2.
   pure function element_area(model, element) result(area)

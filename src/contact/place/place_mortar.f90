@@ -9,6 +9,7 @@ module place_mortar_m
   use geometry_m, only : separation
   use kinds_m, only : wp
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
+  use tips_m, only : belongs_to
   implicit none
   private
   public :: place_mortar
@@ -92,6 +93,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s, n, m !! first segment, segments, spots of each
     type(place_block_t), intent(inout) :: block
+    integer :: place
     logical :: all_face
 
     associate (tracking => memory%slave_tracking, k => block%n + 1, i => (s - 1)*m + 1, &
@@ -105,6 +107,12 @@ contains
         memory%spot_share, feet%normal(1, k), block%xi(k), block%area(k), all_face)
     end associate
     block%n = block%n + m*n
+    if (contact%is_self) then
+      all_face = .false.
+      do place = block%n - m*n + 1, block%n, m
+        call move_to_ends(memory, place, place + m - 1, block)
+      end do
+    end if
     if (.not. all_face) call take_shares(memory, block%n - m*n + 1, block)
   end subroutine add_touching
 
@@ -151,6 +159,29 @@ contains
       all_face = all_face .and. worst <= face_on*length
     end do
   end subroutine put_areas
+
+  !> The places at the nodes of a segment take over what the others are to
+  !> give way, as far as they have a foot.
+  pure subroutine move_to_ends(memory, first, last, block)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: first, last !! places of the segment
+    type(place_block_t), intent(inout) :: block
+    real(wp) :: part(2), length
+
+    associate (ends => block%ends(:, first), xi => block%xi, area => block%area)
+      part = maxval(memory%scratch%nodal(1, ends))
+      if (.not. part(1) > 0.0_wp) return
+      if (xi(first) > 0.0_wp .or. area(first) < 0.0_wp &
+        .or. belongs_to(memory%nodes, ends(1), block%nodes(:, first))) part(1) = 0.0_wp
+      if (xi(last) < 1.0_wp .or. area(last) < 0.0_wp &
+        .or. belongs_to(memory%nodes, ends(2), block%nodes(:, last))) part(2) = 0.0_wp
+      area(first:last) = area(first:last)*(1.0_wp - part(1)*(1.0_wp - xi(first:last)) &
+        - part(2)*xi(first:last))
+      length = norm2(separation(memory%places(:, ends(2)), memory%places(:, ends(1))))
+      if (part(1) > 0.0_wp) area(first) = 0.5_wp*part(1)*length
+      if (part(2) > 0.0_wp) area(last) = 0.5_wp*part(2)*length
+    end associate
+  end subroutine move_to_ends
 
   !> Reduce the areas of the places from one on to what faces the master; drop those without.
   pure subroutine take_shares(memory, first, block)
@@ -213,11 +244,12 @@ contains
           feet%xi(k) = foot%xi
           feet%gap(k) = foot%gap
           feet%normal(:, k) = foot%normal
-          if (.not. foot%is_on) block%area(k) = 0.0_wp
+          if (.not. foot%is_on) block%area(k) = -1.0_wp
         end if
         block%nodes(:, k) = memory%n_slave + contact%master%segments(:, feet%segment(k))
       end do
     end associate
+    if (contact%is_self .and. block%n > 1) call move_to_ends(memory, 1, block%n, block)
     call take_shares(memory, 1, block)
   end subroutine add_others
 

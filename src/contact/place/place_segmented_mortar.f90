@@ -11,6 +11,7 @@ module place_segmented_mortar_m
   use pieces_m, only : clear_pieces, list_awake, list_segment, cut_pieces
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
   use sleep_m, only : all_asleep, keep_segment, judge_segment, note_next_wake
+  use tips_m, only : sharpen_tips
   implicit none
   private
   public :: place_segmented_mortar, n_gauss, gauss_xi, least_cut
@@ -45,13 +46,15 @@ contains
       call place_pieces(contact, table, .true., memory)
     end do
     call note_next_wake(memory)
-    if (any(memory%points%gap(:memory%points%n) < memory%closed_gap)) then
+    if (any(memory%points%gap(:memory%points%n) < memory%closed_gap) &
+      .or. (contact%is_self .and. memory%slave_tracking%n_touching > 0)) then
       call place_neighbours(contact, table, memory)
     else
       memory%points%n = 0
     end if
     call move_alloc(table, memory%scratch%pieces)
     if (contact%is_round) call weigh_points(memory%places, memory%points)
+    if (contact%is_self) call sharpen_tips(contact, memory)
   end subroutine place_segmented_mortar
 
   !> Neighbours of segments in contact that have not been placed.

@@ -7,7 +7,7 @@ module gather_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: gather_places, take_force, power_of, keep_former, add_force
+  public :: gather_places, spread_of, take_force, power_of, keep_former, add_force
 
   !> Chains of sums kept side by side.
   integer, parameter :: n_lane = 4

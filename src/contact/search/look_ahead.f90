@@ -7,6 +7,7 @@ module look_ahead_m
   use contact_state_m, only : contact_state_t, is_in_front
   use contacts_m, only : contact_t
   use foot_m, only : foot_t, face_foot, see_segment
+  use gather_m, only : spread_of
   use kinds_m, only : wp
   use tracking_m, only : list_touching, begin_contact
   implicit none
@@ -20,29 +21,35 @@ module look_ahead_m
     real(wp), allocatable :: wake(:)  !! when they would have been looked at, m of travel
   end type ahead_t
 
-  !> How far is looked ahead, as part of the mean slave segment: a node moves by less in a stable
-  !> step.
-  real(wp), parameter :: reach_part = 0.5_wp
+  !> How far is looked ahead at most, as part of the mean slave segment: a node moves by less in a
+  !> stable step.
+  real(wp), parameter :: most_reach = 0.5_wp
+  !> How far at least, since the next step may move nodes by more than the last one has: a strain of
+  !> that much in one step.
+  real(wp), parameter :: least_reach = 0.1_wp
+  !> Times what they have moved in the last one is added to that.
+  real(wp), parameter :: ahead_factor = 2.0_wp
 
 contains
 
   !> Have the placement take gaps within reach as closed.
-  pure subroutine look_ahead(contact, memory, ahead)
+  pure subroutine look_ahead(contact, is_first, memory, ahead)
     type(contact_t), intent(in) :: contact
+    logical, intent(in) :: is_first !! nothing is known of a step before
     type(contact_state_t), intent(inout) :: memory
     type(ahead_t), intent(out) :: ahead
     type(foot_t) :: foot
     integer :: i, n_released
 
-    memory%closed_gap = reach_of(contact, memory)
+    memory%closed_gap = reach_of(contact, is_first, memory)
     associate (tracking => memory%slave_tracking, gap => memory%closed_gap, &
       slave => memory%places(:, :memory%n_slave), master => memory%places(:, memory%n_slave + 1:))
-      allocate (ahead%spot(tracking%n), ahead%wake(tracking%n))
       do i = 1, tracking%n
         if (tracking%status(i) /= is_in_front .or. tracking%wake(i) - gap > memory%travel) cycle
         foot = face_foot(see_segment(contact%master, master, slave(:, i), tracking%segment(i)), &
           tracking%segment(i))
         if (.not. foot%is_on .or. foot%gap >= gap) cycle
+        if (ahead%n == 0) allocate (ahead%spot(tracking%n), ahead%wake(tracking%n))
         ahead%n = ahead%n + 1
         ahead%spot(ahead%n) = i
         ahead%wake(ahead%n) = tracking%wake(i)
@@ -73,12 +80,16 @@ contains
   end subroutine look_back
 
   !> How far is looked ahead, m.
-  pure function reach_of(contact, memory) result(reach)
+  pure function reach_of(contact, is_first, memory) result(reach)
     type(contact_t), intent(in) :: contact
+    logical, intent(in) :: is_first
     type(contact_state_t), intent(in) :: memory
-    real(wp) :: reach
+    real(wp) :: reach, segment
 
-    reach = reach_part*slave_length(contact, memory)/max(1, contact%slave%n_segment)
+    segment = slave_length(contact, memory)/max(1, contact%slave%n_segment)
+    reach = most_reach*segment
+    if (.not. is_first) reach = min(reach, least_reach*segment &
+      + ahead_factor*spread_of(size(memory%nodes), memory%scratch%increment))
   end function reach_of
 
 end module look_ahead_m

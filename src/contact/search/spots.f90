@@ -21,17 +21,18 @@ contains
 
   !> Places on each segment and the part of its length that each stands for; nothing is allocated
   !> for spots at nodes, which are in `memory%places` already.
-  pure subroutine start_spots(rule, n_gauss, is_round, slave, memory)
+  pure subroutine start_spots(rule, n_gauss, is_round, has_ends, slave, memory)
     integer, intent(in) :: rule    !! one of the constants above
     integer, intent(in) :: n_gauss !! Gauss points of a segment
     logical, intent(in) :: is_round
+    logical, intent(in) :: has_ends !! beside Gauss points both nodes of each segment
     type(surface_t), intent(in) :: slave
     type(contact_state_t), intent(inout) :: memory
     integer :: s, q, n
 
     select case (rule)
     case (spots_at_quarters); n = 2
-    case (spots_at_gauss_points); n = n_gauss
+    case (spots_at_gauss_points); n = n_gauss + merge(2, 0, has_ends)
     case default; return
     end select
     allocate (memory%spot_xi(n), memory%spot_share(n), memory%spots(4, n*slave%n_segment))
@@ -41,7 +42,10 @@ contains
       memory%spot_share = 0.5_wp
       if (is_round) memory%spot_spread = 0.5_wp
     case (spots_at_gauss_points)
-      call gauss_rule(memory%spot_xi, memory%spot_share)
+      memory%spot_xi([1, n]) = [0.0_wp, 1.0_wp]
+      memory%spot_share([1, n]) = 0.0_wp
+      q = merge(1, 0, has_ends)
+      call gauss_rule(memory%spot_xi(1 + q:n - q), memory%spot_share(1 + q:n - q))
     end select
     do s = 1, slave%n_segment
       associate (a => memory%places(:, slave%segments(1, s)), &

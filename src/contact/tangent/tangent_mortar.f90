@@ -8,7 +8,8 @@ module tangent_mortar_m
   use foot_m, only : foot_t, near_foot
   use kinds_m, only : wp
   use nodal_grip_m, only : add_nodal_grip
-  use nodal_tangent_m, only : varied_list_t, start_list, append_point, add_nodal_tangent
+  use nodal_tangent_m, only : varied_list_t, start_list, append_point, add_nodal_tangent, &
+    nodal_share
   use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
   use pieces_m, only : clear_pieces, list_segment, cut_pieces
   use place_segmented_mortar_m, only : gauss_xi, least_cut
@@ -75,6 +76,7 @@ contains
         if (table%high(k) > table%low(k) .and. table%share(k) > 0.0_wp) &
           call vary_piece(contact, memory, table, s, k, list)
       end do
+      if (contact%is_self) call vary_ends(memory, contact%slave%segments(:, s), s, list)
     end do
     call add_nodal_tangent(contact, memory, list, equations, matrix)
     if (allocated(memory%friction%force)) &
@@ -115,5 +117,66 @@ contains
       call append_point(list, s, point)
     end do
   end subroutine vary_piece
+
+  !> The points at the nodes of a segment at the tip of a fold, one for each point that gives way
+  !> to them. How much does is held, and so is what the area of such a point owes to its own foot.
+  pure subroutine vary_ends(memory, ends, s, list)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2), s !! nodes of the segment, its number
+    type(varied_list_t), intent(inout) :: list
+    type(varied_point_t) :: point
+    real(wp) :: part(2), content
+    integer :: at_end(2), first, last, p, k
+
+    at_end = points_at_ends(memory, ends)
+    if (maxval(at_end) == 0) return
+    first = list%first(s)
+    last = list%last(s)
+    part = 0.0_wp
+    do k = 1, 2
+      content = 0.0_wp
+      do p = first, last
+        point = list%points(p)
+        associate (share => nodal_share(point, k))
+          content = content + share%value
+        end associate
+      end do
+      if (at_end(k) > 0) part(k) = memory%points%area(at_end(k))/content
+    end do
+    do p = first, last
+      do k = 1, 2
+        if (at_end(k) == 0) cycle
+        point = list%points(p)
+        point%area = part(k)*nodal_share(point, k)
+        if (any(point%nodes(3:4) /= memory%points%master_nodes(:, at_end(k)))) &
+          point%area%slope(5:8) = 0.0_wp
+        point%nodes(3:4) = memory%points%master_nodes(:, at_end(k))
+        point%slave_xi = constant(real(k - 1, wp))
+        call put_foot(point, spot_foot(memory%places, point, 3, &
+          memory%points%master_weights(2, at_end(k)), memory%points%gap(at_end(k)), &
+          memory%closed_gap))
+        call append_point(list, s, point)
+      end do
+      point = list%points(p)
+      list%points(p)%area = point%area - (part(1)*nodal_share(point, 1) &
+        + part(2)*nodal_share(point, 2))
+    end do
+  end subroutine vary_ends
+
+  !> Points of the list at the nodes of a segment, 0: none.
+  pure function points_at_ends(memory, ends) result(at_end)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)
+    integer :: at_end(2)
+    integer :: p, k
+
+    at_end = 0
+    do p = 1, memory%points%n
+      if (any(memory%points%slave_nodes(:, p) /= ends)) cycle
+      do k = 1, 2
+        if (memory%points%slave_weights(k, p) >= 1.0_wp) at_end(k) = p
+      end do
+    end do
+  end function points_at_ends
 
 end module tangent_mortar_m

@@ -5,7 +5,6 @@ module deck_cards_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use text_m, only : read_integer, number_good
-  use deck_report_m, only : count_only
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
     flag_parameter, block_of_line, keyword_of_line, format_standard, format_long
   use deck_card_specs_m, only : card_spec_t, make_spec, field_number, max_field
@@ -313,10 +312,7 @@ contains
     character(*), intent(in) :: message
     type(card_spec_t) :: specs(max_card)
     integer :: n_card, i_block
-    logical :: is_done
 
-    call count_only(deck%report, keyword_of_line(deck, place%line), message, is_done)
-    if (is_done) return
     i_block = block_of_line(deck, place%line)
     call get_specs(deck, i_block, specs, n_card)
     call place_error(deck, specs(place%card), place, deck%blocks(i_block)%source, message)

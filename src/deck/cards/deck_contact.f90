@@ -5,7 +5,7 @@ module deck_contact_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use contact_types_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_nts_mar, &
-    type_segmented_mortar
+    type_segmented_mortar, type_missing
   use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_none, tie_always, &
     tie_breaks
   use deck_lines_m, only : deck_t, line_error
@@ -175,6 +175,7 @@ contains
 
     associate (contact => entry%contact)
       contact%contact_type = integer_of(cards(1), 'CTYPE')
+      if (is_blank(cards(1), 'CTYPE')) contact%contact_type = type_missing
       contact%n_gauss = integer_of(cards(1), 'NGAUSS')
       if (is_blank(cards(1), 'NGAUSS') .or. contact%n_gauss == 0) contact%n_gauss = 2
       contact%penalty = real_of(cards(1), 'PEN')

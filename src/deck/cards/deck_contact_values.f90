@@ -4,8 +4,9 @@
 module deck_contact_values_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : contact_kind_t, kind_text, most_gauss, penalty_per_node, penalty_share, &
-    penalty_implicit, implicit_factor
+  use contact_types_m, only : type_chosen
+  use contacts_m, only : contact_t, contact_kind_t, kind_text, most_gauss, penalty_per_node, &
+    penalty_distributed, penalty_share, penalty_implicit, implicit_factor
   use deck_lines_m, only : deck_t, deck_error
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, report_field
@@ -77,11 +78,12 @@ contains
     type(raw_contact_t), intent(in) :: entry
 
     associate (contact => entry%contact)
-      if (.not. any(kinds%number == contact%contact_type)) call refuse(of_type, &
+      if (.not. any([type_chosen, kinds%number] == contact%contact_type)) call refuse(of_type, &
         'is not a contact type'//kind_names(kinds))
       if (contact%n_gauss < 1 .or. contact%n_gauss > most_gauss) call refuse(of_gauss, &
         'is not a number of Gauss points from 1 to '//to_text(most_gauss))
-      if (contact%penalty <= 0.0_wp .and. contact%penalty_unit /= penalty_implicit) &
+      if (contact%penalty <= 0.0_wp .and. contact%penalty_unit /= penalty_implicit &
+        .and. .not. leaves_penalty(contact)) &
         call refuse(of_penalty, 'is not a penalty (more than 0)')
       if (contact%penalty_unit < penalty_per_node .or. contact%penalty_unit > penalty_implicit) &
         call refuse(of_unit, 'is not a unit of the penalty (0 N/m per contact node, 1 N/m^2, ' &
@@ -130,6 +132,15 @@ contains
     end subroutine refuse
 
   end subroutine check_values
+
+  !> Whether the penalty is the program's to choose, with the type.
+  pure function leaves_penalty(contact) result(leaves)
+    type(contact_t), intent(in) :: contact
+    logical :: leaves
+
+    leaves = contact%contact_type == type_chosen .and. .not. abs(contact%penalty) > 0.0_wp &
+      .and. contact%penalty_unit /= penalty_distributed
+  end function leaves_penalty
 
   !> `, which only name (type n) has`.
   pure function implicit_names(kinds) result(text)

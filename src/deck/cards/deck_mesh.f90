@@ -6,7 +6,7 @@ module deck_mesh_m
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t, field_text
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field, &
+  use deck_cards_m, only : cursor_t, open_cursor, next_text, next_card, next_row, report_field, &
     find_field
   use deck_values_m, only : integer_of, is_bad
   use deck_raw_m, only : raw_t, reserve_nodes, reserve_elements
@@ -176,7 +176,7 @@ contains
     logical :: found
 
     call open_cursor(deck, i_block, cursor)
-    call skip_title(deck, cursor)
+    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, set%title)
     call next_card(deck, parameters, cursor, 1, head)
     set%id = integer_of(head, 'SID')
     if (set%id < 1) call report_field(deck, cursor, head, 'SID', 'is not a set number (1 or more)')

@@ -13,7 +13,7 @@ module deck_override_apply_m
   use deck_raw_m, only : raw_t, raw_contact_t
   implicit none
   private
-  public :: apply_overrides
+  public :: apply_overrides, contact_text
 
 contains
 

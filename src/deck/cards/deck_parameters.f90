@@ -7,6 +7,7 @@ module deck_parameters_m
   use text_m, only : upper_case, read_real, read_integer, exact_text, number_good
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, line_text, line_error
+  use deck_spelling_m, only : edit_distance
   use deck_expression_m, only : evaluate
   use deck_parameter_table_m, only : parameters_t, settle_parameter, named_values, look_up, &
     again_error, again_warn_keep
@@ -39,11 +40,31 @@ contains
       end select
     end do
     do i = 1, parameters%n
-      if (parameters%items(i)%fixed .and. .not. parameters%items(i)%found) call line_error( &
-        deck, 0, 'p:'//trim(parameters%items(i)%name)//' on the command line: the deck has no ' &
-        //'such parameter')
+      associate (item => parameters%items(i))
+        if (item%fixed .and. .not. item%found) call line_error(deck, 0, 'p:'//trim(item%name) &
+          //' on the command line: the deck has no such parameter' &
+          //nearest_name(parameters, trim(item%name)))
+      end associate
     end do
   end subroutine read_parameters
+
+  !> `; the nearest is NAME`, at most two letters away; nothing where no name is so near.
+  pure function nearest_name(parameters, given) result(text)
+    type(parameters_t), intent(in) :: parameters
+    character(*), intent(in) :: given
+    character(:), allocatable :: text
+    integer :: i, least, distance
+
+    text = ''
+    least = min(3, len(given))
+    do i = 1, parameters%n
+      if (.not. parameters%items(i)%found) cycle
+      distance = edit_distance(trim(parameters%items(i)%name), given)
+      if (distance >= least) cycle
+      least = distance
+      text = '; the nearest is '//trim(parameters%items(i)%name)
+    end do
+  end function nearest_name
 
   !> Pairs of name and value, four to a line.
   subroutine read_values(deck, i_block, parameters)

@@ -15,6 +15,7 @@ module deck_raw_sets_m
   !> they come as pairs first, last. In a segment set they come as pairs of nodes.
   type :: raw_set_t
     integer :: id = 0
+    character(:), allocatable :: title
     integer :: line = 0
     logical :: generate = .false.
     logical :: damaged = .false.        !! some of its cards were refused
@@ -58,6 +59,7 @@ contains
     to%of_beams = from%of_beams
     to%boundary = from%boundary
     to%n = from%n
+    if (allocated(from%title)) call move_alloc(from%title, to%title)
     if (.not. allocated(from%members)) return
     call move_alloc(from%members, to%members)
     call move_alloc(from%lines, to%lines)

@@ -10,6 +10,7 @@ module deck_resolve_contacts_m
   use boundary_m, only : boundary_t, find_boundary, find_edge
   use deck_lines_m, only : deck_t, place_t
   use deck_cards_m, only : reject_field
+  use deck_choose_type_m, only : choose_type
   use deck_initial_overlap_m, only : check_overlap
   use deck_maps_m, only : maps_t, resolve_id
   use deck_resolve_sides_m, only : find_side, require_side, resolve_side, side_nodes, &
@@ -55,7 +56,9 @@ contains
       call resolve_interference(deck, raw%contacts(i), maps, model, model%contacts(i))
       if (.not. raw%contacts(i)%contact%is_self) &
         call check_common_nodes(deck, raw%contacts(i), sides, model)
-      if (deck%report%n_error == n_error) call check_overlap(deck, raw%contacts(i), sides, model)
+      if (deck%report%n_error > n_error) cycle
+      call check_overlap(deck, raw%contacts(i), sides, model)
+      call choose_type(deck, raw%contacts(i), model, model%contacts(i))
     end do
     call append_behind(model%contacts)
   end subroutine resolve_contacts

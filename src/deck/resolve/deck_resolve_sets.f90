@@ -31,6 +31,7 @@ contains
       model%segment_sets(raw%n_segment_set))
     do i = 1, raw%n_node_set
       model%node_sets(i)%id = raw%node_sets(i)%id
+      if (allocated(raw%node_sets(i)%title)) model%node_sets(i)%title = raw%node_sets(i)%title
       if (allocated(raw%node_sets(i)%actions)) then
         call resolve_general(deck, raw%node_sets(i), maps, model, model%node_sets(i)%nodes)
       else

@@ -216,7 +216,7 @@ contains
     logical :: is_done
 
     card%bad(k) = .true.
-    call count_only(deck%report, keyword_of_line(deck, card%line), message, is_done)
+    call count_only(deck%report, keyword_of_line(deck, card%line), spec%names(k), message, is_done)
     if (is_done) return
     text = where_text(deck, card%line)//' card '//to_text(spec%number)//' field '//to_text(k) &
       //' ('//trim(spec%names(k))//'): '

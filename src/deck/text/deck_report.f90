@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> All that is wrong or strange in a deck, collected while it is read and shown in deck order. The
-!> same mistake many times is one message with a count: errors of one keyword whose messages differ
-!> in numbers alone are of one kind.
+!> same mistake many times is one message with a count: errors of one field whose messages differ in
+!> numbers alone are of one kind.
 module deck_report_m
   use errors_m, only : error_t, raise, status_input
   use log_m, only : log_t, warn, to_text
@@ -42,7 +42,7 @@ module deck_report_m
 
   !> One kind of errors.
   type :: kind_t
-    character(:), allocatable :: key   !! keyword and message, numbers apart
+    character(:), allocatable :: key   !! keyword, field and message, numbers apart
     integer :: n = 0                   !! errors
     integer :: n_kept = 0              !! of these with their message
   end type kind_t
@@ -74,9 +74,9 @@ contains
       allocate (report%errors(max_kept + first_kept*max_kinds), report%kinds(max_kinds))
     report%n_error = report%n_error + 1
     if (allocated(spot%keyword)) then
-      call find_kind(report, key_of(spot%keyword, spot%message), k)
+      call find_kind(report, key_of(spot%keyword, spot%name, spot%message), k)
     else
-      call find_kind(report, key_of('', text), k)
+      call find_kind(report, key_of('', '', text), k)
     end if
     is_kept = report%n_kept < max_kept
     if (k > 0) then
@@ -96,15 +96,15 @@ contains
 
   !> Count an error whose message need not be made, since enough of its kind are kept; false in
   !> `is_done` where it has to be added.
-  subroutine count_only(report, keyword, message, is_done)
+  subroutine count_only(report, keyword, name, message, is_done)
     type(report_t), intent(inout) :: report
-    character(*), intent(in) :: keyword, message
+    character(*), intent(in) :: keyword, name, message
     logical, intent(out) :: is_done
     integer :: k
 
     is_done = is_full(report)
     if (.not. is_done) return
-    call find_kind(report, key_of(keyword, message), k)
+    call find_kind(report, key_of(keyword, name, message), k)
     if (k > 0) is_done = report%kinds(k)%n >= first_kept
     if (.not. is_done) return
     report%n_error = report%n_error + 1
@@ -127,26 +127,35 @@ contains
     report%kinds(k)%key = key
   end subroutine find_kind
 
-  !> What errors of one kind share: keyword and message, a # for each whole number in it.
-  pure function key_of(keyword, message) result(key)
-    character(*), intent(in) :: keyword, message
+  !> What errors of one kind share: keyword, field and message, a # for each whole number in field
+  !> and message (the members of a set have numbered fields).
+  pure function key_of(keyword, name, message) result(key)
+    character(*), intent(in) :: keyword, name, message
     character(:), allocatable :: key
-    character(len(message)) :: short
+
+    key = keyword//' '//without_numbers(trim(name)//' '//message)
+  end function key_of
+
+  !> A text, a # for each whole number in it.
+  pure function without_numbers(text) result(short)
+    character(*), intent(in) :: text
+    character(:), allocatable :: short
+    character(len(text)) :: kept
     integer :: i, n
     logical :: is_digit, was_digit
 
     n = 0
     was_digit = .false.
-    do i = 1, len(message)
-      is_digit = message(i:i) >= '0' .and. message(i:i) <= '9'
+    do i = 1, len(text)
+      is_digit = text(i:i) >= '0' .and. text(i:i) <= '9'
       if (.not. (is_digit .and. was_digit)) then
         n = n + 1
-        short(n:n) = merge('#', message(i:i), is_digit)
+        kept(n:n) = merge('#', text(i:i), is_digit)
       end if
       was_digit = is_digit
     end do
-    key = keyword//' '//short(:n)
-  end function key_of
+    short = kept(:n)
+  end function without_numbers
 
   !> Whether an error of this text, which belongs to no line, is kept.
   pure function has_error(report, text) result(found)

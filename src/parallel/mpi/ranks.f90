@@ -5,20 +5,24 @@
 !> here. A process that ends without `leave_ranks` ends the run: the launcher stops the others.
 module ranks_m
   use errors_m, only : error_t, raise
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   use mpi, only : mpi_allgatherv, mpi_allreduce, mpi_bcast, mpi_character, &
     mpi_comm_rank, mpi_comm_size, mpi_comm_world, mpi_datatype_null, mpi_double_precision, &
-    mpi_finalize, mpi_gatherv, mpi_in_place, mpi_init_thread, mpi_integer, mpi_min, &
-    mpi_thread_funneled
+    mpi_finalize, mpi_gatherv, mpi_in_place, mpi_init_thread, mpi_integer, mpi_irecv, mpi_isend, &
+    mpi_min, mpi_statuses_ignore, mpi_thread_funneled, mpi_waitall
   implicit none
   private
-  public :: ranks_t, join_ranks, leave_ranks, bring_reals, bring_integers, spread_values, &
-    share_error
+  public :: ranks_t, join_ranks, leave_ranks, bring_reals, bring_integers, swap_reals, &
+    find_least, spread_values, share_error
+
+  integer, parameter :: real_bytes = storage_size(1.0_wp)/8, integer_bytes = storage_size(1)/8
 
   !> This process among those of the run.
   type :: ranks_t
     integer :: mine = 0 !! its number, from 0 on; the first one reads, writes and speaks
     integer :: n = 1    !! how many there are
+    integer(long) :: sent(2) = 0   !! messages to single processes, and bytes in them
+    integer(long) :: joined(2) = 0 !! calls that all take part in, and bytes that came by them
   end type ranks_t
 
 contains
@@ -42,7 +46,7 @@ contains
 
   !> Pieces of an array, one a process, to all of them or to the first.
   subroutine bring_reals(ranks, starts, width, to_all, values)
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
     integer, intent(in) :: width          !! values of an item
     logical, intent(in) :: to_all
@@ -60,11 +64,12 @@ contains
       call mpi_gatherv(values(places(ranks%mine) + 1), counts(ranks%mine), mpi_double_precision, &
         values, counts, places, mpi_double_precision, 0, mpi_comm_world, status)
     end if
+    call count_joined(ranks, real_bytes, counts, to_all)
   end subroutine bring_reals
 
   !> The same for integers.
   subroutine bring_integers(ranks, starts, width, to_all, values)
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
     integer, intent(in) :: width          !! values of an item
     logical, intent(in) :: to_all
@@ -82,7 +87,60 @@ contains
       call mpi_gatherv(values(places(ranks%mine) + 1), counts(ranks%mine), mpi_integer, &
         values, counts, places, mpi_integer, 0, mpi_comm_world, status)
     end if
+    call count_joined(ranks, integer_bytes, counts, to_all)
   end subroutine bring_integers
+
+  !> Count a call by which pieces have come: those of the others.
+  pure subroutine count_joined(ranks, bytes, counts, to_all)
+    type(ranks_t), intent(inout) :: ranks
+    integer, intent(in) :: bytes      !! of a value
+    integer, intent(in) :: counts(0:) !! values of each process
+    logical, intent(in) :: to_all
+
+    ranks%joined(1) = ranks%joined(1) + 1
+    if (to_all .or. ranks%mine == 0) ranks%joined(2) = ranks%joined(2) &
+      + int(bytes, long)*(sum(int(counts, long)) - counts(ranks%mine))
+  end subroutine count_joined
+
+  !> Values for some other processes, a message each, against what these have for this one.
+  subroutine swap_reals(ranks, peers, out_starts, outgoing, in_starts, incoming)
+    type(ranks_t), intent(inout) :: ranks
+    integer, intent(in) :: peers(:)       !! their numbers
+    integer, intent(in) :: out_starts(:), in_starts(:) !! (peers + 1) where the values of each start
+    real(wp), intent(in) :: outgoing(*)
+    real(wp), intent(inout) :: incoming(*)
+    integer, parameter :: tag = 1
+    integer :: requests(2*size(peers)), i, n, n_request, status
+
+    n_request = 0
+    do i = 1, size(peers)
+      n = in_starts(i + 1) - in_starts(i)
+      if (n == 0) cycle
+      n_request = n_request + 1
+      call mpi_irecv(incoming(in_starts(i)), n, mpi_double_precision, peers(i), tag, &
+        mpi_comm_world, requests(n_request), status)
+    end do
+    do i = 1, size(peers)
+      n = out_starts(i + 1) - out_starts(i)
+      if (n == 0) cycle
+      n_request = n_request + 1
+      call mpi_isend(outgoing(out_starts(i)), n, mpi_double_precision, peers(i), tag, &
+        mpi_comm_world, requests(n_request), status)
+      ranks%sent = ranks%sent + [1_long, int(real_bytes, long)*n]
+    end do
+    call mpi_waitall(n_request, requests, mpi_statuses_ignore, status)
+  end subroutine swap_reals
+
+  !> The least of what the processes have, value by value, to all of them.
+  subroutine find_least(ranks, values)
+    type(ranks_t), intent(inout) :: ranks
+    real(wp), intent(inout), contiguous :: values(:)
+    integer :: status
+
+    call mpi_allreduce(mpi_in_place, values, size(values), mpi_double_precision, mpi_min, &
+      mpi_comm_world, status)
+    ranks%joined = ranks%joined + [1_long, int(real_bytes, long)*size(values)]
+  end subroutine find_least
 
   !> How many values each process has, and how many stand before them.
   pure subroutine lay_out(ranks, starts, width, counts, places)

@@ -4,16 +4,18 @@
 !> with one of them may be linked with the other.
 module ranks_m
   use errors_m, only : error_t
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   implicit none
   private
-  public :: ranks_t, join_ranks, leave_ranks, bring_reals, bring_integers, spread_values, &
-    share_error
+  public :: ranks_t, join_ranks, leave_ranks, bring_reals, bring_integers, swap_reals, &
+    find_least, spread_values, share_error
 
   !> This process among those of the run.
   type :: ranks_t
     integer :: mine = 0 !! its number, from 0 on; the first one reads, writes and speaks
     integer :: n = 1    !! how many there are
+    integer(long) :: sent(2) = 0   !! messages to single processes, and bytes in them
+    integer(long) :: joined(2) = 0 !! calls that all take part in, and bytes that came by them
   end type ranks_t
 
 contains
@@ -31,7 +33,7 @@ contains
 
   !> Pieces of an array, one a process, to all of them or to the first.
   subroutine bring_reals(ranks, starts, width, to_all, values)
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
     integer, intent(in) :: width          !! values of an item
     logical, intent(in) :: to_all
@@ -40,12 +42,27 @@ contains
 
   !> The same for integers.
   subroutine bring_integers(ranks, starts, width, to_all, values)
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
     integer, intent(in) :: width          !! values of an item
     logical, intent(in) :: to_all
     integer, intent(inout) :: values(*)
   end subroutine bring_integers
+
+  !> Values for some other processes, a message each, against what these have for this one.
+  subroutine swap_reals(ranks, peers, out_starts, outgoing, in_starts, incoming)
+    type(ranks_t), intent(inout) :: ranks
+    integer, intent(in) :: peers(:)       !! their numbers
+    integer, intent(in) :: out_starts(:), in_starts(:) !! (peers + 1) where the values of each start
+    real(wp), intent(in) :: outgoing(*)
+    real(wp), intent(inout) :: incoming(*)
+  end subroutine swap_reals
+
+  !> The least of what the processes have, value by value, to all of them.
+  subroutine find_least(ranks, values)
+    type(ranks_t), intent(inout) :: ranks
+    real(wp), intent(inout), contiguous :: values(:)
+  end subroutine find_least
 
   !> Values of the first process to all.
   subroutine spread_values(ranks, values)

@@ -9,6 +9,7 @@ module contact_account_m
   use kinds_m, only : wp
   use log_m, only : log_t, warn, write_log, to_text
   use model_m, only : model_t
+  use share_text_m, only : percent
   use state_m, only : state_t
   implicit none
   private
@@ -182,19 +183,6 @@ contains
         //to_text(largest%place(2))//') up to time '//to_text(largest%time)
     end associate
   end function amount_text
-
-  !> A share in per cent.
-  function percent(part, whole) result(text)
-    real(wp), intent(in) :: part, whole
-    character(:), allocatable :: text
-    character(24) :: buffer
-
-    text = 'all'
-    if (.not. whole > 0.0_wp) return
-    write (buffer, '(ss,es10.2)') 100.0_wp*part/whole
-    if (100.0_wp*part < 1.0e4_wp*whole) write (buffer, '(ss,f8.2)') 100.0_wp*part/whole
-    text = trim(adjustl(buffer))//' %'
-  end function percent
 
   !> What to look at.
   pure function hint(sign_of)

@@ -6,7 +6,7 @@ module contact_pressing_m
   use constraints_m, only : is_active
   use contact_account_m, only : follow_contact
   use contacts_m, only : penalty_implicit
-  use implicit_penalty_m, only : coming_step_t, press_ahead
+  use implicit_penalty_m, only : pressing_t, start_pressing, press_ahead
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
@@ -14,68 +14,104 @@ module contact_pressing_m
   use state_m, only : state_t
   implicit none
   private
-  public :: press_contacts
+  public :: pressing_t, press_contacts
 
 contains
 
   !> Pressures and forces of all such interfaces. One thread: what an interface is given by another
   !> has to be known.
-  subroutine press_contacts(model, leap, velocity, clock, log, state)
+  subroutine press_contacts(model, leap, velocity, clock, log, state, steps)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
     real(wp), intent(in) :: velocity(:)        !! (n_motion) v(n+1/2) of prescribed motions
     type(clock_t), intent(inout) :: clock
     type(log_t), intent(inout) :: log
     type(state_t), intent(inout) :: state
-    type(coming_step_t) :: step
+    type(pressing_t), intent(inout) :: steps(:) !! (interfaces) of the call before
     integer :: i
 
     call lap(clock, phase_nodes)
     do i = 1, size(model%contacts)
       if (model%contacts(i)%penalty_unit /= penalty_implicit) cycle
       if (.not. state%contacts(i)%scratch%waits) cycle
-      call foresee(model, leap, velocity, i, state, step)
-      call press_ahead(step, state%motion, state%contacts(i), state%force_special)
+      if (.not. allocated(steps(i)%velocity)) then
+        call start_pressing(state%contacts(i), steps(i))
+        call list_led(model, state%contacts(i)%nodes, steps(i))
+      end if
+      if (state%contacts(i)%points%n > 0) then
+        call foresee(leap, state%contacts(i)%nodes, state, steps(i))
+        call lead(model, velocity, state%time, steps(i))
+      end if
+      steps(i)%dt = leap%dt
+      steps(i)%dt_before = state%dt_before
+      steps(i)%cycle = state%cycle
+      steps(i)%time = state%time
+      call press_ahead(state%motion, steps(i), state%contacts(i), state%force_special)
       call lap(clock, phase_contact_force)
       call share_contact(clock, i)
       call follow_contact(model, i, state, log)
     end do
   end subroutine press_contacts
 
-  !> The step ahead as the nodes of an interface would make it without that: by the forces that are
-  !> known, or as they are led.
-  subroutine foresee(model, leap, velocity, i_contact, state, step)
-    type(model_t), intent(in) :: model
+  !> The step ahead as the nodes of an interface would make it without that, by the forces that are
+  !> known.
+  subroutine foresee(leap, nodes, state, step)
     type(leap_t), intent(in) :: leap
-    real(wp), intent(in) :: velocity(:)
-    integer, intent(in) :: i_contact
+    integer, intent(in) :: nodes(:)
     type(state_t), intent(in) :: state
-    type(coming_step_t), intent(out) :: step
-    real(wp) :: half(2), keep(2), led(2, model%layout%n_special)
-    integer :: i, k
+    type(pressing_t), intent(inout) :: step
+    real(wp) :: half(2), keep(2)
+    integer :: i, j, k
 
-    step%dt = leap%dt
-    step%dt_before = state%dt_before
-    step%cycle = state%cycle
-    step%time = state%time
-    led = 0.0_wp
-    do i = 1, size(velocity)
-      associate (prescribed => model%conditions%motions(i))
-        if (is_active(prescribed, state%time)) led(prescribed%direction, prescribed%node) &
-          = velocity(i)
+    half = leap%half
+    keep = leap%keep
+    do i = 1, size(nodes)
+      k = nodes(i)
+      if (allocated(state%node_damping)) call find_factors(leap, state, k, half, keep)
+      do j = 1, 2
+        step%mobility(j, i) = half(j)*state%inverse_mass(j, k)
+        step%velocity(j, i) = keep(j)*state%motion(2 + j, k) + half(j)*leap%body(j) &
+          + step%mobility(j, i)*(state%force_special(j, k) - state%internal_force(j, k))
+        if (.not. state%inverse_mass(j, k) > 0.0_wp) step%velocity(j, i) = 0.0_wp
+      end do
+    end do
+  end subroutine foresee
+
+  !> Which motions lead which nodes of an interface.
+  subroutine list_led(model, nodes, step)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: nodes(:)
+    type(pressing_t), intent(inout) :: step
+    integer :: local(model%mesh%n_node), led(2, size(model%conditions%motions)), i, n
+
+    local = 0
+    do i = 1, size(nodes)
+      local(nodes(i)) = i
+    end do
+    n = 0
+    do i = 1, size(model%conditions%motions)
+      if (local(model%conditions%motions(i)%node) == 0) cycle
+      n = n + 1
+      led(:, n) = [i, local(model%conditions%motions(i)%node)]
+    end do
+    allocate (step%led(2, n))
+    step%led(:, :) = led(:, :n)
+  end subroutine list_led
+
+  !> The nodes that are led.
+  subroutine lead(model, velocity, time, step)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: velocity(:)     !! (n_motion)
+    real(wp), intent(in) :: time            !! s
+    type(pressing_t), intent(inout) :: step
+    integer :: i
+
+    do i = 1, size(step%led, 2)
+      associate (prescribed => model%conditions%motions(step%led(1, i)))
+        if (is_active(prescribed, time)) &
+          step%velocity(prescribed%direction, step%led(2, i)) = velocity(step%led(1, i))
       end associate
     end do
-    associate (nodes => state%contacts(i_contact)%nodes)
-      allocate (step%velocity(2, size(nodes)), step%mobility(2, size(nodes)))
-      do i = 1, size(nodes)
-        k = nodes(i)
-        call find_factors(leap, state, k, half, keep)
-        step%mobility(:, i) = half*state%inverse_mass(:, k)
-        step%velocity(:, i) = merge(keep*state%motion(3:4, k) + half*leap%body &
-          + step%mobility(:, i)*(state%force_special(:, k) - state%internal_force(:, k)), &
-          led(:, k), state%inverse_mass(:, k) > 0.0_wp)
-      end do
-    end associate
-  end subroutine foresee
+  end subroutine lead
 
 end module contact_pressing_m

@@ -24,6 +24,7 @@ module explicit_m
   use motion_sums_m, only : sum_motion, sum_blocks
   use monitor_m, only : monitor_t
   use node_motion_m, only : leap_t, move_tile_nodes, move_special_nodes, move_damped_nodes
+  use rank_report_m, only : report_exchange
   use resting_tiles_m, only : is_tried, rests, is_flying, remember_tile, judge_tile, look_at_tile, &
     report_rest
   use skew_motion_m, only : hold_skew_nodes
@@ -66,7 +67,8 @@ contains
     call report_contact_energies(model, state, monitor%log)
     call report_failures(model, state, cycle%failures, monitor%log)
     if (model%erodes) call report_erosion(model, state, monitor%log)
-    call report_rest(cycle%rest, monitor%log)
+    if (monitor%ranks%n > 1) call report_exchange(cycle%parcel, monitor%ranks, monitor%log)
+    call report_rest(monitor%ranks, cycle%rest, monitor%log)
     if (allocated(error)) return
     call judge_energies(monitor%snapshot%energies, monitor%log)
     call judge_ratio(monitor%snapshot%energies, monitor%log)
@@ -191,8 +193,9 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
 
     associate (tile => model%layout%tiles(i_tile))
-      ! Those of several processes stand where the first tiles have theirs.
-      if (cycle%rest%watches_all) cycle%checks(i_tile) = check_tile(tile, state%elements)
+      ! What several processes have come to stands where the first tile has its own.
+      if (i_tile == 1 .and. cycle%rest%watches_all) &
+        cycle%checks(i_tile) = check_tile(tile, state%elements)
       if (allocated(cycle%sums%parts)) call sum_motion(tile%first_node, tile%last_node, state, &
         cycle%sums%parts(:, i_tile))
       if (is_flying(cycle%rest, i_tile) .and. .not. cycle%writes) call move_tile_nodes(cycle%leap, &
@@ -200,20 +203,20 @@ contains
     end associate
   end subroutine carry_tile
 
-  !> Contact forces that follow all others: these are summed now, and once more where nodes move.
+  !> Contact forces that follow all others, which are summed before.
   subroutine press_nodes(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    integer :: i, i_tile
+    integer :: i
 
     !$omp do schedule(static)
     do i = 1, size(cycle%rest%summed)
-      i_tile = cycle%rest%summed(i)
-      call sum_special_forces(model%layout, state%force_slots, &
-        model%layout%tiles(i_tile)%first_owned, model%layout%tiles(i_tile)%last_owned, &
-        state%internal_force)
+      associate (run => cycle%borders%runs(:, cycle%rest%summed(i)))
+        call sum_special_forces(model%layout, state%force_slots, run(1), run(2), &
+          state%internal_force)
+      end associate
     end do
     !$omp end do
     !$omp master
@@ -222,20 +225,21 @@ contains
     !$omp barrier
   end subroutine press_nodes
 
-  !> Sum the forces of special nodes; they move at once unless this cycle writes. Each thread has
-  !> the nodes of its own tiles: what it reads here it has mostly written itself.
+  !> Sum the forces of special nodes, unless contact has asked for them; these move at once unless
+  !> this cycle writes. Each thread has the nodes of its own tiles, run by run: what it reads here
+  !> it has mostly written itself.
   subroutine advance_special_nodes(model, state, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(in) :: cycle
-    integer :: i, i_tile
+    integer :: i
 
     !$omp do schedule(static)
     do i = 1, size(cycle%rest%summed)
-      i_tile = cycle%rest%summed(i)
-      associate (first => model%layout%tiles(i_tile)%first_owned, &
-        last => model%layout%tiles(i_tile)%last_owned)
-        call sum_special_forces(model%layout, state%force_slots, first, last, state%internal_force)
+      associate (first => cycle%borders%runs(1, cycle%rest%summed(i)), &
+        last => cycle%borders%runs(2, cycle%rest%summed(i)))
+        if (.not. cycle%presses) call sum_special_forces(model%layout, state%force_slots, first, &
+          last, state%internal_force)
         if (.not. cycle%writes) then
           if (allocated(state%walls)) call hold_nodes(model, cycle%leap, first, last, state)
           if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, cycle%leap, &
@@ -267,23 +271,29 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(in) :: cycle
-    integer :: i, i_tile
-    logical :: is_own !! a tile of this process
+    integer :: i
 
     !$omp do schedule(static)
-    do i = 1, size(cycle%rest%summed)
-      i_tile = cycle%rest%summed(i)
-      associate (tile => model%layout%tiles(i_tile))
-        is_own = i_tile >= cycle%shares%first_tile .and. i_tile <= cycle%shares%last_tile
+    do i = cycle%shares%first_tile, cycle%shares%last_tile
+      associate (tile => model%layout%tiles(i))
         if (allocated(state%node_damping)) then
-          if (is_own) call move_damped(model, cycle%leap, tile%first_node, tile%last_node, state)
-          call move_damped(model, cycle%leap, tile%first_owned, tile%last_owned, state)
-          cycle
+          call move_damped(model, cycle%leap, tile%first_node, tile%last_node, state)
+        else if (tile%last_node >= tile%first_node) then
+          call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, &
+            state%internal_force(1, tile%first_node), state%inverse_mass, state%motion)
         end if
-        if (tile%last_node >= tile%first_node .and. is_own) call move_tile_nodes(cycle%leap, &
-          tile%first_node, tile%last_node, state%internal_force(1, tile%first_node), &
-          state%inverse_mass, state%motion)
-        call move_special_nodes(cycle%leap, tile%first_owned, tile%last_owned, state)
+      end associate
+    end do
+    !$omp end do
+    !$omp do schedule(static)
+    do i = 1, size(cycle%rest%summed)
+      associate (first => cycle%borders%runs(1, cycle%rest%summed(i)), &
+        last => cycle%borders%runs(2, cycle%rest%summed(i)))
+        if (allocated(state%node_damping)) then
+          call move_damped(model, cycle%leap, first, last, state)
+        else
+          call move_special_nodes(cycle%leap, first, last, state)
+        end if
       end associate
     end do
     !$omp end do

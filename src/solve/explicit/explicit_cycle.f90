@@ -7,7 +7,7 @@ module explicit_cycle_m
   use contact_account_m, only : plan_looks, follow_contact
   use behind_ties_m, only : hear_tie, settle_with_tie
   use contact_inertia_m, only : weigh_contacts
-  use contact_pressing_m, only : press_contacts
+  use contact_pressing_m, only : pressing_t, press_contacts
   use cycle_loads_m, only : apply_loads
   use erosion_account_m, only : settle_elements, release_nodes
   use errors_m, only : error_t
@@ -18,7 +18,7 @@ module explicit_cycle_m
     prescribed_work
   use health_m, only : tile_check_t, are_sound, check_step, check_cycle
   use interface_m, only : apply_contact
-  use kinds_m, only : wp, long
+  use kinds_m, only : wp
   use mass_growth_m, only : grow_state_masses
   use mass_log_m, only : check_added_mass
   use model_m, only : model_t
@@ -29,17 +29,19 @@ module explicit_cycle_m
   use outlines_m, only : follow_outlines
   use rigid_motion_m, only : solve_rigids, rigid_work, move_rigids
   use progress_m, only : follow_progress
-  use rank_exchange_m, only : parcel_t, plan_parcel, exchange_parcel, write_record, &
-    read_records, value_skipped, exchange_erosion, exchange_limits, exchange_history, &
-    gather_motion, gather_state, judge_elements
+  use rank_borders_m, only : borders_t, plan_borders, plan_whole
+  use rank_exchange_m, only : parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, &
+    exchange_failures, exchange_erosion, exchange_limits, exchange_history, gather_motion, &
+    gather_state, judge_elements
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t, share_error
-  use requests_m, only : requests_t, take_requests
+  use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
   use restart_plan_m, only : wanted_files
-  use resting_tiles_m, only : rest_t, plan_rest, follow_rest, n_skipped_so_far
+  use resting_tiles_m, only : rest_t, plan_rest, follow_rest
   use skew_motion_m, only : remember_common, move_common
   use state_m, only : state_t
   use wall_motion_m, only : count_walls
+  use tile_forces_m, only : sum_special_forces
   use time_step_m, only : step_plan_t, start_steps, next_step, is_last, follow_springs
   implicit none
   private
@@ -54,19 +56,23 @@ module explicit_cycle_m
     logical :: plots = .false.       !! this cycle writes a plot state because someone asked for it
     type(due_t) :: due
     type(shares_t) :: shares         !! tiles of each process
+    type(borders_t) :: borders       !! nodes between them
     type(parcel_t) :: parcel         !! what they exchange in each cycle
     type(requests_t) :: asked        !! what someone asks for, heard in this cycle
+    type(echoes_t) :: echoes         !! what was asked for before, of several processes
     type(leap_t) :: leap             !! motion factors of this cycle
     type(step_plan_t) :: steps
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
     logical, allocatable :: active(:)  !! (n_motion) which of them hold, once that has been asked
     logical :: presses = .false.     !! contact forces of some interface follow all other forces
+    type(pressing_t), allocatable :: pressing(:) !! (interfaces) where these are found
     logical :: refines = .false.     !! steps of elements are not those of their density alone
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
     type(rest_t) :: rest             !! tiles that need no step
     type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
-                                                 !! come to; of several processes theirs, in the
-                                                 !! first ones, once they have exchanged it
+                                                 !! come to
+    integer :: n_check = 1           !! so many of them speak for all: of several processes the
+                                     !! first one, once they have exchanged it
     type(failure_watch_t) :: failures !! points that have failed, as far as the log tells of them
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
     real(wp), allocatable :: rates(:, :) !! (2, n_part) D of parts, where the deck damps some
@@ -98,13 +104,22 @@ contains
     end associate
     call plan_sums(model, cycle%sums)
     cycle%presses = any(model%contacts%penalty_unit == penalty_implicit)
+    if (cycle%presses) allocate (cycle%pressing(size(model%contacts)))
     cycle%refines = allocated(state%elements%mass_ratio) .or. &
       allocated(state%elements%retardation)
     associate (ranks => monitor%ranks)
       cycle%shares = share_out(model%layout, ranks%mine, ranks%n)
-      allocate (cycle%checks(max(size(model%layout%tiles), ranks%n)))
-      if (ranks%n > 1) call plan_parcel(cycle%shares, cycle%sums, cycle%parcel)
-      call plan_rest(model, cycle%shares, ranks%n > 1 .or. allocated(cycle%sums%parts), cycle%rest)
+      allocate (cycle%checks(size(model%layout%tiles)))
+      if (ranks%n == 1) then
+        cycle%n_check = size(cycle%checks)
+        call plan_whole(model, cycle%borders)
+      else
+        call plan_borders(model, cycle%shares, ranks%mine, cycle%sums, cycle%borders)
+        call plan_parcel(cycle%borders, cycle%shares, ranks%mine, state%elements, cycle%sums, &
+          cycle%parcel)
+      end if
+      call plan_rest(model, cycle%shares, size(cycle%borders%runs, 2), ranks%n > 1 &
+        .or. allocated(cycle%sums%parts), cycle%rest)
     end associate
     cycle%reason = 'termination time reached'
     if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
@@ -179,7 +194,7 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
 
     if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
-      cycle%velocity, monitor%clock, monitor%log, state)
+      cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
   end subroutine press_cycle
 
   !> Inverse masses where some prescribed motion has just started or ended.
@@ -200,36 +215,51 @@ contains
     call weigh_contacts(model, state)
   end subroutine follow_activity
 
+  !> What someone asks of this process, for all of them.
+  subroutine hear_requests(state, monitor, cycle)
+    type(state_t), intent(in) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+
+    type(requests_t) :: before
+
+    before = cycle%asked
+    if (monitor%ranks%mine == 0) then
+      call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, cycle%error)
+    else
+      call hear_signals(cycle%asked)
+    end if
+    call drop_echoes(before, cycle%echoes, cycle%asked)
+  end subroutine hear_requests
+
   !> What processes have to know of each other's tiles before special nodes move.
   subroutine exchange_tiles(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    integer :: n_gone
-    logical :: has_error
+    type(record_t) :: record
 
-    associate (ranks => monitor%ranks, shares => cycle%shares)
-      if (ranks%mine == 0) call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, &
-        cycle%error)
-      call write_record(shares, ranks%mine, cycle%checks, state%elements, cycle%asked, &
-        allocated(cycle%error), cycle%parcel)
-      cycle%parcel%own(value_skipped) = real(n_skipped_so_far(cycle%rest), wp)
-      call exchange_parcel(ranks, shares, cycle%parcel, state, cycle%sums)
-      call read_records(cycle%parcel, cycle%checks, cycle%asked, n_gone, has_error)
-      cycle%rest%n_told = nint(sum(cycle%parcel%records(value_skipped, :)), long)
-      if (has_error) call share_error(ranks, cycle%error)
-      if (model%erodes) then
-        if (n_gone > sum(state%elements%erosion%n_eroded)) &
-          call exchange_erosion(ranks, shares, state%elements)
-      end if
-      if (state%cycle == 0) call exchange_limits(ranks, shares, state%elements)
-      if (allocated(state%elements%n_failed)) then
+    associate (ranks => monitor%ranks, shares => cycle%shares, elements => state%elements)
+      call hear_requests(state, monitor, cycle)
+      record%asked = cycle%asked
+      record%has_error = allocated(cycle%error)
+      call exchange_parcel(shares, cycle%borders, ranks, cycle%parcel, state, cycle%sums)
+      call exchange_record(shares, cycle%checks, elements, ranks, cycle%parcel, record)
+      cycle%asked = record%asked
+      cycle%checks(1) = tile_check_t(time_limit=record%time_limit, has_volume=record%is_sound)
+      if (record%has_error) call share_error(ranks, cycle%error)
+      if (record%loses) call exchange_erosion(ranks, shares, elements)
+      if (state%cycle == 0) call exchange_limits(ranks, shares, elements)
+      if (record%fails) then
+        call exchange_failures(ranks, shares, elements)
         ! The log names the first one.
-        if (cycle%failures%told == 0 .and. any(state%elements%n_failed > 0)) &
-          call exchange_history(ranks, shares, state%elements)
+        if (cycle%failures%told == 0 .and. any(elements%n_failed > 0)) &
+          call exchange_history(ranks, shares, elements)
       end if
-      if (cycle%writes) call gather_state(ranks, shares, .false., state)
+      if (cycle%writes) call gather_state(shares, cycle%borders, .false., ranks, state)
+      if (cycle%writes .and. ranks%mine == 0) call sum_special_forces(model%layout, &
+        state%force_slots, 1, model%layout%n_special, state%internal_force)
     end associate
     call lap(monitor%clock, phase_nodes)
   end subroutine exchange_tiles
@@ -275,8 +305,9 @@ contains
     if (.not. cycle%writes) then
       call count_sums(cycle%sums, state%external_work, state%damping_work)
       if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
-      if (.not. are_sound(cycle%checks, state%contacts)) then
-        if (monitor%ranks%n > 1) call gather_state(monitor%ranks, cycle%shares, .false., state)
+      if (.not. are_sound(cycle%checks(:cycle%n_check), state%contacts)) then
+        if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
+          monitor%ranks, state)
         call judge_elements(monitor%ranks, model, state, cycle%error)
       end if
     end if
@@ -291,7 +322,8 @@ contains
     if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
     if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
     if (allocated(cycle%freed)) then
-      if (monitor%ranks%n > 1) call gather_motion(monitor%ranks, cycle%shares, .true., state)
+      if (monitor%ranks%n > 1) call gather_motion(cycle%shares, cycle%borders, .true., &
+        monitor%ranks, state)
       call lose_elements(model, state, cycle)
     end if
     state%cycle = state%cycle + 1
@@ -318,7 +350,7 @@ contains
     type(explicit_cycle_t), intent(in) :: cycle
     real(wp) :: limit
 
-    limit = minval(cycle%checks%time_limit)
+    limit = minval(cycle%checks(:cycle%n_check)%time_limit)
     if (.not. model%erodes) return
     associate (n_gone => state%elements%erosion%n_gone)
       if (sum(n_gone) == sum(model%layout%chunk_elements(:size(n_gone)))) &
@@ -329,14 +361,14 @@ contains
   !> Mass for elements that have become too small for DT2MS, where the deck lets it grow.
   subroutine follow_masses(model, ranks, state, cycle)
     type(model_t), intent(in) :: model
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(inout) :: cycle
     logical :: has_grown
 
     if (model%controls%masses_stay) return
-    if (minval(cycle%checks%time_limit) >= abs(model%controls%mass_step)) return
-    if (ranks%n > 1) call gather_state(ranks, cycle%shares, .true., state)
+    if (minval(cycle%checks(:cycle%n_check)%time_limit) >= abs(model%controls%mass_step)) return
+    if (ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .true., ranks, state)
     call grow_state_masses(model, state, has_grown)
     if (has_grown .and. allocated(cycle%rates)) deallocate (cycle%rates)
     ! The places of the next cycle have been looked at.
@@ -375,7 +407,8 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
 
     if (.not. any(wanted)) return
-    if (monitor%ranks%n > 1) call gather_state(monitor%ranks, cycle%shares, .false., state)
+    if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
+      monitor%ranks, state)
     if (monitor%ranks%mine == 0) call write_restarts(wanted, state, monitor, cycle%steps, &
       cycle%damping, cycle%ratio, cycle%error)
     if (monitor%ranks%n > 1) call share_error(monitor%ranks, cycle%error)

@@ -2,11 +2,12 @@
 !> A cycle of an explicit run that writes: what the elements have come to, and what is due from it.
 module explicit_report_m
   use contact_check_m, only : report_contact_start
+  use contact_judging_m, only : judge_contacts
   use energies_m, only : energy_ratio, total_energy
   use erosion_account_m, only : settle_elements, note_least_step
   use explicit_prescribed_m, only : start_prescribed, prescribed_work
   use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
-    table_sleout, table_spcforc
+    table_sleout, table_spcforc, table_contact
   use health_m, only : check_energy, check_radii, made_by_springs
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
@@ -92,11 +93,13 @@ contains
     if (cycle%due%tables(table_matsum)) call fill_parts(model, state%elements, &
       monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call find_slowest(model, state, monitor%snapshot)
-    if (any(cycle%due%tables([table_rcforc, table_sleout]))) &
+    if (any(cycle%due%tables([table_rcforc, table_sleout, table_contact]))) &
       call fill_interfaces(model, state, monitor%snapshot)
     if (cycle%due%tables(table_spcforc)) &
       call fill_explicit_reactions(model, state, monitor%snapshot, held)
     if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
+    if (any(cycle%due%tables([table_sleout, table_contact]))) call judge_contacts(model, state, &
+      cycle%due%plot, monitor%rows, monitor%snapshot)
     call write_due(model, cycle%due, state%dt, monitor, cycle%error)
     if (cycle%due%tables(table_glstat)) cycle%ratio = energy_ratio(monitor%snapshot%energies)
     if (cycle%due%plot .and. .not. allocated(cycle%error)) call show_progress(monitor%progress, &

@@ -19,6 +19,10 @@ module motion_sums_m
   !> Partial sums of one cycle, and what they are for.
   type :: motion_sums_t
     integer, allocatable :: blocks(:, :) !! (2, blocks) first and last node
+    integer :: n_special = 0             !! so many of them are of special nodes; the first ones
+    integer :: first = 1, last = 0       !! which of these this process sums
+    integer, allocatable :: starts(:)    !! (processes + 1) where those of each start, if there are
+                                         !! several
     real(wp), allocatable :: parts(:, :) !! (4, tiles and then blocks) m v_x, m v_y, and what
                                          !! `sum_drag` gives; allocated only where the deck has
                                          !! body loads or damping
@@ -42,6 +46,8 @@ contains
     n_moved = n_special
     if (n_tile > 0) n_moved = model%layout%tiles(n_tile)%last_node
     n_block = blocks_of(n_special)
+    sums%n_special = n_block
+    sums%last = n_block
     allocate (sums%blocks(2, n_block + blocks_of(model%mesh%n_node - n_moved)))
     do i = 1, size(sums%blocks, 2)
       if (i <= n_block) then
@@ -149,7 +155,8 @@ contains
     integer :: i
 
     !$omp do schedule(static)
-    do i = 1, size(sums%blocks, 2)
+    do i = sums%first, size(sums%blocks, 2)
+      if (i > sums%last .and. i <= sums%n_special) cycle
       call sum_motion(sums%blocks(1, i), sums%blocks(2, i), state, &
         sums%parts(:, size(layout%tiles) + i))
     end do

@@ -1,102 +1,145 @@
 ! SPDX-License-Identifier: MIT
 !> What the processes of an explicit run exchange. Each computes the elements of its tiles and moves
-!> their interior nodes; special nodes and all that acts on them are everywhere the same. So in each
-!> cycle all hear the forces on special nodes (raw, slot by slot: they are added in their fixed
-!> order) and what the elements have come to. The first process gathers the rest where files ask
-!> for it.
+!> their interior nodes. In each cycle those that share a border hear each other's forces on it
+!> (raw, slot by slot: they are added in their fixed order), and all hear the forces on nodes that
+!> all compute and what the elements have come to. The first process gathers the rest where files
+!> ask for it.
 module rank_exchange_m
   use block_state_m, only : block_state_t
   use errors_m, only : error_t
-  use health_m, only : tile_check_t, check_elements
-  use kinds_m, only : wp
+  use health_m, only : tile_check_t, check_elements, most_work
+  use kinds_m, only : wp, long
   use layout_m, only : chunk_size
   use model_m, only : model_t
   use motion_sums_m, only : motion_sums_t
+  use rank_borders_m, only : borders_t
   use rank_shares_m, only : shares_t, stream_starts
-  use ranks_m, only : ranks_t, bring_reals, bring_integers, share_error
+  use ranks_m, only : ranks_t, bring_reals, bring_integers, swap_reals, find_least, share_error
   use requests_m, only : requests_t
   use state_m, only : state_t
   implicit none
   private
-  public :: parcel_t, plan_parcel, exchange_parcel, write_record, read_records, value_skipped, &
+  public :: parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, exchange_failures, &
     exchange_erosion, exchange_limits, exchange_history, gather_motion, gather_state, judge_elements
 
-  !> Values of a record: limit, checksum, volumes, elements gone, requests (4), an error, steps of
-  !> tiles that were not taken; and of the sums over the nodes of a tile.
-  integer, parameter :: n_value = 10, value_skipped = 10, n_sum = 4
+  !> Values of the sums over the nodes of a tile.
+  integer, parameter :: n_sum = 4
 
-  !> What is exchanged in each cycle, process by process.
+  !> What is exchanged in each cycle.
   type :: parcel_t
-    integer, allocatable :: starts(:)      !! (n + 1) where the piece of each process starts
+    integer, allocatable :: starts(:)  !! (n + 1) where the piece of each process for all starts
     real(wp), allocatable :: values(:)
-    real(wp), allocatable :: records(:, :) !! (n_value, n) what each process says of its tiles
-    real(wp) :: own(n_value) = 0.0_wp      !! the record of this process
+    real(wp), allocatable :: outgoing(:, :), incoming(:, :) !! (2, slots) forces on borders
+    integer(long) :: sent(2) = 0, joined(2) = 0 !! what `ranks_t` counts, of these exchanges alone
+    integer(long) :: n_cycle = 0
+    integer :: n_gone = 0                !! elements of this process that are known to have left
+    integer, allocatable :: n_failed(:)  !! failed points of its chunks that are known
   end type parcel_t
+
+  !> What all have to know of each other's elements, and what someone asks of any of them.
+  type :: record_t
+    real(wp) :: time_limit = huge(1.0_wp) !! smallest of the elements
+    logical :: is_sound = .true.          !! volumes are positive, works finite
+    logical :: loses = .false.            !! elements have left
+    logical :: fails = .false.            !! points have failed
+    logical :: has_error = .false.
+    type(requests_t) :: asked
+  end type record_t
 
 contains
 
   !> Room for what is exchanged in each cycle.
-  pure subroutine plan_parcel(shares, sums, parcel)
+  pure subroutine plan_parcel(borders, shares, mine, elements, sums, parcel)
+    type(borders_t), intent(in) :: borders
     type(shares_t), intent(in) :: shares
+    integer, intent(in) :: mine !! number of this process
+    type(block_state_t), intent(in) :: elements
     type(motion_sums_t), intent(in) :: sums
     type(parcel_t), intent(out) :: parcel
-    integer :: i
 
-    associate (n => ubound(shares%tiles, 1))
-      parcel%starts = n_value*[(i, i=0, n)] + 2*(shares%force_slots - 1) + 1
-      if (allocated(sums%parts)) parcel%starts = parcel%starts + n_sum*(shares%tiles - 1)
-      ! The assignment has made the lower bound 1.
-      allocate (parcel%values(parcel%starts(n + 1) - 1), source=0.0_wp)
-      allocate (parcel%records(n_value, n), source=0.0_wp)
+    parcel%starts = 2*(borders%common_starts - 1) + 1
+    if (allocated(sums%parts)) parcel%starts = parcel%starts + n_sum*(shares%tiles - 1 &
+      + sums%starts - 1)
+    allocate (parcel%values(parcel%starts(size(parcel%starts)) - 1), source=0.0_wp)
+    allocate (parcel%outgoing(2, size(borders%out_slots)), source=0.0_wp)
+    allocate (parcel%incoming(2, size(borders%in_slots)), source=0.0_wp)
+    associate (first => shares%chunks(mine), last => shares%chunks(mine + 1) - 1)
+      if (allocated(elements%erosion)) parcel%n_gone = sum(elements%erosion%n_gone(first:last))
+      if (allocated(elements%n_failed)) parcel%n_failed = elements%n_failed(first:last)
     end associate
   end subroutine plan_parcel
 
-  !> Records of all processes, forces of all tiles on special nodes and, where they are formed, sums
-  !> over the nodes of all tiles, in one message.
-  subroutine exchange_parcel(ranks, shares, parcel, state, sums)
-    type(ranks_t), intent(in) :: ranks
+  !> Forces of tiles on special nodes and, where they are formed, sums over nodes; `exchange_record`
+  !> follows.
+  subroutine exchange_parcel(shares, borders, ranks, parcel, state, sums)
     type(shares_t), intent(in) :: shares
+    type(borders_t), intent(in) :: borders
+    type(ranks_t), intent(inout) :: ranks
     type(parcel_t), intent(inout) :: parcel
     type(state_t), intent(inout) :: state
     type(motion_sums_t), intent(inout) :: sums
     integer :: rank
 
+    parcel%sent = parcel%sent - ranks%sent
+    parcel%joined = parcel%joined - ranks%joined
+    parcel%n_cycle = parcel%n_cycle + 1
+    call copy_slots(.true., borders%out_slots, state%force_slots, parcel%outgoing)
+    call swap_reals(ranks, borders%peers, 2*borders%out_starts - 1, parcel%outgoing, &
+      2*borders%in_starts - 1, parcel%incoming)
+    call copy_slots(.false., borders%in_slots, state%force_slots, parcel%incoming)
+    if (size(parcel%values) == 0) return
     call fill_piece(ranks%mine, .true.)
     call bring_reals(ranks, parcel%starts, 1, .true., parcel%values)
     do rank = 0, ranks%n - 1
       if (rank /= ranks%mine) call fill_piece(rank, .false.)
     end do
-    parcel%records(:, ranks%mine + 1) = parcel%own
-    if (allocated(state%elements%n_failed)) call bring_integers(ranks, shares%chunks, 1, .true., &
-      state%elements%n_failed)
 
   contains
 
-    !> Put the piece of a process into the parcel, or take it out.
+    !> Put the piece of a process for all into the parcel, or take it out.
     subroutine fill_piece(rank, puts)
       integer, intent(in) :: rank
       logical, intent(in) :: puts
       integer :: at, first, last
 
       at = parcel%starts(rank + 1)
-      if (puts) then
-        parcel%values(at:at + n_value - 1) = parcel%own
-      else
-        parcel%records(:, rank + 1) = parcel%values(at:at + n_value - 1)
-      end if
-      at = at + n_value
-      first = shares%force_slots(rank)
-      last = shares%force_slots(rank + 1) - 1
-      if (last >= first) call copy_columns(puts, last - first + 1, 2, state%force_slots(1, first), &
+      first = borders%common_starts(rank + 1)
+      last = borders%common_starts(rank + 2) - 1
+      if (last >= first) call copy_slots(puts, borders%common(first:last), state%force_slots, &
         parcel%values(at))
       at = at + 2*(last - first + 1)
+      if (.not. allocated(sums%parts)) return
       first = shares%tiles(rank)
       last = shares%tiles(rank + 1) - 1
-      if (allocated(sums%parts) .and. last >= first) call copy_columns(puts, last - first + 1, &
-        n_sum, sums%parts(1, first), parcel%values(at))
+      if (last >= first) call copy_columns(puts, last - first + 1, n_sum, sums%parts(1, first), &
+        parcel%values(at))
+      at = at + n_sum*(last - first + 1)
+      ! Those of blocks stand behind those of tiles.
+      first = size(sums%parts, 2) - size(sums%blocks, 2) + sums%starts(rank + 1)
+      last = first + sums%starts(rank + 2) - sums%starts(rank + 1) - 1
+      if (last >= first) call copy_columns(puts, last - first + 1, n_sum, sums%parts(1, first), &
+        parcel%values(at))
     end subroutine fill_piece
 
   end subroutine exchange_parcel
+
+  !> Forces of some slots into the parcel, or out of it.
+  pure subroutine copy_slots(puts, slots, table, values)
+    logical, intent(in) :: puts
+    integer, intent(in) :: slots(:)
+    real(wp), intent(inout) :: table(2, *), values(2, *)
+    integer :: i
+
+    if (puts) then
+      do i = 1, size(slots)
+        values(:, i) = table(:, slots(i))
+      end do
+    else
+      do i = 1, size(slots)
+        table(:, slots(i)) = values(:, i)
+      end do
+    end if
+  end subroutine copy_slots
 
   !> Columns of a table into the parcel, or out of it.
   pure subroutine copy_columns(puts, n, width, table, values)
@@ -111,53 +154,58 @@ contains
     end if
   end subroutine copy_columns
 
-  !> What the elements of this process have come to, and what is asked of it, for its record.
-  pure subroutine write_record(shares, mine, checks, elements, asked, has_error, parcel)
+  !> The record of this process, from what the elements of its tiles have come to, becomes that of
+  !> all.
+  subroutine exchange_record(shares, checks, elements, ranks, parcel, record)
     type(shares_t), intent(in) :: shares
-    integer, intent(in) :: mine                   !! number of this process
-    type(tile_check_t), intent(in) :: checks(:)
+    type(tile_check_t), intent(in) :: checks(:)   !! of all tiles
     type(block_state_t), intent(in) :: elements
-    type(requests_t), intent(in) :: asked
-    logical, intent(in) :: has_error
+    type(ranks_t), intent(inout) :: ranks
     type(parcel_t), intent(inout) :: parcel
+    type(record_t), intent(inout) :: record       !! in: an error and what is asked of this one
+    real(wp) :: values(9)
+    integer :: n_gone
 
-    associate (record => parcel%own, own => checks(shares%first_tile:shares%last_tile))
-      record(1) = minval(own%time_limit)
-      record(2) = sum(own%checksum)
-      record(3) = merge(1.0_wp, 0.0_wp, all(own%has_volume))
-      record(4) = 0.0_wp
-      if (allocated(elements%erosion)) record(4) = real(sum(elements%erosion%n_gone( &
-        shares%chunks(mine):shares%chunks(mine + 1) - 1)), wp)
-      record(5:8) = merge(1.0_wp, 0.0_wp, [asked%dump, asked%plot, asked%stop, asked%signalled])
-      record(9) = merge(1.0_wp, 0.0_wp, has_error)
+    associate (own => checks(shares%first_tile:shares%last_tile))
+      record%time_limit = minval(own%time_limit)
+      ! So that the works of all are below the bound where those of each are.
+      record%is_sound = all(own%has_volume) &
+        .and. abs(sum(own%checksum)) <= most_work/(ranks%n + 1)
     end associate
-  end subroutine write_record
-
-  !> The records of all: what elements have come to, one check a process, and what is asked of the
-  !> first one.
-  pure subroutine read_records(parcel, checks, asked, n_gone, has_error)
-    type(parcel_t), intent(in) :: parcel
-    type(tile_check_t), intent(out) :: checks(:)  !! one a process at least
-    type(requests_t), intent(out) :: asked
-    integer, intent(out) :: n_gone                !! elements of all that are not there
-    logical, intent(out) :: has_error             !! some process has one
-
-    associate (records => parcel%records, n => size(parcel%records, 2))
-      checks(:n)%time_limit = records(1, :)
-      checks(:n)%checksum = records(2, :)
-      checks(:n)%has_volume = records(3, :) > 0.0_wp
-      n_gone = nint(sum(records(4, :)))
-      asked%dump = records(5, 1) > 0.0_wp
-      asked%plot = records(6, 1) > 0.0_wp
-      asked%stop = records(7, 1) > 0.0_wp
-      asked%signalled = records(8, 1) > 0.0_wp
-      has_error = any(records(9, :) > 0.0_wp)
+    associate (first => shares%chunks(ranks%mine), last => shares%chunks(ranks%mine + 1) - 1)
+      if (allocated(elements%erosion)) then
+        n_gone = sum(elements%erosion%n_gone(first:last))
+        record%loses = n_gone > parcel%n_gone
+        parcel%n_gone = n_gone
+      end if
+      if (allocated(elements%n_failed)) then
+        record%fails = any(elements%n_failed(first:last) /= parcel%n_failed)
+        parcel%n_failed = elements%n_failed(first:last)
+      end if
     end associate
-  end subroutine read_records
+    associate (asked => record%asked)
+      values(1) = record%time_limit
+      ! The least of numbers: below zero where it holds of any process.
+      values(2:) = merge(-1.0_wp, 0.0_wp, [.not. record%is_sound, record%loses, record%fails, &
+        record%has_error, asked%dump, asked%plot, asked%stop, asked%signalled])
+      call find_least(ranks, values)
+      record%time_limit = values(1)
+      record%is_sound = values(2) >= 0.0_wp
+      record%loses = values(3) < 0.0_wp
+      record%fails = values(4) < 0.0_wp
+      record%has_error = values(5) < 0.0_wp
+      asked%dump = values(6) < 0.0_wp
+      asked%plot = values(7) < 0.0_wp
+      asked%stop = values(8) < 0.0_wp
+      asked%signalled = values(9) < 0.0_wp
+    end associate
+    parcel%sent = parcel%sent + ranks%sent
+    parcel%joined = parcel%joined + ranks%joined
+  end subroutine exchange_record
 
   !> Elements that have left in this cycle, and what they take along.
   subroutine exchange_erosion(ranks, shares, elements)
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     type(shares_t), intent(in) :: shares
     type(block_state_t), intent(inout) :: elements
 
@@ -169,9 +217,18 @@ contains
     end associate
   end subroutine exchange_erosion
 
+  !> Points that have failed, chunk by chunk.
+  subroutine exchange_failures(ranks, shares, elements)
+    type(ranks_t), intent(inout) :: ranks
+    type(shares_t), intent(in) :: shares
+    type(block_state_t), intent(inout) :: elements
+
+    call bring_integers(ranks, shares%chunks, 1, .true., elements%n_failed)
+  end subroutine exchange_failures
+
   !> Step limits of all chunks.
   subroutine exchange_limits(ranks, shares, elements)
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     type(shares_t), intent(in) :: shares
     type(block_state_t), intent(inout) :: elements
 
@@ -180,7 +237,7 @@ contains
 
   !> The history of all elements, for what looks for one of them.
   subroutine exchange_history(ranks, shares, elements)
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     type(shares_t), intent(in) :: shares
     type(block_state_t), intent(inout) :: elements
 
@@ -188,29 +245,37 @@ contains
       size(elements%history)), 1, .true., elements%history)
   end subroutine exchange_history
 
-  !> Motion of all interior nodes, with the velocities that damped runs keep.
-  subroutine gather_motion(ranks, shares, to_all, state)
-    type(ranks_t), intent(in) :: ranks
+  !> Motion of all nodes that only some processes move, with the velocities that damped runs keep.
+  subroutine gather_motion(shares, borders, to_all, ranks, state)
     type(shares_t), intent(in) :: shares
+    type(borders_t), intent(in) :: borders
     logical, intent(in) :: to_all
+    type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
 
     call bring_reals(ranks, shares%nodes, 4, to_all, state%motion)
-    if (allocated(state%former_velocity)) &
-      call bring_reals(ranks, shares%nodes, 2, to_all, state%former_velocity)
+    call bring_reals(ranks, shares%special, 4, to_all, state%motion)
+    if (.not. allocated(state%former_velocity)) return
+    call bring_reals(ranks, shares%nodes, 2, to_all, state%former_velocity)
+    call bring_reals(ranks, borders%block_nodes, 2, to_all, state%former_velocity)
   end subroutine gather_motion
 
   !> The whole state for the first process, or for all.
-  subroutine gather_state(ranks, shares, to_all, state)
-    type(ranks_t), intent(in) :: ranks
+  subroutine gather_state(shares, borders, to_all, ranks, state)
     type(shares_t), intent(in) :: shares
+    type(borders_t), intent(in) :: borders
     logical, intent(in) :: to_all
+    type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
 
-    call gather_motion(ranks, shares, to_all, state)
+    call gather_motion(shares, borders, to_all, ranks, state)
     call bring_reals(ranks, shares%nodes, 2, to_all, state%internal_force)
-    if (allocated(state%former_damping)) &
+    call bring_reals(ranks, shares%special, 2, to_all, state%internal_force)
+    call bring_reals(ranks, shares%force_slots, 2, to_all, state%force_slots)
+    if (allocated(state%former_damping)) then
       call bring_reals(ranks, shares%nodes, 2, to_all, state%former_damping)
+      call bring_reals(ranks, borders%block_nodes, 2, to_all, state%former_damping)
+    end if
     call gather_chunks(ranks, shares, to_all, state%elements)
     call gather_slots(ranks, shares, to_all, state%elements)
     call gather_streams(ranks, shares, to_all, state%elements)
@@ -218,7 +283,7 @@ contains
 
   !> What elements keep chunk by chunk.
   subroutine gather_chunks(ranks, shares, to_all, elements)
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     type(shares_t), intent(in) :: shares
     logical, intent(in) :: to_all
     type(block_state_t), intent(inout) :: elements
@@ -234,7 +299,7 @@ contains
 
   !> What they keep slot by slot. Their shape changes where they may leave the mesh.
   subroutine gather_slots(ranks, shares, to_all, elements)
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     type(shares_t), intent(in) :: shares
     logical, intent(in) :: to_all
     type(block_state_t), intent(inout) :: elements
@@ -257,7 +322,7 @@ contains
 
   !> What only some chunks keep.
   subroutine gather_streams(ranks, shares, to_all, elements)
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     type(shares_t), intent(in) :: shares
     logical, intent(in) :: to_all
     type(block_state_t), intent(inout) :: elements
@@ -289,7 +354,7 @@ contains
 
   !> The first process looks at all elements, whose state it has gathered, and tells the others.
   subroutine judge_elements(ranks, model, state, error)
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(error_t), allocatable, intent(inout) :: error

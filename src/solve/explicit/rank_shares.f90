@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Which process of a run has which tiles, and what goes with them: ranges of chunks, interior nodes
-!> and force slots, since all of these stand tile by tile.
+!> Which process of a run has which tiles, and what goes with them: ranges of chunks, nodes and
+!> force slots, since all of these stand tile by tile.
 module rank_shares_m
   use kinds_m, only : wp
   use layout_m, only : layout_t
@@ -12,6 +12,7 @@ module rank_shares_m
   type :: shares_t
     integer, allocatable :: tiles(:), chunks(:)
     integer, allocatable :: nodes(:)       !! interior
+    integer, allocatable :: special(:)     !! special nodes that its tiles own
     integer, allocatable :: force_slots(:)
     integer :: first_tile = 1, last_tile = 0 !! of this process
   end type shares_t
@@ -27,6 +28,7 @@ contains
     integer :: i, owner, last
 
     allocate (shares%tiles(0:n), shares%chunks(0:n), shares%nodes(0:n), shares%force_slots(0:n))
+    allocate (shares%special(0:n))
     associate (tiles => layout%tiles)
       total = max(1, sum(layout%chunk_elements(:tiles(size(tiles))%last_chunk)))
       before = 0.0_wp
@@ -62,7 +64,10 @@ contains
         shares%force_slots(rank) = 1 &
           + sum(tiles(:i - 1)%last_special - tiles(:i - 1)%first_special + 1)
         shares%chunks(rank) = tiles(size(tiles))%last_chunk + 1
-        if (i <= size(tiles)) shares%chunks(rank) = tiles(i)%first_chunk
+        shares%special(rank) = layout%n_special + 1
+        if (i > size(tiles)) return
+        shares%chunks(rank) = tiles(i)%first_chunk
+        shares%special(rank) = tiles(i)%first_owned
       end associate
     end subroutine start_range
 

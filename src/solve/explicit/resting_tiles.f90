@@ -11,13 +11,14 @@ module resting_tiles_m
   use log_m, only : log_t, write_log
   use model_m, only : model_t
   use rank_shares_m, only : shares_t
+  use ranks_m, only : ranks_t, bring_reals
   use state_m, only : state_t
   use tile_neighbours_m, only : neighbours_t, find_neighbours
   use tile_values_m, only : take_values, same_bits
   implicit none
   private
   public :: rest_t, plan_rest, is_tried, rests, is_flying, remember_tile, judge_tile, &
-    look_at_tile, follow_rest, n_skipped_so_far, report_rest
+    look_at_tile, follow_rest, report_rest
 
   !> Status of a tile: stepped in each cycle, or not; above zero so many cycles are left in which it
   !> may come to rest.
@@ -32,7 +33,8 @@ module resting_tiles_m
     integer :: first_tile = 1, last_tile = 0 !! of this process
     integer, allocatable :: stepped(:)   !! tiles to step, of this process
     integer, allocatable :: watched(:)   !! resting ones that may wake, or whose nodes move
-    integer, allocatable :: summed(:)    !! tiles whose special nodes are summed and moved
+    integer, allocatable :: summed(:)    !! runs of special nodes that are summed and moved: of one
+                                         !! process those of its tiles
     type(neighbours_t) :: neighbours     !! asked for once tiles rest
     real(wp), allocatable :: no_force(:, :) !! (2, n_local), likewise
     logical :: watches_all = .false.     !! tiles that rest are all looked at
@@ -40,15 +42,15 @@ module resting_tiles_m
     integer :: n_woken = 0, n_fallen = 0 !! since
     integer(long) :: n_skipped = 0       !! steps of tiles that were not taken
     integer(long) :: n_cycle = 0
-    integer(long) :: n_told = 0          !! skipped by all processes, where there are several
   end type rest_t
 
 contains
 
   !> All tiles are awake, and may come to rest if the model lets them.
-  subroutine plan_rest(model, shares, watches_all, rest)
+  subroutine plan_rest(model, shares, n_run, watches_all, rest)
     type(model_t), intent(in) :: model
     type(shares_t), intent(in) :: shares
+    integer, intent(in) :: n_run         !! runs of special nodes that this process moves
     logical, intent(in) :: watches_all   !! resting tiles have to be looked at in each cycle
     type(rest_t), intent(out) :: rest
     integer :: i
@@ -60,7 +62,7 @@ contains
         model%layout%tiles(first:last)%last_chunk >= model%layout%tiles(first:last)%first_chunk)
       allocate (rest%stepped(last - first + 1), source=[(i, i = first, last)])
       allocate (rest%watched(0))
-      allocate (rest%summed(n), source=[(i, i = 1, n)])
+      allocate (rest%summed(n_run), source=[(i, i = 1, n_run)])
     end associate
     rest%first_tile = shares%first_tile
     rest%last_tile = shares%last_tile
@@ -246,7 +248,7 @@ contains
     type(rest_t), intent(inout) :: rest
 
     rest%n_cycle = rest%n_cycle + 1
-    rest%n_skipped = n_skipped_so_far(rest)
+    rest%n_skipped = rest%n_skipped + rest%n_resting - rest%n_woken
     if (rest%n_woken + rest%n_fallen == 0) return
     rest%n_resting = rest%n_resting - rest%n_woken + rest%n_fallen
     rest%n_woken = 0
@@ -257,14 +259,6 @@ contains
     end if
     call list_tiles(rest)
   end subroutine follow_rest
-
-  !> Steps that were not taken, those of this cycle among them once its tiles have been advanced.
-  pure function n_skipped_so_far(rest) result(n)
-    type(rest_t), intent(in) :: rest
-    integer(long) :: n
-
-    n = rest%n_skipped + rest%n_resting - rest%n_woken
-  end function n_skipped_so_far
 
   !> The tiles of the next cycle. A resting one is looked at if it may wake, for its nodes may have
   !> moved, or a neighbour may, which would then push its nodes.
@@ -289,7 +283,8 @@ contains
       rest%status(rest%first_tile:rest%last_tile) >= awake
     call list_true(is_stepped, rest%stepped)
     call list_true(is_watched, rest%watched)
-    call list_true(is_watched .or. rest%status >= awake, rest%summed)
+    ! Else all are listed; of one process each tile has a run of special nodes.
+    if (.not. rest%watches_all) call list_true(is_watched .or. rest%status >= awake, rest%summed)
   end subroutine list_tiles
 
   !> The tiles for which something is true.
@@ -309,14 +304,20 @@ contains
   end subroutine list_true
 
   !> The log tells how many steps of tiles were taken, if not all.
-  subroutine report_rest(rest, log)
+  subroutine report_rest(ranks, rest, log)
+    type(ranks_t), intent(inout) :: ranks
     type(rest_t), intent(in) :: rest
     type(log_t), intent(inout) :: log
+    real(wp) :: skipped(ranks%n)
     integer(long) :: n, n_skipped
+    integer :: i
     character(48) :: figures
 
+    skipped = 0.0_wp
+    skipped(ranks%mine + 1) = real(rest%n_skipped, wp)
+    if (ranks%n > 1) call bring_reals(ranks, [(i, i = 1, ranks%n + 1)], 1, .true., skipped)
     n = size(rest%status)*rest%n_cycle
-    n_skipped = max(rest%n_skipped, rest%n_told)
+    n_skipped = nint(sum(skipped), long)
     if (n_skipped == 0) return
     write (figures, '(ss,i0,a,i0)') n - n_skipped, ' of ', n
     call write_log(log, 'steps of tiles: '//trim(figures)//', in the others all nodes moved as one')

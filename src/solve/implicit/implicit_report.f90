@@ -2,7 +2,9 @@
 !> What the implicit driver writes: motion, velocity and acceleration of one instant, energies
 !> with the consistent mass.
 module implicit_report_m
-  use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc
+  use contact_judging_m, only : judge_contacts
+  use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc, &
+    table_contact
   use block_state_m, only : block_state_t
   use kinds_m, only : wp
   use clock_m, only : lap, phase_output
@@ -61,10 +63,13 @@ contains
         shot%energies%initial = state%initial_energy
       end if
       if (due%tables(table_matsum)) call fill_consistent_parts(model, state%elements, shot)
-      if (any(due%tables([table_rcforc, table_sleout]))) call fill_interfaces(model, state, shot)
+      if (any(due%tables([table_rcforc, table_sleout, table_contact]))) &
+        call fill_interfaces(model, state, shot)
       if (due%tables(table_spcforc)) call fill_reactions(model, &
         force + mass_times(model, shot%acceleration), shot)
       if (due%plot) call fill_plot(model, state, shot)
+      if (any(due%tables([table_sleout, table_contact]))) call judge_contacts(model, state, &
+        due%plot, monitor%rows, shot)
       call write_due(model, due, dt, monitor, error)
       if (due%plot .and. .not. allocated(error)) &
         call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, &

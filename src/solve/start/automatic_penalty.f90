@@ -4,16 +4,21 @@
 !> is the one that the elements, and ties, alone would have (TSSFAC times the smallest L/c, or the
 !> curve LCTM). Each such interface may take what that step leaves beside the elements; where
 !> interfaces share nodes, all automatic ones are lowered by the same factor until their sum fits.
+!> A penalty from the built-in estimate (PUNIT 2) may take no more than that either where its
+!> surface is of soft and stiff materials: the mean of these, in springs on nodes of the soft one,
+!> would turn them round within a step.
 module automatic_penalty_m
   use contact_log_m, only : penalty_text
+  use contact_penalty_m, only : spread_of_stiffness
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
     binding_bound, fitting_scale
-  use contacts_m, only : is_tied, penalty_share
-  use controls_m, only : contact_step_free
+  use contact_state_m, only : contact_state_t
+  use contacts_m, only : contact_t, is_tied, penalty_factor, penalty_share
+  use controls_m, only : contact_step_free, contact_step_warns
   use element_dispatch_m, only : add_tile_forces
   use errors_m, only : error_t, raise, status_input
   use kinds_m, only : wp
-  use log_m, only : log_t, write_log, to_text
+  use log_m, only : log_t, warn, write_log, to_text
   use mass_scaling_m, only : refine_limits
   use model_m, only : model_t
   use scaled_step_m, only : scaled_step
@@ -25,30 +30,35 @@ module automatic_penalty_m
   integer, parameter :: n_halving = 60           !! of the common factor
   real(wp), parameter :: round_off = 1.0e-12_wp  !! by which a bound may miss the step that it was
                                                  !! made for
+  real(wp), parameter :: much_stiffer = 10.0_wp  !! ratio of bulk moduli of one surface
 
 contains
 
-  !> Give every interface with PUNIT 3 its penalty and tell the log.
+  !> Give every interface with PUNIT 3 its penalty and tell the log; lower those of surfaces of soft
+  !> and stiff materials to what the step bears.
   subroutine set_automatic_penalties(model, state, log, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(log_t), intent(inout) :: log
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: factor(size(model%contacts)), limit, dt
+    real(wp), dimension(size(model%contacts)) :: share, factor
+    real(wp) :: limit, dt
     type(spring_bound_t) :: bounds(size(model%contacts))
     integer :: i
 
-    if (all(model%contacts%penalty_unit /= penalty_share)) return
+    share = sought_shares(model)
+    if (.not. any(share > 0.0_wp)) return
     call find_element_limits(model, state)
     limit = minval(state%elements%time_limit)
     dt = scaled_step(model, limit_with_ties(model, state, limit), state%time)
     if (.not. dt < limit) then
-      call raise(error, 'an automatic penalty (PUNIT 3) finds no room: the time step ' &
+      if (any(model%contacts%penalty_unit == penalty_share)) call raise(error, &
+        'an automatic penalty (PUNIT 3) finds no room: the time step ' &
         //to_text(dt)//' is not below the stable step of the elements '//to_text(limit) &
         //'; choose a smaller TSSFAC or LCTM', status_input)
       return
     end if
-    call find_factors(model, state, dt, limit, factor)
+    call find_factors(model, state, [dt, limit], share, factor)
     do i = 1, size(factor)
       if (model%contacts(i)%penalty_unit /= penalty_share) cycle
       if (.not. factor(i) > 0.0_wp) then
@@ -58,20 +68,80 @@ contains
         return
       end if
     end do
-    call bound_whole(model, state, factor, bounds)
+    call bound_whole(model, state, share, factor, bounds)
     do i = 1, size(factor)
-      if (model%contacts(i)%penalty_unit /= penalty_share) cycle
-      associate (memory => state%contacts(i))
-        memory%slave_penalty = factor(i)*memory%slave_penalty
-        memory%master_penalty = factor(i)*memory%master_penalty
-        memory%node_penalty = factor(i)*memory%node_penalty
+      if (.not. (share(i) > 0.0_wp .and. factor(i) > 0.0_wp)) cycle
+      if (model%contacts(i)%penalty_unit == penalty_factor .and. factor(i) >= 1.0_wp) cycle
+      call scale_penalties(factor(i), state%contacts(i))
+      if (model%contacts(i)%penalty_unit == penalty_share) then
         call write_log(log, 'interface '//to_text(model%contacts(i)%id)//': penalty ' &
-          //penalty_text(model%contacts(i), model, memory)//', ' &
+          //penalty_text(model%contacts(i), model, state%contacts(i))//', ' &
           //to_text(model%contacts(i)%penalty)//' of the largest for a time step of ' &
           //to_text(dt)//' by the bound of '//binding_bound(limit, bounds(i)))
-      end associate
+      else
+        call warn_of_mean(model, i, dt, state%contacts(i), log)
+      end if
     end do
   end subroutine set_automatic_penalties
+
+  !> Multiply all equivalents of a penalty.
+  pure subroutine scale_penalties(factor, memory)
+    real(wp), intent(in) :: factor
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%slave_penalty = factor*memory%slave_penalty
+    memory%master_penalty = factor*memory%master_penalty
+    memory%node_penalty = factor*memory%node_penalty
+  end subroutine scale_penalties
+
+  !> Interface `i` has less than the built-in penalty, and what does without.
+  subroutine warn_of_mean(model, i, dt, memory, log)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    real(wp), intent(in) :: dt !! s
+    type(contact_state_t), intent(in) :: memory !! with the penalty that it has now
+    type(log_t), intent(inout) :: log
+
+    call warn(log, 'interface '//to_text(model%contacts(i)%id)//': one of its surfaces is of soft '&
+      //'and stiff materials, and nodes of the soft ones do not bear the mean penalty of both at ' &
+      //'the time step '//to_text(dt)//'; it is lowered to ' &
+      //penalty_text(model%contacts(i), model, memory)//'. Stiff parts sink in less with ' &
+      //'interfaces of their own, or with the step of the springs (ECDT 2 of *CONTROL_CONTACT)')
+  end subroutine warn_of_mean
+
+  !> By interface the share of the largest stable penalty that the memory holds a penalty of: PEN
+  !> with PUNIT 3, 1 where a surface of soft and stiff materials may have no more than that, 0 for
+  !> penalties that stand as given.
+  pure function sought_shares(model) result(share)
+    type(model_t), intent(in) :: model
+    real(wp) :: share(size(model%contacts))
+    integer :: i
+
+    share = 0.0_wp
+    do i = 1, size(share)
+      associate (contact => model%contacts(i))
+        if (contact%penalty_unit == penalty_share) then
+          share(i) = contact%penalty
+        else if (may_be_lowered(contact, model)) then
+          share(i) = 1.0_wp
+        end if
+      end associate
+    end do
+  end function sought_shares
+
+  !> Whether an interface has a mean of soft and stiff materials for its penalty, in an explicit run
+  !> whose step does not follow it.
+  pure function may_be_lowered(contact, model) result(may)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    logical :: may
+
+    may = contact%penalty_unit == penalty_factor .and. contact%behind == 0 &
+      .and. model%controls%contact_step == contact_step_warns &
+      .and. .not. (is_tied(contact) .or. model%controls%implicit%is_on)
+    if (may) may = max(spread_of_stiffness(contact%slave, model), &
+      spread_of_stiffness(contact%master, model)) >= much_stiffer
+  end function may_be_lowered
 
   !> The stable step of the elements, or what ties that lower it leave of it.
   pure function limit_with_ties(model, state, element_limit) result(limit)
@@ -105,12 +175,12 @@ contains
     end do
   end subroutine find_element_limits
 
-  !> Factors on the penalties in the memories, which hold shares: 0 where there is no
-  !> room, 1 for given penalties.
-  pure subroutine find_factors(model, state, dt, limit, factor)
+  !> Factors on the penalties in the memories: 0 where there is no room, 1 for given penalties.
+  pure subroutine find_factors(model, state, steps, share, factor)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    real(wp), intent(in) :: dt, limit   !! step, and stable step of the elements, s
+    real(wp), intent(in) :: steps(2) !! the step, and the stable one of the elements, s
+    real(wp), intent(in) :: share(:)
     real(wp), intent(out) :: factor(:)
     type(spring_bound_t) :: bounds(size(factor))
     real(wp) :: alone(size(factor)), low, high
@@ -118,49 +188,51 @@ contains
 
     factor = 1.0_wp
     do i = 1, size(factor)
-      if (model%contacts(i)%penalty_unit /= penalty_share) cycle
+      if (.not. share(i) > 0.0_wp) cycle
       alone = 0.0_wp
-      alone(i) = 1.0_wp/model%contacts(i)%penalty
+      alone(i) = 1.0_wp/share(i)
       call bound_springs(model%contacts, state%contact_mass, state%contacts, alone, bounds)
-      factor(i) = fitting_scale(dt, limit, bounds(i))
+      factor(i) = fitting_scale(steps(1), steps(2), bounds(i))
+      if (model%contacts(i)%penalty_unit == penalty_factor) factor(i) = min(factor(i), 1.0_wp)
     end do
-    if (fits(model, state, dt, limit, factor)) return
+    if (fits(model, state, steps, share, factor)) return
     low = 0.0_wp
     high = 1.0_wp
     do i = 1, n_halving
-      if (fits(model, state, dt, limit, 0.5_wp*(low + high)*factor)) then
+      if (fits(model, state, steps, share, 0.5_wp*(low + high)*factor)) then
         low = 0.5_wp*(low + high)
       else
         high = 0.5_wp*(low + high)
       end if
     end do
-    where (model%contacts%penalty_unit == penalty_share) factor = low*factor
+    where (share > 0.0_wp) factor = low*factor
   end subroutine find_factors
 
   !> Bounds with the whole of these penalties (share 1) for automatic interfaces, others as given.
-  pure subroutine bound_whole(model, state, factor, bounds)
+  pure subroutine bound_whole(model, state, share, factor, bounds)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    real(wp), intent(in) :: factor(:)
+    real(wp), intent(in) :: share(:), factor(:)
     type(spring_bound_t), intent(out) :: bounds(:)
+    real(wp) :: scale(size(share))
 
-    call bound_springs(model%contacts, state%contact_mass, state%contacts, &
-      merge(factor/model%contacts%penalty, 1.0_wp, &
-      model%contacts%penalty_unit == penalty_share), bounds)
+    scale = 1.0_wp
+    where (share > 0.0_wp) scale = factor/share
+    call bound_springs(model%contacts, state%contact_mass, state%contacts, scale, bounds)
   end subroutine bound_whole
 
   !> Whether the step is stable for all automatic interfaces with the whole of these penalties
   !> (share 1), others as given.
-  pure function fits(model, state, dt, limit, factor)
+  pure function fits(model, state, steps, share, factor)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    real(wp), intent(in) :: dt, limit, factor(:)
+    real(wp), intent(in) :: steps(2), share(:), factor(:)
     logical :: fits
     type(spring_bound_t) :: bounds(size(factor))
 
-    call bound_whole(model, state, factor, bounds)
-    fits = all(stable_step(limit, bounds) >= dt*(1.0_wp - round_off) &
-      .or. model%contacts%penalty_unit /= penalty_share)
+    call bound_whole(model, state, share, factor, bounds)
+    fits = all(stable_step(steps(2), bounds) >= steps(1)*(1.0_wp - round_off) &
+      .or. .not. share > 0.0_wp)
   end function fits
 
 end module automatic_penalty_m

@@ -10,7 +10,7 @@ module start_m
   use contact_inertia_m, only : weigh_contacts
   use element_log_m, only : log_elements
   use element_state_m, only : start_elements, lump_mass
-  use contacts_m, only : is_tied, told_as
+  use contacts_m, only : is_tied, n_told, told_as
   use errors_m, only : error_t, raise, status_input
   use initial_values_m, only : start_motion
   use log_m, only : log_t, to_text
@@ -76,7 +76,7 @@ contains
     end do
     call start_rigids(model, log, state)
     call start_walls(model, state)
-    allocate (state%contacts(size(model%contacts)))
+    allocate (state%contacts(size(model%contacts)), state%estimates(n_told(model%contacts)))
     do i = 1, size(model%contacts)
       call start_contact(model%contacts(i), model, log, state%contacts(i))
       if (.not. is_tied(model%contacts(i)) .or. state%contacts(i)%points%n > 0) cycle

@@ -15,6 +15,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "contact_forces"), str(HERE.parents[2] / "tools")]
 
 from contact_types import TYPES  # noqa: E402
+from meshes import Deck, grid  # noqa: E402
 from reference import Chain, Rule, contact_forces  # noqa: E402
 from slideline_tools.scenes import block, block_grids  # noqa: E402
 from slideline_tools.study.stability_eigen import Model  # noqa: E402
@@ -158,6 +159,53 @@ def check_one(run, kind, meshes):
     run.check(f"{name}: the same, sharpness", true / slower.step, SHARP, 0.0, "max", OPENING)
 
 
+def rubber_and_steel(unit, form, with_itself, step_rule=0, soft="*MAT_BLATZ-KO_RUBBER"):
+    """A fine block of rubber (or of steel) and a coarse one of steel, parts of one surface, fall on a plate of steel."""
+    deck = Deck("rubber and steel in one surface")
+    deck.add("*CONTROL_TERMINATION", (1.0e-3, 0, 0.5)).add("*CONTROL_TIMESTEP", (0.0, 0.8))
+    deck.add("*CONTROL_CONTACT", (0.1,), (None,) * 6 + (step_rule,))
+    deck.add("*SECTION_SHELL", (1, form), (1.0,))
+    for part, material in ((1, 1), (2, 2), (3, 2)):
+        deck.add("*PART", f"part {part}", (part, 1, material))
+    if soft == "*MAT_ELASTIC":
+        deck.elastic(7850.0, 2.1e11, 0.3, material=1)
+    else:
+        deck.add(soft, (1, 1100.0, 1.0e6))
+    deck.elastic(7850.0, 2.1e11, 0.3, material=2)
+    bodies = [deck.mesh(*grid(*shape), part=part) for part, shape in (
+        (1, (24, 12, 0.04, 0.02, (0.02, 0.0005))), (2, (8, 4, 0.08, 0.04, (0.07, 0.0005))), (3, (16, 2, 0.16, 0.02, (0.0, -0.02))))]
+    deck.node_set(1, np.concatenate(bodies[:2]))
+    deck.add("*INITIAL_VELOCITY", (1,), (0.0, -5.0))
+    deck.fix(bodies[2][:17], x=1, y=1)
+    for number, parts in enumerate(((1, 2), (3, None), (1, 2, 3)), 1):
+        deck.add("*SET_PART_LIST", (number,), parts)
+    deck.add("*CONTACT_2D_SLIDELINE", (3, 0, 5, 2, 1.0) if with_itself else (2, 1, 5, 2, 1.0), (0.0, 1.0e20, unit))
+    return deck.output(glstat=5.0e-5)
+
+
+def check_mixed(run):
+    """The built-in penalty of a surface of soft and stiff materials is no more than the step bears; others stand."""
+    def go(name, *options, **more):
+        result = run.program(rubber_and_steel(*options, **more), name=name)
+        return result.table("glstat"), " ".join((result.folder / f"{result.job}.log").read_text().split())
+
+    lowered = "is of soft and stiff materials"
+    for place, form, with_itself in (("plane", 13, False), ("round", 15, False), ("plane, with itself", 13, True)):
+        stem = "mixed_" + place.replace(", ", "_").replace(" ", "_")
+        found, text = go(stem, 2, form, with_itself)
+        share, _ = go(stem + "_share", 3, form, with_itself)
+        name = f"rubber and steel in one surface, {place}"
+        run.true(f"{name}: the log tells of the lower penalty", lowered in text)
+        run.check(f"{name}: energy", found["energy_ratio"], 1.0, 2.0e-5)
+        run.true(f"{name}: no cycle is held back", "cycles with force" not in text)
+        run.check(f"{name}: kinetic energy as with PUNIT 3, PEN 1", found["kinetic"], share["kinetic"], 1.0e-6)
+    for name, options, more in (("ECDT 1", (2, 13, False), {"step_rule": 1}), ("ECDT 2", (2, 13, False), {"step_rule": 2}),
+                                ("steel alone", (2, 13, False), {"soft": "*MAT_ELASTIC"})):
+        _, text = go("mixed_" + name.replace(" ", "_"), *options, **more)
+        run.true(f"{name}: the penalty stands", lowered not in text and "1.000000E+00 times the built-in estimate" in text)
+
+
 def check(run):
+    check_mixed(run)
     for meshes, kind in run.cover(MESHES, TYPES, strength=1):
         check_one(run, kind, meshes)

@@ -153,14 +153,14 @@ def put_back(prefix, stamps: dict[str, os.stat_result]) -> None:
 
 def keeps_access_time(folder: pathlib.Path, table: str = "/proc/self/mountinfo") -> bool:
     """Whether reading a file in `folder` is known to leave a trace in its access time."""
-    folder, best, kept = str(folder.resolve()), "", False
+    place, best, kept = str(folder.resolve()), "", False
     for line in read_text(table).splitlines():
         words = line.split()
         if "-" not in words[6:] or len(words) < 10:
             continue
         mark = words.index("-", 6)
         point = words[4].replace("\\040", " ")
-        inside = folder == point or folder.startswith(point.rstrip("/") + "/")
+        inside = place == point or place.startswith(point.rstrip("/") + "/")
         if inside and len(point) >= len(best):
             best = point
             options = (words[5] + "," + words[mark + 3]).split(",")

@@ -203,13 +203,24 @@ def dear_type(run) -> list[Advice]:
         advice.append(Advice(
             "dear type", f"{interface.label} takes much of the run; {name} (type {number}) passes "
             "the patch test and usually costs less.",
-            f"contact takes {contact / run.total:.0%} of the run", f"CTYPE {number} on interface "
+            f"contact takes {contact / run.total:.0%} of the run{judged(run, interface.id)}", f"CTYPE {number} on interface "
             f"{interface.id} (command line: ctype.{interface.id}={number}), where the resultants "
             "matter more than a smooth pressure; compare both once",
             contact_seconds(run, interface) * saved,
             f"mean over the scenes of doc/studies/{page}.md, which differ"
             + (", and where the forces of ironing are rougher with it" if interface.friction else "")))
     return advice
+
+
+def judged(run, number: int) -> str:
+    """What an interface tells of its own answer, where sleout was written."""
+    if (table := run.tables.get("sleout")) is None or "estimate" not in table:
+        return ""
+    rows = table.where(interface=number)
+    if not len(rows) or not np.any(rows["estimate"]):
+        return ""
+    at = int(np.argmax(rows["stored"]))
+    return f"; pressure and the stress behind it differ by {rows['estimate'][at]:.1%} where its springs store most"
 
 
 CHECKS = (never_touched, touched_for_a_while, long_surface, long_flight, dear_type)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The command `slideline-tools completion`: a script for the shell, made from the parser."""
+"""The command `slideline-tools completion`: a script for the shell, made from the parser; and completion by argcomplete."""
 from __future__ import annotations
 
 import argparse
+import os
 
 SHELLS = ("bash", "zsh")
 HEAD = """# Completion of slideline-tools for {shell}; made by: slideline-tools completion {shell}
@@ -43,6 +44,18 @@ def run(options) -> int:
     from slideline_tools.cli import build_parser
     print(script(build_parser(), options.shell), end="")
     return 0
+
+
+def offer(parser: argparse.ArgumentParser) -> None:
+    """Answer argcomplete, where the shell asks by it and it is installed, and end; else nothing."""
+    if "_ARGCOMPLETE" not in os.environ:
+        return
+    import argcomplete
+    for _, one in walk(parser, ""):
+        for action in one._actions:
+            if action.option_strings and action.choices is None and (words := values(action)):
+                setattr(action, "completer", argcomplete.ChoicesCompleter(words))
+    argcomplete.autocomplete(parser)
 
 
 def script(parser: argparse.ArgumentParser, shell: str) -> str:

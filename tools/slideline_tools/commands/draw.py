@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import pathlib
 
 # The names of draw.picture.WHAT, here without its slow imports.
@@ -21,8 +20,8 @@ def add(commands) -> None:
                     "direction and outward normals, held nodes, motions, initial velocities, loads, "
                     "pressures, rigid bodies. The program reads the deck, so that the picture shows "
                     "what would run.", epilog=EPILOG)
-    parser.add_argument("deck", metavar="DECK", help="keyword deck; or a results folder or "
-                                                     "<job>.effective.k, which need no program")
+    parser.add_argument("deck", metavar="DECK", help="keyword deck; or a results folder, whose deck as run is "
+                                                     "drawn")
     parser.add_argument("overrides", nargs="*", metavar="OVERRIDE",
                         help="as for the program, for example p:ctype=5")
     parser.add_argument("--output", "-o", metavar="FILE",
@@ -50,14 +49,13 @@ def run(options) -> int:
     deck = pathlib.Path(options.deck)
     output = pathlib.Path(options.output or f"{stem(deck)}.png")
     output.parent.mkdir(parents=True, exist_ok=True)
-    program = options.program or os.environ.get("SLIDELINE") or default_program()
-    model = draw(deck, output, program, options.overrides, options.show, options.zoom)
+    model = draw(deck, output, options.program, options.overrides, options.show, options.zoom)
     print(f"wrote {output} ({len(model.points)} nodes, {len(model.cells)} elements, "
           f"{len(model.parts)} parts, {len(model.interfaces)} interfaces)")
     for words in model.warnings:
         print(f"warning: {words}")
-    if model.unread:
-        print("not drawn: " + ", ".join(f"*{name}" for name in model.unread))
+    if model.not_drawn:
+        print("not drawn: " + ", ".join(model.not_drawn))
     return 0
 
 
@@ -68,9 +66,3 @@ def stem(deck: pathlib.Path) -> str:
         if name.endswith(ending):
             return name.removesuffix(ending)
     return name
-
-
-def default_program() -> str:
-    """The program of the repository that holds these tools; else that of the path."""
-    built = pathlib.Path(__file__).resolve().parents[3] / "build" / "release" / "slideline"
-    return str(built) if built.exists() else "slideline"

@@ -6,19 +6,15 @@ symbols are thinned out to what can be told apart.
 """
 from __future__ import annotations
 
-import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
-from matplotlib.lines import Line2D  # noqa: E402
-from matplotlib.patches import Patch  # noqa: E402
-
-from slideline_tools.draw.chains import Surface, normals  # noqa: E402
-from slideline_tools.draw.model import Arrows, Model  # noqa: E402
-from slideline_tools.plots import STYLE, edge_width, save  # noqa: E402, F401
+from slideline_tools.draw.model import Arrows, Model
+from slideline_tools.draw.surface import Surface
+from slideline_tools.plots import STYLE, edge_width, save  # noqa: F401
 
 WHAT = ("mesh", "sets", "surfaces", "boundary", "motion", "velocity", "loads", "walls", "history")
 PART_COLOURS = ("#dbe7f3", "#f6e6cf", "#dff0dc", "#ecdff1", "#f7dcd8", "#d9eeee", "#eee9c9",
@@ -29,6 +25,7 @@ SLAVE, MASTER = "#d1301f", "#0b559f"
 ARROW_COLOURS = {"velocity": "#1b7f3b", "motion": "#e07b00", "load": "#8e24aa",
                  "pressure": "#8e24aa", "body": "#444444"}
 WIDTH, LONGEST_ARROW, NORMAL_LENGTH = 9.0, 0.42, 0.16   # inches
+WALL_FRICTION = {0.0: "", 1.0: ", nodes stick"}         # others: the coefficient
 LEFT, RIGHT = 0.09, 0.965                               # of the width, ends of the axes
 MOST_ARROWS, MOST_SYMBOLS, MOST_NORMALS, MOST_TIPS = 26, 60, 30, 8
 
@@ -133,7 +130,7 @@ def draw_mesh(canvas: Canvas, model: Model, edges: bool) -> None:
 
 def part_words(part) -> str:
     """A part for the legend: elements, law, and how a rigid body is held."""
-    words = f"{part.label}: {part.n_element} elements, *{part.law or 'no material'}"
+    words = f"{part.label}: {part.n_element} elements, {part.law}"
     if part.is_rigid:
         held = [name for name, is_held in (("x", part.held[0]), ("y", part.held[1]),
                                            ("turn", part.turn_held)) if is_held]
@@ -144,7 +141,7 @@ def part_words(part) -> str:
 def draw_sets(canvas: Canvas, model: Model) -> None:
     """Node sets as rings, each set a little larger than the one before."""
     for count, one in enumerate(model.node_sets.values()):
-        nodes = one.nodes[one.nodes >= 0]
+        nodes = one.nodes
         colour = SET_COLOURS[count % len(SET_COLOURS)]
         size = 3.0 + 1.3 * (count % 4)
         style = {"marker": "o", "markersize": size, "markerfacecolor": "none",
@@ -161,23 +158,25 @@ def draw_surfaces(canvas: Canvas, model: Model) -> None:
         for name, colour, surface in (("slave", SLAVE, interface.slave),
                                       ("master", MASTER, interface.master)):
             draw_surface(canvas, model, surface, colour)
-            note = f", {surface.how}" if surface.how else ""
-            where = surface.label.partition(' "')[0] if "sets" in canvas.show else surface.label
             canvas.add(Line2D([], [], color=colour, linewidth=1.8, marker=">", markersize=5,
-                              label=f"{interface.label}: {name}, {where}, "
-                                    f"{len(surface.segments)} segments{note}"))
+                              label=f"{interface.label}: {name}, {len(surface.segments)} segments"
+                                    + friction_words(interface.friction, interface.sliding_friction)))
+
+
+def friction_words(at_rest: float, sliding: float) -> str:
+    """The coefficients of friction of an interface for the legend; nothing without friction."""
+    if max(at_rest, sliding) <= 0.0:
+        return ""
+    return f", friction {at_rest:g}" + (f" to {sliding:g}" if sliding != at_rest else "")
 
 
 def draw_surface(canvas: Canvas, model: Model, surface: Surface, colour: str) -> None:
-    """One surface; a broken one is dashed."""
+    """One surface."""
     segments = surface.segments
     ends = model.points[segments]
     canvas.axes.add_collection(LineCollection(
-        ends, colors=colour, linewidths=1.8, zorder=4, capstyle="round",
-        linestyles="--" if surface.how == "broken" else "-"))
-    if surface.how == "broken" or not len(segments):
-        return
-    middles, outward = ends.mean(axis=1), normals(model.points, segments)
+        ends, colors=colour, linewidths=1.8, zorder=4, capstyle="round"))
+    middles, outward = ends.mean(axis=1), surface.normals(model.points)
     seen = np.flatnonzero(canvas.visible(middles))
     picked = seen[thinned(len(seen), MOST_NORMALS)]
     tips = middles[picked] + NORMAL_LENGTH * canvas.inch * outward[picked]
@@ -213,15 +212,16 @@ def draw_boundary(canvas: Canvas, model: Model) -> None:
 def draw_walls(canvas: Canvas, model: Model) -> None:
     """Rigid walls as long lines with their normal."""
     length = 2.0 * float(np.linalg.norm(canvas.high - canvas.low))
-    for point, normal in model.walls:
+    for wall in model.walls:
+        point, normal = wall.point, wall.normal
         along = np.array([normal[1], -normal[0]]) * length
         canvas.axes.plot(*np.stack([point - along, point + along]).T, color="#333333", linewidth=2.5,
                          zorder=4)
         canvas.axes.annotate("", xy=point + LONGEST_ARROW * canvas.inch * normal, xytext=point,
                              arrowprops={"arrowstyle": "->", "color": "#333333"})
         canvas.add(Line2D([], [], color="#333333", linewidth=2.5,
-                          label=f"rigid wall at ({point[0]:g}, {point[1]:g}), bodies on the side of "
-                                "its arrow"))
+                          label=f"rigid wall {wall.id} at ({point[0]:g}, {point[1]:g}), bodies on the side of "
+                                f"its arrow{WALL_FRICTION.get(wall.friction, f', friction {wall.friction:g}')}"))
 
 
 def draw_history(canvas: Canvas, model: Model) -> None:

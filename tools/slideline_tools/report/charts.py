@@ -7,7 +7,7 @@ import numpy as np
 
 from slideline_tools import plots
 from slideline_tools import zones as zone_pictures
-from slideline_tools.fields import ScalarField
+from slideline_tools.fields import ScalarField, largest, without_round_off
 from slideline_tools.histories import History
 from slideline_tools.results import Results
 
@@ -20,11 +20,12 @@ ENERGIES = ("kinetic", "internal", "hourglass", "viscous", "damping", "contact",
 
 def lines(series: list[tuple[str, np.ndarray, np.ndarray]], ylabel: str, xlabel: str = "time",
           marker: str = ""):
-    """A figure with one line per (label, x, y)."""
+    """A figure with one line per (label, x, y); what is round-off beside the largest y is zero."""
+    scale = max((largest(y) for _, _, y in series), default=0.0)
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(figsize=SIZE, layout="constrained")
         for count, (label, x, y) in enumerate(series):
-            axes.plot(x, y, label=label, marker=marker, markersize=2.5,
+            axes.plot(x, without_round_off(y, scale), label=label, marker=marker, markersize=2.5,
                       color=plots.COLOURS[count % len(plots.COLOURS)],
                       linestyle=plots.LINES[count // len(plots.COLOURS) % len(plots.LINES)])
         axes.set_xlabel(xlabel)
@@ -85,6 +86,19 @@ def pressures(contact: History, times: list[float]):
     return figure
 
 
+def estimates(sleout: History):
+    """How far pressure and the stress behind it differ, and springs over the elements beside them, of one interface."""
+    loaded = sleout["row_energy"] > 0.0
+    ratio = np.divide(sleout["stored"], sleout["row_energy"], out=np.zeros(len(loaded)), where=loaded)
+    return lines([("pressure against stress", sleout["time"], sleout["estimate"]),
+                  ("energy of springs over elements", sleout["time"], ratio)], "estimate")
+
+
+def made(sleout: History):
+    """What the springs of one interface have lost (above 0) or made (below 0) so far."""
+    return lines([("", sleout["time"], sleout["energy"] - sleout["stored"])], "energy lost by contact")
+
+
 def zones(contact: History):
     """Stick and slip along the slave surface over time, of one interface."""
     chains = zone_pictures.chains_of(contact)
@@ -94,6 +108,17 @@ def zones(contact: History):
         for axes, chain in zip(panels[:, 0], chains):
             zone_pictures.draw_zones(axes, chain)
         zone_pictures.add_legend(figure, contact)
+        return figure
+
+
+def tractions(results: Results, contact: History, number: int, states: list[int]):
+    """|traction| along each chain of one interface at some states, and what friction allows."""
+    chains = zone_pictures.chains_of(contact)
+    with plt.rc_context(STYLE):
+        figure, panels = plt.subplots(len(chains), 1, squeeze=False, layout="constrained",
+                                      figsize=(SIZE[0], SIZE[1] * min(3, len(chains))))
+        for axes, chain in zip(panels[:, 0], chains):
+            zone_pictures.draw_tractions(axes, results, chain, number, states)
         return figure
 
 
@@ -120,10 +145,7 @@ def field(results: Results, shown: ScalarField, state: int, states: list[int], s
         figure, axes = plt.subplots(figsize=(SIZE[0], height + 0.8), layout="constrained")
         artist = plots.field_panel(axes, results, shown, state, scale, shown.limits(states), zoom)
         axes.locator_params(axis="x", nbins=6)
-        bar = figure.colorbar(artist, ax=axes, aspect=14, pad=0.02)
-        bar.outline.set_linewidth(0.4)
-        ticks = np.linspace(*artist.get_clim(), 5)
-        bar.set_ticks(ticks, labels=[f"{tick:.3g}" for tick in ticks])
+        plots.colour_bar(artist, [axes], "").ax.yaxis.get_offset_text().set_fontsize(7)
         return figure
 
 

@@ -6,14 +6,16 @@ import dataclasses
 import os
 import pathlib
 import re
+import tempfile
 
 import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.advise.finished import endings, find_job, put_back, read_text
 from slideline_tools.advise.run_log import RunLog, read_log
-from slideline_tools.draw.model import Model, read_model
+from slideline_tools.draw.model import Model, check_deck
 from slideline_tools.histories import TABLES, History, read_csv
+from slideline_tools.program import find_program
 from slideline_tools.results import Results, ResultsError, read
 
 GOES_ON = "goes on from the restart file"
@@ -163,14 +165,20 @@ def read_table(prefix, name: str, results: Results | None, notes: list[str]) -> 
 
 
 def read_deck(prefix, results: Results | None, notes: list[str]) -> Model | None:
-    """The model of the effective deck, from its file or from the results file."""
+    """The model of the effective deck, of its file or of the text in the results file, as the program understands it."""
     text = read_text(f"{prefix}.effective.k") or (results.run.get("effective_deck", "")
                                                    if results else "")
-    try:
-        return read_model(text) if text else None
-    except (UserError, ValueError, IndexError) as problem:
-        notes.append(f"The deck as run could not be read: {problem}.")
+    if not text:
         return None
+    with tempfile.TemporaryDirectory() as folder:
+        deck = pathlib.Path(folder) / "model.k"
+        deck.write_text(text, encoding="utf-8")
+        try:
+            return check_deck(deck, find_program())
+        except UserError as problem:
+            words = str(problem).replace(str(deck), f"{prefix}.effective.k")
+            notes.append(f"The deck as run could not be read: {words}.")
+            return None
 
 
 def read_ending(log_text: str, tables: dict[str, History], results: Results | None,

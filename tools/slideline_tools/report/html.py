@@ -60,6 +60,9 @@ footer { margin-top: 2.5rem; border-top: 1px solid #d5dce5; padding-top: .5rem; 
 """
 
 
+MOST_COLUMNS = 9   # of a table, on a page
+
+
 @dataclasses.dataclass
 class Section:
     """A section with the name that links lead to; `body` is HTML."""
@@ -87,7 +90,18 @@ def paragraph(words: str, kind: str = "") -> str:
 
 
 def table(head: list[str], rows: list[list], numeric: set[int] = frozenset()) -> str:
-    """A table; columns in `numeric` are set to the right. Cells are plain text."""
+    """A table; columns in `numeric` are set to the right. Cells are plain text.
+
+    One with more columns than fit a page is cut into several below each other, each with the first column.
+    """
+    if len(head) > MOST_COLUMNS:
+        parts = -(-(len(head) - 1) // (MOST_COLUMNS - 1))
+        size = -(-(len(head) - 1) // parts)
+        return "".join(
+            table([head[0], *head[start:start + size]], [[row[0], *row[start:start + size]] for row in rows],
+                  {0} & numeric | {1 + column - start for column in numeric if start <= column < start + size})
+            for start in range(1, len(head), size))
+
     def cell(tag: str, column: int, value) -> str:
         kind = ' class="n"' if column in numeric else ""
         return f"<{tag}{kind}>{text(value)}</{tag}>"

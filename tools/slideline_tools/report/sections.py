@@ -11,7 +11,7 @@ import numpy as np
 
 from slideline_tools import UserError, advise
 from slideline_tools.advise import report as advice_report
-from slideline_tools.fields import default_field, scalar_field
+from slideline_tools.fields import ROUND_OFF, default_field, scalar_field
 from slideline_tools.report import charts
 from slideline_tools.report.gather import Gathered
 from slideline_tools.report.html import (Section, figures, folded, paragraph, picture, table,
@@ -123,7 +123,11 @@ def energies(run: Gathered) -> Section | None:
     if len(glstat) > 1 and np.any(np.isfinite(glstat["energy_ratio"])):
         body += picture(charts.balance(glstat),
                         "Balance: total energy over initial total and external work, minus one")
-    body += picture(charts.step(glstat), "Time step over time") + "</div>\n"
+    steps = glstat["dt"]
+    constant = np.ptp(steps) <= ROUND_OFF * np.max(np.abs(steps))
+    body += ("" if constant else picture(charts.step(glstat), "Time step over time")) + "</div>\n"
+    if constant:
+        body += paragraph(f"The time step is {figures(float(steps[0]), 7)} throughout.")
     body += table(["energy", "at the start", "at the end", "lowest", "at time", "highest", "at time"],
                   rows, set(range(1, 7)))
     return Section("energies", "Energies", body)
@@ -173,6 +177,14 @@ def one_interface(run: Gathered, number: int, states: list[int]) -> str:
         rows += pressure_rows(chain)
         if "state" in chain and np.any(chain["state"]):
             pictures += picture(charts.zones(chain), f"Where interface {number} sticks and slips, over time")
+            if run.results is not None and states:
+                pictures += picture(charts.tractions(run.results, chain, number, states),
+                                    f"Friction traction along the slave surface of interface {number}; broken: what friction allows")
+    if (sleout := run.rows("sleout")) is not None and "estimate" in sleout \
+            and np.any((judged := sleout.where(interface=number))["estimate"]):
+        pictures += picture(charts.estimates(judged), f"How good the answer of interface {number} is")
+        pictures += picture(charts.made(judged), f"Energy that contact of interface {number} has lost")
+        rows += estimate_rows(judged)
     rows += friction_rows(run, number)
     if not rows:
         return paragraph("Neither forces (*DATABASE_RCFORC) nor pressures (plot states) were written.")
@@ -212,6 +224,16 @@ def friction_rows(run: Gathered, number: int) -> list[list[str]]:
     if not len(rows) or (one is None and not np.any(rows["friction"])):
         return []
     return [["frictional work", figures(float(rows["friction"][-1]), 6), figures(float(rows["time"][-1]), 4), ""]]
+
+
+def estimate_rows(judged) -> list[list[str]]:
+    """The estimate where springs hold the most energy, and the largest."""
+    rows = []
+    for name, at in (("estimate at the largest energy of the springs", int(np.argmax(judged["stored"]))),
+                     ("largest estimate", int(np.argmax(judged["estimate"])))):
+        rows.append([name, figures(float(judged["estimate"][at]), 4), figures(float(judged["time"][at]), 4),
+                     "pressure against the stress behind it"])
+    return rows
 
 
 def pressure_rows(chain) -> list[list[str]]:
@@ -298,9 +320,6 @@ def nodes(run: Gathered) -> Section | None:
 def understood(run: Gathered) -> Section | None:
     """Parts, materials and interfaces as the program understood them."""
     body = part_table(run) + material_table(run) + interface_table(run)
-    if run.model and run.model.unread:
-        body += paragraph("Keywords that this report does not read: "
-                          + ", ".join(f"*{name}" for name in run.model.unread), "note")
     return Section("model", "Parts, materials, interfaces", body) if body else None
 
 
@@ -325,9 +344,9 @@ def part_table(run: Gathered) -> str:
 
 
 def law_of(run: Gathered, number: int) -> str:
-    """Keyword of the material of a part."""
+    """Name of the law of a part."""
     part = run.model.parts.get(number) if run.model else None
-    return f"*{part.law}" if part and part.law else ""
+    return part.law if part else ""
 
 
 def material_table(run: Gathered) -> str:
@@ -352,10 +371,8 @@ def interface_table(run: Gathered) -> str:
                 "mean length", "penalty per length", "of the master pass"]
         return "<h3>Interfaces</h3>\n" + table(head, rows, {3, 4, 5, 6, 7, 8})
     if run.model and run.model.interfaces:
-        rows = [[one.id, f"*{one.keyword}", one.ctype or "", one.slave.label, len(one.slave.nodes),
-                 one.master.label, len(one.master.nodes)] for one in run.model.interfaces]
-        return "<h3>Interfaces</h3>\n" + table(
-            ["interface", "keyword", "type", "slave", "nodes", "master", "nodes"], rows, {4, 6})
+        rows = [[one.id, one.formulation, len(one.slave.nodes), len(one.master.nodes)] for one in run.model.interfaces]
+        return "<h3>Interfaces</h3>\n" + table(["interface", "formulation", "slave nodes", "master nodes"], rows, {2, 3})
     return ""
 
 

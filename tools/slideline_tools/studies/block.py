@@ -14,7 +14,7 @@ import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.histories import read_csv
-from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
+from slideline_tools.plots import PAGE_WIDTH, STYLE, mark_cut, plt
 from slideline_tools.results import read
 from slideline_tools.scenes import block_grids
 from slideline_tools.studies.common import (colour, label, markdown_table, save_small,
@@ -147,16 +147,21 @@ def pressure_figure(runs, exact):
         for row, (reach, percent) in enumerate(((3.0, 1.5), (10.0, 0.2)), start=1):
             for column, side in enumerate(("slave", "master")):
                 axes = figure.add_subplot(grid[row, column])
-                draw_deviation(axes, runs, exact, side)
-                axes.set(xlim=(-0.02 * reach, 1.02 * reach), ylim=(-percent, percent))
+                draw_deviation(axes, runs, exact, side, (-0.02 * reach, 1.02 * reach, -percent, percent))
     return figure
 
 
-def draw_deviation(axes, runs, exact, side):
-    """Deviation from the chain along one surface, in per cent."""
+def draw_deviation(axes, runs, exact, side, window):
+    """Deviation from the chain along one surface, in per cent, in a window; arrow heads where it goes beyond."""
+    lines = {}
     for ctype, run in runs.items():
         x, p = ((run.slave_x, run.slave) if side == "slave" else (run.master_x, run.master))
-        axes.plot(x, 100.0 * (p / exact[ctype] - 1.0), **line_style(ctype))
+        lines[ctype] = x, 100.0 * (p / exact[ctype] - 1.0)
+        axes.plot(*lines[ctype], **line_style(ctype))
+    axes.set_xlim(*window[:2])
+    axes.set_ylim(*window[2:])
+    for ctype, (x, y) in lines.items():
+        mark_cut(axes, x, y, colour(ctype))
     axes.set(xlabel="x (m)", ylabel="$p/p_{1D} - 1$ (%)", title=f"enlarged, {side} side")
     axes.grid(True, linewidth=0.3, color="#bbbbbb")
 

@@ -13,11 +13,11 @@ import sys
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
+from slideline_tools.plots import PAGE_WIDTH, STYLE, mark_cut, plt
 from slideline_tools.scenes import block_grids
 from slideline_tools.studies.block import (N_MASTER, N_SLAVE, UNIFORM, half_segments, line_style,
                                            read_pressures)
-from slideline_tools.studies.common import (label, markdown_table, save_small, study_main,
+from slideline_tools.studies.common import (colour, label, markdown_table, save_small, study_main,
                                             write_page)
 from slideline_tools.study.counted import counted_row, instruction_section
 
@@ -168,6 +168,8 @@ def pressure_figure(runs):
         for method, axes in panels.items():
             axes.set(xlim=(-0.06, 3.06), ylim=(-2.0, 2.0), title=f"enlarged, {method}",
                      xlabel="x (m)", ylabel=r"$p/p_\mathrm{mean} - 1$ (%)")
+        for (method, ctype), run in runs.items():
+            mark_cut(panels[method], run.slave_x, 100.0 * deviation(run.slave_x, run.slave), colour(ctype))
         for axes in (whole, *panels.values()):
             axes.grid(True, linewidth=0.3, color="#bbbbbb")
         return figure

@@ -12,6 +12,7 @@ from slideline_tools.contact_types import TYPES
 from slideline_tools.fields import scalar_field
 from slideline_tools.plots import (COLOURS, MARKERS, PAGE_WIDTH, STYLE, colour_bar, draw_field,
                                    panel_height, plt)
+from slideline_tools.prose import wrapped
 from slideline_tools.study.pages import with_origin
 
 LARGEST_PICTURE = 100_000
@@ -152,7 +153,7 @@ def write_page(doc, name, text):
     """Write DOC/studies/NAME.md, with the source and the processor it was made from below its title."""
     path = doc / "studies" / f"{name}.md"
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(with_origin(name, text), encoding="utf-8")
+    path.write_text(wrapped(with_origin(name, text)), encoding="utf-8")
     print(f"wrote {path}")
 
 

@@ -16,7 +16,7 @@ from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.studies.common import (TYPES, colour, label, markdown_table, page_main, save_small,
                                             write_page)
 
-BYTES = 320.0  # moved per element and step, as in tests/bench/measuring.py
+BYTES = 216.0  # moved per element and step, as in tests/bench/measuring.py
 IN_MEMORY = 20000  # elements: from there on a model is larger than the caches of a core
 AT_ONCE = ", 2 runs at once"
 ROUTINE_GOAL, SMALL_GOAL = 2.0, 4.5  # element routine, step of 300 elements over K
@@ -346,8 +346,8 @@ def draw_steps(axes, bench):
         yardstick = [row["yardstick_ns"] for row in rows]
         memory = [BYTES / row["bandwidth_gb_s"] if row["size"] >= IN_MEMORY else 0.0 for row in rows]
         axes.plot(sizes, [max(pair) for pair in zip(yardstick, memory)], color="black", lw=1.6,
-                  label="roofline: larger of K and R")
-        axes.plot(sizes, yardstick, color="black", lw=0.8, ls=":", label="K, the yardstick")
+                  label="roofline of 1 thread: larger of K and R")
+        axes.plot(sizes, yardstick, color="black", lw=0.8, ls=":", label="K, the yardstick, 1 thread")
         axes.plot(sizes, [GOAL_YARDSTICKS * k + r * GOAL_BYTES / BYTES for k, r in zip(yardstick, memory)], color="grey", lw=0.8,
                   ls="--", label=f"{GOAL_YARDSTICKS:g} K + R of {GOAL_BYTES:.0f} bytes")
     axes.set_xlabel("elements")

@@ -20,7 +20,7 @@ from slideline_tools.study.job import Job, Study
 from slideline_tools.study.stability_failing import keep_failing
 from slideline_tools.study.stability_measures import measure_run
 from slideline_tools.study.stability_scenes import SAMPLES, SOFT
-from slideline_tools.study.stability_shapes_page import draw_strips, write_shapes_page
+from slideline_tools.study.stability_shapes_page import draw_shapes, write_shapes_page
 from slideline_tools.study.charts import save, styled
 
 WAVE = np.sqrt(SOFT["young"] / SOFT["rho"])   # m/s
@@ -223,7 +223,7 @@ def chart(rows, folder):
     """Strips of verdicts; decks of failing cells."""
     keep_failing(rows, folder)
     with styled():
-        save(draw_strips(rows, SWEEPS), folder, "shapes")
+        save(draw_shapes(rows, SWEEPS), folder, "shapes")
 
 
 def page(rows, doc):

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Picture and page of the study of shapes."""
+import itertools
+import textwrap
+
 from slideline_tools.plots import PAGE_WIDTH, plt
 from slideline_tools.studies.common import label, markdown_table, save_small, write_page
 from slideline_tools.study.charts import styled
@@ -9,29 +12,38 @@ from slideline_tools.study.stability_page import FILLS
 TWO_PASS = 3
 
 
-def draw_strips(rows, sweeps):
-    """Verdicts by type (lines) and value (columns), one panel a sweep."""
+def draw_shapes(rows, sweeps):
+    """One panel: a line for each sweep, a column for each type; the worst verdict, and the values that are not stable."""
+    rows = [row for row in rows if "verdict" in row]
     names = [name for name in sweeps if any(row["sweep"] == name for row in rows)]
-    figure, panels = plt.subplots((len(names) + 1) // 2, 2, squeeze=False, layout="constrained",
-                                  figsize=(PAGE_WIDTH + 1.0, 1.6 * ((len(names) + 1) // 2) + 0.4))
-    for axes in panels.flat[len(names):]:
-        axes.set_axis_off()
-    for axes, name in zip(panels.flat, names):
-        chosen = [row for row in rows if row["sweep"] == name and "verdict" in row]
-        values, types = (sorted({row[key] for row in chosen}) for key in ("value", "type"))
-        for row in chosen:
-            axes.add_patch(plt.Rectangle(
-                (values.index(row["value"]) - 0.5, types.index(row["type"]) - 0.5), 1.0, 1.0,
-                facecolor=FILLS[VERDICTS.index(row["verdict"])], edgecolor="white"))
-        axes.set(xlim=(-0.5, len(values) - 0.5), ylim=(len(types) - 0.5, -0.5))
-        axes.set_xticks(range(len(values)), [f"{value:g}" for value in values], fontsize=7)
-        axes.set_yticks(range(len(types)), [str(ctype) for ctype in types], fontsize=7)
-        axes.set_title(sweeps[name][0], fontsize=8)
-        axes.grid(False)
-    handles = [plt.Rectangle((0, 0), 1, 1, color=fill, label=name)
-               for fill, name in zip(FILLS, VERDICTS)]
-    figure.legend(handles=handles, loc="outside upper center", ncols=5, fontsize=7)
+    types = sorted({row["type"] for row in rows})
+    figure, axes = plt.subplots(layout="constrained", figsize=(PAGE_WIDTH + 1.0, 0.34 * len(names) + 0.9))
+    for (i, name), (k, ctype) in itertools.product(enumerate(names), enumerate(types)):
+        cells = [row for row in rows if row["sweep"] == name and row["type"] == ctype]
+        if not cells:
+            continue
+        worst = max(VERDICTS.index(row["verdict"]) for row in cells)
+        axes.add_patch(plt.Rectangle((k - 0.5, i - 0.5), 1.0, 1.0, facecolor=FILLS[worst], edgecolor="white"))
+        failed = sorted(row["value"] for row in cells if row["verdict"] != VERDICTS[0])
+        axes.text(k, i, "\n".join(textwrap.wrap(", ".join(f"{value:g}" for value in failed), 14)), fontsize=6,
+                  ha="center", va="center", color="white" if worst == len(VERDICTS) - 1 else "black")
+    axes.set(xlim=(-0.5, len(types) - 0.5), ylim=(len(names) - 0.5, -0.5))
+    axes.set_xticks(range(len(types)), [label(ctype).replace(" ", "\n", 1) for ctype in types], fontsize=7)
+    axes.set_yticks(range(len(names)), [f"{sweeps[name][0]}\n{values_text(rows, name)}" for name in names], fontsize=7)
+    axes.xaxis.tick_top()
+    axes.tick_params(length=0)
+    axes.grid(False)
+    there = {row["verdict"] for row in rows}
+    figure.legend(handles=[plt.Rectangle((0, 0), 1, 1, color=fill, label=name) for fill, name in zip(FILLS, VERDICTS)
+                           if name in there], loc="outside lower center", ncols=5, fontsize=7,
+                  title="worst of all values; those that are not stable are written in the cell", title_fontsize=7)
     return figure
+
+
+def values_text(rows, name):
+    """How many values a sweep has, and from where to where."""
+    values = sorted({row["value"] for row in rows if row["sweep"] == name})
+    return f"{len(values)} values from {values[0]:g} to {values[-1]:g}"
 
 
 def value_table(rows, name, column, scale=1.0):
@@ -64,7 +76,7 @@ This page and its picture are written by `tools/study.sh stability-shapes --publ
 A block of 1 m x 0.5 m flies at 3 % of the wave speed onto a larger one that is fixed below. Penalty and step lie inside the stable region by the program's own means: `PUNIT 3` with half of the
 largest stable penalty, `TSSFAC` 0.8 (but for the mesh ratio, below). One thing is varied at a time, for every type. Verdicts as in [stability](stability.md); what fails here, fails for its shape.
 
-![Verdicts by type and value](../pictures/stability_shapes.png)
+![Worst verdict by sweep and type, and the values that are not stable](../pictures/stability_shapes.png)
 
 ## Read in words
 
@@ -154,7 +166,7 @@ def mesh_text(rows):
 def write_shapes_page(rows, sweeps, doc):
     """doc/studies/stability_shapes.md and its picture."""
     with styled():
-        save_small(draw_strips(rows, sweeps), doc / "pictures" / "stability_shapes.png", lines=True)
+        save_small(draw_shapes(rows, sweeps), doc / "pictures" / "stability_shapes.png", lines=True)
     tables = {"ratio": "impulse", "ratio_punit3": "impulse", "turn": "impulse", "speed": "roughness", "tilt": "roughness",
               "overhang": "created"}
     texts = {name: value_table(rows, name, column, 100.0 if column == "created" else 1.0)

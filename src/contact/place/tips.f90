@@ -1,0 +1,171 @@
+! SPDX-License-Identifier: MIT
+!> Averages over a slave segment at the tip of a fold (types 6 and 7 of a surface with itself): the
+!> tip comes first, and its flanks, which are still open, would hold it off the sum. There the
+!> points of the segment give way to its two nodes (doc/theory/contact.md, section 5.7).
+module tips_m
+  use contact_state_m, only : contact_state_t, make_room, is_touching, is_behind
+  use contacts_m, only : contact_t
+  use foot_m, only : foot_t, near_foot
+  use kinds_m, only : wp
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: find_tips, sharpen_tips, belongs_to
+
+  !> Cosines of the turn at a node up to which nothing changes, and from which on all gives way.
+  real(wp), parameter :: gentle = 0.99026806874157036_wp, sharp = 0.95105651629515353_wp
+
+contains
+
+  !> Let the points of segments at tips of folds give way to their nodes.
+  pure subroutine sharpen_tips(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: part(2)
+    integer :: first, last, n
+
+    n = memory%points%n
+    last = 0
+    do while (last < n)
+      first = last + 1
+      last = first
+      associate (ends => memory%points%slave_nodes)
+        do while (last < n)
+          if (ends(1, last + 1) /= ends(1, first) .or. ends(2, last + 1) /= ends(2, first)) exit
+          last = last + 1
+        end do
+        part = maxval(memory%scratch%nodal(1, ends(:, first)))
+      end associate
+      if (part(1) > 0.0_wp) call give_way(contact, first, last, part, memory)
+    end do
+  end subroutine sharpen_tips
+
+  !> Whether a node is an end of the segment that it stands upon, where a surface folds.
+  pure function belongs_to(nodes, node, master_nodes) result(belongs)
+    integer, intent(in), contiguous :: nodes(:) !! of the mesh, by local number
+    integer, intent(in) :: node, master_nodes(2) !! local numbers
+    logical :: belongs
+
+    belongs = any(nodes(master_nodes) == nodes(node))
+  end function belongs_to
+
+  !> How much gives way at each slave node, 0 to 1: kept where averages come later. In a trial of an
+  !> implicit step that of the start of the step, so that it is no part of the tangent.
+  pure subroutine find_tips(slave, memory, motion)
+    type(surface_t), intent(in) :: slave
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(in), contiguous, optional :: motion(:, :) !! rows 3, 4: u of the step
+    real(wp) :: ways(4, 2)
+    integer :: node, ends(3), k
+
+    memory%scratch%nodal(1, :memory%n_slave) = 0.0_wp
+    do node = 1, memory%n_slave
+      if (slave%incoming(node) == 0 .or. slave%outgoing(node) == 0) cycle
+      ends = [slave%segments(1, slave%incoming(node)), node, &
+        slave%segments(2, slave%outgoing(node))]
+      do k = 1, 2
+        ways(:, k) = memory%places(:, ends(k + 1)) - memory%places(:, ends(k))
+        if (present(motion)) ways(3:4, k) = ways(3:4, k) &
+          - (motion(3:4, memory%nodes(ends(k + 1))) - motion(3:4, memory%nodes(ends(k))))
+      end do
+      memory%scratch%nodal(1, node) = sharpness(ways(1:2, :), ways(1:2, :) + ways(3:4, :))
+    end do
+  end subroutine find_tips
+
+  !> The same for the ways along the surface to a node and from it on, at the start and now: the
+  !> turn outwards, as far as it has come since the start.
+  pure function sharpness(former, ways) result(part)
+    real(wp), intent(in), dimension(2, 2) :: former, ways !! (x and y, to and from the node) m
+    real(wp) :: part
+    real(wp) :: turn(2), turn_before(2), cosine ! cosine and sine, times lengths
+
+    part = 0.0_wp
+    turn = turn_of(ways)
+    if (.not. turn(2) > 0.0_wp) return
+    turn_before = turn_of(former)
+    if (turn_before(2) > 0.0_wp) turn = turn_of(reshape([turn_before, turn], [2, 2]))
+    if (.not. turn(2) > 0.0_wp) return
+    cosine = turn(1)/norm2(turn)
+    part = min(1.0_wp, max(0.0_wp, (gentle - cosine)/(gentle - sharp)))
+    part = part**2*(3.0_wp - 2.0_wp*part)
+  end function sharpness
+
+  !> Cosine and sine of the turn from one vector to another, times their lengths.
+  pure function turn_of(vectors) result(turn)
+    real(wp), intent(in) :: vectors(2, 2)
+    real(wp) :: turn(2)
+
+    turn = [dot_product(vectors(:, 1), vectors(:, 2)), &
+      vectors(1, 1)*vectors(2, 2) - vectors(2, 1)*vectors(1, 2)]
+  end function turn_of
+
+  !> Points at the nodes of a segment take a part of the areas of its points, as these weigh there,
+  !> as far as the nodes have a foot.
+  pure subroutine give_way(contact, first, last, part, memory)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: first, last !! points of the segment
+    real(wp), intent(inout) :: part(2) !! at either end
+    type(contact_state_t), intent(inout) :: memory
+    type(foot_t) :: feet(2)
+    real(wp) :: content(2)
+    integer :: k, p
+
+    do k = 1, 2
+      call find_foot(contact, memory, first, last, k, feet(k))
+      if (feet(k)%is_on) feet(k)%is_on = .not. belongs_to(memory%nodes, &
+        memory%points%slave_nodes(k, first), memory%n_slave &
+        + contact%master%segments(:, feet(k)%segment))
+      if (.not. feet(k)%is_on) part(k) = 0.0_wp
+      content(k) = sum(memory%points%slave_weights(k, first:last)*memory%points%area(first:last))
+    end do
+    call make_room(memory%points, 2)
+    associate (points => memory%points)
+      do p = first, last
+        points%area(p) = points%area(p)*(1.0_wp - dot_product(part, points%slave_weights(:, p)))
+      end do
+      do k = 1, 2
+        if (.not. part(k) > 0.0_wp) cycle
+        p = points%n + 1
+        points%n = p
+        points%slave_nodes(:, p) = points%slave_nodes(:, first)
+        points%slave_weights(:, p) = 0.0_wp
+        points%slave_weights(k, p) = 1.0_wp
+        points%master_nodes(:, p) = memory%n_slave + contact%master%segments(:, feet(k)%segment)
+        points%master_weights(:, p) = [1.0_wp - feet(k)%xi, feet(k)%xi]
+        points%normal(:, p) = feet(k)%normal
+        points%gap(p) = feet(k)%gap
+        points%area(p) = part(k)*content(k)
+        points%stiffness(p) = points%stiffness(first)
+      end do
+    end associate
+  end subroutine give_way
+
+  !> Foot of an end of a segment: that which is followed, or from the nearest of its points on.
+  pure subroutine find_foot(contact, memory, first, last, k, foot)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: first, last, k
+    type(foot_t), intent(out) :: foot
+    integer :: node, nearest
+
+    node = memory%points%slave_nodes(k, first)
+    if (.not. allocated(memory%spots)) then
+      associate (tracking => memory%slave_tracking)
+        if (tracking%status(node) == is_behind) return
+        if (tracking%status(node) == is_touching) then
+          foot%segment = tracking%segment(node)
+          foot%is_on = .true.
+          foot%xi = tracking%xi(node)
+          foot%gap = tracking%gap(node)
+          foot%normal = tracking%normal(:, node)
+          return
+        end if
+      end associate
+    end if
+    nearest = first - 1 + maxloc(memory%points%slave_weights(k, first:last), 1)
+    foot = near_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
+      memory%places(:, node), contact%master%outgoing(memory%points%master_nodes(1, nearest) &
+      - memory%n_slave))
+  end subroutine find_foot
+
+end module tips_m

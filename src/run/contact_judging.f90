@@ -1,0 +1,233 @@
+! SPDX-License-Identifier: MIT
+!> How good the answer of each interface is, from what both sides know: the pressure that contact
+!> puts on a face, and the stress of the elements behind it (doc/theory/contact.md, section 8.1).
+!> At instants that are written, and in words at the end.
+module contact_judging_m
+  use contact_estimate_m, only : contact_estimate_t
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
+  use contacts_m, only : contact_t, n_told, penalty_implicit
+  use controls_m, only : is_asked
+  use history_tables_m, only : table_sleout
+  use kinds_m, only : wp
+  use log_m, only : log_t, write_log, to_text
+  use model_m, only : model_t
+  use rows_behind_m, only : rows_t, find_rows, face_pressure, elastic_energy, has_stress
+  use share_text_m, only : percent
+  use snapshot_filling_m, only : fill_slaves, join_slaves
+  use snapshot_m, only : snapshot_t, interface_result_t
+  use state_m, only : state_t
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: judge_contacts, report_estimates
+
+  !> Springs that store more than this many times what the elements beside them do are soft.
+  real(wp), parameter :: soft = 2.0_wp
+
+  !> What one side of an interface adds.
+  type :: side_t
+    real(wp) :: misfit = 0.0_wp     !! sum of (p - row stress)^2 a
+    real(wp) :: load = 0.0_wp       !! sum of p^2 a
+    real(wp) :: row_energy = 0.0_wp !! of the elements behind what is pressed, J/m
+  end type side_t
+
+contains
+
+  !> Judge all interfaces of the deck, whose results are in the snapshot.
+  subroutine judge_contacts(model, state, plots, rows, snapshot)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    logical, intent(in) :: plots !! rows of slave nodes are in the snapshot already
+    type(rows_t), intent(inout) :: rows
+    type(snapshot_t), intent(inout) :: snapshot
+    integer :: i
+
+    if (size(model%contacts) == 0) return
+    ! The first and the last state have everything, whether a file receives it or not.
+    if (state%cycle == 0 .and. .not. (plots &
+      .or. is_asked(model%controls%output%histories(table_sleout)))) return
+    call find_rows(model, rows)
+    if (.not. plots) then
+      call fill_slaves(model, state, snapshot)
+      call join_slaves(model, snapshot)
+    end if
+    call find_limits(model, state, snapshot%interfaces)
+    do i = 1, n_told(model%contacts)
+      if (state%contacts(i)%facing%is_used) then
+        call judge(model, state, rows, i, state%contacts(i)%facing%present, snapshot)
+      else if (model%erodes) then
+        call judge(model, state, rows, i, state%outlines(i), snapshot)
+      else
+        call judge(model, state, rows, i, model%contacts(i), snapshot)
+      end if
+    end do
+  end subroutine judge_contacts
+
+  !> Judge one interface between the surfaces of `contact`.
+  subroutine judge(model, state, rows, i, contact, snapshot)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(rows_t), intent(in) :: rows
+    integer, intent(in) :: i
+    type(contact_t), intent(in) :: contact
+    type(snapshot_t), intent(inout) :: snapshot
+    type(side_t) :: side
+    real(wp), allocatable :: unused(:)
+
+    associate (slaves => snapshot%slaves(i), result => snapshot%interfaces(i))
+      call add_side(model, state, rows, contact%slave, slaves%pressure, side, slaves%row_stress)
+      ! Of a surface with itself all is on the slave.
+      if (.not. contact%is_self) &
+        call add_side(model, state, rows, contact%master, slaves%master_pressure, side, unused)
+      result%row_energy = side%row_energy
+      result%estimate = 0.0_wp
+      if (side%load > 0.0_wp) result%estimate = sqrt(side%misfit/side%load)
+      if (state%cycle > state%estimates(i)%cycle) call sum_up(state%cycle, state%dt, side, result, &
+        state%estimates(i))
+    end associate
+  end subroutine judge
+
+  !> One side: the pressure of each loaded node against that of the elements behind, the mean over
+  !> the faces next to it, each by what the node has of it. Rigid bodies have none.
+  subroutine add_side(model, state, rows, surface, pressure, side, row_stress)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(rows_t), intent(in) :: rows
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: pressure(:) !! of its nodes
+    type(side_t), intent(inout) :: side
+    real(wp), allocatable, intent(inout) :: row_stress(:) !! of its nodes
+    real(wp) :: area(surface%n_node), at(2, 2), share(2), stress
+    integer :: s, k, nodes(2)
+
+    if (allocated(row_stress)) deallocate (row_stress)
+    allocate (row_stress(surface%n_node), source=0.0_wp)
+    area = 0.0_wp
+    do s = 1, surface%n_segment
+      associate (element => surface%segment_element(s), ends => surface%segments(:, s))
+        if (.not. has_stress(model, state, element)) cycle
+        nodes = surface%nodes(ends)
+        stress = face_pressure(model, state, rows, element, nodes)
+        do k = 1, 2
+          at(:, k) = model%mesh%coordinates(:, nodes(k)) + state%motion(1:2, nodes(k))
+        end do
+        share = 0.5_wp*norm2(at(:, 2) - at(:, 1))
+        if (model%is_round) share = share*(at(1, :) + sum(at(1, :)))/3.0_wp
+        area(ends) = area(ends) + share
+        row_stress(ends) = row_stress(ends) + share*stress
+        if (any(abs(pressure(ends)) > 0.0_wp)) &
+          side%row_energy = side%row_energy + elastic_energy(model, state, element)
+      end associate
+    end do
+    do k = 1, surface%n_node
+      if (.not. area(k) > 0.0_wp) cycle
+      row_stress(k) = row_stress(k)/area(k)
+      if (.not. abs(pressure(k)) > 0.0_wp) cycle
+      side%misfit = side%misfit + (pressure(k) - row_stress(k))**2*area(k)
+      side%load = side%load + pressure(k)**2*area(k)
+    end do
+  end subroutine add_side
+
+  !> Stable step of the elements and the springs of each interface; implicit runs have none.
+  subroutine find_limits(model, state, results)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(interface_result_t), intent(inout) :: results(:)
+    type(spring_bound_t) :: bounds(size(model%contacts))
+    real(wp) :: scale(size(model%contacts))
+
+    if (model%controls%implicit%is_on) return
+    scale = merge(0.0_wp, 1.0_wp, model%contacts%behind > 0 &
+      .or. model%contacts%penalty_unit == penalty_implicit)
+    if (model%erodes) then
+      call bound_springs(state%outlines, state%contact_mass, state%contacts, scale, bounds)
+    else
+      call bound_springs(model%contacts, state%contact_mass, state%contacts, scale, bounds)
+    end if
+    results%step_limit = stable_step(minval(state%elements%time_limit), bounds(:size(results)))
+  end subroutine find_limits
+
+  !> Add an instant to what is known of the run.
+  pure subroutine sum_up(cycle, dt, side, result, estimate)
+    integer, intent(in) :: cycle
+    real(wp), intent(in) :: dt
+    type(side_t), intent(in) :: side
+    type(interface_result_t), intent(in) :: result
+    type(contact_estimate_t), intent(inout) :: estimate
+
+    estimate%cycle = cycle
+    estimate%n = estimate%n + 1
+    estimate%misfit = estimate%misfit + side%misfit
+    estimate%load = estimate%load + side%load
+    if (side%load > estimate%heaviest) then
+      estimate%heaviest = side%load
+      estimate%at_heaviest = result%estimate
+    end if
+    if (side%load > 0.0_wp) then
+      estimate%springs = estimate%springs + result%stored
+      estimate%rows = estimate%rows + side%row_energy
+    end if
+    if (estimate%n > 2) then
+      estimate%jumps = estimate%jumps + sum((result%slave_force - 2.0_wp*estimate%force &
+        + estimate%former)**2)
+      estimate%forces = estimate%forces + sum(result%slave_force**2)
+    end if
+    estimate%former = estimate%force
+    estimate%force = result%slave_force
+    if (result%step_limit > 0.0_wp .and. dt > 0.0_wp) &
+      estimate%least_margin = min(estimate%least_margin, result%step_limit/dt)
+  end subroutine sum_up
+
+  !> In words, of each interface that was loaded at an instant that was judged.
+  subroutine report_estimates(model, state, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(log_t), intent(inout) :: log
+    integer :: i
+
+    do i = 1, size(state%estimates)
+      if (state%estimates(i)%load > 0.0_wp) call write_log(log, 'interface ' &
+        //to_text(model%contacts(i)%id)//': '//words(state%estimates(i), state, i))
+    end do
+  end subroutine report_estimates
+
+  !> What is known of one.
+  function words(estimate, state, i) result(text)
+    type(contact_estimate_t), intent(in) :: estimate
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: i
+    character(:), allocatable :: text
+    ! The second difference of noise that is not correlated has 6 times its square.
+    real(wp), parameter :: of_noise = 6.0_wp
+
+    text = 'contact pressure and the stress behind it differ by ' &
+      //percent(sqrt(estimate%misfit), sqrt(estimate%load))//' (r.m.s. of ' &
+      //to_text(estimate%n)//' instants), by '//percent(estimate%at_heaviest, 1.0_wp) &
+      //' at the largest load'
+    if (estimate%rows > 0.0_wp) then
+      text = text//'; springs store '//times(estimate%springs/estimate%rows) &
+        //' times what the elements beside them do'
+      if (estimate%springs > soft*estimate%rows) text = text//', the penalty is soft'
+    end if
+    if (estimate%forces > 0.0_wp) text = text//'; the force is rough by ' &
+      //percent(sqrt(estimate%jumps/of_noise), sqrt(estimate%forces))//' between instants'
+    if (state%largest_energy > 0.0_wp) text = text//'; contact has ' &
+      //trim(merge('made', 'lost', state%contacts(i)%watch%balance < 0.0_wp))//' ' &
+      //percent(abs(state%contacts(i)%watch%balance), state%largest_energy) &
+      //' of the largest energy'
+    if (estimate%least_margin < huge(1.0_wp)) text = text//'; the step is ' &
+      //percent(1.0_wp, estimate%least_margin)//' of the stable one'
+  end function words
+
+  !> A ratio with two decimals.
+  pure function times(ratio) result(text)
+    real(wp), intent(in) :: ratio
+    character(:), allocatable :: text
+    character(24) :: buffer
+
+    write (buffer, '(ss,es10.2)') ratio
+    if (ratio < 1.0e4_wp) write (buffer, '(ss,f8.2)') ratio
+    text = trim(adjustl(buffer))
+  end function times
+
+end module contact_judging_m

@@ -1,0 +1,243 @@
+! SPDX-License-Identifier: MIT
+!> The elements behind contact surfaces and those behind them: the stress that a body has at its
+!> face.
+module rows_behind_m
+  use element_state_m, only : is_gone, stress_of_slot
+  use kinds_m, only : wp
+  use layout_m, only : slot_part
+  use model_m, only : model_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: rows_t, find_rows, face_pressure, elastic_energy, has_stress
+
+  !> Corners, and edges, of an element; a triangle repeats its third node.
+  integer, parameter :: n_corner = 4
+
+  !> What lies across the edges of the elements behind contact surfaces.
+  type :: rows_t
+    integer, allocatable :: elements(:)  !! (n_row) rising
+    integer, allocatable :: across(:, :) !! (4, n_row) element across the edge from node k to the
+                                         !! next, 0: none
+  end type rows_t
+
+contains
+
+  !> Find them, once: of all elements where some may leave the mesh, since others come to its face
+  !> then.
+  subroutine find_rows(model, rows)
+    type(model_t), intent(in) :: model
+    type(rows_t), intent(inout) :: rows
+    logical, allocatable :: is_behind(:)
+    integer :: i
+
+    if (allocated(rows%elements)) return
+    allocate (is_behind(model%mesh%n_element), source=model%erodes)
+    do i = 1, size(model%contacts)
+      is_behind(model%contacts(i)%slave%segment_element) = .true.
+      is_behind(model%contacts(i)%master%segment_element) = .true.
+    end do
+    allocate (rows%elements(count(is_behind)))
+    rows%elements = pack([(i, i=1, size(is_behind))], is_behind)
+    call find_across(model, rows)
+  end subroutine find_rows
+
+  !> Neighbours: an edge that one element walks from a to b, the other walks from b to a.
+  subroutine find_across(model, rows)
+    type(model_t), intent(in) :: model
+    type(rows_t), intent(inout) :: rows
+    integer, allocatable :: first(:), next(:) !! edges of the rows by the node that they start at
+    integer :: i, k, edge, slot, a
+
+    allocate (rows%across(n_corner, size(rows%elements)), first(model%mesh%n_node), &
+      next(size(rows%across)), source=0)
+    do i = 1, size(rows%elements)
+      do k = 1, n_corner
+        a = model%layout%slot_nodes(k, model%layout%element_slot(rows%elements(i)))
+        edge = n_corner*(i - 1) + k
+        next(edge) = first(a)
+        first(a) = edge
+      end do
+    end do
+    do slot = 1, model%layout%n_slot
+      if (model%layout%slot_element(slot) == 0) cycle
+      do k = 1, n_corner
+        associate (nodes => model%layout%slot_nodes(:, slot))
+          edge = first(nodes(mod(k, n_corner) + 1))
+          do while (edge > 0)
+            i = (edge - 1)/n_corner + 1
+            if (end_of(model, rows, edge) == nodes(k) .and. rows%elements(i) &
+              /= model%layout%slot_element(slot)) &
+              rows%across(edge - n_corner*(i - 1), i) = model%layout%slot_element(slot)
+            edge = next(edge)
+          end do
+        end associate
+      end do
+    end do
+  end subroutine find_across
+
+  !> Node at which an edge of the rows ends.
+  pure integer function end_of(model, rows, edge)
+    type(model_t), intent(in) :: model
+    type(rows_t), intent(in) :: rows
+    integer, intent(in) :: edge
+
+    associate (slot => model%layout%element_slot(rows%elements((edge - 1)/n_corner + 1)))
+      end_of = model%layout%slot_nodes(mod(edge, n_corner) + 1, slot)
+    end associate
+  end function end_of
+
+  !> Whether an element has a stress: not those of rigid bodies, nor those that have left the mesh.
+  pure function has_stress(model, state, element) result(has)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: element
+    logical :: has
+
+    associate (slot => model%layout%element_slot(element))
+      has = .not. (model%materials(model%parts(slot_part(model%layout, slot))%material)%is_rigid &
+        .or. is_gone(state%elements, slot))
+    end associate
+  end function has_stress
+
+  !> Pressure -n.s.n of a body at the face from node `a` to node `b`: that of the element behind,
+  !> carried along the normal by the difference to the element behind that, where there is one.
+  function face_pressure(model, state, rows, element, ends) result(pressure)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(rows_t), intent(in) :: rows
+    integer, intent(in) :: element, ends(2) !! behind the face; nodes of the face
+    real(wp) :: pressure
+    real(wp) :: ends_at(2, 2), normal(2), depth, beyond_depth
+    integer :: beyond
+
+    ends_at(:, 1) = place_of(model, state, ends(1))
+    ends_at(:, 2) = place_of(model, state, ends(2))
+    normal = [ends_at(2, 2) - ends_at(2, 1), ends_at(1, 1) - ends_at(1, 2)]
+    normal = normal/max(norm2(normal), tiny(1.0_wp))
+    pressure = along(model, state, element, normal)
+    beyond = element_beyond(model, rows, element, ends)
+    if (beyond == 0) return
+    if (.not. has_stress(model, state, beyond)) return
+    associate (middle => 0.5_wp*(ends_at(:, 1) + ends_at(:, 2)))
+      depth = dot_product(middle - centre_of(model, state, element), normal)
+      beyond_depth = dot_product(middle - centre_of(model, state, beyond), normal)
+    end associate
+    if (.not. beyond_depth > (1.0_wp + epsilon(1.0_wp))*depth) return
+    pressure = pressure + (pressure - along(model, state, beyond, normal)) &
+      *(depth/(beyond_depth - depth))
+  end function face_pressure
+
+  !> -n.s.n of an element.
+  pure function along(model, state, element, n) result(pressure)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: element
+    real(wp), intent(in) :: n(2)
+    real(wp) :: pressure
+    real(wp) :: s(4)
+
+    s = stress_of_slot(model, state%motion, state%elements, model%layout%element_slot(element))
+    pressure = -(s(1)*n(1)**2 + s(2)*n(2)**2 + 2.0_wp*s(4)*n(1)*n(2))
+  end function along
+
+  !> The element across the edge opposite of a face, 0: none, or a triangle.
+  pure function element_beyond(model, rows, element, ends) result(beyond)
+    type(model_t), intent(in) :: model
+    type(rows_t), intent(in) :: rows
+    integer, intent(in) :: element, ends(2)
+    integer :: beyond
+    integer :: i, k
+
+    beyond = 0
+    i = place_in(rows%elements, element)
+    if (i == 0) return
+    associate (nodes => model%layout%slot_nodes(:, model%layout%element_slot(element)))
+      if (nodes(4) == nodes(3)) return
+      do k = 1, n_corner
+        if (nodes(k) == ends(1) .and. nodes(mod(k, n_corner) + 1) == ends(2)) &
+          beyond = rows%across(mod(k + 1, n_corner) + 1, i)
+      end do
+    end associate
+  end function element_beyond
+
+  !> Where a value stands in a rising list, 0: nowhere.
+  pure function place_in(list, value) result(place)
+    integer, intent(in) :: list(:), value
+    integer :: place
+    integer :: low, high
+
+    low = 1
+    high = size(list)
+    do while (low < high)
+      place = (low + high)/2
+      if (list(place) < value) then
+        low = place + 1
+      else
+        high = place
+      end if
+    end do
+    place = 0
+    if (low > size(list)) return
+    if (list(low) == value) place = low
+  end function place_in
+
+  !> Elastic energy of an element by its stress and the moduli of its material, J per metre or per
+  !> radian: of laws with others it is a measure.
+  function elastic_energy(model, state, element) result(energy)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: element
+    real(wp) :: energy
+    real(wp) :: s(4), d31(2), d42(2), volume, mean, shear_square
+
+    associate (slot => model%layout%element_slot(element))
+      associate (nodes => model%layout%slot_nodes(:, slot), &
+        material => model%materials(model%parts(slot_part(model%layout, slot))%material))
+        s = stress_of_slot(model, state%motion, state%elements, slot)
+        d31 = place_of(model, state, nodes(3)) - place_of(model, state, nodes(1))
+        d42 = place_of(model, state, nodes(4)) - place_of(model, state, nodes(2))
+        volume = 0.5_wp*(d31(1)*d42(2) - d42(1)*d31(2))
+        if (model%is_round) then
+          associate (centre => centre_of(model, state, element))
+            volume = volume*centre(1)
+          end associate
+        end if
+        mean = sum(s(:3))/3.0_wp
+        shear_square = sum((s(:3) - mean)**2) + 2.0_wp*s(4)**2
+        energy = 0.0_wp
+        if (material%bulk > 0.0_wp) energy = 0.5_wp*mean**2/material%bulk
+        if (material%shear > 0.0_wp) energy = energy + 0.25_wp*shear_square/material%shear
+      end associate
+    end associate
+    energy = volume*energy
+  end function elastic_energy
+
+  !> Centre of the corners of an element, m.
+  pure function centre_of(model, state, element) result(centre)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: element
+    real(wp) :: centre(2)
+    integer :: k, n
+
+    centre = 0.0_wp
+    associate (nodes => model%layout%slot_nodes(:, model%layout%element_slot(element)))
+      n = merge(3, n_corner, nodes(4) == nodes(3))
+      do k = 1, n
+        centre = centre + place_of(model, state, nodes(k))/n
+      end do
+    end associate
+  end function centre_of
+
+  !> Where a node is, m.
+  pure function place_of(model, state, node) result(place)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: node
+    real(wp) :: place(2)
+
+    place = model%mesh%coordinates(:, node) + state%motion(1:2, node)
+  end function place_of
+
+end module rows_behind_m

@@ -1,0 +1,27 @@
+! SPDX-License-Identifier: MIT
+!> What a run knows of how good its contact is, of one interface: sums over the instants at which it
+!> was judged, those that write rows of interfaces or plot states.
+module contact_estimate_m
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: contact_estimate_t
+
+  !> Sums and extremes; nothing of time zero, where elements have no stress yet.
+  type :: contact_estimate_t
+    integer :: cycle = 0               !! of the last instant
+    integer :: n = 0                   !! instants
+    real(wp) :: misfit = 0.0_wp        !! sum of (p - row stress)^2 a
+    real(wp) :: load = 0.0_wp          !! sum of p^2 a
+    real(wp) :: heaviest = 0.0_wp      !! largest p^2 a of an instant
+    real(wp) :: at_heaviest = 0.0_wp   !! estimate then
+    real(wp) :: springs = 0.0_wp       !! sum of what springs store, J/m
+    real(wp) :: rows = 0.0_wp          !! sum of the elastic energy of the rows behind, J/m
+    real(wp) :: force(2) = 0.0_wp      !! on the slave at the last instant, N/m
+    real(wp) :: former(2) = 0.0_wp     !! at the one before
+    real(wp) :: jumps = 0.0_wp         !! sum of squares of second differences of that force
+    real(wp) :: forces = 0.0_wp        !! sum of its squares over the same instants
+    real(wp) :: least_margin = huge(1.0_wp) !! smallest of stable step over step
+  end type contact_estimate_t
+
+end module contact_estimate_m

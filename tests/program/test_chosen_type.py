@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""CTYPE 0: which type the program chooses and why, and that the run is that of the type by name."""
+import re
+
+import numpy as np
+import pytest
+from meshes import Deck, grid
+
+BITS = ("glstat.csv", "rcforc.csv", "contact.csv", "sleout.csv", "matsum.csv")
+
+
+def press(ctype=0, pen=None, columns=(3, 3), lift=0.0, bend=0.0, punit=None, ipf=None, tie=None, fs=None, implicit=False,
+          push=(0.0, -1.0), more=(), sets=True):
+    """A block upon another, led down or along from above; `bend` bows the face of the upper one."""
+    deck = Deck("pressed")
+    if implicit:
+        deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 0.5))
+    else:
+        deck.control(0.2)
+    deck.add("*SECTION_SHELL", (1, 13, None, 4 if implicit else None), (1.0,))
+    lower, quads = grid(columns[0], 2, origin=(0.0, -1.0))
+    below = deck.mesh(lower, quads, part=1)
+    upper, quads = grid(columns[1], 2, origin=(0.0, lift))
+    upper[:, 1] += bend * upper[:, 0] * (1.0 - upper[:, 0])
+    above = deck.mesh(upper, quads, part=2)
+    for part in (1, 2):
+        deck.part(part, section=1).elastic(1000.0, 1.0e6, 0.3, part)
+    deck.fix(below[:columns[0] + 1], x=1, y=1)
+    if implicit:
+        deck.fix(above[-columns[1] - 1:], x=1)
+    deck.curve(1, [(0.0, 0.0), (1.0, 1.0e-3)])
+    for node in above[-columns[1] - 1:]:
+        for dof, amount in enumerate(push, 1):
+            if amount:
+                deck.prescribe(node, dof, 2, 1, amount)
+    deck.node_set(1, above[:columns[1] + 1]).node_set(2, below[-columns[0] - 1:][::-1])
+    deck.add("*SET_PART_LIST", (3,), (1, 2))
+    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, ctype, None, pen, fs) if sets else (3, 0, ctype, None, pen, fs),
+             (None, None, punit, None, None, ipf), (None, None, tie))
+    for keyword, *cards in more:
+        deck.add(keyword, *cards)
+    deck.add("*DATABASE_SLEOUT", (0.5 if implicit else 0.02,))
+    step = 0.5 if implicit else 0.02
+    return deck.output(plot=step, glstat=step, rcforc=step, matsum=step)
+
+
+@pytest.fixture
+def chosen(slideline, tmp_path):
+    """chosen(deck, *words): (type, reason, effective deck) of a run into `out`."""
+    def call(deck, *words):
+        done = slideline("d=out", *words, deck=deck)
+        assert done.returncode == 0, done.stderr
+        log = (tmp_path / "out/job.log").read_text()
+        found = re.search(r"interface 1: .* \(type (\d)\), chosen by the program \(CTYPE 0\): (.+)", log)
+        assert found, log
+        return int(found[1]), found[2], (tmp_path / "out/job.effective.k").read_text()
+    return call
+
+
+def same_bits(slideline, tmp_path, deck):
+    """The same with the type by name, and from the deck as run."""
+    assert slideline("d=named", deck=deck).returncode == 0
+    (tmp_path / "again.k").write_text((tmp_path / "out/job.effective.k").read_text())
+    assert slideline("i=again.k", "d=again", "jobid=job").returncode == 0
+    for folder in ("named", "again"):
+        for name in BITS:
+            assert (tmp_path / folder / f"job.{name}").read_bytes() == (tmp_path / "out" / f"job.{name}").read_bytes(), name
+
+
+@pytest.mark.parametrize("wanted, words, scene", [
+    (2, "match", {}),
+    (2, "match", {"lift": 1.0e-4}),
+    (2, "match", {"implicit": True}),
+    (5, "any mesh", {"columns": (3, 4)}),
+    (5, "any mesh", {"bend": -0.02}),
+    (5, "any mesh", {"more": [("*INITIAL_VELOCITY_GENERATION", (2, 2, None, 1.0))]}),
+    (5, "any mesh", {"more": [("*LOAD_BODY_X", (1,))]}),
+    (5, "any mesh", {"sets": False}),
+    (5, "strict", {"ipf": 1}),
+    (5, "tie", {"tie": 1}),
+    (7, "friction", {"fs": 0.2}),
+    (7, "along", {"push": (1.0, -1.0)}),
+    (7, "PUNIT 4", {"punit": 4}),
+])
+def test_type_and_reason(slideline, chosen, tmp_path, wanted, words, scene):
+    found, reason, effective = chosen(press(pen=1.0e6 if scene.get("punit") is None else None, **scene))
+    assert found == wanted and words in reason
+    card = effective.split("*CONTACT_2D_SLIDELINE_TITLE\n")[1].split("\n")[1]
+    assert card.split(",")[2] == str(wanted)
+    same_bits(slideline, tmp_path, press(ctype=wanted, pen=1.0e6 if scene.get("punit") is None else None, **scene))
+
+
+@pytest.mark.parametrize("implicit, unit, factor", [(False, 3, 1.0), (True, 2, 10.0)])
+def test_penalty_that_is_left_to_the_program(slideline, chosen, tmp_path, implicit, unit, factor):
+    """Explicit: the largest that the step bears, without a warning; implicit: K L/A."""
+    _, _, effective = chosen(press(implicit=implicit))
+    cards = effective.split("*CONTACT_2D_SLIDELINE_TITLE\n")[1].split("\n")[1:3]
+    assert float(cards[0].split(",")[4]) == factor and cards[1].split(",")[2] == str(unit)
+    assert "its penalty demands" not in (tmp_path / "out/job.log").read_text()
+    same_bits(slideline, tmp_path, press(ctype=2, pen=factor, punit=unit, implicit=implicit))
+
+
+def test_command_line_lets_the_program_choose(slideline, chosen, tmp_path):
+    """ctype=0 acts on stock keywords too, and a named type on CTYPE 0."""
+    stock = press(ctype=2, pen=1.0e6, columns=(3, 4)).text().replace(
+        "*CONTACT_2D_SLIDELINE\n-1,-2,2,,1000000.0,\n,,,,,\n,,\n", "*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE\n-1,-2,\n")
+    assert "AUTOMATIC" in stock
+    assert chosen(stock, "ctype=0")[0] == 5
+    done = slideline("d=named", "ctype=6", deck=press(pen=1.0e6))
+    assert done.returncode == 0
+    assert "mortar (type 6)\n" in (tmp_path / "named/job.log").read_text()
+
+
+def test_restart_keeps_the_choice(slideline, chosen, tmp_path):
+    """From a restart file the run has the type and the penalty chosen, with the same bits and what is known of its quality."""
+    deck = press(columns=(3, 4), more=[("*DATABASE_BINARY_D3DUMP", (10,))])
+    chosen(deck)
+    dumps = sorted((tmp_path / "out").glob("*dump*"))
+    assert dumps, list((tmp_path / "out").iterdir())
+    done = slideline(f"r=out/{dumps[0].name}", "d=on")
+    assert done.returncode == 0, done.stderr
+    for name in BITS:
+        whole, rest = ((tmp_path / folder / f"job.{name}").read_text().splitlines() for folder in ("out", "on"))
+        assert rest[-1] == whole[-1] and len(rest) > 1, name
+    told = [re.findall(r"interface 1: contact pressure and .*", (tmp_path / folder / "job.log").read_text())
+            for folder in ("out", "on")]
+    assert told[0] == told[1] and len(told[0]) == 1
+
+
+def test_estimates_have_the_same_bits_with_threads(slideline, tmp_path):
+    for count in (1, 3):
+        assert slideline(f"d=n{count}", f"ncpu={count}", deck=press(pen=1.0e6, columns=(3, 4))).returncode == 0
+    for name in ("sleout.csv", "contact.csv"):
+        one, three = (np.genfromtxt(tmp_path / f"n{count}/job.{name}", delimiter=",", names=True) for count in (1, 3))
+        assert (tmp_path / f"n1/job.{name}").read_bytes() == (tmp_path / f"n3/job.{name}").read_bytes()
+        assert len(one) == len(three)
+    assert np.genfromtxt(tmp_path / "n1/job.sleout.csv", delimiter=",", names=True)["estimate"].max() > 0.0

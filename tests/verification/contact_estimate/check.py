@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""How good is this answer: the estimate of contact against states whose pressures and stresses are known."""
+import re
+
+import numpy as np
+
+import static_patch
+from contact_types import PASS_PATCH, TYPES
+from meshes import Deck, grid
+from patch_layouts import load_edges, lines
+
+YOUNG, RHO, PRESSURE, SOFT = 1.0e6, 1000.0, 1.0, 1.0e7
+FAIL = sorted(set(TYPES) - set(PASS_PATCH) - {6})
+ROUND_OFF = 1.0e-13
+TILT = 1.0e-6  # faces turn by strains of p/E
+
+
+def blocks(title, meshes, form=13, points=4, implicit=True):
+    """Deck of two bodies, lower and upper, and the node ids of each."""
+    deck = Deck(title)
+    if implicit:
+        deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 1.0))
+    deck.add("*SECTION_SHELL", (1, form, None, points), (1.0,))
+    ids = []
+    for part, mesh in enumerate(meshes, 1):
+        deck.part(part, section=1).elastic(RHO, YOUNG, 0.0, part)
+        ids.append(deck.mesh(*mesh, part=part))
+    return deck.add("*DATABASE_SLEOUT", (1.0,)).output(plot=1.0, glstat=1.0, rcforc=1.0), *ids
+
+
+def patch(kind, form=13, skew=0.35):
+    """5 columns upon 4 under a uniform pressure; discs where the form is that of bodies of revolution."""
+    upper, lower = (static_patch.block_grid(lines(n, skew), bottom) for n, bottom in ((5, 0.0), (4, -1.0)))
+    deck, below, above = blocks(f"patch, type {kind}", (lower, upper), form)
+    deck.curve(1, [(0.0, 0.0), (1.0, PRESSURE)]).fix(below[:5], y=1)
+    if form == 13:
+        deck.fix([below[2], above[-3]], x=1)
+    load_edges(deck, above[-6:])
+    deck.node_set(1, above[:6]).node_set(2, below[:-6:-1])
+    return deck.contact(1, 2, kind, SOFT, unit=1)
+
+
+def final(result, name="sleout"):
+    rows = result.table(name)
+    return rows.where(time=rows["time"][-1])
+
+
+def independent(result, slave, master):
+    """The same from the fields of the states: nodal pressures, and stresses of the two rows behind, which are
+    flat and of equal height."""
+    misfit, load = 0.0, 0.0
+    place, pressure = (result.points(name)[-1] for name in ("Points", "contact_pressure"))
+    stress = -result.cells("stress")[-1][:, 1]
+    for nodes, rows in (slave, master):
+        x = place[np.asarray(nodes) - 1, 0]
+        half = 0.5 * np.abs(np.diff(x))
+        face = 1.5 * stress[rows[0]] - 0.5 * stress[rows[1]]
+        area, carried = np.zeros(len(x)), np.zeros(len(x))
+        for k, (width, value) in enumerate(zip(half, face)):
+            area[k:k + 2] += width
+            carried[k:k + 2] += width * value
+        p = pressure[np.asarray(nodes) - 1]
+        misfit += np.sum((p - carried / area) ** 2 * area, where=p != 0)
+        load += np.sum(p ** 2 * area)
+    return np.sqrt(misfit / load)
+
+
+def check_patch(run):
+    for kind, form in run.cover(PASS_PATCH, (13, 15), strength=2):
+        result = run.program(patch(kind, form))
+        text = f"{TYPES[kind]}, {'discs' if form == 15 else 'blocks'}"
+        run.check(f"{text}: estimate of a uniform state", final(result)["estimate"], 0.0, ROUND_OFF, "abs",
+                  "pressure and stress are the same number")
+        run.check(f"{text}: row stress at each slave node", final(result, "contact")["row_stress"], PRESSURE,
+                  ROUND_OFF, source="uniform")
+    for kind in FAIL:
+        result = run.program(patch(kind))
+        lower, upper = np.arange(16).reshape(4, 4), 16 + np.arange(25).reshape(5, 5)
+        wanted = independent(result, (np.arange(26, 32), upper[:2]), (np.arange(21, 26), lower[:-3:-1]))
+        run.check(f"{TYPES[kind]}: estimate where the patch test fails", final(result)["estimate"], wanted, TILT,
+                  source="the definition, from the fields of the states")
+        run.check(f"{TYPES[kind]}: and it is no small number", final(result)["estimate"], 1e-3, 0.0, "min")
+
+
+def column(rows, weight):
+    """Two unit squares of `rows` elements each, one above the other, under their own weight."""
+    deck, below, above = blocks(f"column, {rows} rows", (grid(1, rows, origin=(0.0, -1.0)), grid(1, rows)))
+    deck.curve(1, [(0.0, 0.0), (1.0, weight / RHO)]).add("*LOAD_BODY_Y", (1,))
+    deck.fix(below[:2], y=1).fix([below[0], above[0]], x=1)
+    return deck.node_set(1, above[:2]).node_set(2, below[:-3:-1]).contact(1, 2, 5, SOFT, unit=1)
+
+
+def check_column(run):
+    """One element each: p = W, the stress in the middles is W/2 and 3 W/2. Two rows: linear, so exact."""
+    weight = 1.0
+    one, two = (run.program(column(rows, weight)) for rows in (1, 2))
+    second_order = 10.0 * weight / YOUNG
+    run.check("two squares under their weight: estimate", final(one)["estimate"], 0.5, second_order, source="by hand")
+    run.check("two squares: energy of the elements", final(one)["row_energy"],
+              0.5 * (0.5 ** 2 + 1.5 ** 2) * weight ** 2 / YOUNG, second_order, source="by hand: sum s^2/(2E)")
+    run.check("two squares: energy of the springs", final(one)["stored"], 0.5 * weight ** 2 / SOFT, second_order,
+              source="by hand: p^2/(2 eps)")
+    run.check("two squares: row stress of the slave", final(one, "contact")["row_stress"], 0.5 * weight, second_order)
+    run.check("two rows each: estimate", final(two)["estimate"], 0.0, second_order, "abs",
+              "the stress is linear in y and carried to the face")
+    log = (one.folder / f"{one.job}.log").read_text()
+    told = re.search(r"interface 1: contact pressure and the stress behind it differ by ([\d.]+) %.*springs store "
+                     r"([\d.]+) times", log)
+    run.check("the summary tells the same", [float(one) for one in told.groups()], [50.0, 0.5 / 1.25 * 0.1],
+              0.006, "abs", "two decimals")
+
+
+def check_step(run):
+    """Explicit: the step that springs rule (ECDT 2) is TSSFAC of the step that sleout tells."""
+    deck, below, above = blocks("step", (grid(1, 1, origin=(0.0, -1.0)), grid(1, 1)), points=None, implicit=False)
+    deck.control(0.1).add("*CONTROL_CONTACT", "", (0, 0, 0, 0, 0, 0, 2))
+    deck.node_set(1, above[:2]).node_set(2, below[:-3:-1]).contact(1, 2, 5, 1.0e8, unit=1)
+    result = run.program(deck)
+    run.check("step over TSSFAC of the stable step", final(result, "glstat")["dt"] / final(result)["step_limit"], 0.9,
+              1e-12, source="ECDT 2 keeps it")
+
+
+def check(run):
+    check_patch(run)
+    check_column(run)
+    check_step(run)

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+"""Surfaces: segments walked counter-clockwise round their body, so that it lies on the left and the outward normal of
+the unit tangent t is (t_y, -t_x)."""
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+
+@dataclasses.dataclass
+class Surface:
+    """`segments` (n, 2): indices of both ends, in walking order, chain after chain."""
+
+    segments: np.ndarray
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """All nodes in walking order, each once."""
+        flat = self.segments.ravel()
+        _, first = np.unique(flat, return_index=True)
+        return flat[np.sort(first)]
+
+    @property
+    def chains(self) -> list[np.ndarray]:
+        """The nodes of each chain; a closed one repeats its first node at the end."""
+        breaks = np.flatnonzero(self.segments[1:, 0] != self.segments[:-1, 1]) + 1
+        return [np.append(part[:, 0], part[-1, 1]) for part in np.split(self.segments, breaks) if len(part)]
+
+    def normals(self, points: np.ndarray) -> np.ndarray:
+        """(n, 2) outward unit normals."""
+        tangent = points[self.segments[:, 1]] - points[self.segments[:, 0]]
+        tangent = tangent / np.maximum(np.linalg.norm(tangent, axis=1), 1.0e-300)[:, None]
+        return np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)

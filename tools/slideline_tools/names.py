@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: MIT
+"""What to say of a name that does not exist, and objects in one line."""
+from __future__ import annotations
+
+import difflib
+import typing
+
+#: least likeness (difflib) of a name that is offered instead
+ALIKE = 0.5
+#: a line of a terminal
+LINE = 79
+
+
+def nearest(name: str, known: typing.Iterable[str]) -> str:
+    """'; the nearest name is ...' where one of the known names is near, else nothing."""
+    by_lower = {one.lower(): one for one in map(str, known)}
+    found = difflib.get_close_matches(str(name).lower(), by_lower, 1, ALIKE)
+    return f"; the nearest name is '{by_lower[found[0]]}'" if found else ""
+
+
+def missing(name: str, known: typing.Iterable[str]) -> str:
+    """The end of a refusal: the nearest name, and all there are."""
+    known = list(map(str, known))
+    return f"{nearest(name, known)}; there are {', '.join(known) or 'none'}"
+
+
+def one_line(words: str) -> str:
+    """Words in angle brackets that fit a line."""
+    words = " ".join(words.split())
+    return f"<{words}>" if len(words) <= LINE - 2 else f"<{words[:LINE - 5]}...>"

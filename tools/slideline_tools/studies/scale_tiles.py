@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""Tiles of a mesh as the program cuts them, and what processes that share them send each other in a step.
+
+The same as src/model/layout_building.f90 and src/solve/explicit/rank_shares.f90 for one part and no contact; the bytes
+that this gives are held against those that the program counts.
+"""
+import numpy as np
+
+TILE = 512        # elements at most
+CURVE_BITS = 16   # the Hilbert curve has 2^16 cells along each axis
+SLOT_BYTES = 16   # two forces
+
+
+def hilbert_distance(x, y):
+    """Places of the cells (x, y) along the curve."""
+    p, q = np.array(x, dtype=np.int64), np.array(y, dtype=np.int64)
+    found = np.zeros_like(p)
+    whole = 2 ** CURVE_BITS - 1
+    side = 2 ** (CURVE_BITS - 1)
+    while side:
+        right, upper = (p & side) > 0, (q & side) > 0
+        found += side * side * ((3 * right) ^ upper)
+        turned = ~upper & right
+        p, q = np.where(turned, whole - p, p), np.where(turned, whole - q, q)
+        p, q = np.where(upper, p, q), np.where(upper, q, p)
+        side //= 2
+    return found
+
+
+def tiles_of(points, quads):
+    """The tile of each element, from 0 on."""
+    low = points.min(axis=0)
+    cells = 2 ** CURVE_BITS
+    cell = (points.max(axis=0) - low).max() / cells
+    places = np.minimum(((points[quads].mean(axis=1) - low) / cell).astype(np.int64), cells - 1)
+    order = np.argsort(hilbert_distance(places[:, 0], places[:, 1]), kind="stable")
+    n = max(1, -(-len(quads) // TILE))
+    tiles = np.empty(len(quads), dtype=np.int64)
+    for k in range(n):
+        tiles[order[len(quads) * k // n:len(quads) * (k + 1) // n]] = k
+    return tiles
+
+
+def slots_of(quads, tiles):
+    """(node, tile) of the force slots on nodes that several tiles touch, by node."""
+    pairs = np.unique(quads.ravel() * (tiles.max() + 1) + np.repeat(tiles, 4))
+    nodes, touching = np.divmod(pairs, tiles.max() + 1)
+    shared = np.bincount(nodes)[nodes] > 1
+    return nodes[shared], touching[shared]
+
+
+def ranges(sizes, n):
+    """The process of each tile where each has a range of the curve, as even as tiles allow."""
+    middle = np.cumsum(sizes) - 0.5 * sizes
+    return np.minimum(n - 1, (n * (middle / sizes.sum())).astype(int))
+
+
+def traffic(slots, owner, n):
+    """(messages, bytes) that each of n processes sends in a step; `owner` is the process of each tile."""
+    nodes, touching = slots
+    ranks = owner[touching]
+    messages, sent = np.zeros(n, dtype=int), np.zeros(n, dtype=int)
+    # Pairs of slots of one node: they stand side by side, and a node has at most as many as elements meet in it.
+    found = []
+    for shift in range(1, np.bincount(nodes).max()):
+        same = nodes[shift:] == nodes[:-shift]
+        a, b = np.flatnonzero(same), np.flatnonzero(same) + shift
+        found += [(a, ranks[b]), (b, ranks[a])]
+    slot, other = (np.concatenate(parts) for parts in zip(*found))
+    apart = ranks[slot] != other
+    needs = np.unique(slot[apart] * n + other[apart])  # a slot goes to a process once
+    sender = ranks[needs // n]
+    np.add.at(sent, sender, SLOT_BYTES)
+    pairs = np.unique(sender * n + needs % n)
+    np.add.at(messages, pairs // n, 1)
+    return messages, sent
+
+
+def tile_graph(slots, n_tile):
+    """(starts, neighbours, common nodes) of the tiles, in the rows that METIS takes."""
+    nodes, touching = slots
+    found = []
+    for shift in range(1, np.bincount(nodes).max()):
+        same = np.flatnonzero(nodes[shift:] == nodes[:-shift])
+        found += [touching[same] * n_tile + touching[same + shift], touching[same + shift] * n_tile + touching[same]]
+    edges, weights = np.unique(np.concatenate(found), return_counts=True)
+    starts = np.searchsorted(edges // n_tile, np.arange(n_tile + 1))
+    return starts, edges % n_tile, weights
+
+
+def metis(slots, sizes, n):
+    """The process of each tile by METIS, weighted by elements and common nodes; None where pymetis is not installed."""
+    try:
+        import pymetis  # of the study alone
+    except ImportError:
+        return None
+    starts, neighbours, weights = tile_graph(slots, len(sizes))
+    _, owner = pymetis.part_graph(n, xadj=starts.tolist(), adjncy=neighbours.tolist(), vweights=sizes.tolist(),
+                                  eweights=weights.tolist())
+    return np.array(owner)
