@@ -17,6 +17,7 @@ from slideline_tools.advise import (advise, bodies, finished, geometry, outputs,
 from slideline_tools.advise.run_deck import read_blocks, sets
 from slideline_tools.advise.run_log import read_log
 from slideline_tools.contact_types import ALL_TYPES
+from slideline_tools.prose import too_wide
 
 LOG = """slideline 0.1.0
 part 1 "plate": 576 elements, section 1, material 1
@@ -475,3 +476,4 @@ def test_page(runs):
     assert "saved, counted by a test." in text
     assert "differed by 50%" in text and "dt=2: predicted 7.0 %, measured 8.0 %" in text
     assert str(runs["all"]) not in text
+    assert not [line for line in too_wide(text) if "a cell of" in line]

@@ -9,6 +9,7 @@ import pytest
 
 from slideline_tools import UserError, counting, scenes
 from slideline_tools.histories import History
+from slideline_tools.prose import too_wide
 from slideline_tools.studies import block, block_implicit
 from slideline_tools.studies.common import study_main
 
@@ -53,7 +54,7 @@ def test_page_of_a_run(slideline, tmp_path, plain_pictures):
         subprocess.run([sys.executable, CHAIN, "5.1e6"], stdout=stream, check=True)
     assert study_main("block", block.write, [str(tmp_path), str(tmp_path / "doc"), "--types", "2"]) == 0
     page = (tmp_path / "doc" / "studies" / "block_to_block.md").read_text()
-    assert "| 2 NTS-AR |" in page
+    assert "| 2 NTS-AR |" in page and too_wide(page) == []
     assert (tmp_path / "doc" / "pictures" / "block_pressure.png").exists()
     # Forces of both sides, each pressure times length, are the same total.
     run = block.read_pressures(folder, scenes.block_grids())

@@ -109,9 +109,8 @@ def thresholds() -> list[tuple]:
     """What each check asks for before it speaks."""
     return [
         ("never yielded", "plastic strain exactly 0 in every element at the last state"),
-        ("never touched", "no active point in any row of rcforc, and either the surfaces stayed "
-         "farther apart than they could have moved between states, or the contact energy is "
-         "exactly 0"),
+        ("never touched", "no active point in any row of rcforc; the surfaces stayed too far apart to touch "
+         "between states, or contact energy 0"),
         ("touched for a while", f"more than {touching.IDLE_TIME:.0%} of the time before the first "
          "and after the last active row, at least 100 rows"),
         ("long surface", f"less than {touching.LONG_SURFACE:.0%} of the slave surface pressed at "
@@ -119,27 +118,23 @@ def thresholds() -> list[tuple]:
         ("long flight", f"first contact after {touching.LONG_FLIGHT:.0%} of the time, no loads, "
          f"energies constant to {touching.FREE_FLIGHT:g} until then, parts only translate"),
         ("dear type", f"type 6 or 7, contact at least {touching.CONTACT_MATTERS:.0%} of the run"),
-        ("needless friction", f"largest traction at most {rubbing.NO_TRACTION:.0%} of mu times the largest pressure at at least "
-         f"{rubbing.STATES_IN_CONTACT} states in contact, work of friction at most {rubbing.NO_WORK:g} of the largest energy"),
-        ("undamped sliding", f"explicit, no damping and no bulk viscosity; {rubbing.CHANGING:.0%} of the pressed nodes are in the other "
-         f"state, stick or slip, at the next plot state, and by [stability_friction](stability_friction.md) a small motion could have "
-         f"grown by {rubbing.GROWN:g} e-folds"),
-        ("short steps", f"{stepping.SAFETY} of the limit of elements (smallest of all states) and "
-         f"springs (the bound that the program warns by) is at least {stepping.LONGER_STEP} steps"),
-        ("penalty rules the step", f"the elements allow {stepping.PENALTY_RULES} times the step "
-         f"that the springs leave, and the softer penalty keeps the deepest penetration below "
-         f"{stepping.DEEPEST:.0%} of a segment"),
+        ("needless friction", f"traction at most {rubbing.NO_TRACTION:.0%} of mu times the pressure (largest values), its work at most "
+         f"{rubbing.NO_WORK:g} of the energy"),
+        ("undamped sliding", f"explicit, undamped; {rubbing.CHANGING:.0%} of the pressed nodes change between stick and slip; a small "
+         f"motion could grow by {rubbing.GROWN:g} e-folds"),
+        ("short steps", f"{stepping.SAFETY} of the limit of elements and springs is at least {stepping.LONGER_STEP} steps"),
+        ("penalty rules the step", f"the elements allow {stepping.PENALTY_RULES} times the step of the springs; "
+         f"with the softer penalty below {stepping.DEEPEST:.0%} of a segment deep"),
         ("rigid", f"largest strain and internal energy of a part at most {bodies.RIGID_STRAIN:.0%}"
          " of the largest of all parts"),
-        ("symmetry", "nodes, elements and parts are mirror images, no element lies across the "
-         f"cut, displacements at all states to {bodies.SYMMETRIC:g} of the largest"),
+        ("symmetry", "nodes, elements and parts are mirror images, no element across the cut, "
+         f"displacements to {bodies.SYMMETRIC:g} of the largest"),
         ("bulk viscosity", f"viscous energy at most {bodies.NO_VISCOUS_ENERGY:g} of the largest "
          "total energy"),
-        ("written too often", f"output at least {outputs.OUTPUT_MATTERS:.0%} of the run, and "
-         f"straight lines between every k-th row (k of {', '.join(map(str, outputs.FACTORS))}) miss "
-         f"the others by at most {outputs.COARSE_ERROR:.0%} of the range"),
-        ("never read", "written a day ago or longer, last read no later than last written, on a "
-         "local file system that keeps access times (not noatime)"),
+        ("written too often", f"output at least {outputs.OUTPUT_MATTERS:.0%} of the run; straight lines between some rows miss "
+         f"the others by at most {outputs.COARSE_ERROR:.0%}"),
+        ("never read", "written a day ago or longer, last read no later than last written, where "
+         "access times are kept (local, not noatime)"),
         ("threads", f"fewer than {stepping.ELEMENTS_A_THREAD} elements a thread"),
         ("all", f"a saving of at least {report.SMALLEST_SHARE:.0%} of the run and "
          f"{report.SMALLEST_SECONDS} s, unless `--all`")]
@@ -156,7 +151,8 @@ def page(predicted: dict, totals: dict, last, clean, scene: dict, counted: tuple
         counted=counted[1],
         example=report.as_text(*last_shown(last)), clean=report.as_text(*last_shown(clean)),
         thresholds=markdown_table(("topic", "says something only if"), thresholds()),
-        plastic=bodies.PLASTIC_EXTRA, viscous=bodies.VISCOUS_EXTRA)
+        friction_states=rubbing.STATES_IN_CONTACT,
+        factors=", ".join(map(str, outputs.FACTORS)), plastic=bodies.PLASTIC_EXTRA, viscous=bodies.VISCOUS_EXTRA)
 
 
 def spread(totals: dict) -> float:
@@ -205,6 +201,16 @@ the advice names, {scene}.
 ## When it speaks
 
 {thresholds}
+
+- Never touched: the surfaces stayed farther apart than they could have moved between states, or the contact energy is
+  exactly 0.
+- Needless friction: at {friction_states} states in contact at least; the energy is the largest.
+- Undamped sliding: without damping and bulk viscosity; nodes are in the other state, stick or slip, at the next plot
+  state; the growth is that of [stability_friction](stability_friction.md).
+- Short steps: the limit of elements is the smallest of all states, that of springs the bound that the program warns by.
+- Penalty rules the step: what counts is the deepest penetration that the softer penalty allows.
+- Symmetry: displacements are compared at all states.
+- Written too often: every k-th row, k of {factors}; per cent of the range.
 
 Savings are wall clock read from `<job>.timing.csv`. Three of them rest on ratios measured once: a plastic law adds
 {plastic} elastic elements to an element (0.05 to 0.2 by mesh and law), bulk viscosity {viscous} (0.5 to 0.6), and the measured time of output is

@@ -65,9 +65,11 @@ program (`tests/verification/block_to_block`).
 | claim (Figs. 18 to 22) | answer |
 |---|---|
 | classical NTS: anomalously large pressure at the ends | yes, on both sides |
-| two-pass NTS-AR: mitigated, but the pressure decreases at the ends | mitigated, yes; decreasing only if pressure is read as penalty times penetration (column end penetration); the nodal forces are slightly too high |
+| two-pass NTS-AR: mitigated, but the pressure decreases at the ends | mitigated, yes; decreasing only in penalty times penetration |
 | mortar: relatively uniform | yes, to 0.2 % |
 | VTS-PPT and NTS-mAR: perfectly uniform | yes, to 1e-10 |
+
+Penalty times penetration is the column end penetration; the nodal forces of two-pass NTS-AR are slightly too high there.
 """
 
 

@@ -24,11 +24,17 @@ The first that applies:
 
 | verdict | measure |
 |---|---|
-| blown up | the run ends early (a negative area, a value that is not finite), or {ENERGY_DRIFT:.0%} of the largest energy is not accounted for (by what leap-frog keeps, `total` of glstat, which a sound run keeps at any step), or the contact forces have made {ENERGY_CREATED:.0%} of it |
-| penetrating | a slave node is deeper than {DEPTH_SIDES:g} element side, or than {DEPTH_APPROACH:g} of the way that the bodies are driven together |
-| chattering | in the second half, the ups and downs of the contact force add up to more than {SWINGS:g} times its largest value (300 samples of the run, or all its cycles): two full losses of contact |
-| locked | patch and blocks: at the end the pressure along the surface scatters by more than {UNEVEN:.0%} of its mean ({ENDS} nodes at either end left out) |
+| blown up | the run ends early, or of the largest energy {ENERGY_DRIFT:.0%} is unaccounted for or {ENERGY_CREATED:.0%} made by contact (below) |
+| penetrating | a slave node is deeper than {DEPTH_SIDES:g} element side, or than {DEPTH_APPROACH:g} of the way that the bodies are driven |
+| chattering | the ups and downs of the contact force add up to more than {SWINGS:g} times its largest value (below) |
+| locked | patch and blocks: the pressure along the surface scatters by more than {UNEVEN:.0%} of its mean (below) |
 | stable | none of these |
+
+- Blown up: a run ends early for a negative area or a value that is not finite. The account is the sum that
+  leap-frog keeps (`total` of glstat), which a sound run keeps at any step; contact makes energy by its forces.
+- Penetrating: the way is that by which the bodies are driven together.
+- Chattering: in the second half, of 300 samples of the run or all its cycles; it takes two full losses of contact.
+- Locked: at the end, {ENDS} nodes at either end left out.
 
 ## Is the program's limit safe, and how sharp?
 
