@@ -34,8 +34,9 @@ def words(text: str) -> list[str]:
     return pieces + [word] if word else pieces
 
 
-def wrapped_line(line: str) -> list[str]:
-    """A line of prose in lines of at most WIDTH columns, where its pieces allow it."""
+def filled(paragraph: list[str]) -> list[str]:
+    """The lines of a paragraph or of an item of a list in lines of at most WIDTH columns, where its pieces allow it."""
+    line = " ".join([paragraph[0].rstrip(), *(one.strip() for one in paragraph[1:])])
     item = ITEM.match(line)
     indent = line[: len(line) - len(line.lstrip())]
     first, rest = (item[0], " " * len(item[0])) if item else (indent, indent)
@@ -46,7 +47,7 @@ def wrapped_line(line: str) -> list[str]:
             lines.append(now)
             now, blank = rest, ""
         now += blank + word
-    hard = "  " if line.endswith("  ") else ""
+    hard = "  " if paragraph[-1].endswith("  ") else ""
     return [*lines, now + hard]
 
 
@@ -65,11 +66,27 @@ def prose(text: str):
         yield number, line, False
 
 
-def wrapped(text: str) -> str:
-    """A page whose prose keeps to LONGEST columns."""
+def paragraphs(text: str):
+    """The lines of a page, those of a paragraph or of an item of a list together, and whether they are prose."""
     lines: list[str] = []
     for _, line, is_prose in prose(text):
-        lines += wrapped_line(line) if is_prose and len(line) > LONGEST else [line]
+        goes_on = is_prose and line.strip() and not ITEM.match(line) and not (lines and lines[-1].endswith("  "))
+        if lines and not goes_on:
+            yield lines, True
+            lines = []
+        if is_prose and line.strip():
+            lines.append(line)
+        else:
+            yield [line], False
+    if lines:
+        yield lines, True
+
+
+def wrapped(text: str) -> str:
+    """A page whose prose keeps to LONGEST columns: paragraphs with a longer line are filled anew."""
+    lines: list[str] = []
+    for paragraph, is_prose in paragraphs(text):
+        lines += filled(paragraph) if is_prose and max(map(len, paragraph)) > LONGEST else paragraph
     return "\n".join(lines)
 
 
