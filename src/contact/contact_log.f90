@@ -100,8 +100,9 @@ contains
     real(wp) :: lengths(2), rows(2)
 
     if (penalty > 0.0_wp .and. contact%penalty < 0.0_wp) then
-      call warn(log, 'interface '//to_text(contact%id)//': nodes of its slave are rigid, so that ' &
-        //'pressures without compliance may depend on each other: implicit springs of ' &
+      call warn(log, 'interface '//to_text(contact%id)//': nodes of its slave are rigid, or held ' &
+        //'before a rigid master, so that pressures without compliance may depend on each other: ' &
+        //'implicit springs of ' &
         //to_text(rigid_factor)//' times K L/A of the softer side are taken')
     else if (penalty > 0.0_wp) then
       call write_log(log, '  penalty: implicit springs of '//to_text(penalty)//' N/m^2, ' &

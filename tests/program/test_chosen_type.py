@@ -72,6 +72,8 @@ def same_bits(slideline, tmp_path, deck):
     (2, "match", {"lift": 1.0e-4}),
     (2, "match", {"implicit": True}),
     (5, "any mesh", {"columns": (3, 4)}),
+    (5, "any mesh", {"columns": (6, 3)}),
+    (5, "any mesh", {"more": [("*LOAD_SEGMENT", (1, 1.0e3, 0.0, 17, 13))]}),
     (5, "any mesh", {"bend": -0.02}),
     (5, "any mesh", {"more": [("*INITIAL_VELOCITY_GENERATION", (2, 2, None, 1.0))]}),
     (5, "any mesh", {"more": [("*LOAD_BODY_X", (1,))]}),

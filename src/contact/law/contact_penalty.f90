@@ -43,9 +43,11 @@ contains
       memory%slave_penalty = contact%penalty*estimate
       memory%master_penalty = master_value*estimate
     case (penalty_implicit)
-      ! Below 0: no compliance, which 0 stands for. Rows of a rigid slave may depend on others.
+      ! Below 0: no compliance, which 0 stands for. Rows of a rigid slave may depend on others, and
+      ! those of nodes that are held or led before a rigid master.
       factor = max(0.0_wp, contact%penalty)
-      if (.not. factor > 0.0_wp .and. is_rigid(contact%slave, model)) factor = rigid_factor
+      if (.not. factor > 0.0_wp .and. (is_rigid(contact%slave, model) .or. (is_rigid( &
+        contact%master, model) .and. is_held(contact%slave, model)))) factor = rigid_factor
       memory%slave_penalty = factor*softer_side(contact, model)
       memory%master_penalty = memory%slave_penalty
     end select
@@ -63,6 +65,18 @@ contains
     of_body = mark_rigid_nodes(model%rigids, model%mesh%n_node)
     is_rigid = any(of_body(surface%nodes))
   end function is_rigid
+
+  !> Whether nodes of a surface are held or led along x or y.
+  pure logical function is_held(surface, model)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    logical :: of_conditions(model%mesh%n_node)
+
+    of_conditions = .false.
+    of_conditions(model%conditions%fixed_nodes) = .true.
+    of_conditions(model%conditions%motions%node) = .true.
+    is_held = any(of_conditions(surface%nodes))
+  end function is_held
 
   !> The built-in estimate of the distributed penalty, N/m^2: SLSFAC K L/A of the softer side.
   pure function built_in_penalty(contact, model) result(estimate)

@@ -130,19 +130,31 @@ contains
     end do
   end function is_led
 
-  !> Whether nothing starts or pulls one face along the other: initial velocities, loads on nodes
-  !> and bodies, base acceleration.
+  !> Whether nothing starts or pulls one face along the other: initial velocities, loads on nodes,
+  !> edges and bodies, base acceleration.
   pure function is_at_rest(model, contact, along) result(at_rest)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: along(2)
     logical :: at_rest
     real(wp) :: v(2)
+    integer :: i
 
     associate (given => model%conditions)
       at_rest = .not. (any(abs(along(given%nodal_loads%direction)) > aside) &
         .or. any(abs(along(given%body_loads%direction)) > aside))
       if (allocated(given%rigid_loads)) at_rest = at_rest .and. size(given%rigid_loads) == 0
+      do i = 1, size(given%pressures)
+        associate (ends => model%mesh%coordinates(:, given%pressures(i)%nodes))
+          ! A pressure acts across its edge.
+          at_rest = at_rest .and. abs(along(2)*(ends(1, 2) - ends(1, 1)) &
+            - along(1)*(ends(2, 2) - ends(2, 1))) <= aside*norm2(ends(:, 2) - ends(:, 1))
+        end associate
+      end do
+      do i = 1, size(model%rigids)
+        if (model%rigids(i)%has_velocity) at_rest = at_rest .and. abs(dot_product( &
+          model%rigids(i)%velocity(1:2), along)) <= aside*norm2(model%rigids(i)%velocity)
+      end do
       if (.not. allocated(given%initial_velocity)) return
       v = sum(given%initial_velocity(:, contact%slave%nodes), 2)/size(contact%slave%nodes) &
         - sum(given%initial_velocity(:, contact%master%nodes), 2)/size(contact%master%nodes)
@@ -151,15 +163,15 @@ contains
     end associate
   end function is_at_rest
 
-  !> Whether each node of the slave stands before one of the master, both on straight lines side by
-  !> side. The chains run against each other.
+  !> Whether each node of the slave stands before one of the master, neighbours before neighbours,
+  !> both on straight lines side by side. The chains run against each other.
   pure function match(model, contact, along)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: along(2)
     logical :: match
     real(wp) :: across(2), apart(2), tolerance, gap
-    integer :: i, k
+    integer :: i, k, former
 
     match = .false.
     if (.not. norm2(along) > 0.0_wp) return
@@ -169,12 +181,15 @@ contains
       tolerance = exactly*norm2(x(:, slave(size(slave))) - x(:, slave(1)))/size(slave)
       k = size(master)
       do i = 1, size(slave)
+        former = k
         do while (k > 1)
           if (.not. dot_product(x(:, master(k)) - x(:, slave(i)), along) < -tolerance) exit
           k = k - 1
         end do
         apart = x(:, master(k)) - x(:, slave(i))
         if (i == 1) gap = dot_product(apart, across)
+        ! Nodes of a finer master between would get no force.
+        if (i > 1 .and. k /= former - 1) return
         if (abs(dot_product(apart, along)) > tolerance) return
         if (abs(dot_product(apart, across) - gap) > tolerance) return
         if (abs(dot_product(x(:, slave(i)) - x(:, slave(1)), across)) > tolerance) return

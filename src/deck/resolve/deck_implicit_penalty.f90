@@ -64,6 +64,7 @@ contains
             'interface '//to_text(other%id), model)
         end associate
       end do
+      call refuse_shared_bodies(deck, raw, i_contact, is_own, model)
       if (allocated(model%walls)) then
         do i = 1, size(model%walls)
           call refuse_shared(deck, entry, is_own, model%walls(i)%nodes, 'rigid wall ' &
@@ -80,6 +81,34 @@ contains
         model%conditions%skew_supports%node, 'a support along neither x nor y', model)
     end associate
   end subroutine check_nodes
+
+  !> One error for each rigid body, free to move, that another such interface presses too: the
+  !> pressures of both would depend on each other.
+  subroutine refuse_shared_bodies(deck, raw, i_contact, is_own, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    integer, intent(in) :: i_contact
+    logical, intent(in) :: is_own(:)   !! (n_node)
+    type(model_t), intent(in) :: model
+    logical :: is_others(size(is_own))
+    integer :: i
+
+    is_others = .false.
+    do i = 1, size(raw%contacts)
+      if (i == i_contact) cycle
+      if (raw%contacts(i)%contact%penalty_unit /= penalty_implicit) cycle
+      is_others(model%contacts(i)%slave%nodes) = .true.
+      is_others(model%contacts(i)%master%nodes) = .true.
+    end do
+    do i = 1, size(model%rigids)
+      associate (body => model%rigids(i))
+        if (all(body%is_fixed)) cycle
+        if (any(is_own(body%nodes)) .and. any(is_others(body%nodes))) call refuse(deck, &
+          raw%contacts(i_contact), 'share no rigid body that may move: part ' &
+          //to_text(model%parts(body%part)%id)//' is pressed by another interface of PUNIT 4 too')
+      end associate
+    end do
+  end subroutine refuse_shared_bodies
 
   !> One error where nodes are among those of the interface.
   subroutine refuse_shared(deck, entry, is_own, nodes, whose, model)

@@ -43,3 +43,7 @@ def check(run):
         if not held:
             total = sum(parts.where(part=part)["momentum_x"] for part in (1, 2))
             run.check(f"{name}: momentum / initial", np.ptp(total) / total[0], 0.0, 1.0e-12, "abs")
+
+    # No row moves a bar that is held: the body alone does, and the end of the bar stops it.
+    kinetic = run.program(scene(RIGID, (1, 1), False, False).fix(range(1, 2 * (N + 1) + 1), x=1, y=1)).table("glstat")["kinetic"]
+    run.check("free body, bar held, PEN -1: kinetic energy / initial", kinetic[-1] / kinetic[0], 0.0, 1.0e-2, "abs", "stopped")
