@@ -33,7 +33,8 @@ SUBJECTS = {
     "Quasi-static help": "dynamic_relaxation|mass_scaling|part_damping|constraints",
     "Implicit": "implicit|contact_patch_static",
     "Rigid bodies, walls, loads": "rigid|gravity|spin",
-    "Elements and waves": "element|assumed|hourglass|integration|bar_wave|free_flight|symmetric_plate|stable_step|energy_balance|histories",
+    "Elements and waves": "element|assumed|hourglass|integration|bar_wave|free_flight|symmetric_plate|stable_step|energy_balance"
+                          "|histories|resting_tiles",
     "Contact": ".",
 }
 

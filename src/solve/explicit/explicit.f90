@@ -25,6 +25,8 @@ module explicit_m
   use monitor_m, only : monitor_t
   use node_motion_m, only : leap_t, move_tile_nodes, move_special_nodes, move_damped_nodes
   use rank_report_m, only : report_exchange
+  use resting_tiles_m, only : is_tried, rests, is_flying, remember_tile, judge_tile, look_at_tile, &
+    report_rest
   use skew_motion_m, only : hold_skew_nodes
   use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
@@ -66,6 +68,7 @@ contains
     call report_failures(model, state, cycle%failures, monitor%log)
     if (model%erodes) call report_erosion(model, state, monitor%log)
     if (monitor%ranks%n > 1) call report_exchange(cycle%parcel, monitor%ranks, monitor%log)
+    call report_rest(monitor%ranks, cycle%rest, monitor%log)
     if (allocated(error)) return
     call judge_energies(monitor%snapshot%energies, monitor%log)
     call judge_ratio(monitor%snapshot%energies, monitor%log)
@@ -117,44 +120,88 @@ contains
     end do
   end subroutine run_cycles
 
-  !> Element forces; interior nodes move at once unless this cycle writes.
+  !> Element forces; interior nodes move at once unless this cycle writes. Behind the tiles to step
+  !> come those that rest: the team shares each kind evenly.
   subroutine advance_tiles(model, state, cycle, force)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(inout) :: cycle
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local) this thread's own
-    integer :: i_tile
-    logical :: sums
+    integer :: i, i_tile
 
-    sums = allocated(cycle%sums%parts)
-    if (sums) call sum_blocks(model%layout, state, cycle%sums)
+    if (allocated(cycle%sums%parts)) call sum_blocks(model%layout, state, cycle%sums)
+    if (size(cycle%rest%watched) > 0) then
+      !$omp do schedule(static)
+      do i = 1, size(cycle%rest%watched)
+        i_tile = cycle%rest%watched(i)
+        call look_at_tile(model%layout, i_tile, state%motion, cycle%rest)
+        if (rests(cycle%rest, i_tile)) then
+          call carry_tile(model, i_tile, state, cycle)
+        else
+          call step_tile(model, i_tile, state, cycle, force)
+        end if
+      end do
+      !$omp end do nowait
+    end if
     !$omp do schedule(static)
-    do i_tile = cycle%shares%first_tile, cycle%shares%last_tile
-      associate (tile => model%layout%tiles(i_tile))
-        if (model%erodes) then
-          call add_eroding_tile_forces(model, tile, state%motion, [state%time, state%dt_before], &
-            state%elements, force)
-        else
-          call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
-        end if
-        if (cycle%refines) call refine_limits(model, tile, state%motion, state%dt_before, &
-          state%elements)
-        cycle%checks(i_tile) = check_tile(tile, state%elements)
-        call share_tile_forces(tile, force, state%force_slots)
-        if (sums) call sum_motion(tile%first_node, tile%last_node, state, &
-          cycle%sums%parts(:, i_tile))
-        if (cycle%writes) then
-          call keep_tile_forces(tile, force, state%internal_force)
-        else if (allocated(state%node_damping)) then
-          call move_damped_nodes(cycle%leap, 0, tile%first_node, tile%last_node, force, state)
-        else
-          call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, force, &
-            state%inverse_mass, state%motion)
-        end if
-      end associate
+    do i = 1, size(cycle%rest%stepped)
+      call step_tile(model, cycle%rest%stepped(i), state, cycle, force)
     end do
     !$omp end do
   end subroutine advance_tiles
+
+  !> Step the elements of one tile.
+  subroutine step_tile(model, i_tile, state, cycle, force)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_tile
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(inout) :: cycle
+    real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local)
+    real(wp), allocatable :: before(:) !! values of its elements, where the tile may come to rest
+
+    associate (tile => model%layout%tiles(i_tile))
+      if (is_tried(cycle%rest, i_tile)) call remember_tile(model, i_tile, state, cycle%rest, before)
+      if (model%erodes) then
+        call add_eroding_tile_forces(model, tile, state%motion, [state%time, state%dt_before], &
+          state%elements, force)
+      else
+        call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+      end if
+      if (cycle%refines) call refine_limits(model, tile, state%motion, state%dt_before, &
+        state%elements)
+      cycle%checks(i_tile) = check_tile(tile, state%elements)
+      call share_tile_forces(tile, force, state%force_slots)
+      if (allocated(before)) call judge_tile(model, i_tile, before, force, state, cycle%rest)
+      if (allocated(cycle%sums%parts)) call sum_motion(tile%first_node, tile%last_node, state, &
+        cycle%sums%parts(:, i_tile))
+      if (cycle%writes) then
+        call keep_tile_forces(tile, force, state%internal_force)
+      else if (allocated(state%node_damping)) then
+        call move_damped_nodes(cycle%leap, 0, tile%first_node, tile%last_node, force, state)
+      else
+        call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, force, &
+          state%inverse_mass, state%motion)
+      end if
+    end associate
+  end subroutine step_tile
+
+  !> What is left to do for a tile that rests.
+  subroutine carry_tile(model, i_tile, state, cycle)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_tile
+    type(state_t), intent(inout) :: state
+    type(explicit_cycle_t), intent(inout) :: cycle
+
+    associate (tile => model%layout%tiles(i_tile))
+      ! What several processes have come to stands where the first tile has its own.
+      if (i_tile == 1 .and. cycle%rest%watches_all) &
+        cycle%checks(i_tile) = check_tile(tile, state%elements)
+      if (allocated(cycle%sums%parts)) call sum_motion(tile%first_node, tile%last_node, state, &
+        cycle%sums%parts(:, i_tile))
+      if (is_flying(cycle%rest, i_tile) .and. .not. cycle%writes) call move_tile_nodes(cycle%leap, &
+        tile%first_node, tile%last_node, cycle%rest%no_force, state%inverse_mass, state%motion)
+    end associate
+  end subroutine carry_tile
 
   !> Contact forces that follow all others, which are summed before.
   subroutine press_nodes(model, state, monitor, cycle)
@@ -165,9 +212,11 @@ contains
     integer :: i
 
     !$omp do schedule(static)
-    do i = 1, size(cycle%borders%runs, 2)
-      call sum_special_forces(model%layout, state%force_slots, cycle%borders%runs(1, i), &
-        cycle%borders%runs(2, i), state%internal_force)
+    do i = 1, size(cycle%rest%summed)
+      associate (run => cycle%borders%runs(:, cycle%rest%summed(i)))
+        call sum_special_forces(model%layout, state%force_slots, run(1), run(2), &
+          state%internal_force)
+      end associate
     end do
     !$omp end do
     !$omp master
@@ -186,8 +235,9 @@ contains
     integer :: i
 
     !$omp do schedule(static)
-    do i = 1, size(cycle%borders%runs, 2)
-      associate (first => cycle%borders%runs(1, i), last => cycle%borders%runs(2, i))
+    do i = 1, size(cycle%rest%summed)
+      associate (first => cycle%borders%runs(1, cycle%rest%summed(i)), &
+        last => cycle%borders%runs(2, cycle%rest%summed(i)))
         if (.not. cycle%presses) call sum_special_forces(model%layout, state%force_slots, first, &
           last, state%internal_force)
         if (.not. cycle%writes) then
@@ -236,8 +286,9 @@ contains
     end do
     !$omp end do
     !$omp do schedule(static)
-    do i = 1, size(cycle%borders%runs, 2)
-      associate (first => cycle%borders%runs(1, i), last => cycle%borders%runs(2, i))
+    do i = 1, size(cycle%rest%summed)
+      associate (first => cycle%borders%runs(1, cycle%rest%summed(i)), &
+        last => cycle%borders%runs(2, cycle%rest%summed(i)))
         if (allocated(state%node_damping)) then
           call move_damped(model, cycle%leap, first, last, state)
         else

@@ -40,6 +40,7 @@ module explicit_cycle_m
   use ranks_m, only : ranks_t, share_error
   use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
   use restart_plan_m, only : wanted_files
+  use resting_tiles_m, only : rest_t, plan_rest, follow_rest
   use skew_motion_m, only : remember_common, move_common
   use state_m, only : state_t
   use wall_motion_m, only : count_walls
@@ -70,6 +71,7 @@ module explicit_cycle_m
     type(pressing_t), allocatable :: pressing(:) !! (interfaces) where these are found
     logical :: refines = .false.     !! steps of elements are not those of their density alone
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
+    type(rest_t) :: rest             !! tiles that need no step
     type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
                                                  !! come to
     integer :: n_check = 1           !! so many of them speak for all: of several processes the
@@ -119,6 +121,8 @@ contains
         call plan_parcel(cycle%borders, cycle%shares, ranks%mine, state%elements, cycle%sums, &
           cycle%parcel)
       end if
+      call plan_rest(model, cycle%shares, size(cycle%borders%runs, 2), ranks%n > 1 &
+        .or. allocated(cycle%sums%parts), cycle%rest)
     end associate
     cycle%reason = 'termination time reached'
     if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
@@ -306,6 +310,7 @@ contains
 
     if (allocated(state%elements%n_failed)) call follow_failures(model, state, cycle%failures, &
       monitor%log)
+    call follow_rest(model, cycle%rest)
     if (cycle%finished) return
     if (.not. cycle%writes) then
       call count_sums(cycle%sums, state%external_work, state%damping_work)
