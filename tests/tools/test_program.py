@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import conftest
+import numpy as np
 import pytest
 
 import slideline_tools
@@ -49,6 +50,20 @@ def test_run_without_states_has_its_histories(slideline, tmp_path):
 def test_run_refuses_by_name(slideline, tmp_path, values, message):
     with pytest.raises(program.RunError, match=message):
         slideline_tools.run(DECK, tmp_path, program=slideline, **values)
+
+
+def test_refused_run_has_no_results_of_an_earlier_one(slideline, tmp_path):
+    slideline_tools.run(DECK, tmp_path, program=slideline, endtim=1e-6)
+    outcome = slideline_tools.run(DECK, tmp_path, program=slideline, check=False, ctype=99)
+    assert outcome.status == program.REFUSED
+    for ask in (lambda: outcome.history("rcforc"), lambda: outcome.results):
+        with pytest.raises(program.RunError, match="refused"):
+            ask()
+
+
+def test_run_refuses_an_array(tmp_path):
+    with pytest.raises(program.RunError, match="expected a number"):
+        slideline_tools.run(DECK, tmp_path, dt=np.array([1e-7, 2e-7]))
 
 
 def test_run_that_fails(slideline, tmp_path):

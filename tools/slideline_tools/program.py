@@ -64,13 +64,20 @@ class Outcome:
         """Whether it ended with status 0."""
         return self.status == 0
 
+    def require_run(self) -> None:
+        """A refused deck has not run: what its folder may hold is of an earlier run."""
+        if self.status == REFUSED:
+            raise RunError(failure(self), self)
+
     @property
     def results(self) -> Results:
         """States, fields and histories. ResultsError where the deck asks for no states."""
+        self.require_run()
         return Results(self.folder / f"{self.job}.vtkhdf")
 
     def history(self, name: str) -> History:
         """A table such as 'glstat' or 'rcforc', from its CSV file."""
+        self.require_run()
         path = self.folder / f"{self.job}.{name}.csv"
         if not path.exists():
             there = [file.name[len(self.job) + 1:-len(".csv")]
@@ -94,7 +101,7 @@ def words_of(parameters: typing.Mapping[str, typing.Any]) -> list[str]:
     """Arguments of the command line: ctype=5 for what every deck has, p:NAME=VALUE for the others."""
     words = []
     for name, value in parameters.items():
-        value = value.item() if hasattr(value, "item") else value
+        value = value.item() if getattr(value, "size", 0) == 1 else value
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):
             raise RunError(f"{name}={value!r}: expected a number or a text")
         base, dot, number = name.partition(".")
