@@ -11,7 +11,7 @@ module contact_judging_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
-  use rows_behind_m, only : rows_t, find_rows, face_pressure, elastic_energy, has_stress
+  use rows_behind_m, only : face_rows_t, find_rows, face_pressure, elastic_energy, has_stress
   use share_text_m, only : percent
   use snapshot_filling_m, only : fill_slaves, join_slaves
   use snapshot_m, only : snapshot_t, interface_result_t
@@ -38,7 +38,7 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     logical, intent(in) :: plots !! rows of slave nodes are in the snapshot already
-    type(rows_t), intent(inout) :: rows
+    type(face_rows_t), intent(inout) :: rows
     type(snapshot_t), intent(inout) :: snapshot
     integer :: i
 
@@ -67,7 +67,7 @@ contains
   subroutine judge(model, state, rows, i, contact, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    type(rows_t), intent(in) :: rows
+    type(face_rows_t), intent(in) :: rows
     integer, intent(in) :: i
     type(contact_t), intent(in) :: contact
     type(snapshot_t), intent(inout) :: snapshot
@@ -92,7 +92,7 @@ contains
   subroutine add_side(model, state, rows, surface, pressure, side, row_stress)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    type(rows_t), intent(in) :: rows
+    type(face_rows_t), intent(in) :: rows
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: pressure(:) !! of its nodes
     type(side_t), intent(inout) :: side

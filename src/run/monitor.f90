@@ -16,7 +16,7 @@ module monitor_m
   use ranks_m, only : ranks_t
   use restart_plan_m, only : restarts_t, plan_restarts
   use results_file_m, only : results_file_t, run_info_t, open_results, append_state, finish_results
-  use rows_behind_m, only : rows_t
+  use rows_behind_m, only : face_rows_t
   use snapshot_m, only : snapshot_t
   use snapshot_filling_m, only : start_snapshot
   implicit none
@@ -37,7 +37,7 @@ module monitor_m
     type(results_file_t) :: results
     type(histories_t) :: histories
     type(snapshot_t) :: snapshot
-    type(rows_t) :: rows          !! elements behind contact surfaces
+    type(face_rows_t) :: rows          !! elements behind contact surfaces
     type(log_t) :: log
     type(clock_t) :: clock
     type(progress_t) :: progress

@@ -9,17 +9,17 @@ module rows_behind_m
   use state_m, only : state_t
   implicit none
   private
-  public :: rows_t, find_rows, face_pressure, elastic_energy, has_stress
+  public :: face_rows_t, find_rows, face_pressure, elastic_energy, has_stress
 
   !> Corners, and edges, of an element; a triangle repeats its third node.
   integer, parameter :: n_corner = 4
 
   !> What lies across the edges of the elements behind contact surfaces.
-  type :: rows_t
+  type :: face_rows_t
     integer, allocatable :: elements(:)  !! (n_row) rising
     integer, allocatable :: across(:, :) !! (4, n_row) element across the edge from node k to the
                                          !! next, 0: none
-  end type rows_t
+  end type face_rows_t
 
 contains
 
@@ -27,7 +27,7 @@ contains
   !> then.
   subroutine find_rows(model, rows)
     type(model_t), intent(in) :: model
-    type(rows_t), intent(inout) :: rows
+    type(face_rows_t), intent(inout) :: rows
     logical, allocatable :: is_behind(:)
     integer :: i
 
@@ -45,7 +45,7 @@ contains
   !> Neighbours: an edge that one element walks from a to b, the other walks from b to a.
   subroutine find_across(model, rows)
     type(model_t), intent(in) :: model
-    type(rows_t), intent(inout) :: rows
+    type(face_rows_t), intent(inout) :: rows
     integer, allocatable :: first(:), next(:) !! edges of the rows by the node that they start at
     integer :: i, k, edge, slot, a
 
@@ -79,7 +79,7 @@ contains
   !> Node at which an edge of the rows ends.
   pure integer function end_of(model, rows, edge)
     type(model_t), intent(in) :: model
-    type(rows_t), intent(in) :: rows
+    type(face_rows_t), intent(in) :: rows
     integer, intent(in) :: edge
 
     associate (slot => model%layout%element_slot(rows%elements((edge - 1)/n_corner + 1)))
@@ -105,7 +105,7 @@ contains
   function face_pressure(model, state, rows, element, ends) result(pressure)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    type(rows_t), intent(in) :: rows
+    type(face_rows_t), intent(in) :: rows
     integer, intent(in) :: element, ends(2) !! behind the face; nodes of the face
     real(wp) :: pressure
     real(wp) :: ends_at(2, 2), normal(2), depth, beyond_depth
@@ -144,7 +144,7 @@ contains
   !> The element across the edge opposite of a face, 0: none, or a triangle.
   pure function element_beyond(model, rows, element, ends) result(beyond)
     type(model_t), intent(in) :: model
-    type(rows_t), intent(in) :: rows
+    type(face_rows_t), intent(in) :: rows
     integer, intent(in) :: element, ends(2)
     integer :: beyond
     integer :: i, k

@@ -5,7 +5,7 @@ The program is the one of the tests of a Release build where MPI is installed (s
 SLIDELINE_MPI): the objects of the ordinary program linked with the other module of src/parallel. One process of it
 is held against two to eight, more than the machine may have. Each scene has another type and its own features:
 loads, damping, gravity, walls, rigid bodies, points that fail, friction, round bodies, elements that leave, one
-surface with itself, masses that grow; there are more tiles than processes, and fewer.
+surface with itself, masses that grow, all histories; there are more tiles than processes, and fewer.
 """
 import contextlib
 import os
@@ -20,6 +20,7 @@ import h5py
 import pytest
 from conftest import numbers
 from erosion_decks import penetration
+from history_decks import busy_block
 from impact_decks import plates
 from meshes import Deck, grid
 from round_decks import rings
@@ -64,6 +65,11 @@ def settling():
     return deck.output(plot=2.0e-3, glstat=2.0e-4, matsum=1.0e-3).text()
 
 
+def ended():
+    """A row for every history, and a rigid body that ends the run."""
+    return busy_block(fine=4).add("*TERMINATION_BODY", (2, 2, 1.0, -0.004)).text()
+
+
 #: scene -> (deck, cycles, processes, threads, words)
 SCENES = {
     "rigid body and wall, type 2": (lambda: anvil(2), 60, 3, 1),
@@ -74,6 +80,7 @@ SCENES = {
     "round, type 6": (lambda: rings(6), 60, 4, 2),
     "mass that grows, type 7": (lambda: growing(7), 60, 2, 1),
     "no contact, gravity": (settling, 60, 5, 1),
+    "histories and an end before its time, type 3": (ended, 60, 3, 1),
 }
 
 
@@ -109,7 +116,8 @@ def contents(folder):
 def log_of(folder):
     """What the log says of the run: not the command, its times and its build."""
     lines = next(folder.glob("*.log")).read_text().splitlines()
-    return [line for line in lines[:lines.index(" *** termination time reached ***")]
+    end = next(i for i, line in enumerate(lines) if line.startswith(" *** "))
+    return [line for line in lines[:end + 1]
             if "command line" not in line and not line.startswith(("restart file", "exchange:"))]
 
 
@@ -131,6 +139,7 @@ def test_files_are_those_of_one_process(tmp_path, scene):
     log = "\n".join(log_of(tmp_path / "one"))
     assert "leave" not in scene or "leave the mesh" in log
     assert "fail" not in scene or "points fail" in log
+    assert ("end before" in scene) == ("*TERMINATION_BODY" in log)
     if "grows" in scene:
         added = numbers(tmp_path / "one" / "job.glstat.csv", "added_mass")
         assert added[-1] > added[0]

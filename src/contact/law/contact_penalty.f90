@@ -161,7 +161,8 @@ contains
         high = max(high, model%materials(part%material)%bulk)
       end associate
     end do
-    ratio = high/low
+    ratio = huge(1.0_wp)
+    if (low > 0.0_wp) ratio = high/low
   end function spread_of_stiffness
 
   !> Area of an element at time zero, m^2.

@@ -42,8 +42,12 @@ contains
             'is no rigid part (*MAT_RIGID)')
         case default
           ending%where = findloc(model%contacts(:n_told(model%contacts))%id, ending%id, 1)
-          if (ending%where == 0) call reject_field(deck, entry%id_place, &
-            'is no interface of this deck')
+          if (ending%where == 0) then
+            call reject_field(deck, entry%id_place, 'is no interface of this deck')
+          else if (model%contacts(ending%where)%is_self) then
+            call reject_field(deck, entry%id_place, &
+              'is an interface of a surface with itself, whose forces cancel')
+          end if
         end select
       end associate
     end do

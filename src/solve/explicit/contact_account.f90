@@ -151,8 +151,8 @@ contains
     type(state_t), intent(in) :: state
     type(log_t), intent(inout) :: log
 
-    if (.not. state%contacts(i)%watch%balance > 0.0_wp) return
-    call write_log(log, 'interface '//to_text(model%contacts(i)%id)//': impacts have taken ' &
+    if (state%contacts(i)%watch%balance > 0.0_wp) call write_log(log, 'interface ' &
+      //to_text(model%contacts(i)%id)//': impacts have taken ' &
       //to_text(state%contacts(i)%watch%balance)//trim(merge(' J per radian', ' J/m         ', &
       model%is_round))//', '//percent(state%contacts(i)%watch%balance, state%largest_energy) &
       //' of the largest energy so far; finer meshes lose less')
