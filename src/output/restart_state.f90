@@ -197,6 +197,7 @@ contains
 
     call enter(archive, name)
     call keep(archive, 'cycle', estimate%cycle)
+    call keep(archive, 'stride', estimate%stride)
     call keep(archive, 'n', estimate%n)
     call keep(archive, 'misfit', estimate%misfit)
     call keep(archive, 'load', estimate%load)

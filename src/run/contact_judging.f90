@@ -23,6 +23,8 @@ module contact_judging_m
 
   !> Springs that store more than this many times what the elements beside them do are soft.
   real(wp), parameter :: soft = 2.0_wp
+  !> The second difference of noise that is not correlated has so many times its square.
+  real(wp), parameter :: of_noise = 6.0_wp
 
   !> What one side of an interface adds.
   type :: side_t
@@ -159,7 +161,10 @@ contains
     type(side_t), intent(in) :: side
     type(interface_result_t), intent(in) :: result
     type(contact_estimate_t), intent(inout) :: estimate
+    real(wp) :: ratio
 
+    ratio = real(cycle - estimate%cycle, wp)/max(estimate%stride, 1)
+    estimate%stride = cycle - estimate%cycle
     estimate%cycle = cycle
     estimate%n = estimate%n + 1
     estimate%misfit = estimate%misfit + side%misfit
@@ -173,8 +178,9 @@ contains
       estimate%rows = estimate%rows + side%row_energy
     end if
     if (estimate%n > 2) then
-      estimate%jumps = estimate%jumps + sum((result%slave_force - 2.0_wp*estimate%force &
-        + estimate%former)**2)
+      estimate%jumps = estimate%jumps + sum((result%slave_force - estimate%force &
+        - ratio*(estimate%force - estimate%former))**2) &
+        *of_noise/(1.0_wp + (1.0_wp + ratio)**2 + ratio**2)
       estimate%forces = estimate%forces + sum(result%slave_force**2)
     end if
     estimate%former = estimate%force
@@ -202,8 +208,6 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: i
     character(:), allocatable :: text
-    ! The second difference of noise that is not correlated has 6 times its square.
-    real(wp), parameter :: of_noise = 6.0_wp
 
     text = 'contact pressure and the stress behind it differ by ' &
       //percent(sqrt(estimate%misfit), sqrt(estimate%load))//' (r.m.s. of ' &

@@ -10,6 +10,7 @@ module contact_estimate_m
   !> Sums and extremes; nothing of time zero, where elements have no stress yet.
   type :: contact_estimate_t
     integer :: cycle = 0               !! of the last instant
+    integer :: stride = 0              !! cycles between that one and the one before
     integer :: n = 0                   !! instants
     real(wp) :: misfit = 0.0_wp        !! sum of (p - row stress)^2 a
     real(wp) :: load = 0.0_wp          !! sum of p^2 a
@@ -19,7 +20,8 @@ module contact_estimate_m
     real(wp) :: rows = 0.0_wp          !! sum of the elastic energy of the rows behind, J/m
     real(wp) :: force(2) = 0.0_wp      !! on the slave at the last instant, N/m
     real(wp) :: former(2) = 0.0_wp     !! at the one before
-    real(wp) :: jumps = 0.0_wp         !! sum of squares of second differences of that force
+    real(wp) :: jumps = 0.0_wp         !! sum of squares of second differences of that
+                                       !! force, as of equal strides
     real(wp) :: forces = 0.0_wp        !! sum of its squares over the same instants
     real(wp) :: least_margin = huge(1.0_wp) !! smallest of stable step over step
   end type contact_estimate_t

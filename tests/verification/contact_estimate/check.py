@@ -15,8 +15,8 @@ ROUND_OFF = 1.0e-13
 TILT = 1.0e-6  # faces turn by strains of p/E
 
 
-def blocks(title, meshes, form=13, points=4, implicit=True):
-    """Deck of two bodies, lower and upper, and the node ids of each."""
+def blocks(title, meshes, form=13, points=4, implicit=True, every=(1.0, 1.0, 1.0)):
+    """Deck of two bodies, lower and upper, and the node ids of each; sleout, states and rcforc `every` so long."""
     deck = Deck(title)
     if implicit:
         deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 1.0))
@@ -25,7 +25,8 @@ def blocks(title, meshes, form=13, points=4, implicit=True):
     for part, mesh in enumerate(meshes, 1):
         deck.part(part, section=1).elastic(RHO, YOUNG, 0.0, part)
         ids.append(deck.mesh(*mesh, part=part))
-    return deck.add("*DATABASE_SLEOUT", (1.0,)).output(plot=1.0, glstat=1.0, rcforc=1.0), *ids
+    sleout, plot, rcforc = every
+    return deck.add("*DATABASE_SLEOUT", (sleout,)).output(plot=plot, glstat=1.0, rcforc=rcforc), *ids
 
 
 def patch(kind, form=13, skew=0.35):
@@ -120,7 +121,30 @@ def check_step(run):
               1e-12, source="ECDT 2 keeps it")
 
 
+def check_roughness(run):
+    """Second differences of the force over all instants, those of sleout and of plot states, from its history."""
+    deck, below, above = blocks("roughness", (grid(2, 2, origin=(0.0, -1.0)), grid(2, 2)), points=None, implicit=False,
+                                every=(5.0e-3, 7.0e-3, 1.0e-3))
+    deck.control(0.2, dt=1.0e-3).fix(below[:3], x=1, y=1)
+    deck.add("*INITIAL_VELOCITY_NODE", *[(int(node), 0.0, -1.0) for node in above])
+    deck.node_set(1, above[:3]).node_set(2, below[:-4:-1]).contact(1, 2, 1, 1.0e6, unit=1)
+    result = run.program(deck)
+    slave = result.table("rcforc").where(side="slave")
+    force = np.stack([slave["fx"], slave["fy"]], 1)
+    instants = sorted({round(time / 1.0e-3) for time in (*result.table("sleout")["time"], *result.times)} - {0})
+    jumps = forces = 0.0
+    for a, b, c in zip(instants, instants[1:], instants[2:]):
+        r = (c - b) / (b - a)
+        jumps += np.sum((force[c] - force[b] - r * (force[b] - force[a])) ** 2) / (1 + (1 + r) ** 2 + r ** 2)
+        forces += np.sum(force[c] ** 2)
+    log = (result.folder / f"{result.job}.log").read_text()
+    told = float(re.search(r"the force is rough by ([\d.]+) %", log)[1])
+    run.check("roughness of the force in the summary, two series of instants", told, 100.0 * np.sqrt(jumps / forces), 0.06, "abs",
+              "its definition, from rcforc of every cycle; one decimal")
+
+
 def check(run):
+    check_roughness(run)
     check_patch(run)
     check_column(run)
     check_step(run)
