@@ -87,7 +87,8 @@ contains
     end associate
   end function end_of
 
-  !> Whether an element has a stress: not those of rigid bodies, nor those that have left the mesh.
+  !> Whether the stress of an element bears what presses on it: not in rigid bodies, where elements
+  !> have left the mesh, nor where all nodes are held or led.
   pure function has_stress(model, state, element) result(has)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -96,7 +97,8 @@ contains
 
     associate (slot => model%layout%element_slot(element))
       has = .not. (model%materials(model%parts(slot_part(model%layout, slot))%material)%is_rigid &
-        .or. is_gone(state%elements, slot))
+        .or. is_gone(state%elements, slot)) &
+        .and. any(state%inverse_mass(:, model%layout%slot_nodes(:, slot)) > 0.0_wp)
     end associate
   end function has_stress
 

@@ -83,6 +83,17 @@ def check_patch(run):
         run.check(f"{TYPES[kind]}: and it is no small number", final(result)["estimate"], 1e-3, 0.0, "min")
 
 
+def check_held(run):
+    """A body that is held everywhere has no stress to be judged by."""
+    upper, lower = (static_patch.block_grid(lines(n, 0.35), bottom) for n, bottom in ((5, 0.0), (4, -1.0)))
+    deck, below, above = blocks("held", (lower, upper))
+    deck.curve(1, [(0.0, 0.0), (1.0, PRESSURE)]).fix(below, x=1, y=1).fix([above[-3]], x=1)
+    load_edges(deck, above[-6:])
+    deck.node_set(1, above[:6]).node_set(2, below[:-6:-1]).contact(1, 2, 5, SOFT, unit=1)
+    run.check("pressed on a held body: estimate", final(run.program(deck))["estimate"], 0.0, ROUND_OFF, "abs",
+              "uniform above, no stress below")
+
+
 def column(rows, weight):
     """Two unit squares of `rows` elements each, one above the other, under their own weight."""
     deck, below, above = blocks(f"column, {rows} rows", (grid(1, rows, origin=(0.0, -1.0)), grid(1, rows)))
@@ -146,5 +157,6 @@ def check_roughness(run):
 def check(run):
     check_roughness(run)
     check_patch(run)
+    check_held(run)
     check_column(run)
     check_step(run)
