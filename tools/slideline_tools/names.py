@@ -6,7 +6,7 @@ import difflib
 import typing
 
 #: least likeness (difflib) of a name that is offered instead
-ALIKE = 0.5
+ALIKE = 0.65
 #: a line of a terminal
 LINE = 79
 

@@ -142,7 +142,7 @@ def failure(outcome: Outcome) -> str:
     """Why a run has not ended normally."""
     said = outcome.said or "nothing on standard error"
     said = said if len(said) <= MOST_MESSAGE else said[:MOST_MESSAGE] + " ..."
-    unknown = re.search(r"p:(\S+) on the command line: the deck has no such parameter$", said, re.M)
+    unknown = re.search(r"p:(\S+) on the command line: the deck has no such parameter(?:;.*)?$", said, re.M)
     hint = nearest(unknown[1], OVERRIDES) if unknown else ""
     words = ENDINGS.get(outcome.status, f"status {outcome.status}")
     return f"{outcome.folder / outcome.job}: {words}: {said}{hint and hint + ' of what the command line knows'}"
