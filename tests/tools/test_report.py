@@ -113,6 +113,22 @@ def test_report_shows_how_good_the_answer_of_contact_is(tmp_path):
     assert 0.0 < sleout["estimate"].max()
 
 
+@pytest.mark.parametrize("name, title, sums", [("elout", "Elements", ()), ("rbdout", "Rigid bodies", ()),
+                                               ("bndout", "Loads and prescribed motion", ()),
+                                               ("nodfor", "Groups of nodes", ("fx", "fy"))])
+def test_report_draws_histories_that_were_asked_for(tmp_path, slideline, name, title, sums):
+    """A curve of each column in which something happens; of a group of nodes the sum over them."""
+    deck = conftest.ROOT / "doc" / "examples" / f"database_{name}.k"
+    folder = run_program(slideline, deck, tmp_path / "run")
+    page, rows = read_page(write_report(folder)), read_csv(folder / f"{deck.stem}.{name}.csv")
+    drawn = [one["alt"] for one in page.pictures if one["alt"].startswith(f"{title}: ")]
+    assert drawn and len(set(drawn)) == len(drawn)
+    told = [rows.where(group=rows["group"][0], time=rows["time"][-1])[column].sum() for column in sums]
+    told = [one for one in told if abs(one) > 1.0e-9]
+    assert bool(told) == bool(sums)
+    assert all(f"group {rows['group'][0]} {one:.6g}" in page.text for one in told)
+
+
 @pytest.fixture(scope="module")
 def written(collision):
     """Its report in the default place."""

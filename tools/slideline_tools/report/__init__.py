@@ -10,6 +10,7 @@ import pathlib
 
 from slideline_tools import UserError, __version__
 from slideline_tools.report import sections
+from slideline_tools.report.asked import asked
 from slideline_tools.report.gather import Gathered, gather
 from slideline_tools.report.html import Section, page, paragraph, text, tiles
 from slideline_tools.report.walls import walls
@@ -27,6 +28,7 @@ def report_html(run: Gathered, fields=(), states=(), scale: float = 1.0) -> str:
              sections.fields(run, list(fields), chosen, scale) if fields
              else attempt("fields", "Fields", sections.fields, run, [], chosen, scale),
              attempt("nodes", "Nodes", sections.nodes, run),
+             attempt("asked", "Elements, bodies and boundaries", asked, run),
              attempt("model", "Parts, materials, interfaces", sections.understood, run),
              attempt("timing", "Timing", sections.timing, run),
              sections.savings(run), sections.files(run)]
