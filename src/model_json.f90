@@ -61,11 +61,11 @@ contains
       call put_member(buffer, 'x', reals(mesh%coordinates(1, :)))
       call put_member(buffer, 'y', reals(mesh%coordinates(2, :)))
       call put_member(buffer, 'element_ids', integers(mesh%element_id))
-      call put_member(buffer, 'element_parts', integers(model%parts(mesh%element_part)%id))
+      call put_member(buffer, 'element_parts', integers([model%parts(mesh%element_part)%id]))
       call put_member(buffer, 'element_nodes', &
-        integers(mesh%node_id(reshape(mesh%element_nodes, [4*mesh%n_element]))))
+        integers([mesh%node_id(reshape(mesh%element_nodes, [4*mesh%n_element]))]))
       call put_member(buffer, 'history_nodes', &
-        integers(mesh%node_id(model%controls%output%history_nodes)))
+        integers([mesh%node_id(model%controls%output%history_nodes)]))
     end associate
     if (.not. allocated(model%conditions%initial_velocity)) return
     call put_member(buffer, 'velocity_x', reals(model%conditions%initial_velocity(1, :)))
@@ -101,19 +101,19 @@ contains
     do i = 1, size(model%node_sets)
       associate (set => model%node_sets(i))
         call put_entry(nodes, '"id": '//to_text(set%id)//', "title": ' &
-          //json_text(text_of(set%title))//', "nodes": '//integers(model%mesh%node_id(set%nodes)))
+          //json_text(text_of(set%title))//', "nodes": '//integers([model%mesh%node_id(set%nodes)]))
       end associate
     end do
     do i = 1, size(model%part_sets)
       associate (set => model%part_sets(i))
         call put_entry(parts, '"id": '//to_text(set%id)//', "parts": ' &
-          //integers(model%parts(set%parts)%id))
+          //integers([model%parts(set%parts)%id]))
       end associate
     end do
     do i = 1, size(model%segment_sets)
       associate (set => model%segment_sets(i))
         call put_entry(segments, '"id": '//to_text(set%id)//', "nodes": ' &
-          //integers(model%mesh%node_id(reshape(set%nodes, [size(set%nodes)]))))
+          //integers([model%mesh%node_id(reshape(set%nodes, [size(set%nodes)]))]))
       end associate
     end do
     call put_list(buffer, 'node_sets', nodes)
@@ -145,26 +145,26 @@ contains
     integer :: i
 
     associate (conditions => model%conditions, id => model%mesh%node_id)
-      call put_column(columns, 'node', integers(id(conditions%fixed_nodes)))
+      call put_column(columns, 'node', integers([id(conditions%fixed_nodes)]))
       call put_column(columns, 'direction', integers(conditions%fixed_directions))
       call put_columns(buffer, 'fixed', columns)
       if (allocated(conditions%skew_supports)) then
         associate (supports => conditions%skew_supports)
-          call put_column(columns, 'node', integers(id(supports%node)))
+          call put_column(columns, 'node', integers([id(supports%node)]))
           call put_column(columns, 'x', reals([(supports(i)%normal(1), i=1, size(supports))]))
           call put_column(columns, 'y', reals([(supports(i)%normal(2), i=1, size(supports))]))
         end associate
         call put_columns(buffer, 'skew_supports', columns)
       end if
       if (allocated(conditions%lumped_masses)) then
-        call put_column(columns, 'node', integers(id(conditions%lumped_masses%node)))
-        call put_column(columns, 'mass', reals(conditions%lumped_masses%mass))
+        call put_column(columns, 'node', integers([id(conditions%lumped_masses%node)]))
+        call put_column(columns, 'mass', reals([conditions%lumped_masses%mass]))
         call put_columns(buffer, 'lumped_masses', columns)
       end if
       if (.not. allocated(conditions%common_motions)) return
       do i = 1, size(conditions%common_motions)
         associate (motion => conditions%common_motions(i))
-          call put_entry(columns, '"nodes": '//integers(id(motion%nodes))//', "x": ' &
+          call put_entry(columns, '"nodes": '//integers([id(motion%nodes)])//', "x": ' &
             //truth(motion%along(1))//', "y": '//truth(motion%along(2)))
         end associate
       end do
@@ -179,21 +179,21 @@ contains
     type(buffer_t) :: columns
 
     associate (motions => model%conditions%motions)
-      call put_column(columns, 'node', integers(model%mesh%node_id(motions%node)))
-      call put_column(columns, 'direction', integers(motions%direction))
-      call put_column(columns, 'kind', integers(motions%kind))
-      call put_column(columns, 'curve', integers(model%curves(motions%curve)%id))
-      call put_column(columns, 'scale', reals(motions%scale))
+      call put_column(columns, 'node', integers([model%mesh%node_id(motions%node)]))
+      call put_column(columns, 'direction', integers([motions%direction]))
+      call put_column(columns, 'kind', integers([motions%kind]))
+      call put_column(columns, 'curve', integers([model%curves(motions%curve)%id]))
+      call put_column(columns, 'scale', reals([motions%scale]))
       call put_columns(buffer, 'motions', columns)
     end associate
     if (.not. allocated(model%conditions%rigid_motions)) return
     associate (motions => model%conditions%rigid_motions)
       call put_column(columns, 'part', &
-        integers(model%parts(model%rigids(motions%node)%part)%id))
-      call put_column(columns, 'direction', integers(motions%direction))
-      call put_column(columns, 'kind', integers(motions%kind))
-      call put_column(columns, 'curve', integers(model%curves(motions%curve)%id))
-      call put_column(columns, 'scale', reals(motions%scale))
+        integers([model%parts(model%rigids(motions%node)%part)%id]))
+      call put_column(columns, 'direction', integers([motions%direction]))
+      call put_column(columns, 'kind', integers([motions%kind]))
+      call put_column(columns, 'curve', integers([model%curves(motions%curve)%id]))
+      call put_column(columns, 'scale', reals([motions%scale]))
       call put_columns(buffer, 'body_motions', columns)
     end associate
   end subroutine put_motions
@@ -207,32 +207,32 @@ contains
 
     associate (conditions => model%conditions, id => model%mesh%node_id, curve => model%curves%id)
       associate (loads => conditions%nodal_loads)
-        call put_column(columns, 'node', integers(id(loads%node)))
-        call put_column(columns, 'direction', integers(loads%direction))
-        call put_column(columns, 'curve', integers(curve(loads%curve)))
-        call put_column(columns, 'scale', reals(loads%scale))
+        call put_column(columns, 'node', integers([id(loads%node)]))
+        call put_column(columns, 'direction', integers([loads%direction]))
+        call put_column(columns, 'curve', integers([curve(loads%curve)]))
+        call put_column(columns, 'scale', reals([loads%scale]))
         call put_columns(buffer, 'nodal_loads', columns)
       end associate
       associate (loads => conditions%pressures)
         call put_column(columns, 'first', integers([(id(loads(i)%nodes(1)), i=1, size(loads))]))
         call put_column(columns, 'second', integers([(id(loads(i)%nodes(2)), i=1, size(loads))]))
-        call put_column(columns, 'curve', integers(curve(loads%curve)))
-        call put_column(columns, 'scale', reals(loads%scale))
+        call put_column(columns, 'curve', integers([curve(loads%curve)]))
+        call put_column(columns, 'scale', reals([loads%scale]))
         call put_columns(buffer, 'pressures', columns)
       end associate
       associate (loads => conditions%body_loads)
-        call put_column(columns, 'direction', integers(loads%direction))
-        call put_column(columns, 'curve', integers(curve(loads%curve)))
-        call put_column(columns, 'scale', reals(loads%scale))
+        call put_column(columns, 'direction', integers([loads%direction]))
+        call put_column(columns, 'curve', integers([curve(loads%curve)]))
+        call put_column(columns, 'scale', reals([loads%scale]))
         call put_columns(buffer, 'body_loads', columns)
       end associate
       if (.not. allocated(conditions%rigid_loads)) return
       associate (loads => conditions%rigid_loads)
         call put_column(columns, 'part', &
-          integers(model%parts(model%rigids(loads%node)%part)%id))
-        call put_column(columns, 'direction', integers(loads%direction))
-        call put_column(columns, 'curve', integers(curve(loads%curve)))
-        call put_column(columns, 'scale', reals(loads%scale))
+          integers([model%parts(model%rigids(loads%node)%part)%id]))
+        call put_column(columns, 'direction', integers([loads%direction]))
+        call put_column(columns, 'curve', integers([curve(loads%curve)]))
+        call put_column(columns, 'scale', reals([loads%scale]))
         call put_columns(buffer, 'rigid_loads', columns)
       end associate
     end associate
@@ -387,7 +387,8 @@ contains
     columns%n = 0
   end subroutine put_columns
 
-  !> An array of whole numbers.
+  !> An array of whole numbers. What comes from arrays of types stands in brackets where it is handed
+  !> over: the compiler would make a temporary for it by itself.
   function integers(values) result(text)
     integer, intent(in) :: values(:)
     character(:), allocatable :: text

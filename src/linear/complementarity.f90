@@ -103,6 +103,7 @@ contains
     logical :: is_settled
     integer :: pass
 
+    if (problem%n == 0) return
     do pass = 1, most_passes
       outcome%n_pass = pass
       call solve_guess(problem, outcome%n_dropped)

@@ -218,6 +218,8 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)
     logical :: same
 
+    same = .true.
+    if (tile%last_special < tile%first_special) return
     same = .not. differs(tile%last_special - tile%first_special + 1, &
       layout%special_node(tile%first_special), one, motion)
   end function moves_as_one
