@@ -387,8 +387,8 @@ contains
     columns%n = 0
   end subroutine put_columns
 
-  !> An array of whole numbers. What comes from arrays of types stands in brackets where it is handed
-  !> over: the compiler would make a temporary for it by itself.
+  !> An array of whole numbers. What comes from arrays of types stands in brackets where it is
+  !> handed over: the compiler would make a temporary for it by itself.
   function integers(values) result(text)
     integer, intent(in) :: values(:)
     character(:), allocatable :: text
