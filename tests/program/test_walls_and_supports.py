@@ -59,14 +59,14 @@ def test_walls_without_a_number_get_a_free_one(slideline, tmp_path, order, ids):
     assert columns(tmp_path / "o" / "job.rwforc.csv")["wall"][:2] == ids
 
 
-def test_binary_of_rwforc_has_no_effect(slideline, tmp_path):
-    """There is no text file of it to choose; BINARY of other tables is judged."""
+def test_binary_of_rwforc_chooses_its_files(slideline, tmp_path):
+    """As that of other tables: 2 leaves the text file out, and what is none of its values is refused."""
     deck = block(wall_normal=None)
-    deck.add("*RIGIDWALL_PLANAR", (0,), (0.0, 0.0, 0.0, 0.0, 1.0, 0.0)).add("*DATABASE_RWFORC", (1.0e-4, 7))
+    deck.add("*RIGIDWALL_PLANAR", (0,), (0.0, 0.0, 0.0, 0.0, 1.0, 0.0)).add("*DATABASE_RWFORC", (1.0e-4, 2))
     done = slideline("d=o", deck=deck)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "o" / "job.rwforc.csv").exists() and not (tmp_path / "o" / "job.rwforc").exists()
-    refused = slideline("d=p", deck=deck.add("*DATABASE_GLSTAT", (1.0e-4, 7)))
+    refused = slideline("d=p", deck=deck.add("*DATABASE_RWFORC", (1.0e-4, 7)))
     assert refused.returncode == 1 and "BINARY" in refused.stderr
 
 

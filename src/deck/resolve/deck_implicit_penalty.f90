@@ -78,7 +78,7 @@ contains
         end do
       end if
       if (allocated(model%conditions%skew_supports)) call refuse_shared(deck, entry, is_own, &
-        model%conditions%skew_supports%node, 'a support along neither x nor y', model)
+        [model%conditions%skew_supports%node], 'a support along neither x nor y', model)
     end associate
   end subroutine check_nodes
 
