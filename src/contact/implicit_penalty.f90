@@ -22,7 +22,8 @@ module implicit_penalty_m
   private
   public :: press_ahead
 
-  !> Part of a penetration that is taken back in a step where springs have no compliance.
+  !> Part of a penetration that is taken back in a step where springs have no compliance, or stand
+  !> for such.
   real(wp), parameter :: recovered = 0.1_wp
   !> Penetration that counts as one from the start, over the gap below which nodes are looked at.
   real(wp), parameter :: overlap = 1.0e-3_wp
@@ -50,8 +51,10 @@ contains
       call find_pressures(step, memory)
       call share_out(memory%points%n, memory%points%slave_nodes, memory%points%slave_weights, &
         memory%node_pressure, memory%points%pressure)
-      if (memory%watch%is_due .or. step%cycle == 0 .or. memory%scratch%is_born) &
+      if (memory%watch%is_due .or. step%cycle == 0 .or. memory%scratch%is_born) then
         call measure_springs(memory)
+        if (step%is_stiff) memory%watch%stored = 0.0_wp
+      end if
       ! Loaded at time zero they hold energy that no force has put in.
       if (step%cycle == 0) memory%energy = memory%watch%stored
       call give_credit(step, memory)
@@ -82,15 +85,19 @@ contains
   pure subroutine give_credit(step, memory)
     type(pressing_t), intent(in) :: step
     type(contact_state_t), intent(inout) :: memory
-    logical :: overlaps !! some mean gap is below zero by more than springs leave
+    logical :: overlaps           !! some mean gap is below zero by more than springs leave
+    real(wp) :: given(size(step%gap)) !! what they leave, m
 
     associate (limit => memory%limit, begins => step%cycle == 0 .or. memory%scratch%is_born)
-      if (memory%slave_penalty > 0.0_wp) then
+      if (.not. step%is_stiff) then
         if (memory%scratch%is_born) limit%credit = memory%watch%stored
         return
       end if
       if (.not. (begins .or. limit%credit >= huge(1.0_wp))) return
-      overlaps = any(step%gap < -overlap*memory%closed_gap)
+      given = 0.0_wp
+      if (memory%slave_penalty > 0.0_wp) &
+        given = memory%node_pressure/(recovered*memory%slave_penalty)
+      overlaps = any(step%gap + given < -overlap*memory%closed_gap)
       if (begins) then
         if (overlaps) limit%credit = huge(1.0_wp)
       else if (.not. overlaps) then
@@ -161,7 +168,7 @@ contains
     real(wp) :: share
     integer :: i
 
-    share = merge(1.0_wp, recovered, memory%slave_penalty > 0.0_wp)
+    share = merge(recovered, 1.0_wp, step%is_stiff)
     associate (points => memory%points, nodal => memory%scratch%nodal)
       call average_gaps(points, memory%n_slave, nodal)
       if (allocated(step%rate)) then

@@ -4,6 +4,7 @@
 module pressing_m
   use complementarity_m, only : problem_t
   use contact_state_m, only : contact_state_t
+  use contacts_m, only : contact_t
   use kinds_m, only : wp
   use weighted_gaps_m, only : rows_t, along_normal
   implicit none
@@ -15,6 +16,7 @@ module pressing_m
     real(wp) :: dt = 0.0_wp                 !! to the end of the step, s
     real(wp) :: dt_before = 0.0_wp          !! of the step behind, s
     integer :: cycle = 0
+    logical :: is_stiff = .false.           !! the deck asks for springs without compliance
     real(wp) :: time = 0.0_wp               !! of u(n), s
     real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) v(n+1/2) without the
                                             !! interface
@@ -37,10 +39,12 @@ module pressing_m
 contains
 
   !> Room for an interface.
-  pure subroutine start_pressing(memory, step)
+  pure subroutine start_pressing(contact, memory, step)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(pressing_t), intent(inout) :: step
 
+    step%is_stiff = contact%penalty < 0.0_wp
     associate (n_node => memory%n_slave + memory%n_master, n_slave => memory%n_slave)
       allocate (step%velocity(2, n_node), step%mobility(2, n_node))
       allocate (step%gap(n_slave), step%left(n_slave), step%wanted(n_slave))

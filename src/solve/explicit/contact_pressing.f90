@@ -40,7 +40,7 @@ contains
       if (model%contacts(i)%penalty_unit /= penalty_implicit) cycle
       if (.not. state%contacts(i)%scratch%waits) cycle
       if (.not. allocated(steps(i)%velocity)) then
-        call start_pressing(state%contacts(i), steps(i))
+        call start_pressing(model%contacts(i), state%contacts(i), steps(i))
         call list_led(model, state%contacts(i)%nodes, steps(i))
         call list_riders(model, state%contacts(i)%nodes, steps(i))
       end if
