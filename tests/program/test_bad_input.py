@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Input that no one should give: files without end, include loops, numbers at the edges, a large mesh with one
-bad card. Each has a defined end. A short run of the fuzzer (tests/fuzz) stands last."""
+"""Input that no one should give: files without end, include loops, numbers at the edges. Each has a defined end.
+A short run of the fuzzer (tests/fuzz) stands last."""
 import os
 import re
-import resource
 import signal
 import subprocess
 import sys
@@ -16,10 +15,10 @@ from conftest import drop, numbers
 FUZZER = Path(__file__).resolve().parents[1] / "fuzz" / "fuzz_decks.py"
 
 
-def check(exe, folder, deck="job.k", seconds=20, memory=None):
+def check(exe, folder, deck="job.k", seconds=20):
     """(status, what was said) of the check of a deck; a hang fails."""
     done = subprocess.run([exe, "check", deck], cwd=folder, capture_output=True, text=True, timeout=seconds,
-                          stdin=subprocess.DEVNULL, errors="replace", check=False, preexec_fn=memory)
+                          stdin=subprocess.DEVNULL, errors="replace", check=False)
     assert done.returncode in range(5) and "Backtrace" not in done.stderr, done.stderr
     return done.returncode, done.stderr
 
@@ -129,31 +128,6 @@ def test_the_largest_ids_are_taken(exe, tmp_path):
     (tmp_path / "job.k").write_text(text)
     status, said = check(exe, tmp_path)
     assert status == 0 or "2147483647" in said, said
-
-
-def test_a_million_elements_with_one_bad_card(exe, tmp_path):
-    """Refused for that card, within seconds and a gigabyte."""
-    n = 1000
-    rows = ["*KEYWORD", "*CONTROL_TERMINATION", "1.0", "*PART", "all", "1,1,1", "*SECTION_SHELL", "1,13", "1.0",
-            "*MAT_ELASTIC", "1,1000.0,1.0e6,0.3", "*NODE"]
-    rows += [f"{i * (n + 1) + j + 1:8d}{j:16.1f}{i:16.1f}" for i in range(n + 1) for j in range(n + 1)]
-    rows.append("*ELEMENT_SHELL")
-    for i in range(n):
-        first = i * (n + 1) + 1
-        rows += [f"{i * n + j + 1:8d}       1{first + j:8d}{first + j + 1:8d}{first + j + n + 2:8d}{first + j + n + 1:8d}"
-                 for j in range(n)]
-    bad = len(rows) - 345678
-    rows[bad] = rows[bad][:8] + "     one" + rows[bad][16:]
-    (tmp_path / "job.k").write_text("\n".join(rows) + "\n*END\n")
-    sanitized = b"__asan_init" in Path(exe).read_bytes()
-
-    def memory():
-        if not sanitized:
-            resource.setrlimit(resource.RLIMIT_AS, (2 ** 30, 2 ** 30))
-
-    status, said = check(exe, tmp_path, seconds=120, memory=memory)
-    assert status == 1 and f"job.k:{bad + 1}:" in said and '"one"' in said
-    assert len(said) < 5000, "one bad card is not a thousand messages"
 
 
 def test_negative_mass_is_refused(exe, tmp_path):
