@@ -27,6 +27,7 @@ module arguments_m
     character(:), allocatable :: restart    !! path of the restart file to go on from, or unset
     character(:), allocatable :: directory  !! where results go
     character(:), allocatable :: job        !! stem of the result files
+    logical :: job_is_given = .false.       !! by the command line
     character(:), allocatable :: line       !! all arguments in one line, for the record
     integer :: n_thread = 1                 !! at most
     integer :: thread_share = 300           !! elements for each of several threads, at least:
@@ -35,6 +36,9 @@ module arguments_m
     logical :: quiet = .false.              !! nothing on the screen but how the run has ended
     logical :: no_dump = .false.            !! no numbered restart files (d=nodump)
     integer :: cpu_seconds = 0              !! processor time after which to stop (c=), 0 = no limit
+    logical :: all_cases = .false.          !! a run for each *CASE of the deck
+    integer, allocatable :: cases(:)        !! those that are run (case=)
+    integer :: case = 0                     !! that this run is of, 0: of none
     character(:), allocatable :: ignored    !! words of LS-DYNA that have no effect here
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
   end type arguments_t
@@ -48,17 +52,19 @@ module arguments_m
 contains
 
   !> Read the arguments; all mistakes are reported together.
-  subroutine read_arguments(arguments, error)
+  subroutine read_arguments(arguments, error, commands)
     type(arguments_t), intent(out) :: arguments
     type(error_t), allocatable, intent(out) :: error
+    character(*), intent(in), optional :: commands !! words to be read before, as those of *CASE
     character(argument_length) :: word
     character(:), allocatable :: mistakes
     integer :: i, length
 
-    allocate (arguments%overrides(0))
+    allocate (arguments%overrides(0), arguments%cases(0))
     arguments%line = ''
     arguments%ignored = ''
     mistakes = ''
+    if (present(commands)) call read_commands(commands, arguments, mistakes)
     do i = 1, command_argument_count()
       call get_command_argument(i, word, length=length)
       if (length > argument_length) then
@@ -75,12 +81,19 @@ contains
       mistakes = mistakes//'no deck given: expected i=DECK (or r=FILE to go on)'//new_line('a')
     if (arguments%check .and. allocated(arguments%restart)) mistakes = mistakes &
       //'check looks at a deck: r= has no meaning'//new_line('a')
+    if (arguments%all_cases .and. size(arguments%cases) > 0) mistakes = mistakes &
+      //'case (all cases) and case= (some) do not go together'//new_line('a')
+    if (allocated(arguments%restart) .and. (arguments%all_cases .or. size(arguments%cases) > 1 &
+      .or. (size(arguments%cases) > 0 .and. .not. allocated(arguments%deck)))) mistakes = mistakes &
+      //'a run that goes on is of one case: expected case=ID beside the deck (i=), or none' &
+      //new_line('a')
     if (arguments%json .and. .not. arguments%check) mistakes = mistakes &
       //'--json goes with check'//new_line('a')
     if (len(mistakes) > 0) then
       call raise(error, mistakes//'try slideline --help', status_input)
       return
     end if
+    arguments%job_is_given = allocated(arguments%job)
     if (allocated(arguments%restart)) then
       if (.not. allocated(arguments%directory)) arguments%directory = folder_of(arguments%restart)
       return
@@ -88,6 +101,35 @@ contains
     if (.not. allocated(arguments%directory)) arguments%directory = '.'
     if (.not. allocated(arguments%job)) arguments%job = file_stem(arguments%deck)
   end subroutine read_arguments
+
+  !> Words of a *CASE. What the command line says comes after and wins.
+  subroutine read_commands(commands, arguments, mistakes)
+    character(*), intent(in) :: commands
+    type(arguments_t), intent(inout) :: arguments
+    character(:), allocatable, intent(inout) :: mistakes
+    character(:), allocatable :: rest, word, name
+    integer :: n
+
+    rest = trim(adjustl(commands))
+    do while (len(rest) > 0)
+      n = index(rest//' ', ' ') - 1
+      word = rest(:n)
+      rest = trim(adjustl(rest(n + 1:)))
+      name = lower(word(:index(word, '=')))
+      select case (name)
+      case ('ncpu=', 'memory=', 'memory2=', 'perthread=', 'o=', 'g=', 's=', 'f=', 'a=', 'x=', &
+          'para=')
+        call read_word(word, arguments, mistakes)
+      case default
+        if (is_override(name(:max(len(name) - 1, 0)))) then
+          call read_word(word, arguments, mistakes)
+        else
+          mistakes = mistakes//'"'//word//'" may not stand there: expected ncpu=, perthread= or ' &
+            //'an override'//new_line('a')
+        end if
+      end select
+    end do
+  end subroutine read_commands
 
   !> An argument of which only the first part was read.
   pure subroutine refuse_length(word, length, mistakes)
@@ -124,7 +166,7 @@ contains
       arguments%json = .true.
       return
     else if (lower(word) == 'case') then
-      call ignore('case', arguments%ignored)
+      arguments%all_cases = .true.
       return
     else if (equals == 0 .and. word(1:min(1, len(word))) /= '-') then
       call take(arguments%deck, word, 'deck', mistakes)
@@ -140,6 +182,8 @@ contains
     case ('d')
       arguments%no_dump = arguments%no_dump .or. lower(value) == 'nodump'
       if (lower(value) /= 'nodump') call take(arguments%directory, value, 'd=', mistakes)
+    case ('case')
+      call read_list(value, arguments%cases, mistakes)
     case ('jobid')
       call take(arguments%job, value, 'jobid=', mistakes)
       if (index(value, '/') > 0) mistakes = mistakes//'jobid="'//value &
@@ -196,6 +240,26 @@ contains
     mistakes = mistakes//word(:equals)//'"'//word(equals + 1:)//'": expected a number from 1 to ' &
       //trim(limit)//new_line('a')
   end subroutine read_count
+
+  !> Understand the value of case=: numbers with commas between them.
+  subroutine read_list(value, list, mistakes)
+    character(*), intent(in) :: value
+    integer, allocatable, intent(inout) :: list(:)
+    character(:), allocatable, intent(inout) :: mistakes
+    character(:), allocatable :: rest
+    integer :: n, number
+
+    rest = value//','
+    do while (len(rest) > 0)
+      n = index(rest, ',') - 1
+      number = 0
+      call read_count('case='//rest(:n), huge(number), number, mistakes)
+      if (any(list == number)) mistakes = mistakes//'case="'//value//'": '//rest(:n) &
+        //' is given twice'//new_line('a')
+      if (number > 0) list = [list, number]
+      rest = rest(n + 2:)
+    end do
+  end subroutine read_list
 
   !> Understand the value of timing=.
   subroutine read_timing(value, timing, mistakes)
@@ -301,7 +365,9 @@ contains
         'restart file'//n// &
       '       slideline DECK ...     the same'//n// &
       '       slideline check DECK [--json] [OVERRIDES]   all errors and warnings, without '// &
-        'a run'//n//n// &
+        'a run'//n// &
+      '       slideline DECK case ...   a run for each *CASE of the deck; case=1,3: for '// &
+        'these'//n//n// &
       '  i=DECK        LS-DYNA style keyword deck'//n// &
       '  r=FILE        restart file (JOB.dump01.h5, JOB.runrsf.h5): the run goes on from '// &
         'there, in its'//n// &
@@ -320,7 +386,7 @@ contains
       '  d=nodump      no numbered restart files, whatever the deck asks for'//n// &
       '  memory=...    and memory2=...: accepted and ignored; so are, with a warning, '// &
         'LS-DYNA''s o= g='//n// &
-      '                s= f= a= x= para= and case'//n//n// &
+      '                s= f= a= x= and para='//n//n// &
       'overrides, for sweeps:'//n// &
       '  ctype=T ngauss=N pen=P      contact of every interface; ctype.2=T of interface 2'//n// &
       '  punit=U pent=P vdc=D        unit of the penalty, that of the master pass, damping'//n// &

@@ -8,7 +8,7 @@ module go_on_m
   use deck_restart_m, only : merge_decks, is_whole_deck, deck_identity
   use deck_source_m, only : read_file
   use errors_m, only : error_t, raise, status_input
-  use log_m, only : log_t, write_log
+  use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t
   use restart_reading_m, only : take_up_file
@@ -44,6 +44,11 @@ contains
         call take_whole_deck(arguments, deck, monitor%restarts%is_implicit, request, error)
         return
       end if
+      if (arguments%case > 0) then
+        call raise(error, 'case='//to_text(arguments%case)//' goes with a whole deck: ' &
+          //arguments%deck//' has changes alone', status_input)
+        return
+      end if
       call merge_decks(deck, changes, arguments%deck, request%text, error)
       if (allocated(error)) return
     else
@@ -67,6 +72,7 @@ contains
 
     whole%path = arguments%deck
     whole%overrides = arguments%overrides
+    whole%case = arguments%case
     call read_deck(whole, contact_kinds, unused, model, request%text, error)
     if (allocated(error)) return
     if (model%controls%implicit%is_on .neqv. is_implicit) then
@@ -75,7 +81,8 @@ contains
         //' asks for the '//trim(merge('explicit', 'implicit', is_implicit))//' method', &
         status_input)
     else if (deck_identity(request%text) == deck_identity(deck)) then
-      deallocate (request%overrides) ! they are in the text
+      deallocate (request%overrides) ! they are in the text, as are the keywords of the case
+      request%case = 0
     else
       call raise(error, 'the restart file '//arguments%restart &
         //' is refused: it belongs to another deck (checksum '//deck_identity(deck)//') than ' &

@@ -155,6 +155,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     request%overrides = arguments%overrides
+    request%case = arguments%case
     if (allocated(arguments%restart)) then
       call take_up_deck(arguments, program_text(), monitor, request, error)
     else

@@ -12,6 +12,7 @@ module deck_m
   use deck_findings_m, only : list_findings
   use deck_report_m, only : emit_warnings, emit_errors
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text
+  use deck_choose_case_m, only : choose_case
   use deck_reader_m, only : read_blocks, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
@@ -57,6 +58,7 @@ module deck_m
                                               !! `p:NAME=value`
     character(:), allocatable :: text         !! of the deck where it is no file; `path` names it
                                               !! then
+    integer :: case = 0                       !! of *CASE, 0: a deck without cases
   end type deck_request_t
 
 contains
@@ -82,7 +84,9 @@ contains
       if (present(findings)) findings = ''
       if (allocated(error)) return
     end if
-    call interpret_deck(deck, request, kinds, log, model, effective, error)
+    if (deck%cases%found .or. request%case > 0) call choose_case(deck, request%case, log, error)
+    if (.not. allocated(error)) call interpret_deck(deck, request, kinds, log, model, &
+      effective, error)
     if (present(findings)) call list_findings(deck%report, findings)
   end subroutine read_deck
 
@@ -149,11 +153,16 @@ contains
     integer :: i
 
     allocate (known(deck%n_block))
-    has_beams = any([(index(deck%blocks(i)%given, 'SECTION_BEAM') == 1, i=1, deck%n_block)])
+    has_beams = any([(index(deck%blocks(i)%name, 'SECTION_BEAM') == 1, i=1, deck%n_block)])
     if (deck%n_block == 0) call line_error(deck, 0, 'holds no keyword (a line that starts with *)')
     do i = 1, deck%n_block
       associate (block => deck%blocks(i))
-        call find_keyword(block%given, name, known(i), block%titled, reason)
+        if (block%name == 'COMMENT') then ! also keywords of cases that are not read
+          name = block%name
+          known(i) = known_honoured
+        else
+          call find_keyword(block%given, name, known(i), block%titled, reason)
+        end if
         if (has_beams .and. name == 'ELEMENT_BEAM') then
           known(i) = known_refused
           reason = 'with beams as bodies (*SECTION_BEAM) this element is'
@@ -162,7 +171,8 @@ contains
         case (known_honoured)
           block%name = name(:len(block%name))
           select case (block%name)
-          case ('KEYWORD', 'END', 'COMMENT', 'INCLUDE', 'INCLUDE_PATH')
+          case ('KEYWORD', 'END', 'COMMENT', 'INCLUDE', 'INCLUDE_PATH', 'CASE', 'CASE_BEGIN', &
+              'CASE_END')
             block%dropped = .true.
           end select
         case (known_ignored)

@@ -154,6 +154,9 @@ contains
       name = 'DATABASE_BINARY_D3PLOT'
     case ('INCLUDE_PATH_RELATIVE')
       name = 'INCLUDE_PATH'
+    case default
+      if (index(given, 'CASE_BEGIN_') == 1) name = 'CASE_BEGIN'
+      if (index(given, 'CASE_END_') == 1) name = 'CASE_END'
     end select
   end function canonical
 

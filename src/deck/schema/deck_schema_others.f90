@@ -114,8 +114,7 @@ module deck_schema_others_m
     'DATABASE_CROSS_SECTION_* ignored', &
     'INTERFACE_* ignored', &
     'COMPONENT_* ignored', &
-    'CASE several cases in one deck (sweep *PARAMETER by p:NAME=VALUE instead) are', &
-    'CASE_* several cases in one deck (sweep *PARAMETER by p:NAME=VALUE instead) are', &
+    'CASE_* unknown', &
     'TERMINATION_* this end of a run is', &
     'PERTURBATION_* perturbations are', &
     'AIRBAG_* airbags are', &

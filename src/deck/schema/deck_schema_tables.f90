@@ -26,6 +26,12 @@ module deck_schema_tables_m
     ' PRMR:a EXPRESSION:a70', &
     'PARAMETER_DUPLICATION', &
     ' DFLAG:i', &
+    'CASE', &
+    ' CASEID:i JOBID:a70', &
+    ' COMMANDS:a80', &
+    ' SCID1:i SCID2:i SCID3:i SCID4:i SCID5:i SCID6:i SCID7:i SCID8:i', &
+    'CASE_BEGIN', &
+    'CASE_END', &
     'CONTROL_TERMINATION', &
     ' ENDTIM:f ENDCYC:i DTMIN:f ENDENG:f ENDMAS:f NOSOL:i', &
     'TERMINATION_NODE', &

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+"""*CASE: several runs of one deck."""
+import json
+import re
+
+import pytest
+from conftest import drop
+
+HEAD = """*CASE
+       101 slow
+dt=5e-5 memory=20m
+         1         3
+*CASE
+102 fast
+
+         2         3
+*CASE
+         7
+
+         4
+"""
+BLOCKS = {1: "*INITIAL_VELOCITY\n1,\n0.3,-1.0", 2: "*INCLUDE\nfast.inc", 3: "*TITLE\nof two cases",
+          4: "*PARAMETER\nR low,-4.0\n*INITIAL_VELOCITY\n1,\n0.3,&low"}
+VELOCITY = "*INITIAL_VELOCITY\n1,\n0.3,-2.0\n"
+
+
+def block(number):
+    return f"*CASE_BEGIN_{number}\n{BLOCKS[number]}\n*CASE_END_{number}\n"
+
+
+def cases_deck(end_time=0.002):
+    """The drop with its velocity by case: blocks where the plain deck has it, cases behind them."""
+    text = drop(end_time=end_time).text()
+    text = re.sub(r"\*INITIAL_VELOCITY\n.*\n.*\n", "".join(map(block, BLOCKS)), text)
+    assert text.count("*CASE_BEGIN") == 4
+    return text.replace("*END", HEAD + "*END")
+
+
+def plain_deck(numbers):
+    """The same with the keywords of some blocks alone."""
+    text = re.sub(r"\*CASE\n.*(?=\*END)", "", cases_deck(), flags=re.S)
+    for number in BLOCKS:
+        text = text.replace(block(number), BLOCKS[number] + "\n" if number in numbers else "")
+    assert "CASE" not in text
+    return text
+
+
+@pytest.fixture
+def fast(tmp_path):
+    (tmp_path / "fast.inc").write_text("*INITIAL_VELOCITY\n1,\n0.3,-3.0\n")
+
+
+@pytest.fixture
+def check(slideline, tmp_path, fast):
+    """check(deck, *words): the answer of `slideline check` to a deck job.k."""
+    def call(deck, *words):
+        (tmp_path / "job.k").write_text(deck)
+        return slideline("check", "job.k", *words)
+    return call
+
+
+def tables(folder, job):
+    return {path.name[len(job):]: path.read_bytes() for path in folder.glob(f"{job}.*.csv") if "timing" not in path.name}
+
+
+def test_all_cases_have_the_bits_of_decks_of_their_own(slideline, tmp_path, fast):
+    done = slideline("d=all", "case", deck=cases_deck())
+    assert done.returncode == 0, done.stderr
+    assert re.findall(r"^case .*", done.stdout, re.M) == ["case 101 (slow)", "case 102 (fast)", "case 7 (case7)"]
+    assert done.stdout.count("N o r m a l") == 3
+    different = set()
+    for job, numbers, words in (("slow", (1, 3), ["dt=5e-5"]), ("fast", (2, 3), []), ("case7", (4,), [])):
+        own = slideline("d=own", f"jobid={job}", *words, deck=plain_deck(numbers))
+        assert own.returncode == 0, own.stderr
+        assert len(tables(tmp_path / "all", job)) > 3
+        assert tables(tmp_path / "all", job) == tables(tmp_path / "own", job)
+        effective = (tmp_path / "all" / f"{job}.effective.k").read_text()
+        assert "CASE" not in effective and effective == (tmp_path / "own" / f"{job}.effective.k").read_text()
+        different.add((tmp_path / "all" / f"{job}.nodout.csv").read_bytes())
+    assert len(different) == 3
+    assert "of two cases" in (tmp_path / "all/slow.effective.k").read_text()
+    again = slideline("i=all/fast.effective.k", "d=again", "jobid=fast")
+    assert again.returncode == 0 and tables(tmp_path / "again", "fast") == tables(tmp_path / "all", "fast")
+
+
+def test_some_cases_and_their_names(slideline, tmp_path, fast):
+    done = slideline("d=out", "case=7,101", "quiet=1", deck=cases_deck())
+    assert done.returncode == 0, done.stderr
+    assert re.findall(r"^case .*", done.stdout, re.M) == ["case 7 (case7)", "case 101 (slow)"]
+    assert not list((tmp_path / "out").glob("fast.*"))
+    # A file of another case need not be there; one of this case has to be.
+    (tmp_path / "fast.inc").unlink()
+    assert slideline("d=named", "case=7", "jobid=own", deck=cases_deck()).returncode == 0
+    assert {path.name.split(".")[0] for path in (tmp_path / "named").iterdir()} == {"own"}
+    done = slideline("case=102", deck=cases_deck())
+    assert done.returncode == 1 and 'the file "fast.inc" was not found' in done.stderr
+
+
+@pytest.mark.parametrize("words, told", [
+    ([], "the deck has cases: say case=ID for one of 101 (slow), 102 (fast), 7 (case7), or case for all"),
+    (["case=3"], "case=3: expected one of 101 (slow), 102 (fast), 7 (case7)"),
+    (["case=7,7"], 'case="7,7": 7 is given twice'),
+    (["case="], 'case="": expected a number from 1'),
+    (["case=all"], 'case="all": expected a number from 1'),
+    (["case", "case=7"], "case (all cases) and case= (some) do not go together"),
+    (["case", "jobid=x"], "jobid= on the command line would be the name of 3 cases"),
+])
+def test_words_that_are_refused(slideline, fast, words, told):
+    done = slideline("d=out", *words, deck=cases_deck())
+    assert done.returncode == 1 and told in done.stderr
+
+
+def test_a_deck_without_cases(slideline):
+    done = slideline("d=out", "case=1", deck=drop(end_time=0.002))
+    assert done.returncode == 1 and "case= is asked for and the deck has no *CASE" in done.stderr
+
+
+def test_commands_of_a_case(slideline, fast):
+    """What may not stand there has file, line, card and field; the command line wins over the rest."""
+    deck = cases_deck().replace("dt=5e-5 memory=20m", "dt=5e-5 i=x.k ncycle=5 ncpu=0")
+    done = slideline("case=101", deck=deck)
+    assert done.returncode == 1
+    assert re.search(r'job\.k:\d+: \*CASE card 2 field 1 \(COMMANDS\): ', done.stderr)
+    for told in ('"i=x.k" may not stand there', '"ncycle=5" may not stand there', 'ncpu="0": expected a number'):
+        assert told in done.stderr
+    done = slideline("case=101", "dt=4e-5", deck=cases_deck())
+    assert done.returncode == 0 and re.search(r"Problem cycle +?= 50\b", done.stdout), done.stdout
+
+
+def test_no_case_runs_where_one_is_refused(slideline, tmp_path, fast):
+    """Mistakes that cases share are told once."""
+    deck = cases_deck().replace("R low,-4.0", "R lower,-4.0").replace("*CASE\n       101", "*BOUNDARY_NONE\n*CASE\n       101")
+    done = slideline("d=out", "case", deck=deck)
+    assert done.returncode == 1
+    assert "case 101 (slow), case 102 (fast):\n" in done.stderr and "\ncase 7 (case7):\n" in done.stderr
+    assert "is not defined by any *PARAMETER" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_failing_case_is_not_hidden(slideline, tmp_path, fast):
+    """The next case runs after an error termination; the status is that of the one that failed."""
+    deck = cases_deck().replace(BLOCKS[3], "*CONTROL_TERMINATION\n0.002,,,1.0e-9")
+    deck = deck.replace("         1         3\n", "         1\n")
+    text = re.sub(r"\*CONTROL_TERMINATION\n.*\n", "", deck, count=1)
+    text = text.replace("*CASE_END_1\n", "*CONTROL_TERMINATION\n0.002,\n*CASE_END_1\n")
+    text = text.replace("*CASE_END_4\n", "*CONTROL_TERMINATION\n0.002,\n*CASE_END_4\n")
+    done = slideline("d=out", "case=102,7", deck=text)
+    assert done.returncode == 2, done.stderr
+    assert "of 2 cases have not ended normally: case 102 (fast) (status 2)" in done.stderr
+    assert "N o r m a l" in done.stdout and done.stdout.rstrip().endswith("E r r o r    t e r m i n a t i o n")
+    assert (tmp_path / "out/case7.vtkhdf").exists()
+
+
+def test_trouble_with_files_ends_all(slideline, tmp_path, fast):
+    (tmp_path / "out/fast.vtkhdf").mkdir(parents=True)
+    done = slideline("d=out", "case", deck=cases_deck())
+    assert done.returncode == 3
+    assert "case 102 (fast) (status 3), case 7 (case7) not run" in done.stderr
+    assert (tmp_path / "out/slow.vtkhdf").exists() and not (tmp_path / "out/case7.vtkhdf").exists()
+
+
+def test_restart_of_a_case(slideline, tmp_path, fast):
+    """Without a word of cases; a whole deck beside the file needs the case."""
+    dump = "*DATABASE_BINARY_D3DUMP\n10,\n*END"
+    assert slideline("d=whole", "case=102", deck=cases_deck().replace("*END", dump)).returncode == 0
+    assert slideline("r=whole/fast.dump01.h5", "d=on").returncode == 0
+    assert slideline("r=whole/fast.dump01.h5", "i=job.k", "case=102", "d=deck").returncode == 0
+    for folder in ("on", "deck"):
+        assert (tmp_path / folder / "fast.dump02.h5").exists()
+        for name in ("nodout", "glstat"):
+            rows = (tmp_path / folder / f"fast.{name}.csv").read_text().splitlines()
+            assert len(rows) > 1 and (tmp_path / f"whole/fast.{name}.csv").read_text().splitlines()[-1] == rows[-1]
+    for words, told in ((["case=102"], "expected case=ID beside the deck (i=), or none"),
+                        (["i=job.k"], "the deck has cases"), (["i=job.k", "case=7"], "it belongs to another deck"),
+                        (["i=job.k", "case"], "a run that goes on is of one case")):
+        done = slideline("r=whole/fast.dump01.h5", *words)
+        assert done.returncode == 1 and told in done.stderr
+
+
+def test_check(check):
+    done = check(cases_deck(), "case")
+    assert done.returncode == 0 and len(re.findall(r"^job\.k, case \d+ \(\w+\): accepted", done.stdout, re.M)) == 3
+    whole = json.loads(check(cases_deck(), "--json", "case").stdout)
+    assert whole["accepted"] and [case["job"] for case in whole["cases"]] == ["slow", "fast", "case7"]
+    assert [max(case["model"]["velocity_y"], key=abs) for case in whole["cases"]] == [-1.0, -3.0, -4.0]
+    one = json.loads(check(cases_deck(), "--json", "case=102").stdout)
+    assert one == whole["cases"][1] and one["case"] == 102
+    bad = cases_deck().replace("R low", "R lower")
+    done = check(bad, "--json", "case")
+    told = json.loads(done.stdout)
+    assert done.returncode == 1 and not told["accepted"]
+    assert [case["accepted"] for case in told["cases"]] == [True, True, False]
+    done = check(bad.replace("       101 slow", "         0 slow"), "--json", "case")
+    told = json.loads(done.stdout)
+    assert done.returncode == 1 and not told["accepted"]
+    assert [(finding["keyword"], finding["name"]) for finding in told["findings"]] == [("*CASE", "CASEID")]
+    none = check(cases_deck(), "--json")
+    assert none.returncode == 1 and "say case=ID" in json.loads(none.stdout)["findings"][0]["message"]
+
+
+def test_blocks_inside_each_other_and_unnamed_ones(check):
+    """A keyword in several blocks belongs to each; a block that no case names is a warning."""
+    deck = cases_deck().replace(block(2), "*CASE_BEGIN_9\n" + block(2) + "*CASE_END_9\n")
+    deck = deck.replace("*END", "*CASE\n         8\n\n         9\n*TITLE CID=5\nof none\n*END")
+    one, two = (json.loads(check(deck, "--json", f"case={case}").stdout) for case in (102, 8))
+    assert one["accepted"] and two["accepted"]
+    assert one["model"]["velocity_y"] == two["model"]["velocity_y"] and min(one["model"]["velocity_y"]) == -3.0
+    assert [(finding["severity"], finding["keyword"]) for finding in one["findings"]] == [("warning", "*TITLE")]
+    assert "no *CASE names subcase 5" in one["findings"][0]["message"]
+
+
+def test_layout_of_a_block_that_is_not_read(check):
+    """*KEYWORD LONG=Y in a block of another case changes nothing."""
+    deck = cases_deck().replace(BLOCKS[1], "*KEYWORD LONG=Y\n" + BLOCKS[1])
+    assert check(deck, "case=7").returncode == 0
+    assert check(deck, "case=101").returncode == 1
