@@ -23,6 +23,7 @@ module run_m
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name
   use progress_m, only : show_end
+  use rank_memory_m, only : forget_others
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, leave_relaxation
   use renumber_m, only : renumber_model, forget_start
@@ -74,6 +75,7 @@ contains
     call make_request(arguments, monitor, request, error)
     call share_error(ranks, error)
     if (allocated(error)) return
+    request%is_told_elsewhere = ranks%mine > 0
     call read_deck(request, contact_kinds, monitor%log, model, info%effective_deck, error)
     if (.not. allocated(error)) call refuse_several(model, ranks, error)
     call share_error(ranks, error)
@@ -217,6 +219,7 @@ contains
     call give_back_memory()
     monitor%progress%first_cycle = state%cycle
     if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
+    call forget_others(model, monitor%ranks, state)
     call share_error(monitor%ranks, error)
     if (.not. allocated(error) .and. monitor%ranks%mine == 0) &
       call begin_status(model, state, monitor)
