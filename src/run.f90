@@ -23,7 +23,7 @@ module run_m
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name
   use progress_m, only : show_end
-  use rank_memory_m, only : forget_others
+  use rank_memory_m, only : start_share, forget_others
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, leave_relaxation
   use renumber_m, only : renumber_model, forget_start
@@ -36,7 +36,6 @@ module run_m
   use sense_switch_m, only : forget_switch
   use signals_m, only : catch_stops, limit_processor
   use source_version_m, only : source_version
-  use start_m, only : start_state
   use state_m, only : state_t
   use status_file_m, only : start_status
   use timing_file_m, only : write_timing
@@ -208,7 +207,8 @@ contains
     call share_error(monitor%ranks, error)
     if (allocated(error)) return
     deallocate (info%effective_deck)
-    if (.not. monitor%restarts%goes_on) call start_state(model, monitor%log, state, error)
+    if (.not. monitor%restarts%goes_on) &
+      call start_share(model, monitor%ranks, monitor%log, state, error)
     if (allocated(error)) return
     call start_monitor(model, size(state%elements%history) > 0, monitor)
     if (model%controls%relaxation%is_on .and. .not. monitor%restarts%goes_on &
