@@ -23,6 +23,7 @@ module run_m
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name
   use progress_m, only : show_end
+  use rank_memory_m, only : start_share, forget_others
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, leave_relaxation
   use renumber_m, only : renumber_model, forget_start
@@ -35,7 +36,6 @@ module run_m
   use sense_switch_m, only : forget_switch
   use signals_m, only : catch_stops, limit_processor
   use source_version_m, only : source_version
-  use start_m, only : start_state
   use state_m, only : state_t
   use status_file_m, only : start_status
   use timing_file_m, only : write_timing
@@ -74,6 +74,7 @@ contains
     call make_request(arguments, monitor, request, error)
     call share_error(ranks, error)
     if (allocated(error)) return
+    request%is_told_elsewhere = ranks%mine > 0
     call read_deck(request, contact_kinds, monitor%log, model, info%effective_deck, error)
     if (.not. allocated(error)) call refuse_several(model, ranks, error)
     call share_error(ranks, error)
@@ -207,7 +208,8 @@ contains
     call share_error(monitor%ranks, error)
     if (allocated(error)) return
     deallocate (info%effective_deck)
-    if (.not. monitor%restarts%goes_on) call start_state(model, monitor%log, state, error)
+    if (.not. monitor%restarts%goes_on) &
+      call start_share(model, monitor%ranks, monitor%log, state, error)
     if (allocated(error)) return
     call start_monitor(model, size(state%elements%history) > 0, monitor)
     if (model%controls%relaxation%is_on .and. .not. monitor%restarts%goes_on &
@@ -218,6 +220,7 @@ contains
     call give_back_memory()
     monitor%progress%first_cycle = state%cycle
     if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
+    call forget_others(model, monitor%ranks, state)
     call share_error(monitor%ranks, error)
     if (.not. allocated(error) .and. monitor%ranks%mine == 0) &
       call begin_status(model, state, monitor)

@@ -14,6 +14,7 @@ module deck_m
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text
   use deck_choose_case_m, only : choose_case
   use deck_reader_m, only : read_blocks, cut_deck
+  use deck_source_m, only : forget_lines
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
   use deck_parameter_table_m, only : parameters_t
@@ -59,6 +60,9 @@ module deck_m
     character(:), allocatable :: text         !! of the deck where it is no file; `path` names it
                                               !! then
     integer :: case = 0                       !! of *CASE, 0: a deck without cases
+    logical :: is_told_elsewhere = .false.    !! another process has the effective deck and tells
+                                              !! the findings: the text of the mesh goes as it is
+                                              !! read
   end type deck_request_t
 
 contains
@@ -70,7 +74,8 @@ contains
     type(contact_kind_t), intent(in) :: kinds(:)             !! contact types that exist
     type(log_t), intent(inout) :: log
     type(model_t), intent(out) :: model
-    character(:), allocatable, intent(out) :: effective      !! the deck as run
+    character(:), allocatable, intent(out) :: effective      !! the deck as run; empty where another
+                                                             !! process has it
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable, intent(out), optional :: findings !! all messages, see list_findings
     type(deck_t) :: deck
@@ -124,7 +129,10 @@ contains
     raw%scale_given = len(override_text(overrides, 'TSSFAC', 0)) > 0
     raw%controls%title = ''
     do i = 1, deck%n_block
-      if (known(i) == known_honoured) call read_block(deck, parameters, i, kinds, overrides, raw)
+      if (known(i) /= known_honoured) cycle
+      call read_block(deck, parameters, i, kinds, overrides, raw)
+      if (request%is_told_elsewhere .and. any(deck%blocks(i)%name == [character(13) :: 'NODE', &
+        'ELEMENT_SHELL'])) call forget_lines(deck, i)
     end do
     call settle_friction(deck, overrides, raw)
     call apply_overrides(deck, overrides, raw, tail)
@@ -138,7 +146,11 @@ contains
     if (allocated(error)) return
     call echo_model(model, request%path, log)
     call forget_places(deck)
-    call write_effective(deck, parameters, tail, effective)
+    if (request%is_told_elsewhere) then
+      effective = ''
+    else
+      call write_effective(deck, parameters, tail, effective)
+    end if
   end subroutine interpret_deck
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,

@@ -64,7 +64,7 @@ contains
       call start_prescribed(model, cycle%velocity, state)
       if (cycle%presses) call press_cycle(model, state, monitor, cycle)
       call report_contact_start(model, state, monitor%log)
-      call log_smallest_steps(model, state, monitor%log)
+      if (monitor%ranks%mine == 0) call log_smallest_steps(model, state, monitor%log)
       call judge_damping(model, state%dt, monitor%log)
     end if
     call report_rigids(model, state, cycle)

@@ -42,12 +42,13 @@ contains
       watch%told = n
       if (n > 0) watch%first = 'before the restart'
     else if (watch%told == 0 .and. n > 0) then
+      watch%told = n
+      if (log%is_mute) return ! the first process alone knows the elements of all
       slot = first_failed(model, state%elements)
       watch%first = 'in element '//to_text(model%mesh%element_id(model%layout%slot_element(slot))) &
         //' of part '//to_text(model%parts(slot_part(model%layout, slot))%id)//' at ' &
         //present_text(state)
       call write_log(log, 'points fail: the first '//watch%first)
-      watch%told = n
     else if (watch%told > 0 .and. n/10 >= watch%told) then
       call write_log(log, 'points fail: '//to_text(n)//' of ' &
         //to_text(count_points(model, state%elements))//' by '//present_text(state))

@@ -235,14 +235,14 @@ contains
     call bring_reals(ranks, shares%chunks, 1, .true., elements%time_limit)
   end subroutine exchange_limits
 
-  !> The history of all elements, for what looks for one of them.
+  !> The history of all elements for the first process, which looks for one of them.
   subroutine exchange_history(ranks, shares, elements)
     type(ranks_t), intent(inout) :: ranks
     type(shares_t), intent(in) :: shares
     type(block_state_t), intent(inout) :: elements
 
     call bring_reals(ranks, stream_starts(shares%chunks, elements%history_start, &
-      size(elements%history)), 1, .true., elements%history)
+      size(elements%history)), 1, .false., elements%history)
   end subroutine exchange_history
 
   !> Motion of all nodes that only some processes move, with the velocities that damped runs keep.

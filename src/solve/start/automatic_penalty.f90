@@ -25,7 +25,7 @@ module automatic_penalty_m
   use state_m, only : state_t
   implicit none
   private
-  public :: set_automatic_penalties
+  public :: set_automatic_penalties, seeks_penalties
 
   integer, parameter :: n_halving = 60           !! of the common factor
   real(wp), parameter :: round_off = 1.0e-12_wp  !! by which a bound may miss the step that it was
@@ -46,8 +46,8 @@ contains
     type(spring_bound_t) :: bounds(size(model%contacts))
     integer :: i
 
+    if (.not. seeks_penalties(model)) return
     share = sought_shares(model)
-    if (.not. any(share > 0.0_wp)) return
     call find_element_limits(model, state)
     limit = minval(state%elements%time_limit)
     dt = scaled_step(model, limit_with_ties(model, state, limit), state%time)
@@ -83,6 +83,14 @@ contains
       end if
     end do
   end subroutine set_automatic_penalties
+
+  !> Whether the stable step of all elements is asked for.
+  pure function seeks_penalties(model) result(seeks)
+    type(model_t), intent(in) :: model
+    logical :: seeks
+
+    seeks = any(sought_shares(model) > 0.0_wp)
+  end function seeks_penalties
 
   !> Multiply all equivalents of a penalty.
   pure subroutine scale_penalties(factor, memory)

@@ -20,6 +20,7 @@ module start_m
   use mass_scaling_m, only : scales_masses, start_mass_scaling
   use model_log_m, only : log_masses
   use model_m, only : model_t
+  use others_memory_m, only : others_t, forget_nodes, forget_slots
   use outlines_m, only : start_outlines
   use rigid_start_m, only : start_rigids
   use state_m, only : state_t
@@ -31,18 +32,21 @@ module start_m
 contains
 
   !> Allocate and fill everything that the run changes.
-  subroutine start_state(model, log, state, error)
+  subroutine start_state(model, log, state, error, others)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     type(state_t), intent(out) :: state
     type(error_t), allocatable, intent(out) :: error
+    type(others_t), intent(in), optional :: others !! what other processes have
     integer :: i
 
+    ! Long arrays one after the other, each given up before the next one takes room.
+    call start_elements(model, state%elements)
+    if (present(others)) call forget_slots(others, state%elements)
     call start_motion(model, state%motion)
     call lump_mass(model, state%mass)
     call log_elements(model, log)
     call log_masses(model, log)
-    call start_elements(model, state%elements)
     if (any(abs(model%parts%stiffness_damping) > 0.0_wp)) &
       call start_retardation(model, state%motion, state%elements)
     if (scales_masses(model)) then
@@ -57,6 +61,7 @@ contains
     end do
     call update_activity(model, 0.0_wp, state%mass, state%inverse_mass)
     call fix_nodes(model, state%inverse_mass)
+    if (present(others)) call forget_nodes(others, state)
     allocate (state%force_special(2, model%layout%n_special), source=0.0_wp)
     if (size(model%conditions%nodal_loads) + size(model%conditions%pressures) > 0) &
       allocate (state%external(2, model%layout%n_special), source=0.0_wp)

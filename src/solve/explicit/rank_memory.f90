@@ -1,0 +1,124 @@
+! SPDX-License-Identifier: MIT
+!> What a process of an explicit run keeps in memory: the special nodes, and nodes and elements of
+!> its own tiles. The first process keeps all, for it writes. Arrays stay as long as they are, so
+!> that numbers mean the same everywhere, but the pages of what belongs to others go back to the
+!> system.
+module rank_memory_m
+  use automatic_penalty_m, only : seeks_penalties
+  use block_state_m, only : block_state_t
+  use errors_m, only : error_t
+  use kinds_m, only : wp
+  use layout_m, only : chunk_size
+  use log_m, only : log_t
+  use model_m, only : model_t
+  use others_memory_m, only : others_t, forget_nodes, forget_slots
+  use pages_m, only : forget_reals, forget_integers, forget_shorts
+  use rank_shares_m, only : shares_t, share_out, stream_starts
+  use ranks_m, only : ranks_t
+  use start_m, only : start_state
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: start_share, forget_others
+
+contains
+
+  !> The state at time zero, of a process that is not the first without what only others need.
+  subroutine start_share(model, ranks, log, state, error)
+    type(model_t), intent(in) :: model
+    type(ranks_t), intent(in) :: ranks
+    type(log_t), intent(inout) :: log
+    type(state_t), intent(out) :: state
+    type(error_t), allocatable, intent(out) :: error
+
+    if (ranks%mine == 0 .or. starts_from_all(model)) then
+      call start_state(model, log, state, error)
+    else
+      call start_state(model, log, state, error, &
+        others_of(model, share_out(model%layout, ranks%mine, ranks%n), ranks))
+    end if
+  end subroutine start_share
+
+  !> Behind the start of a process that is not the first: give up what only others need.
+  subroutine forget_others(model, ranks, state)
+    type(model_t), intent(inout) :: model
+    type(ranks_t), intent(in) :: ranks
+    type(state_t), intent(inout) :: state
+    type(shares_t) :: shares
+    type(others_t) :: others
+
+    if (ranks%mine == 0 .or. needs_all(model)) return
+    shares = share_out(model%layout, ranks%mine, ranks%n)
+    others = others_of(model, shares, ranks)
+    deallocate (model%mesh%element_id, model%layout%element_slot)
+    if (allocated(model%mesh%deck_node)) deallocate (model%mesh%deck_node)
+    call forget_integers(others%nodes, 1, model%mesh%node_id)
+    call forget_reals(others%nodes, 2, model%mesh%coordinates)
+    call forget_integers(others%slots, 1, model%layout%slot_element)
+    call forget_integers(others%slots, 4, model%layout%slot_nodes)
+    call forget_shorts(others%slots, 4, model%layout%slot_local)
+    call forget_nodes(others, state)
+    call forget_slots(others, state%elements)
+    call forget_streams(shares, ranks%mine, state%elements)
+  end subroutine forget_others
+
+  !> Whether each process looks at all elements during the run.
+  pure function needs_all(model) result(needs)
+    type(model_t), intent(in) :: model
+    logical :: needs
+
+    needs = model%erodes .or. allocated(model%conditions%part_damping) &
+      .or. (abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%masses_stay)
+  end function needs_all
+
+  !> Whether each process looks at the state of all elements at the start, or steps them in dynamic
+  !> relaxation.
+  pure function starts_from_all(model) result(starts)
+    type(model_t), intent(in) :: model
+    logical :: starts
+
+    starts = needs_all(model) .or. model%controls%relaxation%is_on .or. seeks_penalties(model) &
+      .or. abs(model%controls%mass_step) > 0.0_wp &
+      .or. any(abs(model%parts%stiffness_damping) > 0.0_wp)
+  end function starts_from_all
+
+  !> Ranges of nodes and slots that other processes have. Nodes inside of rigid bodies stand behind
+  !> those of tiles: all move them.
+  pure function others_of(model, shares, ranks) result(others)
+    type(model_t), intent(in) :: model
+    type(shares_t), intent(in) :: shares
+    type(ranks_t), intent(in) :: ranks
+    type(others_t) :: others
+
+    others%nodes = [model%layout%n_special + 1, shares%nodes(ranks%mine) - 1, &
+      shares%nodes(ranks%mine + 1), shares%nodes(ranks%n) - 1]
+    others%slots = [1, (shares%chunks(ranks%mine) - 1)*chunk_size, &
+      (shares%chunks(ranks%mine + 1) - 1)*chunk_size + 1, model%layout%n_slot]
+  end function others_of
+
+  !> What only some chunks keep.
+  subroutine forget_streams(shares, mine, elements)
+    type(shares_t), intent(in) :: shares
+    integer, intent(in) :: mine
+    type(block_state_t), intent(inout) :: elements
+
+    call forget_stream(elements%point_start, elements%point_deviator)
+    call forget_stream(elements%history_start, elements%history)
+    call forget_stream(elements%eos_start, elements%eos_state)
+    call forget_stream(elements%hourglass_start, elements%hourglass_strain)
+
+  contains
+
+    subroutine forget_stream(chunk_start, values)
+      integer, intent(in) :: chunk_start(:)
+      real(wp), intent(inout), contiguous :: values(:)
+      integer :: starts(0:size(shares%chunks) - 1)
+
+      if (size(values) == 0) return
+      starts = stream_starts(shares%chunks, chunk_start, size(values))
+      call forget_reals([1, starts(mine) - 1, starts(mine + 1), size(values)], 1, values)
+    end subroutine forget_stream
+
+  end subroutine forget_streams
+
+end module rank_memory_m
