@@ -14,7 +14,7 @@ from slideline_tools.studies.speed_accuracy.scenes import SCENES
 
 LOWEST = 1.0e-12  # errors are drawn here at least
 POINT = STYLE["figure.dpi"] / 72.0    # pixels of a point of print
-NAME_WIDTH, NAME_HEIGHT = 15.0, 8.0   # of "7/4" in points
+NAME_WIDTH, NAME_HEIGHT = 18.0, 8.0   # of "7i/4" in points
 #: what the marks mean that all types have
 MARKS = {"Pareto front": Line2D([], [], color="black", linewidth=1.6, alpha=0.35),
          "hollow: below what the reference resolves": Line2D([], [], linestyle="none", marker="o", color="#555555",
