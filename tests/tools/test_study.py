@@ -302,7 +302,7 @@ def test_command_options(tiny, bench, capsys):
 
 
 @pytest.mark.parametrize("arguments", [("--part", "2/2"), ("--part", "x"), ("-j", "0"),
-                                       ("--repeats", "0"), ("--only", "nothing")])
+                                       ("--repeats", "0"), ("--only", "nothing"), ("--types", "7i")])
 def test_command_refuses(tiny, capsys, arguments):
     assert tiny(*arguments) == 2
     assert capsys.readouterr().err.startswith("study: ")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from slideline_tools import UserError
-from slideline_tools.contact_types import ALL_TYPES
+from slideline_tools.contact_types import ALL_TYPES, SERIES
 from slideline_tools.studies import block
 from slideline_tools.studies import __main__ as command
 from slideline_tools.studies.framework.job import Options, interleave
@@ -129,6 +129,23 @@ def test_force_errors_against_the_finest_level(tmp_path):
     assert rows[3]["force_error_floor"] == pytest.approx(4.0 / 6.0 / mean)
 
 
+def test_implicit_penalty_has_a_reference_without_compliance(tmp_path):
+    """Forces 10 (1 + 0.4/N) of type 7 and 11 (1 + 0.4/N) of PUNIT 4: each against its own."""
+    rows = []
+    for ctype, base in ((7, 10.0), ("7h", 11.0), ("7i", 12.0)):
+        for level in (2, 3, 6)[:2 if ctype == "7i" else 3]:
+            run = f"sliding_{level}_type_{ctype}"
+            write_force(tmp_path, run, base * (1.0 + 0.4 / level))
+            rows.append({"run": run, "state": "finished", "scene": "sliding", "level": level, "type": ctype})
+    rows = reference.add_errors(rows, tmp_path)
+    found = {(row["type"], row["level"]): row for row in rows}
+    assert found["7h", 2]["force_error"] == pytest.approx(found[7, 2]["force_error"])
+    assert found["7i", 2]["force_error"] == pytest.approx((12.0 * 1.2 - 11.0 * 6.4 / 6.0) / (11.0 * 6.4 / 6.0))
+    assert all(row["force_error_springs"] == pytest.approx(1.0 / 11.0) for row in rows)
+    alone = reference.add_errors([{**row, "force_error": None} for row in rows if row["type"] == "7i"], tmp_path)
+    assert all(row["force_error"] is None for row in alone)
+
+
 def test_without_the_levels_of_a_reference_there_is_no_error(tmp_path):
     rows = [{"run": "x", "state": "finished", "scene": "sliding", "level": 1, "type": 7}]
     assert "force_error" not in reference.add_errors(rows, tmp_path)[0]
@@ -165,6 +182,25 @@ def test_two_passes_of_the_block_have_the_springs_of_one():
     assert block.interface_stiffness(3) * factor == pytest.approx(block.interface_stiffness(5))
 
 
+def test_implicit_springs_of_the_chain_are_a_step_ahead():
+    """Without compliance the faces never overlap; with it the pressure is that of the gap one step later."""
+    chain = scenes.chain_module()
+    hard = chain.solve(chain.Blocks(penalty=np.inf, ahead=True))
+    assert np.all(hard.displacement[:, 0, -1] - hard.displacement[:, 1, 0] <= 1e-15)
+    soft = chain.solve(chain.Blocks(penalty=1.0e6, ahead=True))
+    overlap = np.maximum(0.0, soft.displacement[1:, 0, -1] - soft.displacement[1:, 1, 0])
+    assert soft.pressure[:-1] == pytest.approx(1.0e6 * overlap, rel=1e-9, abs=1e-6) and soft.pressure[-1] > 1e3
+
+
+def test_implicit_penalty_is_an_interface_of_its_own():
+    scene = scenes.SCENES["block"]
+    assert scenes.contact_options(scene, 2, "7i") == ("ctype=7", "punit=4", "p:pen=10")
+    assert scenes.contact_options(scene, 2, "7h") == ("ctype=7", "punit=4", "p:pen=-1")
+    assert scenes.contact_options(scene, 2, 5) == ("ctype=5", "p:pen=500000")
+    assert scenes.block_springs(2, "7i") == (pytest.approx(10.0 * 1.0e6 / 3.0 / 0.25), True)
+    assert scenes.block_springs(2, "7h") == (np.inf, True) and not scenes.block_springs(2, 5)[1]
+
+
 def test_net_moment_of_a_couple():
     """Two opposite forces of 2 N, 0.3 m apart, over 2 N times a segment of 0.1 m."""
     points = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.0]])
@@ -198,13 +234,14 @@ def test_references_run_once_and_are_not_timed(monkeypatch):
 # ---- page --------------------------------------------------------------------------------------
 
 def made_rows(types_of=ALL_TYPES):
-    """Type k costs k; types 4, 5 and 7 are exact; roughness falls with the type, and with N_r."""
-    rows = []
+    """Type k costs k, the k-th of the series; types 4, 5 and 7 are exact; roughness falls with the type, and with N_r."""
+    rows, place = [], list(SERIES)
     for name, scene in scenes.SCENES.items():
         for level in scene.levels:
-            for ctype in types_of:
+            for series in types_of:
+                ctype = place.index(series) + 1
                 row = {"state": "finished", "role": "sweep", "scene": name, "level": level,
-                       "type": ctype, "search": 1.0 * ctype, "pairing": 0.0, "force": 0.0,
+                       "type": series, "search": 1.0 * ctype, "pairing": 0.0, "force": 0.0,
                        "contact": 1.0 * ctype,
                        "computing": 100.0 * level + 10.0 * ctype, "elements": 1.0, "element_calls": 101,
                        "processor": "slow one", "load": 1.0, "build": "slideline 0", "points": 10.0 * ctype,
@@ -213,7 +250,7 @@ def made_rows(types_of=ALL_TYPES):
                     row[measure.key] = 0.2 / level / (8 - ctype if ctype == 6 else ctype)
                     if measure.referenced:
                         row[f"{measure.key}_floor"], row[f"{measure.key}_order"] = 0.02, 1.0
-                if name in advice.PRESSURE_SCENES and ctype in (4, 5, 7):
+                if name in advice.PRESSURE_SCENES and ctype in (4, 5, 7, 8, 9):
                     row["pressure_error"] = 1e-12
                 rows.append(row)
     return rows
@@ -236,6 +273,21 @@ def test_advice_follows_the_figures():
     assert over.error(5, "hertz", "profile_error") == pytest.approx(0.2)
     # Type 6 errs as type 2 does and is dearer; type 7 errs less than 5, but by less than counts.
     assert advice.outdone(over, 6) == [2, 3, 4] and advice.outdone(over, 7) == [5]
+
+
+def test_implicit_penalty_stands_beside_type_7():
+    rows = [row for row in made_rows(tuple(SERIES)) if row["scene"] != "patch"]
+    over = overview(rows)
+    assert over.types == list(SERIES) and advice.chosen_types(over) == [4, 5]
+    text = advice.general_advice(over)[1]
+    assert "so types 7, 7i and 7h are dearer" in text and "Types 4, 5, 7, 7i and 7h transmit" in text
+    told = advice.implicit_advice(over)
+    assert "**Implicit penalty (PUNIT 4), types 7i and 7h,**" in told
+    assert "type 7i (PEN 10): contact 1.14 times" in told and "type 7h (PEN below 0, no compliance): contact 1.29 times" in told
+    assert "Hertz profile 0.88, sliding force 0.96, sliding roughness 0.88" in told
+    assert advice.outdone(over, "7h") == [5, 7]
+    assert "all/1" in advice.target_table(over)
+    assert advice.implicit_advice(overview(made_rows())) == ""
 
 
 def test_the_net_moment_is_told_of_the_type_that_has_one():
@@ -271,10 +323,12 @@ def test_charts(tmp_path):
 
 
 def test_page(tmp_path, plain_pictures):
-    study.page(made_rows(), tmp_path)
+    study.page(made_rows(tuple(SERIES)), tmp_path)
     text = (tmp_path / "studies/speed_accuracy.md").read_text()
     assert "**In general type 4 or 5 (VTS-PPT, NTS-mAR).**" in text
     assert "| 4 VTS-PPT | 4 / 1.4e+02 s; < 1e-7 % |" in text
+    assert "| 7i PUNIT 4 | 8 / 1.8e+02 s; < 1e-7 % |" in text
+    assert "| Sliding: force, rms difference over the mean | 7h | N_r = 2, 3, 6 | 1.00 | 2 % |  |" in text
     assert "(1), (1), (1), 1 %" in text and "nan" not in text  # 0.2/4/5 is below the reference's 0.02
     for name in scenes.SCENES:
         assert (tmp_path / f"pictures/speed_accuracy_{name}.png").stat().st_size < 100_000
@@ -296,8 +350,8 @@ def test_page_of_one_type_alone(tmp_path, plain_pictures):
 
 def test_real_runs_of_the_block(slideline, tmp_path, plain_pictures):
     arguments = ["speed-accuracy", "--program", slideline, "--folder", str(tmp_path), "--quick",
-                 "--types", "1", "3", "5", "--only", "block_1*"]
+                 "--types", "1", "3", "5", "7i", "7h", "--only", "block_1*"]
     assert command.main(arguments) == 0
     found = {row["type"]: row["pressure_error"] for row in read_rows(tmp_path / "speed-accuracy.csv")}
-    assert found[5] < scenes.ROUND_OFF and 1e-4 < found[3] < 0.01 < found[1] < 0.2
+    assert max(found[5], found["7i"], found["7h"]) < scenes.ROUND_OFF and 1e-4 < found[3] < 0.01 < found[1] < 0.2
     assert (tmp_path / "doc/studies/speed_accuracy.md").exists()

@@ -190,6 +190,68 @@ def test_jobs_are_unique_and_complete():
     assert len({job.name for job in jobs}) == len(jobs) == 2 * len(SCENES) * (maps + 9)
 
 
+def test_jobs_of_implicit_penalty():
+    """A map of its own: PEN on K L/A, no compliance last, steps up to just below L/c, no limit to ask for."""
+    jobs = stability.jobs(Options(types=(7, "7i")))
+    mine = [job for job in jobs if job.labels["type"] == "7i"]
+    assert {job.labels["kind"] for job in mine} == {"map"} and len({job.name for job in jobs}) == len(jobs)
+    assert len(mine) == len(SCENES) * (len(stability.DECADES) + 1) * len(stability.IMPLICIT_STEPS)
+    assert 0.995 in stability.IMPLICIT_STEPS and len(stability.IMPLICIT_STEPS) == len(stability.STEPS)
+    pens = {job.labels["decade"]: [word for word in job.options if word.startswith("p:pen=")] for job in mine}
+    assert pens[0.0] == ["p:pen=1"] and pens[stability_page.NO_COMPLIANCE] == ["p:pen=-1"]
+    assert all("punit=4" in job.options for job in mine)
+
+
+def implicit_rows():
+    """A small map of type 7 and of implicit penalty, which is stable below L/c from 1 on."""
+    rows = [{"scene": "block", "type": 7, "kind": "limit", "decade": x, "program_limit": y, "both_limits": y, "true_limit": y}
+            for x, y in ((-2.0, 1.0), (2.0, 0.3))]
+    for ctype, decades in ((7, (-2.0, 0.0, 2.0)), ("7i", (-2.0, 0.0, 2.0, stability_page.NO_COMPLIANCE))):
+        for decade in decades:
+            for step in (0.2, 0.995, 1.2):
+                verdict = "blown up" if step > 1.0 else "penetrating" if decade < 0.0 else "stable"
+                rows.append({"scene": "block", "type": ctype, "kind": "map", "decade": decade, "step": step,
+                             "verdict": verdict, "depth": 0.1})
+    return rows
+
+
+def test_implicit_penalty_below_the_limit_of_the_elements():
+    rows = stability.mark_below(implicit_rows())
+    mine = [row for row in rows if row["type"] == "7i"]
+    assert all(row["below_limit"] == (row["step"] < 1.0) for row in mine)
+    by_scene = {"block": rows}
+    assert stability_page.implicit_text(by_scene) == \
+        "Block stable from 1e+0.0 to no compliance, 0 of 8 cells blew up or chattered"
+    assert "7i" not in stability_page.limit_table(by_scene)
+    assert "| Block | 7i PUNIT 4 | 8 | 6 | 0 | 0 | 2 | 0 | 4 | 0 |" in stability_page.count_table(by_scene)
+    mine[3]["verdict"] = "blown up"  # at 1, step 0.2
+    assert stability_page.implicit_text(by_scene) == \
+        "Block stable from 1e+2.0 to no compliance, 1 of 8 cells blew up or chattered"
+
+
+def test_map_of_implicit_penalty_shows_each_cell(plain_pictures):
+    """Without compliance stands apart at the right; the steps are its own."""
+    figure = stability_page.draw_maps({"block": stability.mark_below(implicit_rows())})
+    axes = figure.axes[1]
+    assert axes.get_title() == "7i PUNIT 4"
+    cells, apart = axes.get_images()
+    assert cells.get_array().shape == (3, 3) and apart.get_array().shape == (3, 1)
+    assert apart.get_extent()[0] > cells.get_extent()[1] and apart.get_extent()[1] <= axes.get_xlim()[1]
+    assert axes.get_xticklabels()[-1].get_text() == "PEN<0"
+    assert [text.get_text() for text in axes.get_yticklabels()] == ["0.2", "0.995", "1.2"]
+
+
+@pytest.mark.parametrize("pen, step, verdict", [
+    ("1e4", 0.995, "stable"), ("-1", 0.995, "stable"), ("1e-2", 0.5, "penetrating"), ("10", 1.2, "blown up")])
+def test_implicit_cells_with_the_program(slideline, tmp_path, pen, step, verdict):
+    scene = SCENES["patch"]
+    (tmp_path / "run.k").write_text(scene.deck(7))
+    subprocess.run([slideline, "i=run.k", "d=.", "ctype=7", "punit=4", f"p:pen={pen}", "dt=1e3",
+                    f"tssfac={step}", f"endtim={scene.end}", *scene.options],
+                   cwd=tmp_path, capture_output=True, check=False)
+    assert measures.measure_run(tmp_path, "run", scene)["verdict"] == verdict
+
+
 @pytest.mark.parametrize("pen, step, verdict", [
     ("10", 0.5, "stable"), ("10", 1.2, "blown up"), ("1e-2", 0.5, "penetrating"),
     ("1e4", 0.5, "stable")])

@@ -9,3 +9,21 @@ PROGRAM_NAMES = {1: "classical NTS", 2: "NTS-AR", 3: "NTS-AR two-pass", 4: "VTS-
 TYPES = {**PROGRAM_NAMES, 1: "NTS", 3: "two-pass NTS-AR"}
 
 ALL_TYPES = tuple(TYPES)
+
+#: What studies compare beside the types: type 7 with implicit penalty (PUNIT 4), and its PEN. Below 0: no compliance.
+IMPLICIT, HARD = "7i", "7h"
+IMPLICIT_PENALTIES = {IMPLICIT: 10.0, HARD: -1.0}
+
+#: All that is compared, with names.
+SERIES = {**TYPES, IMPLICIT: "PUNIT 4", HARD: "PUNIT 4, PEN < 0"}
+
+
+def in_order(some):
+    """Those of `SERIES` that are among `some`, in its order."""
+    there = set(some)
+    return [one for one in SERIES if one in there]
+
+
+def parse_series(text):
+    """The series of a text of the command line."""
+    return int(text) if text.isdigit() else text

@@ -3,8 +3,8 @@
 """One-dimensional chain of masses and springs for the block-to-block scene (numpy only).
 
 Where the contact pressure is uniform, every column of the two blocks moves alike: 2 + 2 layers,
-each a spring, between masses per unit width, and one penalty spring at the interface. As a script
-it prints the pressure of each step: `chain.py PENALTY...`, with PENALTY in N/m^2.
+each a spring, between masses per unit width, and one penalty spring at the interface, which pushes
+by the gap at the start of a step or (`ahead`, PUNIT 4) at its end. As a script it prints the pressure of each step: `chain.py PENALTY...`, with PENALTY in N/m^2.
 """
 import dataclasses
 import sys
@@ -24,6 +24,7 @@ class Blocks:
     step: float = 1.0e-3
     steps: int = 200
     penalty: float = 1.0e6 / (10.0 / 51.0)  # PEN over the mean slave segment, N/m^2
+    ahead: bool = False                # by the gap of the end of the step; `penalty` may be infinite
 
 
 @dataclasses.dataclass
@@ -48,14 +49,19 @@ def solve(blocks=Blocks()):
     for n in range(blocks.steps + 1):
         stress = uniaxial_stress(blocks.young, np.diff(displacement) / thickness,
                                  deviatoric_strain)
-        pressure = blocks.penalty * max(0.0, displacement[0, -1] - displacement[1, 0])
+        share = 0.5 if n == 0 else 1.0
+        velocity[:, :-1] += share * blocks.step * stress / mass[:, :-1]
+        velocity[:, 1:] -= share * blocks.step * stress / mass[:, 1:]
+        overlap = displacement[0, -1] - displacement[1, 0]
+        if blocks.ahead:
+            moved = overlap + blocks.step * (velocity[0, -1] - velocity[1, 0])
+            closes = share * blocks.step ** 2 * (1.0 / mass[0, -1] + 1.0 / mass[1, 0])
+            pressure = max(0.0, moved) / (1.0 / blocks.penalty + closes)
+        else:
+            pressure = blocks.penalty * max(0.0, overlap)
         history.append((n * blocks.step, pressure, displacement.copy(), stress))
-        force = np.zeros_like(mass)
-        force[:, :-1] += stress
-        force[:, 1:] -= stress
-        force[1, 0] += pressure
-        force[0, -1] -= pressure
-        velocity += (0.5 if n == 0 else 1.0) * blocks.step * force / mass
+        velocity[1, 0] += share * blocks.step * pressure / mass[1, 0]
+        velocity[0, -1] -= share * blocks.step * pressure / mass[0, -1]
         velocity[0, 0] = 0.0
         velocity[1, -1] = blocks.velocity
         before = np.diff(displacement)

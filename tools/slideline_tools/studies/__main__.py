@@ -11,7 +11,7 @@ import signal
 import sys
 
 from slideline_tools import UserError, counting
-from slideline_tools.contact_types import ALL_TYPES
+from slideline_tools.contact_types import ALL_TYPES, SERIES, parse_series
 from slideline_tools.studies.framework import everything, registry
 from slideline_tools.studies.framework.job import Options, file_digest, interleave, part_of
 from slideline_tools.studies.framework.pages import made_by, program_source
@@ -33,7 +33,8 @@ def build_parser():
                         help=", ".join(registry.STUDIES) + f"; {EVERYTHING}: every page of doc/studies, from one "
                         "program on one machine (hours), into results/all")
     parser.add_argument("--levels", type=int, nargs="+", help="refinement levels")
-    parser.add_argument("--types", type=int, nargs="+", choices=ALL_TYPES, help="contact types")
+    parser.add_argument("--types", type=parse_series, nargs="+", choices=SERIES,
+                        help="contact types; some studies have 7i and 7h, type 7 with PUNIT 4, too")
     parser.add_argument("--quick", action="store_true",
                         help="a minute's worth of it, into results/study-NAME-quick")
     parser.add_argument("--repeats", type=int, help="rounds of timing runs")
@@ -62,6 +63,9 @@ def planned(study, wanted):
         repeats=rounds if wanted.repeats is None else wanted.repeats)
     if options.repeats < 1 or wanted.parallel < 1:
         raise UserError("--repeats and -j must be at least 1")
+    unknown = [one for one in options.types if one not in (*ALL_TYPES, *study.types)]
+    if unknown:
+        raise UserError(f"study {study.name} has no series {', '.join(unknown)}")
     try:
         jobs = interleave(study.jobs(options), options.repeats)
     except ValueError as problem:

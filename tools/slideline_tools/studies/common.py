@@ -8,7 +8,7 @@ import sys
 from PIL import Image
 
 from slideline_tools import UserError
-from slideline_tools.contact_types import TYPES
+from slideline_tools.contact_types import HARD, IMPLICIT, SERIES, TYPES
 from slideline_tools.fields import scalar_field
 from slideline_tools.plots import (COLOURS, MARKERS, PAGE_WIDTH, STYLE, colour_bar, draw_field,
                                    panel_height, plt)
@@ -16,21 +16,22 @@ from slideline_tools.prose import wrapped
 from slideline_tools.studies.framework.pages import with_origin
 
 LARGEST_PICTURE = 100_000
+IMPLICIT_LOOKS = {IMPLICIT: ("#e6007e", "X"), HARD: ("#111111", "*")}  # colour and marker
 
 
 def label(ctype):
-    """Text for a contact type, for example '5 NTS-mAR'."""
-    return f"{ctype} {TYPES[ctype]}"
+    """Text for a contact type (or series), for example '5 NTS-mAR'."""
+    return f"{ctype} {SERIES[ctype]}"
 
 
 def colour(ctype):
     """The colour of a contact type, the same in every picture."""
-    return COLOURS[ctype - 1]
+    return IMPLICIT_LOOKS[ctype][0] if ctype in IMPLICIT_LOOKS else COLOURS[ctype - 1]
 
 
 def marker(ctype):
     """Its marker, where points of types are told apart by shape too."""
-    return MARKERS[ctype - 1]
+    return IMPLICIT_LOOKS[ctype][1] if ctype in IMPLICIT_LOOKS else MARKERS[ctype - 1]
 
 
 def markdown_table(names, rows):

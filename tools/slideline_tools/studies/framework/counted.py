@@ -3,6 +3,7 @@
 import dataclasses
 
 from slideline_tools import counting
+from slideline_tools.contact_types import in_order
 from slideline_tools.counting import HARDWARE
 from slideline_tools.studies.common import label, markdown_table
 from slideline_tools.studies.framework.table import COUNTED, counted, grouped
@@ -37,7 +38,8 @@ def instruction_table(rows, base=1):
     names = ["type", "whole run, millions", f"over type {base}"]
     names += ["contact, millions", f"contact over type {base}", "share of contact"] * parts
     lines = []
-    for ctype, row in sorted(found.items()):
+    for ctype in in_order(found):
+        row = found[ctype]
         line = [label(ctype), f"{1e-6 * row['instructions']:.1f}",
                 f"{row['instructions'] / found[base]['instructions']:.3f}" if base in found else ""]
         if parts:

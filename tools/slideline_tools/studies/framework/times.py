@@ -8,6 +8,7 @@ seconds that the run would have taken had its element loop run at the median pac
 import numpy as np
 
 from slideline_tools import UserError
+from slideline_tools.contact_types import in_order
 from slideline_tools.histories import read_csv
 from slideline_tools.studies.framework.table import finished, grouped
 
@@ -60,7 +61,9 @@ class Times:
             usual = np.median([pace(row) for row in same_level])
             self.seconds[level], self.steps[level] = {}, same_level[0]["element_calls"] - 1
             self.points[level] = {row["type"]: row.get("points", "") for row in same_level}
-            for (ctype,), runs in sorted(grouped(same_level, "type").items()):
+            groups = grouped(same_level, "type")
+            for ctype in in_order(row["type"] for row in same_level):
+                runs = groups[ctype,]
                 factors = np.array([usual / pace(run) for run in runs])
                 values = {name: factors * [run[name] for run in runs] for name in self.COLUMNS}
                 middle = {name: float(np.median(column)) for name, column in values.items()}

@@ -3,7 +3,8 @@
 
 Which types are named is decided by framework/rules.py alone.
 """
-from slideline_tools.studies.common import TYPES, label, markdown_table
+from slideline_tools.contact_types import IMPLICIT_PENALTIES, SERIES, in_order
+from slideline_tools.studies.common import label, markdown_table
 from slideline_tools.studies.framework.rules import (COST_FACTOR, ERROR_FACTOR, RUN_FACTOR, between, least, names,
                                                    numbers)
 from slideline_tools.studies.speed_accuracy.front import cheapest, geometric_mean, meeting, ratios
@@ -18,6 +19,7 @@ COMPARED = (("hertz", "profile_error", "Hertz profile"),
             ("sliding", "roughness", "sliding roughness"),
             ("collision", "total_work_error", "plastic work"))
 TARGETS = (0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.0003)
+BESIDE = 7  # what implicit penalty is compared with: the same weighted gaps
 BALANCED = 1.0e-9  # a net moment that is round-off
 
 
@@ -27,7 +29,7 @@ class Overview:
     def __init__(self, points):
         """`points`: {scene: [Point]}, see front.points_of."""
         self.points = points
-        self.types = sorted({point.type for all_of in points.values() for point in all_of})
+        self.types = in_order(point.type for all_of in points.values() for point in all_of)
 
     def panels(self):
         """(scene, measure) of every measure that has points."""
@@ -42,9 +44,9 @@ class Overview:
                  for point in self.points.get(name, ()) if point.type == ctype]
         return all(exact) if exact else None
 
-    def cost_by_scene(self, ctype, cost):
-        """{scene: time over that of type 1, geometric mean over the meshes}."""
-        found = {name: ratios(points, ctype, lambda point: point.cost[cost])
+    def cost_by_scene(self, ctype, cost, base=1):
+        """{scene: time over that of type `base`, geometric mean over the meshes}."""
+        found = {name: ratios(points, ctype, lambda point: point.cost[cost], base)
                  for name, points in self.points.items()}
         return {name: geometric_mean(values) for name, values in found.items() if values}
 
@@ -52,10 +54,10 @@ class Overview:
         """Time over that of type 1, geometric mean over the scenes."""
         return geometric_mean(self.cost_by_scene(ctype, cost).values())
 
-    def error(self, ctype, scene, key):
-        """Error over that of type 1, geometric mean over the meshes."""
+    def error(self, ctype, scene, key, base=1):
+        """Error over that of type `base`, geometric mean over the meshes."""
         points = [point for point in self.points.get(scene, ()) if key in point.error]
-        return geometric_mean(ratios(points, ctype, lambda point: point.judged(key)))
+        return geometric_mean(ratios(points, ctype, lambda point: point.judged(key), base))
 
     def moment(self, ctype):
         """Largest net moment of the contact forces, over force times slave segment; nan where no
@@ -114,7 +116,7 @@ def target_cell(over, points):
         return "-"
     parts = []
     for level in sorted({point.level for point in found}):
-        types = [point.type for point in found if point.level == level]
+        types = in_order(point.type for point in found if point.level == level)
         parts.append(("all" if types == over.types and len(types) > 1 else " ".join(map(str, types)))
                      + f"/{level}")
     return f"{', '.join(parts)}, {min(costs.values()):.2g} s"
@@ -188,7 +190,7 @@ def general_advice(over):
     exact = [ctype for ctype in over.types if over.passes(ctype)]
     rest = [ctype for ctype in exact if ctype not in chosen]
     run = [value for ctype in chosen for value in over.cost_by_scene(ctype, "computing").values()]
-    named = ", ".join(TYPES[ctype] for ctype in chosen)
+    named = ", ".join(SERIES[ctype] for ctype in chosen)
     text = (f"**In general type {numbers(chosen, 'or')} ({named}).** {capital(names(exact))} "
             f"transmit{'s' * (len(exact) == 1)} a uniform pressure exactly on both sides, on every mesh. ")
     cost = ("Contact time over that of type 1, geometric mean of the scenes (from scene to scene): "
@@ -286,6 +288,31 @@ def outdone(over, ctype):
     return found
 
 
+def implicit_advice(over):
+    """Implicit penalty beside the springs of the same type: cost and errors over those of type 7."""
+    there = [ctype for ctype in over.types if ctype in IMPLICIT_PENALTIES]
+    if not there or BESIDE not in over.types:
+        return ""
+    parts = []
+    for ctype in there:
+        contact, run = (over.cost_by_scene(ctype, cost, BESIDE) for cost in ("contact", "computing"))
+        errors = [f"{title} {number(value)}" for scene, key, title in COMPARED
+                  if (value := over.error(ctype, scene, key, BESIDE)) == value]
+        parts.append(f"type {ctype} (PEN {pen_text(ctype)}): contact {between(contact.values())} times and the whole run "
+                     f"{between(run.values())} times that of type {BESIDE}"
+                     + (f"; errors over its: {', '.join(errors)}" if errors else ""))
+    return (f"**Implicit penalty (PUNIT 4), {names(there)},** is type {BESIDE} with springs that push by the gap of the end of "
+            "the step. From scene to scene " + ". ".join(parts[:1]) + "".join(f"; {part}" for part in parts[1:])
+            + ". All take the same steps here, which the penalties of these decks allow. Stiffer springs of the other types want "
+            "smaller steps, those of PUNIT 4 do not ([stability](stability.md)); that is not in these figures.")
+
+
+def pen_text(ctype):
+    """'10', 'below 0'."""
+    pen = IMPLICIT_PENALTIES[ctype]
+    return f"{pen:g}" if pen > 0.0 else "below 0, no compliance"
+
+
 def idle_advice(over):
     """Types that another one beats in cost without losing in accuracy anywhere."""
     if any(over.passes(ctype) is None for ctype in over.types):
@@ -301,6 +328,6 @@ def idle_advice(over):
 def advice(over):
     """The bullets of the recommendation."""
     usual, general = general_advice(over)
-    lines = [general, smooth_advice(over, usual), mesh_advice(over), share_advice(over),
+    lines = [general, smooth_advice(over, usual), implicit_advice(over), mesh_advice(over), share_advice(over),
              idle_advice(over)]
     return "\n".join(f"- {line}" for line in lines if line)

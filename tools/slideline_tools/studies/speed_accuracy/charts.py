@@ -5,6 +5,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from slideline_tools.contact_types import in_order
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.studies.common import colour, label, marker
 from slideline_tools.studies.framework.charts import save, styled
@@ -13,7 +14,7 @@ from slideline_tools.studies.speed_accuracy.scenes import SCENES
 
 LOWEST = 1.0e-12  # errors are drawn here at least
 POINT = STYLE["figure.dpi"] / 72.0    # pixels of a point of print
-NAME_WIDTH, NAME_HEIGHT = 15.0, 8.0   # of "7/4" in points
+NAME_WIDTH, NAME_HEIGHT = 18.0, 8.0   # of "7i/4" in points
 #: what the marks mean that all types have
 MARKS = {"Pareto front": Line2D([], [], color="black", linewidth=1.6, alpha=0.35),
          "hollow: below what the reference resolves": Line2D([], [], linestyle="none", marker="o", color="#555555",
@@ -22,7 +23,7 @@ MARKS = {"Pareto front": Line2D([], [], color="black", linewidth=1.6, alpha=0.35
 
 
 def draw_type(axes, points, cost, key):
-    """Points of one type, joined from mesh to mesh; hollow where the reference does not resolve the error."""
+    """Points of one series, joined from mesh to mesh; hollow where the reference does not resolve the error."""
     ctype = points[0].type
     x = [point.cost[cost] for point in points]
     y = [max(point.error[key], LOWEST) for point in points]
@@ -38,7 +39,7 @@ def draw_panel(axes, scene, points, cost, measure):
     """One measure over one cost, with the Pareto front."""
     key = measure.key
     points = [point for point in points if key in point.error]
-    for ctype in sorted({point.type for point in points}):
+    for ctype in in_order(point.type for point in points):
         draw_type(axes, sorted((point for point in points if point.type == ctype),
                                key=lambda point: point.level), cost, key)
     best = front(points, cost, key)

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 
+from slideline_tools.contact_types import in_order
 from slideline_tools.studies.framework.rules import RUN_FACTOR
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.framework.times import Times
@@ -15,7 +16,7 @@ GAIN, TIE = 0.05, RUN_FACTOR - 1.0  # smaller differences of errors and of times
 
 @dataclasses.dataclass(frozen=True)
 class Point:
-    """One type on one mesh of a scene.
+    """One type, or PUNIT 4 (a text), on one mesh of a scene.
 
     `cost`   {"contact", "computing"}: seconds for the whole run
     `error`  by measure; `floor` what the exact answer or the reference is itself known to
@@ -23,7 +24,7 @@ class Point:
              nothing touches
     """
 
-    type: int
+    type: object
     level: int
     cost: dict
     error: dict
@@ -98,8 +99,9 @@ def points_of(rows, times):
         first = {}
         for row in swept_rows(rows):
             if row["scene"] == name:
-                first.setdefault((row["type"], row["level"]), row)
-        points[name] = [make_point(SCENES[name], row, found) for _, row in sorted(first.items())]
+                first.setdefault(row["type"], {}).setdefault(row["level"], row)
+        points[name] = [make_point(SCENES[name], row, found) for ctype in in_order(first)
+                        for _, row in sorted(first[ctype].items())]
     return points
 
 
@@ -119,8 +121,8 @@ def geometric_mean(values):
     return float(np.exp(np.mean(np.log(values)))) if values else float("nan")
 
 
-def ratios(points, ctype, value):
-    """value(point of the type) over value(point of type 1) on each mesh that has both."""
-    first = {point.level: value(point) for point in points if point.type == 1}
+def ratios(points, ctype, value, base=1):
+    """value(point of the type) over value(point of type `base`) on each mesh that has both."""
+    first = {point.level: value(point) for point in points if point.type == base}
     return [value(point) / first[point.level] for point in points
             if point.type == ctype and point.level in first]

@@ -3,8 +3,9 @@
 import numpy as np
 
 from slideline_tools import UserError
+from slideline_tools.contact_types import HARD, SERIES
 from slideline_tools.plots import plt
-from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
+from slideline_tools.studies.common import label, markdown_table, save_small, write_page
 from slideline_tools.studies.framework.charts import styled
 from slideline_tools.studies.framework.counted import instruction_section
 from slideline_tools.studies.framework.rules import COST_FACTOR, ERROR_FACTOR, RUN_FACTOR
@@ -14,6 +15,7 @@ from slideline_tools.studies.speed_accuracy.advice import (Overview, advice, ove
 from slideline_tools.studies.speed_accuracy.charts import scene_figure
 from slideline_tools.studies.speed_accuracy.front import (COSTS, GAIN, TIE, front, points_of,
                                                          swept_rows, times_of)
+from slideline_tools.studies.speed_accuracy.reference import REFERENCE_TYPE, reference_series
 from slideline_tools.studies.speed_accuracy.scenes import SCENES, TWO_PASS, node_penalty
 
 PAGE = """# Speed against accuracy: which contact type to choose
@@ -22,6 +24,8 @@ This page and its pictures are written by `tools/study.sh speed-accuracy --publi
 recommendation and its figures are computed from the runs.
 
 ## What to choose
+
+7i and 7h stand for type 7 with implicit penalty (PUNIT 4): with its default PEN of 10, and with PEN below 0, without compliance.
 
 {advice}
 
@@ -47,11 +51,15 @@ The cheapest types and mesh (types/N_r) by computing time that keep an error at 
 - The interface is as stiff for all types: in type 3 the springs of both passes lie side by side, e/l_sl + e/l_ms, so that
   its penalty e is that of the others times l_ms/(l_sl + l_ms), l_sl and l_ms the mean segments of slave and master: {two_pass}. (The other
   pages have the penalty of the paper's rule, the same e for all types.) The penalty, N_r and what it divides are those of the decks.
+  PUNIT 4 has stiffnesses of its own: 7i 10 times `K L/A` of the softer side, which grows with N_r, and 7h none. Each is judged by what it
+  models: the blocks by a chain with its springs, at the end of the step; sliding and collision by a finer mesh without compliance. So the
+  errors of 7i and 7h do not hold that their interface is another one. The last column of the table below says how far the two references are
+  apart: what the springs of the decks add to the answer of rigid contact.
 - Which types are named above: means of contact times within a factor of {cost_factor:g} count as alike, and errors within a factor of
   {error_factor:g}; several types can be named (`tools/slideline_tools/studies/framework/rules.py`; its test repeats the comparison with the scatter of the times).
 - On the Pareto front are the types and meshes that nothing beats in cost and error at once. Errors within {gain:.0f} % of
   each other count as equal, and so do times within {tie:.0f} %. Single points of it may change when the runs are repeated.
-- Where there is no closed form, type 7 on a finer mesh is the reference. Its own error is extrapolated (Richardson) from
+- Where there is no closed form, type 7 on a finer mesh is the reference, 7h for 7i and 7h. Its own error is extrapolated (Richardson) from
   the distances of its finest levels, with the order they show (0.5 to 2). A smaller error is drawn hollow, stands in
   brackets in the tables and counts as that error: the run is then as good as the reference, and not known better.
 
@@ -71,10 +79,10 @@ TEXTS = {
 (round-off: below 1e-9). Refinement does not help a type that fails: the error is that of single nodes.""",
     "block": """[Block-to-block](block_to_block.md), 51 N_r over 50 N_r quads, 0.2 s in 2000 steps (a tenth of that page's
 steps, so that there is a time to measure). Exact: the pressure of a separate one-dimensional solution (a chain of masses
-and springs) with the springs that the type has. What is left of the types that pass is the elements' own lateral stress.""",
+and springs) with the springs that the type has; with PUNIT 4 they act by the end of the step. What is left of the types that pass is the elements' own lateral stress.""",
     "hertz": """[Hertz](hertz.md), cylinder on block, 50 microseconds. Errors against the closed form: largest distance of a
 nodal pressure from the ellipse inside 0.8 a, over p0; and the half width. The closed form leaves out finite strain, about 0.1 %
-here. The penalty is a layer of springs, which widens the contact in the same way for all types.""",
+here. The penalty is a layer of springs, which widens the contact in the same way for all types; 7i and 7h have less of it or none.""",
     "sliding": """[Sliding](sliding.md), 6 ms. The error is the difference of the vertical force to the reference at the same
 time, root mean square over the mean force in the judged time: above all that of the mesh, whose segments the die
 passes one by one. The roughness (force less its trend, as defined there) is that of the contact, and needs no reference.""",
@@ -100,7 +108,7 @@ def scene_table(scene, points):
     keys = [measure.key for measure in scene.measures
             if any(measure.key in point.error for point in points)]
     levels, rows = sorted({point.level for point in points}), []
-    for ctype in TYPES:
+    for ctype in SERIES:
         mine = {point.level: point for point in points if point.type == ctype}
         if mine:
             rows.append([label(ctype), *(table_cell(mine.get(level), keys) for level in levels)])
@@ -155,16 +163,22 @@ def reference_table(rows):
     for name, scene in SCENES.items():
         mine = [row for row in finished(rows) if row["scene"] == name]
         for measure in scene.measures:
-            known = [row for row in mine if f"{measure.key}_floor" in row]
-            if measure.referenced and known:
-                row = known[0]
-                lines.append([f"{scene.title}: {measure.title}", f"N_r = {row['reference_levels']}",
-                              f"{row[f'{measure.key}_order']:.2f}",
-                              f"{100.0 * row[f'{measure.key}_floor']:.2g} %"])
+            for reference in (REFERENCE_TYPE, HARD):
+                known = [row for row in mine if f"{measure.key}_floor" in row
+                         and reference_series(row["type"]) == reference]
+                if measure.referenced and known:
+                    lines.append(reference_cells(f"{scene.title}: {measure.title}", known[0], measure.key, reference))
     if not lines:
         return ""
-    return markdown_table(["reference", "meshes of type 7, the last is the reference", "order",
-                           "own error"], lines)
+    return markdown_table(["reference", "type", "meshes, the last is the reference", "order", "own error",
+                           "the two references apart"], lines)
+
+
+def reference_cells(title, row, key, reference):
+    """One row of that table."""
+    apart = row.get(f"{key}_springs")
+    return [title, str(reference), f"N_r = {row['reference_levels']}", f"{row[f'{key}_order']:.2f}",
+            f"{100.0 * row[f'{key}_floor']:.2g} %", "" if apart is None else f"{100.0 * apart:.2g} %"]
 
 
 # ---- the page ----------------------------------------------------------------------------------

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Converged references of the study speed-accuracy, their own error, and errors against them.
 
-The reference is the run of type 7 on the finest mesh. Its own error follows from the two or three
+The reference is the run of type 7 on the finest mesh, that of implicit penalty (PUNIT 4) the one without compliance:
+a penalty is judged as an interface with these springs, an implicit one as an interface with none. Its own error follows from the two or three
 finest levels by Richardson's extrapolation.
 """
 import numpy as np
 
+from slideline_tools.contact_types import HARD, IMPLICIT_PENALTIES
 from slideline_tools.histories import read_csv
 from slideline_tools.results import read
 from slideline_tools.scenes import collision_grids
@@ -103,9 +105,14 @@ DISTANCES = {"force_error": force_distance, "plastic_error": work_distance,
 
 # ---- rows --------------------------------------------------------------------------------------
 
-def reference_levels(rows, scene):
-    """Levels of type 7 of which the reference is made: those of the full or the quick study."""
-    there = {row["level"] for row in rows if row["type"] == REFERENCE_TYPE}
+def reference_series(ctype):
+    """The series whose finest mesh is the reference of another."""
+    return HARD if ctype in IMPLICIT_PENALTIES else REFERENCE_TYPE
+
+
+def reference_levels(rows, scene, reference):
+    """Levels of which the reference is made: those of the full or the quick study."""
+    there = {row["level"] for row in rows if row["type"] == reference}
     for levels in (SCENES[scene].references, SCENES[scene].quick_references):
         if set(levels) <= there:
             return levels
@@ -114,27 +121,38 @@ def reference_levels(rows, scene):
 
 def add_errors(rows, folder):
     """Columns <key>, <key>_floor and <key>_order of every measure against a reference, for the
-    runs on coarser meshes than the reference's."""
+    runs on coarser meshes than the reference's; and <key>_springs, how far the two references are apart."""
     for scene, read_outcome in OUTCOMES.items():
         mine = [row for row in finished(rows) if row["scene"] == scene]
-        levels = reference_levels(mine, scene)
-        if not levels:
-            continue
+        levels = {one: found for one in (REFERENCE_TYPE, HARD) if (found := reference_levels(mine, scene, one))}
+        mine = [row for row in mine if reference_series(row["type"]) in levels]
         outcomes = {}
         for row in mine:
             key = (row["type"], row["level"])
             if key not in outcomes:
                 outcomes[key] = read_outcome(folder / "runs" / row["run"], row["level"])
-        for row in mine:
-            row["reference_levels"] = ", ".join(map(str, levels))
-        chain = [outcomes[REFERENCE_TYPE, level] for level in levels]
-        for key, reference in chain[-1].items():
-            distance = DISTANCES[key]
-            order, floor = own_error(levels, [distance(one[key], other[key], reference)
-                                              for one, other in zip(chain[:-1], chain[1:])])
+        for one, found in levels.items():
+            judge_by([row for row in mine if reference_series(row["type"]) == one], outcomes,
+                     [(one, level) for level in found])
+        finest = [outcomes[one, found[-1]] for one, found in levels.items()]
+        if len(finest) == 2:
+            soft, hard = finest
             for row in mine:
-                if row["level"] >= levels[-1]:
-                    continue  # no finer than the run that is judged
-                row[key] = distance(outcomes[row["type"], row["level"]][key], reference, reference)
-                row[f"{key}_floor"], row[f"{key}_order"] = floor, order
+                row.update({f"{key}_springs": DISTANCES[key](soft[key], hard[key], hard[key]) for key in hard})
     return rows
+
+
+def judge_by(rows, outcomes, chain):
+    """The columns of rows with one reference; `chain`: (series, level) of its meshes, the finest last."""
+    levels = [level for _, level in chain]
+    for row in rows:
+        row["reference_levels"] = ", ".join(map(str, levels))
+    for key, reference in outcomes[chain[-1]].items():
+        distance = DISTANCES[key]
+        order, floor = own_error(levels, [distance(outcomes[one][key], outcomes[other][key], reference)
+                                          for one, other in zip(chain[:-1], chain[1:])])
+        for row in rows:
+            if row["level"] >= levels[-1]:
+                continue  # no finer than the run that is judged
+            row[key] = distance(outcomes[row["type"], row["level"]][key], reference, reference)
+            row[f"{key}_floor"], row[f"{key}_order"] = floor, order

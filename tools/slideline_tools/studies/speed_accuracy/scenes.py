@@ -16,6 +16,7 @@ from typing import Callable, Sequence
 import numpy as np
 
 from slideline_tools import UserError, scenes
+from slideline_tools.contact_types import HARD, IMPLICIT, IMPLICIT_PENALTIES
 from slideline_tools.histories import read_csv
 from slideline_tools.results import read
 from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, PENALTY as HERTZ_PENALTY
@@ -57,7 +58,7 @@ class Scene:
     `deck`        text by level
     `penalty`     of a contact node by level, N/m
     `lengths`     mean segments of slave and master at level 1, m
-    `judge`       (folder, level, type, penalty) -> columns
+    `judge`       (folder, level, series) -> columns
     `levels`, `quick_levels` those that are swept
     `references`, `quick_references` levels of type 7 the reference is made of, the finest last
     `options`     of the program by level: no states but the first and the last
@@ -88,6 +89,13 @@ def node_penalty(scene, level, ctype):
     """
     slave, master = scene.lengths
     return scene.penalty(level) * (master / (slave + master) if ctype == TWO_PASS else 1.0)
+
+
+def contact_options(scene, level, series):
+    """What gives a run its contact: type and penalty."""
+    if series in IMPLICIT_PENALTIES:
+        return ("ctype=7", "punit=4", f"p:pen={IMPLICIT_PENALTIES[series]:g}")
+    return (f"ctype={series}", f"p:pen={node_penalty(scene, level, series):.17g}")
 
 
 def net_moment(results, segment):
@@ -132,7 +140,7 @@ def largest_deviation(sides, exact):
     return max(float(np.abs(pressure / exact - 1.0).max()) for pressure in sides)
 
 
-def judge_patch(folder, level, _ctype, _penalty):
+def judge_patch(folder, level, _series):
     """Deviation from the uniform pressure of 1 Pa, at rest."""
     energy = read_csv(folder / "patch.glstat.csv")
     if not energy["kinetic"][-1] <= AT_REST * energy["internal"][-1]:
@@ -158,33 +166,51 @@ def block_penalty(level):
 
 
 @functools.lru_cache(maxsize=None)
-def chain_pressure(stiffness):
-    """Last pressure of the separate one-dimensional solution, Pa; `stiffness` in N/m^2."""
+def chain_module():
+    """The separate one-dimensional solution."""
     try:
         spec = importlib.util.spec_from_file_location("block_chain", CHAIN)
         module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
     except OSError as problem:
         raise UserError(f"cannot read {CHAIN}: {problem}") from problem
-    return float(module.solve(module.Blocks(
-        penalty=stiffness, step=BLOCK_STEP, steps=round(BLOCK_END / BLOCK_STEP))).pressure[-1])
+    return module
 
 
-def judge_block(folder, level, ctype, penalty):
-    """Deviation from the pressure of the chain whose interface has the springs of the type."""
-    n_slave, n_master = block_quads(level)
-    found = block_study.read_pressures(folder, scenes.block_grids(n_slave, n_master))
-    springs = block_study.interface_stiffness(ctype, n_slave, n_master) \
-        * penalty / block_study.PENALTY
+@functools.lru_cache(maxsize=None)
+def chain_pressure(stiffness, ahead=False):
+    """Last pressure of the chain, Pa; `stiffness` in N/m^2, `ahead`: of springs by the end of the step."""
+    chain = chain_module()
+    return float(chain.solve(chain.Blocks(
+        penalty=stiffness, step=BLOCK_STEP, steps=round(BLOCK_END / BLOCK_STEP),
+        ahead=ahead)).pressure[-1])
+
+
+def block_springs(level, series):
+    """Stiffness of the interface between the blocks, N/m^2, and whether it acts by the end of the step."""
+    if series == HARD:
+        return np.inf, True
+    if series == IMPLICIT:
+        blocks = chain_module().Blocks()
+        return IMPLICIT_PENALTIES[series] * blocks.young / 3.0 / (blocks.height / blocks.layers), True
+    penalty = node_penalty(SCENES["block"], level, series)
+    return (block_study.interface_stiffness(series, *block_quads(level)) * penalty
+            / block_study.PENALTY), False
+
+
+def judge_block(folder, level, series):
+    """Deviation from the pressure of the chain whose interface has the springs of the series."""
+    found = block_study.read_pressures(folder, scenes.block_grids(*block_quads(level)))
     return {"pressure_error": largest_deviation((found.slave, found.master),
-                                                chain_pressure(springs))}
+                                                chain_pressure(*block_springs(level, series)))}
 
 
 # ---- Hertz, sliding, collision -----------------------------------------------------------------
 
-def judge_hertz(folder, level, ctype, penalty):
-    """Distance of the nodal pressures from Hertz's ellipse, and of a and p0 from Hertz's."""
-    run = hertz_study.Run(folder, level, ctype, penalty=penalty)
+def judge_hertz(folder, level, series):
+    """Distance of the nodal pressures from Hertz's ellipse, and of a and p0 from Hertz's. (Its layer of springs
+    is not judged here.)"""
+    run = hertz_study.Run(folder, level, 7 if series in IMPLICIT_PENALTIES else series)
     return {"profile_error": run.inside, "half_width_error": abs(run.half_width - 1.0),
             "peak_error": abs(run.peak - 1.0)}
 
@@ -195,7 +221,7 @@ def sliding_options(level):
     return ("p:dtplot=1", f"p:dtforc={rows:.17g}")
 
 
-def judge_sliding(folder, level, _ctype, _penalty):
+def judge_sliding(folder, level, _series):
     """Roughness of the force (see studies/sliding.py), energy error, mean number of points."""
     rows = read_csv(folder / "sliding.rcforc.csv").where(side="slave")
     first, last = sliding_study.judged_interval()
@@ -207,7 +233,7 @@ def judge_sliding(folder, level, _ctype, _penalty):
             "points": float(np.mean(rows["n_active"][judged]))}
 
 
-def judge_collision(folder, _level, _ctype, _penalty):
+def judge_collision(folder, _level, _series):
     return {"energy_error": energy_error(folder / "collision.glstat.csv")}
 
 

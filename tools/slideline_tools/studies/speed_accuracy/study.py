@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Speed against accuracy: what each contact type costs in each scene, and how large its error is.
+"""Speed against accuracy: what each contact type, and implicit penalty (PUNIT 4), costs in each scene, and how
+large its error is.
 
 Every run is timed and judged; contact time and computing time are medians over rounds in which all
 variants run in turn. See scenes.py for the scenes and their measures.
 """
+from slideline_tools.contact_types import SERIES
 from slideline_tools.results import read
 from slideline_tools.studies.framework.counted import counted_job
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.framework.times import phases
 from slideline_tools.studies.speed_accuracy.charts import chart
 from slideline_tools.studies.speed_accuracy.page import page
-from slideline_tools.studies.speed_accuracy.reference import REFERENCE_TYPE, add_errors
-from slideline_tools.studies.speed_accuracy.scenes import SCENES, net_moment, node_penalty
+from slideline_tools.studies.speed_accuracy.reference import add_errors, reference_series
+from slideline_tools.studies.speed_accuracy.scenes import SCENES, contact_options, net_moment
 
 COUNTED_OPTIONS = {"sliding": ("endtim=2.0e-3",)}
 
@@ -24,10 +26,10 @@ def jobs(options):
                   if level in options.levels]
         swept = {(ctype, level) for level in levels for ctype in options.types}
         wanted = scene.quick_references if options.quick else scene.references
-        extra = {(REFERENCE_TYPE, level) for level in wanted if levels} - swept
+        extra = {(reference_series(ctype), level) for ctype in options.types for level in wanted if levels} - swept
         decks = {level: scene.deck(level) for _, level in swept | extra}
         references += [job(name, decks[level], level, ctype, "reference")
-                       for ctype, level in sorted(extra)]
+                       for ctype in SERIES for level in wanted if (ctype, level) in extra]
         listed += [job(name, decks[level], level, ctype, "sweep")
                    for level in levels for ctype in options.types]
     counted = [counted_job(one, COUNTED_OPTIONS.get(one.labels["scene"], ())) for one in listed
@@ -38,8 +40,7 @@ def jobs(options):
 def job(name, deck, level, ctype, role):
     """One run; `role`: sweep or reference."""
     scene = SCENES[name]
-    options = [f"ctype={ctype}", "ncpu=1", f"p:pen={node_penalty(scene, level, ctype):.17g}",
-               *scene.options(level)]
+    options = [*contact_options(scene, level, ctype), "ncpu=1", *scene.options(level)]
     swept = role == "sweep"
     return Job(f"{name}_{level}_type_{ctype}" + ("" if swept else "_reference"), deck, name, options,
                {"scene": name, "level": level, "type": ctype, "role": role}, alone=swept,
@@ -55,10 +56,10 @@ def measure(one, folder):
     results = read(folder / f"{one.jobid}.vtkhdf")
     run, moment = results.run, net_moment(results, scene.lengths[0] / level)
     return {**phases(folder / f"{one.jobid}.timing.csv"),
-            **scene.judge(folder, level, ctype, node_penalty(scene, level, ctype)),
+            **scene.judge(folder, level, ctype),
             **({} if moment is None else {"moment": moment}),
             "build": f"slideline {run['version']}, {run['build']}"}
 
 
 STUDY = Study("speed-accuracy", jobs, measure, chart, derive=add_errors, page=page,
-              levels=(1, 2, 3, 4), repeats=3, quick_levels=(1, 2))
+              levels=(1, 2, 3, 4), types=tuple(SERIES), repeats=3, quick_levels=(1, 2))

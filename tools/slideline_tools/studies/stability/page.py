@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
+from slideline_tools.contact_types import IMPLICIT, in_order
 from slideline_tools.plots import PAGE_WIDTH, plt
 from slideline_tools.studies.common import label, markdown_table, save_small, write_page
 from slideline_tools.studies.framework.charts import styled
@@ -14,6 +15,7 @@ from slideline_tools.studies.stability.measures import BLOWN_UP, CHATTERING, STA
 from slideline_tools.studies.stability.scenes import FASTER, SCENES
 from slideline_tools.studies.stability.texts import PAGE
 
+NO_COMPLIANCE = 5.0  # decade at which PEN below 0 (PUNIT 4) is drawn
 DEPTH_DECADES = (-0.5, 0.0, 0.5, 1.0)  # penalties of the table of depths
 LIMITS = {  # name of the column: text and line
     "true_limit": ("limit by eigenvalue", dict(color="black")),
@@ -26,6 +28,11 @@ FILLS = ("#d9ead3", "#9fc5e8", "#ffe599", "#b4a7d6", "#cc4125")
 
 def of_type(rows, ctype, kind):
     return [row for row in rows if row["type"] == ctype and row["kind"] == kind]
+
+
+def types_of(by_scene):
+    """All types of all scenes."""
+    return in_order(row["type"] for rows in by_scene.values() for row in rows)
 
 
 def grid_of(rows):
@@ -48,11 +55,15 @@ def limits_of(rows, ctype, name):
 def draw_panel(axes, rows, ctype):
     """One map: cells by verdict; the limits."""
     decades, steps, verdict = grid_of(of_type(rows, ctype, "map"))
-    half = 0.5 * (decades[1] - decades[0]) if len(decades) > 1 else 0.5
-    norm = BoundaryNorm(np.arange(len(VERDICTS) + 1) - 0.5, len(VERDICTS))
-    axes.imshow(verdict, origin="lower", aspect="auto", cmap=ListedColormap(FILLS), norm=norm,
-                extent=(decades[0] - half, decades[-1] + half, -0.5, len(steps) - 0.5),
-                interpolation="nearest")
+    count = int(np.sum(decades < NO_COMPLIANCE))
+    half = 0.5 * (decades[1] - decades[0]) if count > 1 else 0.5
+    left, right = decades[0] - half, decades[count - 1] + half
+    draw_cells(axes, verdict[:, :count], left, right)
+    if count < len(decades):  # apart from the others, as wide as one of them
+        draw_cells(axes, verdict[:, count:], right + 0.5 * half, right + 2.5 * half)
+        axes.set_xticks([*decades[:count][decades[:count] % 4.0 == 0.0], right + 1.5 * half], None)
+        axes.set_xticklabels([f"{x:g}" for x in axes.get_xticks()[:-1]] + ["PEN<0"])
+        axes.set_xlim(left, right + 2.5 * half)
     for name, (_, style) in LIMITS.items():
         points = limits_of(rows, ctype, name)
         if points:
@@ -66,17 +77,26 @@ def draw_panel(axes, rows, ctype):
     axes.grid(False)
 
 
+def draw_cells(axes, verdict, left, right):
+    """Cells side by side between two places of the axis."""
+    axes.imshow(verdict, origin="lower", aspect="auto", cmap=ListedColormap(FILLS),
+                norm=BoundaryNorm(np.arange(len(VERDICTS) + 1) - 0.5, len(VERDICTS)),
+                extent=(left, right, -0.5, len(verdict) - 0.5), interpolation="nearest")
+
+
 def draw_maps(by_scene):
     """All types in columns, scenes in rows."""
-    types = sorted({row["type"] for rows in by_scene.values() for row in rows})
-    figure, panels = plt.subplots(len(by_scene), len(types), squeeze=False, sharex=True,
+    types = types_of(by_scene)
+    figure, panels = plt.subplots(len(by_scene), len(types), squeeze=False, sharex="col",
                                   figsize=(PAGE_WIDTH + 2.5, 1.9 * len(by_scene) + 0.6),
                                   layout="constrained")
     for line, (name, rows) in zip(panels, by_scene.items()):
         for axes, ctype in zip(line, types):
             draw_panel(axes, rows, ctype)
             axes.set_title(label(ctype), fontsize=7)
-            if axes is not line[0]:
+            if ctype == IMPLICIT and axes is not line[0]:
+                axes.yaxis.tick_right()  # its steps are others
+            elif axes is not line[0]:
                 axes.set_yticklabels([])
         line[0].set_ylabel(f"{SCENES[name].title}: step over L/c", fontsize=7)
     figure.supxlabel("log10 of penalty over K L/A of the elements", fontsize=8)
@@ -89,7 +109,7 @@ def draw_maps(by_scene):
 def limit_table(by_scene):
     """Program's limit over that by eigenvalues, smallest to largest over all penalties."""
     lines = []
-    for ctype in sorted({row["type"] for rows in by_scene.values() for row in rows}):
+    for ctype in (one for one in types_of(by_scene) if one != IMPLICIT):
         cells = [label(ctype)]
         for rows in by_scene.values():
             ratios = [row["program_limit"] / row["both_limits"]
@@ -100,13 +120,16 @@ def limit_table(by_scene):
 
 
 def count_table(by_scene):
-    """Verdicts of the cells below the program's limit, and stability above the limit by eigenvalue."""
+    """Verdicts of the cells below the program's limit, and stability above the limit by eigenvalue; that of
+    implicit penalty is L/c."""
     lines = []
     for name, rows in by_scene.items():
-        for ctype in sorted({row["type"] for row in rows}):
+        for ctype in in_order(row["type"] for row in rows):
             cells = [row for row in of_type(rows, ctype, "map") if "verdict" in row]
             below = [row["verdict"] for row in cells if row.get("below_limit")]
             true = limits_of(rows, ctype, "true_limit")
+            if ctype == IMPLICIT:
+                true = [(0.0, 1.0)]
             above = [row["verdict"] for row in cells if true
                      and row["step"] > 1.001 * np.exp(np.interp(
                          row["decade"], *zip(*[(x, np.log(y)) for x, y in true])))]
@@ -124,6 +147,11 @@ def good_decades(rows, ctype):
     return sorted({row["decade"] for row in below} - bad)
 
 
+def penalty_text(decade):
+    """'1e+0.5', or that there is no compliance."""
+    return "no compliance" if decade == NO_COMPLIANCE else f"1e{decade:+.1f}"
+
+
 def one_digit(decade):
     """The penalty at a decade, rounded to a digit: 0.3 for -0.5."""
     return f"{float(f'{10.0 ** decade:.1g}'):g}"
@@ -134,7 +162,7 @@ def smallest_penalties(by_scene):
     texts = []
     for name, rows in by_scene.items():
         types = {}
-        for ctype in sorted({row["type"] for row in rows}):
+        for ctype in in_order(row["type"] for row in rows):
             good = good_decades(rows, ctype)
             types.setdefault(good[0] if good else np.inf, []).append(str(ctype))
         texts.append(f"{SCENES[name].title} " + ", ".join(
@@ -149,7 +177,7 @@ def depth_table(rows, approach):
     cells = [row for row in rows if row.get("below_limit") and row["decade"] in DEPTH_DECADES
              and row["verdict"] != VERDICTS[BLOWN_UP]]
     lines = []
-    for ctype in sorted({row["type"] for row in cells}):
+    for ctype in in_order(row["type"] for row in cells):
         deepest = [max((row["depth"] for row in cells if (row["type"], row["decade"]) ==
                         (ctype, decade)), default=None) for decade in DEPTH_DECADES]
         lines.append([label(ctype), *("" if depth is None else f"{depth / approach:.2f}"
@@ -161,13 +189,32 @@ def first_failures(by_scene):
     """Smallest and largest penalty of each type for which all steps below the program's limit are
     good, by scene."""
     lines = []
-    for ctype in sorted({row["type"] for rows in by_scene.values() for row in rows}):
+    for ctype in types_of(by_scene):
         cells = [label(ctype)]
         for rows in by_scene.values():
             good = good_decades(rows, ctype)
-            cells.append(f"1e{good[0]:+.1f} to 1e{good[-1]:+.1f}" if good else "none")
+            cells.append(f"{penalty_text(good[0])} to {penalty_text(good[-1])}" if good else "none")
         lines.append(cells)
     return markdown_table(["type", *(SCENES[name].title for name in by_scene)], lines)
+
+
+def failing_below(rows):
+    """How many cells lie below the program's limit, and how many of these blew up or chattered."""
+    below = [row["verdict"] for row in rows if row.get("below_limit")]
+    return len(below), sum(below.count(VERDICTS[verdict]) for verdict in (BLOWN_UP, CHATTERING))
+
+
+def implicit_text(by_scene):
+    """What became of implicit penalty below L/c, scene by scene."""
+    parts = []
+    for name, rows in by_scene.items():
+        rows = [row for row in rows if row["type"] == IMPLICIT and row.get("below_limit")]
+        if rows:
+            good = good_decades(rows, IMPLICIT)
+            spread = f"stable from {penalty_text(good[0])} to {penalty_text(good[-1])}" if good else "nowhere stable at all steps"
+            count, bad = failing_below(rows)
+            parts.append(f"{SCENES[name].title} {spread}, {bad} of {count} cells blew up or chattered")
+    return "; ".join(parts) if parts else "not run"
 
 
 def write_maps_page(rows, doc):
@@ -176,15 +223,14 @@ def write_maps_page(rows, doc):
     by_scene = {name: [row for row in rows if row["scene"] == name] for name in names}
     with styled():
         save_small(draw_maps(by_scene), doc / "pictures" / "stability.png", lines=True)
-    below = [row for row in rows if row.get("below_limit")]
-    bad = [row for row in below if row["verdict"] in (VERDICTS[BLOWN_UP], VERDICTS[CHATTERING])]
+    below, bad = failing_below(row for row in rows if row["type"] != IMPLICIT)
     times = ", ".join(f"{SCENES[name].title.lower()} {SCENES[name].end:g} s" for name in names)
     write_page(doc, "stability", PAGE.format(
         times=times, faster=FASTER, limits=limit_table(by_scene), counts=count_table(by_scene),
         ranges=first_failures(by_scene), soft=smallest_penalties(by_scene),
         depths=depth_table(by_scene.get("block", ()), SCENES["block"].approach),
         ways=f"{SCENES['block'].approach:g} m and {1e3 * SCENES['sliding'].approach:g} mm",
-        n_below=len(below), n_bad=len(bad),
+        n_below=below, n_bad=bad, implicit=implicit_text(by_scene),
         **{name: getattr(measures, name) for name in (
             "ENERGY_DRIFT", "ENERGY_CREATED", "DEPTH_SIDES", "DEPTH_APPROACH", "SWINGS",
             "UNEVEN", "ENDS")}))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Stability maps: what becomes of each contact type over penalty and time step.
+"""Stability maps: what becomes of each contact type, and of implicit penalty (PUNIT 4), over penalty and time step.
 
-The penalty is given over the stiffness K L/A of the elements behind the interface (PUNIT 2), the step over the
-smallest L/c of the elements (TSSFAC, a constant step being refused above it).
+The penalty is given over the stiffness K L/A of the elements behind the interface (PUNIT 2, PUNIT 4), the step over
+the smallest L/c of the elements (TSSFAC, a constant step being refused above it).
 """
 from __future__ import annotations
 
@@ -11,17 +11,20 @@ import re
 import numpy as np
 
 from slideline_tools import UserError
+from slideline_tools.contact_types import ALL_TYPES, IMPLICIT
 from slideline_tools.studies.framework.charts import save, styled
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.stability.failing import keep_failing
 from slideline_tools.studies.stability.measures import measure_run
-from slideline_tools.studies.stability.page import draw_maps, write_maps_page
+from slideline_tools.studies.stability.page import NO_COMPLIANCE, draw_maps, write_maps_page
 from slideline_tools.studies.stability.scenes import SCENES
 
 DECADES = np.arange(-4.0, 4.01, 0.5)          # log10 of penalty over K L/A
 QUICK_DECADES = np.arange(-4.0, 4.01, 2.0)
 STEPS = (0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.0, 1.2, 1.5)  # over L/c
 QUICK_STEPS = (0.2, 0.7, 1.2)
+IMPLICIT_STEPS = (*STEPS[:6], 0.995, *STEPS[7:])  # below L/c, where the elements themselves are stable
+QUICK_IMPLICIT_STEPS = (0.2, 0.995, 1.2)
 STOCK = 0.1                                   # SLSFAC: PUNIT 2 multiplies K L/A by it
 NO_CURVE = 1.0e3                              # s: a constant step that no element allows
 RULE = "*CONTROL_CONTACT\n\n0,0,0,0,0,0,2\n*CONTROL_ENERGY"
@@ -33,10 +36,11 @@ def jobs(options):
     """Each scene and type over penalties and steps, and one cycle per penalty for the program's limit."""
     listed = []
     decades = QUICK_DECADES if options.quick else DECADES
+    steps = QUICK_STEPS if options.quick else STEPS
     for name, scene in SCENES.items():
         if options.quick and name == "sliding":
             continue
-        for ctype in options.types:
+        for ctype in (one for one in options.types if one != IMPLICIT):
             deck = scene.deck(ctype)
             ruled = deck.replace("*CONTROL_ENERGY", RULE)
             for decade in decades:
@@ -48,11 +52,28 @@ def jobs(options):
                     listed.append(Job(f"{stem}_limit", ruled, name,
                                       (*common, "tssfac=1", f"endtim={LIMIT_TIME:g}"),
                                       {**labels, "kind": "limit"}, cost=0.1))
-                for step in QUICK_STEPS if options.quick else STEPS:
-                    listed.append(Job(
-                        f"{stem}_dt_{step:g}", deck, name,
-                        (*common, f"tssfac={step:g}", f"endtim={scene.end:g}"),
-                        {**labels, "kind": "map", "step": step}, cost=0.2 / step, limit=PATIENCE))
+                listed += [map_job(stem, deck, common, labels, step) for step in steps]
+        if IMPLICIT in options.types:
+            listed += implicit_jobs(name, scene, decades, QUICK_IMPLICIT_STEPS if options.quick else IMPLICIT_STEPS)
+    return listed
+
+
+def map_job(stem, deck, common, labels, step):
+    """One cell of a map."""
+    scene = SCENES[labels["scene"]]
+    return Job(f"{stem}_dt_{step:g}", deck, labels["scene"], (*common, f"tssfac={step:g}", f"endtim={scene.end:g}"),
+               {**labels, "kind": "map", "step": step}, cost=0.2 / step, limit=PATIENCE)
+
+
+def implicit_jobs(name, scene, decades, steps):
+    """The cells of implicit penalty, those without compliance last. It has no limit of its own to ask for."""
+    listed, deck = [], scene.deck(7)
+    for decade in (*decades, NO_COMPLIANCE):
+        pen = -1.0 if decade == NO_COMPLIANCE else 10.0 ** decade
+        common = ("ctype=7", "punit=4", f"p:pen={pen:.10g}", f"dt={NO_CURVE:g}", "ncpu=1", *scene.options)
+        stem = f"{name}_type_{IMPLICIT}_pen_" + ("none" if pen < 0.0 else f"1e{decade:+.1f}")
+        labels = {"scene": name, "type": IMPLICIT, "decade": float(decade)}
+        listed += [map_job(stem, deck, common, labels, step) for step in steps]
     return listed
 
 
@@ -87,7 +108,10 @@ def derive(rows, folder):
 
 
 def mark_below(rows):
-    """`below_limit`: the step lies below the program's limit for that penalty."""
+    """`below_limit`: the step lies below the program's limit for that penalty; with PUNIT 4 that is L/c."""
+    for row in rows:
+        if row["type"] == IMPLICIT and "verdict" in row:
+            row["below_limit"] = row["step"] < 1.0
     for (scene, ctype) in {(row["scene"], row["type"]) for row in rows}:
         limits = sorted((row["decade"], row["program_limit"]) for row in rows if "program_limit" in row
                         and (row["scene"], row["type"]) == (scene, ctype))
@@ -115,4 +139,4 @@ def page(rows, doc):
     write_maps_page(mark_below(rows), doc)
 
 
-STUDY = Study("stability", jobs, measure, chart, derive, page)
+STUDY = Study("stability", jobs, measure, chart, derive, page, types=(*ALL_TYPES, IMPLICIT))

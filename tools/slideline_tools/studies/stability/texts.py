@@ -5,7 +5,7 @@ PAGE = """# Where each type is stable
 
 This page and its picture are written by `tools/study.sh stability --publish`: do not edit them.
 
-Each contact type over eight decades of penalty and steps of 0.1 to 1.5 times the smallest `L/c` of the elements, in three scenes: the patch test
+Each contact type, and type 7 with implicit penalty (7i: PUNIT 4), over eight decades of penalty and steps of 0.1 to 1.5 times the smallest `L/c` of the elements, in three scenes: the patch test
 under 20 kPa (2 % of the modulus) with mass damping, two blocks driven together by 0.24 m, and the sliding die with its strokes {faster:g} times faster.
 Simulated times are short: {times}; an instability that is any faster shows, a slow drift does not. All elements have one point and the stiffness form of hourglass control.
 The penalty is given over `K L/A`, the stiffness of the elements behind the interface (`PUNIT 2` is a factor on a tenth of it); at 1 the springs are as stiff as one row of elements.
@@ -13,6 +13,8 @@ The step is TSSFAC times `L/c`. A constant step of the deck (`LCTM`) above the s
 forces a step above `L/c`.
 
 ![Stability maps](../pictures/stability.png)
+
+The last column of maps, 7i, has implicit penalty: PEN is the factor on `K L/A`, and a column of its own at the right, PEN below 0, is without compliance. Its steps stand at the right; the seventh is 0.995.
 
 Full line: `dt = 2/omega` by the largest eigenvalue of `M^-1 K`, elements and the springs of the type with all of the surface in contact: what stays closed is stable below it. Dotted and dash-dotted
 lines: `omega dt` = 2 and 1 with the largest `omega` of the contact springs alone; springs that open and close make energy from `omega dt` = 1 on. Broken line: the limit that the program
@@ -42,7 +44,11 @@ Limit of the program over the smaller of the two by eigenvalues (full and dash-d
 
 {limits}
 
-Of {n_below} cells below the program's limit, {n_bad} blew up or chattered.
+Of {n_below} cells of the types below the program's limit, {n_bad} blew up or chattered.
+
+There are no limits by eigenvalue of 7i, and no lines in its maps. An eigenvalue bounds the step because springs push by the gap at the start of a step: the force of a stiff one overshoots where `omega dt` is above 2. With
+PUNIT 4 they push by the gap of the end of the step, which is what the solution of each step makes of it; this force never drives the sides farther apart than the springs allow, whatever their stiffness, so that they have no
+`omega` that the step could exceed (`doc/theory/contact.md`, section 6.6). What is left is the limit of the elements alone, `L/c`, and the program leaves these springs out of its own. Below it: {implicit}.
 
 {counts}
 
