@@ -45,9 +45,10 @@ module arguments_m
 
   !> Names that may be overridden for every deck; the first of them, those of a contact, also as
   !> NAME.INTERFACE.
-  integer, parameter :: n_contact_name = 11
-  character(6), parameter :: override_names(14) = [character(6) :: 'ctype', 'ngauss', 'pen', &
-    'punit', 'pent', 'vdc', 'fs', 'fd', 'dc', 'vc', 'tfac', 'endtim', 'dt', 'tssfac']
+  integer, parameter :: n_contact_name = 12
+  character(6), parameter :: override_names(15) = [character(6) :: 'ctype', 'ngauss', 'pen', &
+    'punit', 'pent', 'vdc', 'fs', 'fd', 'dc', 'vc', 'tfac', 'target', &
+    'endtim', 'dt', 'tssfac']
 
 contains
 
@@ -391,6 +392,7 @@ contains
       '  ctype=T ngauss=N pen=P      contact of every interface; ctype.2=T of interface 2'//n// &
       '  punit=U pent=P vdc=D        unit of the penalty, that of the master pass, damping'//n// &
       '  fs=M fd=M dc=C vc=T tfac=R  friction: coefficients, decay, largest stress, spring'//n// &
+      '  target=E                    with ctype=0: the largest estimate of the error'//n// &
       '  endtim=T dt=DT tssfac=F     end time, constant step, safety factor'//n// &
       '  p:NAME=VALUE                a *PARAMETER of the deck'//n//n// &
       'results: JOB.vtkhdf (ParaView), JOB.*.csv, JOB.log, JOB.effective.k (the deck as run)'//n// &

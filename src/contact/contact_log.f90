@@ -350,6 +350,8 @@ contains
 
     text = ''
     if (allocated(contact%reason)) text = ', chosen by the program (CTYPE 0): '//contact%reason
+    if (contact%target > 0.0_wp) text = text//'; its estimate is to stay at or below ' &
+      //to_text(contact%target)
   end function choice_text
 
 end module contact_log_m

@@ -56,6 +56,9 @@ module contacts_m
     integer :: contact_type = 0            !! CTYPE
     logical :: chosen_by_keyword = .false. !! a stock keyword chose the type
     character(:), allocatable :: reason    !! why the program chose it (CTYPE 0); else none
+    real(wp) :: target = 0.0_wp            !! TARGET: largest estimate that is to be kept; 0 where
+                                           !! the type is the deck's alone
+    integer :: scene = 0                   !! with a target: kind of scene (type_charts_m)
     type(surface_t) :: slave, master       !! SURFA, SURFB
     integer :: n_gauss = 2                 !! NGAUSS
     integer :: penalty_unit = penalty_per_node !! one of the `penalty_` constants

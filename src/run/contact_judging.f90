@@ -3,7 +3,7 @@
 !> puts on a face, and the stress of the elements behind it (doc/theory/contact.md, section 8.1).
 !> At instants that are written, and in words at the end.
 module contact_judging_m
-  use contact_estimate_m, only : contact_estimate_t
+  use contact_estimate_m, only : contact_estimate_t, judged_each
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
   use contacts_m, only : contact_t, n_told, penalty_implicit
   use controls_m, only : is_asked
@@ -17,6 +17,7 @@ module contact_judging_m
   use snapshot_m, only : snapshot_t, interface_result_t
   use state_m, only : state_t
   use surfaces_m, only : surface_t
+  use type_charts_m, only : better_type, refinement
   implicit none
   private
   public :: judge_contacts, report_estimates
@@ -84,6 +85,9 @@ contains
       result%row_energy = side%row_energy
       result%estimate = 0.0_wp
       if (side%load > 0.0_wp) result%estimate = sqrt(side%misfit/side%load)
+      if (state%cycle > state%estimates(i)%cycle .and. model%contacts(i)%target > 0.0_wp &
+        .and. mod(state%cycle, judged_each) == 0) state%estimates(i)%watched = &
+        state%estimates(i)%watched + [side%misfit, side%load]
       if (state%cycle > state%estimates(i)%cycle) call sum_up(state%cycle, state%dt, side, result, &
         state%estimates(i))
     end associate
@@ -197,8 +201,12 @@ contains
     integer :: i
 
     do i = 1, size(state%estimates)
-      if (state%estimates(i)%load > 0.0_wp) call write_log(log, 'interface ' &
-        //to_text(model%contacts(i)%id)//': '//words(state%estimates(i), state, i))
+      if (.not. state%estimates(i)%load > 0.0_wp) cycle
+      call write_log(log, 'interface '//to_text(model%contacts(i)%id)//': ' &
+        //words(state%estimates(i), state, i))
+      if (model%contacts(i)%target > 0.0_wp) call write_log(log, 'interface ' &
+        //to_text(model%contacts(i)%id)//': '//target_words(model%contacts(i), &
+        sqrt(state%estimates(i)%misfit/state%estimates(i)%load)))
     end do
   end subroutine report_estimates
 
@@ -227,6 +235,31 @@ contains
     if (estimate%least_margin < huge(1.0_wp)) text = text//'; the step is ' &
       //percent(1.0_wp, estimate%least_margin)//' of the stable one'
   end function words
+
+  !> Whether a target was kept, and if not what would: another type, or else a finer mesh.
+  pure function target_words(contact, estimate) result(text)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in) :: estimate !! of the run
+    character(:), allocatable :: text
+    integer :: better
+    real(wp) :: expected
+
+    text = 'the target '//percent(contact%target, 1.0_wp)//' is '
+    if (estimate <= contact%target) then
+      text = text//'kept'
+      return
+    end if
+    text = text//'not kept; '
+    call better_type(contact%scene, contact%contact_type, estimate, contact%target, better, &
+      expected)
+    if (expected <= contact%target) then
+      text = text//'by the published studies type '//to_text(better)//' would keep it'
+    else
+      text = text//'by the published studies no type would, but elements smaller by a factor of ' &
+        //times(refinement(expected, contact%target))
+      if (better /= contact%contact_type) text = text//' with type '//to_text(better)
+    end if
+  end function target_words
 
   !> A ratio with two decimals.
   pure function times(ratio) result(text)

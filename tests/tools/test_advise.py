@@ -402,6 +402,21 @@ def test_rigid_part_strains_little_and_keeps_little_energy(runs):
     assert found[0].seconds == pytest.approx(run.seconds_of("elements") * 24.0 / 64.0)
 
 
+def test_missed_target():
+    """The figures are those of the log; a target that is kept is no advice."""
+    tail = """interface 4: contact pressure and the stress behind it differ by 2.50 % (r.m.s. of 9 instant(s)), by 2.00 % at the largest load
+interface 4: the target 1.00 % is {so}
+"""
+    class Run:
+        log = read_log(LOG.format(body=0) + tail.format(so="kept"))
+    assert touching.missed_target(Run) == []
+    Run.log = read_log(LOG.format(body=0) + tail.format(
+        so="not kept; by the published studies no type would, but elements smaller by a factor of 2.80"))
+    advice, = touching.missed_target(Run)
+    assert "interface 4" in advice.what and "1.00 %" in advice.what and "2.50 %" in advice.evidence
+    assert "factor of 2.80" in advice.change and advice.seconds is None
+
+
 def test_dear_type(runs):
     run = finished.read_run(runs["none"])
     run.seconds["contact_force"] = 0.3 * run.total

@@ -16,7 +16,7 @@ module deck_contact_m
   use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of
   use deck_checks_m, only : refuse_negative, refuse_outside, take_life
   use deck_contact_values_m, only : find_commanded, take_overrides, check_values, kind_names, &
-    of_penalty, of_master_penalty
+    name_of, of_penalty, of_master_penalty
   use deck_friction_m, only : take_friction, take_stock_friction, take_penalty_friction
   use deck_tie_m, only : take_tie, take_stock_tie, check_tie
   use deck_transducer_m, only : settle_number
@@ -89,10 +89,7 @@ contains
         //to_text(entry%contact%contact_type)//', which this version does not have' &
         //kind_names(kinds))
     end if
-    entry%kind = 'type '//to_text(entry%contact%contact_type)
-    do k = 1, size(kinds)
-      if (kinds(k)%number == entry%contact%contact_type) entry%kind = kind_text(kinds(k))
-    end do
+    entry%kind = name_of(kinds, entry%contact%contact_type)
     if (entry%contact%search_interval > 0) raw%explicit_only = [raw%explicit_only, &
       entry%search_place]
     raw%contacts = [raw%contacts, entry]
@@ -195,6 +192,7 @@ contains
       if (.not. any(integer_of(cards(3), 'TIE') == [tie_always, tie_breaks])) &
         call refuse_negative(deck, cursor, cards(2), 'SRCH')
       contact%search_depth = real_of(cards(2), 'SRCH')
+      contact%target = real_of(cards(3), 'TARGET')
     end associate
     call take_interference(deck, cursor, cards(3), entry)
   end subroutine take_slideline

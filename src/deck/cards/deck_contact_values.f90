@@ -16,12 +16,12 @@ module deck_contact_values_m
   use deck_raw_m, only : raw_contact_t
   implicit none
   private
-  public :: find_commanded, take_overrides, check_values, kind_names, leaves_type, of_penalty, &
-    of_unit, of_master_penalty, of_damping
+  public :: find_commanded, take_overrides, check_values, kind_names, leaves_type, name_of, &
+    of_penalty, of_unit, of_master_penalty, of_damping
 
   !> Values by their place in `contact_names`.
   integer, parameter :: of_type = 1, of_gauss = 2, of_penalty = 3, of_unit = 4, &
-    of_master_penalty = 5, of_damping = 6
+    of_master_penalty = 5, of_damping = 6, of_target = 12
 
   !> Most damping, per cent of critical. The force goes with the velocity of half a step ago: with
   !> ten times critical damping the scene block-to-block breaks up.
@@ -59,6 +59,9 @@ contains
       call override_integer(overrides, 'PUNIT', id, contact%penalty_unit, given(of_unit))
       call override_real(overrides, 'VDC', id, entry%per_cent, given(of_damping))
       contact%damping = entry%per_cent/100.0_wp
+      ! A type that the command line names is not the program's to change.
+      if (given(of_type) .and. .not. leaves_type(contact)) contact%target = 0.0_wp
+      call override_real(overrides, 'TARGET', id, contact%target, given(of_target))
       if (contact%penalty_unit == penalty_implicit .and. .not. abs(contact%penalty) > 0.0_wp) &
         contact%penalty = implicit_factor
       contact%chosen_by_keyword = contact%chosen_by_keyword .and. .not. given(of_type)
@@ -92,6 +95,11 @@ contains
       if (contact%penalty_unit == penalty_implicit .and. any(kinds%number == contact%contact_type &
         .and. .not. kinds%has_implicit_springs)) call refuse(of_unit, &
         'asks for implicit springs'//implicit_names(kinds))
+      if (contact%target < 0.0_wp .or. contact%target >= 1.0_wp) call refuse(of_target, &
+        'is not a target of the estimate of contact (above 0, below 1)')
+      if (commanded(of_target) .and. .not. leaves_type(contact)) call refuse(of_target, &
+        'is for types that the program chooses (CTYPE 0); interface '//to_text(contact%id) &
+        //' has '//name_of(kinds, contact%contact_type))
       if (entry%per_cent < 0.0_wp) call refuse(of_damping, 'is negative')
       if (entry%per_cent > most_damping) call refuse(of_damping, &
         'is not a damping in per cent of critical (0 to 100)')
@@ -132,6 +140,19 @@ contains
     end subroutine refuse
 
   end subroutine check_values
+
+  !> The name of a type, or its number where there is none.
+  pure function name_of(kinds, number) result(text)
+    type(contact_kind_t), intent(in) :: kinds(:)
+    integer, intent(in) :: number
+    character(:), allocatable :: text
+    integer :: i
+
+    text = 'type '//to_text(number)
+    do i = 1, size(kinds)
+      if (kinds(i)%number == number) text = kind_text(kinds(i))
+    end do
+  end function name_of
 
   !> Whether the type is the program's to choose.
   pure function leaves_type(contact) result(leaves)

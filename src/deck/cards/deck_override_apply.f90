@@ -211,6 +211,8 @@ contains
       integer, intent(in) :: k
       character(:), allocatable :: text
       type(friction_rule_t) :: default
+      integer, parameter :: before_target = 6 !! fields of card 3
+      integer :: i
 
       text = ''
       associate (rule => entry%contact%friction)
@@ -220,16 +222,19 @@ contains
         else if (breaks(entry%contact)) then
           text = exact_text(rule%most)//','//exact_text(rule%stiffness)//',' &
             //to_text(entry%contact%tie)//','//exact_text(entry%contact%strength(1))//',' &
-            //exact_text(entry%contact%strength(2))//new_line('a')
+            //exact_text(entry%contact%strength(2))
         else if (is_tied(entry%contact)) then
-          text = '0,1,'//to_text(entry%contact%tie)//new_line('a')
+          text = '0,1,'//to_text(entry%contact%tie)
         else if (rule%most > 0.0_wp .or. abs(rule%stiffness - default%stiffness) > 0.0_wp &
           .or. entry%interference > 0) then
           text = exact_text(rule%most)//','//exact_text(rule%stiffness)
           if (entry%interference > 0) text = text//',0,,,'//to_text(entry%interference)
-          text = text//new_line('a')
         end if
       end associate
+      if (k == 1) return
+      if (entry%contact%target > 0.0_wp) text = text//repeat(',', before_target &
+        - count([(text(i:i) == ',', i=1, len(text))]))//exact_text(entry%contact%target)
+      if (len(text) > 0) text = text//new_line('a')
     end function friction
 
   end function contact_text

@@ -12,9 +12,10 @@ module deck_overrides_m
     override_integer, contact_names
 
   !> Overrides of interfaces; the others are those of the run.
-  integer, parameter :: n_contact_name = 11
+  integer, parameter :: n_contact_name = 12
   character(6), parameter :: contact_names(n_contact_name) = [character(6) :: 'CTYPE', 'NGAUSS', &
-    'PEN', 'PUNIT', 'PENT', 'VDC', 'FS', 'FD', 'DC', 'VC', 'TFAC']
+    'PEN', 'PUNIT', 'PENT', 'VDC', 'FS', 'FD', 'DC', 'VC', 'TFAC', &
+    'TARGET']
   !> Those that may be 0.
   character(6), parameter :: zero_names(5) = [character(6) :: 'VDC', 'FS', 'FD', 'DC', 'VC']
   character(6), parameter :: run_names(3) = [character(6) :: 'ENDTIM', 'DT', 'TSSFAC']
@@ -67,7 +68,7 @@ contains
       if (.not. known_name(item, dot > 0) .or. status /= number_good) then
         call line_error(deck, 0, '"'//trim(texts(i))//'" on the command line is not known: ' &
           //'endtim=, dt=, tssfac=; ctype=, ngauss=, pen=, punit=, pent=, vdc=, fs=, ' &
-          //'fd=, dc=, vc=, tfac= for all interfaces or, as in ctype.2=, for one; ' &
+          //'fd=, dc=, vc=, tfac=, target= for all interfaces or, as in ctype.2=, for one; ' &
           //'p:NAME= for a parameter')
         cycle
       end if

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> CTYPE 0: the program chooses the contact type, once, from how the scene stands in the published
-!> studies (doc/choose.md). The effective deck has the type chosen, so that a restart keeps it.
+!> studies (doc/choose.md): the type as such, or the cheapest that keeps a target. The effective
+!> deck has the type chosen and the target, so that runs from it and restarts go on in the same way.
 module deck_choose_type_m
   use conditions_m, only : conditions_t
   use contact_types_m, only : type_nts_ar, type_nts_mar, type_segmented_mortar
@@ -11,8 +12,11 @@ module deck_choose_type_m
   use deck_override_apply_m, only : contact_text
   use deck_raw_m, only : raw_contact_t
   use kinds_m, only : wp
+  use log_m, only : to_text
   use model_m, only : model_t
   use surfaces_m, only : surface_t
+  use type_charts_m, only : scene_bound, scene_matching, scene_general, scene_led, &
+    scene_friction, scene_name, published_estimate, cheapest_type
   implicit none
   private
   public :: choose_type
@@ -21,19 +25,29 @@ module deck_choose_type_m
   real(wp), parameter :: exactly = 1.0e-6_wp
   !> Part of a motion along faces from which on they are led along each other.
   real(wp), parameter :: aside = 0.1_wp
+  !> The target where none is given: types above it have lost the surface.
+  real(wp), parameter :: watched_for = 0.1_wp
 
 contains
 
-  !> Choose for one interface that asks for it.
+  !> Choose for one interface that asks for it; one that is watched has its kind of scene.
   subroutine choose_type(deck, entry, model, contact)
     type(deck_t), intent(inout) :: deck
     type(raw_contact_t), intent(in) :: entry
     type(model_t), intent(in) :: model
     type(contact_t), intent(inout) :: contact
     type(raw_contact_t) :: chosen
+    logical :: has_target
 
+    has_target = contact%target > 0.0_wp
+    if (has_target .or. leaves_type(contact)) contact%scene = scene_of(model, contact)
     if (.not. leaves_type(contact)) return
-    call decide(model, contact)
+    if (has_target .and. contact%scene /= scene_bound) then
+      call decide_by_charts(contact)
+    else
+      call decide_by_scene(contact)
+    end if
+    if (.not. has_target) contact%target = watched_for
     if (.not. abs(contact%penalty) > 0.0_wp) call take_penalty(model%controls%implicit%is_on, &
       contact)
     chosen = entry
@@ -41,6 +55,7 @@ contains
     chosen%contact%penalty_unit = contact%penalty_unit
     chosen%contact%penalty = contact%penalty
     chosen%contact%master_penalty = contact%master_penalty
+    chosen%contact%target = contact%target
     deck%blocks(entry%block)%replacement = contact_text(chosen)
   end subroutine choose_type
 
@@ -60,43 +75,72 @@ contains
     contact%master_penalty = contact%penalty
   end subroutine take_penalty
 
-  !> The type and the reason, the first that holds.
-  subroutine decide(model, contact)
+  !> How the scene stands, the first that holds.
+  pure function scene_of(model, contact) result(scene)
     type(model_t), intent(in) :: model
-    type(contact_t), intent(inout) :: contact
+    type(contact_t), intent(in) :: contact
+    integer :: scene
     real(wp) :: along(2)
 
     along = chord(model, contact%slave)
-    if (contact%penalty_unit == penalty_implicit) then
-      call take(type_segmented_mortar, 'implicit springs (PUNIT 4) are its own')
-    else if (contact%strict) then
-      call take(type_nts_mar, 'the strict rule (IPF 1) is its own')
-    else if (is_tied(contact)) then
-      call take(type_nts_mar, 'ties of uneven meshes are exact with it')
+    if (contact%penalty_unit == penalty_implicit .or. contact%strict .or. is_tied(contact)) then
+      scene = scene_bound
     else if (has_friction(contact)) then
-      call take(type_segmented_mortar, 'with friction its force is the smoothest')
+      scene = scene_friction
     else if (is_led(model%conditions, along)) then
-      call take(type_segmented_mortar, 'a motion leads along the faces, and its force is the ' &
-        //'smoothest')
+      scene = scene_led
     else if (is_at_rest(model, contact, along) .and. match(model, contact, along)) then
-      call take(type_nts_ar, 'the faces are flat, match and stay beside each other: the cheapest ' &
-        //'that is exact then')
+      scene = scene_matching
     else
-      call take(type_nts_mar, 'exact pressure on any mesh')
+      scene = scene_general
     end if
+  end function scene_of
 
-  contains
+  !> The type and the reason, without a target.
+  pure subroutine decide_by_scene(contact)
+    type(contact_t), intent(inout) :: contact
 
-    !> Keep what was decided.
-    subroutine take(contact_type, reason)
-      integer, intent(in) :: contact_type
-      character(*), intent(in) :: reason
+    contact%contact_type = type_nts_mar
+    select case (contact%scene)
+    case (scene_friction)
+      contact%contact_type = type_segmented_mortar
+      contact%reason = 'with friction its force is the smoothest'
+    case (scene_led)
+      contact%contact_type = type_segmented_mortar
+      contact%reason = 'a motion leads along the faces, and its force is the smoothest'
+    case (scene_matching)
+      contact%contact_type = type_nts_ar
+      contact%reason = 'the faces are flat, match and stay beside each other: the cheapest ' &
+        //'that is exact then'
+    case (scene_general)
+      contact%reason = 'exact pressure on any mesh'
+    case default
+      if (contact%penalty_unit == penalty_implicit) then
+        contact%contact_type = type_segmented_mortar
+        contact%reason = 'implicit springs (PUNIT 4) are its own'
+      else if (contact%strict) then
+        contact%reason = 'the strict rule (IPF 1) is its own'
+      else
+        contact%reason = 'ties of uneven meshes are exact with it'
+      end if
+    end select
+  end subroutine decide_by_scene
 
-      contact%contact_type = contact_type
-      contact%reason = reason
-    end subroutine take
+  !> The cheapest type that keeps the target in the published studies, and the reason.
+  pure subroutine decide_by_charts(contact)
+    type(contact_t), intent(inout) :: contact
+    character(:), allocatable :: figure
 
-  end subroutine decide
+    contact%contact_type = cheapest_type(contact%scene, contact%target)
+    figure = 'in studies of '//scene_name(contact%scene)//' its estimate is up to ' &
+      //to_text(published_estimate(contact%scene, contact%contact_type))
+    if (published_estimate(contact%scene, contact%contact_type) <= contact%target) then
+      contact%reason = figure//', the cheapest that keeps the target '//to_text(contact%target)
+    else
+      contact%reason = figure//', the smallest: none keeps the target ' &
+        //to_text(contact%target)//' on their meshes'
+    end if
+  end subroutine decide_by_charts
 
   !> Unit vector from the first to the last node of a surface that is one open chain; else none.
   pure function chord(model, surface) result(along)

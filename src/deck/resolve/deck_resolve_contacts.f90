@@ -75,6 +75,7 @@ contains
       behind%behind = i
       behind%tie = tie_none
       behind%tie_reach = 0.0_wp
+      behind%target = 0.0_wp
       contacts(i)%friction = friction_rule_t()
       contacts(i)%damping = 0.0_wp
       contacts(i)%search_interval = 0

@@ -252,7 +252,7 @@ module deck_schema_tables_m
     'CONTACT_2D_SLIDELINE t', &
     ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2 PEN:f FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 PUNIT:i PENT:f VDC:f IPF:i FREQ:i SRCH:f', &
-    ' VC:f TFAC:f=1 TIE:i NFLS:f SFLS:f LCINT:i', &
+    ' VC:f TFAC:f=1 TIE:i NFLS:f SFLS:f LCINT:i TARGET:f', &
     'CONTACT_2D_PENALTY t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
     ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &

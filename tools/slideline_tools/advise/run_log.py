@@ -43,6 +43,8 @@ class Interface:
     decay: float = 0.0           # DC, s/m
     most_friction: float = 0.0   # VC, N/m^2, 0 = no cap
     dissipated: float | None = None  # by friction, at the end, J/m
+    estimate: str = ""           # of the error, at the end, in words
+    missed: tuple[str, str] | None = None  # a target that was not kept, and what would keep it
 
     @property
     def label(self) -> str:
@@ -149,6 +151,12 @@ def read_interface(log: RunLog, line: str) -> None:
     if found := re.match(rf"interface (\d+): friction has dissipated {NUMBER} J/m", line):
         if interface := log.interfaces.get(int(found[1])):
             interface.dissipated = float(found[2])
+    if found := re.match(r"interface (\d+): contact pressure and the stress behind it differ by (.*?)[,;] (?:by|springs)", line):
+        if interface := log.interfaces.get(int(found[1])):
+            interface.estimate = found[2]
+    if found := re.match(r"interface (\d+): the target (.*) is not kept; (.*)", line):
+        if interface := log.interfaces.get(int(found[1])):
+            interface.missed = (found[2], found[3])
     if not line.startswith("  ") or not log.interfaces:
         return
     last = list(log.interfaces.values())[-1]

@@ -212,6 +212,14 @@ def dear_type(run) -> list[Advice]:
     return advice
 
 
+def missed_target(run) -> list[Advice]:
+    """Targets of the estimate of contact that were not kept, with what the run says would keep them."""
+    return [Advice("missed target", f"{interface.label} does not keep its target of {interface.missed[0]}.",
+                   f"pressure and the stress behind it differ by {interface.estimate}", interface.missed[1], None,
+                   "costs time; figures of doc/studies/estimates.md, as the log has them")
+            for interface in run.log.interfaces.values() if interface.missed]
+
+
 def judged(run, number: int) -> str:
     """What an interface tells of its own answer, where sleout was written."""
     if (table := run.tables.get("sleout")) is None or "estimate" not in table:
@@ -223,4 +231,4 @@ def judged(run, number: int) -> str:
     return f"; pressure and the stress behind it differ by {rows['estimate'][at]:.1%} where its springs store most"
 
 
-CHECKS = (never_touched, touched_for_a_while, long_surface, long_flight, dear_type)
+CHECKS = (never_touched, touched_for_a_while, long_surface, long_flight, dear_type, missed_target)

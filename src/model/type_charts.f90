@@ -1,0 +1,123 @@
+! SPDX-License-Identifier: MIT
+!> What the published studies say of the contact types, as far as the program chooses by it: the
+!> estimate of each in scenes of a kind, the largest of all meshes, and the time of its contact.
+!> Tests compare these figures with the pages (doc/studies/estimates.md, speed_accuracy.md).
+module type_charts_m
+  use contacts_m, only : contact_t, has_friction
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: scene_bound, scene_matching, scene_general, scene_led, scene_friction, scene_name, &
+    published_estimate, cheapest_type, better_type, refinement, may_change, has_chart
+
+  !> Kinds of scenes: something else binds the type; flat faces that match and stay so; any; led
+  !> along each other; with friction.
+  integer, parameter :: scene_bound = 0, scene_matching = 1, scene_general = 2, scene_led = 3, &
+    scene_friction = 4
+
+  integer, parameter :: n_type = 7
+
+  !> Largest deviation of the patch test, estimates of cylinder and spheres, sliding, ironing.
+  real(wp), parameter :: patch(n_type) = [0.71_wp, 0.50_wp, 0.72_wp, 0.0_wp, 0.0_wp, 0.046_wp, &
+    0.0_wp]
+  real(wp), parameter :: hertz(n_type) = [0.02573_wp, 0.02572_wp, 0.02068_wp, 0.02814_wp, &
+    0.02396_wp, 0.04217_wp, 0.03363_wp]
+  real(wp), parameter :: sliding(n_type) = [0.0403_wp, 0.0402_wp, 0.0962_wp, 0.0314_wp, &
+    0.0412_wp, 0.0284_wp, 0.0285_wp]
+  real(wp), parameter :: ironing(n_type) = [2.173_wp, 0.5273_wp, 0.1062_wp, 0.0923_wp, &
+    0.0964_wp, 0.0857_wp, 0.0829_wp]
+  !> Faces that match: all types are exact.
+  real(wp), parameter :: estimates(n_type, 4) = reshape([0.0_wp*patch, max(patch, hertz), &
+    max(patch, sliding), max(patch, ironing)], [n_type, 4])
+
+  !> Time of contact over that of type 1.
+  real(wp), parameter :: published_time(n_type) = [1.0_wp, 1.15_wp, 1.75_wp, 2.5_wp, 2.45_wp, &
+    3.08_wp, 3.73_wp]
+
+  !> Order at which the estimate falls with the mesh, in the mean where it does.
+  real(wp), parameter :: mesh_order = 0.89_wp
+
+contains
+
+  !> A kind of scenes, for the log.
+  pure function scene_name(scene) result(name)
+    integer, intent(in) :: scene
+    character(:), allocatable :: name
+
+    select case (scene)
+    case (scene_matching); name = 'flat faces that match'
+    case (scene_led); name = 'faces led along each other'
+    case (scene_friction); name = 'friction'
+    case default; name = 'uneven meshes and round faces'
+    end select
+  end function scene_name
+
+  !> Whether the program may change the type of an interface while an explicit run goes on: what has
+  !> friction or an overlap that grows remembers places that are those of its type.
+  elemental function may_change(contact) result(may)
+    type(contact_t), intent(in) :: contact
+    logical :: may
+
+    may = contact%target > 0.0_wp .and. contact%scene > scene_bound .and. .not. ( &
+      has_friction(contact) .or. allocated(contact%interference))
+  end function may_change
+
+  !> Whether a number is that of a type with figures here.
+  elemental function has_chart(contact_type) result(has)
+    integer, intent(in) :: contact_type
+    logical :: has
+
+    has = contact_type >= 1 .and. contact_type <= n_type
+  end function has_chart
+
+  !> The estimate of a type in scenes of a kind.
+  elemental function published_estimate(scene, contact_type) result(estimate)
+    integer, intent(in) :: scene, contact_type
+    real(wp) :: estimate
+
+    estimate = estimates(contact_type, scene)
+  end function published_estimate
+
+  !> The cheapest type that keeps the estimate at or below a bound, or if there is none the one with
+  !> the smallest. Type 1 has no row of its own on flat faces that match: type 2 weighs their ends.
+  pure function cheapest_type(scene, bound) result(best)
+    integer, intent(in) :: scene
+    real(wp), intent(in) :: bound
+    integer :: best
+    real(wp) :: cost(n_type)
+
+    cost = merge(published_time, huge(1.0_wp), estimates(:, scene) <= bound)
+    if (scene == scene_matching) cost(1) = huge(1.0_wp)
+    best = minloc(cost, 1)
+    if (.not. any(estimates(:, scene) <= bound)) best = minloc(estimates(:, scene), 1)
+  end function cheapest_type
+
+  !> What would keep a bound that the present type has not kept: the cheapest type of those that
+  !> the studies say would, or if there is none the one with the smallest estimate; and the
+  !> estimate that it should have. Scenes that bind the type keep it; faces that were to match have
+  !> moved.
+  pure subroutine better_type(scene, present, estimate, bound, best, expected)
+    integer, intent(in) :: scene, present
+    real(wp), intent(in) :: estimate, bound
+    integer, intent(out) :: best
+    real(wp), intent(out) :: expected
+
+    integer :: chart
+
+    best = present
+    expected = estimate
+    if (scene == scene_bound) return
+    chart = max(scene, scene_general)
+    best = cheapest_type(chart, estimates(present, chart)*bound/estimate)
+    expected = estimate*estimates(best, chart)/estimates(present, chart)
+  end subroutine better_type
+
+  !> By which factor elements should be smaller to bring an estimate down to a bound.
+  elemental function refinement(estimate, bound) result(factor)
+    real(wp), intent(in) :: estimate, bound
+    real(wp) :: factor
+
+    factor = (estimate/bound)**(1.0_wp/mesh_order)
+  end function refinement
+
+end module type_charts_m

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""What the program chooses contact types by is what the published pages say."""
+import pathlib
+import re
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SOURCE = (ROOT / "src/model/type_charts.f90").read_text(encoding="utf-8")
+
+
+def charted(name):
+    """Figures of a table of the source."""
+    text = re.search(rf"parameter :: {name}\(n_type\) = \[(.*?)\]", SOURCE, re.S)[1]
+    return [float(figure) for figure in re.findall(r"([\d.]+)_wp", text)]
+
+
+def column(page, heading, place, start=""):
+    """{type: figures of one column, of all meshes} below a heading, from the table with `start` in its head."""
+    section = (ROOT / f"doc/studies/{page}.md").read_text(encoding="utf-8").split(f"\n{heading}\n")[1].split("\n## ")[0]
+    section = section[section.index(start):]
+    found = {number: [] for number in range(1, 8)}
+    for line in section.splitlines():
+        if re.match(r"\| [1-7] ", line):
+            found[int(line[2])].append(line.split("|")[place].strip())
+    return found
+
+
+def largest(found):
+    return [max(float(figure) for figure in found[number]) / 100.0 for number in range(1, 8)]
+
+
+def test_round_faces():
+    cylinder, spheres = (largest(column("estimates", heading, 3)) for heading in ("## Cylinder on block", "## Spheres"))
+    assert charted("hertz") == pytest.approx([max(pair) for pair in zip(cylinder, spheres)], rel=1e-9)
+
+
+def test_sliding_and_ironing():
+    rows = column("estimates", "## Sliding and ironing", 3)
+    assert charted("sliding") == pytest.approx([float(rows[number][0]) / 100.0 for number in range(1, 8)], rel=1e-9)
+    rest = {number: rows[number][1:] for number in rows}
+    assert charted("ironing") == pytest.approx(largest(rest), rel=1e-9)
+
+
+def test_patch():
+    """Largest deviation on any mesh; round-off counts as none."""
+    section = (ROOT / "doc/studies/speed_accuracy.md").read_text(encoding="utf-8").split("\n## Patch test\n")[1].split("\n## ")[0]
+    worst = []
+    for number in range(1, 8):
+        line = next(line for line in section.splitlines() if line.startswith(f"| {number} "))
+        errors = re.findall(r"; (< )?([\d.e-]+) %", line)
+        assert len(errors) == 3
+        worst.append(max(0.0 if small else float(error) / 100.0 for small, error in errors))
+    assert charted("patch") == pytest.approx(worst, rel=1e-9)
+
+
+def test_times_and_order():
+    times = column("speed_accuracy", "## What to choose", 3, "| type | exact pressure")
+    assert charted("published_time") == [float(times[number][0].split()[0]) for number in range(1, 8)]
+    page = (ROOT / "doc/studies/estimates.md").read_text(encoding="utf-8")
+    assert re.search(r"mesh_order = ([\d.]+)_wp", SOURCE)[1] == re.search(r"at an order of ([\d.]+) in the mean", page)[1]
