@@ -5,7 +5,7 @@ module deck_cases_m
   use log_m, only : to_text
   use text_m, only : upper_case
   use deck_lines_m, only : deck_t, place_t, line_text, line_error, line_warning, replace_line, &
-    flag_comma
+    flag_comma, flag_parameter
   use deck_fields_m, only : card_t, field_text
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, report_field
   use deck_card_specs_m, only : field_number
@@ -71,10 +71,8 @@ contains
     type(parameters_t) :: no_parameters
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer :: k, name
-    logical :: found
 
-    allocate (no_parameters%items(0), item%sub_cases(0))
+    allocate (no_parameters%items(0))
     item%line = deck%blocks(i_block)%keyword
     call open_cursor(deck, i_block, cursor)
     if (cursor%line <= cursor%last) call part_words(deck, cursor%line)
@@ -89,22 +87,35 @@ contains
     end if
     item%place = place_t(line=cursor%line, card=2, name='COMMANDS', field=1)
     call next_text(deck, cursor, item%commands)
+    call read_sub_cases(deck, no_parameters, cursor, item%sub_cases)
+  end subroutine read_case
+
+  !> The subcases of a case, to the end of its block.
+  subroutine read_sub_cases(deck, parameters, cursor, sub_cases)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    type(cursor_t), intent(inout) :: cursor
+    integer, allocatable, intent(out) :: sub_cases(:)
+    type(card_t) :: card
+    integer :: k
+    logical :: found
+
+    allocate (sub_cases(0))
     do
-      call next_row(deck, no_parameters, cursor, 3, card, found)
+      call next_row(deck, parameters, cursor, 3, card, found)
       if (.not. found) exit
-      name = field_number(card%names, 'SCID1')
-      do k = name, name + 7
+      do k = field_number(card%names, 'SCID1'), field_number(card%names, 'SCID8')
         if (card%bad(k) .or. card%i(k) == 0) cycle
-        if (any(item%sub_cases == card%i(k))) then
+        if (any(sub_cases == card%i(k))) then
           call report_field(deck, cursor, card, k, 'is named twice')
         else if (.not. any(deck%cases%all == card%i(k))) then
           call report_field(deck, cursor, card, k, 'is no subcase of this deck: expected n of a ' &
             //'*CASE_BEGIN_n')
         end if
-        item%sub_cases = [item%sub_cases, card%i(k)]
+        sub_cases = [sub_cases, card%i(k)]
       end do
     end do
-  end subroutine read_case
+  end subroutine read_sub_cases
 
   !> A number and a name with a blank between, wherever they stand: LS-DYNA's examples have them not
   !> in their columns. Such a line is read as one with a comma.
@@ -114,7 +125,7 @@ contains
     character(:), allocatable :: text
     integer :: n
 
-    if (iand(deck%flags(line), flag_comma) /= 0) return
+    if (iand(deck%flags(line), ior(flag_comma, flag_parameter)) /= 0) return
     text = trim(adjustl(line_text(deck, line)))
     n = verify(text, '0123456789')
     if (n < 2) return

@@ -10,7 +10,7 @@ module deck_schema_m
   use deck_schema_others_m, only : table_others
   use deck_spelling_m, only : edit_distance
   use deck_schema_tables_m, only : table_control, table_mesh, table_conditions, table_contact, &
-    table_database
+    table_database, table_cases
   implicit none
   private
   public :: keyword_cards, find_keyword, nearest_keyword, refusal_reason, max_card, &
@@ -38,6 +38,7 @@ contains
     call collect(table_conditions)
     call collect(table_contact)
     call collect(table_database)
+    call collect(table_cases)
 
   contains
 
@@ -173,6 +174,7 @@ contains
     call search(table_conditions)
     call search(table_contact)
     call search(table_database)
+    call search(table_cases)
 
   contains
 
@@ -181,6 +183,7 @@ contains
       character(*), intent(in) :: table(:)
       integer :: k, m
 
+      if (known == known_honoured) return
       do k = 1, size(table)
         if (table(k)(1:1) == ' ') cycle
         m = index(table(k), ' ')
@@ -218,6 +221,7 @@ contains
     call compare(table_conditions)
     call compare(table_contact)
     call compare(table_database)
+    call compare(table_cases)
     ! A name that stops early: the shortest that goes on.
     if (len_trim(nearest) == 0) nearest = longer
 

@@ -3,7 +3,8 @@
 module deck_schema_tables_m
   implicit none
   private
-  public :: table_control, table_mesh, table_conditions, table_contact, table_database
+  public :: table_control, table_mesh, table_conditions, table_contact, table_database, &
+    table_cases
 
   !> Control of the deck and of the run.
   character(98), parameter :: table_control(*) = [character(98) :: &
@@ -26,12 +27,6 @@ module deck_schema_tables_m
     ' PRMR:a EXPRESSION:a70', &
     'PARAMETER_DUPLICATION', &
     ' DFLAG:i', &
-    'CASE', &
-    ' CASEID:i JOBID:a70', &
-    ' COMMANDS:a80', &
-    ' SCID1:i SCID2:i SCID3:i SCID4:i SCID5:i SCID6:i SCID7:i SCID8:i', &
-    'CASE_BEGIN', &
-    'CASE_END', &
     'CONTROL_TERMINATION', &
     ' ENDTIM:f ENDCYC:i DTMIN:f ENDENG:f ENDMAS:f NOSOL:i', &
     'TERMINATION_NODE', &
@@ -355,5 +350,14 @@ module deck_schema_tables_m
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_NODAL_FORCE_GROUP', &
     ' NSID:i CID:ir']
+
+  !> Several runs of one deck.
+  character(66), parameter :: table_cases(*) = [character(66) :: &
+    'CASE', &
+    ' CASEID:i JOBID:a70', &
+    ' COMMANDS:a80', &
+    ' SCID1:i SCID2:i SCID3:i SCID4:i SCID5:i SCID6:i SCID7:i SCID8:i', &
+    'CASE_BEGIN', &
+    'CASE_END']
 
 end module deck_schema_tables_m

@@ -275,6 +275,8 @@ def check_deck(deck: str | os.PathLike, program: str | os.PathLike, overrides: t
         raise ModelError(f"cannot run the program {program}: {problem} (--program names another)") from problem
     except ValueError:
         raise ModelError(f"{program} tells no model of {deck}: {done.stderr.strip() or 'is it an older one?'}") from None
+    if "cases" in answer:
+        raise ModelError(f"{deck}: a picture is of one case (case=ID)")
     if "model" not in answer:
         raise ModelError(f"{deck} was refused by {program}:\n{done.stderr.strip()}")
     # What can be read may still not start: that is told with the warnings.
