@@ -36,8 +36,10 @@ contains
     type(log_t), intent(inout) :: log
     type(state_t), intent(inout) :: state
     type(pressing_t), intent(inout) :: steps(:) !! (interfaces) of the call before
+    logical :: are_solved !! rigid bodies: no two interfaces press one that moves
     integer :: i
 
+    are_solved = .false.
     call lap(clock, phase_nodes)
     do i = 1, size(model%contacts)
       if (model%contacts(i)%penalty_unit /= penalty_implicit) cycle
@@ -50,7 +52,11 @@ contains
       if (state%contacts(i)%points%n > 0) then
         call foresee(leap, state%contacts(i)%nodes, state, steps(i))
         call lead(model, velocity, state%time, steps(i))
-        if (size(steps(i)%riders, 2) > 0) call carry(model, leap, damping, state, steps(i))
+        if (size(steps(i)%riders, 2) > 0) then
+          if (.not. are_solved) call solve_rigids(model, damping, state)
+          are_solved = .true.
+          call carry(model, leap, damping, state, steps(i))
+        end if
       end if
       steps(i)%dt_before = state%dt_before
       steps(i)%cycle = state%cycle
@@ -115,12 +121,11 @@ contains
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
     real(wp), intent(in) :: damping(2) !! D per direction
-    type(state_t), intent(inout) :: state
+    type(state_t), intent(in) :: state
     type(pressing_t), intent(inout) :: step
     real(wp) :: counted(3, size(model%rigids)), rate(3)
     integer :: i
 
-    call solve_rigids(model, damping, state)
     do i = 1, size(model%rigids)
       rate = damping_of(state%rigids(i), damping + part_damping_rate(model, &
         model%rigids(i)%part, state%time))
