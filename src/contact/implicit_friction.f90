@@ -13,7 +13,7 @@ module implicit_friction_m
   use law_friction_m, only : find_limits
   use nodal_average_m, only : average_more, share_out
   use pressing_m, only : pressing_t, add_compliance, fill_columns
-  use weighted_gaps_m, only : rows_t, fill_band, along_tangent
+  use weighted_gaps_m, only : press_nodes, fill_band, along_tangent
   implicit none
   private
   public :: rub_ahead
@@ -29,15 +29,16 @@ contains
     real(wp) :: limit(step%rows%n)
     integer :: k
 
+    call provide_slips(size(memory%points%gap), step)
     call find_limits_ahead(rule, step, memory, limit)
-    call press_velocities(step%rows, step%mobility, step%problem%x, step%velocity, step%pressed)
+    call press_nodes(step%rows, step%mobility, step%problem%x, step%velocity, step%pressed)
     do k = 1, step%n_mode
       associate (n => step%problem%n)
         step%pressed = step%pressed + step%modes(:, :, k)*dot_product( &
           step%problem%column((k - 1)*n + 1:k*n), step%problem%x(:n))
       end associate
     end do
-    call average_slips(step%pressed, step%rate, memory)
+    call average_slips(step%pressed, step%slip, memory)
     call set_up(rule, step, limit, memory)
     call solve_complementarity(step%problem, outcome)
     if (outcome%n_sweep > 0) memory%n_swept = memory%n_swept + 1
@@ -59,7 +60,7 @@ contains
 
     slip = 0.0_wp
     if (rule%decay > 0.0_wp .and. step%dt_before > 0.0_wp) then
-      call average_slips(memory%scratch%increment, step%rate, memory)
+      call average_slips(memory%scratch%increment, step%slip, memory)
       slip = memory%scratch%nodal(1, step%rows%slave(:step%rows%n))
     end if
     call find_limits(rule, size(limit), step%dt_before, slip, &
@@ -80,23 +81,17 @@ contains
     end associate
   end subroutine average_slips
 
-  !> Velocities of the nodes with the forces of the rows.
-  pure subroutine press_velocities(rows, mobility, x, velocity, pressed)
-    type(rows_t), intent(in) :: rows
-    real(wp), intent(in), contiguous :: mobility(:, :), velocity(:, :) !! (2, n_node)
-    real(wp), intent(in) :: x(:)                                       !! (rows or more) N/m
-    real(wp), intent(inout), contiguous :: pressed(:, :)               !! (2, n_node) m/s
-    integer :: i, k
+  !> Room for the slips of so many points.
+  pure subroutine provide_slips(n, step)
+    integer, intent(in) :: n
+    type(pressing_t), intent(inout) :: step
 
-    do i = 1, size(rows%newest)
-      pressed(:, i) = velocity(:, i)
-      k = rows%newest(i)
-      do while (k > 0)
-        pressed(:, i) = pressed(:, i) + mobility(:, i)*rows%share(:, k)*x(rows%row(k))
-        k = rows%next(k)
-      end do
-    end do
-  end subroutine press_velocities
+    if (allocated(step%slip)) then
+      if (size(step%slip) >= n) return
+      deallocate (step%slip)
+    end if
+    allocate (step%slip(n))
+  end subroutine provide_slips
 
   !> The problem: x is minus kappa times the traction, its slack what is left of the slip rate
   !> beside the spring.
@@ -114,7 +109,7 @@ contains
       call set_size(problem, rows%n, rows%width, step%n_mode)
       call fill_band(rows, along_tangent, step%mobility, problem%band)
       call fill_columns(step, along_tangent)
-      if (stiffness > 0.0_wp) call add_compliance(rows%n, rows%width, rows%slave, nodal, &
+      if (stiffness > 0.0_wp) call add_compliance(rows%n, rows%width, rows%inverse, &
         stiffness, problem%band)
       do i = 1, rows%n
         node = rows%slave(i)

@@ -15,7 +15,7 @@ module implicit_penalty_m
     keep_former_springs, form_springs
   use implicit_friction_m, only : rub_ahead
   use kinds_m, only : wp
-  use nodal_average_m, only : average_gaps, average_more, share_out
+  use nodal_average_m, only : average_gaps, share_out
   use pressing_m, only : pressing_t, add_compliance, fill_columns
   use weighted_gaps_m, only : choose_rows, form_shares, find_rates, fill_band, along_normal
   implicit none
@@ -27,9 +27,6 @@ module implicit_penalty_m
   real(wp), parameter :: recovered = 0.1_wp
   !> Penetration that counts as one from the start, over the gap below which nodes are looked at.
   real(wp), parameter :: overlap = 1.0e-3_wp
-  !> Rows are those that would close, and others that open no faster than this times what the
-  !> fastest of those closes by: pressing one changes another by about as much as itself at most.
-  real(wp), parameter :: pushed_apart = 2.0_wp
 
 contains
 
@@ -47,7 +44,6 @@ contains
     call keep_former_springs(memory%scratch%had_force, memory)
     call take_apart(motion, memory%scratch%had_force, memory, apart)
     if (memory%points%n > 0) then
-      call find_mean_gaps(step, memory)
       call find_pressures(step, memory)
       call share_out(memory%points%n, memory%points%slave_nodes, memory%points%slave_weights, &
         memory%node_pressure, memory%points%pressure)
@@ -117,9 +113,13 @@ contains
     real(wp) :: before, bound, factor
 
     if (allocated(memory%scratch%spring)) then
-      call sum_returns(memory%scratch%spring, memory%scratch%former_spring, returned, before)
+      call sum_returns(memory%nodes, motion, memory%scratch%spring, memory%scratch%former_spring, &
+        step%velocity, step%mobility, returned, before)
+      returned%recoil = returned%recoil + sum_modes(memory%scratch%spring)
     else
-      call sum_returns(memory%force, memory%scratch%former_force, returned, before)
+      call sum_returns(memory%nodes, motion, memory%force, memory%scratch%former_force, &
+        step%velocity, step%mobility, returned, before)
+      returned%recoil = returned%recoil + sum_modes(memory%force)
     end if
     returned%behind = 0.5_wp*step%dt_before*returned%behind
     returned%ahead = 0.5_wp*step%dt*returned%ahead
@@ -134,59 +134,45 @@ contains
 
   contains
 
-    !> Sums over all nodes, of the springs alone.
-    pure subroutine sum_returns(forces, formers, returned, before)
-      real(wp), intent(in), contiguous :: forces(:, :), formers(:, :) !! present, of the step before
-      type(returned_t), intent(inout) :: returned
-      real(wp), intent(out) :: before
-      integer :: i, k
+    !> What free motions of rigid bodies add.
+    pure function sum_modes(forces) result(recoil)
+      real(wp), intent(in), contiguous :: forces(:, :)
+      real(wp) :: recoil
+      integer :: k
 
-      before = 0.0_wp
-      do i = 1, size(memory%nodes)
-        associate (force => forces(:, i), v => motion(3:4, memory%nodes(i)), &
-          former => formers(:, i))
-          returned%behind = returned%behind + (force(1)*v(1) + force(2)*v(2))
-          returned%ahead = returned%ahead + (force(1)*step%velocity(1, i) &
-            + force(2)*step%velocity(2, i))
-          returned%recoil = returned%recoil + (force(1)**2*step%mobility(1, i) &
-            + force(2)**2*step%mobility(2, i))
-          before = before + (former(1)*v(1) + former(2)*v(2))
-        end associate
-      end do
+      recoil = 0.0_wp
       do k = 1, step%n_mode
-        returned%recoil = returned%recoil + sum(step%modes(:, :, k)*forces)**2
+        recoil = recoil + sum(step%modes(:, :, k)*forces)**2
       end do
-    end subroutine sum_returns
+    end function sum_modes
 
   end subroutine limit_return
 
-  !> Mean gaps of the slave nodes, and what would be left of each at the end of the step without
-  !> pressures. Of an overlap a part is taken back in a step where springs have no compliance.
-  pure subroutine find_mean_gaps(step, memory)
-    type(pressing_t), intent(inout) :: step
-    type(contact_state_t), intent(inout) :: memory
-    real(wp) :: share
-    integer :: i
+  !> Sums over all nodes, of the springs alone, x and y apart until the end.
+  pure subroutine sum_returns(nodes, motion, present, former, velocity, mobility, returned, before)
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in) :: motion(4, *)
+    real(wp), intent(in), dimension(2, *) :: present, former !! forces, of the step before, N/m
+    real(wp), intent(in), dimension(2, *) :: velocity, mobility !! of the step ahead
+    type(returned_t), intent(inout) :: returned
+    real(wp), intent(out) :: before
+    real(wp) :: sums(2, 4)
+    integer :: i, j
 
-    share = merge(recovered, 1.0_wp, step%is_stiff)
-    associate (points => memory%points, nodal => memory%scratch%nodal)
-      call average_gaps(points, memory%n_slave, nodal)
-      if (allocated(step%rate)) then
-        if (size(step%rate) < size(points%gap)) deallocate (step%rate)
-      end if
-      if (.not. allocated(step%rate)) allocate (step%rate(size(points%gap)))
-      call find_rates(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
-        points%master_weights, points%normal, step%velocity, step%rate)
-      do i = 1, memory%n_slave
-        step%gap(i) = nodal(1, i)
+    sums = 0.0_wp
+    do i = 1, size(nodes)
+      do j = 1, 2
+        sums(j, 1) = sums(j, 1) + present(j, i)*motion(2 + j, nodes(i))
+        sums(j, 2) = sums(j, 2) + present(j, i)*velocity(j, i)
+        sums(j, 3) = sums(j, 3) + present(j, i)*present(j, i)*mobility(j, i)
+        sums(j, 4) = sums(j, 4) + former(j, i)*motion(2 + j, nodes(i))
       end do
-      call average_more(points, step%rate, memory%n_slave, nodal)
-      do i = 1, memory%n_slave
-        step%left(i) = nodal(1, i) + merge(share, 1.0_wp, step%gap(i) < 0.0_wp)*step%gap(i)/step%dt
-        nodal(1, i) = step%gap(i)
-      end do
-    end associate
-  end subroutine find_mean_gaps
+    end do
+    returned%behind = sums(1, 1) + sums(2, 1)
+    returned%ahead = sums(1, 2) + sums(2, 2)
+    returned%recoil = sums(1, 3) + sums(2, 3)
+    before = sums(1, 4) + sums(2, 4)
+  end subroutine sum_returns
 
   !> Pressures of the slave nodes: P = kappa p >= 0, and what is left of each mean gap at the end of
   !> the step beside the spring, r + W P >= 0, one of them zero.
@@ -196,52 +182,50 @@ contains
     type(outcome_t) :: outcome
     integer :: i
 
-    call choose_pressed(step, memory)
-    associate (rows => step%rows, problem => step%problem, &
-      kappa => memory%scratch%nodal(2, :memory%n_slave))
+    associate (rows => step%rows, problem => step%problem, nodal => memory%scratch%nodal)
+      call average_gaps(memory%points, memory%n_slave, nodal)
+      step%gap = nodal(1, :memory%n_slave)
+      call choose_rows(memory%n_slave, nodal, rows)
       if (rows%n > 0) then
-        call form_shares(memory%points, memory%scratch%nodal, rows)
+        call form_shares(memory%points, rows)
         call set_size(problem, rows%n, rows%width, step%n_mode)
         call fill_band(rows, along_normal, step%mobility, problem%band)
         call fill_columns(step, along_normal)
-        if (memory%slave_penalty > 0.0_wp) call add_compliance(rows%n, rows%width, rows%slave, &
-          memory%scratch%nodal, memory%slave_penalty*step%dt, problem%band)
-        do i = 1, rows%n
-          problem%r(i) = step%left(rows%slave(i))
-          problem%low(i) = 0.0_wp
-          problem%high(i) = huge(1.0_wp)
-          problem%at(i) = merge(is_between, is_low, memory%node_pressure(rows%slave(i)) > 0.0_wp)
-        end do
+        if (memory%slave_penalty > 0.0_wp) call add_compliance(rows%n, rows%width, rows%inverse, &
+          memory%slave_penalty*step%dt, problem%band)
+        call set_up(step, memory%node_pressure)
         call solve_complementarity(problem, outcome)
       end if
       memory%node_pressure = 0.0_wp
       do i = 1, rows%n
-        memory%node_pressure(rows%slave(i)) = problem%x(i)/kappa(rows%slave(i))
+        memory%node_pressure(rows%slave(i)) = problem%x(i)*rows%inverse(i)
       end do
     end associate
     if (outcome%n_sweep > 0) memory%n_swept = memory%n_swept + 1
     if (outcome%n_dropped > 0) memory%n_dropped = memory%n_dropped + 1
   end subroutine find_pressures
 
-  !> Rows for the slave nodes that may press.
-  pure subroutine choose_pressed(step, memory)
+  !> What would be left of the mean gaps without pressures, over the step, and what is guessed to
+  !> press. Of an overlap a part is taken back in a step where springs have no compliance.
+  pure subroutine set_up(step, pressure)
     type(pressing_t), intent(inout) :: step
-    type(contact_state_t), intent(in) :: memory
-    real(wp) :: fastest
+    real(wp), intent(in) :: pressure(:) !! (n_slave) of the step before, N/m^2
+    real(wp) :: opens, closes           !! per m of gap, 1/s
     integer :: i
 
-    fastest = 0.0_wp
-    do i = 1, memory%n_slave
-      fastest = max(fastest, -step%left(i))
-    end do
-    fastest = pushed_apart*fastest
-    associate (kappa => memory%scratch%nodal)
-      do i = 1, memory%n_slave
-        step%wanted(i) = kappa(2, i) > 0.0_wp .and. (memory%node_pressure(i) > 0.0_wp &
-          .or. step%left(i) < fastest)
+    opens = 1.0_wp/step%dt
+    closes = merge(recovered, 1.0_wp, step%is_stiff)/step%dt
+    associate (rows => step%rows, problem => step%problem)
+      call find_rates(rows, along_normal, step%velocity, problem%r)
+      do i = 1, rows%n
+        associate (gap => step%gap(rows%slave(i)))
+          problem%r(i) = problem%r(i) + merge(closes, opens, gap < 0.0_wp)*gap
+        end associate
+        problem%low(i) = 0.0_wp
+        problem%high(i) = huge(1.0_wp)
+        problem%at(i) = merge(is_between, is_low, pressure(rows%slave(i)) > 0.0_wp)
       end do
     end associate
-    call choose_rows(memory%n_slave, step%wanted, step%rows)
-  end subroutine choose_pressed
+  end subroutine set_up
 
 end module implicit_penalty_m

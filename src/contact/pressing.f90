@@ -6,7 +6,7 @@ module pressing_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use kinds_m, only : wp
-  use weighted_gaps_m, only : rows_t, along_normal
+  use weighted_gaps_m, only : rows_t, find_rates
   implicit none
   private
   public :: pressing_t, start_pressing, add_compliance, fill_columns
@@ -27,11 +27,9 @@ module pressing_m
     real(wp), allocatable :: modes(:, :, :) !! (2, n_slave + n_master, n_mode or more) velocities of
                                             !! them, times the root of what a unit force makes
     real(wp), allocatable :: gap(:)         !! (n_slave) mean gaps, m
-    real(wp), allocatable :: left(:)        !! (n_slave) what would be left of them, over dt, m/s
-    logical, allocatable :: wanted(:)       !! (n_slave) may press
-    real(wp), allocatable :: rate(:)        !! (points) of gaps or slips, m/s
-    real(wp), allocatable :: pressed(:, :)  !! (2, n_slave + n_master) velocities with pressures;
-                                            !! only where there is friction
+    real(wp), allocatable :: slip(:)        !! (points) m or m/s; this and the next only where there
+                                            !! is friction
+    real(wp), allocatable :: pressed(:, :)  !! (2, n_slave + n_master) velocities with pressures
     type(rows_t) :: rows
     type(problem_t) :: problem
   end type pressing_t
@@ -47,49 +45,36 @@ contains
     step%is_stiff = contact%penalty < 0.0_wp
     associate (n_node => memory%n_slave + memory%n_master, n_slave => memory%n_slave)
       allocate (step%velocity(2, n_node), step%mobility(2, n_node))
-      allocate (step%gap(n_slave), step%left(n_slave), step%wanted(n_slave))
+      allocate (step%gap(n_slave))
       if (allocated(memory%friction%force)) allocate (step%pressed(2, n_node))
-      allocate (step%rows%slave(n_slave), step%rows%place(n_slave), step%rows%newest(n_node))
+      allocate (step%rows%slave(n_slave), step%rows%place(n_slave), step%rows%inverse(n_slave))
+      allocate (step%rows%first(n_node), step%rows%last(n_node), step%rows%start(n_node), &
+        step%rows%node(n_node))
     end associate
   end subroutine start_pressing
 
   !> What the springs of rows give way by.
-  pure subroutine add_compliance(n, width, slave, nodal, stiffness, band)
-    integer, intent(in) :: n, width, slave(n)
-    real(wp), intent(in) :: nodal(2, *)     !! kappa of slave nodes in (2, :), m
+  pure subroutine add_compliance(n, width, inverse, stiffness, band)
+    integer, intent(in) :: n, width
+    real(wp), intent(in) :: inverse(n)      !! 1/kappa of rows, 1/m
     real(wp), intent(in) :: stiffness       !! times the step, N s/m^2
     real(wp), intent(inout) :: band(0:width, n)
-    integer :: i
 
-    do i = 1, n
-      band(0, i) = band(0, i) + 1.0_wp/(stiffness*nodal(2, slave(i)))
-    end do
+    band(0, :) = band(0, :) + inverse/stiffness
   end subroutine add_compliance
 
   !> How the rows move rigid bodies.
   pure subroutine fill_columns(step, direction)
     type(pressing_t), intent(inout) :: step
     integer, intent(in) :: direction !! along_normal or along_tangent
-    real(wp) :: along(2)
-    integer :: i, k, m
+    integer :: m
 
-    if (step%n_mode == 0) return
-    associate (n => step%problem%n, column => step%problem%column, rows => step%rows)
-      column(:n*step%n_mode) = 0.0_wp
-      do i = 1, size(rows%newest)
-        k = rows%newest(i)
-        do while (k > 0)
-          along = rows%share(:, k)
-          if (direction /= along_normal) along = [-along(2), along(1)]
-          do m = 1, step%n_mode
-            associate (one => column((m - 1)*n + rows%row(k)))
-              one = one + dot_product(along, step%modes(:, i, m))
-            end associate
-          end do
-          k = rows%next(k)
-        end do
-      end do
-    end associate
+    do m = 1, step%n_mode
+      associate (n => step%problem%n)
+        call find_rates(step%rows, direction, step%modes(:, :, m), &
+          step%problem%column((m - 1)*n + 1:m*n))
+      end associate
+    end do
   end subroutine fill_columns
 
 end module pressing_m

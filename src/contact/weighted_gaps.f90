@@ -7,39 +7,47 @@ module weighted_gaps_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: rows_t, choose_rows, form_shares, find_rates, fill_band, along_normal, along_tangent
+  public :: rows_t, choose_rows, form_shares, find_rates, press_nodes, fill_band, along_normal, &
+    along_tangent
 
   !> Along what the shares of a row act: its normals, or these turned by a right angle.
   integer, parameter :: along_normal = 1, along_tangent = 2
 
   !> Rows of an interface in a step, kept from one to the next: arrays may be longer than they have
-  !> to be. Shares are kept by node: those that meet at a node are what couples rows.
+  !> to be. Shares are kept by node, from its first row to its last: those that meet at a node are
+  !> what couples rows.
   type :: rows_t
     integer :: n = 0
     integer :: width = 0                  !! rows farther apart than that do not meet
-    integer :: n_share = 0
     integer, allocatable :: slave(:)      !! (n) slave node of each, in the order of the chain
     integer, allocatable :: place(:)      !! (n_slave) its row, 0: none
-    integer, allocatable :: newest(:)     !! (n_node) the last share of each node, 0: none
-    integer, allocatable :: next(:)       !! of each share, the one before it at its node, 0: none
-    integer, allocatable :: row(:)        !! of each share
+    real(wp), allocatable :: inverse(:)   !! (n) 1/kappa, 1/m
+    integer :: n_node = 0
+    integer, allocatable :: node(:)       !! (n_node) that have rows
+    integer, allocatable :: first(:)      !! (nodes) first row of each
+    integer, allocatable :: last(:)       !! (nodes) and last one, below that: none
+    integer, allocatable :: start(:)      !! (nodes) share of row i: at start + i
     real(wp), allocatable :: share(:, :)  !! (2, :) over the area of the row
+    integer :: n_group = 0                !! points in a row with the same nodes
+    integer, allocatable :: group(:, :)   !! (2 n_side, n_group) these, slaves first
+    real(wp), allocatable :: part(:, :, :, :) !! (2, 2 n_side, n_side, n_group) sums of their
+                                          !! shares, of the rows of both slaves
   end type rows_t
 
 contains
 
-  !> A row for each slave node that is asked for, in the order of the chain. A closed chain begins
+  !> A row for each slave node that has points, in the order of the chain. A closed chain begins
   !> behind its longest stretch without rows, so that neighbours stay neighbours.
-  pure subroutine choose_rows(n_slave, wanted, rows)
+  pure subroutine choose_rows(n_slave, nodal, rows)
     integer, intent(in) :: n_slave
-    logical, intent(in) :: wanted(n_slave)
+    real(wp), intent(in) :: nodal(2, *) !! (2, n_slave or more) kappa in (2, :), m
     type(rows_t), intent(inout) :: rows
     integer :: i, start, longest
 
     rows%n = 0
     do i = 1, n_slave
       rows%place(i) = 0
-      if (.not. wanted(i)) cycle
+      if (.not. nodal(2, i) > 0.0_wp) cycle
       rows%n = rows%n + 1
       rows%slave(rows%n) = i
     end do
@@ -54,174 +62,248 @@ contains
     if (start > 1) rows%slave(:rows%n) = cshift(rows%slave(:rows%n), start - 1)
     do i = 1, rows%n
       rows%place(rows%slave(i)) = i
+      rows%inverse(i) = 1.0_wp/nodal(2, rows%slave(i))
     end do
   end subroutine choose_rows
 
   !> Shares of all rows from the points on the list: N_A area n by the weights of the slave nodes,
   !> and the opposite by those of the master nodes, over kappa.
-  pure subroutine form_shares(points, nodal, rows)
+  pure subroutine form_shares(points, rows)
     type(contact_points_t), intent(in) :: points
-    real(wp), intent(in), contiguous :: nodal(:, :) !! (2, :) kappa of slave nodes in (2, :), m
     type(rows_t), intent(inout) :: rows
-    integer :: i, k, low, high
+    integer :: n_share
 
-    rows%newest = 0
-    rows%n_share = 0
-    call provide_shares(points%n, rows)
-    call add_points(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
-      points%master_weights, points%area, points%normal, nodal, rows)
-    rows%width = 0
-    do i = 1, size(rows%newest)
-      k = rows%newest(i)
-      if (k == 0) cycle
-      low = rows%row(k)
-      high = low
-      do
-        k = rows%next(k)
-        if (k == 0) exit
-        low = min(low, rows%row(k))
-        high = max(high, rows%row(k))
-      end do
-      rows%width = max(rows%width, high - low)
-    end do
+    call provide_groups(points%n, rows)
+    rows%first = huge(1)
+    rows%last = 0
+    call sum_groups(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
+      points%master_weights, points%area, points%normal, rows)
+    call list_nodes(size(rows%first), rows%first, rows%last, rows%n_node, rows%node, rows%start, &
+      n_share, rows%width)
+    call provide_shares(n_share, rows)
+    call share_groups(rows%n_group, rows%group, rows%part, rows%place, rows%inverse, rows%start, &
+      n_share, rows%share)
   end subroutine form_shares
 
-  !> Room for the shares of so many points.
-  pure subroutine provide_shares(n_point, rows)
-    integer, intent(in) :: n_point
-    type(rows_t), intent(inout) :: rows
-    integer :: n
+  !> The nodes that have rows, and where their shares are.
+  pure subroutine list_nodes(n, first, last, n_node, node, start, n_share, width)
+    integer, intent(in) :: n, first(n), last(n)
+    integer, intent(inout) :: node(n), start(n)
+    integer, intent(out) :: n_node, n_share, width
+    integer :: i
 
-    n = 2*n_side*n_side*n_point
-    if (allocated(rows%row)) then
-      if (size(rows%row) >= n) return
-      deallocate (rows%row, rows%next, rows%share)
+    n_node = 0
+    n_share = 0
+    width = 0
+    !GCC$ UNROLL 1
+    do i = 1, n
+      if (last(i) < first(i)) cycle
+      n_node = n_node + 1
+      node(n_node) = i
+      start(i) = n_share + 1 - first(i)
+      n_share = start(i) + last(i)
+      width = max(width, last(i) - first(i))
+    end do
+  end subroutine list_nodes
+
+  !> Room for the groups of so many points.
+  pure subroutine provide_groups(n, rows)
+    integer, intent(in) :: n
+    type(rows_t), intent(inout) :: rows
+
+    if (allocated(rows%group)) then
+      if (size(rows%group, 2) >= n) return
+      deallocate (rows%group, rows%part)
     end if
-    allocate (rows%row(n + n/2), rows%next(n + n/2), rows%share(2, n + n/2))
+    allocate (rows%group(2*n_side, n + n/2), rows%part(2, 2*n_side, n_side, n + n/2))
+  end subroutine provide_groups
+
+  !> Room for so many shares.
+  pure subroutine provide_shares(n, rows)
+    integer, intent(in) :: n
+    type(rows_t), intent(inout) :: rows
+
+    if (allocated(rows%share)) then
+      if (size(rows%share, 2) >= n) return
+      deallocate (rows%share)
+    end if
+    allocate (rows%share(2, n + n/2))
   end subroutine provide_shares
 
-  !> Add the shares of all points. Those of points in a row with the same nodes are summed first.
-  pure subroutine add_points(n, slave_nodes, slave_weights, master_nodes, master_weights, area, &
-      normal, nodal, rows)
+  !> Sums over points in a row with the same nodes, and which rows each node has.
+  pure subroutine sum_groups(n, slave_nodes, slave_weights, master_nodes, master_weights, area, &
+      normal, rows)
     integer, intent(in) :: n, slave_nodes(n_side, *), master_nodes(n_side, *)
     real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *), area(*), &
-      normal(2, *), nodal(2, *)
+      normal(2, *)
     type(rows_t), intent(inout) :: rows
-    real(wp) :: share(2, 2*n_side, n_side), part(2)
-    integer :: nodes(2*n_side), p, first, k, m
-    logical :: is_last
+    integer :: nodes(2*n_side), p, g
 
-    first = 1
+    g = 0
+    nodes = 0
     do p = 1, n
-      if (p == first) then
-        nodes = [slave_nodes(1, p), slave_nodes(2, p), master_nodes(1, p), master_nodes(2, p)]
-        share = 0.0_wp
+      if (nodes(1) /= slave_nodes(1, p) .or. nodes(2) /= slave_nodes(2, p) .or. &
+        nodes(3) /= master_nodes(1, p) .or. nodes(4) /= master_nodes(2, p)) then
+        nodes(:n_side) = slave_nodes(:, p)
+        nodes(n_side + 1:) = master_nodes(:, p)
+        g = g + 1
+        rows%group(:, g) = nodes
+        call clear_part(rows%part(1, 1, 1, g))
+        call extend_nodes([rows%place(nodes(1)), rows%place(nodes(2))], nodes, rows%first, &
+          rows%last)
       end if
-      do k = 1, n_side
-        part = (slave_weights(k, p)*area(p))*normal(:, p)
-        share(:, 1, k) = share(:, 1, k) + slave_weights(1, p)*part
-        share(:, 2, k) = share(:, 2, k) + slave_weights(2, p)*part
-        share(:, 3, k) = share(:, 3, k) - master_weights(1, p)*part
-        share(:, 4, k) = share(:, 4, k) - master_weights(2, p)*part
+      call add_point(slave_weights(1, p), master_weights(1, p), area(p), normal(1, p), &
+        rows%part(1, 1, 1, g))
+    end do
+    rows%n_group = g
+  end subroutine sum_groups
+
+  !> Nothing is in the sums of a group yet.
+  pure subroutine clear_part(part)
+    real(wp), intent(inout) :: part(2*2*n_side*n_side)
+
+    part = 0.0_wp
+  end subroutine clear_part
+
+  !> Add the shares of one point.
+  pure subroutine add_point(slave_weights, master_weights, area, normal, part)
+    real(wp), intent(in) :: slave_weights(n_side), master_weights(n_side), area, normal(2)
+    real(wp), intent(inout) :: part(2, 2*n_side, n_side)
+    real(wp) :: force(2)
+    integer :: k, m
+
+    do k = 1, n_side
+      force = (slave_weights(k)*area)*normal
+      do m = 1, n_side
+        part(:, m, k) = part(:, m, k) + slave_weights(m)*force
+        part(:, n_side + m, k) = part(:, n_side + m, k) - master_weights(m)*force
       end do
-      is_last = p == n
-      if (.not. is_last) is_last = slave_nodes(1, p + 1) /= nodes(1) .or. &
-        slave_nodes(2, p + 1) /= nodes(2) .or. master_nodes(1, p + 1) /= nodes(3) .or. &
-        master_nodes(2, p + 1) /= nodes(4)
-      if (.not. is_last) cycle
-      first = p + 1
+    end do
+  end subroutine add_point
+
+  !> Some nodes have these rows too; 0: none.
+  pure subroutine extend_nodes(pair, nodes, first, last)
+    integer, intent(in) :: pair(n_side), nodes(2*n_side)
+    integer, intent(inout) :: first(*), last(*)
+    integer :: k, low, high
+
+    high = maxval(pair)
+    low = minval(pair)
+    if (low == 0) low = high
+    if (high == 0) return
+    do k = 1, 2*n_side
+      first(nodes(k)) = min(first(nodes(k)), low)
+      last(nodes(k)) = max(last(nodes(k)), high)
+    end do
+  end subroutine extend_nodes
+
+  !> Give the sums to the rows.
+  pure subroutine share_groups(n, group, part, place, inverse, start, n_share, share)
+    integer, intent(in) :: n, group(2*n_side, *), place(*), start(*), n_share
+    real(wp), intent(in) :: part(2, 2*n_side, n_side, *), inverse(*)
+    real(wp), intent(inout) :: share(2, n_share)
+    integer :: g, i, k, m, row
+
+    do i = 1, n_share
+      share(:, i) = 0.0_wp
+    end do
+    do g = 1, n
       do k = 1, n_side
-        if (rows%place(nodes(k)) == 0) cycle
+        row = place(group(k, g))
+        if (row == 0) cycle
         do m = 1, 2*n_side
-          call add_share(rows%place(nodes(k)), 1.0_wp/nodal(2, nodes(k)), share(1, m, k), &
-            rows%newest(nodes(m)), rows%n_share, rows%next, rows%row, rows%share)
+          i = start(group(m, g)) + row
+          share(:, i) = share(:, i) + inverse(row)*part(:, m, k, g)
         end do
       end do
     end do
-  end subroutine add_points
+  end subroutine share_groups
 
-  !> Add a share to what its row has at a node. Points of a row follow each other.
-  pure subroutine add_share(row, factor, part, newest, n_share, next, rows, share)
-    integer, intent(in) :: row
-    real(wp), intent(in) :: factor, part(2)
-    integer, intent(inout) :: newest        !! share of the node
-    integer, intent(inout) :: n_share
-    integer, intent(inout) :: next(*), rows(*) !! of all shares
-    real(wp), intent(inout) :: share(2, *)
-    integer :: k
+  !> Rates of the rows by velocities of the nodes.
+  pure subroutine find_rates(rows, direction, velocity, rate)
+    type(rows_t), intent(in) :: rows
+    integer, intent(in) :: direction                   !! along_normal or along_tangent
+    real(wp), intent(in), contiguous :: velocity(:, :) !! (2, nodes) m/s
+    real(wp), intent(out) :: rate(rows%n)              !! m/s
+    real(wp) :: along(2)
+    integer :: j
 
-    k = newest
-    do while (k > 0)
-      if (rows(k) == row) then
-        share(1, k) = share(1, k) + factor*part(1)
-        share(2, k) = share(2, k) + factor*part(2)
-        return
-      end if
-      k = next(k)
-    end do
-    n_share = n_share + 1
-    next(n_share) = newest
-    rows(n_share) = row
-    share(1, n_share) = factor*part(1)
-    share(2, n_share) = factor*part(2)
-    newest = n_share
-  end subroutine add_share
-
-  !> Rates of the gaps of all points by velocities of the nodes.
-  pure subroutine find_rates(n, slave_nodes, slave_weights, master_nodes, master_weights, normal, &
-      velocity, rate)
-    integer, intent(in) :: n, slave_nodes(n_side, *), master_nodes(n_side, *)
-    real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *), normal(2, *)
-    real(wp), intent(in) :: velocity(2, *) !! m/s
-    real(wp), intent(inout) :: rate(*)     !! m/s
-    real(wp) :: relative(2)
-    integer :: p
-
-    !GCC$ NOVECTOR
-    do p = 1, n
-      relative = slave_weights(1, p)*velocity(:, slave_nodes(1, p)) &
-        + slave_weights(2, p)*velocity(:, slave_nodes(2, p)) &
-        - master_weights(1, p)*velocity(:, master_nodes(1, p)) &
-        - master_weights(2, p)*velocity(:, master_nodes(2, p))
-      rate(p) = normal(1, p)*relative(1) + normal(2, p)*relative(2)
+    rate = 0.0_wp
+    do j = 1, rows%n_node
+      associate (i => rows%node(j), first => rows%first(rows%node(j)))
+        along = velocity(:, i)
+        if (direction == along_tangent) along = [along(2), -along(1)]
+        call add_rates(rows%last(i) - first + 1, rows%share(1, rows%start(i) + first), along, &
+          rate(first))
+      end associate
     end do
   end subroutine find_rates
+
+  !> The part of one node.
+  pure subroutine add_rates(n, share, along, rate)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: share(2, n), along(2)
+    real(wp), intent(inout) :: rate(n)
+    integer :: k
+
+    !GCC$ NOVECTOR
+    !GCC$ UNROLL 1
+    do k = 1, n
+      rate(k) = rate(k) + (share(1, k)*along(1) + share(2, k)*along(2))
+    end do
+  end subroutine add_rates
+
+  !> Velocities of the nodes with forces along the normals of the rows.
+  pure subroutine press_nodes(rows, mobility, x, velocity, pressed)
+    type(rows_t), intent(in) :: rows
+    real(wp), intent(in), contiguous :: mobility(:, :), velocity(:, :) !! (2, nodes)
+    real(wp), intent(in) :: x(rows%n)                                  !! N/m
+    real(wp), intent(inout), contiguous :: pressed(:, :)               !! (2, nodes) m/s
+    integer :: i, j, k
+
+    pressed = velocity
+    do j = 1, rows%n_node
+      i = rows%node(j)
+      do k = rows%first(i), rows%last(i)
+        pressed(:, i) = pressed(:, i) + mobility(:, i)*(rows%share(:, rows%start(i) + k)*x(k))
+      end do
+    end do
+  end subroutine press_nodes
 
   !> What the forces along rows change in the rates of rows.
   pure subroutine fill_band(rows, direction, mobility, band)
     type(rows_t), intent(in) :: rows
-    integer, intent(in) :: direction                !! along_normal or along_tangent
-    real(wp), intent(in), contiguous :: mobility(:, :) !! (2, n_node) velocity from a force of 1
+    integer, intent(in) :: direction                   !! along_normal or along_tangent
+    real(wp), intent(in), contiguous :: mobility(:, :) !! (2, nodes) velocity from a force of 1
     real(wp), intent(inout) :: band(0:rows%width, rows%n) !! W(j + i, j) in row i of column j
-    integer :: i
+    integer :: j
 
     band = 0.0_wp
-    do i = 1, size(rows%newest)
-      if (rows%newest(i) > 0) call fill_node(rows%newest(i), rows%next, rows%row, rows%share, &
-        [mobility(direction, i), mobility(3 - direction, i)], rows%width, band)
+    do j = 1, rows%n_node
+      associate (i => rows%node(j), first => rows%first(rows%node(j)))
+        call fill_node(rows%last(i) - first + 1, rows%share(1, rows%start(i) + first), &
+          mobility(direction, i), mobility(3 - direction, i), rows%width, band(0, first))
+      end associate
     end do
   end subroutine fill_band
 
-  !> The part of one node.
-  pure subroutine fill_node(newest, next, row, share, mobility, width, band)
-    integer, intent(in) :: newest, next(*), row(*), width
-    real(wp), intent(in) :: share(2, *), mobility(2) !! of the normals' x and y
-    real(wp), intent(inout) :: band(0:width, *)
-    real(wp) :: pushed(2)
+  !> The part of one node. Few rows meet at one.
+  pure subroutine fill_node(n, share, mobility_x, mobility_y, width, band)
+    integer, intent(in) :: n, width
+    real(wp), intent(in) :: share(2, n), mobility_x, mobility_y !! of the x and y of normals
+    real(wp), intent(inout) :: band(0:width, n)
+    real(wp) :: x, y
     integer :: k, m
 
-    k = newest
-    do while (k > 0)
-      pushed(1) = mobility(1)*share(1, k)
-      pushed(2) = mobility(2)*share(2, k)
-      m = k
-      do while (m > 0)
-        associate (one => band(abs(row(m) - row(k)), min(row(k), row(m))))
-          one = one + (pushed(1)*share(1, m) + pushed(2)*share(2, m))
-        end associate
-        m = next(m)
+    !GCC$ UNROLL 1
+    do k = 1, n
+      x = mobility_x*share(1, k)
+      y = mobility_y*share(2, k)
+      !GCC$ NOVECTOR
+      !GCC$ UNROLL 1
+      do m = k, n
+        band(m - k, k) = band(m - k, k) + (x*share(1, m) + y*share(2, m))
       end do
-      k = next(k)
     end do
   end subroutine fill_node
 

@@ -45,6 +45,8 @@ module complementarity_m
     integer :: n_dropped = 0  !! forces left out of the last guess: the others do what they would
   end type outcome_t
 
+  !> Entries of a band up to which a loop over them is not worth vectors.
+  integer, parameter :: few = 8
   integer, parameter :: most_passes = 25
   integer, parameter :: most_sweeps = 2000
   !> Pivots below this part of their own diagonal are zero.
@@ -175,6 +177,11 @@ contains
     real(wp), intent(inout) :: factor(0:width, m)
     integer :: i, j
 
+    if (place(m) == m) then
+      ! All so far are in their places.
+      factor = band(:, :m)
+      return
+    end if
     do j = 1, m
       factor(:, j) = 0.0_wp
       do i = j, min(j + width, m)
@@ -190,7 +197,7 @@ contains
     real(wp), intent(inout) :: factor(0:width, n)
     real(wp), intent(inout) :: diagonal(n)
     logical, intent(inout) :: is_zero(n)
-    integer :: j, k, m
+    integer :: j, k
 
     do j = 1, n
       diagonal(j) = factor(0, j)
@@ -205,12 +212,28 @@ contains
       factor(0, j) = sqrt(factor(0, j))
       factor(1:, j) = factor(1:, j)*(1.0_wp/factor(0, j))
       do k = 1, min(width, n - j)
-        do m = 0, width - k
-          factor(m, j + k) = factor(m, j + k) - factor(k, j)*factor(k + m, j)
-        end do
+        call take_off(width - k + 1, factor(k, j), factor(k, j), factor(0, j + k))
       end do
     end do
   end subroutine factorise
+
+  !> Take a multiple of numbers off others. Few are cheaper one by one.
+  pure subroutine take_off(n, multiple, these, others)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: multiple, these(n)
+    real(wp), intent(inout) :: others(n)
+    integer :: m
+
+    if (n > few) then
+      others = others - multiple*these
+    else
+      !GCC$ NOVECTOR
+      !GCC$ UNROLL 1
+      do m = 1, n
+        others(m) = others(m) - multiple*these(m)
+      end do
+    end if
+  end subroutine take_off
 
   !> Solve with the factors, in place.
   pure subroutine substitute(n, width, factor, is_zero, y)

@@ -20,6 +20,9 @@ module contact_pressing_m
   private
   public :: pressing_t, press_contacts
 
+  !> Of a leap: what an acceleration and the old velocity count, and what body forces add.
+  integer, parameter :: half = 1, keep = 2, push = 3
+
 contains
 
   !> Pressures and forces of all such interfaces. One thread: what an interface is given by another
@@ -33,22 +36,27 @@ contains
     type(log_t), intent(inout) :: log
     type(state_t), intent(inout) :: state
     type(pressing_t), intent(inout) :: steps(:) !! (interfaces) of the call before
+    logical :: are_solved !! rigid bodies: no two interfaces press one that moves
     integer :: i
 
+    are_solved = .false.
     call lap(clock, phase_nodes)
     do i = 1, size(model%contacts)
       if (model%contacts(i)%penalty_unit /= penalty_implicit) cycle
       if (.not. state%contacts(i)%scratch%waits) cycle
       if (.not. allocated(steps(i)%velocity)) then
         call start_pressing(model%contacts(i), state%contacts(i), steps(i))
-        call list_led(model, state%contacts(i)%nodes, steps(i))
-        call list_riders(model, state%contacts(i)%nodes, steps(i))
+        call list_company(model, state%contacts(i)%nodes, steps(i))
       end if
       steps(i)%dt = leap%dt
       if (state%contacts(i)%points%n > 0) then
         call foresee(leap, state%contacts(i)%nodes, state, steps(i))
         call lead(model, velocity, state%time, steps(i))
-        if (size(steps(i)%riders, 2) > 0) call carry(model, leap, damping, state, steps(i))
+        if (size(steps(i)%riders, 2) > 0) then
+          if (.not. are_solved) call solve_rigids(model, damping, state)
+          are_solved = .true.
+          call carry(model, leap, damping, state, steps(i))
+        end if
       end if
       steps(i)%dt_before = state%dt_before
       steps(i)%cycle = state%cycle
@@ -65,56 +73,89 @@ contains
   !> known.
   subroutine foresee(leap, nodes, state, step)
     type(leap_t), intent(in) :: leap
-    integer, intent(in) :: nodes(:)
+    integer, intent(in), contiguous :: nodes(:)
     type(state_t), intent(in) :: state
     type(pressing_t), intent(inout) :: step
-    real(wp) :: half(2), keep(2)
-    integer :: i, j, k
+    real(wp) :: factors(2, 3)
+    integer :: i
 
-    half = leap%half
-    keep = leap%keep
+    factors(:, half) = leap%half
+    factors(:, keep) = leap%keep
+    factors(:, push) = leap%half*leap%body
+    if (.not. allocated(state%node_damping)) then
+      call foresee_nodes(nodes, factors, state%inverse_mass, state%motion, state%force_special, &
+        state%internal_force, step%mobility, step%velocity)
+      return
+    end if
     do i = 1, size(nodes)
-      k = nodes(i)
-      if (allocated(state%node_damping)) call find_factors(leap, state, k, half, keep)
-      do j = 1, 2
-        step%mobility(j, i) = half(j)*state%inverse_mass(j, k)
-        step%velocity(j, i) = keep(j)*state%motion(2 + j, k) + half(j)*leap%body(j) &
-          + step%mobility(j, i)*(state%force_special(j, k) - state%internal_force(j, k))
-        if (.not. state%inverse_mass(j, k) > 0.0_wp) step%velocity(j, i) = 0.0_wp
-      end do
+      call find_factors(leap, state, nodes(i), factors(:, half), factors(:, keep))
+      factors(:, push) = factors(:, half)*leap%body
+      call foresee_nodes(nodes(i:i), factors, state%inverse_mass, state%motion, &
+        state%force_special, state%internal_force, step%mobility(1, i), step%velocity(1, i))
     end do
   end subroutine foresee
+
+  !> Some of them, with the same factors.
+  pure subroutine foresee_nodes(nodes, factors, inverse_mass, motion, force, internal_force, &
+      mobility, velocity)
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in) :: factors(2, 3)
+    real(wp), intent(in) :: inverse_mass(2, *), motion(4, *), force(2, *), internal_force(2, *)
+    real(wp), intent(inout) :: mobility(2, *), velocity(2, *)
+    real(wp) :: free
+    integer :: i, j, k
+
+    do i = 1, size(nodes)
+      k = nodes(i)
+      do j = 1, 2
+        mobility(j, i) = factors(j, half)*inverse_mass(j, k)
+        free = factors(j, keep)*motion(2 + j, k) + factors(j, push) &
+          + mobility(j, i)*(force(j, k) - internal_force(j, k))
+        velocity(j, i) = merge(free, 0.0_wp, inverse_mass(j, k) > 0.0_wp)
+      end do
+    end do
+  end subroutine foresee_nodes
 
   !> Nodes of rigid bodies, by the forces that are known.
   subroutine carry(model, leap, damping, state, step)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
     real(wp), intent(in) :: damping(2) !! D per direction
-    type(state_t), intent(inout) :: state
+    type(state_t), intent(in) :: state
     type(pressing_t), intent(inout) :: step
-    real(wp) :: half(3, size(model%rigids)), rate(3)
+    real(wp) :: counted(3, size(model%rigids)), rate(3)
     integer :: i
 
-    call solve_rigids(model, damping, state)
     do i = 1, size(model%rigids)
       rate = damping_of(state%rigids(i), damping + part_damping_rate(model, &
         model%rigids(i)%part, state%time))
-      half(:, i) = leap%mean/(1.0_wp + 0.5_wp*rate*leap%mean)
+      counted(:, i) = leap%mean/(1.0_wp + 0.5_wp*rate*leap%mean)
     end do
-    call ride(model, half, state, step)
+    call ride(model, counted, state, step)
   end subroutine carry
 
-  !> Which motions lead which nodes of an interface.
-  subroutine list_led(model, nodes, step)
+  !> What leads or carries which nodes of an interface.
+  subroutine list_company(model, nodes, step)
     type(model_t), intent(in) :: model
     integer, intent(in) :: nodes(:)
     type(pressing_t), intent(inout) :: step
-    integer :: local(model%mesh%n_node), led(2, size(model%conditions%motions)), i, n
+    integer :: local(model%mesh%n_node), i
 
     local = 0
     do i = 1, size(nodes)
       local(nodes(i)) = i
     end do
+    call list_led(model, local, step)
+    call list_riders(model, local, size(nodes), step)
+  end subroutine list_company
+
+  !> Which motions lead which nodes.
+  subroutine list_led(model, local, step)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: local(:) !! (n_node) number in the interface, 0: not of it
+    type(pressing_t), intent(inout) :: step
+    integer :: led(2, size(model%conditions%motions)), i, n
+
     n = 0
     do i = 1, size(model%conditions%motions)
       if (local(model%conditions%motions(i)%node) == 0) cycle

@@ -15,16 +15,13 @@ module rigid_pressing_m
 contains
 
   !> Which nodes of an interface belong to which body.
-  subroutine list_riders(model, nodes, step)
+  subroutine list_riders(model, local, n_own, step)
     type(model_t), intent(in) :: model
-    integer, intent(in) :: nodes(:)
+    integer, intent(in) :: local(:) !! (n_node) number in the interface, 0: not of it
+    integer, intent(in) :: n_own    !! nodes of the interface
     type(pressing_t), intent(inout) :: step
-    integer :: local(model%mesh%n_node), riders(3, size(nodes)), i, k, n
+    integer :: riders(3, n_own), i, k, n
 
-    local = 0
-    do i = 1, size(nodes)
-      local(nodes(i)) = i
-    end do
     n = 0
     do i = 1, size(model%rigids)
       associate (body => model%rigids(i)%nodes)
@@ -35,7 +32,7 @@ contains
         end do
       end associate
     end do
-    allocate (step%riders(3, n), step%modes(2, size(nodes), 3*count_bodies(riders(1, :n))))
+    allocate (step%riders(3, n), step%modes(2, n_own, 3*count_bodies(riders(1, :n))))
     step%riders(:, :) = riders(:, :n)
   end subroutine list_riders
 
