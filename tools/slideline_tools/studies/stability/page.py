@@ -23,7 +23,7 @@ LIMITS = {  # name of the column: text and line
     "spring_limit": ("contact springs: omega dt = 2", dict(color="black", linestyle=":")),
     "opening_limit": ("contact springs: omega dt = 1", dict(color="black", linestyle="-.")),
 }
-FILLS = ("#d9ead3", "#9fc5e8", "#ffe599", "#b4a7d6", "#cc4125")
+FILLS = ("#d9ead3", "#f6b26b", "#9fc5e8", "#ffe599", "#b4a7d6", "#cc4125")
 
 
 def of_type(rows, ctype, kind):
@@ -62,7 +62,7 @@ def draw_panel(axes, rows, ctype):
     if count < len(decades):  # apart from the others, as wide as one of them
         draw_cells(axes, verdict[:, count:], right + 0.5 * half, right + 2.5 * half)
         axes.set_xticks([*decades[:count][decades[:count] % 4.0 == 0.0], right + 1.5 * half], None)
-        axes.set_xticklabels([f"{x:g}" for x in axes.get_xticks()[:-1]] + ["PEN<0"])
+        axes.set_xticklabels([f"{x:g}" for x in axes.get_xticks()[:-1]] + ["<0"])
         axes.set_xlim(left, right + 2.5 * half)
     for name, (_, style) in LIMITS.items():
         points = limits_of(rows, ctype, name)
@@ -233,4 +233,4 @@ def write_maps_page(rows, doc):
         n_below=below, n_bad=bad, implicit=implicit_text(by_scene),
         **{name: getattr(measures, name) for name in (
             "ENERGY_DRIFT", "ENERGY_CREATED", "DEPTH_SIDES", "DEPTH_APPROACH", "SWINGS",
-            "UNEVEN", "ENDS")}))
+            "UNEVEN", "ENDS", "CUT_SHARE")}))
