@@ -224,7 +224,9 @@ def test_implicit_penalty_below_the_limit_of_the_elements():
         "Block stable from 1e+0.0 to no compliance, 0 of 8 cells blew up or chattered"
     assert "7i" not in stability_page.limit_table(by_scene)
     assert "| Block | 7i PUNIT 4 | 8 | 6 | 0 | 0 | 0 | 2 | 0 | 4 | 0 |" in stability_page.count_table(by_scene)
+    assert stability_page.blown_text(by_scene) == "no cell of these maps"
     mine[3]["verdict"] = "blown up"  # at 1, step 0.2
+    assert stability_page.blown_text(by_scene) == "Block type 7i (1 cell)"
     assert stability_page.implicit_text(by_scene) == \
         "Block stable from 1e+2.0 to no compliance, 1 of 8 cells blew up or chattered"
 

@@ -204,6 +204,20 @@ def failing_below(rows):
     return len(below), sum(below.count(VERDICTS[verdict]) for verdict in (BLOWN_UP, CHATTERING))
 
 
+def blown_text(by_scene):
+    """The types that blow up below the program's limit, and in how many cells."""
+    parts = []
+    for name, rows in by_scene.items():
+        count = {}
+        for row in rows:
+            if row.get("below_limit") and row["verdict"] == VERDICTS[BLOWN_UP]:
+                count[row["type"]] = count.get(row["type"], 0) + 1
+        if count:
+            parts.append(f"{SCENES[name].title} " + ", ".join(
+                f"type {ctype} ({count[ctype]} cell{'s' * (count[ctype] > 1)})" for ctype in in_order(count)))
+    return "; ".join(parts) if parts else "no cell of these maps"
+
+
 def implicit_text(by_scene):
     """What became of implicit penalty below L/c, scene by scene."""
     parts = []
@@ -230,7 +244,7 @@ def write_maps_page(rows, doc):
         ranges=first_failures(by_scene), soft=smallest_penalties(by_scene),
         depths=depth_table(by_scene.get("block", ()), SCENES["block"].approach),
         ways=f"{SCENES['block'].approach:g} m and {1e3 * SCENES['sliding'].approach:g} mm",
-        n_below=below, n_bad=bad, implicit=implicit_text(by_scene),
+        n_below=below, n_bad=bad, implicit=implicit_text(by_scene), blown=blown_text(by_scene),
         **{name: getattr(measures, name) for name in (
             "ENERGY_DRIFT", "ENERGY_CREATED", "DEPTH_SIDES", "DEPTH_APPROACH", "SWINGS",
             "UNEVEN", "ENDS", "CUT_SHARE")}))
