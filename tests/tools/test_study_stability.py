@@ -187,7 +187,7 @@ def test_texts_on_soft_penalties_follow_the_cells():
 def test_jobs_are_unique_and_complete():
     jobs = stability.jobs(Options(types=(1, 7)))
     maps = len(stability.DECADES) * len(stability.STEPS)
-    assert len({job.name for job in jobs}) == len(jobs) == 2 * len(SCENES) * (maps + 9)
+    assert len({job.name for job in jobs}) == len(jobs) == 2 * len(SCENES) * (maps + 7)
 
 
 def test_jobs_of_implicit_penalty():

@@ -61,7 +61,7 @@ def draw_panel(axes, rows, ctype):
     draw_cells(axes, verdict[:, :count], left, right)
     if count < len(decades):  # apart from the others, as wide as one of them
         draw_cells(axes, verdict[:, count:], right + 0.5 * half, right + 2.5 * half)
-        axes.set_xticks([*decades[:count][decades[:count] % 4.0 == 0.0], right + 1.5 * half], None)
+        axes.set_xticks([*decades[:count][decades[:count] % 2.0 == 0.0], right + 1.5 * half], None)
         axes.set_xticklabels([f"{x:g}" for x in axes.get_xticks()[:-1]] + ["<0"])
         axes.set_xlim(left, right + 2.5 * half)
     for name, (_, style) in LIMITS.items():

@@ -19,8 +19,8 @@ from slideline_tools.studies.stability.failing import keep_failing
 from slideline_tools.studies.stability.page import NO_COMPLIANCE, draw_maps, write_maps_page
 from slideline_tools.studies.stability.scenes import SCENES
 
-DECADES = np.arange(-4.0, 4.01, 0.5)          # log10 of penalty over K L/A
-QUICK_DECADES = np.arange(-4.0, 4.01, 2.0)
+DECADES = np.arange(-2.0, 4.01, 0.5)          # log10 of penalty over K L/A; what is softer penetrates as at 1e-2
+QUICK_DECADES = np.arange(-2.0, 4.01, 2.0)
 STEPS = (0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.0, 1.2, 1.5)  # over L/c
 QUICK_STEPS = (0.2, 0.7, 1.2)
 IMPLICIT_STEPS = (*STEPS[:6], 0.995, *STEPS[7:])  # below L/c, where the elements themselves are stable

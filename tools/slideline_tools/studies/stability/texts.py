@@ -5,7 +5,7 @@ PAGE = """# Where each type is stable
 
 This page and its picture are written by `tools/study.sh stability --publish`: do not edit them.
 
-Each contact type, and type 7 with implicit penalty (7i: PUNIT 4), over eight decades of penalty and steps of 0.1 to 1.5 times the smallest `L/c` of the elements, in three scenes: the patch test
+Each contact type, and type 7 with implicit penalty (7i: PUNIT 4), over six decades of penalty and steps of 0.1 to 1.5 times the smallest `L/c` of the elements, in three scenes: the patch test
 under 20 kPa (2 % of the modulus) with mass damping, two blocks driven together by 0.24 m, and the sliding die with its strokes {faster:g} times faster.
 Simulated times are short: {times}; an instability that is any faster shows, a slow drift does not. All elements have one point and the stiffness form of hourglass control.
 The penalty is given over `K L/A`, the stiffness of the elements behind the interface (`PUNIT 2` is a factor on a tenth of it); at 1 the springs are as stiff as one row of elements.
