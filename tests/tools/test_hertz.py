@@ -138,6 +138,7 @@ def test_layer_of_a_penalty(ctype, expected):
 
 def test_order_of_an_error_in_proportion_to_the_square():
     assert hertz.order([1.0, 0.5, 0.25], [-0.16, 0.04, -0.01]) == pytest.approx(2.0)
+    assert np.isnan(hertz.order([1.0], [0.1]))  # a page of one mesh has no order
 
 
 def test_page_of_a_few_runs(slideline, tmp_path):

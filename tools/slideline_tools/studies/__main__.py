@@ -38,8 +38,8 @@ def build_parser():
     parser.add_argument("--quick", action="store_true",
                         help="a minute's worth of it, into results/study-NAME-quick")
     parser.add_argument("--repeats", type=int, help="rounds of timing runs")
-    parser.add_argument("-j", dest="parallel", type=int, default=1, metavar="N",
-                        help="runs side by side (1); timing runs stay alone")
+    parser.add_argument("-j", dest="parallel", type=int, default=len(os.sched_getaffinity(0)), metavar="N",
+                        help="runs side by side (one for each core); timing runs stay alone")
     parser.add_argument("--only", metavar="PATTERN", help="runs of these names, for example 'hertz*' "
                         f"(of {EVERYTHING}: pages)")
     parser.add_argument("--retry", action="store_true", help="run anew what has failed before")

@@ -58,7 +58,9 @@ def read_runs(folder, levels, types, exchanged):
 
 
 def order(sizes, errors):
-    """Slope of log(error) over log(size), least squares: 1 for an error in proportion."""
+    """Slope of log(error) over log(size), least squares: 1 for an error in proportion; nan of one size."""
+    if len(set(sizes)) < 2:
+        return float("nan")
     return float(np.polyfit(np.log(sizes), np.log(np.abs(errors)), 1)[0])
 
 
@@ -88,7 +90,7 @@ def order_table(runs, swapped):
         for chosen in (runs, swapped):
             mine = [run for run in chosen if run.ctype == ctype]
             sizes = [1.0 / run.level for run in mine]
-            row += [f"{order(sizes, errors):.2f}" for errors in (
+            row += [f"{order(sizes, errors):.2f}".replace("nan", "-") for errors in (
                 [run.half_width - 1.0 for run in mine], [run.peak - 1.0 for run in mine],
                 [run.inside for run in mine])]
         rows.append(row)

@@ -339,5 +339,5 @@ def page(rows, doc):
         sections="\n\n".join(section(times) for times in all_times.values())).rstrip() + "\n")
 
 
-STUDY = Study("paper-tables", jobs, measure, chart, page=page, levels=(1, 2, 3, 4), repeats=5,
+STUDY = Study("paper-tables", jobs, measure, chart, page=page, levels=(1, 2, 3, 4), repeats=3,
               quick_repeats=3)

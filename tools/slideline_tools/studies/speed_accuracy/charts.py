@@ -19,7 +19,7 @@ NAME_WIDTH, NAME_HEIGHT = 18.0, 8.0   # of "7i/4" in points
 MARKS = {"Pareto front": Line2D([], [], color="black", linewidth=1.6, alpha=0.35),
          "hollow: below what the reference resolves": Line2D([], [], linestyle="none", marker="o", color="#555555",
                                                              markerfacecolor="white", markersize=4.5),
-         "shaded: error of the reference": Patch(facecolor="#00000010")}
+         "shaded: error of the reference (the larger)": Patch(facecolor="#00000010")}
 
 
 def draw_type(axes, points, cost, key):

@@ -54,7 +54,7 @@ The cheapest types and mesh (types/N_r) by computing time that keep an error at 
   PUNIT 4 has stiffnesses of its own: 7i 10 times `K L/A` of the softer side, which grows with N_r, and 7h none. Each is judged by what it
   models: the blocks by a chain with its springs, at the end of the step; sliding and collision by a finer mesh without compliance. So the
   errors of 7i and 7h do not hold that their interface is another one. The last column of the table below says how far the two references are
-  apart: what the springs of the decks add to the answer of rigid contact.
+  apart: what the springs of the decks add to the answer of rigid contact. Charts are shaded up to the larger of the errors of both references.
 - Which types are named above: means of contact times within a factor of {cost_factor:g} count as alike, and errors within a factor of
   {error_factor:g}; several types can be named (`tools/slideline_tools/studies/framework/rules.py`; its test repeats the comparison with the scatter of the times).
 - On the Pareto front are the types and meshes that nothing beats in cost and error at once. Errors within {gain:.0f} % of

@@ -12,16 +12,16 @@ import shutil
 from typing import Iterable, Mapping, Optional
 
 from slideline_tools.studies.framework.table import FAILED
-from slideline_tools.studies.stability.measures import STABLE, VERDICTS
+from slideline_tools.studies.stability.measures import LIMITED, STABLE, VERDICTS
 
 FOLDER = "failing"
 MESH = re.compile(r"^\*(?:NODE|ELEMENT_SHELL)\b[^\n]*\n(?:(?!\*)[^\n]*\n)*", re.MULTILINE)
 
 
 def verdict_of(row: Mapping) -> Optional[str]:
-    """What failed in a cell, None if nothing did. A run that could not be measured has failed too."""
+    """What failed in a cell, None if nothing did (limited forces are no failure). A run that could not be measured has failed too."""
     if "verdict" in row:
-        return None if row["verdict"] == VERDICTS[STABLE] else row["verdict"]
+        return None if row["verdict"] in (VERDICTS[STABLE], VERDICTS[LIMITED]) else row["verdict"]
     return "not measured" if row.get("state") == FAILED else None
 
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""What became of a run: one of five verdicts, by measures with fixed thresholds."""
+"""What became of a run: one of six verdicts, by measures with fixed thresholds."""
 import math
+import re
 
 import numpy as np
 
 from slideline_tools.histories import energy_made, read_csv
 
-STABLE, LOCKED, CHATTERING, PENETRATING, BLOWN_UP = range(5)
-VERDICTS = ("stable", "locked", "chattering", "penetrating", "blown up")
+STABLE, LIMITED, LOCKED, CHATTERING, PENETRATING, BLOWN_UP = range(6)
+VERDICTS = ("stable", "limited", "locked", "chattering", "penetrating", "blown up")
 
 ENERGY_DRIFT = 0.05     # of the largest energy: unaccounted for
 ENERGY_CREATED = 0.05   # of the largest energy: made by the contact forces
@@ -15,6 +16,7 @@ DEPTH_SIDES = 1.0       # element sides
 DEPTH_APPROACH = 0.5    # of the way that the bodies are driven together
 SWINGS = 4.0            # ups and downs of the contact force over its largest value
 UNEVEN = 0.30           # scatter of the pressure over its mean where it should be uniform
+CUT_SHARE = 0.05        # of the cycles with force: in these the energy law limited the forces
 ENDS = 2                # nodes at each end of the surface that do not count for that
 
 
@@ -61,6 +63,12 @@ def judge(status, measures, side, approach, is_uniform):
     if is_uniform and measures["uneven"] > UNEVEN:
         return LOCKED
     return STABLE
+
+
+def cut_share(log):
+    """Share of the cycles with force in which contact forces were limited, as the log tells at its end."""
+    found = re.findall(r"they return no more energy than they took, in (\d+) of (\d+) cycles with force", log)
+    return int(found[-1][0]) / int(found[-1][1]) if found else 0.0
 
 
 def measure_run(folder, jobid, scene):

@@ -23,7 +23,7 @@ LIMITS = {  # name of the column: text and line
     "spring_limit": ("contact springs: omega dt = 2", dict(color="black", linestyle=":")),
     "opening_limit": ("contact springs: omega dt = 1", dict(color="black", linestyle="-.")),
 }
-FILLS = ("#d9ead3", "#9fc5e8", "#ffe599", "#b4a7d6", "#cc4125")
+FILLS = ("#d9ead3", "#f6b26b", "#9fc5e8", "#ffe599", "#b4a7d6", "#cc4125")
 
 
 def of_type(rows, ctype, kind):
@@ -61,8 +61,8 @@ def draw_panel(axes, rows, ctype):
     draw_cells(axes, verdict[:, :count], left, right)
     if count < len(decades):  # apart from the others, as wide as one of them
         draw_cells(axes, verdict[:, count:], right + 0.5 * half, right + 2.5 * half)
-        axes.set_xticks([*decades[:count][decades[:count] % 4.0 == 0.0], right + 1.5 * half], None)
-        axes.set_xticklabels([f"{x:g}" for x in axes.get_xticks()[:-1]] + ["PEN<0"])
+        axes.set_xticks([*decades[:count][decades[:count] % 2.0 == 0.0], right + 1.5 * half], None)
+        axes.set_xticklabels([f"{x:g}" for x in axes.get_xticks()[:-1]] + ["<0"])
         axes.set_xlim(left, right + 2.5 * half)
     for name, (_, style) in LIMITS.items():
         points = limits_of(rows, ctype, name)
@@ -204,6 +204,20 @@ def failing_below(rows):
     return len(below), sum(below.count(VERDICTS[verdict]) for verdict in (BLOWN_UP, CHATTERING))
 
 
+def blown_text(by_scene):
+    """The types that blow up below the program's limit, and in how many cells."""
+    parts = []
+    for name, rows in by_scene.items():
+        count = {}
+        for row in rows:
+            if row.get("below_limit") and row["verdict"] == VERDICTS[BLOWN_UP]:
+                count[row["type"]] = count.get(row["type"], 0) + 1
+        if count:
+            parts.append(f"{SCENES[name].title} " + ", ".join(
+                f"type {ctype} ({count[ctype]} cell{'s' * (count[ctype] > 1)})" for ctype in in_order(count)))
+    return "; ".join(parts) if parts else "no cell of these maps"
+
+
 def implicit_text(by_scene):
     """What became of implicit penalty below L/c, scene by scene."""
     parts = []
@@ -230,7 +244,7 @@ def write_maps_page(rows, doc):
         ranges=first_failures(by_scene), soft=smallest_penalties(by_scene),
         depths=depth_table(by_scene.get("block", ()), SCENES["block"].approach),
         ways=f"{SCENES['block'].approach:g} m and {1e3 * SCENES['sliding'].approach:g} mm",
-        n_below=below, n_bad=bad, implicit=implicit_text(by_scene),
+        n_below=below, n_bad=bad, implicit=implicit_text(by_scene), blown=blown_text(by_scene),
         **{name: getattr(measures, name) for name in (
             "ENERGY_DRIFT", "ENERGY_CREATED", "DEPTH_SIDES", "DEPTH_APPROACH", "SWINGS",
-            "UNEVEN", "ENDS")}))
+            "UNEVEN", "ENDS", "CUT_SHARE")}))

@@ -14,13 +14,13 @@ from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES, IMPLICIT
 from slideline_tools.studies.framework.charts import save, styled
 from slideline_tools.studies.framework.job import Job, Study
+from slideline_tools.studies.stability import measures
 from slideline_tools.studies.stability.failing import keep_failing
-from slideline_tools.studies.stability.measures import measure_run
 from slideline_tools.studies.stability.page import NO_COMPLIANCE, draw_maps, write_maps_page
 from slideline_tools.studies.stability.scenes import SCENES
 
-DECADES = np.arange(-4.0, 4.01, 0.5)          # log10 of penalty over K L/A
-QUICK_DECADES = np.arange(-4.0, 4.01, 2.0)
+DECADES = np.arange(-2.0, 4.01, 0.5)          # log10 of penalty over K L/A; what is softer penetrates as at 1e-2
+QUICK_DECADES = np.arange(-2.0, 4.01, 2.0)
 STEPS = (0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.0, 1.2, 1.5)  # over L/c
 QUICK_STEPS = (0.2, 0.7, 1.2)
 IMPLICIT_STEPS = (*STEPS[:6], 0.995, *STEPS[7:])  # below L/c, where the elements themselves are stable
@@ -81,7 +81,7 @@ def measure(job, folder):
     """The verdict of a run, or the limits that the program found."""
     scene = SCENES[job.labels["scene"]]
     if job.labels["kind"] == "map":
-        return measure_run(folder, job.jobid, scene)
+        return measure_cell(folder, job.jobid, scene)
     text = (folder / f"{job.jobid}.log").read_text(encoding="utf-8")
     found = [re.search(pattern, text) for pattern in
              (r"per slave node = (\S+) N/m\^2", r"smallest L/c of the elements (\S+)",
@@ -90,6 +90,15 @@ def measure(job, folder):
         raise UserError("no limits in the log")
     penalty, element, joint = (float(match.group(1)) for match in found)
     return {"penalty": penalty, "element_limit": element, "program_limit": joint / element}
+
+
+def measure_cell(folder, jobid, scene):
+    """The verdict of a run; one that is stable by the energy law alone is limited."""
+    row = measures.measure_run(folder, jobid, scene)
+    row["cut"] = measures.cut_share((folder / f"{jobid}.log").read_text(encoding="utf-8"))
+    if row["verdict"] == measures.VERDICTS[measures.STABLE] and row["cut"] > measures.CUT_SHARE:
+        row["verdict"] = measures.VERDICTS[measures.LIMITED]
+    return row
 
 
 def derive(rows, folder):

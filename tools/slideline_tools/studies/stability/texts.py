@@ -5,7 +5,7 @@ PAGE = """# Where each type is stable
 
 This page and its picture are written by `tools/study.sh stability --publish`: do not edit them.
 
-Each contact type, and type 7 with implicit penalty (7i: PUNIT 4), over eight decades of penalty and steps of 0.1 to 1.5 times the smallest `L/c` of the elements, in three scenes: the patch test
+Each contact type, and type 7 with implicit penalty (7i: PUNIT 4), over six decades of penalty and steps of 0.1 to 1.5 times the smallest `L/c` of the elements, in three scenes: the patch test
 under 20 kPa (2 % of the modulus) with mass damping, two blocks driven together by 0.24 m, and the sliding die with its strokes {faster:g} times faster.
 Simulated times are short: {times}; an instability that is any faster shows, a slow drift does not. All elements have one point and the stiffness form of hourglass control.
 The penalty is given over `K L/A`, the stiffness of the elements behind the interface (`PUNIT 2` is a factor on a tenth of it); at 1 the springs are as stiff as one row of elements.
@@ -14,7 +14,7 @@ forces a step above `L/c`.
 
 ![Stability maps](../pictures/stability.png)
 
-The last column of maps, 7i, has implicit penalty: PEN is the factor on `K L/A`, and a column of its own at the right, PEN below 0, is without compliance. Its steps stand at the right; the seventh is 0.995.
+The last column of maps, 7i, has implicit penalty: PEN is the factor on `K L/A`, and a column of its own at the right, `<0`, has PEN below 0: no compliance. Its steps stand at the right; the seventh is 0.995.
 
 Full line: `dt = 2/omega` by the largest eigenvalue of `M^-1 K`, elements and the springs of the type with all of the surface in contact: what stays closed is stable below it. Dotted and dash-dotted
 lines: `omega dt` = 2 and 1 with the largest `omega` of the contact springs alone; springs that open and close make energy from `omega dt` = 1 on. Broken line: the limit that the program
@@ -30,6 +30,7 @@ The first that applies:
 | penetrating | a slave node is deeper than {DEPTH_SIDES:g} element side, or than {DEPTH_APPROACH:g} of the way that the bodies are driven |
 | chattering | the ups and downs of the contact force add up to more than {SWINGS:g} times its largest value (below) |
 | locked | patch and blocks: the pressure along the surface scatters by more than {UNEVEN:.0%} of its mean (below) |
+| limited | it would be stable, but the energy law has limited the contact forces in more than {CUT_SHARE:.0%} of the cycles with force (below) |
 | stable | none of these |
 
 - Blown up: a run ends early for a negative area or a value that is not finite. The account is the sum that
@@ -37,6 +38,8 @@ The first that applies:
 - Penetrating: the way is that by which the bodies are driven together.
 - Chattering: in the second half, of 300 samples of the run or all its cycles; it takes two full losses of contact.
 - Locked: at the end, {ENDS} nodes at either end left out.
+- Limited: contact forces return no more energy than they took (`doc/theory/contact.md`, section 6.1). Where springs are stiffer than the step bears that law cuts them in nearly every cycle to what it bears:
+  the run stays whole, but the surfaces lie in each other as if the penalty were that of the limit, and the log warns.
 
 ## Is the program's limit safe, and how sharp?
 
@@ -68,18 +71,18 @@ Smallest and largest penalty over `K L/A` for which all steps tried below the pr
 
 {depths}
 
-- *Too stiff* fails along one curve, `dt = 2/omega`, in all scenes and types. Past `K L/A` the limit falls with the root of the penalty: ten times the penalty costs three times the steps. Up to about `K L/A` a contact
+- *Too stiff* begins along one curve, `dt = 2/omega`, in all scenes and types: above it the energy law cuts the forces in nearly every cycle (limited), or the run blows up. Past `K L/A` the limit falls with the root of the penalty: ten times the penalty costs three times the steps. Up to about `K L/A` a contact
   costs next to nothing. The program asks for half of that where springs may open and close: between `omega dt` 1 and 2 a contact that stays closed is stable, as most cells here, and one that bounces makes
   energy at each bounce ([ping-pong](../verification/ping_pong.md)).
 - The types differ in where the curve lies, not in its shape. Type 1 gives every node the same spring: an end node has half of the mass and the whole spring. Type 3 adds its two passes. In both the curve
   lies about half a decade of penalty lower. Types 5 and 7 integrate along both chains, and their limits are predicted best; types 2, 4 and 6 stay stable a little above the program's limit, because no node gets
   the most that it could get.
-- Past the curve the growth is so fast that there is hardly a zone of mere chatter: contacts that open and close at each step make energy, and within tens of steps an element turns over. Chatter shows
-  in the sliding scene, where the plate yields and swallows what the contact makes: the last half decade below the curve.
+- Past the curve springs that open and close at each step would make energy and turn an element over within tens of steps. The energy law takes it from them at once, and a stiffer penalty then changes nothing: between the
+  blocks a hundred and ten thousand times `K L/A` give the same depth at the same step. On the sliding die such contact chatters as well.
 - Nothing locks: at no stable penalty does the pressure of the patch or of the blocks scatter by more than {UNEVEN:.0%}. What types 1 to 3 get wrong there they get wrong at any penalty (`patch_test.md`).
-- *Blown up below both curves* are types 1 and 2 between the blocks, from ten times `K L/A` on, at any step. It is not the step. The two surfaces end at the same place, and their ends do not spread alike: an end node slips
-  over the end of the other surface, loses its whole spring at once and gets it back when it returns at another depth. The contact makes energy that way, the more, the stiffer the spring. With a
-  second pass (type 3), or without a place at the very end that carries a whole spring (types 4 to 7), nothing failed here. `stability_shapes.md` has places that start just beyond the end, where types 3, 4 and 6 make energy too.
+- *Blown up below the program's limit*: {blown}. It is not the step. The two surfaces of the blocks end at the same place, and their ends do not spread alike: an end node of types 1 and 2 slips over the end of the other
+  surface, loses its whole spring at once and gets it back when it returns at another depth. The contact makes energy that way, the more, the stiffer the spring. With a second pass (type 3), or without a place at
+  the very end that carries a whole spring (types 4 to 7), it does not. `stability_shapes.md` has places that start just beyond the end, where types 3, 4 and 6 make energy too.
 - Cells at a step of exactly `L/c` can be stable although the limit by eigenvalue lies one or two per cent below: so near to it growth takes longer than these runs.
 - All this is without friction, which has an instability of its own at any penalty and step: [stability_friction](stability_friction.md).
 - Between the two lines lies what the program gives away to be safe for all positions of the surfaces. (They are drawn straight between full decades.)
