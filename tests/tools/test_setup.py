@@ -46,9 +46,9 @@ def tree(tmp_path):
     return tmp_path
 
 
-def build(tree, **variables):
+def build(tree, script="build.sh", **variables):
     environment = {"PATH": str(tree / "machine"), "LOG": str(tree / "calls.txt"), "TREE": str(tree), **variables}
-    return subprocess.run([shutil.which("bash"), tree / "tools" / "build.sh"], env=environment, stdin=subprocess.DEVNULL,
+    return subprocess.run([shutil.which("bash"), tree / "tools" / script], env=environment, stdin=subprocess.DEVNULL,
                           capture_output=True, text=True, timeout=60, check=False)
 
 
@@ -63,6 +63,15 @@ def test_a_failing_pip_leaves_a_program(tree, variables, said):
     if not variables:
         pip = next(k for k, call in enumerate(calls) if "-m pip" in call)
         assert any("--build" in call for call in calls[:pip]), "the program is built before anything comes over the network"
+
+
+@pytest.mark.parametrize("variables, said", [({}, "pip failed"), ({"NO_VENV": "1"}, "python3 -m venv failed")])
+def test_tests_need_the_tools(tree, variables, said):
+    """They come while the program is built; the tests wait for both."""
+    done = build(tree, "test.sh", **variables)
+    assert done.returncode == 1 and done.stderr.count(said) == 1, done.stderr
+    assert "testing" not in done.stdout
+    assert ("--build" in (tree / "calls.txt").read_text()) == (not variables)
 
 
 def test_the_line_to_type_is_complete(tree):
