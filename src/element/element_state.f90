@@ -28,20 +28,24 @@ contains
 
   !> Allocate the streams and fill the reference shape. Elastic parts get no plastic history, parts
   !> with viscous hourglass control no hourglass memory.
-  subroutine start_elements(model, elements)
+  subroutine start_elements(model, elements, own)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(out) :: elements
-    integer :: n_slot, n_chunk, i_slot
+    integer, intent(in), optional :: own(2) !! first and last slot that are asked for, if not all
+    integer :: n_slot, n_chunk, i_slot, asked(2)
 
     n_slot = model%layout%n_slot
+    asked = [1, n_slot]
+    if (present(own)) asked = own
     allocate (elements%reference(n_slot, merge(n_round_reference, 6, model%is_round)))
-    allocate (elements%deviator(n_slot, 3), source=0.0_wp)
+    allocate (elements%deviator(n_slot, 3))
+    elements%deviator(asked(1):asked(2), :) = 0.0_wp
     ! Chunks of rigid parts come after these.
     n_chunk = model%layout%tiles(size(model%layout%tiles))%last_chunk
     allocate (elements%deviatoric_work(n_chunk), elements%hourglass_work(n_chunk), &
       elements%viscous_work(n_chunk), source=0.0_wp)
     allocate (elements%time_limit(n_chunk), elements%volume_limit(n_chunk), source=1.0_wp)
-    do i_slot = 1, n_slot
+    do i_slot = asked(1), asked(2)
       call fill_reference(model, i_slot, elements%reference)
     end do
     if (model%is_round) call fill_round_reference(model, elements%reference)

@@ -7,6 +7,7 @@ module rank_memory_m
   use automatic_penalty_m, only : seeks_penalties
   use block_state_m, only : block_state_t
   use errors_m, only : error_t
+  use heap_m, only : give_back_memory
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use log_m, only : log_t
@@ -34,6 +35,7 @@ contains
     if (ranks%mine == 0 .or. starts_from_all(model)) then
       call start_state(model, log, state, error)
     else
+      call give_back_memory()
       call start_state(model, log, state, error, &
         others_of(model, share_out(model%layout, ranks%mine, ranks%n), ranks))
     end if

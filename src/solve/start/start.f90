@@ -41,8 +41,12 @@ contains
     integer :: i
 
     ! Long arrays one after the other, each given up before the next one takes room.
-    call start_elements(model, state%elements)
-    if (present(others)) call forget_slots(others, state%elements)
+    if (present(others)) then
+      call start_elements(model, state%elements, [others%slots(2) + 1, others%slots(3) - 1])
+      call forget_slots(others, state%elements)
+    else
+      call start_elements(model, state%elements)
+    end if
     call start_motion(model, state%motion)
     call lump_mass(model, state%mass)
     call log_elements(model, log)
