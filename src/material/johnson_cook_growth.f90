@@ -128,13 +128,15 @@ contains
     type(johnson_cook_t), intent(in) :: flow
     real(wp), intent(in), dimension(n_lane) :: growth, ratio
     real(wp), intent(out), dimension(n_lane) :: speed, rise
-    real(wp) :: logarithm(n_lane)
+    real(wp), dimension(n_lane) :: known, logarithm
     integer :: i
 
     speed = 1.0_wp
     rise = 0.0_wp
     if (.not. (flow%is_viscoplastic .and. flow%c > 0.0_wp)) return
-    call form_logarithms(n_lane, max(1.0_wp, ratio*growth), logarithm)
+    ! By name: the compiler packs an expression into memory of the heap.
+    known = max(1.0_wp, ratio*growth)
+    call form_logarithms(n_lane, known, logarithm)
     !$omp simd
     do i = 1, n_lane
       speed(i) = 1.0_wp + flow%c*logarithm(i)
