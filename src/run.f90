@@ -135,7 +135,7 @@ contains
   !> The state of the restart file, and whether all that is read later can be; before any file of an
   !> earlier run is touched.
   subroutine take_up_run(model, prefix, state, restarts, error)
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     character(*), intent(in) :: prefix     !! directory and job name
     type(state_t), intent(inout) :: state
     type(restarts_t), intent(inout) :: restarts
@@ -281,7 +281,7 @@ contains
   !> Advance to the end, close the files and say how it ended.
   subroutine drive(arguments, model, prefix, state, monitor, error)
     type(arguments_t), intent(in) :: arguments
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     character(*), intent(in) :: prefix
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor

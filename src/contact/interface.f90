@@ -150,7 +150,7 @@ contains
       call look_at_springs(cycle, memory)
       ! Springs born or caught loaded make what they hold: that is told, and may be returned.
       if (is_born) then
-        memory%limit%credit = memory%watch%stored
+        memory%limit%credit = memory%limit%credit + memory%watch%stored
       else
         call lend(energy_caught(contact, formulation%has_unit_area, memory), memory%limit)
       end if

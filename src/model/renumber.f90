@@ -11,6 +11,7 @@ module renumber_m
   use node_order_m, only : order_nodes
   use rigids_m, only : mark_rigid_nodes
   use sorting_m, only : sorted_order
+  use type_charts_m, only : may_change
   implicit none
   private
   public :: renumber_model, mark_touched_nodes, forget_start
@@ -65,7 +66,8 @@ contains
     if (allocated(model%node_sets)) deallocate (model%node_sets)
     if (allocated(model%segment_sets)) deallocate (model%segment_sets)
     if (allocated(model%shell_sets)) deallocate (model%shell_sets)
-    if (model%controls%implicit%is_on .or. model%erodes) return
+    if (model%controls%implicit%is_on .or. model%erodes .or. any(may_change(model%contacts))) &
+      return
     deallocate (model%mesh%element_nodes, model%mesh%element_part)
     if (.not. is_asked(model%controls%output%plot)) deallocate (model%mesh%deck_node)
   end subroutine forget_start

@@ -5,7 +5,10 @@ module contact_estimate_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: contact_estimate_t
+  public :: contact_estimate_t, judged_each
+
+  !> Cycles from one look to the next at interfaces whose type the program may change.
+  integer, parameter :: judged_each = 100
 
   !> Sums and extremes; nothing of time zero, where elements have no stress yet.
   type :: contact_estimate_t
@@ -24,6 +27,8 @@ module contact_estimate_m
                                        !! force, as of equal strides
     real(wp) :: forces = 0.0_wp        !! sum of its squares over the same instants
     real(wp) :: least_margin = huge(1.0_wp) !! smallest of stable step over step
+    real(wp) :: watched(2) = 0.0_wp    !! `misfit` and `load` at the looks since the type was chosen
+    integer :: contact_type = 0        !! the present one
   end type contact_estimate_t
 
 end module contact_estimate_m

@@ -16,8 +16,8 @@ module deck_contact_values_m
   use deck_raw_m, only : raw_contact_t
   implicit none
   private
-  public :: find_commanded, take_overrides, check_values, kind_names, leaves_type, name_of, of_penalty, &
-    of_unit, of_master_penalty, of_damping
+  public :: find_commanded, take_overrides, check_values, kind_names, leaves_type, name_of, &
+    of_penalty, of_unit, of_master_penalty, of_damping
 
   !> Values by their place in `contact_names`.
   integer, parameter :: of_type = 1, of_gauss = 2, of_penalty = 3, of_unit = 4, &

@@ -39,7 +39,7 @@ contains
 
   !> From the state at time zero to the end of the run.
   subroutine advance_explicit(model, n_thread, state, monitor, reason, error)
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     integer, intent(in) :: n_thread
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -78,7 +78,7 @@ contains
   !> are one piece of serial work; `cycle` may then already speak of the next one, so that what
   !> others still ask it is kept.
   subroutine run_cycles(model, state, monitor, cycle)
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle

@@ -6,6 +6,7 @@ module explicit_cycle_m
   use boundary_account_m, only : count_boundary_loads, count_boundary_motions, &
     count_boundary_bodies, count_groups
   use constraints_m, only : fix_nodes, update_activity, is_active
+  use contact_choosing_m, only : is_judged
   use contact_account_m, only : plan_looks, follow_contact
   use behind_ties_m, only : hear_tie, settle_with_tie
   use contact_inertia_m, only : weigh_contacts
@@ -56,6 +57,7 @@ module explicit_cycle_m
     logical :: writes = .true.       !! this cycle writes something
     logical :: finished = .false.    !! the run is over
     logical :: last = .false.        !! this cycle is the last one
+    logical :: judges = .false.      !! this cycle judges interfaces for the choice of their type
     logical :: plots = .false.       !! this cycle writes a plot state because someone asked for it
     type(due_t) :: due
     type(shares_t) :: shares         !! tiles of each process
@@ -147,7 +149,8 @@ contains
     cycle%due = find_due(monitor, state%time, state%dt, state%cycle == 0 .or. cycle%last)
     cycle%due%plot = cycle%due%plot .or. (cycle%plots .and. monitor%has_plot)
     cycle%plots = .false.
-    cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
+    cycle%judges = is_judged(model, state%cycle)
+    cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last .or. cycle%judges
     call apply_loads(model, state, cycle%damping, cycle%sums)
     if (allocated(state%boundary_work)) call count_boundary_loads(model, state)
     if (allocated(state%node_damping)) call follow_damping(model, cycle%damping, cycle%rates, state)

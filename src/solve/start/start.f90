@@ -90,6 +90,7 @@ contains
         status_input)
       return
     end do
+    state%estimates%contact_type = model%contacts(:size(state%estimates))%contact_type
     call start_outlines(model, state)
     call weigh_contacts(model, state)
     call set_automatic_penalties(model, state, log, error)

@@ -1,0 +1,162 @@
+! SPDX-License-Identifier: MIT
+!> CTYPE 0 while the run goes on: interfaces are judged in every so many cycles, and one whose
+!> estimate has risen above its target takes, once it is open, the type that the studies say keeps
+!> it. What is looked at and when depends on the deck alone, not on what is written, so that the
+!> deck as run makes the same choices.
+module contact_choosing_m
+  use automatic_penalty_m, only : scale_penalties
+  use contact_dispatch_m, only : formulation_t, formulation_of
+  use contact_estimate_m, only : judged_each
+  use contact_inertia_m, only : weigh_contacts
+  use contact_state_m, only : contact_state_t
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, fitting_scale
+  use contacts_m, only : contact_t, kind_text, penalty_share
+  use interface_m, only : start_contact
+  use kinds_m, only : wp
+  use log_m, only : log_t, write_log, to_text
+  use model_m, only : model_t
+  use ranks_m, only : ranks_t, spread_values
+  use share_text_m, only : percent
+  use state_m, only : state_t
+  use type_charts_m, only : may_change, better_type, published_share
+  implicit none
+  private
+  public :: is_judged, follow_choices
+
+contains
+
+  !> Whether this cycle judges interfaces for the choice of their type.
+  pure function is_judged(model, cycle) result(judged)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: cycle
+    logical :: judged
+
+    judged = .false.
+    if (cycle == 0 .or. model%erodes) return
+    if (mod(cycle, judged_each) == 0) judged = any(may_change(model%contacts))
+  end function is_judged
+
+  !> Judge all interfaces by what the first process knows, and change types.
+  subroutine follow_choices(model, ranks, element_limit, state, log)
+    type(model_t), intent(inout) :: model
+    type(ranks_t), intent(inout) :: ranks
+    real(wp), intent(in) :: element_limit !! s
+    type(state_t), intent(inout) :: state
+    type(log_t), intent(inout) :: log
+    real(wp) :: chosen(size(state%estimates))
+    integer :: i
+
+    do i = 1, size(chosen)
+      chosen(i) = wanted_type(model%contacts(i), state, i)
+    end do
+    if (ranks%n > 1) call spread_values(ranks, chosen)
+    do i = 1, size(chosen)
+      if (chosen(i) > 0.0_wp) call change_type(model, i, nint(chosen(i)), element_limit, state, log)
+    end do
+  end subroutine follow_choices
+
+  !> The type that an interface should have from here on; 0 where it keeps its own.
+  pure function wanted_type(contact, state, i) result(wanted)
+    type(contact_t), intent(in) :: contact
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: i
+    integer :: wanted
+    real(wp) :: estimate, expected
+
+    wanted = 0
+    associate (watched => state%estimates(i)%watched)
+      if (.not. may_change(contact) .or. state%contacts(i)%n_active > 0) return
+      if (.not. watched(2) > 0.0_wp) return
+      estimate = sqrt(watched(1)/watched(2))
+      if (estimate <= contact%target) return
+      call better_type(contact%scene, contact%contact_type, estimate, contact%target, wanted, &
+        expected)
+      if (.not. expected < estimate) wanted = 0
+    end associate
+  end function wanted_type
+
+  !> An open interface goes on with another type, if the present step bears its springs.
+  subroutine change_type(model, i, new_type, element_limit, state, log)
+    type(model_t), intent(inout) :: model
+    integer, intent(in) :: i, new_type
+    real(wp), intent(in) :: element_limit !! s
+    type(state_t), intent(inout) :: state
+    type(log_t), intent(inout) :: log
+    type(contact_t) :: contact(1)
+    type(contact_state_t) :: memory(1)
+    type(log_t) :: silence
+    character(:), allocatable :: text
+    real(wp) :: scale
+    integer :: former
+
+    former = model%contacts(i)%contact_type
+    contact(1) = model%contacts(i)
+    contact(1)%contact_type = new_type
+    silence%is_mute = .true.
+    call start_contact(contact(1), model, silence, memory(1))
+    call take_account(contact(1)%penalty_unit == penalty_share, state%contacts(i), memory(1))
+    scale = bearable_scale(contact, memory, element_limit, state)
+    associate (watched => state%estimates(i)%watched)
+      text = 'interface '//to_text(contact(1)%id)//', cycle '//to_text(state%cycle)//', time ' &
+        //to_text(state%time)//': the estimate, '//percent(sqrt(watched(1)), sqrt(watched(2))) &
+        //' since '//name_of(model%contacts(i))//' was taken, is above ' &
+        //percent(contact(1)%target, 1.0_wp)
+      watched = 0.0_wp
+    end associate
+    if (scale < 1.0_wp .and. contact(1)%penalty_unit /= penalty_share) then
+      call write_log(log, text//'; it stays, the step does not bear the springs of ' &
+        //name_of(contact(1)))
+      return
+    end if
+    if (scale < 1.0_wp) call scale_penalties(scale, memory(1))
+    state%contacts(i) = memory(1)
+    state%estimates(i)%contact_type = new_type
+    model%contacts(i)%contact_type = new_type
+    call weigh_contacts(model, state)
+    call write_log(log, text//'; contact is open and goes on with ' &
+      //name_of(contact(1))//', whose published estimate is ' &
+      //percent(published_share(contact(1)%scene, former, new_type), 1.0_wp)//' of that')
+  end subroutine change_type
+
+  !> The type of an interface, for the log.
+  pure function name_of(contact) result(name)
+    type(contact_t), intent(in) :: contact
+    character(:), allocatable :: name
+    type(formulation_t) :: formulation
+
+    formulation = formulation_of(contact)
+    name = kind_text(formulation%kind)
+  end function name_of
+
+  !> The part of the penalty that the present step bears, 1 for all of it.
+  function bearable_scale(contact, memory, element_limit, state) result(scale)
+    type(contact_t), intent(in) :: contact(1)
+    type(contact_state_t), intent(in) :: memory(1)
+    real(wp), intent(in) :: element_limit !! s
+    type(state_t), intent(in) :: state
+    real(wp) :: scale
+    type(spring_bound_t) :: bounds(1)
+
+    call bound_springs(contact, state%contact_mass, memory, [1.0_wp], bounds)
+    scale = min(fitting_scale(state%dt, element_limit, bounds(1)), 1.0_wp)
+  end function bearable_scale
+
+  !> What an interface has done so far stays in its account, and the penalty that the program gave.
+  pure subroutine take_account(is_automatic, before, memory)
+    logical, intent(in) :: is_automatic
+    type(contact_state_t), intent(in) :: before
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%is_stale = .true.
+    memory%energy = before%energy
+    memory%damping_work = before%damping_work
+    memory%watch = before%watch
+    memory%limit = before%limit
+    memory%n_released = before%n_released
+    if (.not. is_automatic) return
+    memory%slave_penalty = before%slave_penalty
+    memory%master_penalty = before%master_penalty
+    memory%node_penalty = before%node_penalty
+  end subroutine take_account
+
+end module contact_choosing_m
