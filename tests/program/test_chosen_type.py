@@ -191,24 +191,24 @@ def test_estimates_have_the_same_bits_with_threads(slideline, tmp_path):
     assert np.genfromtxt(tmp_path / "n1/job.sleout.csv", delimiter=",", names=True)["estimate"].max() > 0.0
 
 
-def twice(ctype=1, target=0.03, pen=1.0e6, punit=None, gap=1.0e-3, more=()):
+def twice(ctype=1, target=0.03, pen=1.0e6, punit=None, columns=(3, 4), pace=1.0, more=()):
     """A block led slowly onto another of uneven mesh, off it, and on again: damped, far below the stable step."""
     deck = Deck("twice")
-    deck.control(4.0)
+    deck.control(4.0 * pace)
     deck.add("*SECTION_SHELL", (1, 13), (1.0,))
-    lower, quads = grid(3, 2, origin=(0.0, -1.0))
+    lower, quads = grid(columns[0], 2, origin=(0.0, -1.0))
     below = deck.mesh(lower, quads, part=1)
-    upper, quads = grid(4, 2, origin=(0.0, gap))
+    upper, quads = grid(columns[1], 2, origin=(0.0, 1.0e-3))
     above = deck.mesh(upper, quads, part=2)
     for part in (1, 2):
         deck.part(part, section=1).elastic(1000.0, 1.0e6, 0.3, part)
-    deck.fix(below[:4], x=1, y=1)
-    deck.curve(1, [(0.0, 0.0), (1.0, -1.0), (2.0, 0.2), (3.0, -1.0), (4.0, -1.0)])
-    for node in above[-5:]:
+    deck.fix(below[:columns[0] + 1], x=1, y=1)
+    deck.curve(1, [(0.0, 0.0), (pace, -1.0), (2.0 * pace, 0.2), (3.0 * pace, -1.0), (4.0 * pace, -1.0)])
+    for node in above[-columns[1] - 1:]:
         deck.prescribe(node, 2, 2, 1, 0.01)
     deck.curve(2, [(0.0, 5.0), (10.0, 5.0)])
     deck.add("*DAMPING_GLOBAL", (2,))
-    deck.node_set(1, above[:5]).node_set(2, below[-4:][::-1])
+    deck.node_set(1, above[:columns[1] + 1]).node_set(2, below[-columns[0] - 1:][::-1])
     deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, ctype, None, pen), (None, None, punit),
              (None, None, None, None, None, None, target))
     for keyword, *cards in more:
