@@ -8,7 +8,8 @@ module type_charts_m
   implicit none
   private
   public :: scene_bound, scene_matching, scene_general, scene_led, scene_friction, scene_name, &
-    published_estimate, cheapest_type, better_type, refinement, may_change, has_chart
+    published_estimate, cheapest_type, better_type, published_share, refinement, may_change, &
+    has_chart
 
   !> Kinds of scenes: something else binds the type; flat faces that match and stay so; any; led
   !> along each other; with friction.
@@ -111,6 +112,15 @@ contains
     best = cheapest_type(chart, estimates(present, chart)*bound/estimate)
     expected = estimate*estimates(best, chart)/estimates(present, chart)
   end subroutine better_type
+
+  !> The published estimate of another type over that of the present one.
+  elemental function published_share(scene, present, other) result(share)
+    integer, intent(in) :: scene, present, other
+    real(wp) :: share
+
+    share = estimates(other, max(scene, scene_general))/estimates(present, max(scene, &
+      scene_general))
+  end function published_share
 
   !> By which factor elements should be smaller to bring an estimate down to a bound.
   elemental function refinement(estimate, bound) result(factor)

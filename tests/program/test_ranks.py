@@ -24,6 +24,7 @@ from history_decks import busy_block
 from impact_decks import plates
 from meshes import Deck, grid
 from round_decks import rings
+from test_chosen_type import twice
 from test_requests import wait_for
 from test_same_bits import anvil, everything
 
@@ -81,6 +82,7 @@ SCENES = {
     "mass that grows, type 7": (lambda: growing(7), 60, 2, 1),
     "no contact, gravity": (settling, 60, 5, 1),
     "histories and an end before its time, type 3": (ended, 60, 3, 1),
+    "type that changes": (lambda: twice(columns=(40, 56), pace=0.06), 400, 3, 1, "dt=4e-4"),
 }
 
 
@@ -140,6 +142,7 @@ def test_files_are_those_of_one_process(tmp_path, scene):
     assert "leave" not in scene or "leave the mesh" in log
     assert "fail" not in scene or "points fail" in log
     assert ("end before" in scene) == ("*TERMINATION_BODY" in log)
+    assert ("changes" in scene) == ("contact is open and goes on with" in log)
     if "grows" in scene:
         added = numbers(tmp_path / "one" / "job.glstat.csv", "added_mass")
         assert added[-1] > added[0]

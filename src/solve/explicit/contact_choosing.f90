@@ -18,7 +18,7 @@ module contact_choosing_m
   use ranks_m, only : ranks_t, spread_values
   use share_text_m, only : percent
   use state_m, only : state_t
-  use type_charts_m, only : may_change, better_type
+  use type_charts_m, only : may_change, better_type, published_share
   implicit none
   private
   public :: is_judged, follow_choices
@@ -87,7 +87,9 @@ contains
     type(log_t) :: silence
     character(:), allocatable :: text
     real(wp) :: scale
+    integer :: former
 
+    former = model%contacts(i)%contact_type
     contact(1) = model%contacts(i)
     contact(1)%contact_type = new_type
     silence%is_mute = .true.
@@ -112,7 +114,8 @@ contains
     model%contacts(i)%contact_type = new_type
     call weigh_contacts(model, state)
     call write_log(log, text//'; contact is open and goes on with ' &
-      //name_of(contact(1))//', the cheapest that should keep it')
+      //name_of(contact(1))//', whose published estimate is ' &
+      //percent(published_share(contact(1)%scene, former, new_type), 1.0_wp)//' of that')
   end subroutine change_type
 
   !> The type of an interface, for the log.
