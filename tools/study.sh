@@ -14,4 +14,4 @@ case " $* " in
   *" --program "* | *" --program="*) ;;  # a program of one's own
   *) "$root/tools/build.sh" release >&2 || exit 1 ;;
 esac
-MPLBACKEND=Agg exec "$python" -m slideline_tools.study "$@"
+MPLBACKEND=Agg exec "$python" -m slideline_tools.studies "$@"

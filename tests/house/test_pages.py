@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Published pages keep up with the code that they speak of, or doc/studies/README.md says until when they need not.
 
-A page names the digest of its sources (slideline_tools/study/pages.py); no history is asked, so that this judges a
+A page names the digest of its sources (slideline_tools/studies/framework/pages.py); no history is asked, so that this judges a
 shallow clone and an unpacked archive as well.
 """
 import pathlib
@@ -13,7 +13,7 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from slideline_tools.study import pages  # noqa: E402
+from slideline_tools.studies.framework import pages  # noqa: E402
 
 STUDIES = ROOT / "doc" / "studies"
 ALLOWANCE = re.compile(r"^\| \[(\w+)\]\(\w+\.md\) \| release (\d+)\.(\d+) \| (\S.+?) \|$", re.MULTILINE)

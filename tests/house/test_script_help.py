@@ -83,4 +83,4 @@ def test_help_of_studies_comes_from_the_studies_where_they_are_installed(tree, t
     python.chmod(0o755)
     done = subprocess.run([tmp_path / "tools/study.sh", "simplify", "--help"], capture_output=True,
                           text=True, timeout=20)
-    assert done.stdout == "python -m slideline_tools.study simplify --help\n"
+    assert done.stdout == "python -m slideline_tools.studies simplify --help\n"

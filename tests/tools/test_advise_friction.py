@@ -9,7 +9,7 @@ import pytest
 from conftest import ROOT
 from slideline_tools.advise import advise, rubbing, touching
 from slideline_tools.histories import History
-from slideline_tools.study import stability_friction_scene as scene
+from slideline_tools.studies.stability_friction import scene
 
 EXAMPLES = ROOT / "doc/examples"
 

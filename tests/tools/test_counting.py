@@ -11,9 +11,9 @@ import sys
 import pytest
 
 from slideline_tools import UserError, counting, scenes
-from slideline_tools.study import counted, runner, table
-from slideline_tools.study.job import Job, Study
-from slideline_tools.study.progress import Progress
+from slideline_tools.studies.framework import counted, runner, table
+from slideline_tools.studies.framework.job import Job, Study
+from slideline_tools.studies.framework.progress import Progress
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from slideline_tools import UserError
-from slideline_tools.studies import scale, scale_tiles
-from slideline_tools.studies.scale_runs import COSTS, NAMES, grid_mesh, ring_mesh
+from slideline_tools.studies.scale import page as scale, tiles as scale_tiles
+from slideline_tools.studies.scale.runs import COSTS, NAMES, grid_mesh, ring_mesh
 
 
 def strip(columns=2048):

@@ -13,10 +13,10 @@ import time
 import pytest
 
 from slideline_tools import UserError
-from slideline_tools.study import __main__ as command
-from slideline_tools.study import progress, registry, runner, table
-from slideline_tools.study.job import Job, Options, Study, interleave, part_of
-from slideline_tools.study.progress import Progress, span
+from slideline_tools.studies import __main__ as command
+from slideline_tools.studies.framework import progress, registry, runner, table
+from slideline_tools.studies.framework.job import Job, Options, Study, interleave, part_of
+from slideline_tools.studies.framework.progress import Progress, span
 
 TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
 
@@ -250,7 +250,7 @@ def test_one_updating_line_on_a_terminal_and_plain_lines_elsewhere(bench, monkey
 
 STUDY_FILE = """
 import test_study
-from slideline_tools.study.job import Job, Study
+from slideline_tools.studies.framework.job import Job, Study
 
 
 def jobs(options):
@@ -321,7 +321,8 @@ import sys
 sys.path[:0] = {paths!r}
 import tiny_study
 tiny_study.WAIT = 0.6
-from slideline_tools.study import __main__ as command, registry
+from slideline_tools.studies import __main__ as command
+from slideline_tools.studies.framework import registry
 registry.load = lambda name: tiny_study.STUDY
 registry.STUDIES["tiny"] = "tiny"
 sys.exit(command.main(["tiny", "--program", {program!r}, "--folder", {folder!r}]))

@@ -5,9 +5,9 @@ import json
 import pytest
 
 from slideline_tools import UserError
-from slideline_tools.study import __main__ as command
-from slideline_tools.study import everything, pages
-from slideline_tools.study.pages import Page
+from slideline_tools.studies import __main__ as command
+from slideline_tools.studies.framework import everything, pages
+from slideline_tools.studies.framework.pages import Page
 
 MAKER = """#!/bin/sh
 echo "$1" >>log

@@ -7,10 +7,13 @@ import pytest
 
 from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES
-from slideline_tools.study import (claims_friction, registry, speed_accuracy_friction, speed_accuracy_friction_measures as slip,
-                                   speed_accuracy_friction_page, stability_friction, stability_friction_measures as measures,
-                                   stability_friction_page, stability_friction_scene as scene)
-from slideline_tools.study.job import Options, interleave
+from slideline_tools.studies.claims_friction import study as claims_friction
+from slideline_tools.studies.framework import registry
+from slideline_tools.studies.framework.job import Options, interleave
+from slideline_tools.studies.speed_accuracy_friction import (measures as slip, page as speed_accuracy_friction_page,
+                                                             study as speed_accuracy_friction)
+from slideline_tools.studies.stability_friction import (measures, page as stability_friction_page, scene,
+                                                        study as stability_friction)
 
 NEW = ("stability-friction", "speed-accuracy-friction", "claims-friction")
 

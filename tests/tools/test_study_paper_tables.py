@@ -10,10 +10,11 @@ import pytest
 
 from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES
-from slideline_tools.study import __main__ as command
-from slideline_tools.study import paper_tables, times
-from slideline_tools.study.job import Options, interleave, part_of
-from slideline_tools.study.table import read_rows
+from slideline_tools.studies import __main__ as command
+from slideline_tools.studies import paper_tables
+from slideline_tools.studies.framework import times
+from slideline_tools.studies.framework.job import Options, interleave, part_of
+from slideline_tools.studies.framework.table import read_rows
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROCESSOR = "slow one, 1 logical cores"

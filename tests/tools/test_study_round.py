@@ -4,9 +4,10 @@ import subprocess
 
 import pytest
 
-from slideline_tools.study import registry, round_contact
-from slideline_tools.study.job import Options, interleave
-from slideline_tools.study.table import FINISHED
+from slideline_tools.studies.framework import registry
+from slideline_tools.studies.framework.job import Options, interleave
+from slideline_tools.studies.framework.table import FINISHED
+from slideline_tools.studies.round_contact import study as round_contact
 
 
 def test_jobs_have_names_of_their_own_and_a_quick_form():

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from slideline_tools.study import rules
-from slideline_tools.study import speed_accuracy_advice as advice
-from slideline_tools.study import speed_accuracy_front as fronts
+from slideline_tools.studies.framework import rules
+from slideline_tools.studies.speed_accuracy import advice, front as fronts
 
 #: Contact times, s, by scene, type and mesh, as published in November 2026 (EPYC, medians of 3).
 PUBLISHED = {

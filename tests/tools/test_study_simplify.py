@@ -9,11 +9,12 @@ import pytest
 
 from slideline_tools import UserError, scenes
 from slideline_tools.histories import History
-from slideline_tools.study import simplify, simplify_compare, simplify_decks, simplify_page, simplify_texts
-from slideline_tools.study import __main__ as command
-from slideline_tools.study.job import Options
-from slideline_tools.study.simplify_figures import Runs, small_share
-from slideline_tools.study.table import read_rows
+from slideline_tools.studies import __main__ as command
+from slideline_tools.studies.framework.job import Options
+from slideline_tools.studies.framework.table import read_rows
+from slideline_tools.studies.simplify import (compare as simplify_compare, decks as simplify_decks, page as simplify_page,
+                                              study as simplify, texts as simplify_texts)
+from slideline_tools.studies.simplify.figures import Runs, small_share
 
 LEVEL = 2
 

@@ -9,15 +9,10 @@ import pytest
 from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.studies import block
-from slideline_tools.study import __main__ as command
-from slideline_tools.study import speed_accuracy as study
-from slideline_tools.study import speed_accuracy_advice as advice
-from slideline_tools.study import speed_accuracy_front as fronts
-from slideline_tools.study import speed_accuracy_page as pages
-from slideline_tools.study import speed_accuracy_reference as reference
-from slideline_tools.study import speed_accuracy_scenes as scenes
-from slideline_tools.study.job import Options, interleave
-from slideline_tools.study.table import read_rows
+from slideline_tools.studies import __main__ as command
+from slideline_tools.studies.framework.job import Options, interleave
+from slideline_tools.studies.framework.table import read_rows
+from slideline_tools.studies.speed_accuracy import advice, front as fronts, page as pages, reference, scenes, study
 
 
 # ---- front -------------------------------------------------------------------------------------

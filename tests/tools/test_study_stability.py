@@ -11,12 +11,12 @@ import pytest
 from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.decks import Grid
 from slideline_tools.histories import History, HistoryError, energy_made
-from slideline_tools.study import stability, stability_measures as measures, stability_page
-from slideline_tools.study.job import Options
-from slideline_tools.study.stability_eigen import Model, quad_stiffness
-from slideline_tools.study.stability_failing import keep_failing
-from slideline_tools.study.stability_scenes import SCENES
-from slideline_tools.study.stability_springs import springs
+from slideline_tools.studies.framework.job import Options
+from slideline_tools.studies.stability import measures, page as stability_page, study as stability
+from slideline_tools.studies.stability.eigen import Model, quad_stiffness
+from slideline_tools.studies.stability.failing import keep_failing
+from slideline_tools.studies.stability.scenes import SCENES
+from slideline_tools.studies.stability.springs import springs
 
 REFERENCE = Path(__file__).resolve().parents[1] / "verification" / "contact_forces"
 SLAVE, MASTER = np.array([0.1, 0.31, 0.55, 0.9]), np.array([0.0, 0.2, 0.45, 0.62, 0.7, 1.0])

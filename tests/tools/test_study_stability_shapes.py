@@ -5,10 +5,10 @@ import subprocess
 import numpy as np
 import pytest
 
-from slideline_tools.study import stability_shapes as shapes
-from slideline_tools.study.job import Job, Options
-from slideline_tools.study.stability_shapes import Case, deck_of, grids_of
-from slideline_tools.study.stability_shapes_page import draw_shapes, mesh_text
+from slideline_tools.studies.framework.job import Job, Options
+from slideline_tools.studies.stability_shapes import study as shapes
+from slideline_tools.studies.stability_shapes.page import draw_shapes, mesh_text
+from slideline_tools.studies.stability_shapes.study import Case, deck_of, grids_of
 
 
 @pytest.mark.parametrize("ratio, slave, master", [(0.125, 4, 32), (1.0, 4, 4), (8.0, 32, 4)])

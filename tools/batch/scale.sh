@@ -22,5 +22,5 @@ mkdir -p "$out"
   echo "no pymetis: METIS is not compared" >&2
 SLIDELINE=$root/build/mpi/slideline
 export SLIDELINE
-"$python" -m slideline_tools.studies.scale_runs "$out" --program "$SLIDELINE" "$@"
-PYTHONPATH=$out/metis MPLBACKEND=Agg "$python" -m slideline_tools.studies.scale "$out" "$doc"
+"$python" -m slideline_tools.studies.scale.runs "$out" --program "$SLIDELINE" "$@"
+PYTHONPATH=$out/metis MPLBACKEND=Agg "$python" -m slideline_tools.studies.scale.page "$out" "$doc"

@@ -20,4 +20,4 @@ if [ -n "${SLURM_ARRAY_TASK_ID:-}" ]; then
   part="--part $SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT"
 fi
 # shellcheck disable=SC2086  # two words or none
-MPLBACKEND=Agg exec "${PYTHON:-$root/build/venv/bin/python}" -m slideline_tools.study "$@" $part
+MPLBACKEND=Agg exec "${PYTHON:-$root/build/venv/bin/python}" -m slideline_tools.studies "$@" $part

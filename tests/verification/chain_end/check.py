@@ -11,7 +11,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 
 from contact_types import TYPES  # noqa: E402
 from meshes import Deck, grid  # noqa: E402
-from slideline_tools.study.stability_shapes import Case, deck_of  # noqa: E402
+from slideline_tools.studies.stability_shapes.study import Case, deck_of  # noqa: E402
 
 RHO, YOUNG, POISSON, GRAVITY = 1000.0, 1.0e7, 0.3, 10.0
 WIDTH, HEIGHT, CELL = 0.6, 0.3, 0.1

@@ -11,8 +11,8 @@ from meshes import Deck, card
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 
 from slideline_tools.decks import Grid, spaced  # noqa: E402
-from slideline_tools.study.stability_eigen import Model  # noqa: E402
-from slideline_tools.study.stability_springs import springs  # noqa: E402
+from slideline_tools.studies.stability.eigen import Model  # noqa: E402
+from slideline_tools.studies.stability.springs import springs  # noqa: E402
 
 YOUNG, POISSON, RHO, HOURGLASS = 1.0e9, 0.3, 1000.0, 0.1
 CELL, BLOCK_ROWS = 0.1, 3

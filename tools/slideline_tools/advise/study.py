@@ -18,7 +18,7 @@ from slideline_tools import UserError, counting
 from slideline_tools.advise import advise, bodies, outputs, report, rubbing, stepping, study_decks, touching
 from slideline_tools.scenes import collision
 from slideline_tools.studies.common import markdown_table, write_page
-from slideline_tools.study.runner import processor
+from slideline_tools.studies.framework.runner import processor
 from slideline_tools.summaries import collision_row
 
 ALL = "all"

@@ -19,7 +19,7 @@ from slideline_tools.studies.block import (N_MASTER, N_SLAVE, UNIFORM, half_segm
                                            read_pressures)
 from slideline_tools.studies.common import (colour, label, markdown_table, save_small, study_main,
                                             write_page)
-from slideline_tools.study.counted import counted_row, instruction_section
+from slideline_tools.studies.framework.counted import counted_row, instruction_section
 
 METHODS = ("implicit", "explicit")
 FIRST_STEPS, MOST_ITERATIONS = 5, 3

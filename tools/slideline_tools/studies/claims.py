@@ -17,10 +17,10 @@ from slideline_tools.histories import read_csv
 from slideline_tools.scenes import block_grids
 from slideline_tools.studies import block, sliding
 from slideline_tools.studies.common import TYPES, write_page
-from slideline_tools.study.rules import COST_FACTOR, between, least, share_verdict
-from slideline_tools.study.speed_accuracy_front import geometric_mean
-from slideline_tools.study.table import read_rows
-from slideline_tools.study.times import Times
+from slideline_tools.studies.framework.rules import COST_FACTOR, between, least, share_verdict
+from slideline_tools.studies.framework.table import read_rows
+from slideline_tools.studies.framework.times import Times
+from slideline_tools.studies.speed_accuracy.front import geometric_mean
 
 LEVELS = {"sliding": (1, 2, 3), "collision": (1, 2, 3, 4)}
 COMPARED, REMEDIES = (1, 3, 4, 5, 6), (3, 4, 5, 6)  # the types of the source

@@ -13,7 +13,7 @@ from slideline_tools.fields import scalar_field
 from slideline_tools.plots import (COLOURS, MARKERS, PAGE_WIDTH, STYLE, colour_bar, draw_field,
                                    panel_height, plt)
 from slideline_tools.prose import wrapped
-from slideline_tools.study.pages import with_origin
+from slideline_tools.studies.framework.pages import with_origin
 
 LARGEST_PICTURE = 100_000
 

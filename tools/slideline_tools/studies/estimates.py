@@ -24,9 +24,9 @@ from slideline_tools.studies import peaks
 from slideline_tools.studies import sliding as sliding_study
 from slideline_tools.studies.common import (colour, decks_and_page_main, label, marker, markdown_table, save_small,
                                             write_page)
-from slideline_tools.study.round_contact import case
-from slideline_tools.study.speed_accuracy_friction_decks import ironing
-from slideline_tools.study.speed_accuracy_friction_measures import forces_along, roughness
+from slideline_tools.studies.round_contact.study import case
+from slideline_tools.studies.speed_accuracy_friction.decks import ironing
+from slideline_tools.studies.speed_accuracy_friction.measures import forces_along, roughness
 
 LEVELS = {"hertz": (1, 2, 3), "spheres": (1, 2), "sliding": (1,), "ironing": (1, 2)}
 TITLES = {"hertz": "Hertz, cylinder on block", "spheres": "Hertz, spheres", "sliding": "sliding", "ironing": "ironing"}

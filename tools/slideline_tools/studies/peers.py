@@ -13,9 +13,9 @@ import sys
 
 from slideline_tools import UserError
 from slideline_tools.studies.common import markdown_table, page_main, write_page
-from slideline_tools.study.counted import who_counted
-from slideline_tools.study.runner import processor
-from slideline_tools.study.table import COUNTED
+from slideline_tools.studies.framework.counted import who_counted
+from slideline_tools.studies.framework.runner import processor
+from slideline_tools.studies.framework.table import COUNTED
 
 PEERS = ("akantu", "KratosMultiphysics", "KratosStructuralMechanicsApplication", "KratosContactStructuralMechanicsApplication",
          "CalculiX")

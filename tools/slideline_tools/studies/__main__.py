@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: MIT
+"""Command line of the studies; `tools/study.sh` builds the program and calls it."""
+import argparse
+import contextlib
+import fcntl
+import fnmatch
+import os
+import pathlib
+import re
+import signal
+import sys
+
+from slideline_tools import UserError, counting
+from slideline_tools.contact_types import ALL_TYPES
+from slideline_tools.studies.framework import everything, registry
+from slideline_tools.studies.framework.job import Options, file_digest, interleave, part_of
+from slideline_tools.studies.framework.pages import made_by, program_source
+from slideline_tools.studies.framework.progress import Progress
+from slideline_tools.studies.framework.runner import Sweep
+from slideline_tools.studies.framework.table import FAILED, MISSING, rows_of, write_rows
+
+DONE, UNUSABLE, STOPPED = 0, 2, 4
+EVERYTHING = "all"
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+
+
+def build_parser():
+    parser = argparse.ArgumentParser(
+        prog="tools/study.sh", description="Run a study: a sweep of runs, its table and charts.",
+        epilog="A study that was stopped or killed goes on with the same command. Exit status: "
+               "0 done (failed runs are results too), 2 unusable, 4 stopped on request.")
+    parser.add_argument("name", choices=[*registry.STUDIES, EVERYTHING], metavar="NAME",
+                        help=", ".join(registry.STUDIES) + f"; {EVERYTHING}: every page of doc/studies, from one "
+                        "program on one machine (hours), into results/all")
+    parser.add_argument("--levels", type=int, nargs="+", help="refinement levels")
+    parser.add_argument("--types", type=int, nargs="+", choices=ALL_TYPES, help="contact types")
+    parser.add_argument("--quick", action="store_true",
+                        help="a minute's worth of it, into results/study-NAME-quick")
+    parser.add_argument("--repeats", type=int, help="rounds of timing runs")
+    parser.add_argument("-j", dest="parallel", type=int, default=1, metavar="N",
+                        help="runs side by side (1); timing runs stay alone")
+    parser.add_argument("--only", metavar="PATTERN", help="runs of these names, for example 'hertz*' "
+                        f"(of {EVERYTHING}: pages)")
+    parser.add_argument("--retry", action="store_true", help="run anew what has failed before")
+    parser.add_argument("--list", action="store_true", help="print the runs and do nothing")
+    parser.add_argument("--part", metavar="I/N", help="run only part I (0 to N-1) of N, no table")
+    parser.add_argument("--collect", action="store_true", help="no runs: table and charts alone")
+    parser.add_argument("--publish", action="store_true", help="write the page and its pictures "
+                        "into doc/ instead of results/study-NAME/doc")
+    parser.add_argument("--folder", type=pathlib.Path, help="instead of results/study-NAME")
+    parser.add_argument("--program", type=pathlib.Path,
+                        help="default: $SLIDELINE or build/release/slideline")
+    return parser
+
+
+def planned(study, wanted):
+    """All runs that were asked for."""
+    rounds = study.quick_repeats if wanted.quick else study.repeats
+    options = Options(
+        levels=tuple(wanted.levels or (study.quick_levels if wanted.quick else study.levels)),
+        types=tuple(wanted.types or study.types), quick=wanted.quick,
+        repeats=rounds if wanted.repeats is None else wanted.repeats)
+    if options.repeats < 1 or wanted.parallel < 1:
+        raise UserError("--repeats and -j must be at least 1")
+    try:
+        jobs = interleave(study.jobs(options), options.repeats)
+    except ValueError as problem:
+        raise UserError(f"study {study.name}: {problem}") from problem
+    if wanted.only:
+        jobs = [job for job in jobs if fnmatch.fnmatchcase(job.name, wanted.only)]
+    if not jobs:
+        raise UserError("no runs")
+    return jobs
+
+
+def with_counter(jobs, wanted):
+    """The jobs, and the program and its digest of those that are counted; without these where nobody can count."""
+    if not any(job.counted for job in jobs):
+        return jobs, None
+    try:
+        if (wanted.program or "SLIDELINE" in os.environ) and "SLIDELINE_COUNTED" not in os.environ:
+            raise UserError("with a program of one's own $SLIDELINE_COUNTED has to name the one to be counted, "
+                            "for callgrind one without AVX-512")
+        program = counting.counted_program(ROOT, build=not wanted.list)
+        return jobs, (program, counting.method() + (file_digest(program) if program.is_file() else ""))
+    except UserError as problem:
+        print(f"study: instructions are not counted: {problem}", file=sys.stderr)
+        return [job for job in jobs if not job.counted], None
+
+
+def part_numbers(text):
+    """(index, count) of 'I/N'."""
+    try:
+        index, count = (int(word) for word in text.split("/"))
+    except ValueError:
+        raise UserError(f"--part {text}: expected I/N") from None
+    if not 0 <= index < count:
+        raise UserError(f"--part {text}: I must be 0 to N-1")
+    return index, count
+
+
+@contextlib.contextmanager
+def held(folder, shared):
+    """The folder of a study, for one command at a time or shared by parts of one sweep."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / ".lock", "w", encoding="ascii") as stream:
+        try:
+            fcntl.flock(stream, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise UserError(f"{folder}: another command of this study is under way") from None
+        yield
+
+
+def collect(study, jobs, sweep, doc, publish=False):
+    """Table, charts and page; UserError where runs of several processors are to be published."""
+    folder = sweep.folder
+    rows = rows_of(study, jobs, sweep)
+    if study.derive:
+        rows = study.derive(rows, folder)
+    write_rows(folder / f"{study.name}.csv", rows)
+    count = {state: sum(row["state"] == state for row in rows) for state in (FAILED, MISSING)}
+    print(f"wrote {folder / study.name}.csv: {len(rows)} runs"
+          + "".join(f", {number} {state}" for state, number in count.items() if number))
+    study.chart(rows, folder)
+    if study.page:
+        processors = sorted({row["processor"] for row in rows if "processor" in row})
+        if publish and len(processors) > 1:
+            raise UserError(f"runs of several processors are not published together: {'; '.join(processors)}")
+        with made_by(program_source(sweep.program), "; ".join(processors)):
+            study.page(rows, doc)
+
+
+def lead_links_home(folder, home):
+    """Let the pages below `folder` link to those of `home` (the repository's doc/studies) that
+    they do not find beside them."""
+    def target(link):
+        path = link[1]
+        if (folder / path).exists() or not (home / path).exists():
+            return link[0]
+        return f"]({os.path.relpath((home / path).resolve(), folder)}"
+
+    for page in folder.glob("*.md"):
+        text = page.read_text(encoding="utf-8")
+        page.write_text(re.sub(r"\]\(([^):#]+)", target, text), encoding="utf-8")
+
+
+def perform_all(wanted):
+    """Every page."""
+    folder = (wanted.folder or ROOT / "results" / "all").resolve()
+    others = [name for name in ("levels", "types", "quick", "repeats", "retry", "list", "part", "collect", "program")
+              if getattr(wanted, name)]
+    if others:
+        raise UserError(f"{EVERYTHING} takes no {', '.join('--' + name for name in others)}")
+    with held(folder, shared=False):
+        everything.make_all(folder, wanted.publish, wanted.only)
+
+
+def perform(wanted):
+    if wanted.name == EVERYTHING:
+        perform_all(wanted)
+        return
+    study = registry.load(wanted.name)
+    results = pathlib.Path(os.environ.get("SLIDELINE_RESULTS") or ROOT / "results")
+    folder = wanted.folder or results / f"study-{study.name}{'-quick' * wanted.quick}"
+    folder = folder.resolve()
+    program = pathlib.Path(wanted.program or os.environ.get("SLIDELINE")
+                           or ROOT / "build" / "release" / "slideline").resolve()
+    if not program.is_file():
+        raise UserError(f"no program {program}; build it with tools/build.sh release")
+    jobs = planned(study, wanted)
+    jobs, counted = with_counter(jobs, wanted)
+    sweep = Sweep(folder, program, file_digest(program), counted)
+    if wanted.part:
+        chosen = part_of(jobs, *part_numbers(wanted.part))
+    else:
+        chosen = jobs
+    if wanted.list:
+        for job in chosen:
+            record = sweep.record(job)
+            state = "to run" if record is None else "failed" if record["status"] else "finished"
+            print(f"{state:<9} {job.folder_name}")
+        return
+    with held(folder, shared=bool(wanted.part)):
+        if not wanted.collect:
+            sweep.run(chosen, wanted.parallel, Progress(), wanted.retry)
+        if not wanted.part:
+            published = pathlib.Path(os.environ.get("SLIDELINE_RESULTS") or ROOT) / "doc"
+            collect(study, jobs, sweep, published if wanted.publish else folder / "doc", wanted.publish)
+            if not wanted.publish:
+                lead_links_home(folder / "doc" / "studies", ROOT / "doc" / "studies")
+
+
+def interrupt(*_):
+    raise KeyboardInterrupt
+
+
+def main(arguments=None):
+    """Returns the exit status."""
+    wanted = build_parser().parse_args(arguments)
+    signal.signal(signal.SIGTERM, interrupt)
+    try:
+        perform(wanted)
+    except (UserError, OSError) as problem:
+        print(f"study: {problem}", file=sys.stderr)
+        return UNUSABLE
+    except KeyboardInterrupt:
+        print("study: stopped; the same command goes on with what is left", file=sys.stderr)
+        return STOPPED
+    return DONE
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: MIT
+"""The pages of doc/studies: what makes each, and which sources it speaks of.
+
+A page names in its third line the source and the processor it was made from, and the digest of those sources. Where
+the digest is another today the page is behind the code; that has to be allowed openly, in doc/studies/README.md
+(tests/house/test_pages.py).
+"""
+from __future__ import annotations
+
+import contextlib
+import contextvars
+import dataclasses
+import hashlib
+import os
+import pathlib
+import re
+import subprocess
+
+from slideline_tools.studies.framework.runner import processor
+
+ROOT = pathlib.Path(__file__).resolve().parents[4]
+STEP = ("base", "linear", "model", "state", "material", "element", "loads", "run", "solve")  # folders of src: an explicit step
+CONTACT = (*STEP, "contact")
+ALL = (*CONTACT, "deck", "output")
+
+
+@dataclasses.dataclass(frozen=True)
+class Page:
+    """`command`: what makes it, from the top of the tree; `sources`: folders of src; `after`: pages whose results it reads."""
+
+    command: tuple
+    sources: tuple = CONTACT
+    after: tuple = ()
+
+
+def study(name, sources=CONTACT, after=()):
+    """A page of tools/study.sh."""
+    return Page(("tools/study.sh", name, "--publish"), sources, after)
+
+
+def batch(name, *words, after=(), sources=CONTACT):
+    """A page of a script in tools/batch."""
+    return Page((f"tools/batch/{name}.sh", *words), sources, after)
+
+
+PAGES = {  # quick ones first
+    "patch_test": batch("patch"),
+    "patch_test_static": batch("patch", "static"),
+    "block_to_block": batch("block"),
+    "block_to_block_implicit": batch("block_implicit", after=("block_to_block",)),
+    "hertz": batch("hertz"),
+    "collision": batch("collision"),
+    "sliding": batch("sliding"),
+    "exchange": batch("exchange"),
+    "estimates": batch("estimates"),
+    "advise": batch("advise", sources=ALL),
+    "paper_tables": study("paper-tables"),
+    "claims": batch("claims", after=("block_to_block", "sliding", "collision", "paper_tables")),
+    "claims_friction": study("claims-friction"),
+    "round_contact": study("round-contact"),
+    "stability_friction": study("stability-friction"),
+    "stability_shapes": study("stability-shapes"),
+    "stability": study("stability"),
+    "speed_accuracy": study("speed-accuracy"),
+    "speed_accuracy_friction": study("speed-accuracy-friction"),
+    "simplify": study("simplify", ALL),
+    "scale": batch("scale", "--publish", sources=("parallel",)),
+    "peers": Page(("tests/bench/peers/run.sh", "--publish")),
+    "speed_laws": Page(("tests/bench/laws.sh", "--publish"), ("material",)),
+    "speed": Page(("tests/bench/run.sh", "--publish"), ALL),
+}
+
+ORIGIN = re.compile(r"^Made from source `(?P<source>\S+)` on (?P<processor>.+); digest of what it speaks of "
+                    r"`(?P<digest>[0-9a-f]{12})`\.$", re.MULTILINE)
+
+
+def code_of(path):
+    """The code of a Fortran file without comments and blank lines, which no page depends on."""
+    kept = []
+    for line in path.read_text(encoding="utf-8").splitlines():
+        bare = line.strip()
+        if bare and (not bare.startswith("!") or bare.startswith(("!$", "!GCC$"))):
+            kept.append(bare)
+    return "\n".join(kept)
+
+
+def digest(folders, root=ROOT):
+    """Of the sources in these folders of src, 12 hexadecimal digits."""
+    found = hashlib.sha256()
+    for folder in sorted(folders):
+        for path in sorted((root / "src" / folder).rglob("*.f90")):
+            found.update(f"{path.relative_to(root).as_posix()}\n{code_of(path)}\n".encode())
+    return found.hexdigest()[:12]
+
+
+def program_source(program=None):
+    """The source that a program was built from, as it says itself; 'unknown' where there is none."""
+    program = program or os.environ.get("SLIDELINE") or ROOT / "build" / "release" / "slideline"
+    try:
+        done = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+    told = re.search(r"\(source (\S+)\)", done.stdout)
+    return told[1] if told else "unknown"
+
+
+MAKER = contextvars.ContextVar("MAKER", default=(None, None))
+
+
+@contextlib.contextmanager
+def made_by(source, processors):
+    """Pages written inside are made from this source on these processors; elsewhere from the program of the release
+    build, or what $SLIDELINE names, on this machine."""
+    token = MAKER.set((source, processors))
+    try:
+        yield
+    finally:
+        MAKER.reset(token)
+
+
+def with_origin(name, text):
+    """The text of a page with the line of its origin below its title, in place of an older one."""
+    source, processors = MAKER.get()
+    title, _, rest = text.partition("\n")
+    if ORIGIN.match(rest.lstrip("\n")):
+        rest = rest.lstrip("\n").partition("\n")[2]
+    return (f"{title}\n\nMade from source `{source or program_source()}` on {processors or processor()}; "
+            f"digest of what it speaks of `{digest(PAGES[name].sources)}`.\n\n{rest.lstrip()}")
+
+
+def is_behind(name, text):
+    """Why a page is behind the code, or ''."""
+    origin = ORIGIN.search(text)
+    if not origin:
+        return "it does not name the source it was made from"
+    if origin["digest"] != digest(PAGES[name].sources):
+        return f"its sources have changed since {origin['source']}"
+    return ""

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: MIT
+"""The studies by name: one line each."""
+import importlib
+
+from slideline_tools import UserError
+
+STUDIES = {  # name on the command line: module of slideline_tools.studies
+    "claims-friction": "claims_friction.study",
+    "paper-tables": "paper_tables",
+    "round-contact": "round_contact.study",
+    "stability": "stability.study",
+    "stability-friction": "stability_friction.study",
+    "stability-shapes": "stability_shapes.study",
+    "speed-accuracy": "speed_accuracy.study",
+    "speed-accuracy-friction": "speed_accuracy_friction.study",
+    "simplify": "simplify.study",
+}
+
+
+def load(name):
+    """The `Study` of that name."""
+    if name not in STUDIES:
+        raise UserError(f"unknown study '{name}'; there are {', '.join(STUDIES)}")
+    return importlib.import_module(f"slideline_tools.studies.{STUDIES[name]}").STUDY

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""What processes exchange: counted runs, and independent tiles to compare them with."""

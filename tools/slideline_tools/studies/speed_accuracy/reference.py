@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: MIT
+"""Converged references of the study speed-accuracy, their own error, and errors against them.
+
+The reference is the run of type 7 on the finest mesh. Its own error follows from the two or three
+finest levels by Richardson's extrapolation.
+"""
+import numpy as np
+
+from slideline_tools.histories import read_csv
+from slideline_tools.results import read
+from slideline_tools.scenes import collision_grids
+from slideline_tools.scenes.common import ALUMINIUM
+from slideline_tools.studies import sliding as sliding_study
+from slideline_tools.studies.framework.table import finished
+from slideline_tools.studies.speed_accuracy.scenes import SCENES
+
+REFERENCE_TYPE = 7
+IMPACT_SPEED = 80.0
+PLATE, PROJECTILE = 1, 2
+LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.0
+
+
+# ---- Richardson --------------------------------------------------------------------------------
+
+def order_of(levels, coarse, fine):
+    """Order of convergence p from the distances `coarse` = |f_a - f_b| and `fine` = |f_b - f_c|
+    of three levels a < b < c: f_N = f + C N^-p. Kept between 0.5 and 2."""
+    a, b, c = levels
+
+    def ratio(p):
+        return (a ** -p - b ** -p) / (b ** -p - c ** -p)
+
+    low, high = LOWEST_ORDER, HIGHEST_ORDER
+    if not coarse > ratio(low) * fine:
+        return low
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if coarse > ratio(middle) * fine else (low, middle)
+    return low
+
+
+def own_error(levels, distances):
+    """(order, error of the finest level) from distances of successive levels, the finest last.
+
+    Two levels: first order is assumed.
+    """
+    b, c = levels[-2:]
+    p = 1.0 if len(levels) == 2 else order_of(levels[-3:], *distances[-2:])
+    return p, distances[-1] * c ** -p / (b ** -p - c ** -p)
+
+
+# ---- what is compared --------------------------------------------------------------------------
+
+def sliding_force(folder, level):
+    """Force at even times of the judged interval (every 2 microseconds), N/m."""
+    rows = read_csv(folder / "sliding.rcforc.csv").where(side="slave")
+    first, last = sliding_study.judged_interval()
+    times = np.linspace(first, last, 1 + int(round((last - first) / 2.0e-6)))
+    return {"force_error": np.interp(times, rows["time"], rows["fy"])}
+
+
+def plastic_work(results):
+    """Plastic work of each column of the level 1 mesh of the plate at the last state, J/m.
+
+    Ideally plastic: yield stress times plastic strain times area.
+    """
+    plate = results.cell_field("part_id")[-1] == PLATE
+    corners = results.points[0][results.cells[plate]][:, :, :2]
+    x, y = corners[..., 0], corners[..., 1]
+    area = 0.5 * np.abs(np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1))
+    work = ALUMINIUM["yield_stress"] * results.cell_field("plastic_strain")[-1][plate] * area
+    edges = collision_grids(1)[0].points[:, 0, 0]
+    return np.histogram(x.mean(axis=1), edges, weights=work)[0]
+
+
+def collision_outcome(folder, _level):
+    """Plastic work by column and in total, rebound velocity as a share of the speed of impact."""
+    rows = read_csv(folder / "collision.matsum.csv").where(part=PROJECTILE)
+    rebound = rows["momentum_y"][-1] / rows["mass"][-1]
+    work = plastic_work(read(folder / "collision.vtkhdf"))
+    return {"plastic_error": work, "total_work_error": np.array([work.sum()]),
+            "rebound_error": np.array([rebound / IMPACT_SPEED])}
+
+
+def force_distance(one, other, reference):
+    """rms of the difference over the mean force."""
+    return float(np.sqrt(np.mean((one - other) ** 2)) / np.mean(reference))
+
+
+def work_distance(one, other, reference):
+    """Sum of the differences over the sum."""
+    return float(np.abs(one - other).sum() / reference.sum())
+
+
+def plain_distance(one, other, _reference):
+    return float(np.abs(one - other)[0])
+
+
+OUTCOMES = {"sliding": sliding_force, "collision": collision_outcome}
+DISTANCES = {"force_error": force_distance, "plastic_error": work_distance,
+             "total_work_error": work_distance, "rebound_error": plain_distance}
+
+
+# ---- rows --------------------------------------------------------------------------------------
+
+def reference_levels(rows, scene):
+    """Levels of type 7 of which the reference is made: those of the full or the quick study."""
+    there = {row["level"] for row in rows if row["type"] == REFERENCE_TYPE}
+    for levels in (SCENES[scene].references, SCENES[scene].quick_references):
+        if set(levels) <= there:
+            return levels
+    return ()
+
+
+def add_errors(rows, folder):
+    """Columns <key>, <key>_floor and <key>_order of every measure against a reference, for the
+    runs on coarser meshes than the reference's."""
+    for scene, read_outcome in OUTCOMES.items():
+        mine = [row for row in finished(rows) if row["scene"] == scene]
+        levels = reference_levels(mine, scene)
+        if not levels:
+            continue
+        outcomes = {}
+        for row in mine:
+            key = (row["type"], row["level"])
+            if key not in outcomes:
+                outcomes[key] = read_outcome(folder / "runs" / row["run"], row["level"])
+        for row in mine:
+            row["reference_levels"] = ", ".join(map(str, levels))
+        chain = [outcomes[REFERENCE_TYPE, level] for level in levels]
+        for key, reference in chain[-1].items():
+            distance = DISTANCES[key]
+            order, floor = own_error(levels, [distance(one[key], other[key], reference)
+                                              for one, other in zip(chain[:-1], chain[1:])])
+            for row in mine:
+                if row["level"] >= levels[-1]:
+                    continue  # no finer than the run that is judged
+                row[key] = distance(outcomes[row["type"], row["level"]][key], reference, reference)
+                row[f"{key}_floor"], row[f"{key}_order"] = floor, order
+    return rows

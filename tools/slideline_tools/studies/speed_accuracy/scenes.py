@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: MIT
+"""The scenes of the study speed-accuracy: decks by level, and what each run is judged by.
+
+A scene with a closed form or a separate solution is judged run by run (`judge`). The others are
+judged against a converged reference, see reference.py.
+"""
+from __future__ import annotations
+
+import dataclasses
+import functools
+import importlib.util
+import pathlib
+import sys
+from typing import Callable, Sequence
+
+import numpy as np
+
+from slideline_tools import UserError, scenes
+from slideline_tools.histories import read_csv
+from slideline_tools.results import read
+from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, PENALTY as HERTZ_PENALTY
+from slideline_tools.scenes.patch import patch, patch_grids
+from slideline_tools.studies import block as block_study
+from slideline_tools.studies import hertz as hertz_study
+from slideline_tools.studies import sliding as sliding_study
+from slideline_tools.studies.exchange import mean_lengths
+from slideline_tools.studies.patch import LAYOUTS
+
+CHAIN = pathlib.Path(__file__).resolve().parents[4] / "tests/verification/block_to_block/chain.py"
+BLOCK_STEP, BLOCK_END = 1.0e-4, 0.2  # s; a tenth of the deck's step, for a time to measure
+SLIDING_STEP = 40.0e-9  # s at level 1
+TWO_PASS = 3
+ROUND_OFF = 1.0e-9
+AT_REST = 1.0e-16  # kinetic over internal energy
+LENGTHS = mean_lengths()
+FINITE_STRAIN = 1.0e-3  # what Hertz's closed form leaves out here: doc/studies/hertz.md
+
+
+@dataclasses.dataclass(frozen=True)
+class Measure:
+    """An error, as a share of one, in the column `key` of the table.
+
+    `known`: error below which the exact answer itself is not known; a reference has the column
+    `<key>_floor` instead.
+    """
+
+    key: str
+    title: str
+    known: float = 0.0
+    referenced: bool = False
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    """A scene; the first measure is its headline.
+
+    `deck`        text by level
+    `penalty`     of a contact node by level, N/m
+    `lengths`     mean segments of slave and master at level 1, m
+    `judge`       (folder, level, type, penalty) -> columns
+    `levels`, `quick_levels` those that are swept
+    `references`, `quick_references` levels of type 7 the reference is made of, the finest last
+    `options`     of the program by level: no states but the first and the last
+    `turns`, `cost` as in Job, at level 1; `power`: the cost grows with this power of the level
+    """
+
+    title: str
+    deck: Callable[[int], str]
+    penalty: Callable[[int], float]
+    lengths: tuple[float, float]
+    judge: Callable
+    measures: Sequence[Measure]
+    levels: Sequence[int]
+    quick_levels: Sequence[int] = (1,)
+    options: Callable[[int], Sequence[str]] = lambda _: ("p:dtplot=1",)
+    references: Sequence[int] = ()
+    quick_references: Sequence[int] = ()
+    turns: int = 1
+    cost: float = 1.0
+    power: float = 3.0
+
+
+def node_penalty(scene, level, ctype):
+    """Penalty of a contact node, N/m, so that every type has an interface of the same stiffness.
+
+    The springs of the two passes of type 3 lie side by side: e/l_sl + e/l_ms is to be what one
+    pass of the others has, penalty/l_sl (doc/theory/contact.md, section 5).
+    """
+    slave, master = scene.lengths
+    return scene.penalty(level) * (master / (slave + master) if ctype == TWO_PASS else 1.0)
+
+
+def net_moment(results, segment):
+    """|sum x x f| of all contact forces at the last state, over the force on one side times the
+    length `segment` in m; None where nothing touches."""
+    place, force = results.points[-1][:, :2], results.point_field("contact_force")[-1][:, :2]
+    pressing = 0.5 * np.sum(np.hypot(force[:, 0], force[:, 1]))
+    if not pressing > 0.0:
+        return None
+    place = place - place.mean(axis=0)
+    moment = np.sum(place[:, 0] * force[:, 1] - place[:, 1] * force[:, 0])
+    return float(abs(moment) / (pressing * segment))
+
+
+# ---- patch -------------------------------------------------------------------------------------
+
+def divided(lines, level):
+    """Grid lines with each interval divided into `level` equal parts."""
+    count = len(lines) - 1
+    return np.interp(np.arange(count * level + 1) / level, np.arange(count + 1), lines)
+
+
+def patch_level(level):
+    """Lower and upper block of the non-uniform 7 / 5 meshes, refined."""
+    _, upper, lower, *_ = LAYOUTS["7_5"]
+    return patch_grids(divided(upper, level), divided(lower, level))
+
+
+def patch_deck(level):
+    return patch(penalty=1.0e6 / level, grids=patch_level(level))
+
+
+def nodal_pressure(results, nodes, x):
+    """Contact force of nodes over the length that each stands for, at the last state."""
+    row = {int(node): k for k, node in enumerate(results.point_field("node_id")[-1])}
+    force = results.point_field("contact_force")[-1][[row[int(node)] for node in nodes], 1]
+    return np.abs(force) / block_study.half_segments(x)
+
+
+def largest_deviation(sides, exact):
+    """max |p/p0 - 1| over the pressures of both sides."""
+    return max(float(np.abs(pressure / exact - 1.0).max()) for pressure in sides)
+
+
+def judge_patch(folder, level, _ctype, _penalty):
+    """Deviation from the uniform pressure of 1 Pa, at rest."""
+    energy = read_csv(folder / "patch.glstat.csv")
+    if not energy["kinetic"][-1] <= AT_REST * energy["internal"][-1]:
+        raise UserError(f"{folder}: not at rest at the end")
+    results, (lower, upper) = read(folder / "patch.vtkhdf"), patch_level(level)
+    return {"pressure_error": largest_deviation(
+        [nodal_pressure(results, nodes, grid.points[:, 0, 0])
+         for nodes, grid in ((upper.lower, upper), (lower.upper[::-1], lower))], 1.0)}
+
+
+# ---- block -------------------------------------------------------------------------------------
+
+def block_quads(level):
+    return block_study.N_SLAVE * level, block_study.N_MASTER * level
+
+
+def block_deck(level):
+    return scenes.block(n_slave=block_quads(level)[0], n_master=block_quads(level)[1])
+
+
+def block_penalty(level):
+    return block_study.PENALTY / level
+
+
+@functools.lru_cache(maxsize=None)
+def chain_pressure(stiffness):
+    """Last pressure of the separate one-dimensional solution, Pa; `stiffness` in N/m^2."""
+    try:
+        spec = importlib.util.spec_from_file_location("block_chain", CHAIN)
+        module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+    except OSError as problem:
+        raise UserError(f"cannot read {CHAIN}: {problem}") from problem
+    return float(module.solve(module.Blocks(
+        penalty=stiffness, step=BLOCK_STEP, steps=round(BLOCK_END / BLOCK_STEP))).pressure[-1])
+
+
+def judge_block(folder, level, ctype, penalty):
+    """Deviation from the pressure of the chain whose interface has the springs of the type."""
+    n_slave, n_master = block_quads(level)
+    found = block_study.read_pressures(folder, scenes.block_grids(n_slave, n_master))
+    springs = block_study.interface_stiffness(ctype, n_slave, n_master) \
+        * penalty / block_study.PENALTY
+    return {"pressure_error": largest_deviation((found.slave, found.master),
+                                                chain_pressure(springs))}
+
+
+# ---- Hertz, sliding, collision -----------------------------------------------------------------
+
+def judge_hertz(folder, level, ctype, penalty):
+    """Distance of the nodal pressures from Hertz's ellipse, and of a and p0 from Hertz's."""
+    run = hertz_study.Run(folder, level, ctype, penalty=penalty)
+    return {"profile_error": run.inside, "half_width_error": abs(run.half_width - 1.0),
+            "peak_error": abs(run.peak - 1.0)}
+
+
+def sliding_options(level):
+    """Rows of the force as close as the roughness needs them."""
+    rows = sliding_study.STEPS_PER_ROW * SLIDING_STEP / level
+    return ("p:dtplot=1", f"p:dtforc={rows:.17g}")
+
+
+def judge_sliding(folder, level, _ctype, _penalty):
+    """Roughness of the force (see studies/sliding.py), energy error, mean number of points."""
+    rows = read_csv(folder / "sliding.rcforc.csv").where(side="slave")
+    first, last = sliding_study.judged_interval()
+    judged = (rows["time"] >= first) & (rows["time"] <= last)
+    found = sliding_study.peaks.abrupt_peaks(
+        rows["time"], rows["fy"], sliding_study.WINDOW_SHARE * sliding_study.crossing_time(level),
+        sliding_study.THRESHOLD, (first, last))
+    return {"roughness": found.rms, "energy_error": energy_error(folder / "sliding.glstat.csv"),
+            "points": float(np.mean(rows["n_active"][judged]))}
+
+
+def judge_collision(folder, _level, _ctype, _penalty):
+    return {"energy_error": energy_error(folder / "collision.glstat.csv")}
+
+
+def energy_error(path):
+    """Largest deviation of the energy ratio from 1."""
+    return float(np.abs(read_csv(path)["energy_ratio"] - 1.0).max())
+
+
+SCENES = {
+    "patch": Scene(
+        "Patch test", patch_deck, lambda level: 1.0e6 / level, (1.0 / 7.0, 1.0 / 5.0),
+        judge_patch,
+        (Measure("pressure_error", "p/p0, largest deviation from 1", ROUND_OFF),),
+        levels=(1, 2, 4), quick_levels=(1, 2), options=lambda _: (), turns=3, cost=0.05),
+    "block": Scene(
+        "Block-to-block", block_deck, block_penalty, LENGTHS["block"], judge_block,
+        (Measure("pressure_error", "p/p1D, largest deviation from 1", ROUND_OFF),),
+        levels=(1, 2, 4), quick_levels=(1, 2), turns=3, cost=0.2, power=1.0,
+        options=lambda _: (f"p:dt={BLOCK_STEP}",)),
+    "hertz": Scene(
+        "Hertz", scenes.hertz, lambda _: HERTZ_PENALTY, (CYLINDER_CELL, BLOCK_CELL),
+        judge_hertz,
+        (Measure("profile_error", "distance of p from the ellipse over p0", FINITE_STRAIN),
+         Measure("half_width_error", "half width, deviation from Hertz", FINITE_STRAIN)),
+        levels=(1, 2, 4), cost=0.2),
+    "sliding": Scene(
+        "Sliding", scenes.sliding, lambda level: 10.0e9 / level, LENGTHS["sliding"],
+        judge_sliding,
+        (Measure("force_error", "force, rms difference over the mean", referenced=True),
+         Measure("roughness", "roughness of the force over the mean")),
+        levels=(1, 2, 3), options=sliding_options, references=(2, 3, 6), quick_references=(1, 2),
+        cost=1.4, power=2.5),
+    "collision": Scene(
+        "Collision", scenes.collision, lambda level: 1.0e9 / level, LENGTHS["collision"],
+        judge_collision,
+        (Measure("plastic_error", "plastic work by column, difference", referenced=True),
+         Measure("total_work_error", "plastic work in total, difference", referenced=True),
+         Measure("rebound_error", "rebound, difference over the impact", referenced=True),
+         Measure("energy_error", "energy ratio, largest deviation from 1")),
+        levels=(1, 2, 3, 4), quick_levels=(1, 2), references=(2, 4, 6),
+        quick_references=(1, 2, 4), cost=0.2, power=2.3),
+}

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Cost against error with friction: partial slip and ironing."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Where each contact type is stable: maps over penalty and step."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""How fast steady sliding flutters, and what damps it."""
