@@ -39,8 +39,9 @@ module deck_m
   use deck_systems_m, only : read_system
   use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control, check_step
+  use deck_empty_m, only : check_empty
   use deck_ends_m, only : read_ends
-  use deck_output_m, only : read_database, read_force_groups
+  use deck_output_m, only : read_database, read_force_groups, read_cross_sections
   use deck_transducer_m, only : read_transducer
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : settle_friction
@@ -234,7 +235,13 @@ contains
     type(contact_kind_t), intent(in) :: kinds(:)
     type(overrides_t), intent(in) :: overrides
     type(raw_t), intent(inout) :: raw
+    logical :: is_empty
 
+    call check_empty(deck, i, is_empty)
+    if (is_empty) then
+      call note_lost(deck%blocks(i)%name, raw%lost)
+      return
+    end if
     select case (deck%blocks(i)%name)
     case ('TITLE')
       call read_title(deck, i, raw)
@@ -348,6 +355,8 @@ contains
       call read_history_ids(deck, parameters, i, raw%history_shell_sets)
     case ('DATABASE_NODAL_FORCE_GROUP')
       call read_force_groups(deck, parameters, i, raw)
+    case ('DATABASE_CROSS_SECTION_SET')
+      call read_cross_sections(deck, parameters, i, raw)
     case default
       call read_database(deck, parameters, i, raw)
     end select

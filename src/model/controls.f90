@@ -2,6 +2,7 @@
 !> Controls of the run: end, time step and output plan.
 module controls_m
   use boundary_rows_m, only : boundary_rows_t
+  use cross_sections_m, only : cross_section_t
   use end_conditions_m, only : end_condition_t
   use force_groups_m, only : force_group_t
   use history_tables_m, only : n_table
@@ -35,6 +36,7 @@ module controls_m
     integer, allocatable :: history_elements(:) !! element indices of *DATABASE_HISTORY_SHELL
     type(boundary_rows_t) :: boundaries      !! only where *DATABASE_BNDOUT asks for them
     type(force_group_t), allocatable :: force_groups(:) !! only where the deck has any
+    type(cross_section_t), allocatable :: cross_sections(:) !! likewise
     integer :: dump_cycles = -1    !! cycles between restart files that stay
                                    !! (*DATABASE_BINARY_D3DUMP), 0 = at the end alone, -1 = none
     integer :: running_cycles = 0  !! cycles between restart files that replace each other (RUNRSF),

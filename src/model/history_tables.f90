@@ -8,16 +8,17 @@ module history_tables_m
   private
   public :: history_table_t, history_tables, table_of_keyword, n_table, table_glstat, &
     table_rcforc, table_nodout, table_contact, table_matsum, table_rwforc, table_sleout, &
-    table_spcforc, table_elout, table_rbdout, table_bndout, table_nodfor, asked_alone, &
-    asked_or_states, asked_by_states, each_run, each_contact, each_history_node, each_part, &
-    each_wall, each_support, each_history_element, each_body, each_boundary, each_group_node, &
-    text_none, text_rows, text_instants
+    table_spcforc, table_elout, table_rbdout, table_bndout, table_nodfor, table_secforc, &
+    asked_alone, asked_or_states, asked_by_states, each_run, each_contact, each_history_node, &
+    each_part, each_wall, each_support, each_history_element, each_body, each_boundary, &
+    each_group_node, each_section, text_none, text_rows, text_instants
 
   !> The files. Their order is that in restart files and results.
-  integer, parameter :: n_table = 12
+  integer, parameter :: n_table = 13
   integer, parameter :: table_glstat = 1, table_rcforc = 2, table_nodout = 3, table_contact = 4, &
     table_matsum = 5, table_rwforc = 6, table_sleout = 7, table_spcforc = 8, &
-    table_elout = 9, table_rbdout = 10, table_bndout = 11, table_nodfor = 12
+    table_elout = 9, table_rbdout = 10, table_bndout = 11, table_nodfor = 12, &
+    table_secforc = 13
 
   !> Who asks for a file: its keyword; its keyword, or else it is there in every run and goes with
   !> the states; the states, it has no keyword.
@@ -26,7 +27,7 @@ module history_tables_m
   !> What an instant has rows of. Where the model has none of it there is no file.
   integer, parameter :: each_run = 1, each_contact = 2, each_history_node = 3, each_part = 4, &
     each_wall = 5, each_support = 6, each_history_element = 7, each_body = 8, &
-    each_boundary = 9, each_group_node = 10
+    each_boundary = 9, each_group_node = 10, each_section = 11
 
   !> A text file in DYNA's layout beside it (BINARY): none, each row a block of lines of its own, or
   !> the rows of an instant together.
@@ -52,7 +53,8 @@ module history_tables_m
     history_table_t('elout   ', asked_alone, each_history_element, text_instants), &
     history_table_t('rbdout  ', asked_alone, each_body, text_instants), &
     history_table_t('bndout  ', asked_alone, each_boundary, text_instants), &
-    history_table_t('nodfor  ', asked_alone, each_group_node, text_instants)]
+    history_table_t('nodfor  ', asked_alone, each_group_node, text_instants), &
+    history_table_t('secforc ', asked_alone, each_section, text_instants)]
 
 contains
 

@@ -49,6 +49,7 @@ contains
     call renumber_rigids(model, new_index)
     if (allocated(model%walls)) call renumber_walls(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
+    if (allocated(model%controls%output%cross_sections)) call renumber_sections(model, new_index)
     if (allocated(model%controls%ends)) call renumber_ends(new_index, model%controls%ends)
     associate (output => model%controls%output)
       if (is_asked(output%histories(table_bndout))) call list_boundaries(model%conditions, &
@@ -192,6 +193,23 @@ contains
       model%segment_sets(i)%nodes(2, :) = new_index(model%segment_sets(i)%nodes(2, :))
     end do
   end subroutine renumber_conditions
+
+  !> Cross sections: nodes and edges; elements by their slots.
+  subroutine renumber_sections(model, new_index)
+    type(model_t), intent(inout) :: model
+    integer, intent(in) :: new_index(:)
+    integer :: i
+
+    do i = 1, size(model%controls%output%cross_sections)
+      associate (section => model%controls%output%cross_sections(i))
+        section%nodes = new_index(section%nodes)
+        section%edges(1, :) = new_index(section%edges(1, :))
+        section%edges(2, :) = new_index(section%edges(2, :))
+        section%elements = section%elements(sorted_order(int( &
+          model%layout%element_slot(section%elements), long)))
+      end associate
+    end do
+  end subroutine renumber_sections
 
   !> Nodes that end the run.
   pure subroutine renumber_ends(new_index, ends)

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The layouts of DYNA's text files of forces on boundaries and of groups of nodes (see
-!> `dyna_layouts_m`).
+!> The layouts of DYNA's text files of forces on boundaries, of groups of nodes and of cross
+!> sections (see `dyna_layouts_m`).
 module dyna_force_layouts_m
   use boundary_rows_m, only : boundary_load, boundary_body_load, boundary_pressure, &
     boundary_motion, boundary_body_motion
@@ -8,7 +8,7 @@ module dyna_force_layouts_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: form_bndout, form_nodfor
+  public :: form_bndout, form_nodfor, form_secforc
 
 contains
 
@@ -108,6 +108,26 @@ contains
       if (is_last) call add_total(total, lines, n_line)
     end do
   end subroutine form_nodfor
+
+  !> Cross sections: force, moment, centroid with area, and the global axes, a line each.
+  pure subroutine form_secforc(rows, lines, n_line)
+    real(wp), intent(in) :: rows(:, :)
+    character(line_size), intent(inout) :: lines(:)
+    integer, intent(inout) :: n_line
+    character(line_size) :: line
+    integer :: i
+
+    do i = 1, size(rows, 2)
+      write (line, '(ss,i11,5es13.4)') nint(rows(2, i)), tidy([rows(1, i), rows(3:4, i), 0.0_wp, &
+        norm2(rows(3:4, i))])
+      call add_line(line, lines, n_line)
+      write (line, '(ss,24x,4es13.4)') tidy([0.0_wp, 0.0_wp, rows(5, i), abs(rows(5, i))])
+      call add_line(line, lines, n_line)
+      write (line, '(ss,24x,4es13.4)') tidy([rows(6:7, i), 0.0_wp, rows(8, i)])
+      call add_line(line, lines, n_line)
+      call add_line('', lines, n_line)
+    end do
+  end subroutine form_secforc
 
   !> One line of a node or a body.
   pure subroutine add_force(head, values, lines, n_line)

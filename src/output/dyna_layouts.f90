@@ -4,10 +4,11 @@
 !> columns that a layout names, in its order; forces and energies per unit depth.
 module dyna_layouts_m
   use dyna_body_layouts_m, only : form_elout, form_rbdout
-  use dyna_force_layouts_m, only : form_bndout, form_nodfor
+  use dyna_force_layouts_m, only : form_bndout, form_nodfor, form_secforc
   use dyna_lines_m, only : line_size, add_line, number, tidy
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_matsum, &
-    table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, table_bndout, table_nodfor
+    table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, table_bndout, &
+    table_nodfor, table_secforc
   use kinds_m, only : wp
   implicit none
   private
@@ -69,6 +70,8 @@ contains
       names = 'time,condition,id,fx,fy,moment,work'
     case (table_nodfor)
       names = 'time,group,node,fx,fy,work'
+    case (table_secforc)
+      names = 'time,section,fx,fy,moment,x,y,area'
     end select
   end function columns_of
 
@@ -91,6 +94,8 @@ contains
       n = 2*n_row + 45
     case (table_nodfor)
       n = 9*n_row + 6
+    case (table_secforc)
+      n = 5*n_row
     case default
       n = n_row + 12
     end select
@@ -128,6 +133,8 @@ contains
       call form_bndout(rows, lines, n_line)
     case (table_nodfor)
       call form_nodfor(rows, lines, n_line)
+    case (table_secforc)
+      call form_secforc(rows, lines, n_line)
     end select
   end subroutine form_block
 

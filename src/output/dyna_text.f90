@@ -9,7 +9,7 @@ module dyna_text_m
   use dyna_lines_m, only : line_size
   use errors_m, only : error_t
   use history_tables_m, only : table_rcforc, table_nodout, table_matsum, table_rwforc, &
-    table_spcforc, table_elout
+    table_spcforc, table_elout, table_secforc
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use kinds_m, only : wp, long
   use model_m, only : model_t
@@ -72,6 +72,14 @@ contains
       call put_line(text, '')
       call put_line(text, '    time       wall#   normal-force    x-force        y-force        ' &
         //'z-force')
+    case (table_secforc)
+      call put_line(text, ' line#1   section#     time      x-force      y-force      z-force    ' &
+        //'magnitude')
+      call put_line(text, ' line#2   resultant moments     x-moment     y-moment     z-moment    ' &
+        //'magnitude')
+      call put_line(text, ' line#3   centroids                    x            y            z    ' &
+        //'     area')
+      call put_line(text, '')
     end select
     call flush_dyna_text(text, error)
   end subroutine open_dyna_text
@@ -133,6 +141,12 @@ contains
         call put_entity(text, has_legend, &
           model%mesh%node_id(model%controls%output%history_nodes(i)), 'node')
       end do
+    case (table_secforc)
+      associate (sections => model%controls%output%cross_sections)
+        do i = 1, size(sections)
+          call put_entity(text, has_legend, sections(i)%id, text_of(sections(i)%title))
+        end do
+      end associate
     case (table_elout)
       do i = 1, size(model%controls%output%history_elements)
         call put_entity(text, has_legend, &

@@ -14,7 +14,8 @@ module history_file_m
   use kinds_m, only : wp
   use history_tables_m, only : history_tables, n_table, asked_alone, asked_or_states, &
     asked_by_states, each_run, each_contact, each_history_node, each_part, each_wall, &
-    each_support, each_history_element, each_body, each_boundary, each_group_node, text_none, &
+    each_support, each_history_element, each_body, each_boundary, each_group_node, &
+    each_section, text_none, &
     text_rows
   use table_row_m, only : row_t
   implicit none
@@ -144,6 +145,9 @@ contains
       if (allocated(model%controls%output%force_groups)) n = sum([(size( &
         model%controls%output%force_groups(i)%nodes), i=1, &
         size(model%controls%output%force_groups))])
+    case (each_section)
+      if (allocated(model%controls%output%cross_sections)) &
+        n = size(model%controls%output%cross_sections)
     end select
   end function n_each
 

@@ -7,13 +7,14 @@ module history_rows_m
   use contacts_m, only : n_told
   use csv_table_m, only : csv_table_t, add_row
   use energies_m, only : total_energy, energy_ratio
+  use history_force_rows_m, only : put_bndout, put_nodfor, put_secforc
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_contact, &
     table_matsum, table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, &
-    table_bndout, table_nodfor
+    table_bndout, table_nodfor, table_secforc
   use kinds_m, only : wp
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t, interface_result_t, part_result_t, slave_result_t, &
-    wall_result_t, rubbed_t, element_result_t, body_result_t
+    wall_result_t, rubbed_t, element_result_t, body_result_t, section_result_t
   use table_row_m, only : row_t, put, put_side, end_csv, value_of, vector_of
   implicit none
   private
@@ -37,6 +38,7 @@ contains
     type(wall_result_t) :: wall
     type(element_result_t) :: element
     type(body_result_t) :: body
+    type(section_result_t) :: section
     real(wp), parameter :: nowhere(2) = 0.0_wp
 
     row%is_named = .true.
@@ -66,6 +68,8 @@ contains
       call put_bndout(row, nothing, 0, 0, 0)
     case (table_nodfor)
       call put_nodfor(row, nothing, 0, 0, 0)
+    case (table_secforc)
+      call put_secforc(row, nothing%time, 0, section)
     end select
   end subroutine name_columns
 
@@ -121,6 +125,12 @@ contains
       call append_boundaries(table, model, snapshot)
     case (table_nodfor)
       call append_groups(table, model, snapshot)
+    case (table_secforc)
+      do i = 1, size(snapshot%sections)
+        call put_secforc(row, snapshot%time, model%controls%output%cross_sections(i)%id, &
+          snapshot%sections(i))
+        call take(table, row)
+      end do
     case default
       call append_interfaces(table, i_table, model, snapshot)
     end select
@@ -415,36 +425,5 @@ contains
     call end_csv(row)
     call put(row, 'cycle', shot%cycle)
   end subroutine put_rbdout
-
-  !> Force and work of what acts on a node or a rigid body.
-  pure subroutine put_bndout(row, shot, condition, id, i)
-    type(row_t), intent(inout) :: row
-    type(snapshot_t), intent(in) :: shot
-    integer, intent(in) :: condition, id  !! one of `boundary_`; of the node, or of the part
-    integer, intent(in) :: i              !! index of the row
-    real(wp) :: force(3)
-
-    force = 0.0_wp
-    if (allocated(shot%boundary_force)) force = shot%boundary_force(:, i)
-    call put(row, 'time', shot%time)
-    call put(row, 'condition', condition)
-    call put(row, 'id', id)
-    call put(row, 'fx,fy,moment', force)
-    call put(row, 'work', value_of(shot%boundary_work, i))
-  end subroutine put_bndout
-
-  !> Force of a node of a force group, and its work.
-  pure subroutine put_nodfor(row, shot, group, id, i)
-    type(row_t), intent(inout) :: row
-    type(snapshot_t), intent(in) :: shot
-    integer, intent(in) :: group, id      !! user numbers of the node set and the node
-    integer, intent(in) :: i              !! index of the row
-
-    call put(row, 'time', shot%time)
-    call put(row, 'group', group)
-    call put(row, 'node', id)
-    call put(row, 'fx,fy', vector_of(shot%group_force, i))
-    call put(row, 'work', value_of(shot%group_work, i))
-  end subroutine put_nodfor
 
 end module history_rows_m

@@ -56,6 +56,7 @@ contains
     call keep_columns(archive, 'group_force', state%group_force)
     call keep_columns(archive, 'group_velocity', state%group_velocity)
     call keep_column(archive, 'group_work', state%group_work)
+    call keep(archive, 'cut_force', state%cut_force)
     call keep(archive, 'quiet_since', state%quiet_since)
     call keep(archive, 'external_work', state%external_work)
     call keep(archive, 'damping_work', state%damping_work)

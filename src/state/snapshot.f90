@@ -7,7 +7,7 @@ module snapshot_m
   implicit none
   private
   public :: snapshot_t, interface_result_t, part_result_t, slave_result_t, wall_result_t, &
-    rubbed_t, element_result_t, body_result_t
+    rubbed_t, element_result_t, body_result_t, section_result_t
 
   !> Resultants of one interface.
   type :: interface_result_t
@@ -59,6 +59,14 @@ module snapshot_m
     real(wp) :: velocity(3) = 0.0_wp
     real(wp) :: acceleration(3) = 0.0_wp
   end type body_result_t
+
+  !> A cross section: what its elements do to its nodes.
+  type :: section_result_t
+    real(wp) :: force(2) = 0.0_wp
+    real(wp) :: moment = 0.0_wp    !! about z through the centroid
+    real(wp) :: centroid(2) = 0.0_wp
+    real(wp) :: area = 0.0_wp      !! length times unit depth; of round bodies per radian
+  end type section_result_t
 
   !> Friction at a node of an interface.
   type :: rubbed_t
@@ -122,6 +130,7 @@ module snapshot_m
     real(wp), allocatable :: boundary_work(:)     !! (n_boundary)
     real(wp), allocatable :: group_force(:, :)    !! (2, nodes of all force groups)
     real(wp), allocatable :: group_work(:)
+    type(section_result_t), allocatable :: sections(:) !! only where secforc is asked for
     type(slave_result_t), allocatable :: slaves(:) !! one per interface, then per contact behind a
                                                  !! tie
   end type snapshot_t

@@ -61,6 +61,9 @@ module state_m
                                                !! and the next two only where the deck asks for it
     real(wp), allocatable :: group_velocity(:, :) !! (2, n) v(n-1/2)
     real(wp), allocatable :: group_work(:)     !! (n)
+    real(wp), allocatable :: cut_force(:, :)   !! (8, n) by elements of cross sections on their
+                                               !! corners, x and y of each; only where the deck
+                                               !! has sections
     real(wp), allocatable :: quiet_since(:)    !! (ends of the run) time since which an interface
                                                !! bears no force, below 0: it does; only where
                                                !! the deck has any

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The table of history files (src/model/history_tables.f90), their columns (src/output/history_rows.f90), the keywords
-that the reader knows, and doc/results.md name the same."""
+"""The table of history files (src/model/history_tables.f90), their columns (src/output/history_rows.f90,
+history_force_rows.f90), the keywords that the reader knows, and doc/results.md name the same."""
 import re
 import sys
 
@@ -10,7 +10,8 @@ sys.path.insert(0, str(ROOT / "tools"))
 from slideline_tools import histories  # noqa: E402
 
 TABLES = (ROOT / "src/model/history_tables.f90").read_text(encoding="utf-8")
-ROWS = (ROOT / "src/output/history_rows.f90").read_text(encoding="utf-8")
+ROWS = "".join((ROOT / "src/output" / name).read_text(encoding="utf-8")
+               for name in ("history_rows.f90", "history_force_rows.f90"))
 RESULTS = (ROOT / "doc/results.md").read_text(encoding="utf-8").replace(",` |\n| | `", ",")  # long rows go on below
 NAMES = re.findall(r"history_table_t\('(\w+) *', (\w+)", TABLES)
 

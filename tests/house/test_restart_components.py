@@ -75,7 +75,8 @@ KEPT = {
 }
 #: types of src/state that hold no memory
 WITHOUT_MEMORY = {"contact_scratch_t", "piece_table_t", "snapshot_t", "interface_result_t", "part_result_t", "slave_result_t",
-                  "wall_result_t", "rubbed_t", "element_result_t", "body_result_t", "energies_t"}
+                  "wall_result_t", "rubbed_t", "element_result_t", "body_result_t", "section_result_t",
+                  "energies_t"}
 
 
 def types_of(path):

@@ -3,7 +3,7 @@
 from meshes import Deck, grid
 
 #: histories that the deck asks for besides the energies
-HISTORIES = ("rwforc", "elout", "rbdout", "bndout", "nodfor")
+HISTORIES = ("rwforc", "elout", "rbdout", "bndout", "nodfor", "secforc")
 
 
 def busy_block(end_time=0.02, interval=1.0e-3, binary="", fine=1):
@@ -34,6 +34,10 @@ def busy_block(end_time=0.02, interval=1.0e-3, binary="", fine=1):
     deck.add("*SET_SHELL_LIST_GENERATE", (1,), (1, 3))
     deck.add("*DATABASE_HISTORY_SHELL", (n * m, 2)).add("*DATABASE_HISTORY_SHELL_SET", (1, 0))
     deck.node_set(4, block[n // 2::n + 1]).add("*DATABASE_NODAL_FORCE_GROUP", (3, 0), (4, 0))
+    across = [j * n + n // 2 + 1 for j in range(m)]
+    deck.add("*SET_SHELL_LIST", (2,), *[across[k:k + 8] for k in range(0, m, 8)])
+    deck.add("*SET_SHELL_LIST_GENERATE", (3,), (1, n)).node_set(5, bottom[::-1])
+    deck.add("*DATABASE_CROSS_SECTION_SET", (4, 0, 0, 2), (5, 0, 0, 3))
     for name in HISTORIES:
         deck.add(f"*DATABASE_{name.upper()}", f"{interval},{binary}")
     return deck.output(plot=5 * interval, glstat=interval, matsum=interval)

@@ -17,7 +17,7 @@ R  young      -2.0
 *NODEX
 *TITLE
 x
-*DATABASE_SECFORC
+*DATABASE_SBTOUT
        1.0
 """
 
@@ -98,7 +98,7 @@ def test_messages_say_where(slideline, tmp_path):
     assert (young["card"], young["field"], young["severity"]) == (1, 3, "error")
     unknown = next(entry for entry in found if entry.get("line") == 8)
     assert unknown["keyword"] == "*NODEX" and "card" not in unknown
-    assert any(entry["severity"] == "warning" and entry["keyword"] == "*DATABASE_SECFORC" for entry in found)
+    assert any(entry["severity"] == "warning" and entry["keyword"] == "*DATABASE_SBTOUT" for entry in found)
     assert len(found) == len([line for line in done.stderr.splitlines() if ": *" in line or
                               line.startswith("wrong.k: the") or line.startswith("wrong.k: has")])
 

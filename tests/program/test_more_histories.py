@@ -166,6 +166,19 @@ def test_nodfor(whole):
     assert lines.count(" nodal group output number  2") == len(found)
 
 
+def test_secforc(whole):
+    lines = (whole / "job.secforc").read_text().splitlines()
+    start = next(k for k, line in enumerate(lines) if line.startswith(" line#3")) + 2
+    table = values(whole, "secforc", "section", "time", "fx", "fy", "moment", "x", "y", "area")
+    assert table[:2, 0].tolist() == [1.0, 2.0] and len(lines) == start + 4 * len(table)
+    rows = [[line.split() for line in lines[k:k + 3]] for k in range(start, len(lines), 4)]
+    assert [int(row[0][0]) for row in rows] == table[:, 0].astype(int).tolist()
+    same([row[0][1:] for row in rows], np.column_stack([table[:, 1:4], 0.0 * table[:, 0], np.hypot(table[:, 2], table[:, 3])]), 4)
+    same([row[1][2:] for row in rows], np.column_stack([table[:, 4], np.abs(table[:, 4])]), 4)
+    same([row[2] for row in rows], np.column_stack([table[:, 5:7], 0.0 * table[:, 0], table[:, 7]]), 4)
+    assert np.all(np.abs(table[-2:, 2:]) > 0.0)
+
+
 def test_works_add_up_to_the_external_work(whole):
     """Of this run: all that acts but the wall, whose work rwforc has."""
     table = values(whole, "bndout", "work").reshape(-1, 10)

@@ -40,7 +40,9 @@ def binout(run, tmp_path_factory):
     (("rbdout",), "part", {"global_x": "x", "global_y": "y", "global_dx": "ux", "global_dy": "uy", "global_rdz": "rotation",
                            "global_vx": "vx", "global_vy": "vy", "global_rvz": "spin", "global_ax": "ax",
                            "global_ay": "ay", "global_raz": "spin_rate"}),
-    (("nodfor",), "node", {"x_force": "fx", "y_force": "fy", "energy": "work"})])
+    (("nodfor",), "node", {"x_force": "fx", "y_force": "fy", "energy": "work"}),
+    (("secforc",), "section", {"x_force": "fx", "y_force": "fy", "z_moment": "moment", "x_centroid": "x", "y_centroid": "y",
+                               "area": "area"})])
 def test_branch_has_the_columns(run, binout, branch, entity, columns):
     table = run.results.history(branch[0])
     times = np.unique(table["time"])
@@ -81,6 +83,12 @@ def test_groups(run, binout):
     assert binout.read("nodfor", "groups").tolist() == [3, 9]
     of_first = table["group"] == 3
     assert np.allclose(binout.read("nodfor", "x_total")[:, 0], table["fx"][of_first].reshape(-1, 3).sum(axis=1))
+
+
+def test_magnitudes_of_sections(run, binout):
+    table = run.results.history("secforc")
+    assert np.allclose(binout.read("secforc", "total_force").ravel() ** 2, table["fx"] ** 2 + table["fy"] ** 2)
+    assert np.array_equal(binout.read("secforc", "total_moment").ravel(), np.abs(table["moment"]))
 
 
 def test_axes_of_bodies(run, binout):

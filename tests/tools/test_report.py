@@ -115,7 +115,8 @@ def test_report_shows_how_good_the_answer_of_contact_is(tmp_path):
 
 @pytest.mark.parametrize("name, title, sums", [("elout", "Elements", ()), ("rbdout", "Rigid bodies", ()),
                                                ("bndout", "Loads and prescribed motion", ()),
-                                               ("nodfor", "Groups of nodes", ("fx", "fy"))])
+                                               ("nodfor", "Groups of nodes", ("fx", "fy")),
+                                               ("secforc", "Cross sections", ())])
 def test_report_draws_histories_that_were_asked_for(tmp_path, slideline, name, title, sums):
     """A curve of each column in which something happens; of a group of nodes the sum over them."""
     deck = conftest.ROOT / "doc" / "examples" / f"database_{name}.k"

@@ -34,7 +34,7 @@ SUBJECTS = {
     "Implicit": "implicit|contact_patch_static",
     "Rigid bodies, walls, loads": "rigid|gravity|spin",
     "Elements and waves": "element|assumed|hourglass|integration|bar_wave|free_flight|symmetric_plate|stable_step|energy_balance"
-                          "|histories|resting_tiles",
+                          "|histories|cross_sections|resting_tiles",
     "Contact": ".",
 }
 

@@ -243,6 +243,19 @@ def nodfor_branch(table, _):
     return {"ids": nodes, "groups": sizes, "local": np.zeros(len(sizes), dtype=int)}, with_totals(states, blocks)
 
 
+def secforc_branch(table, _):
+    """Forces and moments of cross sections, in global axes."""
+    ids = entities(table, "section")
+    states = with_z(by_instant(table, len(ids), {**RCFORC, "x_centroid": "x", "y_centroid": "y", "area": "area"}),
+                    "force", "centroid")
+    states["x_moment"] = states["y_moment"] = np.zeros(states["area"].shape)
+    states["z_moment"] = table["moment"].reshape(states["area"].shape)
+    states["total_force"] = np.hypot(states["x_force"], states["y_force"])
+    states["total_moment"] = np.abs(states["z_moment"])
+    none = np.zeros(len(ids), dtype=int)
+    return {"ids": ids, "rigidbody": none, "accelerometer": none, "coordinate_system": none}, states
+
+
 def rbdout_branch(table, run):
     """Motion of rigid bodies; the directions are those of axes that turn with the body."""
     ids = entities(table, "part")
@@ -265,4 +278,5 @@ def rbdout_branch(table, run):
 #: that of bndout is found by condition (`branches_of`)
 FORMS = {"glstat": glstat_branch, "rcforc": rcforc_branch, "nodout": nodout_branch,
          "matsum": matsum_branch, "sleout": sleout_branch, "spcforc": spcforc_branch, "rwforc": rwforc_branch,
-         "elout": elout_branch, "rbdout": rbdout_branch, "bndout": None, "nodfor": nodfor_branch}
+         "elout": elout_branch, "rbdout": rbdout_branch, "bndout": None, "nodfor": nodfor_branch,
+         "secforc": secforc_branch}

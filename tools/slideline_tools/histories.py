@@ -17,10 +17,11 @@ if typing.TYPE_CHECKING:
     import pandas
 
 TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact", "rwforc", "sleout", "spcforc", "elout", "rbdout",
-          "bndout", "nodfor")
+          "bndout", "nodfor", "secforc")
 TEXT_COLUMNS = ("side", "phase")
-INTEGER_COLUMNS = ("cycle", "interface", "wall", "group", "node", "element", "part", "condition", "id", "n_active", "calls")
-ENTITY_COLUMNS = ("interface", "side", "wall", "group", "node", "element", "part", "condition", "id")
+INTEGER_COLUMNS = ("cycle", "interface", "wall", "group", "section", "node", "element", "part", "condition", "id", "n_active",
+                   "calls")
+ENTITY_COLUMNS = ("interface", "side", "wall", "group", "section", "node", "element", "part", "condition", "id")
 SIDES = {1: "slave", 2: "master"}
 
 

@@ -3,7 +3,7 @@
 module deck_conditions_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use deck_lines_m, only : deck_t, line_error
+  use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, check_rest, &
@@ -58,17 +58,14 @@ contains
     else
       call reserve_rows(raw, n_row)
     end if
-    n_row = 0
     do
       call next_row(deck, parameters, cursor, 1, card, found)
       if (.not. found) exit
-      n_row = n_row + 1
       call fill_row(card, at, row)
       call check_row(deck, cursor, at, card, row)
       call keep_row(raw, card, row)
       if (row%kind == row_body .or. row%kind == row_damping) exit
     end do
-    if (n_row == 0) call line_error(deck, deck%blocks(i_block)%keyword, 'its card is missing')
     call check_rest(deck, cursor)
   end subroutine read_condition
 

@@ -5,7 +5,7 @@ module deck_damping_m
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, check_rest, report_field
   use deck_checks_m, only : refuse_outside
   use deck_fields_m, only : card_t
-  use deck_lines_m, only : deck_t, line_error
+  use deck_lines_m, only : deck_t
   use deck_parameter_table_m, only : parameters_t
   use deck_raw_m, only : raw_t, row_t, append_row, row_damping_part, row_damping_part_set, id_fields
   use deck_values_m, only : integer_of, real_of, reals_of
@@ -27,16 +27,13 @@ contains
     type(card_t) :: card, factors
     type(row_t) :: row
     logical :: found
-    integer :: n_row
 
     call open_cursor(deck, i_block, cursor)
     row%kind = merge(row_damping_part_set, row_damping_part, &
       deck%blocks(i_block)%name == 'DAMPING_PART_MASS_SET')
-    n_row = 0
     do
       call next_row(deck, parameters, cursor, 1, card, found)
       if (.not. found) exit
-      n_row = n_row + 1
       row%line = card%line
       row%id = integer_of(card, trim(id_fields(row%kind)))
       row%curve = integer_of(card, 'LCID')
@@ -57,7 +54,6 @@ contains
       end if
       if (.not. any(card%bad)) call append_row(raw, row)
     end do
-    if (n_row == 0) call line_error(deck, deck%blocks(i_block)%keyword, 'its card is missing')
     call check_rest(deck, cursor)
   end subroutine read_part_damping
 

@@ -2,18 +2,20 @@
 !> *DATABASE_ cards: what is written and how often.
 module deck_output_m
   use kinds_m, only : wp
-  use deck_lines_m, only : deck_t
+  use log_m, only : to_text
+  use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, check_rest, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, next_row, row_comes, &
+    check_rest, report_field
   use deck_values_m, only : integer_of, real_of, place_of, is_bad
   use deck_checks_m, only : refuse_negative, refuse_outside
-  use deck_raw_m, only : raw_t, history_t, output_plot
+  use deck_raw_m, only : raw_t, raw_section_t, history_t, output_plot
   use deck_raw_sets_m, only : append_member
   use history_tables_m, only : history_tables, table_of_keyword, text_none
   implicit none
   private
-  public :: read_database, read_force_groups
+  public :: read_database, read_force_groups, read_cross_sections
 
   !> Most cycles between two restart files.
   real(wp), parameter :: most_cycles = 2.0e9_wp
@@ -77,18 +79,61 @@ contains
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
     type(card_t) :: card
+    integer :: id
     logical :: found
 
     call open_cursor(deck, i_block, cursor)
     do
       call next_row(deck, parameters, cursor, 1, card, found)
       if (.not. found) exit
-      if (integer_of(card, 'NSID') < 1) call report_field(deck, cursor, card, 'NSID', &
-        'is not a node set number (1 or more)')
-      if (.not. is_bad(card, 'NSID')) call append_member(raw%force_groups, &
-        integer_of(card, 'NSID'), card%line, 1)
+      call take_set(deck, cursor, card, 'NSID', 'node', id)
+      if (id > 0) call append_member(raw%force_groups, id, card%line, 1)
     end do
   end subroutine read_force_groups
+
+  !> *DATABASE_CROSS_SECTION_SET: nodes and shells in each row, behind a heading each where the
+  !> keyword has one.
+  subroutine read_cross_sections(deck, parameters, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    type(raw_section_t) :: entry
+    logical :: found
+
+    call open_cursor(deck, i_block, cursor)
+    call row_comes(deck, cursor, found)
+    do while (found)
+      entry = raw_section_t(line=cursor%line)
+      if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%id, entry%title)
+      if (entry%id == 0) entry%id = size(raw%cuts) + 1
+      if (any(raw%cuts%id == entry%id)) call line_error(deck, entry%line, 'the number ' &
+        //to_text(entry%id)//' belongs to an earlier cross section (without a number it is the ' &
+        //'position in the deck)')
+      call next_card(deck, parameters, cursor, 1, card)
+      entry%line = card%line
+      call take_set(deck, cursor, card, 'NSID', 'node', entry%nodes)
+      call take_set(deck, cursor, card, 'SSID', 'shell', entry%shells)
+      raw%cuts = [raw%cuts, entry]
+      call row_comes(deck, cursor, found)
+    end do
+  end subroutine read_cross_sections
+
+  !> A set that has to be given; 0 if it is not.
+  subroutine take_set(deck, cursor, card, name, what, id)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    character(*), intent(in) :: name, what   !! of the field, of the members
+    integer, intent(out) :: id
+
+    id = 0
+    if (integer_of(card, name) < 1) call report_field(deck, cursor, card, name, 'is not a '//what &
+      //' set number (1 or more)')
+    if (.not. is_bad(card, name)) id = integer_of(card, name)
+  end subroutine take_set
 
   !> Cycles between two restart files.
   subroutine take_cycles(deck, cursor, card, cycles)

@@ -23,7 +23,8 @@ module deck_raw_m
     row_velocity, row_velocity_node, row_velocity_generation, row_load_node, row_load_set, &
     row_pressure, row_pressure_set, row_body, row_damping, row_motion_rigid, row_velocity_rigid, &
     row_damping_part, row_damping_part_set, row_stiffness, row_stiffness_set, row_load_rigid, &
-    row_mass, row_mass_set, row_common, raw_system_t, output_plot, id_fields, id_place
+    row_mass, row_mass_set, row_common, raw_system_t, raw_section_t, output_plot, &
+    id_fields, id_place
 
   !> Kinds of `row_t`.
   integer, parameter :: row_spc_node = 1, row_spc_set = 2, row_motion_node = 3, &
@@ -140,6 +141,14 @@ module deck_raw_m
     real(wp) :: reach = 0.0_wp          !! OFFSET
   end type raw_wall_t
 
+  !> One *DATABASE_CROSS_SECTION_SET.
+  type :: raw_section_t
+    integer :: id = 0
+    character(:), allocatable :: title
+    integer :: line = 0                 !! of its card
+    integer :: nodes = 0, shells = 0    !! NSID, SSID
+  end type raw_section_t
+
   !> One *DEFINE_COORDINATE_SYSTEM.
   type :: raw_system_t
     integer :: id = 0
@@ -202,6 +211,7 @@ module deck_raw_m
     type(raw_wall_t), allocatable :: walls(:)
     type(raw_end_t), allocatable :: ends(:)
     type(raw_system_t), allocatable :: systems(:)
+    type(raw_section_t), allocatable :: cuts(:)
     type(controls_t) :: controls
     type(friction_rule_t) :: friction          !! of *CONTROL_CONTACT
     type(place_t) :: friction_place            !! SFRIC, line 0 without the keyword
@@ -234,7 +244,7 @@ contains
       raw%equations(0), raw%equation_line(0), raw%erosions(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
       raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%foams(0), raw%tables(0), &
-      raw%contacts(0), raw%transducers(0), raw%walls(0), raw%ends(0), raw%systems(0), &
+      raw%contacts(0), raw%transducers(0), raw%walls(0), raw%ends(0), raw%systems(0), raw%cuts(0), &
       raw%rows(64), raw%node_velocities(0), &
       raw%node_sets(16), raw%part_sets(16), &
       raw%segment_sets(16), raw%shell_sets(4), raw%explicit_only(0))

@@ -22,6 +22,7 @@ module deck_resolve_m
   use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
+  use deck_resolve_cross_sections_m, only : resolve_cross_sections
   use deck_resolve_damping_m, only : resolve_damping, settle_relaxation
   use deck_resolve_points_m, only : settle_points
   use deck_resolve_rigids_m, only : resolve_rigids
@@ -152,6 +153,7 @@ contains
     call settle_axis(deck, raw, model)
     call resolve_sets(deck, raw, maps, model)
     call resolve_history(deck, raw, maps, model)
+    if (size(raw%cuts) > 0) call resolve_cross_sections(deck, raw, maps, model)
     if (raw%dt_curve > 0) call resolve_id(deck, maps%curves, raw%dt_curve, 'curve', &
       raw%dt_curve_place, model%controls%dt_curve)
     call check_step_curve(deck, raw, model)

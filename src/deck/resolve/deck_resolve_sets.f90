@@ -16,7 +16,7 @@ module deck_resolve_sets_m
   use deck_raw_sets_m, only : raw_set_t, add_all, add_parts, of_part, of_part_set
   implicit none
   private
-  public :: resolve_sets, resolve_history
+  public :: resolve_sets, resolve_history, keep_first
 
 contains
 

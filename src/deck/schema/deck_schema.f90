@@ -306,7 +306,10 @@ contains
     case ('SURFB')
       text = 'asks for the forces between two surfaces, which this version does not have; leave ' &
         //'it 0 (a transducer adds up all forces on SURFA)'
-    case ('CID', 'ICID', 'VID')
+    case ('HSID', 'BSID', 'TSID', 'DSID')
+      text = 'is a set of elements that this version does not have; leave it 0 (SSID is the set ' &
+        //'of shells)'
+    case ('CID', 'ICID', 'VID', 'ID')
       text = 'is a local coordinate system, which this version does not have; leave it 0'
     case ('TF')
       text = 'lets the constraint fail, which this version does not have; leave it blank'

@@ -91,7 +91,6 @@ module deck_schema_others_m
     'DATABASE_BINARY_D3PART ignored', &
     'DATABASE_BINARY_D3PROP ignored', &
     'DATABASE_BINARY_BLSTFOR ignored', &
-    'DATABASE_SECFORC ignored', &
     'DATABASE_ABSTAT* ignored', &
     'DATABASE_JNTFORC ignored', &
     'DATABASE_DEFORC ignored', &
@@ -111,7 +110,7 @@ module deck_schema_others_m
     'DATABASE_CURVOUT ignored', &
     'DATABASE_PLLYOUT ignored', &
     'DATABASE_FREQUENCY_* ignored', &
-    'DATABASE_CROSS_SECTION_* ignored', &
+    'DATABASE_CROSS_SECTION_PLANE* sections cut by a plane (give sets by _SET) are', &
     'INTERFACE_* ignored', &
     'COMPONENT_* ignored', &
     'CASE_* unknown', &

@@ -333,6 +333,8 @@ module deck_schema_tables_m
     ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_NODFOR', &
     ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    'DATABASE_SECFORC', &
+    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_BINARY_D3PLOT', &
     ' DT:f LCDT:i BEAM:is NPLTC:i PSETID:iw', &
     ' IOOPT:is RATE:fs CUTOFF:fs WINDOW:fs TYPE:is PSET:iw', &
@@ -349,7 +351,9 @@ module deck_schema_tables_m
     'DATABASE_HISTORY_SHELL_SET', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_NODAL_FORCE_GROUP', &
-    ' NSID:i CID:ir']
+    ' NSID:i CID:ir', &
+    'DATABASE_CROSS_SECTION_SET t', &
+    ' NSID:i HSID:ir BSID:ir SSID:i TSID:ir DSID:ir ID:ir ITYPE:is']
 
   !> Several runs of one deck.
   character(66), parameter :: table_cases(*) = [character(66) :: &

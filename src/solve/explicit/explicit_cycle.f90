@@ -12,6 +12,7 @@ module explicit_cycle_m
   use contact_inertia_m, only : weigh_contacts
   use contact_pressing_m, only : pressing_t, press_contacts
   use cycle_loads_m, only : apply_loads
+  use history_tables_m, only : table_secforc
   use erosion_account_m, only : settle_elements, release_nodes
   use early_end_m, only : find_early_end
   use errors_m, only : error_t
@@ -38,6 +39,7 @@ module explicit_cycle_m
     exchange_failures, exchange_erosion, exchange_limits, exchange_history, gather_motion, &
     gather_state, judge_elements
   use rank_shares_m, only : shares_t, share_out
+  use section_cuts_m, only : cut_sections
   use ranks_m, only : ranks_t, share_error
   use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
   use restart_plan_m, only : wanted_files
@@ -174,6 +176,8 @@ contains
       call follow_contact(model, i, state, monitor%log)
     end do
     if (state%cycle > 0) call prepare_leap(model, state, cycle)
+    if (allocated(state%cut_force) .and. cycle%due%tables(table_secforc)) &
+      call cut_sections(model, cycle%shares, monitor%ranks, state)
     call lap(monitor%clock, phase_nodes)
   end subroutine begin_cycle
 

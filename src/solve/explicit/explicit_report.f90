@@ -11,7 +11,7 @@ module explicit_report_m
   use explicit_prescribed_m, only : start_prescribed, prescribed_work
   use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
     table_sleout, table_spcforc, table_contact, table_elout, table_rbdout, table_bndout, &
-    table_nodfor
+    table_nodfor, table_secforc
   use history_elements_m, only : fill_history_elements
   use health_m, only : check_energy, check_radii, made_by_springs
   use kinds_m, only : wp
@@ -23,6 +23,7 @@ module explicit_report_m
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, fill_rigids, &
     fill_bodies
   use progress_m, only : show_progress
+  use section_filling_m, only : fill_sections
   use rank_exchange_m, only : judge_elements
   use ranks_m, only : share_error, spread_values
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, &
@@ -111,6 +112,7 @@ contains
     if (cycle%due%tables(table_elout)) call fill_history_elements(model, state, monitor%snapshot)
     if (any(cycle%due%tables([table_bndout, table_nodfor]))) &
       call fill_boundaries(state, monitor%snapshot)
+    if (cycle%due%tables(table_secforc)) call fill_sections(model, state, monitor%snapshot)
     if (cycle%due%tables(table_rbdout)) call fill_bodies(state, monitor%snapshot)
     if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
     if (any(cycle%due%tables([table_sleout, table_contact])) .or. cycle%judges) &

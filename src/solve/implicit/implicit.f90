@@ -14,7 +14,7 @@ module implicit_m
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
   use implicit_boundary_m, only : count_step_boundaries
-  use implicit_forces_m, only : trial_t, start_trial, net_force
+  use implicit_forces_m, only : trial_t, start_trial, net_force, cut_sections
   use implicit_memory_m, only : implicit_memory_t, write_restarts
   use implicit_prescribed_m, only : prescribe_step
   use implicit_report_m, only : reactions_work, report_step
@@ -260,6 +260,7 @@ contains
         attempt)
       call count_step_boundaries(model, trial, attempt, step%time, velocity, state)
     end if
+    call cut_sections(model, attempt%motion, state)
     state%motion(1:2, :) = attempt%motion(1:2, :)
     state%elements = attempt%elements
     state%contacts = attempt%contacts

@@ -10,6 +10,7 @@ module implicit_forces_m
   use clock_m, only : clock_t, lap, share_contact, phase_elements, &
     phase_contact_force, phase_nodes
   use contact_state_m, only : contact_state_t
+  use cut_forces_m, only : find_cut_forces
   use element_dispatch_m, only : add_tile_forces
   use element_mass_m, only : mass_times
   use external_force_m, only : form_external_force, body_acceleration
@@ -18,7 +19,10 @@ module implicit_forces_m
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
   implicit none
   private
-  public :: trial_t, start_trial, assemble_forces, net_force, trouble_of
+  public :: trial_t, start_trial, assemble_forces, net_force, trouble_of, cut_sections
+
+  !> Step of the kernels: motion holds increments in place of velocities.
+  real(wp), parameter :: unit_step = 1.0_wp
 
   !> What a trial displacement makes of a committed state.
   type :: trial_t
@@ -90,13 +94,24 @@ contains
     allocate (force(2, model%layout%n_local))
     do i_tile = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i_tile))
-        call add_tile_forces(model, tile, trial%motion, 1.0_wp, trial%elements, force)
+        call add_tile_forces(model, tile, trial%motion, unit_step, trial%elements, force)
         call share_tile_forces(tile, force, trial%slots)
         call keep_tile_forces(tile, force, trial%internal)
       end associate
     end do
     call sum_special_forces(model%layout, trial%slots, 1, model%layout%n_special, trial%internal)
   end subroutine assemble_internal
+
+  !> Forces of the elements of cross sections at a trial, from the committed history.
+  subroutine cut_sections(model, motion, state)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in), contiguous :: motion(:, :) !! of the trial
+    type(state_t), intent(inout) :: state            !! committed
+
+    if (.not. allocated(state%cut_force)) return
+    call find_cut_forces(model, [1, model%layout%tiles(size(model%layout%tiles))%last_chunk], &
+      motion, [state%time, unit_step], state%elements, state%cut_force)
+  end subroutine cut_sections
 
   !> Internal minus contact and external forces.
   pure function net_force(trial) result(force)

@@ -7,7 +7,7 @@ module implicit_report_m
   use implicit_boundary_m, only : find_reactions
   use history_elements_m, only : fill_history_elements
   use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc, &
-    table_contact, table_elout, table_bndout, table_nodfor
+    table_contact, table_elout, table_bndout, table_nodfor, table_secforc
   use block_state_m, only : block_state_t
   use kinds_m, only : wp
   use clock_m, only : lap, phase_output
@@ -21,6 +21,7 @@ module implicit_report_m
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use output_schedule_m, only : output_reach
   use progress_m, only : show_progress
+  use section_filling_m, only : fill_sections
   use snapshot_m, only : snapshot_t
   use snapshot_filling_m, only : fill_energies, fill_parts, fill_interfaces, fill_plot
   use state_m, only : state_t
@@ -74,6 +75,7 @@ contains
         call find_reactions(model, force + mass_times(model, shot%acceleration), state)
         call fill_boundaries(state, shot)
       end if
+      if (due%tables(table_secforc)) call fill_sections(model, state, shot)
       if (due%tables(table_elout)) call fill_history_elements(model, state, shot)
       if (due%plot) call fill_plot(model, state, shot)
       if (any(due%tables([table_sleout, table_contact]))) call judge_contacts(model, state, &

@@ -12,6 +12,7 @@ module start_m
   use element_state_m, only : start_elements, lump_mass
   use contacts_m, only : is_tied, n_told, told_as
   use controls_m, only : is_asked
+  use cross_sections_m, only : n_cut
   use errors_m, only : error_t, raise, status_input
   use history_tables_m, only : table_nodfor
   use initial_values_m, only : start_motion
@@ -116,6 +117,8 @@ contains
         n = size(output%boundaries%where)
         allocate (state%boundary_force(3, n), state%boundary_work(n), source=0.0_wp)
       end if
+      if (allocated(output%cross_sections)) &
+        allocate (state%cut_force(8, n_cut(output%cross_sections)), source=0.0_wp)
       if (.not. allocated(output%force_groups)) return
       if (.not. is_asked(output%histories(table_nodfor))) return
       n = 0

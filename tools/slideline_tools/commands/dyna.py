@@ -10,7 +10,7 @@ def add_binout(commands) -> None:
     parser = commands.add_parser(
         "binout", help="write DYNA's binout from the histories of a run",
         description="Write all history tables of a run (glstat, rcforc, nodout, matsum, sleout, "
-                    "spcforc, rwforc, elout, rbdout, bndout, nodfor) to one binout in DYNA's LSDA format. A killed run is "
+                    "spcforc, rwforc, elout, rbdout, bndout, nodfor, secforc) to one binout in DYNA's LSDA format. A killed run is "
                     "taken as far as it got.")
     parser.add_argument("run_path", metavar="RUN", help="results folder, or a file of the run")
     parser.add_argument("--output", "-o", metavar="FILE",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The section of histories that a deck asks for by name: elements, rigid bodies, boundaries, groups of nodes."""
+"""The section of histories that a deck asks for by name: elements, rigid bodies, boundaries, groups of nodes, sections."""
 from __future__ import annotations
 
 import numpy as np
@@ -17,6 +17,7 @@ ASKED = {
     "bndout": ("Loads and prescribed motion", {"fx": "force in x", "fy": "force in y", "moment": "moment", "work": "work"}),
     "nodfor": ("Groups of nodes", {"fx": "force in x, of all nodes", "fy": "force in y, of all nodes",
                                    "work": "work, of all nodes"}),
+    "secforc": ("Cross sections", {"fx": "force in x", "fy": "force in y", "moment": "moment"}),
 }
 
 
