@@ -5,9 +5,10 @@ module cut_forces_m
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t
   use element_dispatch_m, only : advance_chunk
-  use eroding_tiles_m, only : advance_eroding_chunk
+  use eroding_tiles_m, only : add_eroding_tile_forces, take_nodes
+  use erosion_state_m, only : stays
   use kinds_m, only : wp
-  use layout_m, only : chunk_size
+  use layout_m, only : chunk_size, tile_t
   use model_m, only : model_t
   use round_chunk_m, only : round_chunk_t
   implicit none
@@ -31,25 +32,50 @@ contains
     type(round_chunk_t) :: round
     real(wp), allocatable :: of_slots(:, :)
     logical, allocatable :: is_cut(:)
-    integer :: i_chunk, i
+    integer :: i_chunk, i, first, nodes(4, chunk_size)
 
     call mark_chunks(model, is_cut)
     copy = elements
     allocate (of_slots(8, model%layout%n_slot))
     do i_chunk = chunks(1), chunks(2)
       if (.not. is_cut(i_chunk)) cycle
-      if (model%erodes) then
-        call advance_eroding_chunk(model, i_chunk, motion, times, copy, chunk, round)
-      else
-        call advance_chunk(model, i_chunk, model%layout%slot_nodes(:, (i_chunk - 1)*chunk_size &
-          + 1:i_chunk*chunk_size), motion, times(2), copy, chunk, round)
-      end if
+      first = (i_chunk - 1)*chunk_size + 1
+      nodes = model%layout%slot_nodes(:, first:first + chunk_size - 1)
+      if (model%erodes) call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
+        elements%erosion%status(first:first + chunk_size - 1), nodes)
+      call advance_chunk(model, i_chunk, nodes, motion, times(2), copy, chunk, round)
       do i = 1, model%layout%chunk_elements(i_chunk)
-        of_slots(:, (i_chunk - 1)*chunk_size + i) = corner_forces(model%is_round, i, chunk, round)
+        of_slots(:, first + i - 1) = corner_forces(model%is_round, i, chunk, round)
       end do
     end do
+    if (model%erodes) call clear_gone(model, is_cut, chunks, motion, times, elements, of_slots)
     call take_slots(model, chunks, of_slots, force)
   end subroutine find_cut_forces
+
+  !> Elements that have left the mesh, or leave it in this step, do not push.
+  subroutine clear_gone(model, is_cut, chunks, motion, times, elements, of_slots)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: is_cut(:)
+    integer, intent(in) :: chunks(2)
+    real(wp), intent(in), contiguous :: motion(:, :)
+    real(wp), intent(in) :: times(2)
+    type(block_state_t), intent(in) :: elements
+    real(wp), intent(inout) :: of_slots(:, :)
+    type(block_state_t) :: copy
+    real(wp), allocatable :: force(:, :)
+    integer :: i_chunk, slot
+
+    copy = elements
+    allocate (force(2, model%layout%n_local))
+    do i_chunk = chunks(1), chunks(2)
+      if (.not. is_cut(i_chunk)) cycle
+      call add_eroding_tile_forces(model, tile_t(first_chunk=i_chunk, last_chunk=i_chunk), motion, &
+        times, copy, force)
+      do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
+        if (copy%erosion%status(slot) /= stays) of_slots(:, slot) = 0.0_wp
+      end do
+    end do
+  end subroutine clear_gone
 
   !> Chunks with elements of cross sections.
   pure subroutine mark_chunks(model, is_cut)

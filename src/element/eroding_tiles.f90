@@ -19,7 +19,7 @@ module eroding_tiles_m
   use smallest_steps_m, only : step_of_element
   implicit none
   private
-  public :: add_eroding_tile_forces, advance_eroding_chunk
+  public :: add_eroding_tile_forces, take_nodes
 
   !> How much larger the shape of an element is that has left.
   real(wp), parameter :: much = 1.0e6_wp
@@ -44,12 +44,23 @@ contains
     real(wp), intent(inout) :: force(2, model%layout%n_local) !! set here
     type(element_chunk_t) :: chunk
     type(round_chunk_t) :: round
-    integer :: i_chunk, first
+    type(leaving_t) :: leaving
+    integer :: nodes(4, chunk_size), i_chunk, first
 
     force = 0.0_wp
     do i_chunk = tile%first_chunk, tile%last_chunk
       first = (i_chunk - 1)*chunk_size + 1
-      call advance_eroding_chunk(model, i_chunk, motion, times, elements, chunk, round)
+      call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
+        elements%erosion%status(first:first + chunk_size - 1), nodes)
+      call keep_energies(i_chunk, elements, leaving)
+      call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk, round)
+      if (times(2) > 0.0_wp) then
+        call find_leaving(model, i_chunk, nodes, motion, times, elements, leaving%flags)
+        if (any(leaving%flags)) call take_out(model, i_chunk, motion, times(2), leaving, elements, &
+          chunk, round)
+      end if
+      if (elements%erosion%n_gone(i_chunk) > 0) call clear_forces(elements%erosion%status(first: &
+        first + chunk_size - 1) /= stays, model%is_round, chunk, round)
       if (model%is_round) then
         call scatter_round(model%layout%chunk_elements(i_chunk), &
           model%layout%slot_local(1, first), round, force)
@@ -59,32 +70,6 @@ contains
       end if
     end do
   end subroutine add_eroding_tile_forces
-
-  !> As `advance_chunk`; elements that leave in this step have no force any more.
-  subroutine advance_eroding_chunk(model, i_chunk, motion, times, elements, chunk, round)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_chunk
-    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node)
-    real(wp), intent(in) :: times(2)                   !! of the motion, and the step that led there
-    type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(inout) :: chunk
-    type(round_chunk_t), intent(inout) :: round
-    type(leaving_t) :: leaving
-    integer :: nodes(4, chunk_size), first
-
-    first = (i_chunk - 1)*chunk_size + 1
-    call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
-      elements%erosion%status(first:first + chunk_size - 1), nodes)
-    call keep_energies(i_chunk, elements, leaving)
-    call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk, round)
-    if (times(2) > 0.0_wp) then
-      call find_leaving(model, i_chunk, nodes, motion, times, elements, leaving%flags)
-      if (any(leaving%flags)) call take_out(model, i_chunk, motion, times(2), leaving, elements, &
-        chunk, round)
-    end if
-    if (elements%erosion%n_gone(i_chunk) > 0) call clear_forces(elements%erosion%status(first: &
-      first + chunk_size - 1) /= stays, model%is_round, chunk, round)
-  end subroutine advance_eroding_chunk
 
   !> Nodes of a chunk; those of an element that has left are all its first one.
   pure subroutine take_nodes(slot_nodes, status, nodes)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from conftest import numbers
 from history_decks import HISTORIES, busy_block
+from meshes import Deck, grid
 
 
 def files_of(folder):
@@ -197,3 +198,40 @@ def test_rwforc(whole):
     assert np.array_equal(rows[:, 1], table[:, 1])
     same(rows[:, 2:5], table[:, 2:5], 6)
     assert table[:, 2].max() > 100.0
+
+
+def bar_in_tension(implicit, asked):
+    """A plastic bar under forces at its end; a section across it, and one with elements at both of its sides."""
+    deck = Deck("bar").control(1.0 if implicit else 0.02, dt=None if implicit else 1.0e-4)
+    deck.part(points=4).plastic(1000.0, 1.0e6, 0.3, 2.0e3, 1.0e5)
+    nodes = deck.mesh(*grid(12, 4, 1.2, 0.4))
+    deck.fix(nodes[::13], x=1, y=1).curve(1, [(0.0, 0.0), (1.0 if implicit else 0.02, 1.0)])
+    deck.add("*LOAD_NODE_POINT", *[(int(node), 1, 1, 150.0) for node in nodes[12::13]])
+    deck.node_set(3, nodes[6::13]).add("*SET_SHELL_LIST", (3,), (7, 19, 31, 43))
+    deck.node_set(4, nodes[6:7]).add("*SET_SHELL_LIST", (4,), (7, 6))
+    deck.add("*DATABASE_CROSS_SECTION_SET", (3, 0, 0, 3), (4, 0, 0, 4))
+    if asked:
+        deck.add("*DATABASE_SECFORC", (0.1 if implicit else 1.0e-3,))
+    if implicit:
+        deck.add("*CONTROL_IMPLICIT_GENERAL", (1, 0.1)).add("*CONTROL_IMPLICIT_SOLUTION", (12, 0, 30, 0.0, 1.0e-22))
+    return deck.add("*DATABASE_BINARY_D3DUMP", (4 if implicit else 100,)).text()
+
+
+@pytest.mark.parametrize("implicit", (True, False))
+def test_sections_of_a_run_that_goes_on(exe, tmp_path, implicit):
+    """Asked for from the start or only then: the rows after the restart have the same bytes."""
+    def go(*arguments):
+        done = subprocess.run([exe, *arguments], capture_output=True, text=True, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+
+    for name, asked in (("whole", True), ("without", False)):
+        (tmp_path / "job.k").write_text(bar_in_tension(implicit, asked))
+        go("i=job.k", f"d={name}")
+    assert not (tmp_path / "without" / "job.secforc.csv").exists()
+    expected = (tmp_path / "whole" / "job.secforc.csv").read_bytes().splitlines()
+    (tmp_path / "more.k").write_text(f"*KEYWORD\n*DATABASE_SECFORC\n{0.1 if implicit else 1.0e-3},\n*END\n")
+    go("r=whole/job.dump01.h5")
+    assert (tmp_path / "whole" / "job.secforc.csv").read_bytes().splitlines() == expected
+    go("r=without/job.dump01.h5", "i=more.k")
+    late = (tmp_path / "without" / "job.secforc.csv").read_bytes().splitlines()
+    assert 10 < len(late) < len(expected) and late[1:] == expected[1 - len(late):]

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Keywords without the card that they need.
 module deck_empty_m
-  use deck_cards_m, only : cursor_t, open_cursor, row_comes
-  use deck_lines_m, only : deck_t, line_error
+  use deck_cards_m, only : cursor_t, open_cursor
+  use deck_lines_m, only : deck_t, line_error, flag_blank
   implicit none
   private
   public :: check_empty
@@ -17,16 +17,16 @@ contains
     logical, intent(out) :: is_empty
     type(cursor_t) :: cursor
     character(:), allocatable :: fields
-    logical :: found
     integer :: k
 
     is_empty = .false.
     if (deck%blocks(i_block)%dropped .or. may_be_empty(deck%blocks(i_block)%name)) return
+    associate (block => deck%blocks(i_block))
+      is_empty = all(iand(deck%flags(block%first:block%last), flag_blank) /= 0)
+      if (is_empty .and. block%last >= block%first) is_empty = has_rows(block%name)
+    end associate
+    if (.not. is_empty) return
     call open_cursor(deck, i_block, cursor)
-    found = cursor%line <= cursor%last
-    if (found .and. has_rows(deck%blocks(i_block)%name)) call row_comes(deck, cursor, found)
-    is_empty = .not. found
-    if (found) return
     fields = ''
     associate (spec => cursor%specs(1))
       do k = 1, spec%n

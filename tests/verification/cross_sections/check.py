@@ -159,6 +159,34 @@ def check_round(run, points):
               "a uniform stress has none about the centroid")
 
 
+def check_erosion(run):
+    """A link that breaks: one element of two leaves the mesh. Both sections together are what nodfor tells."""
+    deck = Deck("a link that breaks").control(1.0e-2, dt=1.0e-5)
+    deck.part(1).elastic(0.01, YOUNG, 0.0).part(2).elastic(0.01, YOUNG, 0.0, material=2)
+    deck.add("*MAT_ADD_EROSION", (1,), (0.0, 0.0, 0.0, float(np.log(1.05))))
+    coordinates, quads = grid(2, 1, 2.0, 1.0)
+    nodes = deck.mesh(coordinates, quads[:1])
+    deck.add("*ELEMENT_SHELL", (2, 2, *nodes[list(quads[1])].tolist()))
+    deck.curve(1, [(0.0, 0.0), (0.01, 0.1)]).fix(nodes, y=1).fix(nodes[::3], x=1)
+    for node, factor in zip(nodes[[1, 4, 2, 5]], (1.0, 1.0, 3.0, 3.0)):
+        deck.prescribe(node, 1, 2, 1, factor)
+    for number in (1, 2):
+        add_section(deck, number, nodes[1::3], (number,))
+    deck.node_set(7, nodes[1::3]).add("*DATABASE_NODAL_FORCE_GROUP", (7, 0))
+    for name in ("SECFORC", "NODFOR"):
+        deck.add(f"*DATABASE_{name}", (1.0e-5,))
+    result = run.program(deck, name="erosion")
+    table, nodes = result.table("secforc"), result.table("nodfor")
+    sides = np.stack([table.where(section=k)["fx"] for k in (1, 2)])
+    gone = table.where(section=1)["time"] > 0.006
+    scale = np.abs(sides).max()
+    run.check("secforc, erosion: both sides + nodfor / force", (sides.sum(axis=0) + nodes["fx"].reshape(-1, 2).sum(axis=1)) / scale,
+              np.zeros(len(gone)), 1e-14, "abs", "nodfor tells what the nodes bear")
+    run.check("secforc, erosion: by an element that has left", sides[0][gone], np.zeros(gone.sum()), 0, "abs", "nothing")
+    run.check("secforc, erosion: before it left, by the other now", np.stack([-sides[0][~gone].min(), np.abs(sides[1][gone]).min()])
+              / scale, [0.25, 0.5], 0.0, "min", "they pull")
+
+
 def check(run):
     check_statics(run)
     check_wave(run)
@@ -167,3 +195,4 @@ def check(run):
     check_two_materials(run)
     for points in (None, 4):
         check_round(run, points)
+    check_erosion(run)
