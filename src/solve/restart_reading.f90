@@ -115,7 +115,7 @@ contains
     integer :: i
 
     do i = 1, size(contact_types)
-      if (contact_types(i) - contacts(i)%contact_type == 0) cycle
+      if (any([contacts(i)%contact_type] == contact_types(i))) cycle
       if (.not. may_change(contacts(i)) .or. .not. has_chart(contact_types(i))) then
         call refuse(source, 'state/estimates/'//to_text(i)//'/contact_type', &
           'a type that the deck does not give')

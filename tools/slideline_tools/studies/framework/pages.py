@@ -53,7 +53,6 @@ PAGES = {  # quick ones first
     "sliding": batch("sliding"),
     "exchange": batch("exchange"),
     "estimates": batch("estimates"),
-    "chooses": batch("chooses", sources=ALL),
     "advise": batch("advise", sources=ALL),
     "paper_tables": study("paper-tables"),
     "claims": batch("claims", after=("block_to_block", "sliding", "collision", "paper_tables")),
