@@ -32,14 +32,12 @@ contains
     type(model_t), intent(in) :: model
     type(block_state_t), intent(out) :: elements
     integer, intent(in), optional :: own(2) !! first and last slot that are asked for, if not all
-    integer :: n_slot, n_chunk, i_slot, asked(2)
+    integer :: n_chunk, i_slot, asked(2)
 
-    n_slot = model%layout%n_slot
-    asked = [1, n_slot]
+    asked = [1, model%layout%n_slot]
     if (present(own)) asked = own
-    allocate (elements%reference(n_slot, merge(n_round_reference, 6, model%is_round)))
-    allocate (elements%deviator(n_slot, 3))
-    elements%deviator(asked(1):asked(2), :) = 0.0_wp
+    allocate (elements%reference(model%layout%n_slot, merge(n_round_reference, 6, model%is_round)))
+    allocate (elements%deviator(model%layout%n_slot, 3), source=0.0_wp)
     ! Chunks of rigid parts come after these.
     n_chunk = model%layout%tiles(size(model%layout%tiles))%last_chunk
     allocate (elements%deviatoric_work(n_chunk), elements%hourglass_work(n_chunk), &
@@ -161,8 +159,7 @@ contains
     integer :: i_chunk, n_history, n_hourglass, n_deviator, n_points, n_eos, n
 
     allocate (elements%history_start(model%layout%n_chunk), &
-      elements%eos_start(model%layout%n_chunk), &
-      elements%hourglass_start(model%layout%n_chunk), &
+      elements%eos_start(model%layout%n_chunk), elements%hourglass_start(model%layout%n_chunk), &
       elements%point_start(model%layout%n_chunk), source=0)
     n_deviator = 0
     n_history = 0
@@ -259,8 +256,7 @@ contains
     real(wp), intent(in) :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
-    real(wp) :: stress(4)
-    real(wp) :: volumetric, stretch(n_point), start(n_point), now(n_point), s(3)
+    real(wp) :: stress(4), volumetric, stretch(n_point), start(n_point), now(n_point), s(3)
     integer :: i_eos, n
 
     associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))

@@ -15,24 +15,23 @@ import subprocess
 import sys
 import time
 
+import elements
 from slideline_tools.scenes import collision, collision_grids
 from slideline_tools.studies.scale import runs
 
-LEVEL, SIDE = 20, 316  # of the collision, 96,000 elements; of the block, 99,856
-LARGE = 1000           # side of the square for memory
+LEVEL, BLOCK = 20, 100000  # of the collision, 96,000 elements, and elements of the block
+FIRST_TOUCH = 1250         # cycles until the bodies touch
+LARGE = 1000               # side of the square for memory
 WAYS = ("threads", "processes")
-ENVIRONMENT = {**os.environ, **runs.ENVIRONMENT, "OMP_WAIT_POLICY": "active"}
+ENVIRONMENT = {**os.environ, **runs.ENVIRONMENT}
 
 
 def write_decks(folder, cycles):
     """{scene: (words of the command line, elements)}."""
-    folder.mkdir(parents=True, exist_ok=True)
     (folder / "collision.k").write_text(collision(LEVEL, 5), encoding="ascii")
-    points, quads = runs.grid_mesh(SIDE, SIDE, 1.0, 1.0)
-    (folder / "block.k").write_text(runs.body(points, quads, "block"), encoding="ascii")
-    return {"collision": (["i=collision.k", f"p:endtim={cycles * runs.STEP / LEVEL}"],
-                          sum(grid.element.size for grid in collision_grids(LEVEL))),
-            "block": (["i=block.k", f"p:cycles={cycles}"], len(quads))}
+    end = (FIRST_TOUCH + cycles) * runs.STEP / LEVEL
+    return {"collision": (["i=collision.k", f"p:endtim={end}"], sum(grid.element.size for grid in collision_grids(LEVEL))),
+            "block": (["i=block.k"], elements.write_deck(folder / "block.k", BLOCK, False, cycles))}
 
 
 def command(program, way, words):
@@ -76,41 +75,43 @@ def compare(program, folder, rounds, cycles):
 
 
 def follow(launcher):
-    """{number of a process: (largest, last) resident kB} of those of a launcher, looked at while they run."""
+    """{number of a process: [(largest, present) resident kB, ...]} of those of a launcher, looked at while they run."""
     found = {}
     while launcher.poll() is None:
         told = subprocess.run(["pgrep", "-P", str(launcher.pid)], capture_output=True, text=True, check=False).stdout
         for child in told.split():
             try:
-                of_rank = re.search(rb"OMPI_COMM_WORLD_RANK=(\d+)", pathlib.Path(f"/proc/{child}/environ").read_bytes())
+                rank = re.search(rb"OMPI_COMM_WORLD_RANK=(\d+)", pathlib.Path(f"/proc/{child}/environ").read_bytes())
                 status = pathlib.Path(f"/proc/{child}/status").read_text(encoding="ascii")
             except OSError:
                 continue
             sizes = [int(size) for name in ("HWM", "RSS") for size in re.findall(rf"Vm{name}:\s+(\d+)", status)]
-            if of_rank and len(sizes) == 2:
-                found[int(of_rank[1])] = sizes
-                state = found.setdefault("cycles", {})
-                state.setdefault(int(of_rank[1]), []).append(sizes[1])
+            if rank and len(sizes) == 2:
+                found.setdefault(int(rank[1]), []).append(sizes)
         time.sleep(0.05)
     return found
 
 
+def turning(side):
+    """A square that turns, so that no tile rests."""
+    text = runs.body(*runs.grid_mesh(side, side, 1.0, 1.0), "square")
+    return text.rsplit("*END", 1)[0] + "*INITIAL_VELOCITY_GENERATION\n1,2,1.0\n0.0,0.0\n*END\n"
+
+
 def memory(program, folder, side, cycles):
-    """Print the memory of four processes for a square, per element, with and without that of an empty program."""
-    points, quads = runs.grid_mesh(side, side, 1.0, 1.0)
+    """Print the memory of four processes for a square, per element, less that of a square of four elements."""
     sizes = {}
-    for name, (p, q) in {"small": runs.grid_mesh(2, 2, 1.0, 1.0), "square": (points, quads)}.items():
-        (folder / f"{name}.k").write_text(runs.body(p, q, name), encoding="ascii")
+    for name, n in (("small", 2), ("square", side)):
+        (folder / f"{name}.k").write_text(turning(n), encoding="ascii")
         words = ["mpirun", "--oversubscribe", "-n", "4", program, f"i={name}.k", f"p:cycles={cycles}", "d=out", "jobid=job"]
         with subprocess.Popen(words, cwd=folder, env=ENVIRONMENT, stdout=subprocess.DEVNULL) as launcher:
             found = follow(launcher)
-        series = found.pop("cycles")
-        sizes[name] = {rank: (most, statistics.median(series[rank][-max(1, len(series[rank]) // 4):]))
-                       for rank, (most, _) in found.items()}
-    for rank in sorted(sizes["square"]):
-        most, late = ((large - small) * 1024 / len(quads)
-                      for large, small in zip(sizes["square"][rank], sizes["small"][rank], strict=True))
-        print(f"process {rank + 1} of 4, {len(quads)} elements: {most:.0f} bytes an element at the peak, {late:.0f} in the cycles")
+        # The last quarter of the time is cycles, most of it.
+        sizes[name] = {rank: (seen[-1][0], statistics.median(present for _, present in seen[-len(seen) // 4:]))
+                       for rank, seen in found.items()}
+    for rank, seen in sorted(sizes["square"].items()):
+        most, late = ((large - small) * 1024 / side**2 for large, small in zip(seen, sizes["small"][rank], strict=True))
+        print(f"process {rank + 1} of 4, {side**2} elements: {most:.0f} bytes an element at the peak, {late:.0f} in the cycles")
 
 
 def main():
@@ -119,7 +120,7 @@ def main():
     parser.add_argument("--program", type=lambda path: str(pathlib.Path(path).resolve()), required=True)
     parser.add_argument("--out", type=pathlib.Path, required=True)
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--cycles", type=int, default=400)
+    parser.add_argument("--cycles", type=int, default=1000)
     parser.add_argument("--memory", type=int, default=LARGE, metavar="SIDE", help="elements along the square's side, 0: none")
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)

@@ -14,8 +14,9 @@ def collision_grids(level):
     rows = 4 * n
     plate = Grid(spaced((0.0, 0.025, 20 * n), (0.025, 0.065, 16 * n)),
                  spaced((-0.005, 0.0, rows)))
+    beyond = 10001 if level <= 8 else 1000001
     projectile = Grid(spaced((0.0, 0.020, 24 * n)), spaced((0.0005, 0.0055, rows)),
-                      first_node=10001, first_element=10001)
+                      first_node=beyond, first_element=beyond)
     return plate, projectile
 
 
@@ -25,8 +26,8 @@ def collision(level=1, ctype=2, ngauss=4, exchanged=False):
     `level` = N_r >= 1 (1 to 4 in the paper): cells and steps times N_r, step and penalty over N_r.
     `exchanged`: the plate is the slave.
     """
-    if level < 1 or level > 8:
-        raise ValueError("level of the collision scene: 1 to 8")
+    if level < 1 or level > 64:
+        raise ValueError("level of the collision scene: 1 to 64")
     plate, projectile = collision_grids(level)
     steps = 10000 * level
     step = 100.0e-9 / level
