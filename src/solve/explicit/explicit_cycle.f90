@@ -2,26 +2,25 @@
 !> What one thread does in each explicit cycle: contact and loads before the elements; time, step
 !> and health after them.
 module explicit_cycle_m
-  use clock_m, only : lap, share_contact, phase_nodes
+  use behind_ties_m, only : hear_tie, settle_with_tie
   use boundary_account_m, only : count_boundary_loads, count_boundary_motions, &
     count_boundary_bodies, count_groups
+  use clock_m, only : lap, share_contact, phase_nodes
   use constraints_m, only : fix_nodes, update_activity, is_active
-  use contact_choosing_m, only : is_judged
   use contact_account_m, only : plan_looks, follow_contact
-  use behind_ties_m, only : hear_tie, settle_with_tie
+  use contact_choosing_m, only : is_judged
   use contact_inertia_m, only : weigh_contacts
   use contact_pressing_m, only : pressing_t, press_contacts
-  use cycle_loads_m, only : apply_loads
-  use history_tables_m, only : table_secforc
-  use erosion_account_m, only : settle_elements, release_nodes
-  use early_end_m, only : find_early_end
-  use errors_m, only : error_t
-  use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
-  use explicit_memory_m, only : write_restarts, take_up_steps
   use contacts_m, only : told_as, penalty_implicit
-  use explicit_prescribed_m, only : find_prescribed_velocities, impose_prescribed, &
-    prescribed_work
+  use cycle_loads_m, only : apply_loads
+  use early_end_m, only : find_early_end
+  use erosion_account_m, only : settle_elements, release_nodes
+  use errors_m, only : error_t
+  use explicit_memory_m, only : write_restarts, take_up_steps
+  use explicit_prescribed_m, only : find_prescribed_velocities, impose_prescribed, prescribed_work
+  use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
   use health_m, only : tile_check_t, are_sound, check_step, check_cycle
+  use history_tables_m, only : table_secforc
   use interface_m, only : apply_contact
   use kinds_m, only : wp
   use mass_growth_m, only : grow_state_masses
@@ -32,23 +31,23 @@ module explicit_cycle_m
   use node_damping_m, only : follow_damping
   use node_motion_m, only : leap_t, make_leap
   use outlines_m, only : follow_outlines
-  use rigid_motion_m, only : solve_rigids, rigid_work, move_rigids
   use progress_m, only : follow_progress
   use rank_borders_m, only : borders_t, plan_borders, plan_whole
   use rank_exchange_m, only : parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, &
     exchange_failures, exchange_erosion, exchange_limits, exchange_history, gather_motion, &
     gather_state, judge_elements
   use rank_shares_m, only : shares_t, share_out
-  use section_cuts_m, only : cut_sections
   use ranks_m, only : ranks_t, share_error
   use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
   use restart_plan_m, only : wanted_files
   use resting_tiles_m, only : rest_t, plan_rest, follow_rest
+  use rigid_motion_m, only : solve_rigids, rigid_work, move_rigids
+  use section_cuts_m, only : cut_sections
   use skew_motion_m, only : remember_common, move_common
   use state_m, only : state_t
-  use wall_motion_m, only : count_walls
   use tile_forces_m, only : sum_special_forces
   use time_step_m, only : step_plan_t, start_steps, next_step, is_last, follow_springs
+  use wall_motion_m, only : count_walls
   implicit none
   private
   public :: explicit_cycle_t, start_cycles, begin_cycle, prepare_leap, exchange_tiles, &
