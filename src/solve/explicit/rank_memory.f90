@@ -18,6 +18,7 @@ module rank_memory_m
   use ranks_m, only : ranks_t
   use start_m, only : start_state
   use state_m, only : state_t
+  use type_charts_m, only : may_change
   implicit none
   private
   public :: start_share, forget_others
@@ -52,7 +53,8 @@ contains
     if (ranks%mine == 0 .or. needs_all(model)) return
     shares = share_out(model%layout, ranks%mine, ranks%n)
     others = others_of(model, shares, ranks)
-    deallocate (model%mesh%element_id, model%layout%element_slot)
+    deallocate (model%mesh%element_id)
+    if (.not. allocated(state%cut_force)) deallocate (model%layout%element_slot)
     if (allocated(model%mesh%deck_node)) deallocate (model%mesh%deck_node)
     call forget_integers(others%nodes, 1, model%mesh%node_id)
     call forget_reals(others%nodes, 2, model%mesh%coordinates)
@@ -70,6 +72,7 @@ contains
     logical :: needs
 
     needs = model%erodes .or. allocated(model%conditions%part_damping) &
+      .or. any(may_change(model%contacts)) &
       .or. (abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%masses_stay)
   end function needs_all
 
