@@ -86,6 +86,7 @@ def slide(card_1, card_2=None):
 @pytest.mark.parametrize("deck, words", [
     (slide("2,,,"), ("pen=2.0e5",)),
     (slide("2,,-1.0,"), ("pen=2.0e5",)),
+    (slide("7,,,"), ("pen=-1", "punit=4")),
     (slide("2,11,2.0e5,"), ("ngauss=3",)),
     (slide("2,,2.0e5,", ",,3"), ("pen=0.5",)),
     (slide("2,,2.0e5,", ",,7"), ("punit=1",)),
@@ -114,6 +115,7 @@ def test_blank_or_bad_field_that_the_command_line_gives(slideline, said, tmp_pat
 @pytest.mark.parametrize("card_1, card_2, word, message", [
     ("2,,2.0e5,", ",,0,0.0,101.0", "vdc=101.0", '"{0}101.0" {1}is not a damping in per cent of critical (0 to 100)'),
     ("2,,2.0e5,", ",,\n0.0,1.5", "tfac=1.5", '"{0}1.5" {1}is not a tangential over the normal penalty (above 0, at most 1)'),
+    ("2,,-1.0,", None, "pen=-1.0", '"{0}-1.0" {1}is not a penalty (more than 0)'),
     ("9,,2.0e5,", None, "ctype=9", '"{0}9" {1}is not a contact type (1 classical NTS, 2 NTS-AR'),
     ("2,11,2.0e5,", None, "ngauss=11", '"{0}11" {1}is not a number of Gauss points from 1 to 10'),
     ("2,,2.0e5,", ",,5", "punit=5", '"{0}5" {1}is not a unit of the penalty (0 N/m per contact node, 1 N/m^2'),

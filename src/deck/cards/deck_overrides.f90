@@ -18,6 +18,8 @@ module deck_overrides_m
     'TARGET']
   !> Those that may be 0.
   character(6), parameter :: zero_names(5) = [character(6) :: 'VDC', 'FS', 'FD', 'DC', 'VC']
+  !> PUNIT 4 has a meaning of PEN below 0; interfaces check the sign with their unit.
+  character(6), parameter :: signed_names(1) = [character(6) :: 'PEN']
   character(6), parameter :: run_names(3) = [character(6) :: 'ENDTIM', 'DT', 'TSSFAC']
 
   !> One override.
@@ -104,15 +106,25 @@ contains
     case default
       call read_real(item%text, value, status)
       if (status == number_good) then
+        if (any(signed_names == item%name)) value = abs(value)
         if (value >= smallest_value .and. value <= largest_value) return
         if (any(zero_names == item%name) .and. .not. abs(value) > 0.0_wp) return
       end if
       call line_error(deck, 0, '"'//text//'" on the command line: the value is not a number ' &
-        //trim(merge('of 0 or more', 'above 0     ', any(zero_names == item%name))) &
-        //' (numbers reach 1e40)')
+        //range_of(item%name)//' (numbers reach 1e40)')
       item%text = ''
     end select
   end subroutine check_number
+
+  !> What numbers a name takes.
+  pure function range_of(name) result(text)
+    character(*), intent(in) :: name
+    character(:), allocatable :: text
+
+    text = 'above 0'
+    if (any(zero_names == name)) text = 'of 0 or more'
+    if (any(signed_names == name)) text = 'other than 0'
+  end function range_of
 
   !> Value text for an interface (0: the run), the last one given; empty when there is none.
   pure function override_text(overrides, name, interface) result(text)

@@ -71,7 +71,8 @@ contains
       if (estimate <= contact%target) return
       call better_type(contact%scene, contact%contact_type, estimate, contact%target, wanted, &
         expected)
-      if (.not. expected < estimate) wanted = 0
+      ! Round-off may set the share of a type of itself below 1.
+      if (wanted == contact%contact_type .or. .not. expected < estimate) wanted = 0
     end associate
   end function wanted_type
 
