@@ -325,7 +325,7 @@ from slideline_tools.studies import __main__ as command
 from slideline_tools.studies.framework import registry
 registry.load = lambda name: tiny_study.STUDY
 registry.STUDIES["tiny"] = "tiny"
-sys.exit(command.main(["tiny", "--program", {program!r}, "--folder", {folder!r}]))
+sys.exit(command.main(["tiny", "--program", {program!r}, "--folder", {folder!r}, "-j", "1"]))
 """
 
 
