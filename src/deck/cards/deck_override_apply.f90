@@ -199,7 +199,7 @@ contains
         //to_text(entry%sides(1))//','//to_text(entry%sides(2))//','//to_text(c%contact_type) &
         //','//to_text(c%n_gauss)//','//exact_text(c%penalty)//friction(1)//new_line('a') &
         //exact_text(c%birth)//','//exact_text(c%death)//','//to_text(c%penalty_unit)//',' &
-        //exact_text(c%master_penalty)//','//exact_text(entry%per_cent)//',' &
+        //exact_text(max(c%master_penalty, 0.0_wp))//','//exact_text(entry%per_cent)//',' &
         //to_text(merge(1, 0, c%strict))//','//to_text(c%search_interval)//',' &
         //exact_text(merge(c%tie_reach, c%search_depth, is_tied(c)))//new_line('a')//friction(2)
     end associate

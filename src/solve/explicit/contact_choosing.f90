@@ -83,40 +83,40 @@ contains
     real(wp), intent(in) :: element_limit !! s
     type(state_t), intent(inout) :: state
     type(log_t), intent(inout) :: log
-    type(contact_t) :: contact(1)
-    type(contact_state_t) :: memory(1)
+    type(contact_t) :: contact
+    type(contact_state_t) :: memory
     type(log_t) :: silence
     character(:), allocatable :: text
     real(wp) :: scale
     integer :: former
 
     former = model%contacts(i)%contact_type
-    contact(1) = model%contacts(i)
-    contact(1)%contact_type = new_type
+    contact = model%contacts(i)
+    contact%contact_type = new_type
     silence%is_mute = .true.
-    call start_contact(contact(1), model, silence, memory(1))
-    call take_account(contact(1)%penalty_unit == penalty_share, state%contacts(i), memory(1))
-    scale = bearable_scale(contact, memory, element_limit, state)
+    call start_contact(contact, model, silence, memory)
+    call take_account(contact%penalty_unit == penalty_share, state%contacts(i), memory)
+    scale = bearable_scale(model%contacts, i, contact, memory, element_limit, state)
     associate (watched => state%estimates(i)%watched)
-      text = 'interface '//to_text(contact(1)%id)//', cycle '//to_text(state%cycle)//', time ' &
+      text = 'interface '//to_text(contact%id)//', cycle '//to_text(state%cycle)//', time ' &
         //to_text(state%time)//': the estimate, '//percent(sqrt(watched(1)), sqrt(watched(2))) &
         //' since '//name_of(model%contacts(i))//' was taken, is above ' &
-        //percent(contact(1)%target, 1.0_wp)
+        //percent(contact%target, 1.0_wp)
       watched = 0.0_wp
     end associate
-    if (scale < 1.0_wp .and. contact(1)%penalty_unit /= penalty_share) then
+    if (scale < merge(tiny(scale), 1.0_wp, contact%penalty_unit == penalty_share)) then
       call write_log(log, text//'; it stays, the step does not bear the springs of ' &
-        //name_of(contact(1)))
+        //name_of(contact))
       return
     end if
-    if (scale < 1.0_wp) call scale_penalties(scale, memory(1))
-    state%contacts(i) = memory(1)
+    if (scale < 1.0_wp) call scale_penalties(scale, memory)
+    state%contacts(i) = memory
     state%estimates(i)%contact_type = new_type
     model%contacts(i)%contact_type = new_type
     call weigh_contacts(model, state)
     call write_log(log, text//'; contact is open and goes on with ' &
-      //name_of(contact(1))//', whose published estimate is ' &
-      //percent(published_share(contact(1)%scene, former, new_type), 1.0_wp)//' of that')
+      //name_of(contact)//', whose published estimate is ' &
+      //percent(published_share(contact%scene, former, new_type), 1.0_wp)//' of that')
   end subroutine change_type
 
   !> The type of an interface, for the log.
@@ -129,17 +129,32 @@ contains
     name = kind_text(formulation%kind)
   end function name_of
 
-  !> The part of the penalty that the present step bears, 1 for all of it.
-  function bearable_scale(contact, memory, element_limit, state) result(scale)
-    type(contact_t), intent(in) :: contact(1)
-    type(contact_state_t), intent(in) :: memory(1)
+  !> The part of its penalty that the present step bears if interface `i` becomes `contact`, beside
+  !> the springs of others on its nodes: 1 for all of it, 0 where they leave no room.
+  function bearable_scale(contacts, i, contact, memory, element_limit, state) result(scale)
+    type(contact_t), intent(in) :: contacts(:)
+    integer, intent(in) :: i
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
     real(wp), intent(in) :: element_limit !! s
     type(state_t), intent(in) :: state
-    real(wp) :: scale
-    type(spring_bound_t) :: bounds(1)
+    real(wp), parameter :: round_off = 1.0e-9_wp
+    real(wp) :: scale, scales(size(contacts))
+    type(contact_t) :: all(size(contacts))
+    type(contact_state_t) :: memories(size(contacts))
+    type(spring_bound_t) :: bounds(size(contacts))
 
-    call bound_springs(contact, state%contact_mass, memory, [1.0_wp], bounds)
-    scale = min(fitting_scale(state%dt, element_limit, bounds(1)), 1.0_wp)
+    all = contacts
+    all(i) = contact
+    memories = state%contacts
+    memories(i) = memory
+    scales = 1.0_wp
+    call bound_springs(all, state%contact_mass, memories, scales, bounds)
+    scale = min(fitting_scale(state%dt, element_limit, bounds(i)), 1.0_wp)
+    if (.not. scale < 1.0_wp) return
+    scales(i) = scale
+    call bound_springs(all, state%contact_mass, memories, scales, bounds)
+    if (fitting_scale(state%dt, element_limit, bounds(i)) < 1.0_wp - round_off) scale = 0.0_wp
   end function bearable_scale
 
   !> What an interface has done so far stays in its account, and the penalty that the program gave.
