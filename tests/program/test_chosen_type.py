@@ -273,9 +273,10 @@ def test_changed_type_has_the_same_bits(slideline, pressed_twice, tmp_path):
         assert told[0] == told[1] and len(told[0]) == 2
 
 
-@pytest.mark.parametrize("scene, words", [({"target": 0.9}, ()), ({"target": 0.0}, ()), ({"ctype": 0}, ("ctype=1",))])
+@pytest.mark.parametrize("scene, words", [({"target": 0.9}, ()), ({"target": 0.0}, ()), ({"ctype": 0}, ("ctype=1",)),
+                                          ({"ctype": 5, "columns": (3, 5)}, ())])
 def test_type_stays(pressed_twice, scene, words):
-    """Below the target, and where the deck or the command line names it."""
+    """Below the target, where the deck or the command line names it, and above the target with the best that there is."""
     assert not re.search(CHANGE, pressed_twice("out", "dt=2e-3", *words, **scene))
 
 
