@@ -287,3 +287,14 @@ def test_penalty_of_the_next_type_fits_the_step(pressed_twice):
     most = float(re.search(r"interface 1: penalty (\S+) N/m per slave node", log)[1])
     stiff = pressed_twice("stiff", "dt=2e-3", pen=3.0 * most)
     assert "it stays, the step does not bear the springs of NTS-mAR (type 5)" in stiff and not re.search(CHANGE, stiff)
+
+
+def test_springs_of_other_interfaces_count(pressed_twice):
+    """A penalty that the step bears alone but not beside an interface on the same nodes keeps the type."""
+    most = float(re.search(r"interface 1: penalty (\S+) N/m per slave node", pressed_twice("share", "dt=2e-3", pen=1.0, punit=3))[1])
+    pen = 1.6 * most
+    assert re.search(CHANGE, pressed_twice("alone", "dt=2e-3", pen=pen))
+    other = ("*CONTACT_2D_SLIDELINE", (-1, -2, 5, None, pen))
+    beside = pressed_twice("beside", "dt=2e-3", pen=pen, more=[other])
+    assert "interface 1, cycle" in beside and "it stays, the step does not bear the springs" in beside
+    assert not re.search(CHANGE, beside)

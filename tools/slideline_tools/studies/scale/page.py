@@ -83,8 +83,8 @@ with contact (dashed).
 
 - **Memory.** The first process holds the whole model: here {bytes_element:.0f} bytes an element at the peak, while the deck is read (two sizes of the square on one process). On a machine
   with 4 GB a process that is {memory_limit:.1f} million elements; at 1e8 it would need {memory_large:.0f} GB. The others read the deck as well, without keeping its text, and give
-  up what they do not step: of four processes with a square of a million elements the second took 156 bytes an element at the peak and 78 in the cycles
-  (the system's VmHWM and VmRSS, taken by hand; all took 241 and 217 before). Beyond, only the first may read the deck and hand out tiles. The lists of
+  up what they do not step: of four processes with a square of a million elements the second took 173 bytes an element at the peak and 78 in the cycles
+  (`tests/bench/ranks.sh`; by hand all took 241 and 217 before). Beyond, only the first may read the deck and hand out tiles. The lists of
   border slots (`rank_borders`) already name nothing but what neighbours share.
 - **Start.** Every process reads the whole deck and renumbers it: {start_element:.1f} microseconds of processor time an element here, {start_large:.0f} s at 1e8, whatever p.
 - **Contact** is computed by all. It has to be shared by ranges of slave segments, with forces added range by range, as soon as t_c n nears t_e N/p: on 1,024 processes it is {contact_share:.1f} times that at 1e6 elements and {contact_large:.2f} times at 1e8.
