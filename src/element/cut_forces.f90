@@ -1,8 +1,10 @@
 ! SPDX-License-Identifier: MIT
 !> Forces of single elements on their corners, which the step adds up before anyone can ask for
-!> them: where a history wants them their chunks are stepped a second time, on a copy.
+!> them: where a history wants them their chunks are stepped a second time, and then are what they
+!> were.
 module cut_forces_m
   use block_state_m, only : block_state_t
+  use chunk_memory_m, only : take_chunk, put_chunk
   use element_chunk_m, only : element_chunk_t
   use element_dispatch_m, only : advance_chunk
   use eroding_tiles_m, only : add_eroding_tile_forces, take_nodes
@@ -13,101 +15,149 @@ module cut_forces_m
   use round_chunk_m, only : round_chunk_t
   implicit none
   private
-  public :: find_cut_forces
+  public :: find_cut_forces, keep_cut_chunks
 
 contains
 
   !> What the elements of all cross sections put on their corners: internal force with that of
-  !> hourglass control, bulk viscosity and stiffness damping, as the step from `elements` gives it.
-  subroutine find_cut_forces(model, chunks, motion, times, elements, force)
+  !> hourglass control, bulk viscosity and stiffness damping, as the step from `elements` gives it,
+  !> or where that is over the step from `before`.
+  subroutine find_cut_forces(model, chunks, motion, times, elements, force, before)
     type(model_t), intent(in) :: model
     integer, intent(in) :: chunks(2)                   !! first and last one that are known
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node)
     real(wp), intent(in) :: times(2)                   !! of the motion, and the step that led there
-    type(block_state_t), intent(in) :: elements        !! before that step
+    type(block_state_t), intent(inout) :: elements     !! on return as they were
     real(wp), intent(inout) :: force(:, :)             !! (8, n) x, y of four corners of each; it
                                                        !! stays of elements in other chunks
-    type(block_state_t) :: copy
-    type(element_chunk_t) :: chunk
-    type(round_chunk_t) :: round
-    real(wp), allocatable :: of_slots(:, :)
-    logical, allocatable :: is_cut(:)
-    integer :: i_chunk, i, first, nodes(4, chunk_size)
+    type(block_state_t), intent(inout), optional :: before(:) !! of `keep_cut_chunks`
+    type(block_state_t) :: present_chunk
+    real(wp), allocatable :: of_slots(:, :, :) !! of the chunks with cut elements
+    integer, allocatable :: list(:), place(:)
+    integer :: i
 
-    call mark_chunks(model, is_cut)
-    copy = elements
-    allocate (of_slots(8, model%layout%n_slot))
-    do i_chunk = chunks(1), chunks(2)
-      if (.not. is_cut(i_chunk)) cycle
-      first = (i_chunk - 1)*chunk_size + 1
-      nodes = model%layout%slot_nodes(:, first:first + chunk_size - 1)
-      if (model%erodes) call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
-        elements%erosion%status(first:first + chunk_size - 1), nodes)
-      call advance_chunk(model, i_chunk, nodes, motion, times(2), copy, chunk, round)
-      do i = 1, model%layout%chunk_elements(i_chunk)
-        of_slots(:, first + i - 1) = corner_forces(model%is_round, i, chunk, round)
-      end do
+    call list_chunks(model, list, place)
+    allocate (of_slots(8, chunk_size, size(list)))
+    do i = 1, size(list)
+      if (list(i) < chunks(1) .or. list(i) > chunks(2)) cycle
+      call take_chunk(list(i), elements, present_chunk)
+      if (present(before)) call put_chunk(list(i), before(i), elements)
+      call step_chunk(model, list(i), motion, times(2), elements, of_slots(:, :, i))
+      call put_chunk(list(i), present_chunk, elements)
+      if (model%erodes) then
+        call clear_gone(model, list(i), motion, times, elements, of_slots(:, :, i))
+        call put_chunk(list(i), present_chunk, elements)
+      end if
     end do
-    if (model%erodes) call clear_gone(model, is_cut, chunks, motion, times, elements, of_slots)
-    call take_slots(model, chunks, of_slots, force)
+    call take_slots(model, chunks, place, of_slots, force)
   end subroutine find_cut_forces
 
-  !> Elements that have left the mesh, or leave it in this step, do not push.
-  subroutine clear_gone(model, is_cut, chunks, motion, times, elements, of_slots)
+  !> Copy the chunks that have elements of cross sections, before a step.
+  subroutine keep_cut_chunks(model, elements, kept)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: is_cut(:)
-    integer, intent(in) :: chunks(2)
+    type(block_state_t), intent(inout) :: elements     !! stay as they are
+    type(block_state_t), allocatable, intent(inout) :: kept(:)
+    integer, allocatable :: list(:), place(:)
+    integer :: i
+
+    call list_chunks(model, list, place)
+    if (.not. allocated(kept)) allocate (kept(size(list)))
+    do i = 1, size(list)
+      call take_chunk(list(i), elements, kept(i))
+    end do
+  end subroutine keep_cut_chunks
+
+  !> Corner forces of the elements of a chunk.
+  subroutine step_chunk(model, i_chunk, motion, dt, elements, of_slots)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_chunk
+    real(wp), intent(in), contiguous :: motion(:, :)
+    real(wp), intent(in) :: dt
+    type(block_state_t), intent(inout) :: elements
+    real(wp), intent(inout) :: of_slots(8, chunk_size)
+    type(element_chunk_t) :: chunk
+    type(round_chunk_t) :: round
+    integer :: i, first, nodes(4, chunk_size)
+
+    first = (i_chunk - 1)*chunk_size + 1
+    nodes = model%layout%slot_nodes(:, first:first + chunk_size - 1)
+    if (model%erodes) call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
+      elements%erosion%status(first:first + chunk_size - 1), nodes)
+    call advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk, round)
+    do i = 1, model%layout%chunk_elements(i_chunk)
+      of_slots(:, i) = corner_forces(model%is_round, i, chunk, round)
+    end do
+  end subroutine step_chunk
+
+  !> Elements that have left the mesh, or leave it in this step, do not push.
+  subroutine clear_gone(model, i_chunk, motion, times, elements, of_slots)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_chunk
     real(wp), intent(in), contiguous :: motion(:, :)
     real(wp), intent(in) :: times(2)
-    type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: of_slots(:, :)
-    type(block_state_t) :: copy
+    type(block_state_t), intent(inout) :: elements
+    real(wp), intent(inout) :: of_slots(8, chunk_size)
     real(wp), allocatable :: force(:, :)
-    integer :: i_chunk, slot
+    integer :: i
 
-    copy = elements
     allocate (force(2, model%layout%n_local))
-    do i_chunk = chunks(1), chunks(2)
-      if (.not. is_cut(i_chunk)) cycle
-      call add_eroding_tile_forces(model, tile_t(first_chunk=i_chunk, last_chunk=i_chunk), motion, &
-        times, copy, force)
-      do slot = (i_chunk - 1)*chunk_size + 1, i_chunk*chunk_size
-        if (copy%erosion%status(slot) /= stays) of_slots(:, slot) = 0.0_wp
-      end do
+    call add_eroding_tile_forces(model, tile_t(first_chunk=i_chunk, last_chunk=i_chunk), motion, &
+      times, elements, force)
+    do i = 1, chunk_size
+      if (elements%erosion%status((i_chunk - 1)*chunk_size + i) /= stays) of_slots(:, i) = 0.0_wp
     end do
   end subroutine clear_gone
 
-  !> Chunks with elements of cross sections.
-  pure subroutine mark_chunks(model, is_cut)
+  !> Chunks with elements of cross sections, each once, rising.
+  pure subroutine list_chunks(model, list, place)
     type(model_t), intent(in) :: model
-    logical, allocatable, intent(out) :: is_cut(:)
-    integer :: i
+    integer, allocatable, intent(out) :: list(:)
+    integer, allocatable, intent(out) :: place(:) !! (n_chunk) in the list, 0 = it has none
+    integer :: i, k, n
 
-    allocate (is_cut(model%layout%n_chunk), source=.false.)
+    allocate (place(model%layout%n_chunk), source=0)
     associate (sections => model%controls%output%cross_sections)
       do i = 1, size(sections)
-        is_cut((model%layout%element_slot(sections(i)%elements) - 1)/chunk_size + 1) = .true.
+        do k = 1, size(sections(i)%elements)
+          place(chunk_of(model, sections(i)%elements(k))) = 1
+        end do
       end do
     end associate
-  end subroutine mark_chunks
+    allocate (list(sum(place)))
+    n = 0
+    do i = 1, size(place)
+      if (place(i) == 0) cycle
+      n = n + 1
+      place(i) = n
+      list(n) = i
+    end do
+  end subroutine list_chunks
+
+  !> The chunk that an element is in.
+  pure integer function chunk_of(model, element)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: element
+
+    chunk_of = (model%layout%element_slot(element) - 1)/chunk_size + 1
+  end function chunk_of
 
   !> Forces of the elements of all sections, one section behind the other.
-  pure subroutine take_slots(model, chunks, of_slots, force)
+  pure subroutine take_slots(model, chunks, place, of_slots, force)
     type(model_t), intent(in) :: model
-    integer, intent(in) :: chunks(2)
-    real(wp), intent(in) :: of_slots(:, :)
+    integer, intent(in) :: chunks(2), place(:)
+    real(wp), intent(in) :: of_slots(:, :, :)
     real(wp), intent(inout) :: force(:, :)
-    integer :: i, k, n
+    integer :: i, k, n, i_chunk
 
     n = 0
     do i = 1, size(model%controls%output%cross_sections)
       associate (elements => model%controls%output%cross_sections(i)%elements)
         do k = 1, size(elements)
           n = n + 1
-          associate (slot => model%layout%element_slot(elements(k)))
-            if (slot > (chunks(1) - 1)*chunk_size .and. slot <= chunks(2)*chunk_size) &
-              force(:, n) = of_slots(:, slot)
-          end associate
+          i_chunk = chunk_of(model, elements(k))
+          if (i_chunk < chunks(1) .or. i_chunk > chunks(2)) cycle
+          force(:, n) = of_slots(:, model%layout%element_slot(elements(k)) &
+            - (i_chunk - 1)*chunk_size, place(i_chunk))
         end do
       end associate
     end do

@@ -2,10 +2,11 @@
 !> Cross sections whose forces the histories tell (secforc).
 module cross_sections_m
   use kinds_m, only : long
+  use layout_m, only : layout_t
   use sorting_m, only : sorted_order
   implicit none
   private
-  public :: cross_section_t, find_edges, n_cut
+  public :: cross_section_t, find_edges, mark_corners, n_cut
 
   !> One *DATABASE_CROSS_SECTION_SET.
   type :: cross_section_t
@@ -14,6 +15,7 @@ module cross_sections_m
     integer, allocatable :: nodes(:)    !! node indices, each once
     integer, allocatable :: elements(:) !! element indices, each once; by rising slot once there is
                                         !! a layout
+    logical, allocatable :: is_corner(:, :) !! (4, elements) corners that are nodes of it
     integer, allocatable :: edges(:, :) !! (2, n) edges of the elements with both nodes in it
   end type cross_section_t
 
@@ -61,5 +63,24 @@ contains
     end do
     section%edges = edges(:, :k)
   end subroutine find_edges
+
+  !> Find the corners of the elements that are nodes of the section, once there is a layout.
+  subroutine mark_corners(layout, n_node, section)
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: n_node
+    type(cross_section_t), intent(inout) :: section
+    logical, allocatable :: is_in(:)
+    integer :: i, k
+
+    allocate (is_in(n_node), source=.false.)
+    is_in(section%nodes) = .true.
+    allocate (section%is_corner(4, size(section%elements)))
+    do i = 1, size(section%elements)
+      do k = 1, 4
+        section%is_corner(k, i) = &
+          is_in(layout%slot_nodes(k, layout%element_slot(section%elements(i))))
+      end do
+    end do
+  end subroutine mark_corners
 
 end module cross_sections_m

@@ -3,6 +3,7 @@
 module renumber_m
   use boundary_rows_m, only : list_boundaries
   use controls_m, only : is_asked
+  use cross_sections_m, only : mark_corners
   use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch
   use history_tables_m, only : table_bndout
   use kinds_m, only : long
@@ -207,6 +208,7 @@ contains
         section%edges(2, :) = new_index(section%edges(2, :))
         section%elements = section%elements(sorted_order(int( &
           model%layout%element_slot(section%elements), long)))
+        call mark_corners(model%layout, model%mesh%n_node, section)
       end associate
     end do
   end subroutine renumber_sections

@@ -46,7 +46,7 @@ contains
   end subroutine start_schedule
 
   !> Whether this output was asked for at all.
-  pure function is_active(schedule) result(active)
+  elemental function is_active(schedule) result(active)
     type(schedule_t), intent(in) :: schedule
     logical :: active
 

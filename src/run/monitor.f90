@@ -11,7 +11,8 @@ module monitor_m
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
-  use output_schedule_m, only : schedule_t, start_schedule, is_due, mark_written
+  use output_schedule_m, only : schedule_t, start_schedule, is_active, is_due, &
+    mark_written
   use progress_m, only : progress_t, start_progress
   use ranks_m, only : ranks_t
   use restart_plan_m, only : restarts_t, plan_restarts
@@ -34,6 +35,7 @@ module monitor_m
   type :: monitor_t
     type(schedule_t) :: plot
     type(schedule_t) :: tables(n_table) !! by the `table_` constants; never due: what goes with plot
+    integer, allocatable :: scheduled(:) !! those that may be due
     type(results_file_t) :: results
     type(histories_t) :: histories
     type(snapshot_t) :: snapshot
@@ -111,6 +113,7 @@ contains
           interval = plan%plot
         call start_schedule(monitor%tables(k), interval, model%curves, end_time)
       end do
+      monitor%scheduled = pack([(k, k=1, n_table)], is_active(monitor%tables))
     end associate
   end subroutine start_schedules
 
@@ -120,16 +123,18 @@ contains
     real(wp), intent(in) :: time, dt
     logical, intent(in) :: everything
     type(due_t) :: due
-    integer :: k
+    integer :: i
 
-    due%plot = monitor%has_plot .and. (everything .or. is_due(monitor%plot, time, dt))
-    do k = 1, n_table
-      if (history_tables(k)%asked == asked_by_states) then
-        due%tables(k) = due%plot
-      else
-        due%tables(k) = everything .or. is_due(monitor%tables(k), time, dt)
-      end if
-    end do
+    if (monitor%has_plot) due%plot = everything .or. is_due(monitor%plot, time, dt)
+    if (everything) then
+      due%tables = .true.
+    else
+      do i = 1, size(monitor%scheduled)
+        due%tables(monitor%scheduled(i)) = is_due(monitor%tables(monitor%scheduled(i)), time, dt)
+      end do
+    end if
+    if (everything .or. due%plot) where (history_tables%asked == asked_by_states) &
+      due%tables = due%plot
   end function find_due
 
   !> Whether anything is due.

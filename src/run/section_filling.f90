@@ -17,20 +17,16 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
-    logical, allocatable :: is_in(:)
     integer :: i, first
 
     if (.not. allocated(state%cut_force)) return
-    allocate (is_in(model%mesh%n_node), source=.false.)
     first = 1
     associate (sections => model%controls%output%cross_sections)
       if (.not. allocated(snapshot%sections)) allocate (snapshot%sections(size(sections)))
       do i = 1, size(sections)
         call find_centroid(model, sections(i), state%motion, snapshot%sections(i))
-        is_in(sections(i)%nodes) = .true.
-        call add_forces(model, sections(i), is_in, state%motion, first, state%cut_force, &
+        call add_forces(model, sections(i), state%motion, first, state%cut_force, &
           snapshot%sections(i))
-        is_in(sections(i)%nodes) = .false.
         first = first + size(sections(i)%elements)
       end do
     end associate
@@ -70,10 +66,9 @@ contains
   end subroutine find_centroid
 
   !> Sum of the forces on the nodes of the section, and their moment about its centroid.
-  pure subroutine add_forces(model, section, is_in, motion, first, force, result)
+  pure subroutine add_forces(model, section, motion, first, force, result)
     type(model_t), intent(in) :: model
     type(cross_section_t), intent(in) :: section
-    logical, intent(in) :: is_in(:)           !! (n_node) nodes of the section
     real(wp), intent(in) :: motion(:, :)      !! (4, n_node)
     integer, intent(in) :: first              !! of its elements in `force`
     real(wp), intent(in) :: force(:, :)       !! (8, n)
@@ -85,7 +80,7 @@ contains
       associate (nodes => model%layout%slot_nodes(:, &
         model%layout%element_slot(section%elements(i))))
         do k = 1, 4
-          if (.not. is_in(nodes(k))) cycle
+          if (.not. section%is_corner(k, i)) cycle
           f = force(2*k - 1:2*k, first + i - 1)
           arm = place_of(model, motion, nodes(k)) - result%centroid
           result%force = result%force + f

@@ -47,10 +47,10 @@ KEPT = {
         "results": "times of its states are kept", "snapshot": "filled anew before it is written", "rows": "of the mesh",
         "log": "of each run", "told_radii": "of its log", "clock": "of each run", "progress": "of each run",
         "restarts": "n_dump is kept", "has_plot": "from the deck", "only_checks": "of a check",
-        "ranks": "of each run", "tables": "kept one by one"}),
+        "ranks": "of each run", "tables": "kept one by one", "scheduled": "from the deck"}),
     "explicit_cycle_t": ("solve/explicit/explicit_cycle.f90", "solve/explicit/explicit_memory.f90", "", {
         "writes": "set in each cycle", "finished": "not when a file is written",
-        "last": "found again", "judges": "found again", "plots": "of the run that was asked", "due": "set in each cycle",
+        "last": "found again", "judges": "found again", "may_judge": "from the deck", "plots": "of the run that was asked", "due": "set in each cycle",
         "leap": "made in each cycle", "sums": "formed in each cycle", "rest": "found anew in the first cycles", "refines": "from the deck", "presses": "from the deck", "pressing": "formed anew in each cycle", "common": "made in each cycle", "rates": "asked anew in the first cycle",
         "checks": "filled in each cycle", "failures": "of each log, counted anew", "steps": "kept as step_plan_t",
         "shares": "of each run", "borders": "of each run", "n_check": "of each run", "parcel": "filled in each cycle", "echoes": "of a second", "asked": "heard in each cycle",
@@ -71,7 +71,7 @@ KEPT = {
         "prescribed": "found in each step"}),
     "trial_t": ("solve/implicit/implicit_forces.f90", "solve/implicit/implicit_memory.f90", "trial%", {
         "motion": "of the step that is over", "elements": "those of the state", "contacts": "those of the state",
-        "slots": "formed with each force"}),
+        "slots": "formed with each force", "before": "used up before a file is written"}),
 }
 #: types of src/state that hold no memory
 WITHOUT_MEMORY = {"contact_scratch_t", "piece_table_t", "snapshot_t", "interface_result_t", "part_result_t", "slave_result_t",

@@ -11,6 +11,9 @@ from conftest import numbers
 from history_decks import HISTORIES, busy_block
 from meshes import Deck, grid
 
+#: what a run that goes on tells of
+GOING_ON = ("secforc", "bndout", "nodfor")
+
 
 def files_of(folder):
     """Name -> bytes of all tables and text files of the histories."""
@@ -200,38 +203,70 @@ def test_rwforc(whole):
     assert table[:, 2].max() > 100.0
 
 
-def bar_in_tension(implicit, asked):
-    """A plastic bar under forces at its end; a section across it, and one with elements at both of its sides."""
+def bar_in_tension(method, asked):
+    """A plastic bar under forces at its end, pressure and motion of a node that begins and ends; a section across it, and
+    one with elements at both of its sides; a group of nodes. Rows come in every other step."""
+    implicit = method != "explicit"
     deck = Deck("bar").control(1.0 if implicit else 0.02, dt=None if implicit else 1.0e-4)
     deck.part(points=4).plastic(1000.0, 1.0e6, 0.3, 2.0e3, 1.0e5)
     nodes = deck.mesh(*grid(12, 4, 1.2, 0.4))
-    deck.fix(nodes[::13], x=1, y=1).curve(1, [(0.0, 0.0), (1.0 if implicit else 0.02, 1.0)])
+    end = 1.0 if implicit else 0.02
+    deck.fix(nodes[::13], x=1, y=1).curve(1, [(0.0, 0.0), (end, 1.0)]).curve(2, [(0.0, 0.0), (end, 0.002)])
     deck.add("*LOAD_NODE_POINT", *[(int(node), 1, 1, 150.0) for node in nodes[12::13]])
+    deck.add("*LOAD_SEGMENT", *[(1, 80.0, 0.0, int(b), int(a)) for a, b in zip(nodes[-13:], nodes[-12:-8])])
+    deck.add("*BOUNDARY_PRESCRIBED_MOTION_NODE", (int(nodes[4]), 2, 2, 2, -1.0, 0, 0.75 * end, 0.25 * end))
     deck.node_set(3, nodes[6::13]).add("*SET_SHELL_LIST", (3,), (7, 19, 31, 43))
     deck.node_set(4, nodes[6:7]).add("*SET_SHELL_LIST", (4,), (7, 6))
-    deck.add("*DATABASE_CROSS_SECTION_SET", (3, 0, 0, 3), (4, 0, 0, 4))
+    deck.add("*DATABASE_CROSS_SECTION_SET", (3, 0, 0, 3), (4, 0, 0, 4)).add("*DATABASE_NODAL_FORCE_GROUP", (3, 0))
     if asked:
-        deck.add("*DATABASE_SECFORC", (0.1 if implicit else 1.0e-3,))
+        deck.add(more_histories(method))
     if implicit:
-        deck.add("*CONTROL_IMPLICIT_GENERAL", (1, 0.1)).add("*CONTROL_IMPLICIT_SOLUTION", (12, 0, 30, 0.0, 1.0e-22))
-    return deck.add("*DATABASE_BINARY_D3DUMP", (4 if implicit else 100,)).text()
+        deck.add("*CONTROL_IMPLICIT_GENERAL", (1, 0.05)).add("*CONTROL_IMPLICIT_SOLUTION", (12, 0, 30, 0.0, 1.0e-22))
+    if method == "dynamic":
+        deck.add("*CONTROL_IMPLICIT_DYNAMICS", (1, 0.6, 0.38))
+    return deck.add("*DATABASE_BINARY_D3DUMP", (3 if implicit else 50,)).text()
 
 
-@pytest.mark.parametrize("implicit", (True, False))
-def test_sections_of_a_run_that_goes_on(exe, tmp_path, implicit):
-    """Asked for from the start or only then: the rows after the restart have the same bytes."""
+def more_histories(method):
+    """The keywords that ask for them."""
+    interval = 2.0e-3 if method == "explicit" else 0.1
+    return "\n".join(f"*DATABASE_{name.upper()}\n{interval}," for name in GOING_ON)
+
+
+def rows_of(path):
+    """The rows of a table but for the works, and the works."""
+    header, *rows = (line.split(",") for line in path.read_text().splitlines())
+    work = header.index("work") if "work" in header else None
+    return [[value for k, value in enumerate(row) if k != work] for row in rows], np.array(
+        [float(row[work]) for row in rows if work is not None])
+
+
+@pytest.mark.parametrize("method", ("static", "dynamic", "explicit"))
+def test_a_run_that_goes_on_has_the_same_rows(exe, tmp_path, method):
+    """Asked for from the start, from a state without rows and one with them: the same bytes. Asked for only then: the same rows
+    from there on, with works that begin at 0."""
     def go(*arguments):
         done = subprocess.run([exe, *arguments], capture_output=True, text=True, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
 
     for name, asked in (("whole", True), ("without", False)):
-        (tmp_path / "job.k").write_text(bar_in_tension(implicit, asked))
+        (tmp_path / "job.k").write_text(bar_in_tension(method, asked))
         go("i=job.k", f"d={name}")
     assert not (tmp_path / "without" / "job.secforc.csv").exists()
-    expected = (tmp_path / "whole" / "job.secforc.csv").read_bytes().splitlines()
-    (tmp_path / "more.k").write_text(f"*KEYWORD\n*DATABASE_SECFORC\n{0.1 if implicit else 1.0e-3},\n*END\n")
-    go("r=whole/job.dump01.h5")
-    assert (tmp_path / "whole" / "job.secforc.csv").read_bytes().splitlines() == expected
-    go("r=without/job.dump01.h5", "i=more.k")
-    late = (tmp_path / "without" / "job.secforc.csv").read_bytes().splitlines()
-    assert 10 < len(late) < len(expected) and late[1:] == expected[1 - len(late):]
+    (tmp_path / "more.k").write_text(f"*KEYWORD\n{more_histories(method)}\n*END\n")
+    for dump in ("job.dump01.h5", "job.dump02.h5"):
+        (tmp_path / "rest").mkdir()
+        shutil.copy(tmp_path / "whole" / dump, tmp_path / "rest")
+        go(f"r=rest/{dump}")
+        for name in GOING_ON:
+            assert (tmp_path / "rest" / f"job.{name}.csv").read_bytes() == (tmp_path / "whole" / f"job.{name}.csv").read_bytes()
+        shutil.rmtree(tmp_path / "rest")
+    go("r=without/job.dump02.h5", "i=more.k")
+    for name in GOING_ON:
+        expected, works = rows_of(tmp_path / "whole" / f"job.{name}.csv")
+        late, late_works = rows_of(tmp_path / "without" / f"job.{name}.csv")
+        assert 10 < len(late) < len(expected) and late == expected[-len(late):]
+        if method != "explicit" and len(works):
+            rows = len(late) // len({row[0] for row in late})
+            since = works[-len(late):] - np.tile(works[-len(late):][:rows], len(late) // rows)
+            assert late_works == pytest.approx(since, abs=1e-13 * np.abs(works).max()) and np.abs(late_works).max() > 0.0

@@ -21,19 +21,24 @@ module contact_choosing_m
   use type_charts_m, only : may_change, better_type, published_share
   implicit none
   private
-  public :: is_judged, follow_choices
+  public :: judges_at_all, is_judged, follow_choices
 
 contains
 
-  !> Whether this cycle judges interfaces for the choice of their type.
-  pure function is_judged(model, cycle) result(judged)
+  !> Whether a run judges interfaces for the choice of their type.
+  pure function judges_at_all(model) result(judges)
     type(model_t), intent(in) :: model
+    logical :: judges
+
+    judges = any(may_change(model%contacts)) .and. .not. model%erodes
+  end function judges_at_all
+
+  !> Whether a cycle of such a run does.
+  elemental function is_judged(cycle) result(judged)
     integer, intent(in) :: cycle
     logical :: judged
 
-    judged = .false.
-    if (cycle == 0 .or. model%erodes) return
-    if (mod(cycle, judged_each) == 0) judged = any(may_change(model%contacts))
+    judged = cycle > 0 .and. mod(cycle, judged_each) == 0
   end function is_judged
 
   !> Judge all interfaces by what the first process knows, and change types.

@@ -14,7 +14,7 @@ module implicit_m
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
   use implicit_boundary_m, only : count_step_boundaries
-  use implicit_forces_m, only : trial_t, start_trial, net_force, cut_sections
+  use implicit_forces_m, only : trial_t, start_trial, net_force, keep_sections
   use implicit_memory_m, only : implicit_memory_t, write_restarts
   use implicit_prescribed_m, only : prescribe_step
   use implicit_report_m, only : reactions_work, report_step
@@ -100,8 +100,7 @@ contains
     type(implicit_memory_t), intent(inout) :: memory
     type(error_t), allocatable, intent(out) :: error
 
-    call report_step(model, state, memory%step%old_force, last, plots, monitor, memory%written, &
-      error)
+    call report_step(model, state, last, plots, monitor, memory, error)
     if (any_due(memory%written)) memory%ratio = energy_ratio(monitor%snapshot%energies)
   end subroutine report_instant
 
@@ -129,7 +128,7 @@ contains
     last = last .or. asked%stop
     planned = memory%control
     call plan_next(model, last, state, planned, ends)
-    call write_restarts(wanted_files(monitor%restarts, state%cycle, asked%dump, ends, &
+    call write_restarts(model, wanted_files(monitor%restarts, state%cycle, asked%dump, ends, &
       asked%signalled), state, monitor, memory, error)
     last = last .and. .not. allocated(error)
     memory%control = planned
@@ -260,7 +259,7 @@ contains
         attempt)
       call count_step_boundaries(model, trial, attempt, step%time, velocity, state)
     end if
-    call cut_sections(model, attempt%motion, state)
+    call keep_sections(model, state, attempt)
     state%motion(1:2, :) = attempt%motion(1:2, :)
     state%elements = attempt%elements
     state%contacts = attempt%contacts

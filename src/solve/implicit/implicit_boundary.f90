@@ -12,7 +12,7 @@ module implicit_boundary_m
   use state_m, only : state_t
   implicit none
   private
-  public :: count_step_boundaries, find_reactions
+  public :: count_step_boundaries, find_forces
 
 contains
 
@@ -36,7 +36,6 @@ contains
           n = n + 1
           state%group_work(n) = state%group_work(n) + 0.5_wp*sum((before%internal(:, nodes(k)) &
             + after%internal(:, nodes(k)))*after%motion(3:4, nodes(k)))
-          state%group_force(:, n) = after%internal(:, nodes(k))
         end do
       end associate
     end do
@@ -74,15 +73,45 @@ contains
     end associate
   end subroutine count_boundaries
 
-  !> Reactions of prescribed motion at the present instant, into their rows.
+  !> Forces of the present instant, also where a run that goes on is the first to ask for them.
+  subroutine find_forces(model, reaction, internal, state)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: reaction(:, :)   !! (2, n_node) of all degrees of freedom
+    real(wp), intent(in) :: internal(:, :)   !! (2, n_node) divergence of stress
+    type(state_t), intent(inout) :: state
+
+    if (allocated(state%boundary_work)) then
+      call form_loads(model, state%motion, state%time, state%boundary_force)
+      call find_reactions(model, reaction, state)
+    end if
+    if (allocated(state%group_work)) call find_group_forces(model, internal, state)
+  end subroutine find_forces
+
+  !> Internal forces of groups of nodes.
+  subroutine find_group_forces(model, internal, state)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: internal(:, :)
+    type(state_t), intent(inout) :: state
+    integer :: i, k, n
+
+    n = 0
+    do i = 1, size(model%controls%output%force_groups)
+      associate (nodes => model%controls%output%force_groups(i)%nodes)
+        do k = 1, size(nodes)
+          n = n + 1
+          state%group_force(:, n) = internal(:, nodes(k))
+        end do
+      end associate
+    end do
+  end subroutine find_group_forces
+
+  !> Reactions of prescribed motion, into their rows.
   subroutine find_reactions(model, reaction, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: reaction(:, :)   !! (2, n_node) of all degrees of freedom
     type(state_t), intent(inout) :: state
     integer :: i
 
-    if (.not. allocated(state%boundary_work)) return
-    if (state%cycle == 0) call form_loads(model, state%motion, state%time, state%boundary_force)
     associate (rows => model%controls%output%boundaries%motion_rows, &
       motions => model%conditions%motions)
       do i = 1, size(motions)

@@ -10,7 +10,7 @@ module implicit_forces_m
   use clock_m, only : clock_t, lap, share_contact, phase_elements, &
     phase_contact_force, phase_nodes
   use contact_state_m, only : contact_state_t
-  use cut_forces_m, only : find_cut_forces
+  use cut_forces_m, only : find_cut_forces, keep_cut_chunks
   use element_dispatch_m, only : add_tile_forces
   use element_mass_m, only : mass_times
   use external_force_m, only : form_external_force, body_acceleration
@@ -19,7 +19,8 @@ module implicit_forces_m
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
   implicit none
   private
-  public :: trial_t, start_trial, assemble_forces, net_force, trouble_of, cut_sections
+  public :: trial_t, start_trial, assemble_forces, net_force, trouble_of, &
+    keep_sections, cut_sections
 
   !> Step of the kernels: motion holds increments in place of velocities.
   real(wp), parameter :: unit_step = 1.0_wp
@@ -33,6 +34,8 @@ module implicit_forces_m
     real(wp), allocatable :: contact(:, :)  !! (2, n_node)
     real(wp), allocatable :: external(:, :) !! (2, n_node) loads and gravity
     real(wp), allocatable :: slots(:, :)    !! forces of tiles on their special nodes
+    type(block_state_t), allocatable :: before(:) !! chunks of cross sections before the step, until
+                                            !! the forces of these are formed
   end type trial_t
 
 contains
@@ -102,15 +105,26 @@ contains
     call sum_special_forces(model%layout, trial%slots, 1, model%layout%n_special, trial%internal)
   end subroutine assemble_internal
 
-  !> Forces of the elements of cross sections at a trial, from the committed history.
-  subroutine cut_sections(model, motion, state)
+  !> What the forces of cross sections are formed of, if anyone asks for them: before the trial is
+  !> committed.
+  subroutine keep_sections(model, state, trial)
     type(model_t), intent(in) :: model
-    real(wp), intent(in), contiguous :: motion(:, :) !! of the trial
-    type(state_t), intent(inout) :: state            !! committed
+    type(state_t), intent(inout) :: state !! stays as it is
+    type(trial_t), intent(inout) :: trial
 
-    if (.not. allocated(state%cut_force)) return
-    call find_cut_forces(model, [1, model%layout%tiles(size(model%layout%tiles))%last_chunk], &
-      motion, [state%time, unit_step], state%elements, state%cut_force)
+    if (allocated(state%cut_force)) call keep_cut_chunks(model, state%elements, trial%before)
+  end subroutine keep_sections
+
+  !> Forces of the elements of cross sections, unless the state has them.
+  subroutine cut_sections(model, trial, state)
+    type(model_t), intent(in) :: model
+    type(trial_t), intent(inout) :: trial !! that has been committed
+    type(state_t), intent(inout) :: state !! after that
+
+    if (.not. allocated(trial%before)) return
+    call find_cut_forces(model, [1, model%layout%n_chunk], trial%motion, [state%time, unit_step], &
+      state%elements, state%cut_force, trial%before)
+    deallocate (trial%before)
   end subroutine cut_sections
 
   !> Internal minus contact and external forces.

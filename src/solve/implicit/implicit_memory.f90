@@ -6,7 +6,7 @@ module implicit_memory_m
   use archive_file_m, only : archive_t, enter, leave
   use clock_m, only : lap, phase_nodes, phase_output
   use errors_m, only : error_t
-  use implicit_forces_m, only : trial_t, start_trial, net_force
+  use implicit_forces_m, only : trial_t, start_trial, net_force, cut_sections
   use implicit_tangent_m, only : step_t
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -32,7 +32,8 @@ contains
 
   !> Write restart files after a step. The memory is that of the state, its
   !> next step not planned yet.
-  subroutine write_restarts(wanted, state, monitor, memory, error)
+  subroutine write_restarts(model, wanted, state, monitor, memory, error)
+    type(model_t), intent(in) :: model
     logical, intent(in) :: wanted(:)   !! numbered_file, running_file
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -43,6 +44,7 @@ contains
 
     if (.not. any(wanted)) return
     call lap(monitor%clock, phase_nodes)
+    call cut_sections(model, memory%trial, state)
     do kind = 1, size(wanted)
       if (.not. wanted(kind) .or. allocated(error)) cycle
       call begin_file(kind, state, monitor, archive)

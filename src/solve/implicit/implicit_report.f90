@@ -4,7 +4,7 @@
 module implicit_report_m
   use boundary_filling_m, only : fill_boundaries
   use contact_judging_m, only : judge_contacts
-  use implicit_boundary_m, only : find_reactions
+  use implicit_boundary_m, only : find_forces
   use history_elements_m, only : fill_history_elements
   use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc, &
     table_contact, table_elout, table_bndout, table_nodfor, table_secforc
@@ -16,7 +16,8 @@ module implicit_report_m
   use equations_m, only : equations_t
   use errors_m, only : error_t
   use health_m, only : check_energy, check_radii, judge_energies, judge_contact, made_by_forces
-  use implicit_forces_m, only : trial_t
+  use implicit_forces_m, only : trial_t, cut_sections
+  use implicit_memory_m, only : implicit_memory_t
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use output_schedule_m, only : output_reach
@@ -33,15 +34,14 @@ module implicit_report_m
 contains
 
   !> Write what is due; of a state that was reported before, only what was not written then.
-  subroutine report_step(model, state, force, last, plots, monitor, written, error)
+  subroutine report_step(model, state, last, plots, monitor, memory, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    real(wp), intent(in) :: force(:, :)   !! (2, n_node) internal minus contact and external forces
-                                          !! of the state
     logical, intent(in) :: last
     logical, intent(in) :: plots          !! someone asks for a plot state
     type(monitor_t), intent(inout) :: monitor
-    type(due_t), intent(inout) :: written !! of the state reported before; now of this one
+    type(implicit_memory_t), intent(inout) :: memory !! of the state; `written` is that of the one
+                                          !! reported before, and becomes that of this one
     type(error_t), allocatable, intent(out) :: error
     type(due_t) :: due
     real(wp) :: dt
@@ -49,10 +49,10 @@ contains
     dt = output_reach(model%controls, state%dt)
     due = find_due(monitor, state%time, dt, state%cycle == 0 .or. last)
     due%plot = due%plot .or. (plots .and. monitor%has_plot)
-    if (state%cycle == monitor%snapshot%cycle) due = without(due, written)
-    written = due
+    if (state%cycle == monitor%snapshot%cycle) due = without(due, memory%written)
+    memory%written = due
     if (.not. any_due(due)) return
-    associate (shot => monitor%snapshot)
+    associate (shot => monitor%snapshot, force => memory%step%old_force)
       shot%time = state%time
       shot%cycle = state%cycle
       shot%dt = state%dt
@@ -72,10 +72,14 @@ contains
       if (due%tables(table_spcforc)) call fill_reactions(model, &
         force + mass_times(model, shot%acceleration), shot)
       if (any(due%tables([table_bndout, table_nodfor]))) then
-        call find_reactions(model, force + mass_times(model, shot%acceleration), state)
+        call find_forces(model, force + mass_times(model, shot%acceleration), &
+          memory%trial%internal, state)
         call fill_boundaries(state, shot)
       end if
-      if (due%tables(table_secforc)) call fill_sections(model, state, shot)
+      if (due%tables(table_secforc)) then
+        call cut_sections(model, memory%trial, state)
+        call fill_sections(model, state, shot)
+      end if
       if (due%tables(table_elout)) call fill_history_elements(model, state, shot)
       if (due%plot) call fill_plot(model, state, shot)
       if (any(due%tables([table_sleout, table_contact]))) call judge_contacts(model, state, &

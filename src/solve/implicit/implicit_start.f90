@@ -8,7 +8,7 @@ module implicit_start_m
   use element_mass_m, only : add_mass, mass_times
   use equations_m, only : equations_t, number_equations, take_free
   use errors_m, only : error_t, raise, status_run
-  use implicit_forces_m, only : start_trial, assemble_forces, net_force, cut_sections
+  use implicit_forces_m, only : start_trial, assemble_forces, net_force, keep_sections
   use implicit_memory_m, only : implicit_memory_t, take_up_memory, write_restarts
   use implicit_prescribed_m, only : prescribe_start, list_changes
   use implicit_tangent_m, only : step_t
@@ -54,8 +54,8 @@ contains
     if (.not. monitor%restarts%goes_on) then
       call start_implicit(model, planned%next, state, monitor, memory, error)
       if (.not. allocated(error)) call report_contact_start(model, state, monitor%log)
-      if (.not. allocated(error)) call write_restarts(wanted_files(monitor%restarts, state%cycle, &
-        .false., ends, .false.), state, monitor, memory, error)
+      if (.not. allocated(error)) call write_restarts(model, wanted_files(monitor%restarts, &
+        state%cycle, .false., ends, .false.), state, monitor, memory, error)
     end if
     memory%control = planned
   end subroutine begin_steps
@@ -138,7 +138,7 @@ contains
     end if
     call start_trial(model, state, memory%trial)
     call assemble_forces(model, state, 0.0_wp, .false., monitor%clock, memory%trial)
-    call cut_sections(model, memory%trial%motion, state)
+    call keep_sections(model, state, memory%trial)
     state%contacts = memory%trial%contacts
     ! Springs loaded at time zero hold energy that no force has put in.
     do i = 1, size(state%contacts)
