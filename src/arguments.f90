@@ -39,6 +39,7 @@ module arguments_m
     logical :: all_cases = .false.          !! a run for each *CASE of the deck
     integer, allocatable :: cases(:)        !! those that are run (case=)
     integer :: case = 0                     !! that this run is of, 0: of none
+    character(:), allocatable :: refusal    !! what is wrong with the words of that case
     character(:), allocatable :: ignored    !! words of LS-DYNA that have no effect here
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
   end type arguments_t

@@ -4,6 +4,7 @@ module case_runs_m
   use arguments_m, only : arguments_t
   use case_plan_m, only : plan_cases, case_name, join_failures
   use contact_dispatch_m, only : contact_kinds
+  use deck_lines_m, only : deck_t
   use deck_m, only : deck_request_t, read_deck
   use endings_m, only : error_ending
   use errors_m, only : error_t, raise, status_run
@@ -27,19 +28,20 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(arguments_t), allocatable :: runs(:)
     type(error_t), allocatable :: failure
-    character(:), allocatable :: findings, failed
+    type(deck_t), allocatable :: deck
+    character(:), allocatable :: failed
     integer :: i, n_failed, status
 
     has_ended = .false.
-    call plan_cases(arguments, runs, error, findings)
-    if (.not. allocated(error) .and. size(runs) > 1) call read_decks(runs, error)
+    call plan_cases(arguments, runs, deck, error)
+    if (.not. allocated(error) .and. size(runs) > 1) call read_decks(runs, deck, error)
     call share_error(ranks, error)
     if (allocated(error)) return
     n_failed = 0
     failed = ''
     do i = 1, size(runs)
       if (runs(i)%case > 0 .and. ranks%mine == 0) call show(case_name(runs(i)))
-      call run_deck(runs(i), ranks, has_ended, failure)
+      call run_deck(runs(i), deck, ranks, has_ended, failure)
       if (.not. allocated(failure)) cycle
       if (size(runs) == 1) then
         call move_alloc(failure, error)
@@ -61,8 +63,9 @@ contains
   end subroutine run_cases
 
   !> Read the decks of all cases, so that the mistakes of all are told before the first one runs.
-  subroutine read_decks(runs, error)
+  subroutine read_decks(runs, deck, error)
     type(arguments_t), intent(in) :: runs(:)
+    type(deck_t), allocatable, intent(inout) :: deck !! cut for none of them; the first takes it
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: failures(:), failure
     type(deck_request_t) :: request
@@ -77,6 +80,9 @@ contains
       request%path = runs(i)%deck
       request%overrides = runs(i)%overrides
       request%case = runs(i)%case
+      call move_alloc(deck, request%deck)
+      if (allocated(request%refusal)) deallocate (request%refusal)
+      if (allocated(runs(i)%refusal)) request%refusal = runs(i)%refusal
       call read_deck(request, contact_kinds, unused, model, effective, failure)
       if (allocated(failure)) failures(i) = failure
     end do

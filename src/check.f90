@@ -6,6 +6,7 @@ module check_m
   use arguments_m, only : arguments_t
   use case_plan_m, only : plan_cases, case_name, join_failures
   use contact_dispatch_m, only : contact_kinds
+  use deck_lines_m, only : deck_t
   use deck_m, only : deck_request_t, read_deck
   use deck_findings_m, only : add_finding, json_text
   use deck_report_m, only : spot_t
@@ -34,18 +35,20 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(arguments_t), allocatable :: runs(:)
     type(error_t), allocatable :: failures(:), failure
+    type(deck_t), allocatable :: deck
     character(:), allocatable :: findings, told, objects
     integer :: i
 
-    call plan_cases(arguments, runs, error, findings)
+    call plan_cases(arguments, runs, deck, error)
     if (allocated(error)) then
-      if (len(findings) == 0) call add_message('error', error%message, findings)
+      findings = ''
+      call add_message('error', error%message, findings)
       objects = findings_text(arguments, findings, .true., told)
     else
       allocate (failures(size(runs)))
       objects = ''
       do i = 1, size(runs)
-        call check_case(runs(i), told, failure)
+        call check_case(runs(i), deck, told, failure)
         if (allocated(failure)) failures(i) = failure
         if (i > 1) objects = objects//','//new_line('a')
         objects = objects//told
@@ -63,8 +66,9 @@ contains
   end subroutine check_deck
 
   !> Check a deck in one case. What is accepted is said at once where no program has asked.
-  subroutine check_case(run, object, error)
+  subroutine check_case(run, deck, object, error)
     type(arguments_t), intent(in) :: run
+    type(deck_t), allocatable, intent(inout) :: deck !! cut already; who reads it takes it
     character(:), allocatable, intent(out) :: object !! for programs
     type(error_t), allocatable, intent(out) :: error
     type(deck_request_t) :: request
@@ -75,6 +79,8 @@ contains
     request%path = run%deck
     request%overrides = run%overrides
     request%case = run%case
+    call move_alloc(deck, request%deck)
+    if (allocated(run%refusal)) request%refusal = run%refusal
     call read_deck(request, contact_kinds, monitor%log, model, effective, error, findings)
     if (allocated(error)) then
       if (index(findings, '"severity": "error"') == 0) &

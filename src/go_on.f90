@@ -73,6 +73,8 @@ contains
     whole%path = arguments%deck
     whole%overrides = arguments%overrides
     whole%case = arguments%case
+    if (allocated(arguments%refusal)) whole%refusal = arguments%refusal
+    call move_alloc(request%deck, whole%deck)
     call read_deck(whole, contact_kinds, unused, model, request%text, error)
     if (allocated(error)) return
     if (model%controls%implicit%is_on .neqv. is_implicit) then

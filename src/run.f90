@@ -9,6 +9,7 @@ module run_m
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
   use clock_m, only : lap, start_clock, look_at_clock, split_contact, phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
+  use deck_lines_m, only : deck_t
   use deck_m, only : deck_request_t, read_deck
   use errors_m, only : error_t, raise, status_input, status_stopped
   use explicit_m, only : advance_explicit
@@ -46,8 +47,10 @@ module run_m
 contains
 
   !> Run what the command line asks for.
-  subroutine run_deck(arguments, ranks, has_ended, error)
+  subroutine run_deck(arguments, deck, ranks, has_ended, error)
     type(arguments_t), intent(inout) :: arguments !! gets the job name of a restart file
+    type(deck_t), allocatable, intent(inout) :: deck !! that has been cut for none of its cases
+                                                  !! already; the run takes it
     type(ranks_t), intent(in) :: ranks
     logical, intent(out) :: has_ended             !! how the run ended has been told
     type(error_t), allocatable, intent(out) :: error
@@ -71,6 +74,7 @@ contains
     call write_log(monitor%log, 'command line: '//arguments%line)
     if (len(arguments%ignored) > 0) call warn(monitor%log, &
       'of the command line have no effect here: '//arguments%ignored)
+    call move_alloc(deck, request%deck)
     call make_request(arguments, monitor, request, error)
     call share_error(ranks, error)
     if (allocated(error)) return
@@ -152,11 +156,12 @@ contains
   subroutine make_request(arguments, monitor, request, error)
     type(arguments_t), intent(inout) :: arguments
     type(monitor_t), intent(inout) :: monitor
-    type(deck_request_t), intent(out) :: request
+    type(deck_request_t), intent(inout) :: request !! may have the deck
     type(error_t), allocatable, intent(out) :: error
 
     request%overrides = arguments%overrides
     request%case = arguments%case
+    if (allocated(arguments%refusal)) request%refusal = arguments%refusal
     if (allocated(arguments%restart)) then
       call take_up_deck(arguments, program_text(), monitor, request, error)
     else

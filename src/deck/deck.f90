@@ -60,7 +60,9 @@ module deck_m
                                               !! `p:NAME=value`
     character(:), allocatable :: text         !! of the deck where it is no file; `path` names it
                                               !! then
+    type(deck_t), allocatable :: deck         !! where it has been read and cut; reading takes it
     integer :: case = 0                       !! of *CASE, 0: a deck without cases
+    character(:), allocatable :: refusal      !! what is wrong with the words of the case
     logical :: is_told_elsewhere = .false.    !! another process has the effective deck and tells
                                               !! the findings: the text of the mesh goes as it is
                                               !! read
@@ -71,7 +73,7 @@ contains
   !> Read a deck. `error` holds every mistake of it, one after the other; warnings and the echo of
   !> what was understood go to the log.
   subroutine read_deck(request, kinds, log, model, effective, error, findings)
-    type(deck_request_t), intent(in) :: request
+    type(deck_request_t), intent(inout) :: request
     type(contact_kind_t), intent(in) :: kinds(:)             !! contact types that exist
     type(log_t), intent(inout) :: log
     type(model_t), intent(out) :: model
@@ -79,20 +81,24 @@ contains
                                                              !! process has it
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable, intent(out), optional :: findings !! all messages, see list_findings
-    type(deck_t) :: deck
+    type(deck_t), allocatable :: deck
     character(:), allocatable :: text
 
-    if (allocated(request%text)) then
+    if (allocated(request%deck)) then
+      call move_alloc(request%deck, deck)
+    else if (allocated(request%text)) then
+      allocate (deck)
       text = request%text
       call cut_deck(request%path, text, deck)
     else
+      allocate (deck)
       call read_blocks(request%path, deck, error)
       if (present(findings)) findings = ''
       if (allocated(error)) return
     end if
-    if (deck%cases%found .or. request%case > 0) call choose_case(deck, request%case, log, error)
-    if (.not. allocated(error)) call interpret_deck(deck, request, kinds, log, model, &
-      effective, error)
+    if (deck%cases%found .or. request%case > 0) call choose_case(deck, request%case, &
+      request%refusal, log)
+    call interpret_deck(deck, request, kinds, log, model, effective, error)
     if (present(findings)) call list_findings(deck%report, findings)
   end subroutine read_deck
 
@@ -138,7 +144,7 @@ contains
     call settle_friction(deck, overrides, raw)
     call apply_overrides(deck, overrides, raw, tail)
     call check_step(deck, raw)
-    if (.not. raw%terminated .and. .not. raw%end_given) call line_error(deck, 0, &
+    if (.not. (raw%terminated .or. raw%end_given .or. deck%incomplete)) call line_error(deck, 0, &
       'the deck has no end time (*CONTROL_TERMINATION)')
     call resolve_model(deck, raw, model)
     deallocate (raw) ! before the effective deck takes its place

@@ -4,53 +4,56 @@
 module deck_choose_case_m
   use errors_m, only : error_t
   use log_m, only : log_t, to_text, write_log
+  use deck_cards_m, only : reject_field
   use deck_cases_m, only : case_t, read_cases, find_case, cases_text
   use deck_lines_m, only : deck_t, line_error
   use deck_reader_m, only : read_blocks, cut_deck
-  use deck_report_m, only : emit_errors
   implicit none
   private
   public :: choose_case, list_cases
 
 contains
 
-  !> Cut a deck anew, for one case; so far it holds what stands outside of all subcases. Mistakes of
-  !> cases are told before all others: what they do to the rest of the deck is not known.
-  subroutine choose_case(deck, id, log, error)
+  !> Cut a deck anew, for one case; so far it holds what stands outside of all subcases. Where that
+  !> case is not there the first one is looked at: what is wrong with it is told too.
+  subroutine choose_case(deck, id, refusal, log)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: id !! 0: none is asked for
+    integer, intent(in) :: id                           !! 0: none is asked for
+    character(:), allocatable, intent(in) :: refusal    !! what is wrong with the words of the case
     type(log_t), intent(inout) :: log
-    type(error_t), allocatable, intent(out) :: error
     type(case_t), allocatable :: cases(:)
     character(:), allocatable :: path, text
-    integer :: i, k, n_error
+    integer :: i, k
 
-    n_error = deck%report%n_error
-    if (deck%cases%wrong) n_error = 0
     call read_cases(deck, cases)
     k = find_case(cases, id)
-    if (id == 0 .and. size(cases) > 0) then
+    if (size(cases) > 0) then
+      path = deck%sources(1)%path
+      call move_alloc(deck%sources(1)%text, text)
+      deck = deck_t()
+      call cut_deck(path, text, deck, cases(max(k, 1))%sub_cases)
+      call read_cases(deck, cases) ! what it tells went with the deck before
+      if (allocated(refusal)) call reject_field(deck, cases(max(k, 1))%place, refusal)
+      do i = 1, size(cases(max(k, 1))%sub_cases)
+        if (any(deck%cases%all == cases(max(k, 1))%sub_cases(i))) cycle
+        deck%incomplete = .true.
+      end do
+    end if
+    deck%incomplete = deck%incomplete .or. deck%cases%wrong
+    if (k > 0) then
+      text = ''
+      do i = 1, size(cases(k)%sub_cases)
+        text = text//' '//to_text(cases(k)%sub_cases(i))
+      end do
+      call write_log(log, 'case '//to_text(id)//' of the deck, subcases'//text)
+    else if (id == 0 .and. size(cases) > 0) then
       call line_error(deck, 0, 'the deck has cases: say case=ID for one of '//cases_text(cases) &
         //', or case for all')
-    else if (size(cases) == 0 .and. .not. deck%cases%wrong) then
-      call line_error(deck, 0, 'case='//to_text(id)//': the deck has no *CASE')
-    else if (k == 0 .and. size(cases) > 0) then
+    else if (size(cases) > 0) then
       call line_error(deck, 0, 'case='//to_text(id)//': expected one of '//cases_text(cases))
+    else if (.not. deck%cases%wrong) then
+      call line_error(deck, 0, 'case= is asked for and the deck has no *CASE')
     end if
-    path = deck%sources(1)%path
-    if (deck%report%n_error > n_error) then
-      call emit_errors(deck%report, path, error)
-      return
-    end if
-    call move_alloc(deck%sources(1)%text, text)
-    deck = deck_t()
-    call cut_deck(path, text, deck, cases(k)%sub_cases)
-    text = ''
-    do i = 1, size(cases(k)%sub_cases)
-      text = text//' '//to_text(cases(k)%sub_cases(i))
-    end do
-    call write_log(log, 'case '//to_text(id)//' of the deck, subcases'//text)
-    call read_cases(deck, cases) ! for its warnings
   end subroutine choose_case
 
   !> The cases of a deck, and what is wrong with them in its report.

@@ -8,8 +8,11 @@ import h5py
 import numpy as np
 import pytest
 from conftest import numbers
+from erosion_decks import penetration
 from history_decks import HISTORIES, busy_block
+from impact_decks import plates
 from meshes import Deck, grid
+from round_decks import rings
 
 #: what a run that goes on tells of
 GOING_ON = ("secforc", "bndout", "nodfor")
@@ -270,3 +273,34 @@ def test_a_run_that_goes_on_has_the_same_rows(exe, tmp_path, method):
             rows = len(late) // len({row[0] for row in late})
             since = works[-len(late):] - np.tile(works[-len(late):][:rows], len(late) // rows)
             assert late_works == pytest.approx(since, abs=1e-13 * np.abs(works).max()) and np.abs(late_works).max() > 0.0
+
+
+def with_sections(text, implicit=False):
+    """A deck with a section that every element of its mesh is cut by, told in each cycle, and the same without it."""
+    nodes, shells = (max(int(line.split(",")[0]) for block in re.findall(rf"^\*{name}\n([^*]*)", text, re.M)
+                         for line in block.split()) for name in ("NODE", "ELEMENT_SHELL"))
+    deck = Deck("").add("*SET_NODE_LIST_GENERATE", (91,), (1, nodes)).add("*SET_SHELL_LIST_GENERATE", (92,), (1, shells))
+    plain = re.sub(r"\*DATABASE_[A-Z]*\n.*\n", "", text).rsplit("*END", 1)[0] + "*DATABASE_GLSTAT\n1e-12,\n*DATABASE_MATSUM\n1e-12,\n"
+    cards = "\n".join(deck.add("*DATABASE_CROSS_SECTION_SET", (91, 0, 0, 92)).lines[3:])
+    return plain + "*END\n", f"{plain}{cards}\n*DATABASE_SECFORC\n1e-12,\n*END\n"
+
+
+@pytest.mark.parametrize("scene", ("plates", "plates, four points", "rings", "erosion"))
+def test_telling_of_sections_changes_nothing(exe, tmp_path, scene):
+    """Elements of all laws and forms are what they were before their forces were asked for."""
+    text = {"plates": lambda: plates(2, n=9, end=2.4e-6), "plates, four points": lambda: plates(2, n=9, end=2.4e-6, points=4),
+            "rings": lambda: rings(2, n=11, end=0.012), "erosion": lambda: penetration(2, n=4, end=30.0e-6)}[scene]()
+    if scene == "rings":
+        text = text.replace("*CONTROL_HOURGLASS\n2,0.1\n", "*CONTROL_HOURGLASS\n4,0.1\n*DAMPING_PART_STIFFNESS\n1,0.05\n")
+        assert "STIFFNESS" in text
+    tables = []
+    for name, deck in zip(("without", "with"), with_sections(text)):
+        (tmp_path / "job.k").write_text(deck)
+        done = subprocess.run([exe, "i=job.k", f"d={name}"], capture_output=True, text=True, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        tables.append([(tmp_path / name / f"job.{table}.csv").read_bytes() for table in ("glstat", "matsum")])
+    assert tables[0] == tables[1]
+    rows = values(tmp_path / "with", "secforc", "fx", "fy")
+    assert len(rows) == len(numbers(tmp_path / "with" / "job.glstat.csv", "time")) > 15 and np.abs(rows).max() > 0.0
+    if scene == "erosion":
+        assert numbers(tmp_path / "with" / "job.glstat.csv", "eroded")[-1] > 0.0

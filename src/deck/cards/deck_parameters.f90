@@ -41,7 +41,7 @@ contains
     end do
     do i = 1, parameters%n
       associate (item => parameters%items(i))
-        if (item%fixed .and. .not. item%found) call line_error(deck, 0, 'p:'//trim(item%name) &
+        if (item%fixed .and. .not. (item%found .or. deck%incomplete)) call line_error(deck, 0, 'p:'//trim(item%name) &
           //' on the command line: the deck has no such parameter' &
           //nearest_name(parameters, trim(item%name)))
       end associate
@@ -259,7 +259,7 @@ contains
       if (index(field, '&') == 1 .or. index(field, '-&') == 1 .or. index(field, '+&') == 1) then
         if (index(field, '&(') == 0) then
           call look_up(parameters, field, source, value)
-          if (len(value) == 0) call field_error(deck, spec, card, k, &
+          if (len(value) == 0 .and. .not. deck%incomplete) call field_error(deck, spec, card, k, &
             'is not defined by any *PARAMETER')
           field = value
         end if

@@ -67,10 +67,10 @@ contains
 
     sound = .false.
     n_before = deck%report%n_error
-    if (raw%n_node == 0 .and. .not. raw%lost%nodes) call line_error(deck, 0, &
+    if (raw%n_node == 0 .and. .not. (raw%lost%nodes .or. deck%incomplete)) call line_error(deck, 0, &
       'the deck has no nodes (*NODE)')
-    if (raw%n_element == 0 .and. .not. raw%lost%elements) call line_error(deck, 0, &
-      'the deck has no elements (*ELEMENT_SHELL)')
+    if (raw%n_element == 0 .and. .not. (raw%lost%elements .or. deck%incomplete)) call &
+      line_error(deck, 0, 'the deck has no elements (*ELEMENT_SHELL)')
     call check_plane(deck, raw)
     model%mesh%n_node = raw%n_node
     model%mesh%n_element = raw%n_element

@@ -78,7 +78,8 @@ module deck_lines_m
     integer, allocatable :: replaced(:, :)    !! (3, n) lines in `patch`, and where their file has
                                               !! them
     integer :: n_replaced = 0
-    logical :: incomplete = .false.           !! an included file could not be read
+    logical :: incomplete = .false.           !! an included file could not be read, or
+                                              !! what belongs to the case is not known
     type(case_blocks_t) :: cases
     type(report_t) :: report
   end type deck_t
