@@ -26,7 +26,8 @@ contains
     integer :: i, k
 
     call read_cases(deck, cases)
-    k = find_case(cases, id)
+    k = 0
+    if (id > 0) k = find_case(cases, id)
     if (size(cases) > 0) then
       path = deck%sources(1)%path
       call move_alloc(deck%sources(1)%text, text)

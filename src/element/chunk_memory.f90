@@ -72,7 +72,7 @@ contains
     end associate
   end subroutine move_chunk
 
-  !> Of elements that may leave the mesh; what belongs to nodes and parts no step of a chunk changes.
+  !> Of elements that may leave the mesh; what belongs to nodes and parts changes elsewhere.
   subroutine move_erosion(own, slots, is_taken, erosion, kept)
     integer, intent(in) :: own(2), slots(2)
     logical, intent(in) :: is_taken

@@ -195,7 +195,7 @@ def test_check(check):
     done = check(bad.replace("       101 slow", "         0 slow"), "--json", "case")
     told = json.loads(done.stdout)
     assert done.returncode == 1 and not told["accepted"]
-    assert [(finding["keyword"], finding["name"]) for finding in told["findings"]] == [("*CASE", "CASEID")]
+    assert [[finding["name"] for finding in case["findings"]] for case in told["cases"]] == [["CASEID"], ["VY", "CASEID"]]
     none = check(cases_deck(), "--json")
     assert none.returncode == 1 and "say case=ID" in json.loads(none.stdout)["findings"][0]["message"]
 
@@ -216,3 +216,27 @@ def test_layout_of_a_block_that_is_not_read(check):
     deck = cases_deck().replace(block(1), f"*CASE_BEGIN_1\n*KEYWORD LONG=Y\n{BLOCKS[1]}\n*CASE_END_1\n")
     assert check(deck, "case=7").returncode == 0
     assert check(deck, "case=101").returncode == 1
+
+
+def told_at(text):
+    """Keyword of each error in the order in which they are told, without the end."""
+    return re.findall(r"^\S*job\.k:\d+: (\*\w+)", text, re.M)
+
+
+def test_mistakes_of_cases_come_with_those_of_the_deck(check, slideline):
+    """In the order of the file, whichever case is asked for, and nothing that is no mistake."""
+    deck = cases_deck().replace("*PART\n", "*BOUNDARY_NONE\n*PART\n", 1).replace("102 fast", "102 no/name")
+    deck = deck.replace("*END", "*MAT_NONE\n*END")
+    for words in (["case=101"], ["case=3"], []):
+        done = slideline("d=out", *words, deck=deck)
+        assert done.returncode == 1 and told_at(done.stderr) == ["*BOUNDARY_NONE", "*CASE", "*MAT_NONE"], done.stderr
+    lines = done.stderr.splitlines()
+    assert "say case=ID for one of 101 (slow), 102 (no/name), 7 (case7)" in lines[-2] and lines[-1].endswith("job.k: refused, 4 errors")
+    words = deck.replace("102 no/name", "102 fast").replace("dt=5e-5 memory=20m", "ncpu=0")
+    assert told_at(slideline("d=out", "case=101", deck=words).stderr) == ["*BOUNDARY_NONE", "*CASE", "*MAT_NONE"]
+    done = check(deck, "case")
+    assert done.stderr.count("is no stem") == 1 and "case 101 (slow), case 102 (no/name), case 7 (case7):" in done.stderr
+    # Where the marks are wrong it is not known what belongs to the case: what is missing is not told.
+    marks = deck.replace("102 no/name", "102 fast").replace("*CASE_END_4\n", "")
+    done = slideline("d=out", "case=101", deck=marks)
+    assert told_at(done.stderr)[:2] == ["*BOUNDARY_NONE", "*CASE_BEGIN_4"] and "is not defined" not in done.stderr

@@ -20,8 +20,14 @@ COUNTER = r"""
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-static long made, renamed, synced, written, asked, threads;
+static long opened, made, renamed, synced, written, asked, threads;
 #define NEXT(type, name, ...) ((type (*)(__VA_ARGS__))dlsym(RTLD_NEXT, name))
+static int count_open(const char *p) {
+  size_t n = strlen(p);
+  if (n >= 5 && !strcmp(p + n - 5, "job.k")) opened++;
+  return 0644; }
+int open(const char *p, int f, ...) { return NEXT(int, "open", const char *, int, ...)(p, f, count_open(p)); }
+int open64(const char *p, int f, ...) { return NEXT(int, "open64", const char *, int, ...)(p, f, count_open(p)); }
 int creat(const char *p, mode_t m) { made++; return NEXT(int, "creat", const char *, mode_t)(p, m); }
 int rename(const char *a, const char *b) { renamed++; return NEXT(int, "rename", const char *, const char *)(a, b); }
 int fsync(int f) { synced++; return NEXT(int, "fsync", int)(f); }
@@ -36,8 +42,8 @@ int pthread_create(pthread_t *t, const pthread_attr_t *a, void *(*r)(void *), vo
 __attribute__((destructor)) static void tell(void) {
   FILE *f = fopen(getenv("COUNTS"), "w");
   if (!f) return;
-  fprintf(f, "{\"made\": %ld, \"renamed\": %ld, \"synced\": %ld, \"written\": %ld, \"asked\": %ld, \"threads\": %ld}",
-          made, renamed, synced, written, asked, threads);
+  fprintf(f, "{\"opened\": %ld, \"made\": %ld, \"renamed\": %ld, \"synced\": %ld, \"written\": %ld, \"asked\": %ld, \"threads\": %ld}",
+          opened, made, renamed, synced, written, asked, threads);
   fclose(f); }
 """
 
@@ -72,6 +78,14 @@ def test_a_small_run_asks_little(count):
     assert calls["synced"] == 0 and calls["threads"] == 0, calls
     assert 3 <= calls["made"] <= 8 and calls["renamed"] <= 3, calls
     assert calls["written"] <= 80 and calls["asked"] <= 400, calls
+
+
+def test_a_deck_is_read_once(count):
+    """Also for one of its cases."""
+    cases = drop().text().replace("*INITIAL_VELOCITY", "*INITIAL_VELOCITY CID=2") + "*CASE\n4\n\n2\n*END\n"
+    cases = cases.replace("*END\n*CASE", "*CASE")
+    assert count(drop().text(), "endtim=1e-3")["opened"] == 1
+    assert count(cases, "endtim=1e-3", "case=4")["opened"] == 1
 
 
 def test_what_protects_is_forced_to_the_disk(count):

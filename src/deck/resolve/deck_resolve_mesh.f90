@@ -67,8 +67,8 @@ contains
 
     sound = .false.
     n_before = deck%report%n_error
-    if (raw%n_node == 0 .and. .not. (raw%lost%nodes .or. deck%incomplete)) call line_error(deck, 0, &
-      'the deck has no nodes (*NODE)')
+    if (raw%n_node == 0 .and. .not. (raw%lost%nodes .or. deck%incomplete)) &
+      call line_error(deck, 0, 'the deck has no nodes (*NODE)')
     if (raw%n_element == 0 .and. .not. (raw%lost%elements .or. deck%incomplete)) call &
       line_error(deck, 0, 'the deck has no elements (*ELEMENT_SHELL)')
     call check_plane(deck, raw)

@@ -234,7 +234,6 @@ contains
     type(state_t), intent(in) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-
     type(requests_t) :: before
 
     before = cycle%asked
@@ -361,8 +360,7 @@ contains
     if (allocated(model%controls%ends)) call heed_ends(model, state, cycle)
     if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
     if (monitor%ranks%mine == 0) call follow_progress(monitor%progress, monitor%clock, &
-      state%cycle, .false., state%time, &
-      state%dt, cycle%ratio)
+      state%cycle, .false., state%time, state%dt, cycle%ratio)
   end subroutine end_cycle
 
   !> Smallest step of the elements. Where all have left nothing limits it, and it stays as it is.
