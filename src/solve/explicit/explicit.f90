@@ -24,6 +24,7 @@ module explicit_m
   use motion_sums_m, only : sum_motion, sum_blocks
   use monitor_m, only : monitor_t
   use node_motion_m, only : leap_t, move_tile_nodes, move_special_nodes, move_damped_nodes
+  use rank_balance_m, only : balance_ranks
   use rank_report_m, only : report_exchange
   use resting_tiles_m, only : is_tried, rests, is_flying, remember_tile, judge_tile, look_at_tile, &
     report_rest
@@ -113,7 +114,10 @@ contains
       end if
       !$omp master
       call end_cycle(model, state, monitor, cycle)
-      if (.not. cycle%finished) call begin_cycle(model, state, monitor, cycle)
+      if (.not. cycle%finished) then
+        if (monitor%ranks%n > 1) call balance_ranks(model, monitor%ranks, state, cycle)
+        call begin_cycle(model, state, monitor, cycle)
+      end if
       !$omp end master
       !$omp barrier
       if (cycle%finished) exit
@@ -193,9 +197,6 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
 
     associate (tile => model%layout%tiles(i_tile))
-      ! What several processes have come to stands where the first tile has its own.
-      if (i_tile == 1 .and. cycle%rest%watches_all) &
-        cycle%checks(i_tile) = check_tile(tile, state%elements)
       if (allocated(cycle%sums%parts)) call sum_motion(tile%first_node, tile%last_node, state, &
         cycle%sums%parts(:, i_tile))
       if (is_flying(cycle%rest, i_tile) .and. .not. cycle%writes) call move_tile_nodes(cycle%leap, &

@@ -78,8 +78,8 @@ module explicit_cycle_m
     type(rest_t) :: rest             !! tiles that need no step
     type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
                                                  !! come to
-    integer :: n_check = 1           !! so many of them speak for all: of several processes the
-                                     !! first one, once they have exchanged it
+    integer :: first_check = 1       !! from there on they speak for all: of several processes one
+                                     !! more, behind those of the tiles, that they have exchanged
     type(failure_watch_t) :: failures !! points that have failed, as far as the log tells of them
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
     real(wp), allocatable :: rates(:, :) !! (2, n_part) D of parts, where the deck damps some
@@ -117,17 +117,17 @@ contains
       allocated(state%elements%retardation)
     associate (ranks => monitor%ranks)
       cycle%shares = share_out(model%layout, ranks%mine, ranks%n)
-      allocate (cycle%checks(size(model%layout%tiles)))
+      if (ranks%n > 1) cycle%first_check = size(model%layout%tiles) + 1
+      allocate (cycle%checks(max(size(model%layout%tiles), cycle%first_check)))
       if (ranks%n == 1) then
-        cycle%n_check = size(cycle%checks)
         call plan_whole(model, cycle%borders)
       else
         call plan_borders(model, cycle%shares, ranks%mine, cycle%sums, cycle%borders)
         call plan_parcel(cycle%borders, cycle%shares, ranks%mine, state%elements, cycle%sums, &
           cycle%parcel)
       end if
-      call plan_rest(model, cycle%shares, size(cycle%borders%runs, 2), ranks%n > 1 &
-        .or. allocated(cycle%sums%parts), cycle%rest)
+      call plan_rest(model, cycle%shares, cycle%borders%run_tiles, allocated(cycle%sums%parts), &
+        cycle%rest)
     end associate
     cycle%reason = 'termination time reached'
     if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
@@ -260,7 +260,8 @@ contains
       call exchange_parcel(shares, cycle%borders, ranks, cycle%parcel, state, cycle%sums)
       call exchange_record(shares, cycle%checks, elements, ranks, cycle%parcel, record)
       cycle%asked = record%asked
-      cycle%checks(1) = tile_check_t(time_limit=record%time_limit, has_volume=record%is_sound)
+      cycle%checks(cycle%first_check) = tile_check_t(time_limit=record%time_limit, &
+        has_volume=record%is_sound)
       if (record%has_error) call share_error(ranks, cycle%error)
       if (record%loses) call exchange_erosion(ranks, shares, elements)
       if (state%cycle == 0) call exchange_limits(ranks, shares, elements)
@@ -322,7 +323,7 @@ contains
     if (.not. cycle%writes) then
       call count_sums(cycle%sums, state%external_work, state%damping_work)
       if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
-      if (.not. are_sound(cycle%checks(:cycle%n_check), state%contacts)) then
+      if (.not. are_sound(cycle%checks(cycle%first_check:), state%contacts)) then
         if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
           monitor%ranks, state)
         call judge_elements(monitor%ranks, model, state, cycle%error)
@@ -370,7 +371,7 @@ contains
     type(explicit_cycle_t), intent(in) :: cycle
     real(wp) :: limit
 
-    limit = minval(cycle%checks(:cycle%n_check)%time_limit)
+    limit = minval(cycle%checks(cycle%first_check:)%time_limit)
     if (.not. model%erodes) return
     associate (n_gone => state%elements%erosion%n_gone)
       if (sum(n_gone) == sum(model%layout%chunk_elements(:size(n_gone)))) &
@@ -387,7 +388,7 @@ contains
     logical :: has_grown
 
     if (model%controls%masses_stay) return
-    if (minval(cycle%checks(:cycle%n_check)%time_limit) >= abs(model%controls%mass_step)) return
+    if (minval(cycle%checks(cycle%first_check:)%time_limit) >= abs(model%controls%mass_step)) return
     if (ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .true., ranks, state)
     call grow_state_masses(model, state, has_grown)
     if (has_grown .and. allocated(cycle%rates)) deallocate (cycle%rates)

@@ -80,7 +80,7 @@ contains
     if (monitor%ranks%mine == 0) call write_report(model, held, state, monitor, cycle)
     if (monitor%ranks%n > 1) call hear_report(model, state, monitor, cycle)
     if (cycle%judges) call follow_choices(model, monitor%ranks, &
-      minval(cycle%checks(:cycle%n_check)%time_limit), state, monitor%log)
+      minval(cycle%checks(cycle%first_check:)%time_limit), state, monitor%log)
     cycle%finished = cycle%last .or. allocated(cycle%error)
   end subroutine report_cycle
 

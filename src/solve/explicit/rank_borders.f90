@@ -16,6 +16,7 @@ module rank_borders_m
   type :: borders_t
     integer, allocatable :: runs(:, :)       !! (2, n) special nodes that this process sums and
                                              !! moves: first and last of each run
+    integer, allocatable :: run_tiles(:)     !! (n) the tile that owns those of each run
     integer, allocatable :: common(:)        !! force slots on nodes that all know, by process
     integer, allocatable :: common_starts(:) !! (n + 1) where those of each start
     integer, allocatable :: peers(:)         !! processes with which it has borders
@@ -44,6 +45,8 @@ contains
     do i = 1, size(model%layout%tiles)
       borders%runs(:, i) = [model%layout%tiles(i)%first_owned, model%layout%tiles(i)%last_owned]
     end do
+    allocate (borders%run_tiles(size(model%layout%tiles)), &
+      source=[(i, i = 1, size(model%layout%tiles))])
   end subroutine plan_whole
 
   !> The borders of process `mine`; the sums learn which blocks are its own.
@@ -71,7 +74,7 @@ contains
     call list_needs(model, is_common, slot_rank, mine, borders%block_nodes, out)
     call list_slots(model%layout%special_node, is_known .and. .not. is_common, slot_rank, mine, in)
     call sort_by_peer(size(shares%tiles) - 1, out, in, borders)
-    call list_runs(model, is_known, borders%runs)
+    call list_runs(model, is_known, borders)
   end subroutine plan_borders
 
   !> Special nodes that all processes know: those that anything but elements touches.
@@ -259,10 +262,10 @@ contains
   end subroutine lay_out
 
   !> Runs of known nodes, none beyond those of one tile.
-  pure subroutine list_runs(model, is_known, runs)
+  pure subroutine list_runs(model, is_known, borders)
     type(model_t), intent(in) :: model
     logical, intent(in) :: is_known(:)
-    integer, allocatable, intent(out) :: runs(:, :)
+    type(borders_t), intent(inout) :: borders
     logical :: begins, ends
     integer :: pass, n, i, node
 
@@ -277,12 +280,14 @@ contains
             ends = node == tile%last_owned
             if (.not. ends) ends = .not. is_known(node + 1)
             if (begins) n = n + 1
-            if (begins .and. pass == 2) runs(1, n) = node
-            if (ends .and. pass == 2) runs(2, n) = node
+            if (pass == 1) cycle
+            borders%run_tiles(n) = i
+            if (begins) borders%runs(1, n) = node
+            if (ends) borders%runs(2, n) = node
           end do
         end associate
       end do
-      if (pass == 1) allocate (runs(2, n))
+      if (pass == 1) allocate (borders%runs(2, n), borders%run_tiles(n))
     end do
   end subroutine list_runs
 

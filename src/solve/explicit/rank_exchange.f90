@@ -20,7 +20,8 @@ module rank_exchange_m
   implicit none
   private
   public :: parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, exchange_failures, &
-    exchange_erosion, exchange_limits, exchange_history, gather_motion, gather_state, judge_elements
+    exchange_erosion, exchange_limits, exchange_history, gather_motion, gather_special, gather_state, &
+    judge_elements
 
   !> Values of the sums over the nodes of a tile.
   integer, parameter :: n_sum = 4
@@ -32,6 +33,7 @@ module rank_exchange_m
     real(wp), allocatable :: outgoing(:, :), incoming(:, :) !! (2, slots) forces on borders
     integer(long) :: sent(2) = 0, joined(2) = 0 !! what `ranks_t` counts, of these exchanges alone
     integer(long) :: n_cycle = 0
+    integer :: n_shared = 0              !! times that the tiles were shared out anew
     integer :: n_gone = 0                !! elements of this process that are known to have left
     integer, allocatable :: n_failed(:)  !! failed points of its chunks that are known
   end type parcel_t
@@ -254,11 +256,23 @@ contains
     type(state_t), intent(inout) :: state
 
     call bring_reals(ranks, shares%nodes, 4, to_all, state%motion)
-    call bring_reals(ranks, shares%special, 4, to_all, state%motion)
-    if (.not. allocated(state%former_velocity)) return
-    call bring_reals(ranks, shares%nodes, 2, to_all, state%former_velocity)
-    call bring_reals(ranks, borders%block_nodes, 2, to_all, state%former_velocity)
+    if (allocated(state%former_velocity)) &
+      call bring_reals(ranks, shares%nodes, 2, to_all, state%former_velocity)
+    call gather_special(shares, borders, to_all, ranks, state)
   end subroutine gather_motion
+
+  !> That of special nodes.
+  subroutine gather_special(shares, borders, to_all, ranks, state)
+    type(shares_t), intent(in) :: shares
+    type(borders_t), intent(in) :: borders
+    logical, intent(in) :: to_all
+    type(ranks_t), intent(inout) :: ranks
+    type(state_t), intent(inout) :: state
+
+    call bring_reals(ranks, shares%special, 4, to_all, state%motion)
+    if (allocated(state%former_velocity)) &
+      call bring_reals(ranks, borders%block_nodes, 2, to_all, state%former_velocity)
+  end subroutine gather_special
 
   !> The whole state for the first process, or for all.
   subroutine gather_state(shares, borders, to_all, ranks, state)

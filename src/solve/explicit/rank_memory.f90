@@ -21,7 +21,7 @@ module rank_memory_m
   use type_charts_m, only : may_change
   implicit none
   private
-  public :: start_share, forget_others
+  public :: start_share, forget_others, forget_tiles, needs_all
 
 contains
 
@@ -47,15 +47,23 @@ contains
     type(model_t), intent(inout) :: model
     type(ranks_t), intent(in) :: ranks
     type(state_t), intent(inout) :: state
-    type(shares_t) :: shares
-    type(others_t) :: others
 
     if (ranks%mine == 0 .or. needs_all(model)) return
-    shares = share_out(model%layout, ranks%mine, ranks%n)
-    others = others_of(model, shares, ranks)
     deallocate (model%mesh%element_id)
     if (.not. allocated(state%cut_force)) deallocate (model%layout%element_slot)
     if (allocated(model%mesh%deck_node)) deallocate (model%mesh%deck_node)
+    call forget_tiles(share_out(model%layout, ranks%mine, ranks%n), ranks, model, state)
+  end subroutine forget_others
+
+  !> Tiles of others, and their interior nodes.
+  subroutine forget_tiles(shares, ranks, model, state)
+    type(shares_t), intent(in) :: shares
+    type(ranks_t), intent(in) :: ranks
+    type(model_t), intent(inout) :: model
+    type(state_t), intent(inout) :: state
+    type(others_t) :: others
+
+    others = others_of(model, shares, ranks)
     call forget_integers(others%nodes, 1, model%mesh%node_id)
     call forget_reals(others%nodes, 2, model%mesh%coordinates)
     call forget_integers(others%slots, 1, model%layout%slot_element)
@@ -64,7 +72,7 @@ contains
     call forget_nodes(others, state)
     call forget_slots(others, state%elements)
     call forget_streams(shares, ranks%mine, state%elements)
-  end subroutine forget_others
+  end subroutine forget_tiles
 
   !> Whether each process looks at all elements during the run.
   pure function needs_all(model) result(needs)

@@ -30,7 +30,8 @@ contains
       //'messages '//spread_text(counts(1, :))//', bytes '//spread_text(counts(2, :)) &
       //', calls of all '//spread_text(counts(3, :))//', bytes by them ' &
       //spread_text(counts(4, :))//'; besides, first process, in all: calls of all ' &
-      //plain_text(rest(1))//', bytes by them '//plain_text(rest(2)))
+      //plain_text(rest(1))//', bytes by them '//plain_text(rest(2)) &
+      //'; tiles shared out anew: '//to_text(parcel%n_shared))
   end subroutine report_exchange
 
   !> Mean and largest of what the processes have.

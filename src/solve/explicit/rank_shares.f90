@@ -6,7 +6,7 @@ module rank_shares_m
   use layout_m, only : layout_t
   implicit none
   private
-  public :: shares_t, share_out, stream_starts
+  public :: shares_t, share_out, tile_elements, stream_starts
 
   !> All arrays (0:n): where the range of each process starts, then one beyond the last.
   type :: shares_t
@@ -19,25 +19,27 @@ module rank_shares_m
 
 contains
 
-  !> Ranges of tiles with about as many elements each; a process may have none.
-  pure function share_out(layout, mine, n) result(shares)
+  !> Ranges of tiles with about as many elements each, or as much work; a process may have none.
+  pure function share_out(layout, mine, n, work) result(shares)
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: mine, n !! number of this process, and how many there are
+    real(wp), intent(in), optional :: work(:) !! of each tile
     type(shares_t) :: shares
-    real(wp) :: before, total
+    real(wp) :: weights(size(layout%tiles)), before, total
     integer :: i, owner, last
+
+    weights = tile_elements(layout)
+    if (present(work)) weights = work
 
     allocate (shares%tiles(0:n), shares%chunks(0:n), shares%nodes(0:n), shares%force_slots(0:n))
     allocate (shares%special(0:n))
     associate (tiles => layout%tiles)
-      total = max(1, sum(layout%chunk_elements(:tiles(size(tiles))%last_chunk)))
+      total = max(tiny(1.0_wp), sum(weights))
       before = 0.0_wp
       last = -1
       do i = 1, size(tiles)
-        associate (elements => sum(layout%chunk_elements(tiles(i)%first_chunk:tiles(i)%last_chunk)))
-          owner = min(n - 1, int(n*((before + 0.5_wp*elements)/total)))
-          before = before + elements
-        end associate
+        owner = min(n - 1, int(n*((before + 0.5_wp*weights(i))/total)))
+        before = before + weights(i)
         do while (last < owner)
           last = last + 1
           call start_range(last, i)
@@ -72,6 +74,17 @@ contains
     end subroutine start_range
 
   end function share_out
+
+  !> Elements of each tile.
+  pure function tile_elements(layout) result(n)
+    type(layout_t), intent(in) :: layout
+    real(wp) :: n(size(layout%tiles))
+    integer :: i
+
+    do i = 1, size(layout%tiles)
+      n(i) = sum(layout%chunk_elements(layout%tiles(i)%first_chunk:layout%tiles(i)%last_chunk))
+    end do
+  end function tile_elements
 
   !> Ranges of a stream that only some chunks have a part of.
   pure function stream_starts(chunks, chunk_start, n_value) result(starts)

@@ -17,7 +17,7 @@ module resting_tiles_m
   use tile_values_m, only : take_values, same_bits
   implicit none
   private
-  public :: rest_t, plan_rest, is_tried, rests, is_flying, remember_tile, judge_tile, &
+  public :: rest_t, plan_rest, take_tiles, effort_of, is_awake, is_tried, rests, is_flying, remember_tile, judge_tile, &
     look_at_tile, follow_rest, report_rest
 
   !> Status of a tile: stepped in each cycle, or not; above zero so many cycles are left in which it
@@ -33,11 +33,13 @@ module resting_tiles_m
     integer :: first_tile = 1, last_tile = 0 !! of this process
     integer, allocatable :: stepped(:)   !! tiles to step, of this process
     integer, allocatable :: watched(:)   !! resting ones that may wake, or whose nodes move
-    integer, allocatable :: summed(:)    !! runs of special nodes that are summed and moved: of one
-                                         !! process those of its tiles
+    integer, allocatable :: run_tiles(:) !! the tile that owns each run of special nodes
+    integer, allocatable :: summed(:)    !! runs that are summed and moved
     type(neighbours_t) :: neighbours     !! asked for once tiles rest
     real(wp), allocatable :: no_force(:, :) !! (2, n_local), likewise
     logical :: watches_all = .false.     !! tiles that rest are all looked at
+    logical :: is_settled = .false.      !! no tile rests or may come to rest any more, in any
+                                         !! process
     integer :: n_resting = 0             !! at the start of the cycle
     integer :: n_woken = 0, n_fallen = 0 !! since
     integer(long) :: n_skipped = 0       !! steps of tiles that were not taken
@@ -47,10 +49,10 @@ module resting_tiles_m
 contains
 
   !> All tiles are awake, and may come to rest if the model lets them.
-  subroutine plan_rest(model, shares, n_run, watches_all, rest)
+  subroutine plan_rest(model, shares, run_tiles, watches_all, rest)
     type(model_t), intent(in) :: model
     type(shares_t), intent(in) :: shares
-    integer, intent(in) :: n_run         !! runs of special nodes that this process moves
+    integer, intent(in) :: run_tiles(:)  !! of the runs of special nodes that this process moves
     logical, intent(in) :: watches_all   !! resting tiles have to be looked at in each cycle
     type(rest_t), intent(out) :: rest
     integer :: i
@@ -58,16 +60,60 @@ contains
     associate (n => size(model%layout%tiles), first => shares%first_tile, last => shares%last_tile)
       allocate (rest%status(n), source=awake)
       ! Where all bodies are rigid the one tile is empty.
+      rest%is_settled = .not. may_rest(model)
       if (may_rest(model)) rest%status(first:last) = merge(n_try, awake, &
         model%layout%tiles(first:last)%last_chunk >= model%layout%tiles(first:last)%first_chunk)
       allocate (rest%stepped(last - first + 1), source=[(i, i = first, last)])
       allocate (rest%watched(0))
-      allocate (rest%summed(n_run), source=[(i, i = 1, n_run)])
+      allocate (rest%run_tiles, source=run_tiles)
+      allocate (rest%summed(size(run_tiles)), source=[(i, i = 1, size(run_tiles))])
     end associate
     rest%first_tile = shares%first_tile
     rest%last_tile = shares%last_tile
     rest%watches_all = watches_all
   end subroutine plan_rest
+
+  !> The tiles that a process has from now on, some of which rest.
+  subroutine take_tiles(model, shares, status, run_tiles, rest)
+    type(model_t), intent(in) :: model
+    type(shares_t), intent(in) :: shares
+    integer, intent(in) :: status(:)     !! of all tiles
+    integer, intent(in) :: run_tiles(:)  !! as above
+    type(rest_t), intent(inout) :: rest
+    integer :: i
+
+    rest%first_tile = shares%first_tile
+    rest%last_tile = shares%last_tile
+    associate (first => rest%first_tile, last => rest%last_tile)
+      rest%status = awake
+      rest%status(first:last) = status(first:last)
+      rest%n_resting = count(rest%status < awake)
+    end associate
+    rest%run_tiles = run_tiles
+    rest%summed = [(i, i = 1, size(run_tiles))]
+    call list_tiles(model, rest)
+  end subroutine take_tiles
+
+  !> What a cycle costs an element of a tile, over what it costs where the tile is stepped: tiles
+  !> that fly are looked at and their nodes move, of the others some are looked at.
+  elemental function effort_of(status) result(effort)
+    integer, intent(in) :: status
+    real(wp) :: effort
+
+    select case (status)
+    case (flying); effort = 0.15_wp
+    case (resting); effort = 0.02_wp
+    case default; effort = 1.0_wp
+    end select
+  end function effort_of
+
+  !> Whether a tile is stepped in all cycles to come.
+  elemental function is_awake(status)
+    integer, intent(in) :: status
+    logical :: is_awake
+
+    is_awake = status == awake
+  end function is_awake
 
   !> Whether nothing but motion of its nodes can change the next step of a tile: no body load, no
   !> mass that grows, no element that leaves the mesh at a given time.
@@ -116,7 +162,7 @@ contains
   subroutine remember_tile(model, i_tile, state, rest, before)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_tile
-    type(state_t), intent(in) :: state
+    type(state_t), intent(inout) :: state !! as before
     type(rest_t), intent(inout) :: rest
     real(wp), allocatable, intent(out) :: before(:) !! not there where it can not come to rest
     real(wp) :: one(4)
@@ -255,20 +301,22 @@ contains
     rest%n_resting = rest%n_resting - rest%n_woken + rest%n_fallen
     rest%n_woken = 0
     rest%n_fallen = 0
-    if (.not. allocated(rest%no_force)) then
-      allocate (rest%no_force(2, model%layout%n_local), source=0.0_wp)
-      call find_neighbours(model, rest%neighbours)
-    end if
-    call list_tiles(rest)
+    call list_tiles(model, rest)
   end subroutine follow_rest
 
   !> The tiles of the next cycle. A resting one is looked at if it may wake, for its nodes may have
-  !> moved, or a neighbour may, which would then push its nodes.
-  subroutine list_tiles(rest)
+  !> moved, or a neighbour may, which would then push its nodes. Those of other processes count as
+  !> awake: what becomes of them is not known here.
+  subroutine list_tiles(model, rest)
+    type(model_t), intent(in) :: model
     type(rest_t), intent(inout) :: rest
     logical, dimension(size(rest%status)) :: may_wake, is_watched, is_stepped
     integer :: i
 
+    if (.not. allocated(rest%no_force)) then
+      allocate (rest%no_force(2, model%layout%n_local), source=0.0_wp)
+      call find_neighbours(model, rest%neighbours)
+    end if
     associate (first => rest%neighbours%first, near => rest%neighbours%near)
       do i = 1, size(rest%status)
         may_wake(i) = rest%status(i) < awake .and. (rest%watches_all &
@@ -285,8 +333,11 @@ contains
       rest%status(rest%first_tile:rest%last_tile) >= awake
     call list_true(is_stepped, rest%stepped)
     call list_true(is_watched, rest%watched)
-    ! Else all are listed; of one process each tile has a run of special nodes.
-    if (.not. rest%watches_all) call list_true(is_watched .or. rest%status >= awake, rest%summed)
+    ! Else all are listed.
+    if (.not. rest%watches_all) then
+      is_watched = is_watched .or. rest%status >= awake
+      call list_true([(is_watched(rest%run_tiles(i)), i = 1, size(rest%run_tiles))], rest%summed)
+    end if
   end subroutine list_tiles
 
   !> The tiles for which something is true.

@@ -1,92 +1,97 @@
 ! SPDX-License-Identifier: MIT
 !> All values of a tile's elements that a step may change, one behind the other: whether it has
-!> changed any is seen by their bits.
+!> changed any is seen by their bits, and a process that takes the tile over takes them.
 module tile_values_m
   use block_state_m, only : block_state_t
+  use freight_m, only : freight_t, start_loading, pass_reals, pass_integers
   use kinds_m, only : wp, long
   use layout_m, only : tile_t, first_slot, last_slot
   use rank_shares_m, only : stream_starts
   implicit none
   private
-  public :: take_values, same_bits
+  public :: take_values, pass_values, same_bits
 
 contains
 
   !> What a step may change of the elements of a tile.
   subroutine take_values(tile, elements, values)
     type(tile_t), intent(in) :: tile
-    type(block_state_t), intent(in) :: elements
+    type(block_state_t), intent(inout) :: elements !! as before
     real(wp), allocatable, intent(out) :: values(:)
+    type(freight_t) :: freight
 
-    allocate (values(0))
-    call append_chunks(tile%first_chunk, tile%last_chunk, elements, values)
-    call append_slots(first_slot(tile), last_slot(tile), elements, values)
-    call append_stream(tile, elements%point_start, elements%point_deviator, values)
-    call append_stream(tile, elements%history_start, elements%history, values)
-    call append_stream(tile, elements%eos_start, elements%eos_state, values)
-    call append_stream(tile, elements%hourglass_start, elements%hourglass_strain, values)
+    call pass_values(tile, elements, freight)
+    call start_loading(freight)
+    call pass_values(tile, elements, freight)
+    call move_alloc(freight%values, values)
   end subroutine take_values
 
-  !> What they keep chunk by chunk.
-  subroutine append_chunks(first, last, elements, values)
-    integer, intent(in) :: first, last
-    type(block_state_t), intent(in) :: elements
-    real(wp), allocatable, intent(inout) :: values(:)
+  !> The same into a freight, or out of it.
+  subroutine pass_values(tile, elements, freight)
+    type(tile_t), intent(in) :: tile
+    type(block_state_t), intent(inout) :: elements
+    type(freight_t), intent(inout) :: freight
 
-    call append(elements%deviatoric_work(first:last), values)
-    call append(elements%hourglass_work(first:last), values)
-    call append(elements%viscous_work(first:last), values)
-    if (allocated(elements%damping_work)) call append(elements%damping_work(first:last), values)
-    call append(elements%time_limit(first:last), values)
-    call append(elements%volume_limit(first:last), values)
-    if (allocated(elements%n_failed)) call append(real(elements%n_failed(first:last), wp), values)
-  end subroutine append_chunks
+    call pass_chunks(tile%first_chunk, tile%last_chunk, elements, freight)
+    call pass_slots(first_slot(tile), last_slot(tile), elements, freight)
+    call pass_stream(tile, elements%point_start, elements%point_deviator, freight)
+    call pass_stream(tile, elements%history_start, elements%history, freight)
+    call pass_stream(tile, elements%eos_start, elements%eos_state, freight)
+    call pass_stream(tile, elements%hourglass_start, elements%hourglass_strain, freight)
+  end subroutine pass_values
+
+  !> What they keep chunk by chunk.
+  subroutine pass_chunks(first, last, elements, freight)
+    integer, intent(in) :: first, last
+    type(block_state_t), intent(inout) :: elements
+    type(freight_t), intent(inout) :: freight
+
+    associate (n => last - first + 1)
+      call pass_reals(n, elements%deviatoric_work(first:last), freight)
+      call pass_reals(n, elements%hourglass_work(first:last), freight)
+      call pass_reals(n, elements%viscous_work(first:last), freight)
+      if (allocated(elements%damping_work)) &
+        call pass_reals(n, elements%damping_work(first:last), freight)
+      call pass_reals(n, elements%time_limit(first:last), freight)
+      call pass_reals(n, elements%volume_limit(first:last), freight)
+      if (allocated(elements%n_failed)) &
+        call pass_integers(n, elements%n_failed(first:last), freight)
+    end associate
+  end subroutine pass_chunks
 
   !> What they keep slot by slot.
-  subroutine append_slots(first, last, elements, values)
+  subroutine pass_slots(first, last, elements, freight)
     integer, intent(in) :: first, last
-    type(block_state_t), intent(in) :: elements
-    real(wp), allocatable, intent(inout) :: values(:)
+    type(block_state_t), intent(inout) :: elements
+    type(freight_t), intent(inout) :: freight
     integer :: k
 
-    do k = 1, size(elements%deviator, 2)
-      call append(elements%deviator(first:last, k), values)
-    end do
-    if (allocated(elements%damping_stress)) &
-      call append(elements%damping_stress(16*first - 15:16*last), values)
-    if (.not. allocated(elements%erosion)) return
-    associate (erosion => elements%erosion)
-      call append(real(erosion%status(first:last), wp), values)
-      call append(erosion%hourglass(first:last), values)
-      call append(erosion%internal(first:last), values)
-      call append(erosion%impulse(first:last), values)
+    associate (n => last - first + 1)
+      do k = 1, size(elements%deviator, 2)
+        call pass_reals(n, elements%deviator(first:last, k), freight)
+      end do
+      if (allocated(elements%damping_stress)) &
+        call pass_reals(16*n, elements%damping_stress(16*first - 15:16*last), freight)
+      if (.not. allocated(elements%erosion)) return
+      call pass_integers(n, elements%erosion%status(first:last), freight)
+      call pass_reals(n, elements%erosion%hourglass(first:last), freight)
+      call pass_reals(n, elements%erosion%internal(first:last), freight)
+      call pass_reals(n, elements%erosion%impulse(first:last), freight)
     end associate
-  end subroutine append_slots
+  end subroutine pass_slots
 
   !> What only some chunks keep.
-  subroutine append_stream(tile, chunk_start, stream, values)
+  subroutine pass_stream(tile, chunk_start, stream, freight)
     type(tile_t), intent(in) :: tile
     integer, intent(in) :: chunk_start(:)
-    real(wp), intent(in), contiguous :: stream(:)
-    real(wp), allocatable, intent(inout) :: values(:)
+    real(wp), intent(inout), contiguous :: stream(:)
+    type(freight_t), intent(inout) :: freight
     integer :: range(2)
 
     if (size(stream) == 0) return
     range = stream_starts([tile%first_chunk, tile%last_chunk + 1], chunk_start, size(stream))
-    call append(stream(range(1):range(2) - 1), values)
-  end subroutine append_stream
-
-  !> One piece more.
-  subroutine append(piece, values)
-    real(wp), intent(in), contiguous :: piece(:)
-    real(wp), allocatable, intent(inout) :: values(:)
-    real(wp), allocatable :: longer(:)
-
-    allocate (longer(size(values) + size(piece)))
-    longer(:size(values)) = values
-    longer(size(values) + 1:) = piece
-    call move_alloc(longer, values)
-  end subroutine append
+    call pass_reals(range(2) - range(1), stream(range(1):range(2) - 1), freight)
+  end subroutine pass_stream
 
   !> Whether two arrays of one length have the same bits: zeros have signs, and what is not a number
   !> equals nothing.
