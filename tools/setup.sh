@@ -183,7 +183,8 @@ install_tools() {
     return 1
   fi
   say "installing the Python tools${extra:+ and what the tests need}"
-  if ! (cd "$root" && "$venv/bin/python" -m pip install --disable-pip-version-check \
+  # Python compiles what is used when it is first used; of all that comes along that is little.
+  if ! (cd "$root" && "$venv/bin/python" -m pip install --disable-pip-version-check --no-compile \
         -e "./tools${extra:+[$extra]}") >"$root/build/pip.log" 2>&1; then
     tail -n 15 "$root/build/pip.log" >&2
     without_tools "pip failed; its output is in build/pip.log."
