@@ -38,7 +38,7 @@ if [ "$(cat "$venv/installed" 2>/dev/null)" != "$want" ] || ! "$venv/bin/python"
   echo "== installing MkDocs and FORD into build/docs-venv"
   rm -rf "$venv"
   run docs-pip.log python3 -m venv "$venv"
-  run docs-pip.log "$venv/bin/python" -m pip install --disable-pip-version-check \
+  run docs-pip.log "$venv/bin/python" -m pip install --disable-pip-version-check --no-compile \
     -r "$root/tools/docs/requirements.txt"
   echo "$want" >"$venv/installed"
 fi

@@ -183,7 +183,8 @@ install_tools() {
     return 1
   fi
   say "installing the Python tools${extra:+ and what the tests need}"
-  if ! (cd "$root" && "$venv/bin/python" -m pip install --disable-pip-version-check \
+  # Python compiles what is used when it is first used; of all that comes along that is little.
+  if ! (cd "$root" && "$venv/bin/python" -m pip install --disable-pip-version-check --no-compile \
         -e "./tools${extra:+[$extra]}") >"$root/build/pip.log" 2>&1; then
     tail -n 15 "$root/build/pip.log" >&2
     without_tools "pip failed; its output is in build/pip.log."
@@ -199,10 +200,11 @@ without_tools() {
   complain "scenes), the picture of tools/run.sh, the studies and the tests. Run this script again to install them."
 }
 
-# build TYPE [TARGET]: release, debug, counted or mpi; the program, or the target `all` for the tests too.
+# build TYPE [TARGET...]: release, debug, counted or mpi; the program, or the target `all` for the tests too.
 build() {
-  local type=$1 target=${2:-slideline} folder name log python
-  local -a more=()
+  local type=$1 folder name log python
+  local -a more=() targets=("${@:2}")
+  [ $# -gt 1 ] || targets=(slideline)
   folder="$root/build/$type"
   case $type in
     release) name=Release ;;
@@ -230,8 +232,8 @@ build() {
   say "building build/$type${2:+ with its tests}"
   [ -t 1 ] || say "this takes minutes the first time; how far it is stands in build/$type.log"
   if [ -t 1 ]; then
-    cmake --build "$folder" --target "$target" --parallel "$(nproc)" || exit 1
-  elif ! cmake --build "$folder" --target "$target" --parallel "$(nproc)" >"$log" 2>&1; then
+    cmake --build "$folder" --target "${targets[@]}" --parallel "$(nproc)" || exit 1
+  elif ! cmake --build "$folder" --target "${targets[@]}" --parallel "$(nproc)" >"$log" 2>&1; then
     tail -n 60 "$log" >&2
     complain "the build failed; its output is in build/$type.log"
     exit 1

@@ -3,7 +3,7 @@
 # usage: tools/test.sh [ctest arguments...]
 # Installs what is missing, then runs the tests of the Release build, then the quick ones of the
 # Debug build with its run-time checks and sanitisers.  Every test runs in one of the two; some program
-# tests in one alone (tests/CMakeLists.txt), unless SLIDELINE_FULL is 1.  With arguments (such as -L unit,
+# and unit tests in one alone (tests/CMakeLists.txt, tests/unit/CMakeLists.txt), unless SLIDELINE_FULL is 1.  With arguments (such as -L unit,
 # or -R contact) only the Release tests so chosen.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
@@ -28,16 +28,20 @@ run_tests() {
 # Labels of tests that the build leaves to the other one; in full none.
 left_to_debug='^debug$'
 left_to_release='^release$'
+units=()
 if [ "${SLIDELINE_FULL:-0}" = 1 ]; then
   left_to_debug='^$'
   left_to_release='^$'
+  units=(all_unit_tests)
+elif [ $# -gt 0 ]; then
+  units=(all_unit_tests)
 fi
 
 # What comes over the network comes while the compiler works. Where there is no environment the second attempt says why.
 make_environment || install_tools test || exit 1
 install_tools test &
 tools=$!
-build release all
+build release all "${units[@]}"
 wait "$tools" || exit 1
 unlock
 if [ $# -gt 0 ]; then
