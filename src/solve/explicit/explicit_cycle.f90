@@ -232,7 +232,6 @@ contains
     type(state_t), intent(in) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-
     type(requests_t) :: before
 
     before = cycle%asked
