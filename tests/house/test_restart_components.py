@@ -53,7 +53,7 @@ KEPT = {
         "last": "found again", "judges": "found again", "may_judge": "from the deck", "plots": "of the run that was asked", "due": "set in each cycle",
         "leap": "made in each cycle", "sums": "formed in each cycle", "rest": "found anew in the first cycles", "refines": "from the deck", "presses": "from the deck", "pressing": "formed anew in each cycle", "common": "made in each cycle", "rates": "asked anew in the first cycle",
         "checks": "filled in each cycle", "failures": "of each log, counted anew", "steps": "kept as step_plan_t",
-        "shares": "of each run", "borders": "of each run", "n_check": "of each run", "parcel": "filled in each cycle", "echoes": "of a second", "asked": "heard in each cycle",
+        "shares": "of each run", "borders": "of each run", "first_check": "of each run", "parcel": "filled in each cycle", "echoes": "of a second", "asked": "heard in each cycle",
         "told": "of the state", "freed": "not when a file is written",
         "timed_motions": "from the deck", "active": "asked anew in the first cycle", "velocity": "made in each cycle",
         "displacement": "made in each cycle", "reason": "of each run", "error": "of each run"}),

@@ -66,6 +66,28 @@ def settling():
     return deck.output(plot=2.0e-3, glstat=2.0e-4, matsum=1.0e-3).text()
 
 
+def struck(is_round):
+    """A bar of bands of three materials, struck at one end: its tiles wake one after the other, and processes that have
+    sleeping ones take over others, with all that damping, points, hourglass forms and an equation of state remember."""
+    n_x, n_y = 900, 12
+    deck = Deck("a bar that is struck").add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_TIMESTEP", (0.0, 0.6))
+    deck.hourglass(4, 0.05).add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
+    deck.add("*SECTION_SHELL", (2, 15 if is_round else 13, None, 4), (1.0,))
+    deck.add("*PART", "copper", (1, 1, 1, 7)).add("*PART", "steel", (2, 2, 2)).add("*PART", "lead", (3, 1, 3))
+    deck.add("*MAT_JOHNSON_COOK", (1, 8930.0, 46.0e9), (9.0e7, 2.92e8, 0.31, 0.025, 1.09, 1356.0, 293.0, 1.0),
+             (383.0,), (0.0,))
+    deck.add("*EOS_GRUNEISEN", (7, 3940.0, 1.489, 0.0, 0.0, 1.99, 0.47), (1.0,))
+    deck.plastic(7850.0, 2.1e11, 0.3, 2.0e8, 1.0e9, 0.5, 2).elastic(11340.0, 1.6e10, 0.42, 3)
+    coordinates, quads = grid(n_x, n_y, 0.9, 0.012, (0.1, 0.0))
+    coordinates[450::n_x + 1, 0] += 0.0004  # the step is that of elements in a tile that sleeps
+    deck.add("*NODE", *[(k + 1, x, y) for k, (x, y) in enumerate(coordinates)])
+    deck.add("*ELEMENT_SHELL", *[(k + 1, 1 + k % n_x // 15 % 3, *[node + 1 for node in quad]) for k, quad in enumerate(quads)])
+    if not is_round:
+        deck.curve(2, [(0.0, 50.0), (1.0, 50.0)]).add("*DAMPING_GLOBAL", (2,)).add("*DAMPING_PART_STIFFNESS", (3, 0.1))
+    deck.node_set(1, [1 + i + j * (n_x + 1) for j in range(n_y + 1) for i in range(6)]).add("*INITIAL_VELOCITY", (1,), (30.0, 9.0))
+    return deck.output(plot=1.5e-5, glstat=3.0e-6, matsum=3.0e-6).text()
+
+
 def ended():
     """A row for every history, and a rigid body that ends the run."""
     return busy_block(fine=4).add("*TERMINATION_BODY", (2, 2, 1.0, -0.004)).text()
@@ -81,6 +103,8 @@ SCENES = {
     "round, type 6": (lambda: rings(6), 60, 4, 2),
     "mass that grows, type 7": (lambda: growing(7), 60, 2, 1),
     "no contact, gravity": (settling, 60, 5, 1),
+    "tiles that wake, damping": (lambda: struck(False), 260, 3, 2),
+    "tiles that wake, round": (lambda: struck(True), 260, 4, 1),
     "histories and an end before its time, type 3": (ended, 60, 3, 1),
     "type that changes": (lambda: twice(columns=(40, 56), pace=0.06), 400, 3, 1, "dt=4e-4"),
 }
@@ -143,6 +167,8 @@ def test_files_are_those_of_one_process(tmp_path, scene):
     assert "fail" not in scene or "points fail" in log
     assert ("end before" in scene) == ("*TERMINATION_BODY" in log)
     assert ("changes" in scene) == ("contact is open and goes on with" in log)
+    shared = re.search(r"; tiles shared out anew: (\d+)$", (tmp_path / "several" / "job.log").read_text(), re.MULTILINE)
+    assert ("wake" in scene) == (int(shared[1]) > 0)
     if "grows" in scene:
         added = numbers(tmp_path / "one" / "job.glstat.csv", "added_mass")
         assert added[-1] > added[0]

@@ -12,7 +12,7 @@ module rank_balance_m
   use rank_exchange_m, only : parcel_t, plan_parcel, gather_special
   use rank_memory_m, only : needs_all, forget_tiles
   use rank_shares_m, only : shares_t, share_out, tile_elements
-  use ranks_m, only : ranks_t, bring_integers
+  use ranks_m, only : ranks_t, bring_reals, bring_integers
   use resting_tiles_m, only : take_tiles, is_awake, effort_of
   use state_m, only : state_t
   use tile_moving_m, only : move_tiles
@@ -76,6 +76,7 @@ contains
     integer :: i
 
     call gather_special(cycle%shares, cycle%borders, .true., ranks, state)
+    call bring_reals(ranks, cycle%shares%special, 2, .true., state%internal_force)
     call move_tiles(cycle%shares, next, ranks, model, state)
     cycle%shares = next
     if (ranks%mine > 0) call forget_tiles(next, ranks, model, state)

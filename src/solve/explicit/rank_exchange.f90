@@ -20,8 +20,8 @@ module rank_exchange_m
   implicit none
   private
   public :: parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, exchange_failures, &
-    exchange_erosion, exchange_limits, exchange_history, gather_motion, gather_special, gather_state, &
-    judge_elements
+    exchange_erosion, exchange_limits, exchange_history, gather_motion, gather_special, &
+    gather_state, judge_elements
 
   !> Values of the sums over the nodes of a tile.
   integer, parameter :: n_sum = 4

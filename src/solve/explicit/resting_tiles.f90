@@ -17,8 +17,8 @@ module resting_tiles_m
   use tile_values_m, only : take_values, same_bits
   implicit none
   private
-  public :: rest_t, plan_rest, take_tiles, effort_of, is_awake, is_tried, rests, is_flying, remember_tile, judge_tile, &
-    look_at_tile, follow_rest, report_rest
+  public :: rest_t, plan_rest, take_tiles, effort_of, is_awake, is_tried, rests, &
+    is_flying, remember_tile, judge_tile, look_at_tile, follow_rest, report_rest
 
   !> Status of a tile: stepped in each cycle, or not; above zero so many cycles are left in which it
   !> may come to rest.
