@@ -9,7 +9,7 @@ module look_ahead_m
   use foot_m, only : foot_t, face_foot, see_segment
   use gather_m, only : spread_of
   use kinds_m, only : wp
-  use tracking_m, only : list_touching, begin_contact
+  use tracking_m, only : list_touching, begin_contact, put_off
   implicit none
   private
   public :: ahead_t, look_ahead, look_back
@@ -48,7 +48,11 @@ contains
         if (tracking%status(i) /= is_in_front .or. tracking%wake(i) - gap > memory%travel) cycle
         foot = face_foot(see_segment(contact%master, master, slave(:, i), tracking%segment(i)), &
           tracking%segment(i))
-        if (.not. foot%is_on .or. foot%gap >= gap) cycle
+        if (.not. foot%is_on) cycle
+        if (foot%gap >= gap) then
+          call put_off(tracking, contact%master, master, slave(:, i), i, memory%travel)
+          cycle
+        end if
         if (ahead%n == 0) allocate (ahead%spot(tracking%n), ahead%wake(tracking%n))
         ahead%n = ahead%n + 1
         ahead%spot(ahead%n) = i
