@@ -20,7 +20,7 @@ module implicit_penalty_m
   use weighted_gaps_m, only : choose_rows, form_shares, find_rates, fill_band, along_normal
   implicit none
   private
-  public :: press_ahead
+  public :: find_rows, press_ahead
 
   !> Part of a penetration that is taken back in a step where springs have no compliance, or stand
   !> for such.
@@ -29,6 +29,19 @@ module implicit_penalty_m
   real(wp), parameter :: overlap = 1.0e-3_wp
 
 contains
+
+  !> The rows of the interface once its points are placed, and what each moves.
+  pure subroutine find_rows(step, memory)
+    type(pressing_t), intent(inout) :: step
+    type(contact_state_t), intent(inout) :: memory
+
+    associate (nodal => memory%scratch%nodal)
+      call average_gaps(memory%points, memory%n_slave, nodal)
+      step%gap = nodal(1, :memory%n_slave)
+      call choose_rows(memory%n_slave, nodal, memory%node_pressure, memory%closed_gap, step%rows)
+      if (step%rows%n > 0) call form_shares(memory%points, step%rows)
+    end associate
+  end subroutine find_rows
 
   !> Pressures, nodal forces added to `force`, and the work of the step behind.
   pure subroutine press_ahead(rule, motion, step, memory, force)
@@ -182,12 +195,8 @@ contains
     type(outcome_t) :: outcome
     integer :: i
 
-    associate (rows => step%rows, problem => step%problem, nodal => memory%scratch%nodal)
-      call average_gaps(memory%points, memory%n_slave, nodal)
-      step%gap = nodal(1, :memory%n_slave)
-      call choose_rows(memory%n_slave, nodal, rows)
+    associate (rows => step%rows, problem => step%problem)
       if (rows%n > 0) then
-        call form_shares(memory%points, rows)
         call set_size(problem, rows%n, rows%width, step%n_mode)
         call fill_band(rows, along_normal, step%mobility, problem%band)
         call fill_columns(step, along_normal)

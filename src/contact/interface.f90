@@ -25,7 +25,7 @@ module interface_m
   use gather_m, only : gather_places, take_force, keep_former
   use interference_m, only : begin_growth
   use kinds_m, only : wp
-  use look_ahead_m, only : ahead_t, look_ahead, look_back
+  use look_ahead_m, only : look_ahead, look_back
   use log_m, only : log_t
   use model_m, only : model_t
   use spots_m, only : move_spots
@@ -176,21 +176,22 @@ contains
     integer, intent(in) :: cycle
     type(clock_t), intent(inout) :: clock
     type(contact_state_t), intent(inout) :: memory
-    type(ahead_t) :: ahead
+    real(wp) :: travel !! before the step behind, m
 
     memory%scratch%had_force = memory%n_active > 0
     memory%scratch%waits = .true.
     memory%scratch%is_born = memory%is_stale .and. cycle > 0
+    travel = memory%travel
     call gather_spots(contact, motion, memory)
     call search_pairs(contact, cycle, memory)
-    call look_ahead(contact, cycle == 0 .or. memory%scratch%is_born, memory, ahead)
+    call look_ahead(contact, cycle == 0 .or. memory%scratch%is_born, memory%travel - travel, memory)
     call lap(clock, phase_contact_search)
     memory%n_active = 0
     memory%watch%has_looked = .false.
     call begin_look(memory%scratch%had_force, memory%watch)
     if (memory%scratch%had_force) call keep_former(memory)
     call place_points(contact, memory)
-    call look_back(ahead, memory)
+    call look_back(memory)
     call lap(clock, phase_contact_pairing)
   end subroutine place_ahead
 

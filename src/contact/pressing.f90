@@ -19,7 +19,8 @@ module pressing_m
     logical :: is_stiff = .false.           !! the deck asks for springs without compliance
     real(wp) :: time = 0.0_wp               !! of u(n), s
     real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) v(n+1/2) without the
-                                            !! interface
+                                            !! interface; this and the next of nodes that have
+                                            !! rows, of others from some step before
     real(wp), allocatable :: mobility(:, :) !! (2, n_slave + n_master) velocity from a force of 1
     integer, allocatable :: led(:, :)       !! (2, :) motions that lead nodes, and these
     integer, allocatable :: riders(:, :)    !! (3, :) rigid bodies, their nodes, and these
@@ -44,7 +45,7 @@ contains
 
     step%is_stiff = contact%penalty < 0.0_wp
     associate (n_node => memory%n_slave + memory%n_master, n_slave => memory%n_slave)
-      allocate (step%velocity(2, n_node), step%mobility(2, n_node))
+      allocate (step%velocity(2, n_node), step%mobility(2, n_node), source=0.0_wp)
       allocate (step%gap(n_slave))
       if (allocated(memory%friction%force)) allocate (step%pressed(2, n_node))
       allocate (step%rows%slave(n_slave), step%rows%place(n_slave), step%rows%inverse(n_slave))

@@ -36,11 +36,14 @@ module weighted_gaps_m
 
 contains
 
-  !> A row for each slave node that has points, in the order of the chain. A closed chain begins
-  !> behind its longest stretch without rows, so that neighbours stay neighbours.
-  pure subroutine choose_rows(n_slave, nodal, rows)
+  !> A row for each slave node whose mean gap may close in the step, or that has pressed in the one
+  !> before, in the order of the chain. A closed chain begins behind its longest stretch without
+  !> rows, so that neighbours stay neighbours.
+  pure subroutine choose_rows(n_slave, nodal, pressure, reach, rows)
     integer, intent(in) :: n_slave
-    real(wp), intent(in) :: nodal(2, *) !! (2, n_slave or more) kappa in (2, :), m
+    real(wp), intent(in) :: nodal(2, *) !! (2, n_slave or more) mean gap and kappa, m
+    real(wp), intent(in) :: pressure(n_slave)
+    real(wp), intent(in) :: reach       !! gap from which on none closes, m
     type(rows_t), intent(inout) :: rows
     integer :: i, start, longest
 
@@ -48,9 +51,11 @@ contains
     do i = 1, n_slave
       rows%place(i) = 0
       if (.not. nodal(2, i) > 0.0_wp) cycle
+      if (nodal(1, i) >= reach .and. .not. pressure(i) > 0.0_wp) cycle
       rows%n = rows%n + 1
       rows%slave(rows%n) = i
     end do
+    rows%n_node = 0
     if (rows%n == 0) return
     start = 1
     longest = rows%slave(1) + n_slave - rows%slave(rows%n)

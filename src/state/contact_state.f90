@@ -141,7 +141,10 @@ module contact_state_m
                                             !! known
     logical :: had_force = .false.          !! the call before had some
     logical :: is_born = .false.            !! contact begins in this call, after time zero; these
-                                            !! three only of implicit penalties
+                                            !! three and the next only of implicit penalties
+    integer :: n_ahead = 0                  !! spots in contact for as long as points are placed
+    integer, allocatable :: ahead(:)        !! (n_ahead or more) these
+    real(wp), allocatable :: ahead_wake(:)  !! their alarms, m of travel
     type(piece_table_t), allocatable :: pieces !! lent to the placement while it works
   end type contact_scratch_t
 

@@ -14,7 +14,8 @@ module tracking_m
   use waking_m, only : list_waking
   implicit none
   private
-  public :: update_tracking, wake_all, forget_pairs, list_touching, most_facing, begin_contact
+  public :: update_tracking, wake_all, forget_pairs, list_touching, most_facing, begin_contact, &
+    put_off
 
 contains
 
@@ -292,6 +293,24 @@ contains
       n_released = n_released + 1
     end if
   end subroutine begin_contact
+
+  !> The alarm of a spot that is not in contact, by where it is now, where its segment still is the
+  !> closest.
+  pure subroutine put_off(tracking, surface, chain, spot, i, travel)
+    type(tracking_t), intent(inout) :: tracking
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :)
+    real(wp), intent(in) :: spot(4) !! place of the spot
+    integer, intent(in) :: i        !! its number
+    real(wp), intent(in) :: travel
+    type(foot_t) :: foot
+
+    if (.not. travel < tracking%recheck(i)) return
+    if (walk_to_closest(surface, chain, spot, tracking%segment(i)) /= tracking%segment(i)) return
+    foot = closest_foot(surface, chain, spot, tracking%segment(i))
+    if (foot%is_on .and. foot%gap >= 0.0_wp) &
+      tracking%wake(i) = min(travel + foot%distance, tracking%recheck(i))
+  end subroutine put_off
 
   !> Keep a foot.
   pure subroutine store_foot(tracking, i, foot)

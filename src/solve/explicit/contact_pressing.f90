@@ -6,7 +6,7 @@ module contact_pressing_m
   use constraints_m, only : is_active
   use contact_account_m, only : follow_contact
   use contacts_m, only : penalty_implicit
-  use implicit_penalty_m, only : press_ahead
+  use implicit_penalty_m, only : find_rows, press_ahead
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
@@ -50,6 +50,7 @@ contains
       end if
       steps(i)%dt = leap%dt
       if (state%contacts(i)%points%n > 0) then
+        call find_rows(steps(i), state%contacts(i))
         call foresee(leap, state%contacts(i)%nodes, state, steps(i))
         call lead(model, velocity, state%time, steps(i))
         if (size(steps(i)%riders, 2) > 0) then
@@ -69,8 +70,8 @@ contains
     end do
   end subroutine press_contacts
 
-  !> The step ahead as the nodes of an interface would make it without that, by the forces that are
-  !> known.
+  !> The step ahead as the nodes that have rows would make it without the interface, by the forces
+  !> that are known.
   subroutine foresee(leap, nodes, state, step)
     type(leap_t), intent(in) :: leap
     integer, intent(in), contiguous :: nodes(:)
@@ -83,35 +84,39 @@ contains
     factors(:, keep) = leap%keep
     factors(:, push) = leap%half*leap%body
     if (.not. allocated(state%node_damping)) then
-      call foresee_nodes(nodes, factors, state%inverse_mass, state%motion, state%force_special, &
-        state%internal_force, step%mobility, step%velocity)
+      call foresee_nodes(step%rows%node(:step%rows%n_node), nodes, factors, state%inverse_mass, &
+        state%motion, state%force_special, state%internal_force, step)
       return
     end if
-    do i = 1, size(nodes)
-      call find_factors(leap, state, nodes(i), factors(:, half), factors(:, keep))
+    do i = 1, step%rows%n_node
+      call find_factors(leap, state, nodes(step%rows%node(i)), factors(:, half), factors(:, keep))
       factors(:, push) = factors(:, half)*leap%body
-      call foresee_nodes(nodes(i:i), factors, state%inverse_mass, state%motion, &
-        state%force_special, state%internal_force, step%mobility(1, i), step%velocity(1, i))
+      call foresee_nodes(step%rows%node(i:i), nodes, factors, state%inverse_mass, state%motion, &
+        state%force_special, state%internal_force, step)
     end do
   end subroutine foresee
 
   !> Some of them, with the same factors.
-  pure subroutine foresee_nodes(nodes, factors, inverse_mass, motion, force, internal_force, &
-      mobility, velocity)
-    integer, intent(in), contiguous :: nodes(:)
+  pure subroutine foresee_nodes(local, nodes, factors, inverse_mass, motion, force, &
+      internal_force, step)
+    integer, intent(in), contiguous :: local(:) !! which nodes of the interface
+    integer, intent(in) :: nodes(*)             !! all of these
     real(wp), intent(in) :: factors(2, 3)
     real(wp), intent(in) :: inverse_mass(2, *), motion(4, *), force(2, *), internal_force(2, *)
-    real(wp), intent(inout) :: mobility(2, *), velocity(2, *)
+    type(pressing_t), intent(inout) :: step
     real(wp) :: free
-    integer :: i, j, k
+    integer :: i, j, k, l
 
-    do i = 1, size(nodes)
-      k = nodes(i)
+    do i = 1, size(local)
+      l = local(i)
+      k = nodes(l)
       do j = 1, 2
-        mobility(j, i) = factors(j, half)*inverse_mass(j, k)
-        free = factors(j, keep)*motion(2 + j, k) + factors(j, push) &
-          + mobility(j, i)*(force(j, k) - internal_force(j, k))
-        velocity(j, i) = merge(free, 0.0_wp, inverse_mass(j, k) > 0.0_wp)
+        associate (mobility => step%mobility(j, l))
+          mobility = factors(j, half)*inverse_mass(j, k)
+          free = factors(j, keep)*motion(2 + j, k) + factors(j, push) &
+            + mobility*(force(j, k) - internal_force(j, k))
+          step%velocity(j, l) = merge(free, 0.0_wp, inverse_mass(j, k) > 0.0_wp)
+        end associate
       end do
     end do
   end subroutine foresee_nodes
