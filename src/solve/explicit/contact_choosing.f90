@@ -105,8 +105,11 @@ contains
       watched = 0.0_wp
     end associate
     if (scale < merge(tiny(scale), 1.0_wp, contact%penalty_unit == penalty_share)) then
-      call write_log(log, text//'; it stays, the step does not bear the springs of ' &
-        //name_of(contact))
+      associate (n => state%estimates(i)%n_stayed)
+        if (n == 0) call write_log(log, text//'; it stays, the step does not bear the springs of ' &
+          //name_of(contact)//' (told once)')
+        n = n + 1
+      end associate
       return
     end if
     if (scale < 1.0_wp) call scale_penalties(scale, memory)
