@@ -221,7 +221,7 @@ def twice(ctype=1, target=0.03, pen=1.0e6, punit=None, columns=(3, 4), pace=1.0,
     return deck.output(plot=0.5, glstat=0.01, rcforc=0.01, matsum=0.1)
 
 
-CHANGE = r"interface 1, cycle (\d+), time (\S+): the estimate, ([\d.]+) % since .*, is above .*; contact is open and goes on with (.*), whose"
+CHANGE = r"interface 1, cycle (\d+), time (\S+): the estimate without waves, ([\d.]+) % since .*, is above .*; contact is open and goes on with (.*), whose"
 
 
 @pytest.fixture
