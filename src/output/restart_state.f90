@@ -219,6 +219,7 @@ contains
     call keep(archive, 'n', estimate%n)
     call keep(archive, 'misfit', estimate%misfit)
     call keep(archive, 'load', estimate%load)
+    call keep(archive, 'still', estimate%still)
     call keep(archive, 'heaviest', estimate%heaviest)
     call keep(archive, 'at_heaviest', estimate%at_heaviest)
     call keep(archive, 'springs', estimate%springs)
@@ -229,6 +230,7 @@ contains
     call keep(archive, 'forces', estimate%forces)
     call keep(archive, 'least_margin', estimate%least_margin)
     call keep_fixed(archive, 'watched', estimate%watched)
+    call keep(archive, 'n_stayed', estimate%n_stayed)
     call keep(archive, 'contact_type', estimate%contact_type)
     call leave(archive)
   end subroutine keep_estimate

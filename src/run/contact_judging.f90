@@ -11,8 +11,10 @@ module contact_judging_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
-  use rows_behind_m, only : face_rows_t, find_rows, face_pressure, elastic_energy, has_stress
+  use rows_behind_m, only : face_rows_t, find_rows, face_pressure, face_inertia, &
+    elastic_energy, has_stress
   use share_text_m, only : percent
+  use shared_faces_m, only : others_t, find_others, present_contact, face_share
   use snapshot_filling_m, only : fill_slaves, join_slaves
   use snapshot_m, only : snapshot_t, interface_result_t
   use state_m, only : state_t
@@ -24,6 +26,8 @@ module contact_judging_m
 
   !> Springs that store more than this many times what the elements beside them do are soft.
   real(wp), parameter :: soft = 2.0_wp
+  !> Waves are told where they are more than a tenth of the square of the estimate.
+  real(wp), parameter :: told_below = 0.9_wp
   !> The second difference of noise that is not correlated has so many times its square.
   real(wp), parameter :: of_noise = 6.0_wp
 
@@ -31,6 +35,7 @@ module contact_judging_m
   type :: side_t
     real(wp) :: misfit = 0.0_wp     !! sum of (p - row stress)^2 a
     real(wp) :: load = 0.0_wp       !! sum of p^2 a
+    real(wp) :: still = 0.0_wp      !! as `misfit`, less the inertia of the rows
     real(wp) :: row_energy = 0.0_wp !! of the elements behind what is pressed, J/m
   end type side_t
 
@@ -43,6 +48,8 @@ contains
     logical, intent(in) :: plots !! rows of slave nodes are in the snapshot already
     type(face_rows_t), intent(inout) :: rows
     type(snapshot_t), intent(inout) :: snapshot
+    type(others_t), allocatable :: others(:)
+    type(contact_t) :: contact
     integer :: i
 
     if (size(model%contacts) == 0) return
@@ -55,8 +62,12 @@ contains
       call join_slaves(model, snapshot)
     end if
     call find_limits(model, state, snapshot%interfaces)
+    if (rows%are_shared) call find_others(model, state, snapshot%slaves, others)
     do i = 1, n_told(model%contacts)
-      if (state%contacts(i)%facing%is_used) then
+      if (rows%are_shared) then
+        contact = present_contact(model, state, i)
+        call judge(model, state, rows, i, contact, snapshot, others(i))
+      else if (state%contacts(i)%facing%is_used) then
         call judge(model, state, rows, i, state%contacts(i)%facing%present, snapshot)
       else if (model%erodes) then
         call judge(model, state, rows, i, state%outlines(i), snapshot)
@@ -67,27 +78,33 @@ contains
   end subroutine judge_contacts
 
   !> Judge one interface between the surfaces of `contact`.
-  subroutine judge(model, state, rows, i, contact, snapshot)
+  subroutine judge(model, state, rows, i, contact, snapshot, others)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(face_rows_t), intent(in) :: rows
     integer, intent(in) :: i
     type(contact_t), intent(in) :: contact
     type(snapshot_t), intent(inout) :: snapshot
+    type(others_t), intent(in), optional :: others !! only where interfaces share nodes
     type(side_t) :: side
+    type(others_t) :: beside
     real(wp), allocatable :: unused(:)
 
+    if (present(others)) beside = others
     associate (slaves => snapshot%slaves(i), result => snapshot%interfaces(i))
-      call add_side(model, state, rows, contact%slave, slaves%pressure, side, slaves%row_stress)
+      call add_side(model, state, rows, contact%slave, slaves%pressure, beside%slave, side, &
+        slaves%row_stress)
       ! Of a surface with itself all is on the slave.
-      if (.not. contact%is_self) &
-        call add_side(model, state, rows, contact%master, slaves%master_pressure, side, unused)
+      if (.not. contact%is_self) call add_side(model, state, rows, contact%master, &
+        slaves%master_pressure, beside%master, side, unused)
+      ! Accelerations of nodes that rigid walls or common motions hold are others than these.
+      side%still = min(side%still, side%misfit)
       result%row_energy = side%row_energy
       result%estimate = 0.0_wp
       if (side%load > 0.0_wp) result%estimate = sqrt(side%misfit/side%load)
       if (state%cycle > state%estimates(i)%cycle .and. model%contacts(i)%target > 0.0_wp &
         .and. mod(state%cycle, judged_each) == 0) state%estimates(i)%watched = &
-        state%estimates(i)%watched + [side%misfit, side%load]
+        state%estimates(i)%watched + [side%still, side%load]
       if (state%cycle > state%estimates(i)%cycle) call sum_up(state%cycle, state%dt, side, result, &
         state%estimates(i))
     end associate
@@ -95,42 +112,45 @@ contains
 
   !> One side: the pressure of each loaded node against that of the elements behind, the mean over
   !> the faces next to it, each by what the node has of it. Rigid bodies have none.
-  subroutine add_side(model, state, rows, surface, pressure, side, row_stress)
+  subroutine add_side(model, state, rows, surface, own, others, side, row_stress)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(face_rows_t), intent(in) :: rows
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: pressure(:) !! of its nodes
+    real(wp), intent(in), contiguous :: own(:) !! pressure of its nodes
+    real(wp), allocatable, intent(in) :: others(:) !! of other interfaces there
     type(side_t), intent(inout) :: side
     real(wp), allocatable, intent(inout) :: row_stress(:) !! of its nodes
-    real(wp) :: area(surface%n_node), at(2, 2), share(2), stress
+    real(wp), dimension(surface%n_node) :: area, moved, pressure
+    real(wp) :: share(2), stress
     integer :: s, k, nodes(2)
 
     if (allocated(row_stress)) deallocate (row_stress)
     allocate (row_stress(surface%n_node), source=0.0_wp)
     area = 0.0_wp
+    moved = 0.0_wp
+    pressure = own
+    if (allocated(others)) pressure = own + others
     do s = 1, surface%n_segment
       associate (element => surface%segment_element(s), ends => surface%segments(:, s))
         if (.not. has_stress(model, state, element)) cycle
         nodes = surface%nodes(ends)
         stress = face_pressure(model, state, rows, element, nodes)
-        do k = 1, 2
-          at(:, k) = model%mesh%coordinates(:, nodes(k)) + state%motion(1:2, nodes(k))
-        end do
-        share = 0.5_wp*norm2(at(:, 2) - at(:, 1))
-        if (model%is_round) share = share*(at(1, :) + sum(at(1, :)))/3.0_wp
+        share = face_share(model, state, nodes)
         area(ends) = area(ends) + share
         row_stress(ends) = row_stress(ends) + share*stress
-        if (any(abs(pressure(ends)) > 0.0_wp)) &
+        moved(ends) = moved(ends) + face_inertia(model, state, rows, element, nodes)
+        if (any(abs(own(ends)) > 0.0_wp)) &
           side%row_energy = side%row_energy + elastic_energy(model, state, element)
       end associate
     end do
     do k = 1, surface%n_node
       if (.not. area(k) > 0.0_wp) cycle
       row_stress(k) = row_stress(k)/area(k)
-      if (.not. abs(pressure(k)) > 0.0_wp) cycle
+      if (.not. abs(own(k)) > 0.0_wp) cycle
       side%misfit = side%misfit + (pressure(k) - row_stress(k))**2*area(k)
       side%load = side%load + pressure(k)**2*area(k)
+      side%still = side%still + (pressure(k) - row_stress(k) - moved(k)/area(k))**2*area(k)
     end do
   end subroutine add_side
 
@@ -173,6 +193,7 @@ contains
     estimate%n = estimate%n + 1
     estimate%misfit = estimate%misfit + side%misfit
     estimate%load = estimate%load + side%load
+    estimate%still = estimate%still + side%still
     if (side%load > estimate%heaviest) then
       estimate%heaviest = side%load
       estimate%at_heaviest = result%estimate
@@ -206,7 +227,10 @@ contains
         //words(state%estimates(i), state, i))
       if (model%contacts(i)%target > 0.0_wp) call write_log(log, 'interface ' &
         //to_text(model%contacts(i)%id)//': '//target_words(model%contacts(i), &
-        sqrt(state%estimates(i)%misfit/state%estimates(i)%load)))
+        state%estimates(i)))
+      if (state%estimates(i)%n_stayed > 0) call write_log(log, 'interface ' &
+        //to_text(model%contacts(i)%id)//': the step did not bear the springs of a better type ' &
+        //'at '//to_text(state%estimates(i)%n_stayed)//' opening(s)')
     end do
   end subroutine report_estimates
 
@@ -221,6 +245,8 @@ contains
       //percent(sqrt(estimate%misfit), sqrt(estimate%load))//' (r.m.s. of ' &
       //to_text(estimate%n)//' instant(s)), by '//percent(estimate%at_heaviest, 1.0_wp) &
       //' at the largest load'
+    if (tells_waves(estimate)) text = text//', without waves by ' &
+      //percent(sqrt(estimate%still), sqrt(estimate%load))
     if (estimate%rows > 0.0_wp) then
       text = text//'; springs store '//times(estimate%springs/estimate%rows) &
         //' times what the elements beside them do'
@@ -236,22 +262,30 @@ contains
       //percent(1.0_wp, estimate%least_margin)//' of the stable one'
   end function words
 
-  !> Whether a target was kept, and if not what would: another type, or else a finer mesh.
+  !> Whether a target was kept, and if not what would: another type, or else a finer mesh. Both are
+  !> known of bodies at rest: neither is sure to take away what waves make.
   pure function target_words(contact, estimate) result(text)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in) :: estimate !! of the run
+    type(contact_estimate_t), intent(in) :: estimate
     character(:), allocatable :: text
     integer :: better
-    real(wp) :: expected
+    real(wp) :: at_rest, expected
 
     text = 'the target '//percent(contact%target, 1.0_wp)//' is '
-    if (estimate <= contact%target) then
+    if (sqrt(estimate%misfit/estimate%load) <= contact%target) then
       text = text//'kept'
       return
     end if
     text = text//'not kept; '
-    call better_type(contact%scene, contact%contact_type, estimate, contact%target, better, &
+    at_rest = sqrt(estimate%still/estimate%load)
+    if (at_rest <= contact%target) then
+      text = text//'by waves, without them it is '//percent(at_rest, 1.0_wp)
+      return
+    end if
+    call better_type(contact%scene, contact%contact_type, at_rest, contact%target, better, &
       expected)
+    if (tells_waves(estimate)) text = text//'without waves it is '//percent(at_rest, 1.0_wp) &
+      //', and then '
     if (expected <= contact%target) then
       text = text//'by the published studies type '//to_text(better)//' would keep it'
     else
@@ -260,6 +294,14 @@ contains
       if (better /= contact%contact_type) text = text//' with type '//to_text(better)
     end if
   end function target_words
+
+  !> Whether waves, the inertia of the rows, make a part of the estimate that is worth telling.
+  elemental function tells_waves(estimate) result(tells)
+    type(contact_estimate_t), intent(in) :: estimate
+    logical :: tells
+
+    tells = estimate%still < told_below*estimate%misfit
+  end function tells_waves
 
   !> A ratio with two decimals.
   pure function times(ratio) result(text)

@@ -2,14 +2,17 @@
 !> The elements behind contact surfaces and those behind them: the stress that a body has at its
 !> face.
 module rows_behind_m
+  use element_shares_m, only : element_shares
   use element_state_m, only : is_gone, stress_of_slot
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use model_m, only : model_t
+  use shared_faces_m, only : shares_nodes
+  use snapshot_filling_m, only : find_motion
   use state_m, only : state_t
   implicit none
   private
-  public :: face_rows_t, find_rows, face_pressure, elastic_energy, has_stress
+  public :: face_rows_t, find_rows, face_pressure, face_inertia, elastic_energy, has_stress
 
   !> Corners, and edges, of an element; a triangle repeats its third node.
   integer, parameter :: n_corner = 4
@@ -19,6 +22,7 @@ module rows_behind_m
     integer, allocatable :: elements(:)  !! (n_row) rising
     integer, allocatable :: across(:, :) !! (4, n_row) element across the edge from node k to the
                                          !! next, 0: none
+    logical :: are_shared = .false.      !! interfaces share nodes
   end type face_rows_t
 
 contains
@@ -40,6 +44,7 @@ contains
     allocate (rows%elements(count(is_behind)))
     rows%elements = pack([(i, i=1, size(is_behind))], is_behind)
     call find_across(model, rows)
+    rows%are_shared = shares_nodes(model)
   end subroutine find_rows
 
   !> Neighbours: an edge that one element walks from a to b, the other walks from b to a.
@@ -129,6 +134,61 @@ contains
     pressure = pressure + (pressure - along(model, state, beyond, normal)) &
       *(depth/(beyond_depth - depth))
   end function face_pressure
+
+  !> What moves the mass of an element at the ends of a face, against the normal: the part of the
+  !> pressure that `face_pressure` does not see. That of the row behind, which it carries, is taken
+  !> off.
+  function face_inertia(model, state, rows, element, ends) result(force)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(face_rows_t), intent(in) :: rows
+    integer, intent(in) :: element, ends(2) !! behind the face; nodes of the face
+    real(wp) :: force(2)
+    real(wp) :: normal(2), shares(4), a(2)
+    logical :: is_carried
+    integer :: k, j, beyond
+
+    force = 0.0_wp
+    normal = place_of(model, state, ends(2)) - place_of(model, state, ends(1))
+    normal = [normal(2), -normal(1)]/max(norm2(normal), tiny(1.0_wp))
+    beyond = element_beyond(model, rows, element, ends)
+    is_carried = .false.
+    if (beyond > 0) is_carried = has_stress(model, state, beyond)
+    associate (slot => model%layout%element_slot(element))
+      shares = element_shares(model, slot)
+      if (allocated(state%elements%mass_ratio)) shares = shares*state%elements%mass_ratio(slot)
+      associate (nodes => model%layout%slot_nodes(:, slot))
+        if (nodes(4) == nodes(3)) shares(4) = shares(3)
+        do k = 1, n_corner
+          if (nodes(k) /= ends(1) .or. nodes(mod(k, n_corner) + 1) /= ends(2)) cycle
+          do j = 1, 2
+            a = acceleration_of(model, state, ends(j))
+            if (is_carried) a = a - acceleration_of(model, state, nodes(mod(k + 3 - j, n_corner) &
+              + 1))
+            force(j) = -shares(mod(k + j - 2, n_corner) + 1)*dot_product(a, normal)
+          end do
+        end do
+      end associate
+    end associate
+    ! The consistent mass of implicit runs hangs half of it on the row behind.
+    if (is_carried .and. allocated(state%acceleration)) force = 0.5_wp*force
+  end function face_inertia
+
+  !> Acceleration of a node, m/s^2.
+  function acceleration_of(model, state, node) result(acceleration)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: node
+    real(wp) :: acceleration(2)
+    real(wp) :: velocity(2)
+
+    if (allocated(state%acceleration)) then
+      acceleration = state%acceleration(:, node)
+    else
+      call find_motion(model%layout%n_special, state, [0.0_wp, 0.0_wp], node, velocity, &
+        acceleration)
+    end if
+  end function acceleration_of
 
   !> -n.s.n of an element.
   pure function along(model, state, element, n) result(pressure)

@@ -17,6 +17,7 @@ module contact_estimate_m
     integer :: n = 0                   !! instants
     real(wp) :: misfit = 0.0_wp        !! sum of (p - row stress)^2 a
     real(wp) :: load = 0.0_wp          !! sum of p^2 a
+    real(wp) :: still = 0.0_wp         !! as `misfit`, less the inertia of the rows
     real(wp) :: heaviest = 0.0_wp      !! largest p^2 a of an instant
     real(wp) :: at_heaviest = 0.0_wp   !! estimate then
     real(wp) :: springs = 0.0_wp       !! sum of what springs store, J/m
@@ -27,7 +28,8 @@ module contact_estimate_m
                                        !! force, as of equal strides
     real(wp) :: forces = 0.0_wp        !! sum of its squares over the same instants
     real(wp) :: least_margin = huge(1.0_wp) !! smallest of stable step over step
-    real(wp) :: watched(2) = 0.0_wp    !! `misfit` and `load` at the looks since the type was chosen
+    real(wp) :: watched(2) = 0.0_wp    !! `still` and `load` at the looks since the type was chosen
+    integer :: n_stayed = 0            !! times that the step did not bear a better type
     integer :: contact_type = 0        !! the present one
   end type contact_estimate_t
 

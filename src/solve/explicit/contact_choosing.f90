@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> CTYPE 0 while the run goes on: interfaces are judged in every so many cycles, and one whose
-!> estimate has risen above its target takes, once it is open, the type that the studies say keeps
-!> it. What is looked at and when depends on the deck alone, not on what is written, so that the
-!> deck as run makes the same choices.
+!> estimate without waves has risen above its target takes, once it is open, the type that the
+!> studies say keeps it. What is looked at and when depends on the deck alone, not on what is
+!> written, so that the deck as run makes the same choices.
 module contact_choosing_m
   use automatic_penalty_m, only : scale_penalties
   use contact_dispatch_m, only : formulation_t, formulation_of
@@ -104,14 +104,17 @@ contains
     scale = bearable_scale(model%contacts, i, contact, memory, element_limit, state)
     associate (watched => state%estimates(i)%watched)
       text = 'interface '//to_text(contact%id)//', cycle '//to_text(state%cycle)//', time ' &
-        //to_text(state%time)//': the estimate, '//percent(sqrt(watched(1)), sqrt(watched(2))) &
-        //' since '//name_of(model%contacts(i))//' was taken, is above ' &
+        //to_text(state%time)//': the estimate without waves, '//percent(sqrt(watched(1)), &
+        sqrt(watched(2)))//' since '//name_of(model%contacts(i))//' was taken, is above ' &
         //percent(contact%target, 1.0_wp)
       watched = 0.0_wp
     end associate
     if (scale < merge(tiny(scale), 1.0_wp, contact%penalty_unit == penalty_share)) then
-      call write_log(log, text//'; it stays, the step does not bear the springs of ' &
-        //name_of(contact))
+      associate (n => state%estimates(i)%n_stayed)
+        if (n == 0) call write_log(log, text//'; it stays, the step does not bear the springs of ' &
+          //name_of(contact)//' (told once)')
+        n = n + 1
+      end associate
       return
     end if
     if (scale < 1.0_wp) call scale_penalties(scale, memory)

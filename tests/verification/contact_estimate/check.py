@@ -122,6 +122,34 @@ def check_column(run):
               0.006, "abs", "two decimals")
 
 
+def check_shared(run):
+    """Two interfaces on the same faces, roles exchanged too: what both press is what the elements bear."""
+    upper, lower = (static_patch.block_grid(lines(n, 0.35), bottom) for n, bottom in ((5, 0.0), (4, -1.0)))
+    for text, second, kind in (("same roles", (1, 2), 5), ("roles exchanged", (2, 1), 7)):
+        deck, below, above = blocks(text, (lower, upper))
+        deck.curve(1, [(0.0, 0.0), (1.0, PRESSURE)]).fix(below[:5], y=1)
+        deck.fix([below[2], above[-3]], x=1)
+        load_edges(deck, above[-6:])
+        deck.node_set(1, above[:6]).node_set(2, below[:-6:-1])
+        result = run.program(deck.contact(1, 2, kind, 0.3 * SOFT, unit=1).contact(*second, kind, 0.7 * SOFT, unit=1))
+        run.check(f"two interfaces, {text}: estimate of each", final(result)["estimate"], 0.0, ROUND_OFF, "abs", "uniform")
+
+
+def check_waves(run):
+    """Two bars of one or several elements collide: pressure less the stress is mass times acceleration, nothing else."""
+    for columns in (1, 6):
+        deck, left, right = blocks(f"bars of {columns} columns", (grid(columns, 1, 1.0, 0.2, (-1.0, 0.0)),
+                                                                  grid(columns, 1, 1.0, 0.2)), points=None, implicit=False,
+                                   every=(1.0e-4, 1.0, 1.0))
+        deck.control(0.1, scale=0.5)
+        deck.add("*INITIAL_VELOCITY_NODE", *[(int(node), 1.0e-3, 0.0) for node in left])
+        deck.node_set(1, left[columns::columns + 1]).node_set(2, right[::columns + 1][::-1]).contact(1, 2, 5, 0.5, unit=3)
+        result = run.program(deck)
+        told = re.search(r"differ by ([\d.]+) % .*, without waves by ([\d.]+) %", (result.folder / f"{result.job}.log").read_text())
+        run.check(f"bars of {columns} columns: estimate", float(told[1]), 5.0, 0.0, "min", "per cent")
+        run.check(f"bars of {columns} columns: without waves", float(told[2]), 0.0, 0.006, "abs", "two decimals, per cent")
+
+
 def check_step(run):
     """Explicit: the step that springs rule (ECDT 2) is TSSFAC of the step that sleout tells."""
     deck, below, above = blocks("step", (grid(1, 1, origin=(0.0, -1.0)), grid(1, 1)), points=None, implicit=False)
@@ -159,4 +187,6 @@ def check(run):
     check_patch(run)
     check_held(run)
     check_column(run)
+    check_shared(run)
+    check_waves(run)
     check_step(run)
