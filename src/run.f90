@@ -94,7 +94,8 @@ contains
       call share_error(ranks, error)
       if (allocated(error)) return
     end if
-    if (ranks%mine == 0) call claim_folder(arguments, prefix, monitor, error)
+    if (ranks%mine == 0) call claim_folder(arguments, prefix, &
+      model%controls%output%dump_cycles >= 0, monitor, error)
     call share_error(ranks, error)
     if (allocated(error)) return
     call begin_run(arguments, prefix, model, info, state, monitor, error)
@@ -122,9 +123,10 @@ contains
   end subroutine refuse_several
 
   !> The folder of the results and the log in it, which no other run may have.
-  subroutine claim_folder(arguments, prefix, monitor, error)
+  subroutine claim_folder(arguments, prefix, keeps_files, monitor, error)
     type(arguments_t), intent(in) :: arguments
     character(*), intent(in) :: prefix
+    logical, intent(in) :: keeps_files !! the deck asks for numbered restart files
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
 
@@ -132,7 +134,8 @@ contains
     monitor%restarts%directory = arguments%directory
     monitor%restarts%job = arguments%job
     monitor%restarts%prefix = prefix
-    if (.not. allocated(error)) call check_names(monitor%restarts, error)
+    if (.not. allocated(error)) &
+      call check_names(monitor%restarts, keeps_files, error)
     if (.not. allocated(error)) &
       call open_log(monitor%log, prefix//'.log', monitor%restarts%goes_on, error)
   end subroutine claim_folder

@@ -127,6 +127,7 @@ contains
 
     found = file_exists(path)
     if (.not. found) found = file_exists(path//unfinished)
+    if (.not. found) return
     call remove_file(path//unfinished, error)
     if (whole_too .and. .not. allocated(error)) call remove_file(path, error)
     found = found .and. .not. allocated(error)

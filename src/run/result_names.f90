@@ -10,16 +10,19 @@ module result_names_m
   private
   public :: check_names
 
-  !> Numbered restart files that are looked at in any case: those with two digits.
+  !> Numbered restart files that are looked at in any case where the deck asks for some: those with
+  !> two digits.
   integer, parameter :: least_numbers = 99
 
 contains
 
   !> Refuse names of results under which something else stands than a file: a directory, a pipe, a
   !> device, a symbolic link. Other files are replaced. Numbered restart files have no last number:
-  !> beyond the least they are looked at while they follow without a gap.
-  subroutine check_names(restarts, error)
+  !> beyond the least, or where only a request can ask for one, they are looked at while they follow
+  !> without a gap.
+  subroutine check_names(restarts, keeps_files, error)
     type(restarts_t), intent(in) :: restarts !! its directory, job and prefix
+    logical, intent(in) :: keeps_files       !! the deck asks for numbered restart files
     type(error_t), allocatable, intent(out) :: error
     character(12), parameter :: kinds(4) = [character(12) :: '.log', '.effective.k', '.vtkhdf', &
       '.timing.csv']
@@ -37,7 +40,7 @@ contains
     call check_name(running_path(restarts), error)
     i = 1
     do
-      if (i > least_numbers) then
+      if (i > least_numbers .or. .not. keeps_files) then
         if (.not. is_taken(dump_path(restarts, i))) exit
       end if
       call check_name(dump_path(restarts, i), error)

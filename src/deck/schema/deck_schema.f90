@@ -45,12 +45,12 @@ contains
     !> Look into one table.
     subroutine collect(table)
       character(*), intent(in) :: table(:)
-      integer :: i, k
+      integer :: i, k, n
 
       if (n_card > 0) return
+      n = len_trim(name)
       do i = 1, size(table)
-        if (table(i)(1:1) == ' ') cycle
-        if (table(i)(:index(table(i), ' ') - 1) /= name) cycle
+        if (.not. begins_with(table(i), name(:n))) cycle
         do k = i + 1, size(table)
           if (table(k)(1:1) /= ' ' .or. n_card == max_card) return
           n_card = n_card + 1
@@ -181,20 +181,30 @@ contains
     !> Look into one table of honoured keywords.
     subroutine search(table)
       character(*), intent(in) :: table(:)
-      integer :: k, m
+      integer :: k, n
 
       if (known == known_honoured) return
+      n = len_trim(name)
       do k = 1, size(table)
-        if (table(k)(1:1) == ' ') cycle
-        m = index(table(k), ' ')
-        if (table(k)(:m - 1) /= name) cycle
+        if (.not. begins_with(table(k), name(:n))) cycle
         known = known_honoured
-        options = table(k)(m + 1:)
+        options = table(k)(n + 2:)
         return
       end do
     end subroutine search
 
   end subroutine look
+
+  !> Whether a row of a table is that of a keyword: its name, then a blank. Rows of cards begin with
+  !> a blank. One character tells for most.
+  pure function begins_with(row, name) result(begins)
+    character(*), intent(in) :: row, name
+    logical :: begins
+
+    begins = len(name) > 0 .and. len(name) < len(row)
+    if (begins) begins = row(len(name) + 1:len(name) + 1) == ' '
+    if (begins) begins = row(:len(name)) == name
+  end function begins_with
 
   !> The honoured keyword that a name is likely meant for: at most two letters away. Blank where
   !> none is so near, or where the name is one that the table of others has for itself.

@@ -259,12 +259,12 @@ contains
         attempt)
       call count_step_boundaries(model, trial, attempt, step%time, velocity, state)
     end if
-    call keep_sections(model, state, attempt)
+    trial = attempt
+    call keep_sections(model, state, trial)
     state%motion(1:2, :) = attempt%motion(1:2, :)
     state%elements = attempt%elements
     state%contacts = attempt%contacts
     step%old_force = net_force(attempt)
-    trial = attempt
     state%time = step%time
     state%dt_before = step%dt
     state%cycle = state%cycle + 1

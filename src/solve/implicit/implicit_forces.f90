@@ -105,8 +105,8 @@ contains
     call sum_special_forces(model%layout, trial%slots, 1, model%layout%n_special, trial%internal)
   end subroutine assemble_internal
 
-  !> What the forces of cross sections are formed of, if anyone asks for them: before the trial is
-  !> committed.
+  !> What the forces of cross sections are formed of if anyone asks for them: before the trial
+  !> becomes the state.
   subroutine keep_sections(model, state, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state !! stays as it is
@@ -118,8 +118,8 @@ contains
   !> Forces of the elements of cross sections, unless the state has them.
   subroutine cut_sections(model, trial, state)
     type(model_t), intent(in) :: model
-    type(trial_t), intent(inout) :: trial !! that has been committed
-    type(state_t), intent(inout) :: state !! after that
+    type(trial_t), intent(inout) :: trial !! that has become the state
+    type(state_t), intent(inout) :: state
 
     if (.not. allocated(trial%before)) return
     call find_cut_forces(model, [1, model%layout%n_chunk], trial%motion, [state%time, unit_step], &
