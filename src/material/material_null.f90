@@ -17,8 +17,8 @@ contains
     real(wp) :: factor, third, oxx, oyy, oxy
     integer :: i
 
-    factor = 2.0_wp*viscosity/max(chunk%dt, tiny(1.0_wp))
-    if (.not. chunk%dt > 0.0_wp) factor = 0.0_wp
+    factor = 0.0_wp
+    if (chunk%dt > 0.0_wp) factor = 2.0_wp*viscosity/chunk%dt
     !$omp simd private(third, oxx, oyy, oxy)
     do i = 1, chunk_size
       third = (1.0_wp/3.0_wp)*(chunk%dxx(i) + chunk%dyy(i))

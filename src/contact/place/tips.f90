@@ -63,7 +63,7 @@ contains
     type(surface_t), intent(in) :: slave
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(in), contiguous, optional :: motion(:, :) !! rows 3, 4: u of the step
-    real(wp) :: ways(4, 2)
+    real(wp) :: former(2, 2), moved(2, 2)
     integer :: node, ends(3), k
 
     memory%scratch%nodal(1, :memory%n_slave) = 0.0_wp
@@ -72,11 +72,12 @@ contains
       ends = [slave%segments(1, slave%incoming(node)), node, &
         slave%segments(2, slave%outgoing(node))]
       do k = 1, 2
-        ways(:, k) = memory%places(:, ends(k + 1)) - memory%places(:, ends(k))
-        if (present(motion)) ways(3:4, k) = ways(3:4, k) &
+        former(:, k) = memory%places(1:2, ends(k + 1)) - memory%places(1:2, ends(k))
+        moved(:, k) = memory%places(3:4, ends(k + 1)) - memory%places(3:4, ends(k))
+        if (present(motion)) moved(:, k) = moved(:, k) &
           - (motion(3:4, memory%nodes(ends(k + 1))) - motion(3:4, memory%nodes(ends(k))))
       end do
-      memory%scratch%nodal(1, node) = sharpness(ways(1:2, :), ways(1:2, :) + ways(3:4, :))
+      memory%scratch%nodal(1, node) = sharpness(former, former + moved)
     end do
   end subroutine find_tips
 
