@@ -3,8 +3,8 @@
 # usage: tools/test.sh [ctest arguments...]
 # Installs what is missing, then runs the tests of the Release build, then the quick ones of the
 # Debug build with its run-time checks and sanitisers.  Every test runs in one of the two; some program
-# and unit tests in one alone (tests/CMakeLists.txt, tests/unit/CMakeLists.txt), unless SLIDELINE_FULL is 1.  With arguments (such as -L unit,
-# or -R contact) only the Release tests so chosen.
+# and unit tests in one alone (tests/CMakeLists.txt, tests/unit/CMakeLists.txt), unless SLIDELINE_FULL is 1.
+# With arguments (such as -L unit, or -R contact) only the Release tests so chosen.
 set -uo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 help_or_go_on "$@"
@@ -32,8 +32,8 @@ units=()
 if [ "${SLIDELINE_FULL:-0}" = 1 ]; then
   left_to_debug='^$'
   left_to_release='^$'
-  units=(all_unit_tests)
-elif [ $# -gt 0 ]; then
+fi
+if [ "${SLIDELINE_FULL:-0}" = 1 ] || [ $# -gt 0 ]; then
   units=(all_unit_tests)
 fi
 

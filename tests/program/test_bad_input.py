@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import drop, numbers
+from conftest import drop, is_full, numbers
 
 FUZZER = Path(__file__).resolve().parents[1] / "fuzz" / "fuzz_decks.py"
 
@@ -174,10 +174,11 @@ def test_stop_while_files_are_read_or_written(exe, tmp_path, moment):
 
 
 def test_short_fuzz(exe, tmp_path):
-    """The same decks each time, however fast the machine; SLIDELINE_FUZZ gives a time instead, and with it other decks."""
+    """The same decks each time, however fast the machine, twice as many in full; SLIDELINE_FUZZ gives a time instead, and with
+    it other decks."""
     asked = os.environ.get("SLIDELINE_FUZZ")
     seconds = float(asked or 120)
-    seed, decks = (int(time.time()), 10**9) if asked else (1, 400)
+    seed, decks = (int(time.time()), 10**9) if asked else (1, 400 if is_full() else 200)
     done = subprocess.run([sys.executable, str(FUZZER), "--program", exe, "--seconds", str(seconds), "--seed", str(seed),
                            "--decks", str(decks), "--limit", "20", "--keep", str(tmp_path / "failures")], capture_output=True, text=True,
                           timeout=seconds + 200, check=False)

@@ -121,8 +121,9 @@ def test_results_that_are_lost_during_a_run_are_noticed(deck, slow, name, how):
     else:
         path.rename(deck / "slow" / "elsewhere")
     (deck / "slow" / "d3kil").write_text("sw4\n")  # a plot state, so that something is written
-    time.sleep(1.2)
-    if slow.poll() is None:
+    try:
+        slow.wait(1.2)
+    except subprocess.TimeoutExpired:
         slow.send_signal(signal.SIGTERM)
     said, complaint = slow.communicate(timeout=20)
     assert slow.returncode == 3, (slow.returncode, complaint)
