@@ -103,8 +103,8 @@ SCENES = {
     "round, type 6": (lambda: rings(6), 60, 4, 2),
     "mass that grows, type 7": (lambda: growing(7), 60, 2, 1),
     "no contact, gravity": (settling, 60, 5, 1),
-    "tiles that wake, damping": (lambda: struck(False), 260, 3, 2),
-    "tiles that wake, round": (lambda: struck(True), 260, 4, 1),
+    "tiles that wake, damping": (lambda: struck(False), 260, 3, 1),
+    "tiles that wake, round": (lambda: struck(True), 260, 2, 2),
     "histories and an end before its time, type 3": (ended, 60, 3, 1),
     "type that changes": (lambda: twice(columns=(40, 56), pace=0.06), 400, 3, 1, "dt=4e-4"),
 }
