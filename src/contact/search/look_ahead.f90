@@ -36,7 +36,8 @@ contains
     memory%closed_gap = reach_of(contact, is_first, moved, memory)
     call provide_ahead(memory%slave_tracking%n, memory%scratch)
     associate (tracking => memory%slave_tracking, gap => memory%closed_gap, &
-      n => memory%scratch%n_ahead, slave => memory%places(:, :memory%n_slave), master => memory%places(:, memory%n_slave + 1:))
+      n => memory%scratch%n_ahead, slave => memory%places(:, :memory%n_slave), &
+      master => memory%places(:, memory%n_slave + 1:))
       do i = 1, tracking%n
         if (tracking%status(i) /= is_in_front .or. tracking%wake(i) - gap > memory%travel) cycle
         foot = face_foot(see_segment(contact%master, master, slave(:, i), tracking%segment(i)), &
