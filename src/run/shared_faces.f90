@@ -74,6 +74,7 @@ contains
     type(contact_t) :: contacts(n_told(model%contacts))
     type(face_t), allocatable :: faces(:)
     integer, allocatable :: first(:), next(:) !! faces by the node that they start at
+    real(wp) :: share(2), pressure(2)
     integer :: i, k, m
 
     allocate (others(size(contacts)))
@@ -92,8 +93,11 @@ contains
       m = first(faces(k)%nodes(1))
       do while (m > 0)
         if (faces(m)%element == faces(k)%element .and. faces(m)%interface /= faces(k)%interface) &
-          call add_face(face_share(model, state, faces(k)%nodes), end_pressure(slaves, faces(m)), &
-          faces(k), others)
+          then
+          share = face_share(model, state, faces(k)%nodes)
+          pressure = end_pressure(slaves, faces(m))
+          call add_face(share*pressure, faces(k), others)
+        end if
         m = next(m)
       end do
     end do
@@ -124,12 +128,13 @@ contains
     integer, intent(in) :: interface, side
     type(face_t), intent(inout) :: faces(:)
     integer, intent(inout) :: n
-    integer :: s
+    integer :: s, ends(2), nodes(2)
 
     do s = 1, surface%n_segment
       n = n + 1
-      faces(n) = face_t(interface, side, surface%segment_element(s), surface%segments(:, s), &
-        surface%nodes(surface%segments(:, s)))
+      ends = surface%segments(:, s)
+      nodes = surface%nodes(ends)
+      faces(n) = face_t(interface, side, surface%segment_element(s), ends, nodes)
     end do
   end subroutine list_side
 
@@ -146,17 +151,17 @@ contains
     end if
   end function end_pressure
 
-  !> What another interface puts on a face.
-  pure subroutine add_face(share, pressure, face, others)
-    real(wp), intent(in) :: share(2), pressure(2)
+  !> What another interface puts on the ends of a face.
+  pure subroutine add_face(force, face, others)
+    real(wp), intent(in) :: force(2)
     type(face_t), intent(in) :: face
     type(others_t), intent(inout) :: others(:)
 
     associate (mine => others(face%interface))
       if (face%side == 1) then
-        mine%slave(face%ends) = mine%slave(face%ends) + share*pressure
+        mine%slave(face%ends) = mine%slave(face%ends) + force
       else
-        mine%master(face%ends) = mine%master(face%ends) + share*pressure
+        mine%master(face%ends) = mine%master(face%ends) + force
       end if
     end associate
   end subroutine add_face
@@ -167,14 +172,15 @@ contains
     type(state_t), intent(in) :: state
     type(surface_t), intent(in) :: surface
     real(wp), intent(inout) :: pressure(:)
-    real(wp) :: area(surface%n_node)
-    integer :: s
+    real(wp) :: area(surface%n_node), share(2)
+    integer :: s, ends(2), nodes(2)
 
     area = 0.0_wp
     do s = 1, surface%n_segment
-      associate (ends => surface%segments(:, s))
-        area(ends) = area(ends) + face_share(model, state, surface%nodes(ends))
-      end associate
+      ends = surface%segments(:, s)
+      nodes = surface%nodes(ends)
+      share = face_share(model, state, nodes)
+      area(ends) = area(ends) + share
     end do
     where (area > 0.0_wp) pressure = pressure/area
   end subroutine divide_by_areas
