@@ -62,7 +62,7 @@ def some_types(turn=0, each=3):
     return tuple(ALL_TYPES[(each * turn + i) % len(ALL_TYPES)] for i in range(each))
 
 
-def by_turns(cases, each=1, release=3):
+def by_turns(cases, each=1, release=4):
     """Of (scene, type) some types of each scene, in turn: `each` with the checked Debug build, which is slow, `release` with
     another one; all where SLIDELINE_FULL is 1."""
     if os.environ.get("SLIDELINE_BUILD") != "Debug":
