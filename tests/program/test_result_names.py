@@ -69,6 +69,19 @@ def test_a_pipe_or_a_link_is_refused_before_anything_is_touched(exe, deck, whole
         assert target.read_text() == "mine\n" and not (deck / "nowhere").exists()
 
 
+def test_numbered_restart_files_that_no_deck_asks_for(exe, deck):
+    """The first name is looked at all the same; what stands under a later one is not in the way, and stays."""
+    (deck / "plain.k").write_text(drop(end_time=0.002).text())
+    for number, status in ((1, 3), (50, 0)):
+        folder = deck / f"number{number}"
+        folder.mkdir()
+        link = folder / f"plain.dump{number:02d}.h5"
+        link.symlink_to(deck / "nowhere")
+        done = run(exe, deck, "i=plain.k", f"d={folder.name}")
+        assert done.returncode == status and (status == 0 or link.name in done.stderr), done.stderr
+        assert link.is_symlink() and not (deck / "nowhere").exists()
+
+
 def test_a_hard_link_or_a_folder_that_is_a_link_serves(exe, deck, whole):
     (deck / "real").mkdir()
     (deck / "linked").symlink_to(deck / "real")

@@ -77,7 +77,7 @@ def test_a_small_run_asks_little(count):
     calls = count(plain, "ncpu=2")
     assert calls["synced"] == 0 and calls["threads"] == 0, calls
     assert 3 <= calls["made"] <= 8 and calls["renamed"] <= 3, calls
-    assert calls["written"] <= 80 and calls["asked"] <= 400, calls
+    assert calls["written"] <= 80 and calls["asked"] <= 200, calls
 
 
 def test_a_deck_is_read_once(count):
