@@ -76,8 +76,7 @@ module explicit_cycle_m
     logical :: refines = .false.     !! steps of elements are not those of their density alone
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
     type(rest_t) :: rest             !! tiles that need no step
-    type(tile_check_t), allocatable :: checks(:) !! (tiles) what the elements of this cycle have
-                                                 !! come to
+    type(tile_check_t), allocatable :: checks(:) !! (tiles) what their elements have come to
     integer :: first_check = 1       !! from there on they speak for all: of several processes one
                                      !! more, behind those of the tiles, that they have exchanged
     type(failure_watch_t) :: failures !! points that have failed, as far as the log tells of them
