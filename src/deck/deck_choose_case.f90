@@ -47,12 +47,12 @@ contains
         text = text//' '//to_text(cases(k)%sub_cases(i))
       end do
       call write_log(log, 'case '//to_text(id)//' of the deck, subcases'//text)
-    else if (id == 0 .and. size(cases) > 0) then
+    else if (id == 0 .and. any(cases%id > 0)) then
       call line_error(deck, 0, 'the deck has cases: say case=ID for one of '//cases_text(cases) &
         //', or case for all')
-    else if (size(cases) > 0) then
+    else if (any(cases%id > 0)) then
       call line_error(deck, 0, 'case='//to_text(id)//': expected one of '//cases_text(cases))
-    else if (.not. deck%cases%wrong) then
+    else if (size(cases) == 0 .and. .not. deck%cases%wrong) then
       call line_error(deck, 0, 'case= is asked for and the deck has no *CASE')
     end if
   end subroutine choose_case

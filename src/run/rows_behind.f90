@@ -8,7 +8,6 @@ module rows_behind_m
   use layout_m, only : slot_part
   use model_m, only : model_t
   use shared_faces_m, only : shares_nodes
-  use snapshot_filling_m, only : find_motion
   use state_m, only : state_t
   implicit none
   private
@@ -174,19 +173,19 @@ contains
     if (is_carried .and. allocated(state%acceleration)) force = 0.5_wp*force
   end function face_inertia
 
-  !> Acceleration of a node, m/s^2.
-  function acceleration_of(model, state, node) result(acceleration)
+  !> Acceleration of a node by elements and contact, m/s^2: body loads and damping act on each row.
+  pure function acceleration_of(model, state, node) result(acceleration)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: node
     real(wp) :: acceleration(2)
-    real(wp) :: velocity(2)
 
     if (allocated(state%acceleration)) then
       acceleration = state%acceleration(:, node)
     else
-      call find_motion(model%layout%n_special, state, [0.0_wp, 0.0_wp], node, velocity, &
-        acceleration)
+      acceleration = -state%internal_force(:, node)
+      if (node <= model%layout%n_special) acceleration = acceleration + state%force_special(:, node)
+      acceleration = acceleration*state%inverse_mass(:, node)
     end if
   end function acceleration_of
 

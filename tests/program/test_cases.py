@@ -179,6 +179,17 @@ def test_restart_of_a_case(slideline, tmp_path, fast):
         assert done.returncode == 1 and told in done.stderr
 
 
+def test_numbers_that_are_none_are_all_that_is_told(check):
+    """No case is left: that none has been asked for would be wrong."""
+    text = cases_deck()
+    for number, other in (("       101 slow", "         x slow"), ("102 fast", " -3 fast"), ("         7\n\n", "         0\n\n")):
+        assert text.count(number) == 1
+        text = text.replace(number, other)
+    for words in (["case"], ["case=1"], []):
+        findings = json.loads(check(text, "--json", *words).stdout)["findings"]
+        assert [finding.get("name") for finding in findings if finding["severity"] == "error"] == ["CASEID"] * 3
+
+
 def test_check(check):
     done = check(cases_deck(), "case")
     assert done.returncode == 0 and len(re.findall(r"^job\.k, case \d+ \(\w+\): accepted", done.stdout, re.M)) == 3

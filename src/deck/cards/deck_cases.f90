@@ -139,8 +139,10 @@ contains
     integer :: i, k
 
     do i = 2, size(cases)
+      if (cases(i)%id < 1) cycle ! told already
       do k = 1, i - 1
-        if (cases(k)%id == cases(i)%id .and. cases(i)%id > 0) then
+        if (cases(k)%id < 1) cycle
+        if (cases(k)%id == cases(i)%id) then
           call line_error(deck, cases(i)%line, 'case '//to_text(cases(i)%id)//' is on line ' &
             //to_text(deck%number(cases(k)%line))//' already')
           exit
@@ -188,14 +190,18 @@ contains
     type(case_t), intent(in) :: cases(:)
     character(:), allocatable :: text
     integer, parameter :: most = 20
-    integer :: i
+    integer :: i, n
 
     text = ''
-    do i = 1, min(size(cases), most)
-      if (i > 1) text = text//', '
+    n = 0
+    do i = 1, size(cases)
+      if (cases(i)%id < 1) cycle ! what its card has is no number
+      n = n + 1
+      if (n > most) cycle
+      if (n > 1) text = text//', '
       text = text//to_text(cases(i)%id)//' ('//cases(i)%job//')'
     end do
-    if (size(cases) > most) text = text//' and '//to_text(size(cases) - most)//' more'
+    if (n > most) text = text//' and '//to_text(n - most)//' more'
   end function cases_text
 
 end module deck_cases_m
