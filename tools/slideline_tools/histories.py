@@ -133,7 +133,7 @@ def read_csv(path: str | os.PathLike) -> History:
         raise HistoryError(f"cannot read {path}: it is a folder; wanted is a CSV table (all tables of two "
                            "folders: tools/batch/compare_folder.sh)") from problem
     except OSError as problem:
-        raise HistoryError(f"cannot read {path}: {problem}") from problem
+        raise HistoryError(f"cannot read {path}: {problem.strerror or problem}") from problem
     if not rows:
         raise HistoryError(f"{path}: the file is empty")
     names, rows = rows[0], rows[1:]
