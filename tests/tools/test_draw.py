@@ -328,7 +328,7 @@ def test_command(tmp_path, slideline, tool, monkeypatch):
     deck = conftest.ROOT / "input" / "collision" / "collision.k"
     finished = tool("draw", deck, "p:ctype=5", "-o", tmp_path / "new" / "x.png", "--show", "mesh,surfaces")
     assert finished.returncode == 0, finished.stderr
-    assert "310 nodes, 240 elements, 2 parts, 1 interfaces" in finished.stdout
+    assert "310 nodes, 240 elements, 2 parts, 1 interface)" in finished.stdout
     assert is_png(tmp_path / "new" / "x.png")
     assert tool("draw", deck, "--show", "everything").returncode == 2
 

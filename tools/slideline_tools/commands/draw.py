@@ -50,8 +50,8 @@ def run(options) -> int:
     output = pathlib.Path(options.output or f"{stem(deck)}.png")
     output.parent.mkdir(parents=True, exist_ok=True)
     model = draw(deck, output, options.program, options.overrides, options.show, options.zoom)
-    print(f"wrote {output} ({len(model.points)} nodes, {len(model.cells)} elements, "
-          f"{len(model.parts)} parts, {len(model.interfaces)} interfaces)")
+    counts = {"node": model.points, "element": model.cells, "part": model.parts, "interface": model.interfaces}
+    print(f"wrote {output} (" + ", ".join(f"{len(all_of)} {name}{'s' * (len(all_of) != 1)}" for name, all_of in counts.items()) + ")")
     for words in model.warnings:
         print(f"warning: {words}")
     if model.not_drawn:
