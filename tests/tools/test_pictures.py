@@ -5,7 +5,6 @@ import shutil
 import h5py
 import numpy as np
 import pytest
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from PIL import Image
 
 from slideline_tools import plots
@@ -15,9 +14,8 @@ from slideline_tools.results import ResultsError, read
 
 def assert_picture(path):
     with Image.open(path) as picture:
-        colours = np.asarray(picture.convert("RGB")).reshape(-1, 3)
         assert min(picture.size) > 200
-    assert len(np.unique(colours, axis=0)) > 50
+        assert len(picture.convert("RGB").getcolors(2**24)) > 50
 
 
 @pytest.mark.parametrize("options", [
@@ -28,9 +26,7 @@ def assert_picture(path):
     ["--history", "glstat:kinetic,internal"],
     ["--history", "glstat:total", "--history", "rcforc:fy@side=slave"],
     ["--contact"], ["--contact", "--state", "1", "--state", "2"]])
-def test_plot(tmp_path, tool, results_file, options, monkeypatch):
-    if options:  # the one of all kinds is laid out too, which takes most of the time
-        monkeypatch.setattr(ConstrainedLayoutEngine, "execute", lambda self, figure: None)
+def test_plot(tmp_path, tool, results_file, options):
     path = tmp_path / "pictures" / "x.png"
     finished = tool("plot", results_file, *options, "--output", path)
     assert finished.returncode == 0, finished.stderr
