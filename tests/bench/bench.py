@@ -83,7 +83,7 @@ def run_round(options, work, samples):
 
     def units():
         now = measure_units(options.kernel, unit_deck, options.threads,
-                            200000 if options.quick else 20000000)
+                            *((200000, 1000, 500) if options.quick else (20000000,)))
         samples.add(Variant("unit", "yardstick", 96, 1, "ns/element"), now.yardstick, now)
         samples.add(Variant("unit", "routine", 64, 1, "ns/element"), now.routine, now)
         for count, bandwidth in now.bandwidth.items():
@@ -106,7 +106,7 @@ def run_round(options, work, samples):
     if "contact" in options.parts:
         for nodes in work["contact"]:
             now = units()
-            for variant, value in time_contact(options.contact, nodes):
+            for variant, value in time_contact(options.contact, nodes, 200 if options.quick else 0):
                 samples.add(variant, value, now)
     if "search" in options.parts:
         for (case, _), (deck, nodes) in work["search"].items():

@@ -6,12 +6,12 @@ import subprocess
 from measuring import Variant
 
 
-def time_contact(program, nodes):
-    """[(variant, ns per step and slave node)] of all scenes and types with so many slave nodes.
+def time_contact(program, nodes, steps=0):
+    """[(variant, ns per step and slave node)] of all scenes and types with so many slave nodes, and steps in a round (0: enough).
 
     Also ns per contact point and the number of points, as variants of their own.
     """
-    text = subprocess.run([program, str(nodes)], check=True, capture_output=True,
+    text = subprocess.run([program, str(nodes), "0", str(steps)], check=True, capture_output=True,
                           text=True).stdout
     found = []
     for row in csv.DictReader(text.splitlines()):

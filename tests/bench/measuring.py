@@ -141,20 +141,21 @@ def is_fresh(path, script):
     return path.exists() and path.stat().st_mtime > Path(script).stat().st_mtime
 
 
-def measure_yardstick():
+def measure_yardstick(rounds=5000):
     """K, ns: the fixed arithmetic of yardstick/, never a routine of the program."""
-    output = subprocess.run([HERE / "yardstick" / "run.sh"], check=True, capture_output=True, text=True).stdout
+    output = subprocess.run([HERE / "yardstick" / "run.sh", "native", str(rounds)], check=True, capture_output=True, text=True).stdout
     return float(output.split(",")[1])
 
 
-def measure_units(kernel, deck, threads, entries):
-    """K, now; the element routine, and the bandwidth of 1 thread and of `threads` on arrays of so many entries."""
+def measure_units(kernel, deck, threads, entries, calls=20000, rounds=5000):
+    """K, now, of so many rounds; the element routine, so many calls a round, and the bandwidth of 1 thread and of `threads` on
+    arrays of so many entries."""
     found = {}
     for count in sorted({1, threads}):
-        output = subprocess.run([kernel, deck, str(count), str(entries)], check=True, capture_output=True,
+        output = subprocess.run([kernel, deck, str(count), str(entries), str(calls)], check=True, capture_output=True,
                                 text=True).stdout
         found[count] = dict(line.split(",") for line in output.split())
-    return Units(measure_yardstick(),
+    return Units(measure_yardstick(rounds),
                  {count: float(values["bandwidth_gb_s"]) for count, values in found.items()},
                  float(found[1]["routine_ns"]))
 

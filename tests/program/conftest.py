@@ -55,10 +55,11 @@ def threads_of(kind):
     return (1, 2, 4) if is_full() else (1, 2 + 2 * (kind % 2))
 
 
-def some_types(turn=0, each=3):
-    """All types; with the checked Debug build `each` of them, from another one on for every turn."""
+def some_types(turn=0, each=3, release=len(ALL_TYPES)):
+    """Some types, from another one on for every turn: `each` with the checked Debug build, `release` with another one; there all
+    where SLIDELINE_FULL is 1."""
     if os.environ.get("SLIDELINE_BUILD") != "Debug":
-        return ALL_TYPES
+        each = len(ALL_TYPES) if is_full() else release
     return tuple(ALL_TYPES[(each * turn + i) % len(ALL_TYPES)] for i in range(each))
 
 

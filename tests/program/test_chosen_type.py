@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: MIT
 """CTYPE 0: which type the program chooses and why, and that the run is that of the type by name."""
+import os
 import re
 
 import numpy as np
 import pytest
+from conftest import is_full
 from meshes import Deck, grid
 
+#: The checked build is slow, and what it looks at is in the run of the type chosen: it does not compare that with others.
+IS_SHORT = os.environ.get("SLIDELINE_BUILD") == "Debug" and not is_full()
 BITS = ("glstat.csv", "rcforc.csv", "contact.csv", "sleout.csv", "matsum.csv")
 
 
@@ -59,6 +63,8 @@ def chosen(slideline, tmp_path):
 
 def same_bits(slideline, tmp_path, deck):
     """The same with the type by name, and from the deck as run."""
+    if IS_SHORT:
+        return
     assert slideline("d=named", deck=deck).returncode == 0
     (tmp_path / "again.k").write_text((tmp_path / "out/job.effective.k").read_text())
     assert slideline("i=again.k", "d=again", "jobid=job").returncode == 0
@@ -120,8 +126,9 @@ def test_target(slideline, chosen, tmp_path, target, wanted, words, scene):
     cards = effective.split("*CONTACT_2D_SLIDELINE_TITLE\n")[1].split("\n")
     assert cards[1].split(",")[2] == str(wanted) and float(cards[3].split(",")[6]) == target
     same_bits(slideline, tmp_path, press(ctype=wanted, pen=1.0e6, **scene))
-    told = [re.search(r"interface 1: the target .*", (tmp_path / folder / "job.log").read_text())[0] for folder in ("out", "again")]
-    assert told[0] == told[1]
+    told = {re.search(r"interface 1: the target .*", (tmp_path / folder / "job.log").read_text())[0]
+            for folder in ("out",) + ("again",) * (not IS_SHORT)}
+    assert len(told) == 1
 
 
 @pytest.mark.parametrize("target, ctype, found", [(0.9, 1, "is kept"), (0.03, 1, "type 5 would keep it"),
@@ -277,6 +284,7 @@ def test_changed_type_has_the_same_bits(slideline, pressed_twice, tmp_path):
         assert told[0] == told[1] and len(told[0]) == 2
 
 
+@pytest.mark.skipif(IS_SHORT, reason="Release alone: nothing happens here that other tests do not run")
 @pytest.mark.parametrize("scene, words", [({"target": 0.9}, ()), ({"target": 0.0}, ()), ({"ctype": 0}, ("ctype=1",)),
                                           ({"ctype": 5, "columns": (3, 5)}, ())])
 def test_type_stays(pressed_twice, scene, words):

@@ -62,7 +62,7 @@ def test_same_bits_after_a_restart_and_with_threads(slideline, tmp_path, scene, 
 
 
 @pytest.mark.parametrize("static", (True, False))
-@pytest.mark.parametrize("kind", some_types(0))
+@pytest.mark.parametrize("kind", some_types(1, release=4))
 def test_implicit_restart(slideline, tmp_path, kind, static):
     text = with_files(pressed(kind, static=static), dump=4)
     done = slideline("d=whole", deck=text)

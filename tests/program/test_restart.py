@@ -51,8 +51,10 @@ SCENES = {
 #: Scenes that are not for every type.
 FEW_TYPES = {"plate": (1,), "rigid die": (2, 7), "impact": (3,), "impact, 2x2 points": (1,), "implicit penalty": (7,), "erosion": (4, 5), "erosion, round, 2x2 points": (6,),
              "erosion, one surface": (5,), "round rubber": (7,), "behind a relaxation": (1,)}
-CASES = by_turns([(scene, kind) for scene in SCENES for kind in ALL_TYPES
-                  if kind in FEW_TYPES.get(scene, ALL_TYPES)])
+#: Those by turns, and so many more that each type goes on with friction.
+CASES = list(dict.fromkeys([
+    *by_turns([(scene, kind) for scene in SCENES for kind in ALL_TYPES if kind in FEW_TYPES.get(scene, ALL_TYPES)], release=2),
+    *(("oblique with friction", kind) for kind in (3, 4, 5))]))
 
 
 def text_of(deck):

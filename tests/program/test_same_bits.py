@@ -144,7 +144,7 @@ def last_force(found):
 
 
 CASES = [(scene, DEBUG_TYPE) for scene in SCENES] if os.environ.get("SLIDELINE_BUILD") == "Debug" else by_turns(
-    [(scene, kind) for scene in SCENES for kind in TYPES])
+    [(scene, kind) for scene in SCENES for kind in TYPES], release=2)
 
 
 @pytest.mark.parametrize("scene, kind", CASES)

@@ -76,7 +76,7 @@ def test_same_bits_after_a_restart_and_with_threads(slideline, tmp_path, kind, i
     assert max(abs(value - 1.0) for value in numbers(one / "job.glstat.csv", "energy_ratio")) < 0.01
 
 
-@pytest.mark.parametrize("kind", some_types(1))
+@pytest.mark.parametrize("kind", some_types(2, release=4))
 def test_implicit_restart(slideline, tmp_path, kind):
     done = slideline("d=whole", deck=with_files(folded(kind), dump=4))
     assert done.returncode == 0, done.stderr

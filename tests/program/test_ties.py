@@ -112,7 +112,7 @@ def test_what_breaks_stays_broken(slideline, tmp_path, scene, kind):
     assert set(numbers(one / "job.rcforc.csv", "interface")) == {1.0}
 
 
-@pytest.mark.parametrize("kind", some_types(0))
+@pytest.mark.parametrize("kind", some_types(0, release=4))
 def test_implicit_break_and_restart(slideline, tmp_path, kind):
     """In dynamics, that what has come loose is held."""
     text = with_files(tied(kind, columns=(7, 5), static=False, gap=0.002, strength=(2.0e4, 2.0e4)), dump=4)
@@ -191,7 +191,7 @@ def test_master_penalty_beside_a_blank_one(slideline, tmp_path):
 
 
 @pytest.mark.parametrize("static", (True, False))
-@pytest.mark.parametrize("kind", some_types(1))
+@pytest.mark.parametrize("kind", some_types(1, release=4))
 def test_implicit_restart(slideline, tmp_path, kind, static):
     text = with_files(tied(kind, columns=(7, 5), static=static, gap=0.002), dump=4)
     done = slideline("d=whole", deck=text)

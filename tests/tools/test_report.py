@@ -24,6 +24,11 @@ FETCHING = {"src", "href", "srcset", "poster", "data", "action", "background"}
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
 
+@pytest.fixture(autouse=True)
+def plain(plain_pictures):
+    """The report of `written`, whose scope is wider, is drawn in full."""
+
+
 class Reader(html.parser.HTMLParser):
     """Balance, ids, links, pictures and words of a page."""
 

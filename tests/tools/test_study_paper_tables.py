@@ -194,7 +194,7 @@ def test_array_script_shares_the_runs_out(slideline, tmp_path):
     script = ROOT / "tools/batch/study_array.sh"
     arguments = ["sh", str(script), "paper-tables", "--program", slideline, "--folder",
                  str(tmp_path / "sweep"), "--quick", "--types", "1", "--repeats", "1", "--only",
-                 "[bc]*[kn]_1_type_1"]
+                 "[bs]*[tg]_1_type_1"]  # scenes of one run a round
     environment = {**os.environ, "PYTHON": sys.executable, "SLURM_SUBMIT_DIR": str(ROOT),
                    "PYTHONPATH": str(ROOT / "tools")}
     counts = []
@@ -205,6 +205,6 @@ def test_array_script_shares_the_runs_out(slideline, tmp_path):
         assert done.returncode == 0, done.stderr
         counts.append(len(list((tmp_path / "sweep" / "runs").glob("*/job.json"))))
         assert (tmp_path / "sweep" / "paper-tables.csv").exists() == (task is None)
-    # Groups in turn: block, then collision.
-    assert counts == [12, 24, 24]
-    assert "24 runs\n" in done.stdout
+    # Groups in turn: implicit block, then sliding.
+    assert counts == [1, 2, 2]
+    assert "2 runs\n" in done.stdout

@@ -19,6 +19,7 @@ EDGE, FILLET, HEIGHT, DEPTH, WIDTH = 50.0, 10.0, 100.0, 200.0, 100.0
 PENALTY, FRICTION = 1.0e6, 0.1   # N/mm^3
 RISE, END = 20.0, 46.0
 FEW = (7,)   # types without friction too, where not in full
+RUBBED = (1, 3, 5, 7)   # types with friction, where not in full; hertz_impact has the others
 #: Sink of the axis in mm and axial stress there in MPa: `independent.py`, and what is told of the benchmark.
 INDEPENDENT = {0.0: (-0.1333, -87.5), FRICTION: (-0.1311, -88.9)}
 TOLD = {0.0: ((-0.1329, -0.1307), (-94.0, -91.0)), FRICTION: ((-0.1286, -0.1286), (-88.7, -88.7))}
@@ -82,7 +83,7 @@ def check_punch(run, kind, friction):
 
 
 def check(run):
-    for kind in TYPES:
+    for kind in TYPES if run.is_full else RUBBED:
         rubbed = check_punch(run, kind, FRICTION)
         if not run.is_full and kind not in FEW:
             continue
