@@ -207,7 +207,7 @@ build() {
   [ $# -gt 1 ] || targets=(slideline)
   folder="$root/build/$type"
   case $type in
-    release) name=Release ;;
+    release) name=Release more=(-DSLIDELINE_TWO_BUILDS=ON) ;;
     debug) name=Debug ;;
     counted) name=Release more=(-DSLIDELINE_ARCH=x86-64-v3 -DSLIDELINE_TESTS=OFF) ;;
     mpi) name=Release more=(-DSLIDELINE_MPI=ON -DSLIDELINE_TESTS=OFF) ;;
