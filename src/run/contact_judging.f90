@@ -14,7 +14,7 @@ module contact_judging_m
   use rows_behind_m, only : face_rows_t, find_rows, face_pressure, face_inertia, &
     elastic_energy, has_stress
   use share_text_m, only : percent
-  use shared_faces_m, only : others_t, find_others, present_contact, face_share
+  use shared_faces_m, only : others_t, find_others, face_share
   use snapshot_filling_m, only : fill_slaves, join_slaves
   use snapshot_m, only : snapshot_t, interface_result_t
   use state_m, only : state_t
@@ -49,7 +49,6 @@ contains
     type(face_rows_t), intent(inout) :: rows
     type(snapshot_t), intent(inout) :: snapshot
     type(others_t), allocatable :: others(:)
-    type(contact_t) :: contact
     integer :: i
 
     if (size(model%contacts) == 0) return
@@ -62,41 +61,37 @@ contains
       call join_slaves(model, snapshot)
     end if
     call find_limits(model, state, snapshot%interfaces)
+    allocate (others(n_told(model%contacts)))
     if (rows%are_shared) call find_others(model, state, snapshot%slaves, others)
     do i = 1, n_told(model%contacts)
-      if (rows%are_shared) then
-        contact = present_contact(model, state, i)
-        call judge(model, state, rows, i, contact, snapshot, others(i))
-      else if (state%contacts(i)%facing%is_used) then
-        call judge(model, state, rows, i, state%contacts(i)%facing%present, snapshot)
+      if (state%contacts(i)%facing%is_used) then
+        call judge(model, state, rows, i, state%contacts(i)%facing%present, others(i), snapshot)
       else if (model%erodes) then
-        call judge(model, state, rows, i, state%outlines(i), snapshot)
+        call judge(model, state, rows, i, state%outlines(i), others(i), snapshot)
       else
-        call judge(model, state, rows, i, model%contacts(i), snapshot)
+        call judge(model, state, rows, i, model%contacts(i), others(i), snapshot)
       end if
     end do
   end subroutine judge_contacts
 
   !> Judge one interface between the surfaces of `contact`.
-  subroutine judge(model, state, rows, i, contact, snapshot, others)
+  subroutine judge(model, state, rows, i, contact, others, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(face_rows_t), intent(in) :: rows
     integer, intent(in) :: i
     type(contact_t), intent(in) :: contact
+    type(others_t), intent(in) :: others !! with something in it only where interfaces share nodes
     type(snapshot_t), intent(inout) :: snapshot
-    type(others_t), intent(in), optional :: others !! only where interfaces share nodes
     type(side_t) :: side
-    type(others_t) :: beside
     real(wp), allocatable :: unused(:)
 
-    if (present(others)) beside = others
     associate (slaves => snapshot%slaves(i), result => snapshot%interfaces(i))
-      call add_side(model, state, rows, contact%slave, slaves%pressure, beside%slave, side, &
+      call add_side(model, state, rows, contact%slave, slaves%pressure, others%slave, side, &
         slaves%row_stress)
       ! Of a surface with itself all is on the slave.
       if (.not. contact%is_self) call add_side(model, state, rows, contact%master, &
-        slaves%master_pressure, beside%master, side, unused)
+        slaves%master_pressure, others%master, side, unused)
       ! Accelerations of nodes that rigid walls or common motions hold are others than these.
       side%still = min(side%still, side%misfit)
       result%row_energy = side%row_energy
@@ -139,9 +134,9 @@ contains
         share = face_share(model, state, nodes)
         area(ends) = area(ends) + share
         row_stress(ends) = row_stress(ends) + share*stress
+        if (.not. any(abs(own(ends)) > 0.0_wp)) cycle
         moved(ends) = moved(ends) + face_inertia(model, state, rows, element, nodes)
-        if (any(abs(own(ends)) > 0.0_wp)) &
-          side%row_energy = side%row_energy + elastic_energy(model, state, element)
+        side%row_energy = side%row_energy + elastic_energy(model, state, element)
       end associate
     end do
     do k = 1, surface%n_node

@@ -10,7 +10,7 @@ module shared_faces_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: others_t, shares_nodes, present_contact, find_others, face_share
+  public :: others_t, shares_nodes, find_others, face_share
 
   !> Pressure of other interfaces on the faces at the nodes of one, Pa.
   type :: others_t
@@ -70,14 +70,13 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(slave_result_t), intent(in) :: slaves(:) !! (n_interface)
-    type(others_t), allocatable, intent(out) :: others(:) !! (interfaces that are told)
+    type(others_t), intent(inout) :: others(:) !! (interfaces that are told), empty before
     type(contact_t) :: contacts(n_told(model%contacts))
     type(face_t), allocatable :: faces(:)
     integer, allocatable :: first(:), next(:) !! faces by the node that they start at
     real(wp) :: share(2), pressure(2)
     integer :: i, k, m
 
-    allocate (others(size(contacts)))
     do i = 1, size(contacts)
       contacts(i) = present_contact(model, state, i)
       allocate (others(i)%slave(contacts(i)%slave%n_node), &
