@@ -4,7 +4,11 @@
 !> a bare path works as i=. Words of LS-DYNA mean what they mean there, or are told to be without
 !> effect.
 module arguments_m
+  use deck_command_words_m, only : next_word, is_memory, is_without_effect, read_threads, &
+    read_thread_share, read_count
+  use deck_overrides_m, only : is_override
   use errors_m, only : error_t, raise, status_input
+  use text_m, only : upper_case
   implicit none
   private
   public :: arguments_t, read_arguments, help_text, file_stem, only_end_time, timing_by_interface, &
@@ -39,17 +43,10 @@ module arguments_m
     logical :: all_cases = .false.          !! a run for each *CASE of the deck
     integer, allocatable :: cases(:)        !! those that are run (case=)
     integer :: case = 0                     !! that this run is of, 0: of none
-    character(:), allocatable :: refusal    !! what is wrong with the words of that case
+    character(:), allocatable :: refusal    !! why the cases can not run as they are asked for
     character(:), allocatable :: ignored    !! words of LS-DYNA that have no effect here
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
   end type arguments_t
-
-  !> Names that may be overridden for every deck; the first of them, those of a contact, also as
-  !> NAME.INTERFACE.
-  integer, parameter :: n_contact_name = 12
-  character(6), parameter :: override_names(15) = [character(6) :: 'ctype', 'ngauss', 'pen', &
-    'punit', 'pent', 'vdc', 'fs', 'fd', 'dc', 'vc', 'tfac', 'target', &
-    'endtim', 'dt', 'tssfac']
 
 contains
 
@@ -104,32 +101,18 @@ contains
     if (.not. allocated(arguments%job)) arguments%job = file_stem(arguments%deck)
   end subroutine read_arguments
 
-  !> Words of a *CASE. What the command line says comes after and wins.
+  !> Words of a *CASE, which the deck has found good. What the command line says comes after and
+  !> wins.
   subroutine read_commands(commands, arguments, mistakes)
     character(*), intent(in) :: commands
     type(arguments_t), intent(inout) :: arguments
     character(:), allocatable, intent(inout) :: mistakes
-    character(:), allocatable :: rest, word, name
-    integer :: n
+    character(:), allocatable :: rest, word
 
     rest = trim(adjustl(commands))
     do while (len(rest) > 0)
-      n = index(rest//' ', ' ') - 1
-      word = rest(:n)
-      rest = trim(adjustl(rest(n + 1:)))
-      name = lower(word(:index(word, '=')))
-      select case (name)
-      case ('ncpu=', 'memory=', 'memory2=', 'perthread=', 'o=', 'g=', 's=', 'f=', 'a=', 'x=', &
-          'para=')
-        call read_word(word, arguments, mistakes)
-      case default
-        if (is_override(name(:max(len(name) - 1, 0)))) then
-          call read_word(word, arguments, mistakes)
-        else
-          mistakes = mistakes//'"'//word//'" may not stand there: expected ncpu=, perthread= or ' &
-            //'an override'//new_line('a')
-        end if
-      end select
+      call next_word(rest, word)
+      call read_word(word, arguments, mistakes)
     end do
   end subroutine read_commands
 
@@ -152,7 +135,7 @@ contains
     character(*), intent(in) :: word
     type(arguments_t), intent(inout) :: arguments
     character(:), allocatable, intent(inout) :: mistakes
-    character(:), allocatable :: name, value
+    character(:), allocatable :: name, value, mistake
     integer :: equals
 
     equals = index(word, '=')
@@ -191,25 +174,26 @@ contains
       if (index(value, '/') > 0) mistakes = mistakes//'jobid="'//value &
         //'": expected a name without /'//new_line('a')
     case ('ncpu')
-      call read_count(name//'='//value(1 + index(value(:min(1, len(value))), '-'):), 1024, &
-        arguments%n_thread, mistakes)
+      call read_threads(value, arguments%n_thread, mistake)
+      call note(mistake, mistakes)
     case ('c')
-      call read_count(word, 1000000000, arguments%cpu_seconds, mistakes)
+      call read_count(name, value, 1000000000, arguments%cpu_seconds, mistake)
+      call note(mistake, mistakes)
     case ('quiet')
       arguments%quiet = value == '1'
       if (value /= '0' .and. value /= '1') mistakes = mistakes//'quiet="'//value &
         //'": expected 0 or 1'//new_line('a')
     case ('perthread')
-      call read_count(word, 1000000000, arguments%thread_share, mistakes)
+      call read_thread_share(value, arguments%thread_share, mistake)
+      call note(mistake, mistakes)
     case ('timing')
       call read_timing(value, arguments%timing, mistakes)
-    case ('memory', 'memory2')
-    case ('o', 'g', 's', 'f', 'a', 'x', 'para')
-      call ignore(name//'=', arguments%ignored)
     case default
       if (is_override(name)) then
         arguments%overrides = [character(argument_length) :: arguments%overrides, word]
-      else
+      else if (is_without_effect(upper_case(name))) then
+        call ignore(name//'=', arguments%ignored)
+      else if (.not. is_memory(upper_case(name))) then
         mistakes = mistakes//'unknown argument "'//word//'"'//new_line('a')
       end if
     end select
@@ -225,37 +209,28 @@ contains
     ignored = ignored//word
   end subroutine ignore
 
-  !> Understand `name=N` with a number from 1 to `most`.
-  subroutine read_count(word, most, count, mistakes)
-    character(*), intent(in) :: word
-    integer, intent(in) :: most
-    integer, intent(inout) :: count
+  !> Keep what is wrong with one word.
+  pure subroutine note(mistake, mistakes)
+    character(*), intent(in) :: mistake !! empty: nothing
     character(:), allocatable, intent(inout) :: mistakes
-    character(12) :: limit
-    integer :: equals, status
 
-    equals = index(word, '=')
-    status = verify(word(equals + 1:), '0123456789')
-    if (status == 0) read (word(equals + 1:), *, iostat=status) count
-    if (status == 0 .and. count >= 1 .and. count <= most) return
-    write (limit, '(ss,i0)') most
-    mistakes = mistakes//word(:equals)//'"'//word(equals + 1:)//'": expected a number from 1 to ' &
-      //trim(limit)//new_line('a')
-  end subroutine read_count
+    if (len(mistake) > 0) mistakes = mistakes//mistake//new_line('a')
+  end subroutine note
 
   !> Understand the value of case=: numbers with commas between them.
   subroutine read_list(value, list, mistakes)
     character(*), intent(in) :: value
     integer, allocatable, intent(inout) :: list(:)
     character(:), allocatable, intent(inout) :: mistakes
-    character(:), allocatable :: rest
+    character(:), allocatable :: rest, mistake
     integer :: n, number
 
     rest = value//','
     do while (len(rest) > 0)
       n = index(rest, ',') - 1
       number = 0
-      call read_count('case='//rest(:n), huge(number), number, mistakes)
+      call read_count('case', rest(:n), huge(number), number, mistake)
+      call note(mistake, mistakes)
       if (any(list == number)) mistakes = mistakes//'case="'//value//'": '//rest(:n) &
         //' is given twice'//new_line('a')
       if (number > 0) list = [list, number]
@@ -299,18 +274,6 @@ contains
       target_text = value
     end if
   end subroutine take
-
-  !> Whether `name` may stand before the = of an override.
-  pure function is_override(name) result(known)
-    character(*), intent(in) :: name
-    logical :: known
-    integer :: dot
-
-    dot = index(name, '.')
-    known = any(override_names == name) .or. index(name, 'p:') == 1
-    if (dot > 1 .and. dot < len(name)) known = known .or. (any(override_names(:n_contact_name) &
-      == name(:dot - 1)) .and. verify(name(dot + 1:), '0123456789') == 0)
-  end function is_override
 
   !> Lower case.
   pure function lower(text) result(folded)

@@ -5,7 +5,7 @@ module case_plan_m
   use deck_cases_m, only : case_t, find_case
   use deck_choose_case_m, only : list_cases
   use deck_lines_m, only : deck_t
-  use errors_m, only : error_t, raise, status_input
+  use errors_m, only : error_t, raise
   use log_m, only : to_text
   implicit none
   private
@@ -37,37 +37,34 @@ contains
     if (arguments%all_cases) chosen = pack([(cases(i)%id, i=1, size(cases))], &
       [(cases(i)%id > 0, i=1, size(cases))])
     if (size(chosen) == 0) return
-    if (size(chosen) > 1 .and. arguments%job_is_given) then
-      call raise(error, 'jobid= on the command line would be the name of ' &
-        //to_text(size(chosen))//' cases: expected one case (case=ID), or JOBID of *CASE', &
-        status_input)
-      return
-    end if
     deallocate (runs)
     allocate (runs(size(chosen)))
     do i = 1, size(chosen)
       runs(i) = arguments
       runs(i)%case = chosen(i)
       k = find_case(cases, chosen(i))
-      if (k > 0) call ask_for(cases(k), runs(i))
+      if (k > 0) call ask_for(cases(k), size(chosen), runs(i))
     end do
   end subroutine plan_cases
 
   !> The run of one case.
-  subroutine ask_for(item, run)
+  subroutine ask_for(item, n_case, run)
     type(case_t), intent(in) :: item
-    type(arguments_t), intent(inout) :: run !! as without cases
+    integer, intent(in) :: n_case            !! that are run
+    type(arguments_t), intent(inout) :: run  !! as without cases
     type(arguments_t) :: asked
     type(error_t), allocatable :: error
 
     call read_arguments(asked, error, item%commands)
-    if (allocated(error)) then
-      run%refusal = error%message(:index(error%message, new_line('a'), back=.true.) - 1)
-    else
-      run = asked
-      run%case = item%id
+    if (.not. allocated(error)) run = asked
+    run%case = item%id
+    if (run%job_is_given .and. n_case > 1) then
+      run%refusal = 'jobid= on the command line would be the name of '//to_text(n_case) &
+        //' cases: expected one case (case=ID), or JOBID of *CASE'
+      run%job = item%job
+    else if (.not. run%job_is_given .and. .not. allocated(run%restart)) then
+      run%job = item%job
     end if
-    if (.not. run%job_is_given .and. .not. allocated(run%restart)) run%job = item%job
   end subroutine ask_for
 
   !> How a case is told of.

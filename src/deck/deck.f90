@@ -62,7 +62,7 @@ module deck_m
                                               !! then
     type(deck_t), allocatable :: deck         !! where it has been read and cut; reading takes it
     integer :: case = 0                       !! of *CASE, 0: a deck without cases
-    character(:), allocatable :: refusal      !! what is wrong with the words of the case
+    character(:), allocatable :: refusal      !! why the cases can not run as they are asked for
     logical :: is_told_elsewhere = .false.    !! another process has the effective deck and tells
                                               !! the findings: the text of the mesh goes as it is
                                               !! read

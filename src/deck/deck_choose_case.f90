@@ -4,7 +4,6 @@
 module deck_choose_case_m
   use errors_m, only : error_t
   use log_m, only : log_t, to_text, write_log
-  use deck_cards_m, only : reject_field
   use deck_cases_m, only : case_t, read_cases, find_case, cases_text
   use deck_lines_m, only : deck_t, line_error
   use deck_reader_m, only : read_blocks, cut_deck
@@ -19,7 +18,8 @@ contains
   subroutine choose_case(deck, id, refusal, log)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: id                           !! 0: none is asked for
-    character(:), allocatable, intent(in) :: refusal    !! what is wrong with the words of the case
+    character(:), allocatable, intent(in) :: refusal    !! why the cases can not run as they are
+                                                        !! asked for
     type(log_t), intent(inout) :: log
     type(case_t), allocatable :: cases(:)
     character(:), allocatable :: path, text
@@ -34,12 +34,12 @@ contains
       deck = deck_t()
       call cut_deck(path, text, deck, cases(max(k, 1))%sub_cases)
       call read_cases(deck, cases) ! what it tells went with the deck before
-      if (allocated(refusal)) call reject_field(deck, cases(max(k, 1))%place, refusal)
       do i = 1, size(cases(max(k, 1))%sub_cases)
         if (any(deck%cases%all == cases(max(k, 1))%sub_cases(i))) cycle
         deck%incomplete = .true.
       end do
     end if
+    if (allocated(refusal)) call line_error(deck, 0, refusal)
     deck%incomplete = deck%incomplete .or. deck%cases%wrong
     if (k > 0) then
       text = ''

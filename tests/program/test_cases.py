@@ -140,6 +140,35 @@ def test_no_case_runs_where_one_is_refused(slideline, tmp_path, fast):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("number, words", [("102", ["case=101"]), ("  0", ["case=101"]), ("  0", ["case"]), ("102", [])])
+def test_words_of_every_case_are_told_at_once(slideline, fast, number, words):
+    """Of one that is not run too, or has no number; a value that no deck takes has its line as well."""
+    deck = cases_deck().replace("102 fast\n\n", f"{number} fast\nncpu=0 pen=-x vdc=1 i=x.k\n")
+    deck = deck.replace("*PART\n", "*BOUNDARY_NONE\n*PART\n", 1)
+    done = slideline("d=out", *words, deck=deck)
+    told = re.findall(r'^\S*job\.k:\d+: (\*\w+ .*)', done.stderr, re.M)
+    place = '*CASE card 2 field 1 (COMMANDS): "ncpu=0 pen=-x vdc=1 i=x.k" '
+    assert done.returncode == 1
+    assert [text for text in told if "COMMANDS" in text] == [place + text for text in (
+        'ncpu="0": expected a number from 1 to 1024', '"pen=-x": the value is not a number other than 0 (numbers reach 1e40)',
+        '"i=x.k" may not stand there: expected ncpu=, perthread= or an override')], done.stderr
+    assert len([text for text in told if "CASEID" in text]) == (number == "  0")
+    assert "*BOUNDARY_NONE: " in done.stderr
+
+
+def test_a_name_for_several_cases_is_told_with_the_rest(slideline, check, fast):
+    """Once where no case has more than the others; the cases are told by their own names."""
+    for words, n in (("case", 3), ("case=7,101", 2)):
+        done = slideline("d=out", words, "jobid=x", deck=cases_deck())
+        assert done.returncode == 1 and done.stderr.count(f"jobid= on the command line would be the name of {n} cases") == 1
+    assert done.stderr.splitlines()[0] == "case 7 (case7), case 101 (slow):"
+    deck = cases_deck().replace("*PART\n", "*BOUNDARY_NONE\n*PART\n", 1)
+    done = slideline("d=out", "case", "jobid=x", deck=deck)
+    assert done.returncode == 1 and done.stderr.count("jobid= on the command line") == done.stderr.count("*BOUNDARY_NONE: ") == 1
+    cases = json.loads(check(deck, "case", "jobid=x", "--json").stdout)["cases"]
+    assert [[finding.get("keyword") for finding in case["findings"]] for case in cases] == [["*BOUNDARY_NONE", None]] * 3
+
+
 def test_a_failing_case_is_not_hidden(slideline, tmp_path, fast):
     """The next case runs after an error termination; the status is that of the one that failed."""
     deck = cases_deck().replace(BLOCKS[3], "*CONTROL_TERMINATION\n0.002,,,1.0e-9")

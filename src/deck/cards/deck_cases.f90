@@ -7,8 +7,10 @@ module deck_cases_m
   use deck_lines_m, only : deck_t, place_t, line_text, line_error, line_warning, replace_line, &
     flag_comma, flag_parameter
   use deck_fields_m, only : card_t, field_text
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, report_field, &
+    reject_field
   use deck_card_specs_m, only : field_number
+  use deck_command_words_m, only : next_word, command_mistake
   use deck_parameter_table_m, only : parameters_t
   use deck_values_m, only : integer_of, is_blank
   use deck_checks_m, only : require_id
@@ -21,8 +23,7 @@ module deck_cases_m
     integer :: id = 0
     integer :: line = 0                   !! of its keyword
     character(:), allocatable :: job      !! stem of its result files
-    character(:), allocatable :: commands !! words of the command line
-    type(place_t) :: place                !! of these, where there are any
+    character(:), allocatable :: commands !! words of the command line; none where some are wrong
     integer, allocatable :: sub_cases(:)
   end type case_t
 
@@ -71,6 +72,7 @@ contains
     type(parameters_t) :: no_parameters
     type(cursor_t) :: cursor
     type(card_t) :: card
+    integer :: line
 
     allocate (no_parameters%items(0))
     item%line = deck%blocks(i_block)%keyword
@@ -85,10 +87,31 @@ contains
       if (scan(item%job, ' /') > 0) call report_field(deck, cursor, card, 'JOBID', &
         'is no stem of result files: expected a name without blanks and /')
     end if
-    item%place = place_t(line=cursor%line, card=2, name='COMMANDS', field=1)
+    line = cursor%line
     call next_text(deck, cursor, item%commands)
+    call check_commands(deck, line, item%commands)
     call read_sub_cases(deck, no_parameters, cursor, item%sub_cases)
   end subroutine read_case
+
+  !> Words that may not stand there, or whose value no deck takes.
+  subroutine check_commands(deck, line, commands)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line !! of the card
+    character(:), allocatable, intent(inout) :: commands
+    character(:), allocatable :: rest, word, mistake
+    logical :: is_wrong
+
+    is_wrong = .false.
+    rest = trim(adjustl(commands))
+    do while (len(rest) > 0)
+      call next_word(rest, word)
+      mistake = command_mistake(word)
+      if (len(mistake) == 0) cycle
+      is_wrong = .true.
+      call reject_field(deck, place_t(line=line, card=2, name='COMMANDS', field=1), mistake)
+    end do
+    if (is_wrong) commands = ''
+  end subroutine check_commands
 
   !> The subcases of a case, to the end of its block.
   subroutine read_sub_cases(deck, parameters, cursor, sub_cases)

@@ -2,14 +2,14 @@
 !> What the command line changes of a deck: `name=value`, `name.interface=value`, `p:NAME=value`.
 module deck_overrides_m
   use kinds_m, only : wp
-  use text_m, only : upper_case, read_real, read_integer, number_good
+  use text_m, only : upper_case, read_real, read_integer, number_good, number_wrong
   use deck_fields_m, only : largest_value, smallest_value
   use deck_lines_m, only : deck_t, line_error
   use deck_parameter_table_m, only : parameters_t, override_parameter
   implicit none
   private
-  public :: overrides_t, read_overrides, override_text, override_word, override_real, &
-    override_integer, contact_names
+  public :: overrides_t, is_override, override_mistake, read_overrides, override_text, &
+    override_word, override_real, override_integer, contact_names
 
   !> Overrides of interfaces; the others are those of the run.
   integer, parameter :: n_contact_name = 12
@@ -37,6 +37,30 @@ module deck_overrides_m
 
 contains
 
+  !> Whether `name` may stand before the = of an override.
+  pure function is_override(name) result(known)
+    character(*), intent(in) :: name
+    logical :: known
+    character(len(name)) :: upper
+    integer :: dot
+
+    upper = upper_case(name)
+    dot = index(name, '.')
+    known = any(contact_names == upper) .or. any(run_names == upper) .or. index(upper, 'P:') == 1
+    if (dot > 1 .and. dot < len(name)) known = known .or. (any(contact_names == upper(:dot - 1)) &
+      .and. verify(name(dot + 1:), '0123456789') == 0)
+  end function is_override
+
+  !> What is wrong with an override by itself, whatever the deck has; empty where nothing is.
+  pure function override_mistake(word) result(mistake)
+    character(*), intent(in) :: word
+    character(:), allocatable :: mistake
+    type(override_t) :: item
+
+    call take_apart(word, item, mistake)
+    if (len(mistake) > 0) mistake = '"'//word//'"'//mistake
+  end function override_mistake
+
   !> Take the texts apart; those of parameters go straight to the parameters.
   subroutine read_overrides(texts, deck, parameters, overrides)
     character(*), intent(in) :: texts(:)
@@ -44,56 +68,62 @@ contains
     type(parameters_t), intent(inout) :: parameters
     type(overrides_t), intent(out) :: overrides
     type(override_t) :: item
-    integer :: i, equals, dot, status
+    character(:), allocatable :: mistake
+    integer :: i
 
     allocate (overrides%items(0))
     do i = 1, size(texts)
-      equals = index(texts(i), '=')
-      if (equals < 2 .or. len_trim(texts(i)(equals + 1:)) == 0) then
-        call line_error(deck, 0, '"'//trim(texts(i))//'" on the command line is not NAME=VALUE')
-        cycle
-      end if
-      item%word = trim(adjustl(texts(i)))
-      item%name = upper_case(trim(adjustl(texts(i)(:equals - 1))))
-      item%text = trim(adjustl(texts(i)(equals + 1:)))
-      item%interface = 0
+      call take_apart(texts(i), item, mistake)
+      if (len(mistake) > 0) call line_error(deck, 0, '"'//trim(texts(i)) &
+        //'" on the command line'//mistake)
       if (index(item%name, 'P:') == 1) then
         call override_parameter(parameters, item%name(3:), item%text)
-        cycle
+      else if (len(item%name) > 0) then
+        overrides%items = [overrides%items, item]
       end if
-      dot = index(item%name, '.')
-      status = number_good
-      if (dot > 1) then
-        call read_integer(item%name(dot + 1:), item%interface, status)
-        item%name = item%name(:dot - 1)
-      end if
-      if (.not. known_name(item, dot > 0) .or. status /= number_good) then
-        call line_error(deck, 0, '"'//trim(texts(i))//'" on the command line is not known: ' &
-          //'endtim=, dt=, tssfac=; ctype=, ngauss=, pen=, punit=, pent=, vdc=, fs=, ' &
-          //'fd=, dc=, vc=, tfac=, target= for all interfaces or, as in ctype.2=, for one; ' &
-          //'p:NAME= for a parameter')
-        cycle
-      end if
-      call check_number(deck, item, trim(texts(i)))
-      overrides%items = [overrides%items, item]
     end do
   end subroutine read_overrides
 
-  !> Whether there is an override of this name.
-  pure function known_name(item, for_one) result(known)
-    type(override_t), intent(in) :: item
-    logical, intent(in) :: for_one
-    logical :: known
+  !> Name, interface and value of a text; what is wrong with it goes on from `"TEXT"`.
+  pure subroutine take_apart(text, item, mistake)
+    character(*), intent(in) :: text
+    type(override_t), intent(out) :: item              !! without a name where it is none, without
+                                                       !! a value where that is wrong
+    character(:), allocatable, intent(out) :: mistake  !! empty: none
+    integer :: equals, dot, status
 
-    known = any(contact_names == item%name)
-    if (.not. for_one) known = known .or. any(run_names == item%name)
-  end function known_name
+    mistake = ''
+    item%name = ''
+    equals = index(text, '=')
+    if (equals < 2 .or. len_trim(text(equals + 1:)) == 0) then
+      mistake = ' is not NAME=VALUE'
+      return
+    end if
+    item%word = trim(adjustl(text))
+    item%name = upper_case(trim(adjustl(text(:equals - 1))))
+    item%text = trim(adjustl(text(equals + 1:)))
+    if (index(item%name, 'P:') == 1) return
+    status = number_good
+    if (.not. is_override(item%name)) status = number_wrong
+    dot = index(item%name, '.')
+    if (status == number_good .and. dot > 1) then
+      call read_integer(item%name(dot + 1:), item%interface, status)
+      item%name = item%name(:dot - 1)
+    end if
+    if (status /= number_good) then
+      item%name = ''
+      mistake = ' is not known: endtim=, dt=, tssfac=; ctype=, ngauss=, pen=, punit=, pent=, ' &
+        //'vdc=, fs=, fd=, dc=, vc=, tfac=, target= for all interfaces or, as in ctype.2=, for ' &
+        //'one; p:NAME= for a parameter'
+      return
+    end if
+    call check_number(item, mistake)
+  end subroutine take_apart
 
   !> The value must be a number of the right kind.
-  subroutine check_number(deck, item, text)
-    type(deck_t), intent(inout) :: deck
+  pure subroutine check_number(item, mistake)
     type(override_t), intent(inout) :: item
-    character(*), intent(in) :: text
+    character(:), allocatable, intent(inout) :: mistake
     integer :: whole, status
     real(wp) :: value
 
@@ -101,8 +131,7 @@ contains
     case ('CTYPE', 'NGAUSS', 'PUNIT')
       call read_integer(item%text, whole, status)
       if (status == number_good) return
-      call line_error(deck, 0, '"'//text//'" on the command line: the value is not a whole number')
-      item%text = ''
+      mistake = ': the value is not a whole number'
     case default
       call read_real(item%text, value, status)
       if (status == number_good) then
@@ -110,10 +139,9 @@ contains
         if (value >= smallest_value .and. value <= largest_value) return
         if (any(zero_names == item%name) .and. .not. abs(value) > 0.0_wp) return
       end if
-      call line_error(deck, 0, '"'//text//'" on the command line: the value is not a number ' &
-        //range_of(item%name)//' (numbers reach 1e40)')
-      item%text = ''
+      mistake = ': the value is not a number '//range_of(item%name)//' (numbers reach 1e40)'
     end select
+    item%text = ''
   end subroutine check_number
 
   !> What numbers a name takes.
