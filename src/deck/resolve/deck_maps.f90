@@ -90,17 +90,21 @@ contains
   end subroutine map_kind
 
   !> Index of an id that a field refers to; an error of that field when there is none.
-  subroutine resolve_id(deck, map, id, what, place, found)
+  subroutine resolve_id(deck, map, id, what, place, found, hint)
     type(deck_t), intent(inout) :: deck
     type(id_map_t), intent(in) :: map
     integer, intent(in) :: id
     character(*), intent(in) :: what  !! `node`, `curve`, ...
     type(place_t), intent(in) :: place
     integer, intent(out) :: found
+    character(*), intent(in), optional :: hint !! how the message goes on
+    character(:), allocatable :: message
 
     found = index_of(map, id)
-    if (found == 0 .and. .not. map%incomplete) call reject_field(deck, place, &
-      'is no '//what//' of this deck')
+    if (found > 0 .or. map%incomplete) return
+    message = 'is no '//what//' of this deck'
+    if (present(hint)) message = message//hint
+    call reject_field(deck, place, message)
   end subroutine resolve_id
 
 end module deck_maps_m

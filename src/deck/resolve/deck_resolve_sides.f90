@@ -56,10 +56,26 @@ contains
     call find_side(entry, side, maps, kind, found)
     if (kind /= side_none) return
     if (entry%sides(side) > 0) call resolve_id(deck, maps%part_sets, entry%sides(side), &
-      'part set', entry%places(side), found)
+      'part set', entry%places(side), found, namesakes(entry%sides(side), maps))
     if (entry%sides(side) < 0) call resolve_id(deck, maps%node_sets, -entry%sides(side), &
-      'node set', entry%places(side), found)
+      'node set', entry%places(side), found, namesakes(entry%sides(side), maps))
   end subroutine require_side
+
+  !> What else has the number of a set that is not there, for a message; nothing where nothing has.
+  pure function namesakes(side, maps) result(text)
+    integer, intent(in) :: side  !! as on the card, with its sign
+    type(maps_t), intent(in) :: maps
+    character(:), allocatable :: text
+    character(:), allocatable :: number
+
+    number = ' '//to_text(abs(side))//' exists'
+    text = ''
+    if (index_of(maps%node_sets, abs(side)) > 0) text = text//', node set'//number
+    if (index_of(maps%part_sets, abs(side)) > 0) text = text//', part set'//number
+    if (index_of(maps%shell_sets, abs(side)) > 0) text = text//', shell set'//number
+    if (index_of(maps%parts, abs(side)) > 0) text = text//', part'//number
+    if (len(text) > 0) text(1:1) = ';'
+  end function namesakes
 
   !> The surface of one side of an interface.
   subroutine resolve_side(deck, entry, side, maps, outside, model, surface)
