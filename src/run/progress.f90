@@ -210,10 +210,9 @@ contains
       call add(lines, line)
     end do
     each = lap_seconds()
-    write (line, '(ss,a,i0,a,f0.1,a,f0.2,a)') ' Clock               = ', sum(clock%calls), &
-      ' laps of ', 1.0e9_wp*each, ' nanoseconds, ', 100.0_wp*each*sum(clock%calls)/total, &
-      ' % of the time'
-    call add(lines, line)
+    write (line, '(ss,a,i0)') ' Clock               = ', sum(clock%calls)
+    call add(lines, trim(line)//' readings of '//fixed(1.0e9_wp*each, 1)//' nanoseconds, ' &
+      //fixed(100.0_wp*each*sum(clock%calls)/total, 2)//' % of the time')
   end subroutine add_timing
 
   !> One line more.

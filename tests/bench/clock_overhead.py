@@ -30,7 +30,7 @@ def run(program, deck, mode, words, folder):
     lines = (folder / "clock.timing.csv").read_text().splitlines()[1:]
     rows = {name: (float(seconds), int(calls)) for name, seconds, calls, _ in
             (line.split(",") for line in lines)}
-    found = re.search(r"laps of (\S+) nanoseconds", (folder / "clock.log").read_text())
+    found = re.search(r"readings of (\S+) nanoseconds", (folder / "clock.log").read_text())
     return rows, float(found.group(1)) if found else None, used
 
 
