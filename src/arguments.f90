@@ -367,7 +367,7 @@ contains
       'state), swa (histories up to date) or stop; signals TERM, INT, HUP and XCPU (stop), '// &
         'USR1 (sw3),'//n// &
       'USR2 (sw4)'//n// &
-      'exit status: 0 normal, 1 refused input, 2 error termination, 3 files, 4 stopped on '// &
+      'exit status: 0 normal, 1 refused input, 2 error in the run, 3 files, 4 stopped on '// &
         'request'//n// &
       '--version prints the version, compiler and options'
   end function help_text
