@@ -24,6 +24,17 @@ def test_equal_tables_agree():
     assert len(report.checks) == 7
 
 
+@pytest.mark.parametrize("column", ["cycle", "n_active", "state"])
+def test_counts_have_no_impulse(column):
+    """They have the other measures."""
+    counts = np.arange(len(TIME), dtype=float)
+    report = compare(table(**{column: counts}), table(**{column: counts}))
+    told = {name: [check.measure for check in report.checks if check.column == name] for name in ("force", column)}
+    assert "impulse" in told["force"] and told[column] == [measure for measure in told["force"] if measure != "impulse"]
+    late = compare(table(**{column: counts + 1.0}), table(**{column: counts}), columns=[column])
+    assert failed(late) == {"values", "peak", "final"}
+
+
 def test_other_time_grid_agrees():
     finer = np.linspace(0.0, 2.0, 1001)
     assert compare(table(time=finer), table()).passed

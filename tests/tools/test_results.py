@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The reader on a file written by hand."""
 import conftest
+import h5py
 import numpy as np
 import pytest
 
@@ -75,8 +76,13 @@ def test_missing_file_and_other_file(tmp_path):
         read(tmp_path / "none.vtkhdf")
     other = tmp_path / "other.vtkhdf"
     other.write_text("not HDF5")
-    with pytest.raises(ResultsError, match="cannot read"):
-        read(other)
+    dump = tmp_path / "job.dump01.h5"
+    with h5py.File(dump, "w") as stream:
+        stream["cycle"] = 1
+    for path in (other, dump):
+        with pytest.raises(ResultsError) as caught:
+            read(path)
+        assert str(caught.value) == f"cannot read {path}: it is no results file (<job>.vtkhdf)"
 
 
 def test_csv_columns(tmp_path):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Compare a history table with a reference, column by column and entity by entity.
 
-Each column is judged by five measures (see MEASURES). The allowed difference of a value is
+Each column is judged by five measures (see MEASURES), counts without the impulse. The allowed difference of a value is
 `atol + rtol |reference|`; `atol` is `floor` times the column's maximum in the reference unless
 it is given. Series are compared on the times of the reference, the result being interpolated.
 """
@@ -11,10 +11,11 @@ import numpy as np
 
 from slideline_tools import UserError
 
-from slideline_tools.histories import ENTITY_COLUMNS, TEXT_COLUMNS
+from slideline_tools.histories import ENTITY_COLUMNS, INTEGER_COLUMNS, TEXT_COLUMNS
 
 MEASURES = ("values", "peak", "time of peak", "impulse", "final")
 COVERAGE = ("start", "end")  # first and last time: always judged
+WITHOUT_IMPULSE = INTEGER_COLUMNS + ("state",)  # counts and codes: an integral over time says nothing
 
 
 class Unusable(UserError):
@@ -176,9 +177,10 @@ def series_checks(column, entity, result, reference, tolerance, atol):
     at = worst_index(np.abs(ours - theirs), allowed)
     judge("values", ours[at], theirs[at], ours[at] - theirs[at], allowed[at])
     judge_peak(judge, (t, y), (t_ref, y_ref), tolerance, atol, span)
-    impulse, expected = time_integral(t, y), time_integral(t_ref, y_ref)
-    judge("impulse", impulse, expected, impulse - expected,
-          tolerance.rtol * abs(expected) + atol * span)
+    if column not in WITHOUT_IMPULSE:
+        impulse, expected = time_integral(t, y), time_integral(t_ref, y_ref)
+        judge("impulse", impulse, expected, impulse - expected,
+              tolerance.rtol * abs(expected) + atol * span)
     judge("final", y[-1], y_ref[-1], y[-1] - y_ref[-1], atol + tolerance.rtol * abs(y_ref[-1]))
     return checks
 

@@ -38,6 +38,9 @@ DAMAGE = (OSError, KeyError, ValueError, TypeError, AttributeError, IndexError, 
           MemoryError)
 
 
+NO_RESULTS = "it is no results file (<job>.vtkhdf)"
+
+
 class ResultsError(UserError):
     """A file that is missing, is no results file, or lacks what was asked of it."""
 
@@ -105,11 +108,20 @@ class Results:
         except UserError:
             raise
         except DAMAGE as problem:
-            reason = " ".join(str(problem).split()) or type(problem).__name__
-            reason = "no such file" if not self.path.exists() else reason
-            raise ResultsError(f"cannot read {what + ' of ' if what else ''}{self.path}: {reason}") from problem
+            raise ResultsError(f"cannot read {what + ' of ' if what else ''}{self.path}: "
+                               f"{self._reason(problem)}") from problem
+
+    def _reason(self, problem: Exception) -> str:
+        """What stopped h5py or numpy, in words of files where it is the file as a whole."""
+        if not self.path.exists():
+            return "no such file"
+        if not isinstance(problem, PermissionError) and not h5py.is_hdf5(self.path):
+            return NO_RESULTS
+        return " ".join(str(problem).split()) or type(problem).__name__
 
     def _read_structure(self, stream: h5py.File) -> None:
+        if "VTKHDF" not in stream:
+            raise ValueError(NO_RESULTS)
         root = stream["VTKHDF"]
         kind = root.attrs["Type"]
         kind = kind.decode() if isinstance(kind, bytes) else str(kind)
