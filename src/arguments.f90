@@ -4,11 +4,10 @@
 !> a bare path works as i=. Words of LS-DYNA mean what they mean there, or are told to be without
 !> effect.
 module arguments_m
-  use deck_command_words_m, only : next_word, is_memory, is_without_effect, read_threads, &
-    read_thread_share, read_count
+  use deck_command_words_m, only : lower_case, next_word, meant_word, is_memory, &
+    is_without_effect, read_threads, read_thread_share, read_count
   use deck_overrides_m, only : is_override
   use errors_m, only : error_t, raise, status_input
-  use text_m, only : upper_case
   implicit none
   private
   public :: arguments_t, read_arguments, help_text, file_stem, only_end_time, timing_by_interface, &
@@ -19,6 +18,10 @@ module arguments_m
 
   !> What is timed: phases, contact phases of each interface too, or the run as a whole.
   integer, parameter :: timing_by_phase = 0, timing_by_interface = 1, timing_off = 2
+
+  !> Words of more than a letter that are this program's own, for what is misspelt.
+  character(9), parameter :: own_words(7) = [character(9) :: 'jobid=', 'case=', 'quiet=', &
+    'timing=', '--help', '--version', '--json']
 
   !> What the command line asks for.
   type :: arguments_t
@@ -150,14 +153,14 @@ contains
     else if (word == '--json') then
       arguments%json = .true.
       return
-    else if (lower(word) == 'case') then
+    else if (lower_case(word) == 'case') then
       arguments%all_cases = .true.
       return
     else if (equals == 0 .and. word(1:min(1, len(word))) /= '-') then
       call take(arguments%deck, word, 'deck', mistakes)
       return
     end if
-    name = lower(word(:equals - 1))
+    name = lower_case(word(:equals - 1))
     value = word(equals + 1:)
     select case (name)
     case ('i')
@@ -165,8 +168,8 @@ contains
     case ('r')
       call take(arguments%restart, value, 'r=', mistakes)
     case ('d')
-      arguments%no_dump = arguments%no_dump .or. lower(value) == 'nodump'
-      if (lower(value) /= 'nodump') call take(arguments%directory, value, 'd=', mistakes)
+      arguments%no_dump = arguments%no_dump .or. lower_case(value) == 'nodump'
+      if (lower_case(value) /= 'nodump') call take(arguments%directory, value, 'd=', mistakes)
     case ('case')
       call read_list(value, arguments%cases, mistakes)
     case ('jobid')
@@ -191,10 +194,11 @@ contains
     case default
       if (is_override(name)) then
         arguments%overrides = [character(argument_length) :: arguments%overrides, word]
-      else if (is_without_effect(upper_case(name))) then
+      else if (is_without_effect(name)) then
         call ignore(name//'=', arguments%ignored)
-      else if (.not. is_memory(upper_case(name))) then
-        mistakes = mistakes//'unknown argument "'//word//'"'//new_line('a')
+      else if (.not. is_memory(name)) then
+        mistakes = mistakes//'unknown argument "'//word//'"'//meant_word(word, own_words) &
+          //new_line('a')
       end if
     end select
   end subroutine read_word
@@ -244,7 +248,7 @@ contains
     integer, intent(inout) :: timing
     character(:), allocatable, intent(inout) :: mistakes
 
-    select case (lower(value))
+    select case (lower_case(value))
     case ('phase')
       timing = timing_by_phase
     case ('interface')
@@ -275,18 +279,6 @@ contains
     end if
   end subroutine take
 
-  !> Lower case.
-  pure function lower(text) result(folded)
-    character(*), intent(in) :: text
-    character(len(text)) :: folded
-    integer :: i
-
-    folded = text
-    do i = 1, len(text)
-      if (text(i:i) >= 'A' .and. text(i:i) <= 'Z') folded(i:i) = achar(iachar(text(i:i)) + 32)
-    end do
-  end function lower
-
   !> Whether the command line changes nothing of a deck but its end time.
   pure function only_end_time(arguments) result(only)
     type(arguments_t), intent(in) :: arguments
@@ -295,7 +287,7 @@ contains
 
     only = .true.
     do i = 1, size(arguments%overrides)
-      only = only .and. lower(arguments%overrides(i)(:7)) == 'endtim='
+      only = only .and. lower_case(arguments%overrides(i)(:7)) == 'endtim='
     end do
   end function only_end_time
 

@@ -126,6 +126,8 @@ def test_commands_of_a_case(slideline, fast):
     assert re.search(r'job\.k:\d+: \*CASE card 2 field 1 \(COMMANDS\): ', done.stderr)
     for told in ('"i=x.k" may not stand there', '"ncycle=5" may not stand there', 'ncpu="0": expected a number'):
         assert told in done.stderr
+    done = slideline("case=101", deck=cases_deck().replace("dt=5e-5", "td=5e-5 ncup=2 ctpye=3"))
+    assert re.findall(r"an override; did you mean (\w+)=", done.stderr) == ["dt", "ncpu", "ctype"], done.stderr
     done = slideline("case=101", "dt=4e-5", deck=cases_deck())
     assert done.returncode == 0 and re.search(r"Problem cycle +?= 50\b", done.stdout), done.stdout
 

@@ -39,6 +39,17 @@ def test_bare_path_with_an_equals_sign(slideline, tmp_path):
     assert done.returncode == 1 and 'unknown argument "--runs/pen=1e9/deck.k"' in done.stderr
 
 
+@pytest.mark.parametrize("word, meant", [
+    ("ctpye=5", "ctype="), ("ctpye.2=5", "ctype="), ("jobib=x", "jobid="), ("quite=1", "quiet="), ("NCPUS=2", "ncpu="),
+    ("endtime=1", "endtim="), ("--jobid=x", "jobid="), ("--hlep", "--help"), ("dtt=1e-6", "dt="), ("tming=off", "timing="),
+    ("cases=1", "case="), ("pne=1", "pen="),
+    ("what=1", None), ("runs=/deck.k", None), ("foo=2", None), ("k=1", None), ("=1", None), ("-", None)])
+def test_misspelt_words_get_the_nearest(slideline, word, meant):
+    done = slideline(word, deck=drop())
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[0] == f'unknown argument "{word}"' + (f"; did you mean {meant}?" if meant else "")
+
+
 def test_results_folder_with_parents_and_job_name(slideline, tmp_path):
     done = slideline("d=a/b/c", "jobid=other", deck=drop(end_time=0.002))
     assert done.returncode == 0, done.stderr

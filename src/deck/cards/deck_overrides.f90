@@ -9,7 +9,7 @@ module deck_overrides_m
   implicit none
   private
   public :: overrides_t, is_override, override_mistake, read_overrides, override_text, &
-    override_word, override_real, override_integer, contact_names
+    override_word, override_real, override_integer, contact_names, run_names
 
   !> Overrides of interfaces; the others are those of the run.
   integer, parameter :: n_contact_name = 12

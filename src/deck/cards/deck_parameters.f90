@@ -7,7 +7,7 @@ module deck_parameters_m
   use text_m, only : upper_case, read_real, read_integer, exact_text, number_good
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, line_text, line_error
-  use deck_spelling_m, only : edit_distance
+  use deck_spelling_m, only : first_too_far, keep_nearer
   use deck_expression_m, only : evaluate
   use deck_parameter_table_m, only : parameters_t, settle_parameter, named_values, look_up, &
     again_error, again_warn_keep
@@ -54,17 +54,17 @@ contains
     type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: given
     character(:), allocatable :: text
-    integer :: i, least, distance
+    character(len(parameters%items%name)) :: nearest
+    integer :: i, least
 
     text = ''
-    least = min(3, len(given))
+    nearest = ''
+    least = first_too_far(given)
     do i = 1, parameters%n
-      if (.not. parameters%items(i)%found) cycle
-      distance = edit_distance(trim(parameters%items(i)%name), given)
-      if (distance >= least) cycle
-      least = distance
-      text = '; the nearest is '//trim(parameters%items(i)%name)
+      if (parameters%items(i)%found) &
+        call keep_nearer(trim(parameters%items(i)%name), given, least, nearest)
     end do
+    if (len_trim(nearest) > 0) text = '; the nearest is '//trim(nearest)
   end function nearest_name
 
   !> Pairs of name and value, four to a line.

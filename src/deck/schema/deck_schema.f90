@@ -8,7 +8,7 @@
 !> Widths are 10 unless said. A field asks for something when it is neither 0 nor its default.
 module deck_schema_m
   use deck_schema_others_m, only : table_others
-  use deck_spelling_m, only : edit_distance
+  use deck_spelling_m, only : keep_nearer
   use deck_schema_tables_m, only : table_control, table_mesh, table_conditions, table_contact, &
     table_database, table_cases
   implicit none
@@ -240,18 +240,14 @@ contains
     !> Look into one table of honoured keywords.
     subroutine compare(table)
       character(*), intent(in) :: table(:)
-      integer :: k, n, distance
+      integer :: k, n
 
       do k = 1, size(table)
         if (table(k)(1:1) == ' ') cycle
         n = index(table(k), ' ') - 1
         if (index(base, '_') > 0 .and. index(table(k)(:n), trim(base)) == 1 &
           .and. (len_trim(longer) == 0 .or. n < len_trim(longer))) longer = table(k)(:n)
-        if (abs(n - len_trim(base)) >= least) cycle
-        distance = edit_distance(table(k)(:n), trim(base))
-        if (distance >= least) cycle
-        least = distance
-        nearest = table(k)(:n)
+        call keep_nearer(table(k)(:n), trim(base), least, nearest)
       end do
     end subroutine compare
 

@@ -3,9 +3,31 @@
 module deck_spelling_m
   implicit none
   private
-  public :: edit_distance
+  public :: first_too_far, keep_nearer
 
 contains
+
+  !> Letters by which no name differs from one that it is meant for: three, fewer of a short one.
+  pure function first_too_far(name) result(letters)
+    character(*), intent(in) :: name
+    integer :: letters
+
+    letters = min(3, (len(name) + 1)/2)
+  end function first_too_far
+
+  !> Take a name in place of the nearest so far where it is nearer to the one given.
+  pure subroutine keep_nearer(name, given, least, nearest)
+    character(*), intent(in) :: name, given      !! without blanks behind
+    integer, intent(inout) :: least              !! distance of the nearest so far
+    character(*), intent(inout) :: nearest
+    integer :: distance
+
+    if (abs(len(name) - len(given)) >= least) return
+    distance = edit_distance(name, given)
+    if (distance >= min(least, first_too_far(name))) return
+    least = distance
+    nearest = name
+  end subroutine keep_nearer
 
   !> Letters to insert, to leave out or to change, or neighbours to swap, that make one name of
   !> another (optimal string alignment).
