@@ -44,6 +44,7 @@ def test_refused_deck_says_how_it_ended(slideline, tmp_path):
         done = slideline(*words)
         assert (done.returncode, done.stdout) == (status, f" {ERROR}\n"), words
         assert done.stderr
+    assert slideline("i=absent.k").stderr == "cannot read the deck absent.k: No such file or directory\n"
     done = slideline("d=taken", deck=drop())
     assert (done.returncode, done.stdout) == (3, f" {ERROR}\n")
     for words in (["check", "wrong.k"], ["check", "wrong.k", "--json"], ["wrong.k", "what=1"], ["--help"], []):

@@ -21,9 +21,9 @@ contains
     character(*), intent(in) :: path
     character(:), allocatable, intent(out) :: text
     character(:), allocatable, intent(out) :: reason
-    integer :: unit, status
+    integer :: unit, status, n
     integer(long) :: n_byte
-    character(200) :: why
+    character(len(path) + 200) :: why
 
     if (is_directory(path)) then
       reason = 'it is a directory'
@@ -34,7 +34,10 @@ contains
     open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
       action='read', iostat=status, iomsg=why)
     if (status /= 0) then
-      reason = trim(why)
+      ! Whoever asks names the file: the library's "Cannot open file 'PATH': " would be the second.
+      n = index(why, "': ", back=.true.)
+      if (n > 0) n = n + 2
+      reason = trim(why(n + 1:))
       return
     end if
     inquire (unit=unit, size=n_byte)
