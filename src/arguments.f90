@@ -20,8 +20,8 @@ module arguments_m
   integer, parameter :: timing_by_phase = 0, timing_by_interface = 1, timing_off = 2
 
   !> Words of more than a letter that are this program's own, for what is misspelt.
-  character(9), parameter :: own_words(7) = [character(9) :: 'jobid=', 'case=', 'quiet=', &
-    'timing=', '--help', '--version', '--json']
+  character(9), parameter :: own_words(8) = [character(9) :: 'jobid=', 'case=', 'quiet=', &
+    'timing=', 'memory=', '--help', '--version', '--json']
 
   !> What the command line asks for.
   type :: arguments_t

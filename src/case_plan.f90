@@ -22,7 +22,8 @@ contains
     type(deck_t), allocatable, intent(out) :: deck !! that has been cut, if it had to be
     type(error_t), allocatable, intent(out) :: error
     type(case_t), allocatable :: cases(:)
-    integer :: i, k
+    character(:), allocatable :: refusal
+    integer :: i, k, n_asked
     integer, allocatable :: chosen(:)
 
     runs = [arguments]
@@ -36,21 +37,29 @@ contains
     ! A number that is none is a mistake, which the other cases tell.
     if (arguments%all_cases) chosen = pack([(cases(i)%id, i=1, size(cases))], &
       [(cases(i)%id > 0, i=1, size(cases))])
-    if (size(chosen) == 0) return
+    n_asked = size(chosen)
+    if (arguments%all_cases) n_asked = size(cases)
+    if (n_asked > 1 .and. arguments%job_is_given) refusal = 'jobid= on the command line would be ' &
+      //'the name of '//to_text(n_asked)//' cases: expected one case (case=ID), or JOBID of *CASE'
+    if (size(chosen) == 0) then
+      if (allocated(refusal)) runs(1)%refusal = refusal
+      return
+    end if
     deallocate (runs)
     allocate (runs(size(chosen)))
     do i = 1, size(chosen)
       runs(i) = arguments
       runs(i)%case = chosen(i)
       k = find_case(cases, chosen(i))
-      if (k > 0) call ask_for(cases(k), size(chosen), runs(i))
+      if (k > 0) call ask_for(cases(k), allocated(refusal), runs(i))
+      if (allocated(refusal)) runs(i)%refusal = refusal
     end do
   end subroutine plan_cases
 
   !> The run of one case.
-  subroutine ask_for(item, n_case, run)
+  subroutine ask_for(item, is_own_name, run)
     type(case_t), intent(in) :: item
-    integer, intent(in) :: n_case            !! that are run
+    logical, intent(in) :: is_own_name       !! that of the case, whatever the command line says
     type(arguments_t), intent(inout) :: run  !! as without cases
     type(arguments_t) :: asked
     type(error_t), allocatable :: error
@@ -58,13 +67,7 @@ contains
     call read_arguments(asked, error, item%commands)
     if (.not. allocated(error)) run = asked
     run%case = item%id
-    if (run%job_is_given .and. n_case > 1) then
-      run%refusal = 'jobid= on the command line would be the name of '//to_text(n_case) &
-        //' cases: expected one case (case=ID), or JOBID of *CASE'
-      run%job = item%job
-    else if (.not. run%job_is_given .and. .not. allocated(run%restart)) then
-      run%job = item%job
-    end if
+    if (is_own_name .or. .not. (run%job_is_given .or. allocated(run%restart))) run%job = item%job
   end subroutine ask_for
 
   !> How a case is told of.

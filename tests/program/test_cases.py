@@ -167,6 +167,9 @@ def test_a_name_for_several_cases_is_told_with_the_rest(slideline, check, fast):
     deck = cases_deck().replace("*PART\n", "*BOUNDARY_NONE\n*PART\n", 1)
     done = slideline("d=out", "case", "jobid=x", deck=deck)
     assert done.returncode == 1 and done.stderr.count("jobid= on the command line") == done.stderr.count("*BOUNDARY_NONE: ") == 1
+    for odd in (deck, deck.replace("       101 slow", "         0 slow")):  # also of those without a number
+        odd = odd.replace("102 fast", "  0 fast").replace("         7\n\n", "         x\n\n")
+        assert "the name of 3 cases" in slideline("d=out", "case", "jobid=x", deck=odd).stderr
     cases = json.loads(check(deck, "case", "jobid=x", "--json").stdout)["cases"]
     assert [[finding.get("keyword") for finding in case["findings"]] for case in cases] == [["*BOUNDARY_NONE", None]] * 3
 

@@ -42,7 +42,7 @@ def test_bare_path_with_an_equals_sign(slideline, tmp_path):
 @pytest.mark.parametrize("word, meant", [
     ("ctpye=5", "ctype="), ("ctpye.2=5", "ctype="), ("jobib=x", "jobid="), ("quite=1", "quiet="), ("NCPUS=2", "ncpu="),
     ("endtime=1", "endtim="), ("--jobid=x", "jobid="), ("--hlep", "--help"), ("dtt=1e-6", "dt="), ("tming=off", "timing="),
-    ("cases=1", "case="), ("pne=1", "pen="),
+    ("cases=1", "case="), ("memry=20m", "memory="), ("pne=1", "pen="),
     ("what=1", None), ("runs=/deck.k", None), ("foo=2", None), ("k=1", None), ("=1", None), ("-", None)])
 def test_misspelt_words_get_the_nearest(slideline, word, meant):
     done = slideline(word, deck=drop())

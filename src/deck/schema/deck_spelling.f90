@@ -12,7 +12,7 @@ contains
     character(*), intent(in) :: name
     integer :: letters
 
-    letters = min(3, (len(name) + 1)/2)
+    letters = min(3, (len(name) + 2)/2)
   end function first_too_far
 
   !> Take a name in place of the nearest so far where it is nearer to the one given.
