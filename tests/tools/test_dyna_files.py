@@ -101,6 +101,7 @@ def test_lasso_reads_d3plot(run, plot_path):
     for k in range(3):
         near(arrays["element_shell_stress"][:, :, k], results.cell_field("stress"))
         near(arrays["element_shell_effective_plastic_strain"][:, :, k], results.cell_field("plastic_strain"))
+    assert "element_shell_is_alive" not in arrays
 
 
 def test_lasso_reads_sums_and_titles(run, plot_path):
@@ -171,6 +172,35 @@ def near_or_zero(found, exact):
         near(found, exact)
     else:
         assert np.shape(found) == np.shape(exact) and not np.any(found)
+
+
+def test_elements_that_left_are_not_alive(tmp_path):
+    """The deletion table of a run with erosion; a run without has none."""
+    if "SLIDELINE" not in os.environ:
+        pytest.skip("SLIDELINE is not set")
+    deck = ROOT / "doc/examples/mat_add_erosion.k"
+    subprocess.run([os.environ["SLIDELINE"], f"i={deck}", "d=out"], cwd=tmp_path, check=True, capture_output=True)
+    run, path = Run(tmp_path / "out"), tmp_path / "d3plot"
+    write_d3plot(run, path)
+    eroded, arrays = run.results.cell_field("eroded"), D3plot(str(path)).arrays
+    assert 0 < eroded.sum() < eroded.shape[0] and not eroded[:, 1].any()
+    assert np.array_equal(arrays["element_shell_is_alive"], 1.0 - eroded)
+    near(arrays["timesteps"], run.results.times)
+    near(arrays["node_displacement"], run.results.points)
+    near(arrays["element_shell_stress"][:, :, 0], run.results.cell_field("stress"))
+    for k in (0, run.results.n_state - 1):
+        assert vtk_element_ids(path, k) == run.results.cell_field("element_id")[k][eroded[k] == 0].tolist()
+
+
+def vtk_element_ids(path, k):
+    """User numbers of the elements that VTK draws of state `k`."""
+    reader = vtkLSDynaReader()
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    reader.SetTimeStep(k)
+    reader.Update()
+    return sorted(number for grid in blocks(reader).values()
+                  for number in vtk_to_numpy(grid.GetCellData().GetArray("UserIds")).tolist())
 
 
 def test_a_family_of_several_files(run, tmp_path):

@@ -5,7 +5,8 @@
     write_d3plot("results/collision", "d3plot")        # d3plot, d3plot01, ...
 
 Single precision, as in DYNA. Elements are 2D solids, which d3plot stores among the shells: the stress and plastic strain of
-the element stand at each of three through-thickness points, as DYNA writes them.
+the element stand at each of three through-thickness points, as DYNA writes them. Where elements may leave the mesh, each
+state ends with the deletion table.
 
 Written here and not by lasso-python: of the same arrays that makes a family which VTK's reader refuses (version word 0).
 """
@@ -23,6 +24,8 @@ END_MARK = np.array([-999999.0], dtype="<f4").tobytes()
 PART_TITLES = 90001              # kind of the block of part titles
 #: bytes of states in one file of the family
 FILE_LIMIT = 1 << 30
+#: MAXINT is minus (points through the thickness plus this) where states end with a deletion table of elements (MDLOPT 2)
+DELETION_TABLE = 10000
 #: words of the header, numbered from 1
 WORDS = {"file_type": 12, "version": 15, "ndim": 16, "numnp": 17, "icode": 18, "nglbv": 19, "it": 20, "iu": 21,
          "iv": 22, "ia": 23, "nel4": 32, "nummat4": 33, "nv2d": 34, "maxint": 37, "narbs": 40, "ioshl1": 44,
@@ -76,7 +79,7 @@ def header(results, parts, title):
     words = np.zeros(N_HEADER, dtype="<i4")
     values = {"file_type": 1, "ndim": 4, "numnp": results.n_node, "icode": 6, "nglbv": 6 + 7 * len(parts),
               "it": 0, "iu": 1, "iv": 1, "ia": 0, "nel4": results.n_cell, "nummat4": len(parts),
-              "nv2d": 7 * N_POINT, "maxint": N_POINT,
+              "nv2d": 7 * N_POINT, "maxint": -(DELETION_TABLE + N_POINT) if erodes(results) else N_POINT,
               "narbs": N_ID_HEADER + results.n_node + results.n_cell + 3 * len(parts),
               "ioshl1": 1000, "ioshl2": 1000, "ioshl3": 999, "ioshl4": 999, "nmmat": len(parts)}
     for name, value in values.items():
@@ -84,6 +87,11 @@ def header(results, parts, title):
     words[:TITLE_WORDS] = np.frombuffer(ascii_text(title, 4 * TITLE_WORDS), dtype="<i4")
     words[WORDS["version"] - 1] = np.array([971.0], dtype="<f4").view("<i4")[0]
     return words.tobytes()
+
+
+def erodes(results):
+    """Whether elements of the run may leave the mesh."""
+    return "eroded" in results.cell_fields
 
 
 def ids(results, parts):
@@ -140,12 +148,13 @@ def row_at(table, time, part=None):
 
 
 def state_words(results, k, global_row):
-    """One state: time, sums, coordinates, velocities, stress and plastic strain."""
+    """One state: time, sums, coordinates, velocities, stress and plastic strain, and which elements are alive (0: gone)."""
     stress = results.cell_field("stress")[k]
     point = np.column_stack([stress[:, :6], results.cell_field("plastic_strain")[k]])
+    alive = 1.0 - results.cell_field("eroded")[k] if erodes(results) else []
     return b"".join([reals([results.times[k]]), reals(global_row), reals(results.points[k]),
                      reals(padded(results.point_field("velocity")[k])),
-                     reals(np.tile(point, (1, N_POINT)))])
+                     reals(np.tile(point, (1, N_POINT))), reals(alive)])
 
 
 def write_states(path, states, file_limit):
