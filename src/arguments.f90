@@ -6,7 +6,7 @@
 module arguments_m
   use deck_command_words_m, only : lower_case, next_word, meant_word, is_memory, &
     is_without_effect, read_threads, read_thread_share, read_count
-  use deck_overrides_m, only : is_override
+  use deck_overrides_m, only : is_override, override_mistake
   use errors_m, only : error_t, raise, status_input
   implicit none
   private
@@ -92,6 +92,10 @@ contains
     if (arguments%json .and. .not. arguments%check) mistakes = mistakes &
       //'--json goes with check'//new_line('a')
     if (len(mistakes) > 0) then
+      ! Else the deck tells them with its own.
+      do i = 1, size(arguments%overrides)
+        call note(override_mistake(trim(arguments%overrides(i))), mistakes)
+      end do
       call raise(error, mistakes//'try slideline --help', status_input)
       return
     end if

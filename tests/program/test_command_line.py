@@ -50,6 +50,15 @@ def test_misspelt_words_get_the_nearest(slideline, word, meant):
     assert done.stderr.splitlines()[0] == f'unknown argument "{word}"' + (f"; did you mean {meant}?" if meant else "")
 
 
+def test_values_of_overrides_are_told_with_other_mistakes(slideline):
+    done = slideline("ctype=abc", "pen=1e5", "p:X=abc", "dt.x=1", "endtim=x", "foo=2", deck=drop())
+    assert done.returncode == 1
+    assert done.stderr.splitlines() == ['unknown argument "dt.x=1"; did you mean dt=?', 'unknown argument "foo=2"',
+                                        '"ctype=abc": the value is not a whole number',
+                                        '"endtim=x": the value is not a number above 0 (numbers reach 1e40)',
+                                        'try slideline --help']
+
+
 def test_results_folder_with_parents_and_job_name(slideline, tmp_path):
     done = slideline("d=a/b/c", "jobid=other", deck=drop(end_time=0.002))
     assert done.returncode == 0, done.stderr
