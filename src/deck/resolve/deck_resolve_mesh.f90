@@ -64,6 +64,7 @@ contains
     type(model_t), intent(inout) :: model
     logical, intent(out) :: sound
     integer :: n_before
+    logical :: has_place
 
     sound = .false.
     n_before = deck%report%n_error
@@ -72,6 +73,7 @@ contains
     if (raw%n_element == 0 .and. .not. (raw%lost%elements .or. deck%incomplete)) call &
       line_error(deck, 0, 'the deck has no elements (*ELEMENT_SHELL)')
     call check_plane(deck, raw)
+    has_place = deck%report%n_error == n_before
     model%mesh%n_node = raw%n_node
     model%mesh%n_element = raw%n_element
     model%mesh%node_id = raw%node_id(:raw%n_node)
@@ -79,8 +81,7 @@ contains
     model%mesh%element_id = raw%element_id(:raw%n_element)
     deallocate (raw%node_id, raw%coordinates, raw%element_id)
     call resolve_elements(deck, raw, maps, model%mesh)
-    if (any(model%mesh%element_nodes < 1) .or. any(model%mesh%element_part < 1)) return
-    if (deck%report%n_error == n_before) call check_shapes(deck, raw, model%mesh)
+    if (has_place) call check_shapes(deck, raw, model%mesh)
     sound = deck%report%n_error == n_before .and. raw%n_node > 0 .and. raw%n_element > 0 &
       .and. .not. (raw%lost%nodes .or. raw%lost%elements .or. deck%incomplete)
   end subroutine resolve_mesh
@@ -137,7 +138,8 @@ contains
     end do
   end subroutine resolve_elements
 
-  !> Elements must have area, be convex and run counter-clockwise; clockwise ones are turned.
+  !> Elements must have area, be convex and run counter-clockwise; clockwise ones are turned. Those
+  !> with a node that does not exist have been refused.
   subroutine check_shapes(deck, raw, mesh)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
@@ -148,6 +150,7 @@ contains
     n_turned = 0
     first_turned = 0
     do i = 1, mesh%n_element
+      if (any(mesh%element_nodes(:, i) < 1)) cycle
       corners = corner_areas(mesh, i)
       if (mesh%element_nodes(4, i) == mesh%element_nodes(3, i)) then
         area = 2.0_wp*corners(1)
