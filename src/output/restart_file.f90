@@ -231,7 +231,10 @@ contains
       return
     end if
     call open_bytes(path, unit, n_byte, reason)
-    if (allocated(reason)) return
+    if (allocated(reason)) then
+      reason = reason//'; restart files are called <job>.dump01.h5 and on, or <job>.runrsf.h5'
+      return
+    end if
     status = 0
     if (n_byte > 0) read (unit, iostat=status) head(:min(n_byte, int(head_size, long)))
     close (unit)

@@ -316,6 +316,7 @@ def test_bad_files_are_refused_with_the_reason(slideline, tmp_path):
         assert [path.name for path in bad.parent.iterdir()] == ["bad.h5"]
     done = slideline("r=b/none.h5")
     assert done.returncode == 1 and "none.h5" in done.stderr
+    assert "can not be opened; restart files are called <job>.dump01.h5" in done.stderr
 
 
 def test_results_of_another_run_are_not_lost(slideline, tmp_path):

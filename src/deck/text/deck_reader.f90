@@ -204,7 +204,8 @@ contains
 
     call find_file(deck%sources(1)%path, deck%sources(source)%path, folders, name, path)
     if (len(path) == 0) then
-      call line_error(deck, line, 'the file "'//name//'" was not found')
+      call line_error(deck, line, 'the file "'//name//'" was not found; what refers ' &
+        //'to nodes, elements and so on is not judged without it')
       deck%incomplete = .true.
       return
     end if
