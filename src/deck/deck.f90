@@ -351,7 +351,7 @@ contains
     type(raw_t), intent(inout) :: raw
 
     select case (deck%blocks(i)%name)
-    case ('DATABASE_HISTORY_NODE')
+    case ('DATABASE_HISTORY_NODE', 'DATABASE_HISTORY_NODE_ID')
       call read_history_ids(deck, parameters, i, raw%history_nodes)
     case ('DATABASE_HISTORY_NODE_SET')
       call read_history_ids(deck, parameters, i, raw%history_node_sets)

@@ -310,7 +310,7 @@ contains
     end do
   end subroutine check_edge
 
-  !> *DATABASE_HISTORY_NODE, _NODE_SET, _SHELL and _SHELL_SET.
+  !> *DATABASE_HISTORY_NODE, _NODE_ID, _NODE_SET, _SHELL and _SHELL_SET.
   subroutine read_history_ids(deck, parameters, i_block, set)
     type(deck_t), intent(inout) :: deck
     type(parameters_t), intent(in) :: parameters

@@ -344,6 +344,8 @@ module deck_schema_tables_m
     ' CYCL:f NR:iw=1 BEAM:is NPLTC:iw PSETID:iw', &
     'DATABASE_HISTORY_NODE', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
+    'DATABASE_HISTORY_NODE_ID', &
+    ' ID1:i HEADING:as70', &
     'DATABASE_HISTORY_NODE_SET', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_HISTORY_SHELL', &
