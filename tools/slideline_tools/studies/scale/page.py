@@ -20,6 +20,7 @@ from slideline_tools.studies.scale.runs import COSTS, CYCLES, MESHES, grid_mesh
 STEP_NS = 18.0       # an element and step, of speed.md: 100 000 elements, one thread, elastic
 CONTACT_NS = 75.0    # a slave node and step, of speed.md: type 5, 10 000 nodes
 NETWORKS = {"fast": (1.5e-6, 1.0e9), "slow": (30.0e-6, 0.1e9)}  # latency of a message in s, bytes a second of a process
+FASTER = 10.0        # bandwidth over that of the fast network of one that contact by ranges is judged on as well
 SIZES = (10 ** 6, 10 ** 7, 10 ** 8)
 RANKS = (16, 64, 256, 1024)
 POWERS = [2 ** k for k in range(1, 11)]
@@ -87,7 +88,8 @@ with contact (dashed).
   (`tests/bench/ranks.sh`; by hand all took 241 and 217 before). Beyond, only the first may read the deck and hand out tiles. The lists of
   border slots (`rank_borders`) already name nothing but what neighbours share.
 - **Start.** Every process reads the whole deck and renumbers it: {start_element:.1f} microseconds of processor time an element here, {start_large:.0f} s at 1e8, whatever p.
-- **Contact** is computed by all. It has to be shared by ranges of slave segments, with forces added range by range, as soon as t_c n nears t_e N/p: on 1,024 processes it is {contact_share:.1f} times that at 1e6 elements and {contact_large:.2f} times at 1e8.
+- **Contact** is computed by all; on 1,024 processes it takes {contact_share:.1f} times what the elements take at 1e6 elements and {contact_large:.2f} times at 1e8. Shared by
+  ranges of slave segments it would take t_c n/p, and one more exchange for the forces of the ranges, which all have to hear: log2(p) L + S/B. {sharing}
 - **Loads.** Where a deck has nodal loads or pressures, each process forms them, and their power, over all special nodes of the model ({special:.0f} % of all nodes of the large square), not over those that are loaded. Where elements
   may leave or points may fail, each looks through the counts of all chunks.
 - **Gravity and damping** send the four sums of every tile to all: {sums:.1f} MB a step at 1e8 elements. A sum of fixed order over ranges would need one number a process.
@@ -204,9 +206,9 @@ def load_of(elements, ranks):
     return load.max() / load.mean()
 
 
-def efficiency(elements, ranks, network, constants, contact):
-    """Predicted, by the model of the page."""
-    latency, bandwidth = NETWORKS[network]
+def efficiency(elements, ranks, network, constants, contact, shared=False):
+    """Predicted, by the model of the page; `network` by name or (latency, bandwidth), `shared`: contact by ranges."""
+    latency, bandwidth = NETWORKS[network] if isinstance(network, str) else network
     messages, factor = constants
     depth = math.ceil(math.log2(ranks))
     one = 1e-9 * STEP_NS * elements
@@ -215,7 +217,8 @@ def efficiency(elements, ranks, network, constants, contact):
     if contact:
         nodes = math.sqrt(elements / 2)
         one += 1e-9 * CONTACT_NS * nodes
-        step += 1e-9 * CONTACT_NS * nodes + depth * latency + 2.0 * nodes * 16.0 / bandwidth
+        exchange = depth * latency + 2.0 * nodes * 16.0 / bandwidth
+        step += 1e-9 * CONTACT_NS * nodes / (ranks if shared else 1) + exchange * (2 if shared else 1)
     return one / (ranks * step)
 
 
@@ -236,6 +239,19 @@ def limits(constants):
             words.append(f"- {what}, {elements:.0e} elements: predicted to keep 80 % on {max(good, default=1)} processes, of powers of two up to "
                          f"{POWERS[-1]}.".replace("e+0", "e"))
     return "\n".join(words)
+
+
+def sharing(constants):
+    """What contact by ranges would gain, in words: efficiency with contact by all and shared."""
+    latency, bandwidth = NETWORKS["fast"]
+    networks = {"the fast network": "fast", "the slow one": "slow", f"one of {1e-9 * FASTER * bandwidth:g} GB/s": (latency, FASTER * bandwidth)}
+    parts = []
+    for words, network in networks.items():
+        pairs = [[efficiency(elements, ranks, network, constants, True, shared) for shared in (False, True)]
+                 for elements in SIZES for ranks in RANKS[:-1]]
+        gains = [after / before for before, after in pairs]
+        parts.append(f"{min(gains):.2f} to {max(gains):.2f} times on {words}")
+    return f"The efficiencies with contact in the table, up to {RANKS[-2]} processes, would become " + ", ".join(parts) + "."
 
 
 def contact_share(elements, ranks=1024):
@@ -311,7 +327,7 @@ def write(folder, doc):
         factor=factor, fast=network_words("fast"), slow=network_words("slow"), predicted=predicted_table(constants),
         limits=limits(constants), bytes_element=memory, memory_limit=4.0e3 / memory, memory_large=0.1 * memory, start_element=1e6 * start,
         start_large=1e8 * start, sums=1e8 / scale_tiles.TILE * 32 / 1e6, plot=1e8 * (48 + 40) / 1e9, grain=1e6 / scale_tiles.TILE / 1024,
-        contact_share=contact_share(1e6), contact_large=contact_share(1e8),
+        contact_share=contact_share(1e6), contact_large=contact_share(1e8), sharing=sharing(constants),
         special=100.0 * len(np.unique(cuts["large square"][0][0])) / (LARGE + 1) ** 2))
 
 
