@@ -67,7 +67,8 @@ contains
         rows%length(n), rows%master_pressure(memory%n_master))
       if (allocated(memory%points%traction)) allocate (rows%rubbed(n + memory%n_master))
     end if
-    places = memory%places
+    allocate (places, source=memory%places)
+    allocate (share(n + memory%n_master))
     places(3:4, :) = motion(1:2, memory%nodes)
     rows%force = memory%force(:, :n)
     call fill_arc_lengths(contact%slave, places(:, :n), rows%arc_length)
@@ -82,6 +83,7 @@ contains
       rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
     if (.not. allocated(memory%points%traction)) return
+    allocate (pull(n + memory%n_master))
     pull = nodal_sums(contact%is_self, memory, memory%points%traction)
     call fill_rubbed(contact%slave, 0, places(:, :n), contact%is_round, pull(:n), memory, &
       rows%rubbed(:n))

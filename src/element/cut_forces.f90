@@ -4,15 +4,16 @@
 !> were.
 module cut_forces_m
   use block_state_m, only : block_state_t
-  use chunk_memory_m, only : take_chunk, put_chunk
   use element_chunk_m, only : element_chunk_t
   use element_dispatch_m, only : advance_chunk
   use eroding_tiles_m, only : add_eroding_tile_forces, take_nodes
   use erosion_state_m, only : stays
+  use freight_m, only : freight_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size, tile_t
   use model_m, only : model_t
   use round_chunk_m, only : round_chunk_t
+  use tile_values_m, only : take_values, put_values
   implicit none
   private
   public :: find_cut_forces, keep_cut_chunks
@@ -30,8 +31,8 @@ contains
     type(block_state_t), intent(inout) :: elements     !! on return as they were
     real(wp), intent(inout) :: force(:, :)             !! (8, n) x, y of four corners of each; it
                                                        !! stays of elements in other chunks
-    type(block_state_t), intent(inout), optional :: before(:) !! of `keep_cut_chunks`
-    type(block_state_t) :: present_chunk
+    type(freight_t), intent(inout), optional :: before(:) !! of `keep_cut_chunks`
+    type(freight_t) :: present_values
     real(wp), allocatable :: of_slots(:, :, :) !! of the chunks with cut elements
     integer, allocatable :: list(:), place(:)
     integer :: i
@@ -40,13 +41,13 @@ contains
     allocate (of_slots(8, chunk_size, size(list)))
     do i = 1, size(list)
       if (list(i) < chunks(1) .or. list(i) > chunks(2)) cycle
-      call take_chunk(list(i), elements, present_chunk)
-      if (present(before)) call put_chunk(list(i), before(i), elements)
+      call take_values(tile_of(list(i)), elements, present_values)
+      if (present(before)) call put_values(tile_of(list(i)), before(i), elements)
       call step_chunk(model, list(i), motion, times(2), elements, of_slots(:, :, i))
-      call put_chunk(list(i), present_chunk, elements)
+      call put_values(tile_of(list(i)), present_values, elements)
       if (model%erodes) then
         call clear_gone(model, list(i), motion, times, elements, of_slots(:, :, i))
-        call put_chunk(list(i), present_chunk, elements)
+        call put_values(tile_of(list(i)), present_values, elements)
       end if
     end do
     call take_slots(model, chunks, place, of_slots, force)
@@ -56,14 +57,14 @@ contains
   subroutine keep_cut_chunks(model, elements, kept)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(inout) :: elements     !! stay as they are
-    type(block_state_t), allocatable, intent(inout) :: kept(:)
+    type(freight_t), allocatable, intent(inout) :: kept(:)
     integer, allocatable :: list(:), place(:)
     integer :: i
 
     call list_chunks(model, list, place)
     if (.not. allocated(kept)) allocate (kept(size(list)))
     do i = 1, size(list)
-      call take_chunk(list(i), elements, kept(i))
+      call take_values(tile_of(list(i)), elements, kept(i))
     end do
   end subroutine keep_cut_chunks
 
@@ -101,12 +102,20 @@ contains
     integer :: i
 
     allocate (force(2, model%layout%n_local))
-    call add_eroding_tile_forces(model, tile_t(first_chunk=i_chunk, last_chunk=i_chunk), motion, &
-      times, elements, force)
+    call add_eroding_tile_forces(model, tile_of(i_chunk), motion, times, elements, force)
     do i = 1, chunk_size
       if (elements%erosion%status((i_chunk - 1)*chunk_size + i) /= stays) of_slots(:, i) = 0.0_wp
     end do
   end subroutine clear_gone
+
+  !> A chunk alone.
+  pure function tile_of(i_chunk) result(tile)
+    integer, intent(in) :: i_chunk
+    type(tile_t) :: tile
+
+    tile%first_chunk = i_chunk
+    tile%last_chunk = i_chunk
+  end function tile_of
 
   !> Chunks with elements of cross sections, each once, rising.
   pure subroutine list_chunks(model, list, place)

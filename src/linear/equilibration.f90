@@ -67,10 +67,11 @@ contains
     type(sparse_t), intent(out) :: scaled
     integer :: i, k
 
+    allocate (scaled%first(size(matrix%first)), scaled%column(size(matrix%column)), &
+      scaled%value(size(matrix%value)))
     scaled%n = matrix%n
     scaled%first = matrix%first
     scaled%column = matrix%column
-    allocate (scaled%value(size(matrix%value)))
     do i = 1, matrix%n
       do k = matrix%first(i), matrix%first(i + 1) - 1
         scaled%value(k) = row_scale(i)*matrix%value(k)*column_scale(matrix%column(k))

@@ -25,6 +25,7 @@ contains
   subroutine keep_state(archive, state)
     type(archive_t), intent(inout) :: archive
     type(state_t), intent(inout) :: state
+    logical :: is_new
 
     call enter(archive, 'state')
     call keep(archive, 'cycle', state%cycle)
@@ -52,7 +53,8 @@ contains
     call keep_rigids(archive, 'rigids', state)
     call keep_walls(archive, 'walls', state)
     call keep_columns(archive, 'boundary_force', state%boundary_force)
-    call keep_column(archive, 'boundary_work', state%boundary_work)
+    call keep_column(archive, 'boundary_work', state%boundary_work, is_new)
+    if (is_new) state%boundary_since = state%cycle
     call keep_columns(archive, 'group_force', state%group_force)
     call keep_columns(archive, 'group_velocity', state%group_velocity)
     call keep_column(archive, 'group_work', state%group_work)
@@ -80,16 +82,20 @@ contains
   end subroutine keep_columns
 
   !> Values that a history asks for, in the same way.
-  subroutine keep_column(archive, name, values)
+  subroutine keep_column(archive, name, values, is_new)
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout) :: values(:)
+    logical, intent(out), optional :: is_new !! they begin here
     real(wp), allocatable :: kept(:)
+    logical :: fits
 
     if (allocated(values)) kept = values
     call keep_growing(archive, name, kept)
-    if (.not. allocated(values) .or. .not. allocated(kept)) return
-    if (size(kept) == size(values)) values = kept
+    fits = allocated(values) .and. allocated(kept)
+    if (fits) fits = size(kept) == size(values)
+    if (fits) values = kept
+    if (present(is_new)) is_new = archive%is_read .and. .not. fits
   end subroutine keep_column
 
   !> Element history.

@@ -57,6 +57,7 @@ module state_m
                                                !! rows of bndout; this and the next only where the
                                                !! deck asks for it
     real(wp), allocatable :: boundary_work(:)  !! (n_boundary) what they have done so far
+    integer :: boundary_since = 0              !! cycle in which it began
     real(wp), allocatable :: group_force(:, :) !! (2, n) internal force of the nodes of nodfor; this
                                                !! and the next two only where the deck asks for it
     real(wp), allocatable :: group_velocity(:, :) !! (2, n) v(n-1/2)

@@ -12,6 +12,7 @@ KEPT = {
     "state_t": ("state/state.f90", "output/restart_state.f90", "state%", {
         "contacts": "kept one by one", "rigids": "kept one by one", "walls": "kept one by one",
         "estimates": "kept one by one",
+        "boundary_since": "of this run, where the file has no works",
         "outlines": "made of the deck and the status of elements"}),
     "erosion_state_t": ("state/erosion_state.f90", "output/restart_state.f90", "erosion%", {}),
     "rigid_state_t": ("state/rigid_state.f90", "output/restart_state.f90", "rigid%", {}),
@@ -97,7 +98,7 @@ def types_of(path):
 def kept_names(path, before):
     """The components that the `keep...` calls of a file hand over under their own names."""
     text = " ".join(statement for _, statement in read_source(path).statements)
-    pairs = re.findall(r"call keep\w*\(archive, '(\w+)', (?:time, dt, |n_node, )?([^,]+?)\)(?= |$)", text)
+    pairs = re.findall(r"call keep\w*\(archive, '(\w+)', (?:time, dt, |n_node, )?([^,]+?)(?:, is_new)?\)(?= |$)", text)
     return {name for name, handed in pairs if handed == before + name}
 
 

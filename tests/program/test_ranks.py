@@ -103,7 +103,6 @@ SCENES = {
     "round, type 6": (lambda: rings(6), 60, 4, 2),
     "mass that grows, type 7": (lambda: growing(7), 60, 2, 1),
     "no contact, gravity": (settling, 60, 5, 1),
-    "tiles that wake, damping": (lambda: struck(False), 260, 3, 1),
     "tiles that wake, round": (lambda: struck(True), 260, 2, 2),
     "histories and an end before its time, type 3": (ended, 60, 3, 1),
     "type that changes": (lambda: twice(columns=(40, 56), pace=0.06), 400, 3, 1, "dt=4e-4"),
@@ -147,6 +146,11 @@ def log_of(folder):
             if "command line" not in line and not line.startswith(("restart file", "exchange:"))]
 
 
+def times_shared(folder):
+    """How often each run of several processes in the log has shared its tiles out anew."""
+    return [int(n) for n in re.findall(r"; tiles shared out anew: (\d+)$", (folder / "job.log").read_text(), re.MULTILINE)]
+
+
 def assert_same(one, other):
     first, second = contents(one), contents(other)
     assert len(first) > 20 and first.keys() == second.keys()
@@ -167,8 +171,8 @@ def test_files_are_those_of_one_process(tmp_path, scene):
     assert "fail" not in scene or "points fail" in log
     assert ("end before" in scene) == ("*TERMINATION_BODY" in log)
     assert ("changes" in scene) == ("contact is open and goes on with" in log)
-    shared = re.search(r"; tiles shared out anew: (\d+)$", (tmp_path / "several" / "job.log").read_text(), re.MULTILINE)
-    assert ("wake" in scene) == (int(shared[1]) > 0)
+    (shared,) = times_shared(tmp_path / "several")
+    assert ("wake" in scene) == (shared > 0)
     if "grows" in scene:
         added = numbers(tmp_path / "one" / "job.glstat.csv", "added_mass")
         assert added[-1] > added[0]
@@ -197,6 +201,19 @@ def test_restart_files_go_from_three_processes_to_eight(tmp_path):
     run(tmp_path, 8, "r=rest/job.dump01.h5")
     one, rest = contents(tmp_path / "one"), contents(tmp_path / "rest")
     assert len(rest) > 20 and not [name for name in rest if rest[name] != one[name]]
+
+
+def test_restart_files_of_tiles_that_have_changed_hands(tmp_path):
+    """Tiles of the bar wake; at each look, every 64 cycles, three processes share them out anew, and so do the two that go on."""
+    (tmp_path / "job.k").write_text(with_cycles(struck(False), 200, 140), encoding="ascii")
+    run(tmp_path, 1, "i=job.k", "d=one")
+    run(tmp_path, 3, "i=job.k", "d=rest")
+    assert_same(tmp_path / "one", tmp_path / "rest")
+    (tmp_path / "rest" / "job.dump02.h5").unlink()
+    run(tmp_path, 2, "r=rest/job.dump01.h5")
+    one, rest = contents(tmp_path / "one"), contents(tmp_path / "rest")
+    assert one.keys() == rest.keys() and not [name for name in rest if rest[name] != one[name]]
+    assert times_shared(tmp_path / "rest") == [3, 1]
 
 
 def test_forces_go_to_neighbours_alone(tmp_path):

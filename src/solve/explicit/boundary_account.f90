@@ -37,22 +37,33 @@ contains
         case default
           cycle
         end select
-        state%boundary_work(i) = state%boundary_work(i) + 0.5_wp*state%dt_before &
-          *sum((former(:, i) + state%boundary_force(:, i))*velocity)
+        state%boundary_work(i) = state%boundary_work(i) &
+          + half_behind(state)*sum((former(:, i) + state%boundary_force(:, i))*velocity)
       end do
     end associate
   end subroutine count_boundary_loads
 
-  !> Reactions of prescribed motion of nodes, and their work over half a step.
-  subroutine count_boundary_motions(model, velocity, damping, factor_old, factor_new, state)
+  !> Half of the step behind this instant: 0 where works begin in it.
+  pure function half_behind(state) result(length)
+    type(state_t), intent(in) :: state
+    real(wp) :: length
+
+    length = merge(0.0_wp, 0.5_wp*state%dt_before, state%cycle == state%boundary_since)
+  end function half_behind
+
+  !> Reactions of prescribed motion of nodes, and their work over half a step before the instant and
+  !> half a step from it on.
+  subroutine count_boundary_motions(model, velocity, damping, before, after, state)
     type(model_t), intent(in) :: model
-    real(wp), intent(in) :: velocity(:)            !! (n_motion) v(n+1/2)
-    real(wp), intent(in) :: damping(2)             !! D per direction
-    real(wp), intent(in) :: factor_old, factor_new !! times v(n-1/2) and v(n+1/2)
+    real(wp), intent(in) :: velocity(:)    !! (n_motion) v(n+1/2)
+    real(wp), intent(in) :: damping(2)     !! D per direction
+    logical, intent(in) :: before, after
     type(state_t), intent(inout) :: state
-    real(wp) :: reaction
+    real(wp) :: reaction, factor_old, factor_new
     integer :: i
 
+    factor_old = merge(half_behind(state), 0.0_wp, before)
+    factor_new = merge(0.5_wp*state%dt, 0.0_wp, after)
     associate (rows => model%controls%output%boundaries%motion_rows, &
       motions => model%conditions%motions)
       do i = 1, size(motions)
@@ -70,14 +81,16 @@ contains
   end subroutine count_boundary_motions
 
   !> The same of rigid bodies.
-  subroutine count_boundary_bodies(model, damping, factor_old, factor_new, state)
+  subroutine count_boundary_bodies(model, damping, before, after, state)
     type(model_t), intent(in) :: model
-    real(wp), intent(in) :: damping(2)             !! D per direction
-    real(wp), intent(in) :: factor_old, factor_new !! times v(n-1/2) and v(n+1/2)
+    real(wp), intent(in) :: damping(2)     !! D per direction
+    logical, intent(in) :: before, after
     type(state_t), intent(inout) :: state
-    real(wp) :: reaction
+    real(wp) :: reaction, factor_old, factor_new
     integer :: i
 
+    factor_old = merge(half_behind(state), 0.0_wp, before)
+    factor_new = merge(0.5_wp*state%dt, 0.0_wp, after)
     associate (rows => model%controls%output%boundaries%body_motion_rows, &
       motions => model%conditions%rigid_motions)
       do i = 1, size(motions)

@@ -288,8 +288,8 @@ contains
     before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
     state%external_work = state%external_work + rigid_work(model, state, cycle%damping, before, &
       0.5_wp*state%dt)
-    if (allocated(state%boundary_work)) call count_boundary_bodies(model, cycle%damping, before, &
-      0.5_wp*state%dt, state)
+    if (allocated(state%boundary_work)) call count_boundary_bodies(model, cycle%damping, &
+      .not. cycle%writes, .true., state)
     call move_rigids(model, state)
   end subroutine advance_rigids
 
@@ -333,7 +333,7 @@ contains
       state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
         cycle%damping, before, 0.5_wp*state%dt)
       if (allocated(state%boundary_work)) call count_boundary_motions(model, cycle%velocity, &
-        cycle%damping, before, 0.5_wp*state%dt, state)
+        cycle%damping, .not. cycle%writes, .true., state)
       call impose_prescribed(model, cycle%velocity, cycle%displacement, state)
     end if
     if (allocated(cycle%common)) call move_common(model, cycle%leap, cycle%damping, cycle%common, &

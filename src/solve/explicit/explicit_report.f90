@@ -75,7 +75,7 @@ contains
     state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
       cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
     if (allocated(state%boundary_work)) call count_boundary_motions(model, cycle%velocity, &
-      cycle%damping, 0.5_wp*state%dt_before, 0.0_wp, state)
+      cycle%damping, .true., .false., state)
     if (allocated(state%group_work)) call count_groups(model, .true., .false., state)
     if (monitor%ranks%mine == 0) call write_report(model, held, state, monitor, cycle)
     if (monitor%ranks%n > 1) call hear_report(model, state, monitor, cycle)
@@ -177,7 +177,7 @@ contains
     state%external_work = state%external_work + rigid_work(model, state, cycle%damping, &
       0.5_wp*state%dt_before, 0.0_wp)
     if (allocated(state%boundary_work)) call count_boundary_bodies(model, cycle%damping, &
-      0.5_wp*state%dt_before, 0.0_wp, state)
+      .true., .false., state)
   end subroutine report_rigids
 
   !> Rigid walls in a cycle that writes: their forces, and their work so far.

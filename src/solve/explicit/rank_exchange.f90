@@ -13,10 +13,11 @@ module rank_exchange_m
   use model_m, only : model_t
   use motion_sums_m, only : motion_sums_t
   use rank_borders_m, only : borders_t
-  use rank_shares_m, only : shares_t, stream_starts
+  use rank_shares_m, only : shares_t
   use ranks_m, only : ranks_t, bring_reals, bring_integers, swap_reals, find_least, share_error
   use requests_m, only : requests_t
   use state_m, only : state_t
+  use tile_values_m, only : stream_starts
   implicit none
   private
   public :: parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, exchange_failures, &

@@ -14,10 +14,11 @@ module rank_memory_m
   use model_m, only : model_t
   use others_memory_m, only : others_t, forget_nodes, forget_slots
   use pages_m, only : forget_reals, forget_integers, forget_shorts
-  use rank_shares_m, only : shares_t, share_out, stream_starts
+  use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t
   use start_m, only : start_state
   use state_m, only : state_t
+  use tile_values_m, only : stream_starts
   use type_charts_m, only : may_change
   implicit none
   private

@@ -6,7 +6,7 @@ module rank_shares_m
   use layout_m, only : layout_t
   implicit none
   private
-  public :: shares_t, share_out, tile_elements, stream_starts
+  public :: shares_t, share_out, tile_elements
 
   !> All arrays (0:n): where the range of each process starts, then one beyond the last.
   type :: shares_t
@@ -85,23 +85,5 @@ contains
       n(i) = sum(layout%chunk_elements(layout%tiles(i)%first_chunk:layout%tiles(i)%last_chunk))
     end do
   end function tile_elements
-
-  !> Ranges of a stream that only some chunks have a part of.
-  pure function stream_starts(chunks, chunk_start, n_value) result(starts)
-    integer, intent(in) :: chunks(0:)      !! ranges of chunks
-    integer, intent(in) :: chunk_start(:)  !! where a chunk's part starts, 0 = none
-    integer, intent(in) :: n_value         !! length of the stream
-    integer :: starts(0:size(chunks) - 1)
-    integer :: rank, i
-
-    do rank = 0, size(chunks) - 1
-      starts(rank) = n_value + 1
-      do i = chunks(rank), size(chunk_start)
-        if (chunk_start(i) == 0) cycle
-        starts(rank) = chunk_start(i)
-        exit
-      end do
-    end do
-  end function stream_starts
 
 end module rank_shares_m

@@ -6,6 +6,7 @@
 !> bring about, and is stepped from then on. Tiles that rest at velocity zero amid others that do
 !> are not even looked at.
 module resting_tiles_m
+  use freight_m, only : freight_t
   use kinds_m, only : wp, long
   use layout_m, only : layout_t, tile_t
   use log_m, only : log_t, write_log
@@ -167,6 +168,7 @@ contains
     real(wp), allocatable, intent(out) :: before(:) !! not there where it can not come to rest
     real(wp) :: one(4)
     integer :: i
+    type(freight_t) :: freight
 
     one = motion_of(model%layout, model%layout%tiles(i_tile), state%motion)
     rest%status(i_tile) = merge(rest%status(i_tile), awake, may_go_on(model, one, state) &
@@ -176,7 +178,8 @@ contains
       if (.not. same_bits(state%motion(:, i), one)) rest%status(i_tile) = awake
     end do
     if (rest%status(i_tile) == awake .or. .not. state%dt_before > 0.0_wp) return
-    call take_values(model%layout%tiles(i_tile), state%elements, before)
+    call take_values(model%layout%tiles(i_tile), state%elements, freight)
+    call move_alloc(freight%values, before)
   end subroutine remember_tile
 
   !> Whether the motion of a tile in one motion goes on as one: each element of a round body is
@@ -200,7 +203,7 @@ contains
     real(wp), intent(in) :: force(2, *)    !! of the tile's local nodes
     type(state_t), intent(inout) :: state
     type(rest_t), intent(inout) :: rest
-    real(wp), allocatable :: after(:)
+    type(freight_t) :: after
     real(wp) :: one(4)
     integer :: i
     logical :: is_still
@@ -208,7 +211,7 @@ contains
     rest%status(i_tile) = rest%status(i_tile) - 1
     associate (tile => model%layout%tiles(i_tile))
       call take_values(tile, state%elements, after)
-      is_still = same_bits(before, after)
+      is_still = same_bits(before, after%values)
       do i = 1, tile%last_node - tile%first_node + 1 + tile%last_special - tile%first_special + 1
         is_still = is_still .and. same_bits(force(:, i), [0.0_wp, 0.0_wp])
       end do

@@ -14,6 +14,7 @@ module implicit_forces_m
   use element_dispatch_m, only : add_tile_forces
   use element_mass_m, only : mass_times
   use external_force_m, only : form_external_force, body_acceleration
+  use freight_m, only : freight_t
   use model_m, only : model_t
   use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
@@ -34,7 +35,7 @@ module implicit_forces_m
     real(wp), allocatable :: contact(:, :)  !! (2, n_node)
     real(wp), allocatable :: external(:, :) !! (2, n_node) loads and gravity
     real(wp), allocatable :: slots(:, :)    !! forces of tiles on their special nodes
-    type(block_state_t), allocatable :: before(:) !! chunks of cross sections before the step, until
+    type(freight_t), allocatable :: before(:) !! chunks of cross sections before the step, until
                                             !! the forces of these are formed
   end type trial_t
 

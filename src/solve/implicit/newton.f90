@@ -74,6 +74,7 @@ contains
     outcome%reason = trouble_of(trial)
     if (len(outcome%reason) > 0) return
     if (.not. step%slips_on) call let_stick(trial%contacts)
+    allocate (way%moved(size(step%prescribed%increment)))
     do iteration = 1, model%controls%implicit%max_iteration
       outcome%iterations = iteration
       way%moved = step%prescribed%increment

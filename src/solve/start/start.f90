@@ -125,15 +125,8 @@ contains
       do i = 1, size(output%force_groups)
         n = n + size(output%force_groups(i)%nodes)
       end do
-      allocate (state%group_force(2, n), state%group_work(n), source=0.0_wp)
-      allocate (state%group_velocity(2, n))
-      n = 0
-      do i = 1, size(output%force_groups)
-        associate (nodes => output%force_groups(i)%nodes)
-          state%group_velocity(:, n + 1:n + size(nodes)) = state%motion(3:4, nodes)
-          n = n + size(nodes)
-        end associate
-      end do
+      allocate (state%group_force(2, n), state%group_work(n), state%group_velocity(2, n), &
+        source=0.0_wp)
     end associate
   end subroutine start_works
 

@@ -1,30 +1,38 @@
 ! SPDX-License-Identifier: MIT
 !> All values of a tile's elements that a step may change, one behind the other: whether it has
-!> changed any is seen by their bits, and a process that takes the tile over takes them.
+!> changed any is seen by their bits, a process that takes the tile over takes them, and a step that
+!> only tries puts them back.
 module tile_values_m
   use block_state_m, only : block_state_t
-  use freight_m, only : freight_t, start_loading, pass_reals, pass_integers
+  use freight_m, only : freight_t, start_loading, start_unloading, pass_reals, pass_integers
   use kinds_m, only : wp, long
   use layout_m, only : tile_t, first_slot, last_slot
-  use rank_shares_m, only : stream_starts
   implicit none
   private
-  public :: take_values, pass_values, same_bits
+  public :: take_values, put_values, pass_values, same_bits, stream_starts
 
 contains
 
   !> What a step may change of the elements of a tile.
-  subroutine take_values(tile, elements, values)
+  subroutine take_values(tile, elements, freight)
     type(tile_t), intent(in) :: tile
     type(block_state_t), intent(inout) :: elements !! as before
-    real(wp), allocatable, intent(out) :: values(:)
-    type(freight_t) :: freight
+    type(freight_t), intent(out) :: freight
 
     call pass_values(tile, elements, freight)
     call start_loading(freight)
     call pass_values(tile, elements, freight)
-    call move_alloc(freight%values, values)
   end subroutine take_values
+
+  !> The elements of a tile as they were when their values were taken.
+  subroutine put_values(tile, freight, elements)
+    type(tile_t), intent(in) :: tile
+    type(freight_t), intent(inout) :: freight !! may be put back again
+    type(block_state_t), intent(inout) :: elements
+
+    call start_unloading(freight)
+    call pass_values(tile, elements, freight)
+  end subroutine put_values
 
   !> The same into a freight, or out of it.
   subroutine pass_values(tile, elements, freight)
@@ -56,6 +64,8 @@ contains
       call pass_reals(n, elements%volume_limit(first:last), freight)
       if (allocated(elements%n_failed)) &
         call pass_integers(n, elements%n_failed(first:last), freight)
+      if (allocated(elements%erosion)) &
+        call pass_integers(n, elements%erosion%n_gone(first:last), freight)
     end associate
   end subroutine pass_chunks
 
@@ -73,6 +83,10 @@ contains
       if (allocated(elements%damping_stress)) &
         call pass_reals(16*n, elements%damping_stress(16*first - 15:16*last), freight)
       if (.not. allocated(elements%erosion)) return
+      ! The shape of an element that leaves the mesh becomes that of padding.
+      do k = 1, size(elements%reference, 2)
+        call pass_reals(n, elements%reference(first:last, k), freight)
+      end do
       call pass_integers(n, elements%erosion%status(first:last), freight)
       call pass_reals(n, elements%erosion%hourglass(first:last), freight)
       call pass_reals(n, elements%erosion%internal(first:last), freight)
@@ -92,6 +106,24 @@ contains
     range = stream_starts([tile%first_chunk, tile%last_chunk + 1], chunk_start, size(stream))
     call pass_reals(range(2) - range(1), stream(range(1):range(2) - 1), freight)
   end subroutine pass_stream
+
+  !> Ranges of a stream that only some chunks have a part of.
+  pure function stream_starts(chunks, chunk_start, n_value) result(starts)
+    integer, intent(in) :: chunks(0:)      !! ranges of chunks
+    integer, intent(in) :: chunk_start(:)  !! where a chunk's part starts, 0 = none
+    integer, intent(in) :: n_value         !! length of the stream
+    integer :: starts(0:size(chunks) - 1)
+    integer :: rank, i
+
+    do rank = 0, size(chunks) - 1
+      starts(rank) = n_value + 1
+      do i = chunks(rank), size(chunk_start)
+        if (chunk_start(i) == 0) cycle
+        starts(rank) = chunk_start(i)
+        exit
+      end do
+    end do
+  end function stream_starts
 
   !> Whether two arrays of one length have the same bits: zeros have signs, and what is not a number
   !> equals nothing.
