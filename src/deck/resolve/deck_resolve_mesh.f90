@@ -82,8 +82,10 @@ contains
     deallocate (raw%node_id, raw%coordinates, raw%element_id)
     call resolve_elements(deck, raw, maps, model%mesh)
     if (has_place) call check_shapes(deck, raw, model%mesh)
+    ! A part or node that was lost with its own mistake is not told again where it is named.
     sound = deck%report%n_error == n_before .and. raw%n_node > 0 .and. raw%n_element > 0 &
-      .and. .not. (raw%lost%nodes .or. raw%lost%elements .or. deck%incomplete)
+      .and. .not. (raw%lost%nodes .or. raw%lost%elements .or. deck%incomplete) &
+      .and. all(model%mesh%element_nodes > 0) .and. all(model%mesh%element_part > 0)
   end subroutine resolve_mesh
 
   !> Coordinates within reach and in one plane.
