@@ -109,7 +109,7 @@ def test_penalty_that_is_left_to_the_program(slideline, chosen, tmp_path, implic
 
 
 @pytest.mark.parametrize("target, wanted, words, scene", [
-    (0.2, 5, "the cheapest that keeps", {"columns": (3, 4)}),
+    (0.2, 4, "the cheapest that keeps", {"columns": (3, 4)}),
     (0.6, 2, "the cheapest that keeps", {"columns": (3, 4)}),
     (0.01, 5, "none keeps", {"columns": (3, 4)}),
     (0.001, 2, "flat faces that match", {}),
@@ -131,7 +131,7 @@ def test_target(slideline, chosen, tmp_path, target, wanted, words, scene):
     assert len(told) == 1
 
 
-@pytest.mark.parametrize("target, ctype, found", [(0.9, 1, "is kept"), (0.03, 1, "type 5 would keep it"),
+@pytest.mark.parametrize("target, ctype, found", [(0.9, 1, "is kept"), (0.03, 1, "type 4 would keep it"),
                                                   (1.0e-4, 5, "elements smaller by a factor of")])
 def test_target_is_told_at_the_end(slideline, tmp_path, target, ctype, found):
     """Against the estimates of sleout; the factor is that of the order 0.89 of the published study."""
@@ -244,13 +244,13 @@ def pressed_twice(slideline, tmp_path):
 def test_type_changes_when_contact_is_open(pressed_twice, tmp_path):
     """From the type that fails the patch test to the one that passes: what follows is that type's answer, energy is kept."""
     cycle, time, estimate, name = re.search(CHANGE, pressed_twice("out", "dt=2e-3")).groups()
-    assert int(cycle) % 100 == 0 and float(estimate) > 3.0 and name == "NTS-mAR (type 5)"
+    assert int(cycle) % 100 == 0 and float(estimate) > 3.0 and name == "VTS-PPT (type 4)"
     force = np.genfromtxt(tmp_path / "out/job.rcforc.csv", delimiter=",", names=True, dtype=None, encoding="ascii")
     force = force[force["side"] == "slave"]
     assert force["n_active"][np.argmin(np.abs(force["time"] - float(time)))] == 0
-    pressed_twice("five", "dt=2e-3", ctype=5, target=0.9)
+    pressed_twice("four", "dt=2e-3", ctype=4, target=0.9)
     means = []
-    for folder in ("out", "five"):
+    for folder in ("out", "four"):
         rows = np.genfromtxt(tmp_path / folder / "job.sleout.csv", delimiter=",", names=True)
         loaded = rows["stored"] > 0.5 * rows["stored"].max()
         means.append([rows["estimate"][loaded & ((rows["time"] > float(time)) == later)].mean() for later in (False, True)])
@@ -295,11 +295,11 @@ def test_type_stays(pressed_twice, scene, words):
 def test_penalty_of_the_next_type_fits_the_step(pressed_twice):
     """An automatic penalty goes on; a given one that the step does not bear keeps the type."""
     log = pressed_twice("share", "dt=2e-3", pen=1.0, punit=3)
-    assert re.search(CHANGE, log)[4] == "NTS-mAR (type 5)"
+    assert re.search(CHANGE, log)[4] == "VTS-PPT (type 4)"
     most = float(re.search(r"interface 1: penalty (\S+) N/m per slave node", log)[1])
     stiff = pressed_twice("stiff", "dt=2e-3", pen=3.0 * most, strokes=3)
     assert not re.search(CHANGE, stiff)
-    assert stiff.count("it stays, the step does not bear the springs of NTS-mAR (type 5)") == 1
+    assert stiff.count("it stays, the step does not bear the springs of VTS-PPT (type 4)") == 1
     assert "interface 1: the step did not bear the springs of a better type at 3 opening(s)" in stiff
 
 
@@ -333,7 +333,7 @@ def test_statics_have_no_waves(slideline, tmp_path):
 def test_springs_of_other_interfaces_count(pressed_twice):
     """A penalty that the step bears alone but not beside an interface on the same nodes keeps the type."""
     most = float(re.search(r"interface 1: penalty (\S+) N/m per slave node", pressed_twice("share", "dt=2e-3", pen=1.0, punit=3))[1])
-    pen = 1.6 * most
+    pen = 1.2 * most
     assert re.search(CHANGE, pressed_twice("alone", "dt=2e-3", pen=pen))
     other = ("*CONTACT_2D_SLIDELINE", (-1, -2, 5, None, pen))
     beside = pressed_twice("beside", "dt=2e-3", pen=pen, more=[other])
