@@ -91,12 +91,12 @@ def count(run, folder, counted):
     run.instructions = counting.count_instructions([counted, *words], folder / name).total
 
 
-def published(scene):
-    """{type: errors in per cent on the coarsest mesh}, with their titles, from the page speed_accuracy.
+def published(scene, doc):
+    """{type: errors in per cent on the coarsest mesh}, with their titles, from the page speed_accuracy beside this one.
 
     What stands in brackets there is below what the reference itself is known to, and counts as that.
     """
-    page = (ROOT / "doc/studies/speed_accuracy.md").read_text(encoding="utf-8")
+    page = (doc / "studies/speed_accuracy.md").read_text(encoding="utf-8")
     section = page.split(f"\n## {SCENES[scene].title}\n")[1].split("\n## ")[0]
     titles = re.search(r"errors in per cent \((.*)\):", section)[1].split("; ")
     errors = {}
@@ -122,10 +122,10 @@ def behind_front(cost, error, costs, errors):
                       if all(other <= SAME_ERROR * own for other, own in zip(errors[ctype], error, strict=True)))
 
 
-def table(runs):
+def table(runs, doc):
     """Rows of the variants of a scene, and how far each CTYPE 0 is behind the front."""
     scene = runs[0].scene
-    titles, errors = published(scene)
+    titles, errors = published(scene, doc)
     costs = {run.ctype: run.instructions for run in runs if run.ctype}
     rows, worst = [], []
     for run in runs:
@@ -143,10 +143,10 @@ def table(runs):
     return f"Errors: {'; '.join(titles)}.\n\n" + markdown_table(names, rows), worst
 
 
-def page_text(scenes):
+def page_text(scenes, doc):
     parts, worst = [], []
     for runs in scenes:
-        text, found = table(runs)
+        text, found = table(runs, doc)
         parts.append(f"## {SCENES[runs[0].scene].title}\n\n{text}")
         told = [f"- {run.words}: took type {run.chosen}, {'no change' if not run.changes else f'{run.changes} change(s)'} on the way, "
                 f"files {'those' if run.same else 'not those'} of the type by name; the target is {run.judged}."
@@ -200,7 +200,7 @@ def main(arguments):
     for run in runs:
         if run.ctype == 0:
             compare(run, folder)
-    write_page(doc, "chooses", page_text(scenes))
+    write_page(doc, "chooses", page_text(scenes, doc))
     return 0
 
 
