@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Pieces of the studies: contact episodes, travel of the die, tables, unfinished runs."""
+import pathlib
 import re
 
 import numpy as np
@@ -7,7 +8,9 @@ import pytest
 
 from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES
-from slideline_tools.studies import claims, collision, common, sliding
+from slideline_tools.studies import chooses, claims, collision, common, sliding
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 @pytest.mark.parametrize("force, expected", [
@@ -168,3 +171,17 @@ def test_point_claim_follows_the_counts(above, expected):
     texts = claims.point_texts(counts, np.array([(4, 10), (3, 2)]))
     assert (texts["points"], texts["above"], texts["above_of"]) == (expected, above, above > 0)
     assert (texts["most"], texts["of"], texts["exchanged_above"]) == (5, 6, 1)
+
+
+@pytest.mark.parametrize("scene", chooses.SCENES)
+def test_ctype_0_is_judged_by_the_errors_of_the_page(scene):
+    titles, errors = chooses.published(scene, ROOT / "doc")
+    assert all(title == " ".join(title.split()) for title in titles)
+    assert all(len(found) == len(titles) and min(found) > 0.0 for found in errors.values())
+
+
+def test_an_error_below_that_of_its_reference_counts_as_that():
+    page = ("| Collision: rebound | 7 | N_r = 2, 4, 6 | 0.50 | 2.4 % | 11 % |\n"
+            "| Collision: rebound | 7h | N_r = 2, 4, 6 | 0.50 | 1.9 % | 11 % |\n")
+    assert chooses.known_error(page, "Collision: rebound", "(0.0026)") == 2.4
+    assert chooses.known_error(page, "Collision: rebound", "3.1") == 3.1

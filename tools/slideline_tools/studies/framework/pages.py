@@ -62,6 +62,7 @@ PAGES = {  # quick ones first
     "stability_shapes": study("stability-shapes"),
     "stability": study("stability"),
     "speed_accuracy": study("speed-accuracy"),
+    "chooses": batch("chooses", after=("speed_accuracy",)),
     "speed_accuracy_friction": study("speed-accuracy-friction"),
     "simplify": study("simplify", ALL),
     "scale": batch("scale", "--publish", sources=("parallel",)),
