@@ -163,6 +163,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     request%overrides = arguments%overrides
+    request%n_of_case = arguments%n_of_case
     request%case = arguments%case
     if (allocated(arguments%refusal)) request%refusal = arguments%refusal
     if (allocated(arguments%restart)) then

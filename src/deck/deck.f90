@@ -58,6 +58,7 @@ module deck_m
     character(:), allocatable :: path
     character(:), allocatable :: overrides(:) !! `name=value`, `name.interface=value`,
                                               !! `p:NAME=value`
+    integer :: n_of_case = 0                  !! as many of these, the first ones, are of COMMANDS
     character(:), allocatable :: text         !! of the deck where it is no file; `path` names it
                                               !! then
     type(deck_t), allocatable :: deck         !! where it has been read and cut; reading takes it
@@ -126,7 +127,7 @@ contains
       return
     end if
     if (allocated(request%overrides)) then
-      call read_overrides(request%overrides, deck, parameters, overrides)
+      call read_overrides(request%overrides, request%n_of_case, deck, parameters, overrides)
     else
       allocate (overrides%items(0))
     end if

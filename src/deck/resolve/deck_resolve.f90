@@ -30,9 +30,10 @@ module deck_resolve_m
     check_loads_of_round, check_velocities_of_round
   use deck_resolve_velocity_m, only : resolve_velocity
   use deck_resolve_ends_m, only : resolve_ends
-  use deck_resolve_contacts_m, only : resolve_contacts, check_references
+  use deck_resolve_contacts_m, only : resolve_contacts
   use deck_resolve_transducers_m, only : resolve_transducers
   use deck_resolve_walls_m, only : resolve_walls
+  use deck_unsound_mesh_m, only : check_unsound_mesh
   implicit none
   private
   public :: resolve_model
@@ -133,6 +134,7 @@ contains
     type(raw_t), intent(inout) :: raw
     type(model_t), intent(inout) :: model
     type(maps_t) :: maps
+    logical, allocatable :: is_sound(:) !! (n_element)
     logical :: sound
     integer :: i
 
@@ -149,7 +151,7 @@ contains
     call resolve_erosion(deck, raw, maps, model)
     call check_erosion_points(deck, raw, model)
     call resolve_equations(deck, raw, maps, model)
-    call resolve_mesh(deck, raw, maps, model, sound)
+    call resolve_mesh(deck, raw, maps, model, is_sound, sound)
     call settle_axis(deck, raw, model)
     call resolve_sets(deck, raw, maps, model)
     call resolve_history(deck, raw, maps, model)
@@ -177,14 +179,13 @@ contains
     if (sound) then
       call resolve_contacts(deck, raw, maps, model)
       call check_eroding_contacts(deck, raw, model)
-      call check_implicit_penalties(deck, raw, model)
       call resolve_transducers(deck, raw, maps, model)
-      call resolve_ends(deck, raw, maps, model)
       if (model%is_round) call mark_round_contacts(model)
     else
-      call check_references(deck, raw, maps)
-      allocate (model%contacts(0))
+      call check_unsound_mesh(deck, raw, maps, is_sound, model)
     end if
+    call check_implicit_penalties(deck, raw, model, sound)
+    call resolve_ends(deck, raw, maps, model, sound)
   end subroutine resolve_model
 
   !> A curve that caps the step must leave it some length.
