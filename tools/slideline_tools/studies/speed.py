@@ -75,7 +75,7 @@ of whose nodes touch and slide. Both axes are logarithmic: a cost that is propor
 {contact_goals}
 
 ns per slave node and step, in brackets per contact point over K. *flat*: all slave nodes touch; *crown*: a third of them.
-The clock takes no laps here (`timing=off`); in a run with `timing=phase` two or three of them come to a step of each
+The clock is not read here (`timing=off`); with `timing=phase` two or three readings come to a step of each
 interface, [20 to 40 ns each](../results.md#what-the-timing-costs).
 
 {contact_table}
