@@ -184,7 +184,7 @@ module deck_raw_m
     type(raw_part_t), allocatable :: parts(:)
     type(section_t), allocatable :: sections(:)
     integer, allocatable :: section_line(:)
-    logical, allocatable :: points_open(:)     !! NIP of a section is blank or 0
+    logical, allocatable :: points_open(:)     !! NIP of a section is blank, 0 or 2
     type(material_t), allocatable :: materials(:)
     integer, allocatable :: material_line(:)
     type(eos_t), allocatable :: equations(:)   !! of state
