@@ -3,9 +3,10 @@
 module deck_resolve_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use controls_m, only : interval_t
+  use controls_m, only : interval_t, is_asked
   use deck_implicit_m, only : settle_scheme, check_scheme
-  use history_tables_m, only : n_table
+  use history_tables_m, only : history_tables, n_table, table_nodout, table_elout, table_nodfor, &
+    table_secforc
   use model_m, only : model_t
   use conditions_m, only : motion_acceleration
   use contacts_m, only : penalty_share, penalty_implicit
@@ -165,6 +166,7 @@ contains
         call take_interval(deck, maps, raw%outputs(i), model, output%histories(i))
       end do
     end associate
+    call warn_of_empty(deck, raw, model)
     if (model%controls%implicit%is_on) call check_implicit(deck, raw, model)
     call resolve_conditions(deck, raw, maps, model)
     call resolve_rigids(deck, raw, maps, model)
@@ -199,6 +201,33 @@ contains
     call line_error(deck, raw%curve_line(model%controls%dt_curve), &
       'curve '//to_text(raw%dt_curve)//' caps the time step (LCTM) and must be above 0 everywhere')
   end subroutine check_step_curve
+
+  !> Histories that are asked for and have no file, for want of a keyword that says of what.
+  subroutine warn_of_empty(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+
+    call look_at(table_nodout, raw%history_nodes%n + raw%history_node_sets%n, 'HISTORY_NODE')
+    call look_at(table_elout, raw%history_shells%n + raw%history_shell_sets%n, 'HISTORY_SHELL')
+    call look_at(table_nodfor, raw%force_groups%n, 'NODAL_FORCE_GROUP')
+    call look_at(table_secforc, size(raw%cuts), 'CROSS_SECTION_SET')
+
+  contains
+
+    !> One file.
+    subroutine look_at(table, n, needed)
+      integer, intent(in) :: table
+      integer, intent(in) :: n           !! what it would tell of
+      character(*), intent(in) :: needed !! end of the keyword
+
+      if (n > 0 .or. deck%incomplete .or. .not. is_asked(model%controls%output%histories(table))) &
+        return
+      call line_warning(deck, raw%outputs(table)%place%line, 'empty '//history_tables(table)%name, &
+        'asks for a history and the deck has no *DATABASE_'//needed//': no file is written')
+    end subroutine look_at
+
+  end subroutine warn_of_empty
 
   !> Interval of one output file.
   subroutine take_interval(deck, maps, history, model, interval)
