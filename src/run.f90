@@ -73,7 +73,7 @@ contains
       //', source '//source_version//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
     if (len(arguments%ignored) > 0) call warn(monitor%log, &
-      'of the command line have no effect here: '//arguments%ignored)
+      'without effect on the command line: '//arguments%ignored)
     call move_alloc(deck, request%deck)
     call make_request(arguments, monitor, request, error)
     call share_error(ranks, error)

@@ -69,17 +69,17 @@ contains
     type(parameters_t), intent(inout) :: parameters
     type(overrides_t), intent(out) :: overrides
     type(override_t) :: item
-    character(:), allocatable :: mistake
+    character(:), allocatable :: mistake, where
     integer :: i
 
     allocate (overrides%items(0))
     do i = 1, size(texts)
       call take_apart(texts(i), item, mistake)
-      item%phrase = '"'//trim(adjustl(texts(i)))//'" '//trim(merge('on the command line ', &
-        'in COMMANDS of *CASE', i > n_of_case))
+      where = trim(merge('on the command line ', 'in COMMANDS of *CASE', i > n_of_case))
+      item%phrase = '"'//trim(adjustl(texts(i)))//'" '//where
       if (len(mistake) > 0) call line_error(deck, 0, item%phrase//mistake)
       if (index(item%name, 'P:') == 1) then
-        call override_parameter(parameters, item%name(3:), item%text)
+        call override_parameter(parameters, item%name(3:), item%text, where)
       else if (len(item%name) > 0) then
         overrides%items = [overrides%items, item]
       end if
