@@ -50,6 +50,13 @@ def test_a_history_of_nothing_is_named(slideline, tmp_path, name, needed, card):
     assert (tmp_path / "out" / f"job.{name.lower()}.csv").exists()
 
 
+def test_histories_that_the_model_has_nothing_for_are_named(slideline, tmp_path):
+    """No rigid body, no wall: no file, a line of the log and no warning."""
+    status, said = said_by(slideline, tmp_path, *(f"*DATABASE_{name}\n1.0e-4" for name in ("RBDOUT", "RWFORC", "SPCFORC")))
+    assert status == 0 and "\nno file, since the model has nothing for it: rwforc, rbdout\n" in said, said
+    assert "warning" not in said and (tmp_path / "out/job.spcforc.csv").exists()
+
+
 @pytest.mark.parametrize("law, stays", [
     ("*MAT_MOONEY-RIVLIN_RUBBER\n2,1000.0,0.49,3.0e5,1.0e5", True), ("*MAT_BLATZ-KO_RUBBER\n2,1000.0,7.0e5", True),
     ("*MAT_CRUSHABLE_FOAM\n2,1000.0,1.0e6,0.0,9,1.0e4\n*DEFINE_CURVE\n9,\n0.0,1.0e5\n0.9,1.0e6", True),
