@@ -42,7 +42,7 @@ contains
     do i = 1, size(raw%contacts)
       n_error = deck%report%n_error
       do k = 1, merge(1, 2, raw%contacts(i)%contact%is_self)
-        call resolve_side(deck, raw%contacts(i), k, maps, outside, model, sides(k))
+        call resolve_side(deck, raw, i, k, maps, outside, model, sides(k))
       end do
       if (raw%contacts(i)%contact%is_self) sides(2) = sides(1)
       model%contacts(i) = raw%contacts(i)%contact

@@ -67,7 +67,7 @@ contains
     do k = 1, merge(1, 2, raw%contacts(i)%contact%is_self)
       call find_side(raw%contacts(i), k, maps, kind, found)
       if (is_certain(kind, found)) then
-        call resolve_side(deck, raw%contacts(i), k, maps, outside, model, sides(k))
+        call resolve_side(deck, raw, i, k, maps, outside, model, sides(k))
         n_known = n_known + 1
       else
         call require_side(deck, raw%contacts(i), k, maps, kind, found)
