@@ -8,6 +8,7 @@ import tarfile
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+pytestmark = pytest.mark.skipif(shutil.which("git") is None, reason="no git")
 FILES = ("src/source_version.cmake", "src/source_version.f90.in", ".gitattributes", "CMakeLists.txt")
 
 
