@@ -32,7 +32,7 @@ contains
     call list_cases(arguments%deck, deck, cases, error)
     if (allocated(error)) return
     if (arguments%all_cases .and. .not. deck%cases%found) &
-      runs(1)%ignored = trim(runs(1)%ignored//' case')
+      runs(1)%ignored = trim(adjustl(runs(1)%ignored//' case'))
     chosen = arguments%cases
     ! A number that is none is a mistake, which the other cases tell.
     if (arguments%all_cases) chosen = pack([(cases(i)%id, i=1, size(cases))], &
