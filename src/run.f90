@@ -63,6 +63,7 @@ contains
     type(monitor_t) :: monitor
     type(run_info_t) :: info
     character(:), allocatable :: prefix
+    logical :: has_all   !! each process has all of the model
 
     has_ended = .false.
     monitor%ranks = ranks
@@ -85,13 +86,13 @@ contains
     end if
     call share_error(ranks, error)
     if (allocated(error)) return
-    call hand_model(monitor%ranks, model)
+    call hand_model(monitor%ranks, model, has_all)
     if (arguments%timing == timing_by_interface) &
       call split_contact(monitor%clock, n_told(model%contacts))
     prefix = ''
     if (ranks%mine == 0) prefix = join_path(arguments%directory, arguments%job)
     if (monitor%restarts%goes_on) then
-      call take_up_run(model, prefix, monitor%ranks, state, monitor%restarts, error)
+      call take_up_run(has_all, model, prefix, monitor%ranks, state, monitor%restarts, error)
       call share_error(ranks, error)
       if (allocated(error)) return
     end if
@@ -99,7 +100,7 @@ contains
       model%controls%output%dump_cycles >= 0, monitor, error)
     call share_error(ranks, error)
     if (allocated(error)) return
-    call begin_run(arguments, prefix, model, info, state, monitor, error)
+    call begin_run(arguments, prefix, has_all, model, info, state, monitor, error)
     call lap(monitor%clock, phase_input)
     if (allocated(error)) then
       if (ranks%mine == 0) call give_up(model, prefix, state, monitor, error)
@@ -164,7 +165,8 @@ contains
 
   !> The state of the restart file, and whether all that is read later can be; before any file of an
   !> earlier run is touched.
-  subroutine take_up_run(model, prefix, ranks, state, restarts, error)
+  subroutine take_up_run(has_all, model, prefix, ranks, state, restarts, error)
+    logical, intent(in) :: has_all
     type(model_t), intent(inout) :: model
     character(*), intent(in) :: prefix     !! directory and job name
     type(ranks_t), intent(inout) :: ranks
@@ -175,7 +177,7 @@ contains
     type(answers_t), allocatable :: answers
 
     if (ranks%mine == 0) then
-      if (ranks%n > 1) allocate (answers)
+      if (.not. has_all) allocate (answers)
       call take_up_state(restarts%source, model, state, error, answers=answers)
       if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
       if (.not. allocated(error)) &
@@ -183,7 +185,7 @@ contains
     end if
     call share_error(ranks, error)
     if (allocated(error)) return
-    call hand_others(model, ranks, state, others, answers)
+    if (.not. has_all) call hand_others(model, ranks, state, others, answers)
     if (ranks%mine == 0) return
     call take_up_state(restarts%source, model, state, error, others, answers)
     if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
@@ -232,9 +234,10 @@ contains
   end subroutine describe_run
 
   !> Open the files and make the state from which the run begins.
-  subroutine begin_run(arguments, prefix, model, info, state, monitor, error)
+  subroutine begin_run(arguments, prefix, has_all, model, info, state, monitor, error)
     type(arguments_t), intent(in) :: arguments
     character(*), intent(in) :: prefix
+    logical, intent(in) :: has_all
     type(model_t), intent(inout) :: model
     type(run_info_t), intent(inout) :: info
     type(state_t), intent(inout) :: state  !! where the run goes on it is known already
@@ -251,7 +254,7 @@ contains
     if (allocated(error)) return
     if (allocated(info%effective_deck)) deallocate (info%effective_deck)
     if (.not. monitor%restarts%goes_on) &
-      call start_share(model, monitor%ranks, monitor%log, state, error)
+      call start_share(has_all, model, monitor%ranks, monitor%log, state, error)
     if (allocated(error)) return
     call start_monitor(model, size(state%elements%history) > 0, monitor)
     if (model%controls%relaxation%is_on .and. .not. monitor%restarts%goes_on &

@@ -17,6 +17,8 @@ module others_memory_m
     integer :: nodes(4) = 0, slots(4) = 0
     real(wp), allocatable :: mass(:) !! (n_node) lumped masses of all other nodes, until the state
                                      !! takes them
+    real(wp), allocatable :: penalties(:, :) !! (3, interfaces) of slave, master and nodes, that the
+                                     !! first process has found
   end type others_t
 
 contains

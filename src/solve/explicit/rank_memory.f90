@@ -4,7 +4,6 @@
 !> that numbers mean the same everywhere, but the pages of what belongs to others go back to the
 !> system.
 module rank_memory_m
-  use automatic_penalty_m, only : seeks_penalties
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use model_m, only : model_t
@@ -66,7 +65,7 @@ contains
     type(model_t), intent(in) :: model
     logical :: starts
 
-    starts = needs_all(model) .or. model%controls%relaxation%is_on .or. seeks_penalties(model) &
+    starts = needs_all(model) .or. model%controls%relaxation%is_on &
       .or. abs(model%controls%mass_step) > 0.0_wp &
       .or. any(abs(model%parts%stiffness_damping) > 0.0_wp)
   end function starts_from_all

@@ -34,22 +34,25 @@ module rank_model_m
 contains
 
   !> The model of the first process for all.
-  subroutine hand_model(ranks, model)
+  subroutine hand_model(ranks, model, has_all)
     type(ranks_t), intent(inout) :: ranks
     type(model_t), intent(inout) :: model
+    logical, intent(out) :: has_all !! each process gets all of it
     type(freight_t) :: freight
 
+    has_all = .true.
     if (ranks%n == 1) return
+    if (ranks%mine == 0) has_all = starts_from_all(model)
     if (ranks%mine == 0) then
-      call pass_model(freight, model)
+      call pass_all()
       call start_loading(freight)
-      call pass_model(freight, model)
+      call pass_all()
     end if
     call spread_freight(ranks, freight)
-    if (ranks%mine > 0) call pass_model(freight, model)
+    if (ranks%mine > 0) call pass_all()
     deallocate (freight%values)
     call reserve_mesh(ranks, model)
-    if (starts_from_all(model)) then
+    if (has_all) then
       call hand_range(ranks, everyone, of_nodes, [1, model%mesh%n_node], model)
       call hand_range(ranks, everyone, of_slots, [1, model%layout%n_slot], model)
       call hand_range(ranks, everyone, of_elements, [1, model%mesh%n_element], model)
@@ -58,12 +61,21 @@ contains
       call hand_shares(ranks, of_slots, model)
       call hand_range(ranks, everyone, of_faces, [1, 1], model)
     end if
-    call hand_fixed(ranks, model)
+    call hand_fixed(ranks, has_all, model)
+
+  contains
+
+    subroutine pass_all()
+      call pass(freight, has_all)
+      call pass_model(freight, model)
+    end subroutine pass_all
+
   end subroutine hand_model
 
   !> Fixed degrees of freedom of the nodes that each process has.
-  subroutine hand_fixed(ranks, model)
+  subroutine hand_fixed(ranks, has_all, model)
     type(ranks_t), intent(inout) :: ranks
+    logical, intent(in) :: has_all
     type(model_t), intent(inout) :: model
     type(freight_t) :: freight
     type(shares_t) :: shares
@@ -79,7 +91,7 @@ contains
         associate (all_nodes => model%conditions%fixed_nodes, starts => shares%nodes)
           is_known = all_nodes <= model%layout%n_special .or. all_nodes >= starts(ranks%n) &
             .or. (all_nodes >= starts(rank) .and. all_nodes < starts(rank + 1))
-          if (starts_from_all(model)) is_known = .true.
+          if (has_all) is_known = .true.
           nodes = pack(all_nodes, is_known)
         end associate
         directions = pack(model%conditions%fixed_directions, is_known)
@@ -124,7 +136,8 @@ contains
 
   !> The state at time zero. That of the first process comes first: the others, which have no
   !> elements but their own, need masses from it.
-  subroutine start_share(model, ranks, log, state, error)
+  subroutine start_share(has_all, model, ranks, log, state, error)
+    logical, intent(in) :: has_all   !! each process has all of the model
     type(model_t), intent(inout) :: model
     type(ranks_t), intent(inout) :: ranks
     type(log_t), intent(inout) :: log
@@ -134,13 +147,14 @@ contains
     type(answers_t), allocatable :: answers
 
     if (ranks%mine == 0) then
-      if (ranks%n > 1) allocate (answers)
+      if (.not. has_all) allocate (answers)
       call start_state(model, log, state, error, answers=answers)
     end if
     call share_error(ranks, error)
     if (allocated(error)) return
-    call hand_others(model, ranks, state, others, answers)
+    if (.not. has_all) call hand_others(model, ranks, state, others, answers)
     if (ranks%mine > 0) call start_state(model, log, state, error, others, answers)
+    call share_error(ranks, error)
   end subroutine start_share
 
   !> What a process that starts its own share alone has to know of the state of the first one.
@@ -148,14 +162,19 @@ contains
     type(model_t), intent(inout) :: model
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state              !! of the first process
-    type(others_t), allocatable, intent(out) :: others !! not there where a process starts all
-    type(answers_t), allocatable, intent(inout) :: answers !! to the first process; or from there,
-                                                       !! and not there either
+    type(others_t), allocatable, intent(out) :: others !! left alone
+    type(answers_t), allocatable, intent(inout) :: answers !! to the first process; then from it
     type(freight_t) :: freight
+    real(wp), allocatable :: penalties(:, :)
+    integer :: i
 
-    if (ranks%n == 1 .or. starts_from_all(model)) return
     if (ranks%mine == 0) then
       call hand_shares(ranks, of_mass, model, state%mass)
+      penalties = reshape([(state%contacts(i)%slave_penalty, state%contacts(i)%master_penalty, &
+        state%contacts(i)%node_penalty, i=1, size(state%contacts))], [3, size(state%contacts)])
+      call pass_answers()
+      call start_loading(freight)
+      call pass_answers()
     else
       allocate (others, source=others_of(model, share_out(model%layout, ranks%mine, ranks%n), &
         ranks))
@@ -164,13 +183,18 @@ contains
       allocate (answers)
       answers%are_given = .true.
     end if
-    if (ranks%mine == 0) then
-      call pass(freight, answers%is_inside)
-      call start_loading(freight)
-      call pass(freight, answers%is_inside)
-    end if
     call spread_freight(ranks, freight)
-    if (ranks%mine > 0) call pass(freight, answers%is_inside)
+    if (ranks%mine == 0) return
+    call pass_answers()
+    call move_alloc(penalties, others%penalties)
+
+  contains
+
+    subroutine pass_answers()
+      call pass(freight, answers%is_inside)
+      call pass(freight, penalties)
+    end subroutine pass_answers
+
   end subroutine hand_others
 
   !> What all have to know, and then to each process what is of its tiles. Nodes inside of rigid

@@ -105,7 +105,15 @@ contains
     state%estimates%contact_type = model%contacts(:size(state%estimates))%contact_type
     call start_outlines(model, state)
     call weigh_contacts(model, state)
-    call set_automatic_penalties(model, state, log, error)
+    if (present(others)) then
+      do i = 1, size(state%contacts)
+        state%contacts(i)%slave_penalty = others%penalties(1, i)
+        state%contacts(i)%master_penalty = others%penalties(2, i)
+        state%contacts(i)%node_penalty = others%penalties(3, i)
+      end do
+    else
+      call set_automatic_penalties(model, state, log, error)
+    end if
   end subroutine start_state
 
   !> Vectors of all nodes, zero where the process knows them.
