@@ -1,8 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> A model in a freight, for processes that share a run: type by type, component by component, in
 !> the order of their declarations. What is missing here is noticed by
-!> tests/house/test_model_freight.py. Types without allocatable components go as they are. What is
-!> as long as the mesh goes in pieces (`mesh_freight_m`).
+!> tests/house/test_model_freight.py. Types without allocatable components go as they are.
 module model_freight_m
   use, intrinsic :: iso_c_binding, only : c_loc
   use boundary_rows_m, only : boundary_rows_t
@@ -27,7 +26,7 @@ module model_freight_m
 
 contains
 
-  !> All but the pieces below, and what the first process keeps.
+  !> All but pieces of the mesh (`mesh_freight_m`), and what the first process keeps.
   subroutine pass_model(freight, model)
     type(freight_t), intent(inout) :: freight
     type(model_t), intent(inout), target :: model

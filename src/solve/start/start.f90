@@ -93,16 +93,8 @@ contains
     call start_works(model, state)
     if (allocated(model%controls%ends)) &
       allocate (state%quiet_since(size(model%controls%ends)), source=-1.0_wp)
-    allocate (state%contacts(size(model%contacts)), state%estimates(n_told(model%contacts)))
-    do i = 1, size(model%contacts)
-      call start_contact(model%contacts(i), model, log, state%contacts(i), answers)
-      if (.not. is_tied(model%contacts(i)) .or. state%contacts(i)%points%n > 0) cycle
-      call raise(error, 'interface '//to_text(model%contacts(i)%id)//' ties nothing: none of its ' &
-        //to_text(state%contacts(i)%n_slave)//' slave nodes has the master within reach', &
-        status_input)
-      return
-    end do
-    state%estimates%contact_type = model%contacts(:size(state%estimates))%contact_type
+    call start_contacts(model, log, state, error, answers)
+    if (allocated(error)) return
     call start_outlines(model, state)
     call weigh_contacts(model, state)
     if (present(others)) then
@@ -115,6 +107,27 @@ contains
       call set_automatic_penalties(model, state, log, error)
     end if
   end subroutine start_state
+
+  !> Memories of the interfaces.
+  subroutine start_contacts(model, log, state, error, answers)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    type(state_t), intent(inout) :: state
+    type(error_t), allocatable, intent(out) :: error
+    type(answers_t), intent(inout), optional :: answers !! of the first search
+    integer :: i
+
+    allocate (state%contacts(size(model%contacts)), state%estimates(n_told(model%contacts)))
+    do i = 1, size(model%contacts)
+      call start_contact(model%contacts(i), model, log, state%contacts(i), answers)
+      if (.not. is_tied(model%contacts(i)) .or. state%contacts(i)%points%n > 0) cycle
+      call raise(error, 'interface '//to_text(model%contacts(i)%id)//' ties nothing: none of its ' &
+        //to_text(state%contacts(i)%n_slave)//' slave nodes has the master within reach', &
+        status_input)
+      return
+    end do
+    state%estimates%contact_type = model%contacts(:size(state%estimates))%contact_type
+  end subroutine start_contacts
 
   !> Vectors of all nodes, zero where the process knows them.
   pure subroutine start_vectors(known, n_node, vectors)
