@@ -44,7 +44,7 @@ contains
     if (allocated(error)) return
     call hand_cases(ranks, found, cases)
     if (arguments%all_cases .and. .not. found) &
-      runs(1)%ignored = trim(runs(1)%ignored//' case')
+      runs(1)%ignored = trim(adjustl(runs(1)%ignored//' case'))
     chosen = arguments%cases
     ! A number that is none is a mistake, which the other cases tell.
     if (arguments%all_cases) chosen = pack([(cases(i)%id, i=1, size(cases))], &

@@ -80,6 +80,7 @@ contains
     do i = 1, size(runs)
       request%path = runs(i)%deck
       request%overrides = runs(i)%overrides
+      request%n_of_case = runs(i)%n_of_case
       request%case = runs(i)%case
       call move_alloc(deck, request%deck)
       if (allocated(request%refusal)) deallocate (request%refusal)

@@ -80,6 +80,7 @@ contains
 
     request%path = run%deck
     request%overrides = run%overrides
+    request%n_of_case = run%n_of_case
     request%case = run%case
     call move_alloc(deck, request%deck)
     if (allocated(run%refusal)) request%refusal = run%refusal

@@ -77,7 +77,7 @@ contains
       //', source '//source_version//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
     if (len(arguments%ignored) > 0) call warn(monitor%log, &
-      'of the command line have no effect here: '//arguments%ignored)
+      'without effect on the command line: '//arguments%ignored)
     if (ranks%mine == 0) then
       call read_model(arguments, deck, monitor, model, info%effective_deck, error)
     else if (allocated(arguments%restart)) then
@@ -199,6 +199,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     request%overrides = arguments%overrides
+    request%n_of_case = arguments%n_of_case
     request%case = arguments%case
     if (allocated(arguments%refusal)) request%refusal = arguments%refusal
     if (allocated(arguments%restart)) then

@@ -21,7 +21,7 @@ module deck_m
   use deck_overrides_m, only : overrides_t, read_overrides, override_text
   use deck_override_apply_m, only : apply_overrides
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
-  use deck_raw_m, only : raw_t, lost_t, start_raw
+  use deck_raw_m, only : raw_t, start_raw
   use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
   use deck_rubber_m, only : read_mooney_rivlin, read_blatz_ko
@@ -57,6 +57,7 @@ module deck_m
     character(:), allocatable :: path
     character(:), allocatable :: overrides(:) !! `name=value`, `name.interface=value`,
                                               !! `p:NAME=value`
+    integer :: n_of_case = 0                  !! as many of these, the first ones, are of COMMANDS
     character(:), allocatable :: text         !! of the deck where it is no file; `path` names it
                                               !! then
     type(deck_t), allocatable :: deck         !! where it has been read and cut; reading takes it
@@ -121,7 +122,7 @@ contains
       return
     end if
     if (allocated(request%overrides)) then
-      call read_overrides(request%overrides, deck, parameters, overrides)
+      call read_overrides(request%overrides, request%n_of_case, deck, parameters, overrides)
     else
       allocate (overrides%items(0))
     end if
@@ -187,11 +188,11 @@ contains
         case (known_refused)
           call line_error(deck, block%keyword, reason//' not part of this version' &
             //meant(block%given))
-          call note_lost(block%given, raw%lost)
+          call note_lost(block%given, raw)
         case default
           call line_error(deck, block%keyword, 'is not a keyword that this version knows' &
             //meant(block%given))
-          call note_lost(block%given, raw%lost)
+          call note_lost(block%given, raw)
         end select
       end associate
     end do
@@ -206,19 +207,29 @@ contains
     if (len(text) > 0) text = '; did you mean *'//text//'?'
   end function meant
 
-  !> What a refused keyword would have defined.
-  pure subroutine note_lost(name, lost)
-    character(*), intent(in) :: name
-    type(lost_t), intent(inout) :: lost
+  !> What a refused keyword would have defined, by its name and by what that may have been meant
+  !> for.
+  subroutine note_lost(given, raw)
+    character(*), intent(in) :: given
+    type(raw_t), intent(inout) :: raw
+    character(:), allocatable :: name
+    integer :: i
 
-    lost%nodes = lost%nodes .or. index(name, 'NODE') == 1 .or. index(name, 'INCLUDE') == 1
-    lost%elements = lost%elements .or. index(name, 'ELEMENT') == 1
-    lost%parts = lost%parts .or. index(name, 'PART') == 1
-    lost%sections = lost%sections .or. index(name, 'SECTION') == 1
-    lost%materials = lost%materials .or. index(name, 'MAT') == 1
-    lost%equations = lost%equations .or. index(name, 'EOS') == 1
-    lost%curves = lost%curves .or. index(name, 'DEFINE') == 1
-    lost%sets = lost%sets .or. index(name, 'SET') == 1
+    name = trim(given)
+    do i = 1, 2
+      associate (lost => raw%lost)
+        lost%nodes = lost%nodes .or. index(name, 'NODE') == 1 .or. index(name, 'INCLUDE') == 1
+        lost%elements = lost%elements .or. index(name, 'ELEMENT') == 1
+        lost%parts = lost%parts .or. index(name, 'PART') == 1
+        lost%sections = lost%sections .or. index(name, 'SECTION') == 1
+        lost%materials = lost%materials .or. index(name, 'MAT') == 1
+        lost%equations = lost%equations .or. index(name, 'EOS') == 1
+        lost%curves = lost%curves .or. index(name, 'DEFINE') == 1
+        lost%sets = lost%sets .or. index(name, 'SET') == 1
+      end associate
+      raw%terminated = raw%terminated .or. name == 'CONTROL_TERMINATION'
+      name = trim(nearest_keyword(trim(given)))
+    end do
   end subroutine note_lost
 
   !> Read one block by its keyword.
@@ -233,7 +244,7 @@ contains
 
     call check_empty(deck, i, is_empty)
     if (is_empty) then
-      call note_lost(deck%blocks(i)%name, raw%lost)
+      call note_lost(deck%blocks(i)%name, raw)
       return
     end if
     select case (deck%blocks(i)%name)
