@@ -18,7 +18,7 @@ module rank_model_m
   use others_memory_m, only : others_t
   use rank_memory_m, only : starts_from_all, others_of
   use rank_shares_m, only : shares_t, share_out
-  use ranks_m, only : ranks_t, spread_values, share_error
+  use ranks_m, only : ranks_t, share_error
   use start_m, only : start_state
   use state_m, only : state_t
   implicit none
@@ -39,19 +39,23 @@ contains
     type(model_t), intent(inout) :: model
     logical, intent(out) :: has_all !! each process gets all of it
     type(freight_t) :: freight
+    logical :: moves !! there are initial velocities
 
     has_all = .true.
     if (ranks%n == 1) return
-    if (ranks%mine == 0) has_all = starts_from_all(model)
     if (ranks%mine == 0) then
+      has_all = starts_from_all(model)
+      moves = allocated(model%conditions%initial_velocity)
       call pass_all()
       call start_loading(freight)
       call pass_all()
     end if
     call spread_freight(ranks, freight)
-    if (ranks%mine > 0) call pass_all()
+    if (ranks%mine > 0) then
+      call pass_all()
+      call reserve_mesh(moves, model)
+    end if
     deallocate (freight%values)
-    call reserve_mesh(ranks, model)
     if (has_all) then
       call hand_range(ranks, everyone, of_nodes, [1, model%mesh%n_node], model)
       call hand_range(ranks, everyone, of_slots, [1, model%layout%n_slot], model)
@@ -66,7 +70,7 @@ contains
   contains
 
     subroutine pass_all()
-      call pass(freight, has_all)
+      call pass(freight, has_all, moves)
       call pass_model(freight, model)
     end subroutine pass_all
 
@@ -116,17 +120,13 @@ contains
   end subroutine hand_fixed
 
   !> Room for what goes in pieces; it takes memory where something is put.
-  subroutine reserve_mesh(ranks, model)
-    type(ranks_t), intent(in) :: ranks
+  subroutine reserve_mesh(moves, model)
+    logical, intent(in) :: moves
     type(model_t), intent(inout) :: model
-    real(wp) :: moves(1)
 
     associate (mesh => model%mesh, layout => model%layout)
-      moves = merge(1.0_wp, 0.0_wp, allocated(model%conditions%initial_velocity))
-      call spread_values(ranks, moves)
-      if (ranks%mine == 0) return
       allocate (mesh%node_id(mesh%n_node), mesh%coordinates(2, mesh%n_node))
-      if (moves(1) > 0.0_wp) allocate (model%conditions%initial_velocity(2, mesh%n_node))
+      if (moves) allocate (model%conditions%initial_velocity(2, mesh%n_node))
       allocate (layout%slot_element(layout%n_slot), layout%slot_nodes(4, layout%n_slot), &
         layout%slot_local(4, layout%n_slot))
       allocate (mesh%element_id(mesh%n_element), mesh%element_nodes(4, mesh%n_element), &
