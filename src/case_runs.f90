@@ -33,8 +33,9 @@ contains
     integer :: i, n_failed, status
 
     has_ended = .false.
-    call plan_cases(arguments, runs, deck, error)
-    if (.not. allocated(error) .and. size(runs) > 1) call read_decks(runs, deck, error)
+    call plan_cases(arguments, ranks, runs, deck, error)
+    if (allocated(error)) return
+    if (ranks%mine == 0 .and. size(runs) > 1) call read_decks(runs, deck, error)
     call share_error(ranks, error)
     if (allocated(error)) return
     n_failed = 0

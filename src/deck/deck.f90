@@ -14,7 +14,6 @@ module deck_m
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text
   use deck_choose_case_m, only : choose_case
   use deck_reader_m, only : read_blocks, cut_deck
-  use deck_source_m, only : forget_lines
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
   use deck_parameter_table_m, only : parameters_t
@@ -64,9 +63,6 @@ module deck_m
     type(deck_t), allocatable :: deck         !! where it has been read and cut; reading takes it
     integer :: case = 0                       !! of *CASE, 0: a deck without cases
     character(:), allocatable :: refusal      !! why the cases can not run as they are asked for
-    logical :: is_told_elsewhere = .false.    !! another process has the effective deck and tells
-                                              !! the findings: the text of the mesh goes as it is
-                                              !! read
   end type deck_request_t
 
 contains
@@ -78,8 +74,7 @@ contains
     type(contact_kind_t), intent(in) :: kinds(:)             !! contact types that exist
     type(log_t), intent(inout) :: log
     type(model_t), intent(out) :: model
-    character(:), allocatable, intent(out) :: effective      !! the deck as run; empty where another
-                                                             !! process has it
+    character(:), allocatable, intent(out) :: effective      !! the deck as run
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable, intent(out), optional :: findings !! all messages, see list_findings
     type(deck_t), allocatable :: deck
@@ -137,10 +132,7 @@ contains
     raw%scale_given = len(override_text(overrides, 'TSSFAC', 0)) > 0
     raw%controls%title = ''
     do i = 1, deck%n_block
-      if (known(i) /= known_honoured) cycle
-      call read_block(deck, parameters, i, kinds, overrides, raw)
-      if (request%is_told_elsewhere .and. any(deck%blocks(i)%name == [character(13) :: 'NODE', &
-        'ELEMENT_SHELL'])) call forget_lines(deck, i)
+      if (known(i) == known_honoured) call read_block(deck, parameters, i, kinds, overrides, raw)
     end do
     call settle_friction(deck, overrides, raw)
     call apply_overrides(deck, overrides, raw, tail)
@@ -154,11 +146,7 @@ contains
     if (allocated(error)) return
     call echo_model(model, request%path, log)
     call forget_places(deck)
-    if (request%is_told_elsewhere) then
-      effective = ''
-    else
-      call write_effective(deck, parameters, tail, effective)
-    end if
+    call write_effective(deck, parameters, tail, effective)
   end subroutine interpret_deck
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,

@@ -99,7 +99,7 @@ contains
     call start_progress(monitor%progress, model%controls%end_time, &
       model%controls%output%status_interval)
     call plan_restarts(monitor%restarts, model%controls)
-    call start_snapshot(model, has_history, monitor%snapshot)
+    if (monitor%ranks%mine == 0) call start_snapshot(model, has_history, monitor%snapshot)
   end subroutine start_monitor
 
   !> Tables and schedules of a run that opens no files: what a restart file says of them can be
