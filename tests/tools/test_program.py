@@ -155,6 +155,7 @@ reveal_type(slideline_tools.read("a").n_state)
 reveal_type(slideline_tools.sweep("a.k", ctype=[1, 5])[0])
 slideline_tools.plot(outcome, "mises", -1, 0.5)
 slideline_tools.read(5)
+slideline_tools.raed("a.k")
 """
 
 
@@ -170,7 +171,8 @@ def test_mypy_knows_the_public_names(tmp_path):
     assert found == ["slideline_tools.program.Outcome", "slideline_tools.results.Results",
                      "slideline_tools.histories.History", "int", "slideline_tools.program.Outcome"], done.stdout
     errors = re.findall(r"^(.*): error: (.*)", done.stdout, re.M)
-    assert len(errors) == 1 and errors[0][0] == "typed.py:10" and 'incompatible type "int"' in errors[0][1], done.stdout
+    assert [place for place, _ in errors] == ["typed.py:10", "typed.py:11"], done.stdout
+    assert 'incompatible type "int"' in errors[0][1] and 'no attribute "raed"' in errors[1][1], done.stdout
     assert (tools / "slideline_tools" / "py.typed").exists()
 
 

@@ -18,7 +18,8 @@ from slideline_tools.studies.stability.failing import keep_failing
 from slideline_tools.studies.stability.scenes import SCENES
 from slideline_tools.studies.stability.springs import springs
 
-REFERENCE = Path(__file__).resolve().parents[1] / "verification" / "contact_forces"
+ROOT = Path(__file__).resolve().parents[2]
+REFERENCE = ROOT / "tests" / "verification" / "contact_forces"
 SLAVE, MASTER = np.array([0.1, 0.31, 0.55, 0.9]), np.array([0.0, 0.2, 0.45, 0.62, 0.7, 1.0])
 
 
@@ -294,3 +295,12 @@ def test_energy_made_is_seen_behind_what_springs_hold_and_damping_takes():
     assert measures.energies(glstat, sleout) == pytest.approx((0.0, 0.15))
     with pytest.raises(HistoryError, match="no rows"):
         energy_made(sleout.rows(slice(0, 0)))
+
+
+def test_the_program_knows_how_sharp_its_limit_is():
+    """Where nobody chose the penalty the start warns of the step only beyond the least ratio of the page (contact_check.f90)."""
+    text = (ROOT / "doc/studies/stability.md").read_text(encoding="utf-8")
+    table = text[text.index("## Is the program's limit safe"):].split("\nOf ")[0]
+    ratios = [float(number) for number in re.findall(r"(\d\.\d\d) to", table)]
+    source = (ROOT / "src/run/contact_check.f90").read_text(encoding="utf-8")
+    assert len(ratios) == 21 and float(re.search(r"sharpness = (\S+)_wp", source)[1]) == min(ratios)

@@ -33,10 +33,11 @@ class UserError(Exception):
     """A request that cannot be met; the text is for the user."""
 
 
-def __getattr__(name: str) -> typing.Any:
-    if name in LATE:
-        return getattr(importlib.import_module(f"slideline_tools.{LATE[name]}"), name)
-    raise AttributeError(f"module 'slideline_tools' has no attribute '{name}'")
+if not typing.TYPE_CHECKING:  # checkers would take any name for one of the module
+    def __getattr__(name):
+        if name in LATE:
+            return getattr(importlib.import_module(f"slideline_tools.{LATE[name]}"), name)
+        raise AttributeError(f"module 'slideline_tools' has no attribute '{name}'")
 
 
 def __dir__() -> list[str]:
