@@ -103,9 +103,8 @@ contains
     integer :: own(2), k, start
 
     associate (tracking => memory%slave_tracking)
-      do k = 1, 2
-        own(k) = own_segment(contact, memory, ends(k))
-      end do
+      own = tracking%segment(ends)
+      if (memory%facing%is_used) call take_nearer_runs(contact, memory, ends, own)
       start = own(1)
       if (start == 0) start = own(2)
       if (start == 0) return
@@ -135,18 +134,20 @@ contains
     end associate
   end subroutine find_feet
 
-  !> Master segment that an end is paired with, 0: none.
-  pure function own_segment(contact, memory, node) result(own)
+  !> Master segments that ends which are not in contact are paired with, where runs meet.
+  pure subroutine take_nearer_runs(contact, memory, ends, own)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: node
-    integer :: own
+    integer, intent(in) :: ends(2)
+    integer, intent(inout) :: own(2) !! 0: none
+    integer :: k
 
-    own = memory%slave_tracking%segment(node)
-    if (own == 0 .or. memory%slave_tracking%status(node) == is_touching) return
-    own = nearer_run(contact%master, memory%places(:, memory%n_slave + 1:), &
-      memory%places(:, node), own)
-  end function own_segment
+    do k = 1, 2
+      if (own(k) == 0 .or. memory%slave_tracking%status(ends(k)) == is_touching) cycle
+      own(k) = nearer_run(contact%master, memory%places(:, memory%n_slave + 1:), &
+        memory%places(:, ends(k)), own(k))
+    end do
+  end subroutine take_nearer_runs
 
   !> Foot of an end that is not in contact, looked for from a master segment, or on the chain that
   !> it is paired with if that is another one and nearer: at a sharp corner one run ends and the
