@@ -49,6 +49,7 @@ module arguments_m
     character(:), allocatable :: refusal    !! why the cases can not run as they are asked for
     character(:), allocatable :: ignored    !! words of LS-DYNA that have no effect here
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
+    integer :: n_of_case = 0                !! as many of these, the first ones, are of COMMANDS
   end type arguments_t
 
 contains
@@ -67,6 +68,7 @@ contains
     arguments%ignored = ''
     mistakes = ''
     if (present(commands)) call read_commands(commands, arguments, mistakes)
+    arguments%n_of_case = size(arguments%overrides)
     do i = 1, command_argument_count()
       call get_command_argument(i, word, length=length)
       if (length > argument_length) then

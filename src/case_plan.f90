@@ -6,7 +6,11 @@ module case_plan_m
   use deck_choose_case_m, only : list_cases
   use deck_lines_m, only : deck_t
   use errors_m, only : error_t, raise
+  use freight_lists_m, only : pass, pass_text
+  use freight_m, only : freight_t, start_loading
+  use freight_sharing_m, only : spread_freight
   use log_m, only : to_text
+  use ranks_m, only : ranks_t, share_error
   implicit none
   private
   public :: plan_cases, case_name, join_failures
@@ -16,23 +20,31 @@ contains
   !> What each run is asked for. The words of a case (COMMANDS) come before those of the command
   !> line. Where the deck has no cases the word `case` is without effect. Mistakes of the deck are
   !> told by whoever reads all of it.
-  subroutine plan_cases(arguments, runs, deck, error)
+  subroutine plan_cases(arguments, ranks, runs, deck, error)
     type(arguments_t), intent(in) :: arguments
+    type(ranks_t), intent(in) :: ranks
     type(arguments_t), allocatable, intent(out) :: runs(:)
-    type(deck_t), allocatable, intent(out) :: deck !! that has been cut, if it had to be
+    type(deck_t), allocatable, intent(out) :: deck !! that has been cut, if it had to be; of
+                                                   !! several processes the first one has it
     type(error_t), allocatable, intent(out) :: error
     type(case_t), allocatable :: cases(:)
     character(:), allocatable :: refusal
+    logical :: found
     integer :: i, k, n_asked
     integer, allocatable :: chosen(:)
 
     runs = [arguments]
     if (.not. (arguments%all_cases .or. size(arguments%cases) > 0)) return
-    allocate (deck)
-    call list_cases(arguments%deck, deck, cases, error)
+    if (ranks%mine == 0) then
+      allocate (deck)
+      call list_cases(arguments%deck, deck, cases, error)
+      found = deck%cases%found
+    end if
+    call share_error(ranks, error)
     if (allocated(error)) return
-    if (arguments%all_cases .and. .not. deck%cases%found) &
-      runs(1)%ignored = trim(runs(1)%ignored//' case')
+    call hand_cases(ranks, found, cases)
+    if (arguments%all_cases .and. .not. found) &
+      runs(1)%ignored = trim(adjustl(runs(1)%ignored//' case'))
     chosen = arguments%cases
     ! A number that is none is a mistake, which the other cases tell.
     if (arguments%all_cases) chosen = pack([(cases(i)%id, i=1, size(cases))], &
@@ -55,6 +67,41 @@ contains
       if (allocated(refusal)) runs(i)%refusal = refusal
     end do
   end subroutine plan_cases
+
+  !> What the first process has found in the deck, for all: of each case what its run is asked for.
+  subroutine hand_cases(ranks, found, cases)
+    type(ranks_t), intent(in) :: ranks
+    logical, intent(inout) :: found
+    type(case_t), allocatable, intent(inout) :: cases(:)
+    type(freight_t) :: freight
+
+    if (ranks%n == 1) return
+    if (ranks%mine == 0) then
+      call pass_cases()
+      call start_loading(freight)
+      call pass_cases()
+    end if
+    call spread_freight(ranks, freight)
+    if (ranks%mine > 0) call pass_cases()
+
+  contains
+
+    subroutine pass_cases()
+      integer :: i, n
+
+      call pass(freight, found)
+      n = 0
+      if (allocated(cases)) n = size(cases)
+      call pass(freight, n)
+      if (freight%unloads) allocate (cases(n))
+      do i = 1, n
+        call pass(freight, cases(i)%id)
+        call pass_text(freight, cases(i)%job)
+        call pass_text(freight, cases(i)%commands)
+      end do
+    end subroutine pass_cases
+
+  end subroutine hand_cases
 
   !> The run of one case.
   subroutine ask_for(item, is_own_name, run)

@@ -33,8 +33,9 @@ contains
     integer :: i, n_failed, status
 
     has_ended = .false.
-    call plan_cases(arguments, runs, deck, error)
-    if (.not. allocated(error) .and. size(runs) > 1) call read_decks(runs, deck, error)
+    call plan_cases(arguments, ranks, runs, deck, error)
+    if (allocated(error)) return
+    if (ranks%mine == 0 .and. size(runs) > 1) call read_decks(runs, deck, error)
     call share_error(ranks, error)
     if (allocated(error)) return
     n_failed = 0
@@ -79,6 +80,7 @@ contains
     do i = 1, size(runs)
       request%path = runs(i)%deck
       request%overrides = runs(i)%overrides
+      request%n_of_case = runs(i)%n_of_case
       request%case = runs(i)%case
       call move_alloc(deck, request%deck)
       if (allocated(request%refusal)) deallocate (request%refusal)

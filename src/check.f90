@@ -17,6 +17,7 @@ module check_m
   use model_json_m, only : model_json
   use model_m, only : model_t
   use monitor_m, only : monitor_t
+  use ranks_m, only : ranks_t
   use renumber_m, only : renumber_model
   use screen_m, only : show
   use snapshot_filling_m, only : start_snapshot
@@ -36,10 +37,11 @@ contains
     type(arguments_t), allocatable :: runs(:)
     type(error_t), allocatable :: failures(:), failure
     type(deck_t), allocatable :: deck
+    type(ranks_t) :: alone !! the first of several processes checks
     character(:), allocatable :: findings, told, objects
     integer :: i
 
-    call plan_cases(arguments, runs, deck, error)
+    call plan_cases(arguments, alone, runs, deck, error)
     if (allocated(error)) then
       findings = ''
       call add_message('error', error%message, findings)
@@ -78,6 +80,7 @@ contains
 
     request%path = run%deck
     request%overrides = run%overrides
+    request%n_of_case = run%n_of_case
     request%case = run%case
     call move_alloc(deck, request%deck)
     if (allocated(run%refusal)) request%refusal = run%refusal

@@ -72,6 +72,7 @@ contains
 
     whole%path = arguments%deck
     whole%overrides = arguments%overrides
+    whole%n_of_case = arguments%n_of_case
     whole%case = arguments%case
     if (allocated(arguments%refusal)) whole%refusal = arguments%refusal
     call move_alloc(request%deck, whole%deck)

@@ -19,15 +19,19 @@ module run_m
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use go_on_m, only : take_up_deck
   use heap_m, only : give_back_memory
+  use inside_answers_m, only : answers_t
   use log_m, only : open_log, close_log, write_log, warn, to_text
   use model_m, only : model_t
+  use others_memory_m, only : others_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name
   use progress_m, only : show_end
-  use rank_memory_m, only : start_share, forget_others
+  use rank_memory_m, only : forget_others
+  use rank_model_m, only : hand_model, hand_others, start_share
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, leave_relaxation
   use renumber_m, only : renumber_model, forget_start
+  use restart_file_m, only : open_restart
   use restart_m, only : forget_files
   use restart_plan_m, only : restarts_t
   use restart_reading_m, only : take_up_state, take_up_results, check_rest, &
@@ -58,8 +62,8 @@ contains
     type(state_t) :: state
     type(monitor_t) :: monitor
     type(run_info_t) :: info
-    type(deck_request_t) :: request
     character(:), allocatable :: prefix
+    logical :: has_all   !! each process has all of the model
 
     has_ended = .false.
     monitor%ranks = ranks
@@ -73,24 +77,22 @@ contains
       //', source '//source_version//')')
     call write_log(monitor%log, 'command line: '//arguments%line)
     if (len(arguments%ignored) > 0) call warn(monitor%log, &
-      'of the command line have no effect here: '//arguments%ignored)
-    call move_alloc(deck, request%deck)
-    call make_request(arguments, monitor, request, error)
+      'without effect on the command line: '//arguments%ignored)
+    if (ranks%mine == 0) then
+      call read_model(arguments, deck, monitor, model, info%effective_deck, error)
+    else if (allocated(arguments%restart)) then
+      call open_restart(arguments%restart, monitor%restarts%source, error)
+      monitor%restarts%goes_on = .true.
+    end if
     call share_error(ranks, error)
     if (allocated(error)) return
-    request%is_told_elsewhere = ranks%mine > 0
-    call read_deck(request, contact_kinds, monitor%log, model, info%effective_deck, error)
-    if (.not. allocated(error)) call refuse_several(model, ranks, error)
-    call share_error(ranks, error)
-    if (allocated(error)) return
-    if (allocated(request%text)) deallocate (request%text)
-    if (arguments%no_dump) model%controls%output%dump_cycles = -1
+    call hand_model(monitor%ranks, model, has_all)
     if (arguments%timing == timing_by_interface) &
       call split_contact(monitor%clock, n_told(model%contacts))
-    call renumber_model(model)
-    prefix = join_path(arguments%directory, arguments%job)
+    prefix = ''
+    if (ranks%mine == 0) prefix = join_path(arguments%directory, arguments%job)
     if (monitor%restarts%goes_on) then
-      call take_up_run(model, prefix, state, monitor%restarts, error)
+      call take_up_run(has_all, model, prefix, monitor%ranks, state, monitor%restarts, error)
       call share_error(ranks, error)
       if (allocated(error)) return
     end if
@@ -98,7 +100,7 @@ contains
       model%controls%output%dump_cycles >= 0, monitor, error)
     call share_error(ranks, error)
     if (allocated(error)) return
-    call begin_run(arguments, prefix, model, info, state, monitor, error)
+    call begin_run(arguments, prefix, has_all, model, info, state, monitor, error)
     call lap(monitor%clock, phase_input)
     if (allocated(error)) then
       if (ranks%mine == 0) call give_up(model, prefix, state, monitor, error)
@@ -110,6 +112,27 @@ contains
     if (.not. allocated(error) .and. allocated(monitor%log%trouble)) &
       call move_alloc(monitor%log%trouble, error)
   end subroutine run_deck
+
+  !> The first process reads the deck, alone.
+  subroutine read_model(arguments, deck, monitor, model, effective, error)
+    type(arguments_t), intent(inout) :: arguments
+    type(deck_t), allocatable, intent(inout) :: deck
+    type(monitor_t), intent(inout) :: monitor
+    type(model_t), intent(out) :: model
+    character(:), allocatable, intent(out) :: effective
+    type(error_t), allocatable, intent(out) :: error
+    type(deck_request_t) :: request
+
+    call move_alloc(deck, request%deck)
+    call make_request(arguments, monitor, request, error)
+    if (allocated(error)) return
+    call read_deck(request, contact_kinds, monitor%log, model, effective, error)
+    if (.not. allocated(error)) call refuse_several(model, monitor%ranks, error)
+    if (allocated(error)) return
+    if (allocated(request%text)) deallocate (request%text)
+    if (arguments%no_dump) model%controls%output%dump_cycles = -1
+    call renumber_model(model)
+  end subroutine read_model
 
   !> Several processes share explicit runs alone.
   subroutine refuse_several(model, ranks, error)
@@ -142,17 +165,30 @@ contains
 
   !> The state of the restart file, and whether all that is read later can be; before any file of an
   !> earlier run is touched.
-  subroutine take_up_run(model, prefix, state, restarts, error)
+  subroutine take_up_run(has_all, model, prefix, ranks, state, restarts, error)
+    logical, intent(in) :: has_all
     type(model_t), intent(inout) :: model
     character(*), intent(in) :: prefix     !! directory and job name
+    type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
     type(restarts_t), intent(inout) :: restarts
     type(error_t), allocatable, intent(out) :: error
+    type(others_t), allocatable :: others
+    type(answers_t), allocatable :: answers
 
-    call take_up_state(restarts%source, model, state, error)
+    if (ranks%mine == 0) then
+      if (.not. has_all) allocate (answers)
+      call take_up_state(restarts%source, model, state, error, answers=answers)
+      if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
+      if (.not. allocated(error)) &
+        call take_up_results(restarts, model, prefix//'.vtkhdf', error)
+    end if
+    call share_error(ranks, error)
+    if (allocated(error)) return
+    if (.not. has_all) call hand_others(model, ranks, state, others, answers)
+    if (ranks%mine == 0) return
+    call take_up_state(restarts%source, model, state, error, others, answers)
     if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
-    if (.not. allocated(error)) &
-      call take_up_results(restarts, model, prefix//'.vtkhdf', error)
   end subroutine take_up_run
 
   !> What the deck layer has to know of the command line and of a restart file.
@@ -163,6 +199,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     request%overrides = arguments%overrides
+    request%n_of_case = arguments%n_of_case
     request%case = arguments%case
     if (allocated(arguments%refusal)) request%refusal = arguments%refusal
     if (allocated(arguments%restart)) then
@@ -198,9 +235,10 @@ contains
   end subroutine describe_run
 
   !> Open the files and make the state from which the run begins.
-  subroutine begin_run(arguments, prefix, model, info, state, monitor, error)
+  subroutine begin_run(arguments, prefix, has_all, model, info, state, monitor, error)
     type(arguments_t), intent(in) :: arguments
     character(*), intent(in) :: prefix
+    logical, intent(in) :: has_all
     type(model_t), intent(inout) :: model
     type(run_info_t), intent(inout) :: info
     type(state_t), intent(inout) :: state  !! where the run goes on it is known already
@@ -215,9 +253,9 @@ contains
     end if
     call share_error(monitor%ranks, error)
     if (allocated(error)) return
-    deallocate (info%effective_deck)
+    if (allocated(info%effective_deck)) deallocate (info%effective_deck)
     if (.not. monitor%restarts%goes_on) &
-      call start_share(model, monitor%ranks, monitor%log, state, error)
+      call start_share(has_all, model, monitor%ranks, monitor%log, state, error)
     if (allocated(error)) return
     call start_monitor(model, size(state%elements%history) > 0, monitor)
     if (model%controls%relaxation%is_on .and. .not. monitor%restarts%goes_on &

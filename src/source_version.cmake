@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: MIT
 # Writes ${output}: the state of the sources at build time as a Fortran module. Run at every build;
 # the file changes only when the answer does.
+# In an archive that git has made its commit stands in the next line (.gitattributes).
+set(archived "$Format:%H$")
 find_package(Git QUIET)
 set(source "unknown")
-if(GIT_FOUND)
+if(archived MATCHES "^[0-9a-f]+$")
+  string(SUBSTRING ${archived} 0 12 source)
+elseif(GIT_FOUND)
   execute_process(COMMAND ${GIT_EXECUTABLE} describe --always --abbrev=12
     WORKING_DIRECTORY ${folder} OUTPUT_VARIABLE answer OUTPUT_STRIP_TRAILING_WHITESPACE
     RESULT_VARIABLE trouble ERROR_QUIET)

@@ -46,8 +46,9 @@ status=$?
 
 result="$folder/$job.vtkhdf"
 if [ $status -ne 1 ] && [ -f "$result" ]; then
-  say "drawing $job.png"
-  if ! MPLBACKEND=Agg "$venv/bin/slideline-tools" plot "$result" --output "$folder/$job.png"; then
+  if [ ! -x "$venv/bin/slideline-tools" ]; then
+    complain "no picture without the Python tools; the results are complete"
+  elif say "drawing $job.png" && ! MPLBACKEND=Agg "$venv/bin/slideline-tools" plot "$result" --output "$folder/$job.png"; then
     complain "the picture could not be drawn; the results are complete"
   fi
   say "results are in $folder"

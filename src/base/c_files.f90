@@ -8,7 +8,7 @@ module c_files_m
   implicit none
   private
   public :: c_mkdir, c_rename, c_unlink, c_creat, c_write, c_close, c_fopen, c_fileno, c_fclose, &
-    c_fsync, c_flock, c_ftruncate, system_reason, system_failure
+    c_fsync, c_flock, c_ftruncate, c_memcpy, system_reason, system_failure
 
   interface
     !> POSIX mkdir; 0 on success.

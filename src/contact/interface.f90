@@ -23,6 +23,7 @@ module interface_m
   use friction_m, only : start_trial_slip, take_trial_motion, rub_places
   use first_search_m, only : start_slave_tracking, start_master_tracking, start_segments
   use gather_m, only : gather_places, take_force, keep_former
+  use inside_answers_m, only : answers_t
   use interference_m, only : begin_growth
   use kinds_m, only : wp
   use look_ahead_m, only : look_ahead, look_back
@@ -39,25 +40,27 @@ module interface_m
 contains
 
   !> Set up the memory of one interface at time zero and tell the log what was understood.
-  subroutine start_contact(contact, model, log, memory)
+  subroutine start_contact(contact, model, log, memory, answers)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     type(contact_state_t), intent(out) :: memory
+    type(answers_t), intent(inout), optional :: answers
     type(formulation_t) :: formulation
 
     formulation = formulation_of(contact)
     call prepare_contact(contact, model, memory)
-    call start_search(contact, model, memory)
+    call start_search(contact, model, memory, answers)
     if (is_tied(contact)) call start_ties(contact, model, memory)
     call log_contact(contact, model, formulation%kind, memory, log)
   end subroutine start_contact
 
   !> Who touches whom at time zero, between whole surfaces or between runs of them.
-  subroutine start_search(contact, model, memory)
+  subroutine start_search(contact, model, memory, answers)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
+    type(answers_t), intent(inout), optional :: answers
     type(contact_t), allocatable :: present
 
     if (has_outline(contact)) then
@@ -76,9 +79,10 @@ contains
     subroutine search_between(contact)
       type(contact_t), intent(in) :: contact
 
-      call start_slave_tracking(contact, model, memory)
-      if (memory%master_tracking%n > 0) call start_master_tracking(contact, model, memory)
-      if (allocated(memory%segments%status)) call start_segments(contact, model, memory)
+      call start_slave_tracking(contact, model, memory, answers)
+      if (memory%master_tracking%n > 0) &
+        call start_master_tracking(contact, model, memory, answers)
+      if (allocated(memory%segments%status)) call start_segments(contact, model, memory, answers)
     end subroutine search_between
 
   end subroutine start_search

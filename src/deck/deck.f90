@@ -14,7 +14,6 @@ module deck_m
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text
   use deck_choose_case_m, only : choose_case
   use deck_reader_m, only : read_blocks, cut_deck
-  use deck_source_m, only : forget_lines
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
   use deck_parameter_table_m, only : parameters_t
@@ -22,7 +21,7 @@ module deck_m
   use deck_overrides_m, only : overrides_t, read_overrides, override_text
   use deck_override_apply_m, only : apply_overrides
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
-  use deck_raw_m, only : raw_t, lost_t, start_raw
+  use deck_raw_m, only : raw_t, start_raw
   use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
   use deck_rubber_m, only : read_mooney_rivlin, read_blatz_ko
@@ -58,14 +57,12 @@ module deck_m
     character(:), allocatable :: path
     character(:), allocatable :: overrides(:) !! `name=value`, `name.interface=value`,
                                               !! `p:NAME=value`
+    integer :: n_of_case = 0                  !! as many of these, the first ones, are of COMMANDS
     character(:), allocatable :: text         !! of the deck where it is no file; `path` names it
                                               !! then
     type(deck_t), allocatable :: deck         !! where it has been read and cut; reading takes it
     integer :: case = 0                       !! of *CASE, 0: a deck without cases
     character(:), allocatable :: refusal      !! why the cases can not run as they are asked for
-    logical :: is_told_elsewhere = .false.    !! another process has the effective deck and tells
-                                              !! the findings: the text of the mesh goes as it is
-                                              !! read
   end type deck_request_t
 
 contains
@@ -77,8 +74,7 @@ contains
     type(contact_kind_t), intent(in) :: kinds(:)             !! contact types that exist
     type(log_t), intent(inout) :: log
     type(model_t), intent(out) :: model
-    character(:), allocatable, intent(out) :: effective      !! the deck as run; empty where another
-                                                             !! process has it
+    character(:), allocatable, intent(out) :: effective      !! the deck as run
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable, intent(out), optional :: findings !! all messages, see list_findings
     type(deck_t), allocatable :: deck
@@ -126,7 +122,7 @@ contains
       return
     end if
     if (allocated(request%overrides)) then
-      call read_overrides(request%overrides, deck, parameters, overrides)
+      call read_overrides(request%overrides, request%n_of_case, deck, parameters, overrides)
     else
       allocate (overrides%items(0))
     end if
@@ -136,10 +132,7 @@ contains
     raw%scale_given = len(override_text(overrides, 'TSSFAC', 0)) > 0
     raw%controls%title = ''
     do i = 1, deck%n_block
-      if (known(i) /= known_honoured) cycle
-      call read_block(deck, parameters, i, kinds, overrides, raw)
-      if (request%is_told_elsewhere .and. any(deck%blocks(i)%name == [character(13) :: 'NODE', &
-        'ELEMENT_SHELL'])) call forget_lines(deck, i)
+      if (known(i) == known_honoured) call read_block(deck, parameters, i, kinds, overrides, raw)
     end do
     call settle_friction(deck, overrides, raw)
     call apply_overrides(deck, overrides, raw, tail)
@@ -153,11 +146,7 @@ contains
     if (allocated(error)) return
     call echo_model(model, request%path, log)
     call forget_places(deck)
-    if (request%is_told_elsewhere) then
-      effective = ''
-    else
-      call write_effective(deck, parameters, tail, effective)
-    end if
+    call write_effective(deck, parameters, tail, effective)
   end subroutine interpret_deck
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
@@ -199,11 +188,11 @@ contains
         case (known_refused)
           call line_error(deck, block%keyword, reason//' not part of this version' &
             //meant(block%given))
-          call note_lost(block%given, raw%lost)
+          call note_lost(block%given, raw)
         case default
           call line_error(deck, block%keyword, 'is not a keyword that this version knows' &
             //meant(block%given))
-          call note_lost(block%given, raw%lost)
+          call note_lost(block%given, raw)
         end select
       end associate
     end do
@@ -218,19 +207,29 @@ contains
     if (len(text) > 0) text = '; did you mean *'//text//'?'
   end function meant
 
-  !> What a refused keyword would have defined.
-  pure subroutine note_lost(name, lost)
-    character(*), intent(in) :: name
-    type(lost_t), intent(inout) :: lost
+  !> What a refused keyword would have defined, by its name and by what that may have been meant
+  !> for.
+  subroutine note_lost(given, raw)
+    character(*), intent(in) :: given
+    type(raw_t), intent(inout) :: raw
+    character(:), allocatable :: name
+    integer :: i
 
-    lost%nodes = lost%nodes .or. index(name, 'NODE') == 1 .or. index(name, 'INCLUDE') == 1
-    lost%elements = lost%elements .or. index(name, 'ELEMENT') == 1
-    lost%parts = lost%parts .or. index(name, 'PART') == 1
-    lost%sections = lost%sections .or. index(name, 'SECTION') == 1
-    lost%materials = lost%materials .or. index(name, 'MAT') == 1
-    lost%equations = lost%equations .or. index(name, 'EOS') == 1
-    lost%curves = lost%curves .or. index(name, 'DEFINE') == 1
-    lost%sets = lost%sets .or. index(name, 'SET') == 1
+    name = trim(given)
+    do i = 1, 2
+      associate (lost => raw%lost)
+        lost%nodes = lost%nodes .or. index(name, 'NODE') == 1 .or. index(name, 'INCLUDE') == 1
+        lost%elements = lost%elements .or. index(name, 'ELEMENT') == 1
+        lost%parts = lost%parts .or. index(name, 'PART') == 1
+        lost%sections = lost%sections .or. index(name, 'SECTION') == 1
+        lost%materials = lost%materials .or. index(name, 'MAT') == 1
+        lost%equations = lost%equations .or. index(name, 'EOS') == 1
+        lost%curves = lost%curves .or. index(name, 'DEFINE') == 1
+        lost%sets = lost%sets .or. index(name, 'SET') == 1
+      end associate
+      raw%terminated = raw%terminated .or. name == 'CONTROL_TERMINATION'
+      name = trim(nearest_keyword(trim(given)))
+    end do
   end subroutine note_lost
 
   !> Read one block by its keyword.
@@ -245,7 +244,7 @@ contains
 
     call check_empty(deck, i, is_empty)
     if (is_empty) then
-      call note_lost(deck%blocks(i)%name, raw%lost)
+      call note_lost(deck%blocks(i)%name, raw)
       return
     end if
     select case (deck%blocks(i)%name)

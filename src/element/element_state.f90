@@ -1,55 +1,26 @@
 ! SPDX-License-Identifier: MIT
-!> Element state at time zero, lumped mass, and what the output asks of elements.
+!> Elements that leave the mesh, and what the output asks of elements.
 module element_state_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
-  use element_dispatch_m, only : point_count
   use erosion_state_m, only : erosion_state_t, stays, has_left, has_gone
   use layout_m, only : chunk_size, slot_part
   use material_dispatch_m, only : history_size, column_temperature, column_damage, &
     has_plastic_strain
-  use eos_pressure_m, only : n_eos_value
-  use law_pressure_m, only : n_law_value
   use model_m, only : model_t
-  use parts_m, only : hourglass_viscous, has_memory_of_heat, may_fail, gives_pressure
+  use parts_m, only : has_memory_of_heat
   use quad_full_m, only : has_mean_dilatation
   use quad_points_m, only : n_point, point_ratios
-  use round_chunk_m, only : n_round_reference
   use round_points_m, only : round_point_ratios
-  use round_state_m, only : fill_round_reference, add_round_masses, round_ratios
+  use round_state_m, only : round_ratios
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
-  public :: start_elements, lump_mass, element_stresses, element_plastic_strains, &
+  public :: start_erosion, element_stresses, element_plastic_strains, &
     element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone, &
     stress_of_slot, plastic_strain_of_slot
 
 contains
-
-  !> Allocate the streams and fill the reference shape. Elastic parts get no plastic history, parts
-  !> with viscous hourglass control no hourglass memory.
-  subroutine start_elements(model, elements, own)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(out) :: elements
-    integer, intent(in), optional :: own(2) !! first and last slot that are asked for, if not all
-    integer :: n_chunk, i_slot, asked(2)
-
-    asked = [1, model%layout%n_slot]
-    if (present(own)) asked = own
-    allocate (elements%reference(model%layout%n_slot, merge(n_round_reference, 6, model%is_round)))
-    allocate (elements%deviator(model%layout%n_slot, 3), source=0.0_wp)
-    ! Chunks of rigid parts come after these.
-    n_chunk = model%layout%tiles(size(model%layout%tiles))%last_chunk
-    allocate (elements%deviatoric_work(n_chunk), elements%hourglass_work(n_chunk), &
-      elements%viscous_work(n_chunk), source=0.0_wp)
-    allocate (elements%time_limit(n_chunk), elements%volume_limit(n_chunk), source=1.0_wp)
-    do i_slot = asked(1), asked(2)
-      call fill_reference(model, i_slot, elements%reference)
-    end do
-    if (model%is_round) call fill_round_reference(model, elements%reference)
-    call reserve_memories(model, elements)
-    if (model%erodes) call start_erosion(model, elements)
-  end subroutine start_elements
 
   !> What is known of elements that may leave the mesh.
   subroutine start_erosion(model, elements)
@@ -132,102 +103,6 @@ contains
     gone = allocated(elements%erosion)
     if (gone) gone = elements%erosion%status(slot) /= stays
   end function is_gone
-
-  !> Diagonals and h.X of one slot; padding is the first element of its chunk, much larger: it
-  !> divides by no zero and its stable step never counts.
-  subroutine fill_reference(model, i_slot, reference)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_slot
-    real(wp), intent(inout) :: reference(:, :)
-    real(wp), parameter :: much = 1.0e6_wp
-    real(wp) :: x(2, 4)
-
-    if (model%layout%slot_element(i_slot) == 0) then
-      reference(i_slot, :6) = much*reference(i_slot - mod(i_slot - 1, chunk_size), :6)
-      return
-    end if
-    x = model%mesh%coordinates(:, model%layout%slot_nodes(:, i_slot))
-    reference(i_slot, 1:2) = x(:, 3) - x(:, 1)
-    reference(i_slot, 3:4) = x(:, 4) - x(:, 2)
-    reference(i_slot, 5:6) = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
-  end subroutine fill_reference
-
-  !> Where each chunk's points, history and hourglass memory start.
-  subroutine reserve_memories(model, elements)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(inout) :: elements
-    integer :: i_chunk, n_history, n_hourglass, n_deviator, n_points, n_eos, n
-
-    allocate (elements%history_start(model%layout%n_chunk), &
-      elements%eos_start(model%layout%n_chunk), elements%hourglass_start(model%layout%n_chunk), &
-      elements%point_start(model%layout%n_chunk), source=0)
-    n_deviator = 0
-    n_history = 0
-    n_hourglass = 0
-    n_eos = 0
-    do i_chunk = 1, model%layout%n_chunk
-      associate (part => model%parts(model%layout%chunk_part(i_chunk)))
-        if (model%materials(part%material)%is_rigid) cycle
-        n_points = point_count(model%sections(part%section))
-        n = n_points*history_size(model%materials(part%material))
-        if (n > 0) elements%history_start(i_chunk) = n_history + 1
-        n_history = n_history + n*chunk_size
-        if (allocated(model%materials(part%material)%eos)) then
-          elements%eos_start(i_chunk) = n_eos + 1
-          n_eos = n_eos + merge(n_law_value, n_eos_value, &
-            gives_pressure(model%materials(part%material)))*chunk_size
-        end if
-        if (n_points > 1) then
-          elements%point_start(i_chunk) = n_deviator + 1
-          n_deviator = n_deviator + 3*n_points*chunk_size
-        else if (part%hourglass%form /= hourglass_viscous) then
-          elements%hourglass_start(i_chunk) = n_hourglass + 1
-          n_hourglass = n_hourglass + 2*chunk_size
-        end if
-      end associate
-    end do
-    allocate (elements%history(n_history), elements%hourglass_strain(n_hourglass), &
-      elements%point_deviator(n_deviator), elements%eos_state(n_eos), source=0.0_wp)
-    if (any(may_fail(model%materials(model%parts%material)))) allocate (elements%n_failed( &
-      model%layout%n_chunk), source=0)
-    do i_chunk = 1, model%layout%n_chunk
-      n = elements%eos_start(i_chunk)
-      if (n > 0) elements%eos_state(n:n + chunk_size - 1) = &
-        model%materials(model%parts(model%layout%chunk_part(i_chunk))%material)%eos%energy
-    end do
-  end subroutine reserve_memories
-
-  !> Lumped mass: a quarter of each quad, a third of each triangle to its nodes; in round bodies the
-  !> row sums of the consistent mass.
-  subroutine lump_mass(model, mass)
-    type(model_t), intent(in) :: model
-    real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of depth or per radian
-    real(wp) :: x(2, 4), area
-    integer :: i, corners
-
-    allocate (mass(model%mesh%n_node), source=0.0_wp)
-    if (allocated(model%conditions%lumped_masses)) then
-      do i = 1, size(model%conditions%lumped_masses)
-        associate (lump => model%conditions%lumped_masses(i))
-          mass(lump%node) = mass(lump%node) + lump%mass
-        end associate
-      end do
-    end if
-    if (model%is_round) then
-      call add_round_masses(model, mass)
-      return
-    end if
-    do i = 1, model%mesh%n_element
-      associate (nodes => model%mesh%element_nodes(:, i), &
-        material => model%materials(model%parts(model%mesh%element_part(i))%material))
-        x = model%mesh%coordinates(:, nodes)
-        area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
-          - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
-        corners = merge(3, 4, nodes(4) == nodes(3))
-        mass(nodes(:corners)) = mass(nodes(:corners)) + material%density*area/corners
-      end associate
-    end do
-  end subroutine lump_mass
 
   !> Cauchy stress of all elements in deck order: xx yy zz xy; yz and xz stay zero. The slots are
   !> walked, whose streams and nodes lie side by side.

@@ -15,15 +15,16 @@ module round_state_m
 
 contains
 
-  !> Sum of the radii, 1/V and density over nodal mass of all slots; padding is its chunk's first
+  !> Sum of the radii, 1/V and density over nodal mass of slots; padding is its chunk's first
   !> element, larger by the factor that its diagonals are.
-  subroutine fill_round_reference(model, reference)
+  subroutine fill_round_reference(model, from, to, reference)
     type(model_t), intent(in) :: model
+    integer, intent(in) :: from, to            !! slots
     real(wp), intent(inout) :: reference(:, :) !! (n_slot, n_round_reference)
     real(wp) :: x(2, 4), volumes(4), factor
     integer :: i, first
 
-    do i = 1, size(reference, 1)
+    do i = from, to
       first = i - mod(i - 1, chunk_size)
       if (model%layout%slot_element(i) == 0) then
         factor = maxval(abs(reference(i, 1:4)))/maxval(abs(reference(first, 1:4)))

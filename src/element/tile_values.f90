@@ -3,13 +3,13 @@
 !> changed any is seen by their bits, a process that takes the tile over takes them, and a step that
 !> only tries puts them back.
 module tile_values_m
-  use block_state_m, only : block_state_t
+  use block_state_m, only : block_state_t, stream_starts
   use freight_m, only : freight_t, start_loading, start_unloading, pass_reals, pass_integers
   use kinds_m, only : wp, long
   use layout_m, only : tile_t, first_slot, last_slot
   implicit none
   private
-  public :: take_values, put_values, pass_values, same_bits, stream_starts
+  public :: take_values, put_values, pass_values, same_bits
 
 contains
 
@@ -106,24 +106,6 @@ contains
     range = stream_starts([tile%first_chunk, tile%last_chunk + 1], chunk_start, size(stream))
     call pass_reals(range(2) - range(1), stream(range(1):range(2) - 1), freight)
   end subroutine pass_stream
-
-  !> Ranges of a stream that only some chunks have a part of.
-  pure function stream_starts(chunks, chunk_start, n_value) result(starts)
-    integer, intent(in) :: chunks(0:)      !! ranges of chunks
-    integer, intent(in) :: chunk_start(:)  !! where a chunk's part starts, 0 = none
-    integer, intent(in) :: n_value         !! length of the stream
-    integer :: starts(0:size(chunks) - 1)
-    integer :: rank, i
-
-    do rank = 0, size(chunks) - 1
-      starts(rank) = n_value + 1
-      do i = chunks(rank), size(chunk_start)
-        if (chunk_start(i) == 0) cycle
-        starts(rank) = chunk_start(i)
-        exit
-      end do
-    end do
-  end function stream_starts
 
   !> Whether two arrays of one length have the same bits: zeros have signs, and what is not a number
   !> equals nothing.

@@ -15,14 +15,21 @@ contains
   !> Displacement zero, velocity as the deck gives it; fixed degrees of freedom rest, and those
   !> with a prescribed velocity start with the curve's first value (a body that is driven from the
   !> start moves from the start).
-  subroutine start_motion(model, motion)
+  subroutine start_motion(model, known, motion)
     type(model_t), intent(in) :: model
+    integer, intent(in) :: known(:, :) !! (2, n) first and last node of those that are asked for
     real(wp), allocatable, intent(out) :: motion(:, :) !! (4, n_node)
     integer :: i
 
-    allocate (motion(4, model%mesh%n_node), source=0.0_wp)
+    allocate (motion(4, model%mesh%n_node))
     associate (conditions => model%conditions)
-      if (allocated(conditions%initial_velocity)) motion(3:4, :) = conditions%initial_velocity
+      do i = 1, size(known, 2)
+        associate (first => known(1, i), last => known(2, i))
+          motion(:, first:last) = 0.0_wp
+          if (allocated(conditions%initial_velocity)) &
+            motion(3:4, first:last) = conditions%initial_velocity(:, first:last)
+        end associate
+      end do
       do i = 1, size(conditions%fixed_nodes)
         motion(2 + conditions%fixed_directions(i), conditions%fixed_nodes(i)) = 0.0_wp
       end do

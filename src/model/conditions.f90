@@ -83,6 +83,7 @@ module conditions_m
   type :: conditions_t
     integer, allocatable :: fixed_nodes(:)      !! nodes with a fixed degree of freedom ...
     integer, allocatable :: fixed_directions(:) !! ... and its direction, each pair once
+    integer :: n_support = 0                    !! nodes with mass that are held, once renumbered
     type(prescribed_motion_t), allocatable :: motions(:)
     type(prescribed_motion_t), allocatable :: rigid_motions(:) !! of bodies: `node` is the body, 3
                                                                !! its turn

@@ -12,10 +12,11 @@ module renumber_m
   use node_order_m, only : order_nodes
   use rigids_m, only : mark_rigid_nodes
   use sorting_m, only : sorted_order
+  use supports_m, only : mark_supports
   use type_charts_m, only : may_change
   implicit none
   private
-  public :: renumber_model, mark_touched_nodes, forget_start
+  public :: renumber_model, mark_moved_nodes, forget_start
 
 contains
 
@@ -52,6 +53,7 @@ contains
     call build_local_numbers(model%mesh, model%layout)
     if (allocated(model%controls%output%cross_sections)) call renumber_sections(model, new_index)
     if (allocated(model%controls%ends)) call renumber_ends(new_index, model%controls%ends)
+    model%conditions%n_support = count(mark_supports(model))
     associate (output => model%controls%output)
       if (is_asked(output%histories(table_bndout))) call list_boundaries(model%conditions, &
         model%mesh%node_id, [model%parts(model%rigids%part)%id], output%boundaries)
@@ -71,13 +73,14 @@ contains
     if (model%controls%implicit%is_on .or. model%erodes .or. any(may_change(model%contacts))) &
       return
     deallocate (model%mesh%element_nodes, model%mesh%element_part)
-    if (.not. is_asked(model%controls%output%plot)) deallocate (model%mesh%deck_node)
+    if (.not. is_asked(model%controls%output%plot) .and. allocated(model%mesh%deck_node)) &
+      deallocate (model%mesh%deck_node)
   end subroutine forget_start
 
   !> Nodes that contact, loads, prescribed motion or walls touch.
   subroutine mark_touched_nodes(model, is_special)
     type(model_t), intent(in) :: model
-    logical, intent(inout) :: is_special(:) !! (n_node)
+    logical, intent(inout) :: is_special(:) !! (n_node), or of special ones alone
     integer :: i
 
     do i = 1, size(model%contacts)
@@ -115,6 +118,21 @@ contains
       is_special(model%walls(i)%nodes) = .true.
     end do
   end subroutine mark_touched_nodes
+
+  !> Special nodes that contact, loads, prescribed motion, walls or rigid bodies may move.
+  subroutine mark_moved_nodes(model, is_moved)
+    type(model_t), intent(in) :: model
+    logical, allocatable, intent(out) :: is_moved(:) !! (n_special)
+    integer :: i
+
+    allocate (is_moved(model%layout%n_special), source=.false.)
+    call mark_touched_nodes(model, is_moved)
+    do i = 1, size(model%rigids)
+      associate (nodes => model%rigids(i)%nodes)
+        is_moved(nodes(:count(nodes <= size(is_moved)))) = .true. ! they rise
+      end associate
+    end do
+  end subroutine mark_moved_nodes
 
   !> Nodes that may come to the surface of parts in contact as their elements leave the mesh.
   subroutine mark_hidden_nodes(model, is_special)

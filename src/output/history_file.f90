@@ -6,7 +6,6 @@ module history_file_m
   use errors_m, only : error_t
   use model_m, only : model_t
   use controls_m, only : is_asked
-  use supports_m, only : mark_supports
   use csv_table_m, only : csv_table_t, plan_table, open_table, check_table, flush_table, &
     close_table, column_names
   use dyna_text_m, only : open_dyna_text
@@ -132,7 +131,7 @@ contains
     case (each_wall)
       if (allocated(model%walls)) n = size(model%walls)
     case (each_support)
-      n = count(mark_supports(model))
+      n = model%conditions%n_support
     case (each_history_element)
       if (allocated(model%controls%output%history_elements)) &
         n = size(model%controls%output%history_elements)

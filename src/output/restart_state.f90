@@ -10,6 +10,7 @@ module restart_state_m
   use erosion_state_m, only : erosion_state_t
   use kinds_m, only : wp
   use log_m, only : to_text
+  use others_memory_m, only : others_t, forget_nodes, forget_slots
   use restart_contact_m, only : keep_contact
   use rigid_state_m, only : rigid_state_t
   use state_m, only : state_t
@@ -21,10 +22,11 @@ module restart_state_m
 contains
 
   !> Write or read the state. One that is read must have been started from the model, which gives
-  !> all arrays their shapes.
-  subroutine keep_state(archive, state)
+  !> all arrays their shapes. What other processes have is given up array by array.
+  subroutine keep_state(archive, state, others)
     type(archive_t), intent(inout) :: archive
     type(state_t), intent(inout) :: state
+    type(others_t), intent(in), optional :: others
     logical :: is_new
 
     call enter(archive, 'state')
@@ -33,21 +35,25 @@ contains
     call keep(archive, 'dt', state%dt)
     call keep(archive, 'dt_before', state%dt_before)
     call keep(archive, 'motion', state%motion)
+    if (present(others)) call forget_nodes(others, state)
     call keep(archive, 'mass', state%mass)
     call keep(archive, 'inverse_mass', state%inverse_mass)
+    if (present(others)) call forget_nodes(others, state)
     call keep(archive, 'contact_mass', state%contact_mass)
     call keep(archive, 'force_special', state%force_special)
     call keep(archive, 'external', state%external)
     call keep(archive, 'force_slots', state%force_slots)
     call keep(archive, 'internal_force', state%internal_force)
+    if (present(others)) call forget_nodes(others, state)
     call keep(archive, 'prescribed_velocity', state%prescribed_velocity)
     call keep(archive, 'former_velocity', state%former_velocity)
+    if (present(others)) call forget_nodes(others, state)
     call keep(archive, 'node_damping', state%node_damping)
     call keep(archive, 'former_damping', state%former_damping)
     call keep(archive, 'former_dt', state%former_dt)
     call keep(archive, 'acceleration', state%acceleration)
     call keep_fixed(archive, 'body_acceleration', state%body_acceleration)
-    call keep_elements(archive, 'elements', state%elements)
+    call keep_elements(archive, 'elements', state%elements, others)
     call keep_contacts(archive, 'contacts', state)
     call keep_estimates(archive, 'estimates', state)
     call keep_rigids(archive, 'rigids', state)
@@ -99,22 +105,28 @@ contains
   end subroutine keep_column
 
   !> Element history.
-  subroutine keep_elements(archive, name, elements)
+  subroutine keep_elements(archive, name, elements, others)
     type(archive_t), intent(inout) :: archive
     character(*), intent(in) :: name
     type(block_state_t), intent(inout) :: elements
+    type(others_t), intent(in), optional :: others
 
     call enter(archive, name)
     call keep(archive, 'reference', elements%reference)
+    if (present(others)) call forget_slots(others, elements)
     call keep(archive, 'deviator', elements%deviator)
+    if (present(others)) call forget_slots(others, elements)
     call keep_same(archive, 'point_start', elements%point_start)
     call keep(archive, 'point_deviator', elements%point_deviator)
+    if (present(others)) call forget_slots(others, elements)
     call keep_same(archive, 'history_start', elements%history_start)
     call keep(archive, 'history', elements%history)
+    if (present(others)) call forget_slots(others, elements)
     call keep_same(archive, 'eos_start', elements%eos_start)
     call keep(archive, 'eos_state', elements%eos_state)
     call keep_same(archive, 'hourglass_start', elements%hourglass_start)
     call keep(archive, 'hourglass_strain', elements%hourglass_strain)
+    if (present(others)) call forget_slots(others, elements)
     call keep(archive, 'deviatoric_work', elements%deviatoric_work)
     call keep(archive, 'hourglass_work', elements%hourglass_work)
     call keep(archive, 'viscous_work', elements%viscous_work)

@@ -3,12 +3,12 @@
 module contact_check_m
   use contact_log_m, only : report_initial_contact, report_released, report_tie_step, &
     report_broken
-  use contacts_m, only : is_tied, penalty_implicit
+  use contacts_m, only : contact_t, is_tied, penalty_factor, penalty_implicit
   use contact_judging_m, only : report_estimates
   use contact_overhang_m, only : report_overhang
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
     opening_step, binding_bound, fitting_scale
-  use controls_m, only : contact_step_free
+  use controls_m, only : controls_t, contact_step_free
   use kinds_m, only : wp
   use log_m, only : log_t, warn, write_log, to_text
   use model_m, only : model_t
@@ -19,11 +19,15 @@ module contact_check_m
 
   !> By which a step may miss the bound that its penalty was made for (PUNIT 3).
   real(wp), parameter :: round_off = 1.0e-12_wp
+  !> How far the bounds may lie below the step that eigenvalues allow: the least of the ratios in
+  !> doc/studies/stability.md.
+  real(wp), parameter :: sharpness = 0.78_wp
 
 contains
 
-  !> Initial penetrations, places just beyond ends of the master, and in explicit runs a warning
-  !> where the penalty demands a smaller step than `state%dt`.
+  !> Initial penetrations, places just beyond ends of the master, and in explicit runs where the
+  !> penalty demands a smaller step than `state%dt`: a warning, unless it is the built-in penalty
+  !> and the step need not be too large.
   subroutine report_contact_start(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -57,9 +61,40 @@ contains
       call report_overhang(model%contacts(i), model, state%contacts(i), log)
       if (.not. limits_step .or. model%contacts(i)%penalty_unit == penalty_implicit) cycle
       if (state%dt <= stable_step(element_limit, bounds(i))*(1.0_wp + round_off)) cycle
-      call warn_of_step(model, i, state%dt, element_limit, bounds(i), log)
+      if (has_usual_penalty(model%contacts(i), model%controls) .and. state%dt < element_limit &
+        .and. state%dt*sharpness <= stable_step(element_limit, bounds(i))) then
+        call tell_usual_step(model%contacts(i)%id, state%dt, element_limit, bounds(i), log)
+      else
+        call warn_of_step(model, i, state%dt, element_limit, bounds(i), log)
+      end if
     end do
   end subroutine report_contact_start
+
+  !> Whether nobody has made the penalty larger than the built-in one.
+  pure function has_usual_penalty(contact, controls) result(has)
+    type(contact_t), intent(in) :: contact
+    type(controls_t), intent(in) :: controls
+    logical :: has
+    type(controls_t) :: default
+
+    has = contact%penalty_unit == penalty_factor &
+      .and. max(contact%penalty, contact%master_penalty) <= 1.0_wp &
+      .and. controls%penalty_scale <= default%penalty_scale
+  end function has_usual_penalty
+
+  !> The line for such an interface.
+  subroutine tell_usual_step(id, dt, element_limit, bound, log)
+    integer, intent(in) :: id
+    real(wp), intent(in) :: dt, element_limit !! s
+    type(spring_bound_t), intent(in) :: bound
+    type(log_t), intent(inout) :: log
+
+    call write_log(log, 'interface '//to_text(id)//': the step '//to_text(dt)//' is above ' &
+      //to_text(stable_step(element_limit, bound))//', the bound of ' &
+      //binding_bound(element_limit, bound)//', by less than that may be too low for the ' &
+      //'built-in penalty; ECDT 2 of *CONTROL_CONTACT, or ' &
+      //to_text(fitting_scale(dt, element_limit, bound))//' times the penalty, keeps to it')
+  end subroutine tell_usual_step
 
   !> A step that leaves ties out of account, where it lies above what they bear.
   subroutine warn_of_free_ties(id, dt, limit, log)

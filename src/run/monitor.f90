@@ -9,7 +9,7 @@ module monitor_m
   use history_rows_m, only : append_rows
   use history_tables_m, only : history_tables, n_table, asked_or_states, asked_by_states
   use kinds_m, only : wp
-  use log_m, only : log_t
+  use log_m, only : log_t, write_log
   use model_m, only : model_t
   use output_schedule_m, only : schedule_t, start_schedule, is_active, is_due, &
     mark_written
@@ -67,10 +67,27 @@ contains
     end if
     call open_histories(monitor%histories, prefix, model, error)
     if (allocated(error)) return
+    call log_empty(model, monitor%log)
     if (monitor%has_plot) &
       call open_results(monitor%results, prefix//'.vtkhdf', model, run_info, &
         monitor%restarts%goes_on, error)
   end subroutine open_files
+
+  !> Histories that the deck asks for and the model has nothing for.
+  subroutine log_empty(model, log)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: names
+    integer :: k
+
+    names = ''
+    do k = 1, n_table
+      if (is_asked(model%controls%output%histories(k)) .and. .not. has_rows(model, k)) &
+        names = names//', '//trim(history_tables(k)%name)
+    end do
+    if (len(names) > 0) call write_log(log, 'no file, since the model has nothing for it: ' &
+      //names(3:))
+  end subroutine log_empty
 
   !> Schedules, progress lines and the snapshot.
   subroutine start_monitor(model, has_history, monitor)
@@ -82,7 +99,7 @@ contains
     call start_progress(monitor%progress, model%controls%end_time, &
       model%controls%output%status_interval)
     call plan_restarts(monitor%restarts, model%controls)
-    call start_snapshot(model, has_history, monitor%snapshot)
+    if (monitor%ranks%mine == 0) call start_snapshot(model, has_history, monitor%snapshot)
   end subroutine start_monitor
 
   !> Tables and schedules of a run that opens no files: what a restart file says of them can be

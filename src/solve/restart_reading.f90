@@ -7,10 +7,12 @@ module restart_reading_m
   use errors_m, only : error_t, raise, status_input
   use explicit_memory_m, only : check_steps
   use implicit_memory_m, only : check_memory
+  use inside_answers_m, only : answers_t
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, plan_outputs
+  use others_memory_m, only : others_t
   use outlines_m, only : resume_outlines
   use output_schedule_m, only : output_reach
   use progress_m, only : show_note
@@ -69,11 +71,13 @@ contains
   end subroutine take_up_results
 
   !> Read the state into one that is started from the model: that tells what the file must hold.
-  subroutine take_up_state(source, model, state, error)
+  subroutine take_up_state(source, model, state, error, others, answers)
     type(archive_t), intent(inout) :: source
     type(model_t), intent(inout) :: model  !! takes over the present contact types
     type(state_t), intent(out) :: state
     type(error_t), allocatable, intent(out) :: error
+    type(others_t), intent(inout), optional :: others !! what other processes have
+    type(answers_t), intent(inout), optional :: answers
     type(log_t) :: silence
     integer :: contact_types(n_told(model%contacts))
 
@@ -85,7 +89,7 @@ contains
       return
     end if
     silence%is_mute = .true.
-    call start_state(model, silence, state, error)
+    call start_state(model, silence, state, error, others, answers)
     if (allocated(error)) return
     if (model%controls%implicit%is_on) &
       allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
@@ -93,7 +97,7 @@ contains
       call keep_erosion_status(source, state%elements%erosion)
       if (.not. allocated(source%error)) call resume_outlines(model, state)
     end if
-    if (.not. allocated(source%error)) call keep_state(source, state)
+    if (.not. allocated(source%error)) call keep_state(source, state, others)
     if (.not. allocated(source%error)) call check_state(model, state, source)
     if (.not. allocated(source%error)) then
       call resume_contacts(model, state)

@@ -6,7 +6,7 @@ module block_state_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: block_state_t
+  public :: block_state_t, stream_starts
 
   !> Element history. The volumetric stress follows from the displacement, so only the deviator is
   !> stored: s_zz = -(s_xx + s_yy). Work and limits end with the last tile: rigid parts have none.
@@ -53,5 +53,25 @@ module block_state_m
                                                 !! last step
     type(erosion_state_t), allocatable :: erosion !! only where elements may leave the mesh
   end type block_state_t
+
+contains
+
+  !> Ranges of a stream that only some chunks have a part of.
+  pure function stream_starts(chunks, chunk_start, n_value) result(starts)
+    integer, intent(in) :: chunks(0:)      !! ranges of chunks
+    integer, intent(in) :: chunk_start(:)  !! where a chunk's part starts, 0 = none
+    integer, intent(in) :: n_value         !! length of the stream
+    integer :: starts(0:size(chunks) - 1)
+    integer :: rank, i
+
+    do rank = 0, size(chunks) - 1
+      starts(rank) = n_value + 1
+      do i = chunks(rank), size(chunk_start)
+        if (chunk_start(i) == 0) cycle
+        starts(rank) = chunk_start(i)
+        exit
+      end do
+    end do
+  end function stream_starts
 
 end module block_state_m

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What the clock inside the program costs: a scene with the laps on and off, interleaved. Run by hand.
+"""What the clock inside the program costs: a scene with readings on and off, interleaved. Run by hand.
 
 `clock_overhead.py PROGRAM [DECK] [--repeats N] [--word WORD ...]`; without DECK the collision at level 1, 25 slave nodes,
 one step of which is a few microseconds. Compares the processor time of timing=phase, timing=interface and timing=off (that of others on the
-machine does not count), the medians and the least of all repeats, and says how much of each contact phase is the clock: its laps times the cost of a lap.
+machine does not count), the medians and the least of all repeats, and says how much of each contact phase is the clock: its readings times the cost of one.
 """
 import argparse
 import pathlib
@@ -45,7 +45,7 @@ def report(runs):
     each = min(lap for _, lap, _ in runs["phase"])
     laps = sum(calls for name, (_, calls) in runs["phase"][0][0].items() if name != "total")
     extra = (statistics.median(totals["phase"]) - statistics.median(totals["off"])) / laps
-    lines.append(f"{laps} laps of {each:.1f} ns in a row; {1.0e9 * extra:.1f} ns each more processor time")
+    lines.append(f"{laps} readings of {each:.1f} ns in a row; {1.0e9 * extra:.1f} ns each more processor time")
     for name, (_, calls) in runs["phase"][0][0].items():
         if name.startswith("contact_") and calls:
             step = 1.0e9 * statistics.median(rows[name][0] for rows, _, _ in runs["phase"]) / calls

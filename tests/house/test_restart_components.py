@@ -77,7 +77,7 @@ KEPT = {
 #: types of src/state that hold no memory
 WITHOUT_MEMORY = {"contact_scratch_t", "piece_table_t", "snapshot_t", "interface_result_t", "part_result_t", "slave_result_t",
                   "wall_result_t", "rubbed_t", "element_result_t", "body_result_t", "section_result_t",
-                  "energies_t"}
+                  "energies_t", "others_t", "answers_t"}
 
 
 def types_of(path):
@@ -98,7 +98,7 @@ def types_of(path):
 def kept_names(path, before):
     """The components that the `keep...` calls of a file hand over under their own names."""
     text = " ".join(statement for _, statement in read_source(path).statements)
-    pairs = re.findall(r"call keep\w*\(archive, '(\w+)', (?:time, dt, |n_node, )?([^,]+?)(?:, is_new)?\)(?= |$)", text)
+    pairs = re.findall(r"call keep\w*\(archive, '(\w+)', (?:time, dt, |n_node, )?([^,]+?)(?:, is_new|, others)?\)(?= |$)", text)
     return {name for name, handed in pairs if handed == before + name}
 
 

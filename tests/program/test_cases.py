@@ -116,6 +116,8 @@ def test_words_that_are_refused(slideline, fast, words, told):
 def test_a_deck_without_cases(slideline):
     done = slideline("d=out", "case=1", deck=drop(end_time=0.002))
     assert done.returncode == 1 and "case= is asked for and the deck has no *CASE" in done.stderr
+    done = slideline("d=out", "case", deck=drop(end_time=0.002))
+    assert done.returncode == 0 and done.stderr == "warning: without effect on the command line: case\n"
 
 
 def test_commands_of_a_case(slideline, fast):
@@ -156,6 +158,19 @@ def test_words_of_every_case_are_told_at_once(slideline, fast, number, words):
         '"i=x.k" may not stand there: expected ncpu=, perthread= or an override')], done.stderr
     assert len([text for text in told if "CASEID" in text]) == (number == "  0")
     assert "*BOUNDARY_NONE: " in done.stderr
+
+
+def test_words_that_need_the_model_are_told_beside_wrong_ones(slideline, fast):
+    """Good words of COMMANDS change the deck that is judged, and what is wrong with them says where they stand."""
+    deck = cases_deck().replace("dt=5e-5 memory=20m", "ncpu=0 ctype=77 ctype.9=5 tfac=2 p:lwo=1")
+    deck = deck.replace("*PART\n", "*BOUNDARY_NONE\n*PART\n", 1)
+    done = slideline("case=101", "pen=1e9", "punit=8", deck=deck)
+    assert done.returncode == 1
+    for told in ('(COMMANDS): "ncpu=0 ctype=77 ctype.9=5 tfac=2 p:lwo=1" ncpu="0": expected', "p:LWO in COMMANDS of *CASE: the deck has no", '*BOUNDARY_NONE: ',
+                 '"ctype=77" in COMMANDS of *CASE is not a contact type', '"tfac=2" in COMMANDS of *CASE ',
+                 '"ctype.9=5" in COMMANDS of *CASE changes interface 9, which the deck does not have',
+                 '"punit=8" on the command line is not a unit of the penalty', "refused, 7 errors"):
+        assert done.stderr.count(told) == 1, done.stderr
 
 
 def test_a_name_for_several_cases_is_told_with_the_rest(slideline, check, fast):

@@ -79,7 +79,7 @@ def test_words_of_ls_dyna(slideline, tmp_path):
     words = ["o=d3hsp", "g=d3plot", "s=intfor", "f=d3thdt", "a=runrsf", "x=7", "x=8", "para=1", "case"]
     done = slideline("d=dyna", "d=nodump", "c=3600", "memory2=20m", "ncpu=-2", *words, deck=deck)
     assert done.returncode == 0, done.stderr
-    assert done.stderr == "warning: of the command line have no effect here: o= g= s= f= a= x= para= case\n"
+    assert done.stderr == "warning: without effect on the command line: o= g= s= f= a= x= para= case\n"
     assert "Warnings            = 1" in done.stdout
     assert slideline("d=own", "ncpu=2", deck=deck).returncode == 0
     names = {folder: {path.name for path in (tmp_path / folder).iterdir()} for folder in ("dyna", "own")}

@@ -36,6 +36,27 @@ def test_cards_without_effect_are_named(slideline, tmp_path, cards, words):
     assert said.count("warning: ") > 0
 
 
+@pytest.mark.parametrize("name, needed, card", [
+    ("ELOUT", "HISTORY_SHELL", "1"), ("NODFOR", "NODAL_FORCE_GROUP", "2"),
+    ("SECFORC", "CROSS_SECTION_SET", "5,,,5\n*SET_SHELL_LIST\n5\n1,2,3\n*SET_NODE_LIST\n5\n2,3")])
+def test_a_history_of_nothing_is_named(slideline, tmp_path, name, needed, card):
+    """A history without the keyword that says of what was nowhere told, and there was no file."""
+    told = f"*DATABASE_{name}: asks for a history and the deck has no *DATABASE_{needed}: no file is written"
+    cards = [f"*DATABASE_{name}\n1.0e-4"]
+    assert told in said_by(slideline, tmp_path, *cards)[1]
+    assert not (tmp_path / "out" / f"job.{name.lower()}.csv").exists()
+    status, said = said_by(slideline, tmp_path, *cards, f"*DATABASE_{needed}\n{card}")
+    assert status == 0 and "asks for a history" not in said, said
+    assert (tmp_path / "out" / f"job.{name.lower()}.csv").exists()
+
+
+def test_histories_that_the_model_has_nothing_for_are_named(slideline, tmp_path):
+    """No rigid body, no wall: no file, a line of the log and no warning."""
+    status, said = said_by(slideline, tmp_path, *(f"*DATABASE_{name}\n1.0e-4" for name in ("RBDOUT", "RWFORC", "SPCFORC")))
+    assert status == 0 and "\nno file, since the model has nothing for it: rwforc, rbdout\n" in said, said
+    assert "warning" not in said and (tmp_path / "out/job.spcforc.csv").exists()
+
+
 @pytest.mark.parametrize("law, stays", [
     ("*MAT_MOONEY-RIVLIN_RUBBER\n2,1000.0,0.49,3.0e5,1.0e5", True), ("*MAT_BLATZ-KO_RUBBER\n2,1000.0,7.0e5", True),
     ("*MAT_CRUSHABLE_FOAM\n2,1000.0,1.0e6,0.0,9,1.0e4\n*DEFINE_CURVE\n9,\n0.0,1.0e5\n0.9,1.0e6", True),

@@ -14,6 +14,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import time
 
 import h5py
@@ -24,6 +25,7 @@ from history_decks import busy_block
 from impact_decks import plates
 from meshes import Deck, grid
 from round_decks import rings
+from test_cases import cases_deck, fast  # noqa: F401 (a fixture)
 from test_chosen_type import twice
 from test_requests import wait_for
 from test_same_bits import anvil, everything
@@ -92,6 +94,12 @@ def ended():
     """A row for every history, and a rigid body that ends the run."""
     return busy_block(fine=4).add("*TERMINATION_BODY", (2, 2, 1.0, -0.004)).text()
 
+
+#: A program in between that says how much memory the process has taken at most, in kB.
+PEAK = """import os, resource, subprocess, sys
+status = subprocess.call(sys.argv[1:])
+print("peak", os.environ["OMPI_COMM_WORLD_RANK"], resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+sys.exit(status)"""
 
 #: scene -> (deck, cycles, processes, threads, words)
 SCENES = {
@@ -255,6 +263,43 @@ def test_a_disk_that_takes_no_more_ends_all_processes(tmp_path):
     limited = ["sh", "-c", "ulimit -f 300; trap '' XFSZ; exec \"$@\"", "sh", PROGRAM]
     said = run(tmp_path, 2, "i=job.k", "d=full", program=limited, status=3).stderr
     assert said.count("full/job.") == 1, said
+
+
+#: All but the first process run in a folder of their own, where there is nothing.
+FIRST_ALONE = ["sh", "-c", 'test "$OMPI_COMM_WORLD_RANK" = 0 || { mkdir -p "aside$OMPI_COMM_WORLD_RANK" && '
+               'cd "aside$OMPI_COMM_WORLD_RANK"; }; exec "$@"', "sh", PROGRAM]
+
+
+@pytest.mark.usefixtures("fast")
+def test_the_first_process_alone_reads_the_deck(tmp_path):
+    """Its cases, its include files and its mistakes as well."""
+    (tmp_path / "job.k").write_text(cases_deck(), encoding="ascii")
+    run(tmp_path, 1, "i=job.k", "d=one", "case")
+    told = run(tmp_path, 3, "i=job.k", "d=several", "case", program=FIRST_ALONE)
+    assert_same(tmp_path / "one", tmp_path / "several")
+    assert told.stdout.count("N o r m a l") == told.stdout.count("\ncase ") + 1 == 3
+    (tmp_path / "bad.k").write_text(cases_deck().replace("fast.inc", "slow.inc"), encoding="ascii")
+    said = run(tmp_path, 3, "i=bad.k", "case", program=FIRST_ALONE, status=1).stderr
+    assert said.count('*INCLUDE: the file "slow.inc" was not found') == 1, said
+    assert len([*tmp_path.glob("aside?")]) == 2 and not [*tmp_path.glob("aside?/*")]
+
+
+def test_a_process_that_is_not_the_first_never_has_the_mesh(tmp_path):
+    """Its peak, an element of the model: a quarter of some 220 bytes and what all know of nodes between tiles. Nodes, elements
+    and slots alone would be 80 more, at whatever number of processes."""
+    peaks = []
+    for n in (10, 300):
+        deck = Deck("a square").control(1.0)
+        deck.part(1).elastic(1000.0, 1.0e6, 0.3)
+        deck.mesh(*grid(n, n, 1.0, 1.0))
+        text = with_cycles(deck.output(plot=1.0, glstat=1.0).text(), 3)
+        (tmp_path / "job.k").write_text(text, encoding="ascii")
+        told = run(tmp_path, 4, "i=job.k", f"d=square{n}", program=[sys.executable, "-c", PEAK, PROGRAM])
+        peaks.append({int(rank): int(size) for rank, size in re.findall(r"peak (\d) (\d+)", told.stdout)})
+    assert all(len(found) == 4 for found in peaks)
+    for rank in (1, 2, 3):
+        assert (peaks[1][rank] - peaks[0][rank]) * 1024 / 300**2 < 110, peaks
+    assert (peaks[1][0] - peaks[0][0]) * 1024 / 300**2 > 200, peaks
 
 
 @contextlib.contextmanager

@@ -139,6 +139,20 @@ def test_implicit_press_is_static(results):
     assert force == pytest.approx(force[-1] * table(folder, "rcforc", side="slave")["time"], rel=1e-3)
 
 
+def test_step_and_penalty_by_default_bring_no_warning(exe, decks, tmp_path):
+    """The bounds may be that much too low; a penalty that somebody chose is warned of."""
+    def said(name, *words):
+        done = subprocess.run([exe, f"i={decks / f'stock_{name}.k'}", f"d={tmp_path}", "jobid=job", "quiet=1", "tssfac=0.9",
+                               *words], capture_output=True, text=True, timeout=120)
+        assert done.returncode == 0, done.stderr
+        return done.stderr.count("demands a time step"), (tmp_path / "job.log").read_text().count("for the built-in penalty")
+
+    for name, n in (("impact", 1), ("contacts", 5), ("includes", 1)):
+        assert said(name) == (0, n)
+    assert said("impact", "pen=1.001") == (1, 0)
+    assert said("impact", "pen=0.5") == (0, 0)
+
+
 def test_titles_are_no_cards(results):
     folder = results("titles")
     log = (folder / "job.log").read_text()

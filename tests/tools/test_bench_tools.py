@@ -160,9 +160,9 @@ def test_page_of_speed_judges_the_goals(tmp_path):
     assert "elastic, 4000 to 100 000 elements, step over K, the largest: **2.50**" in text
     kept = [line.endswith("kept") for line in text.splitlines() if "step over K" in line and "**" in line]
     assert kept == [True, False]
-    assert "type 1, 1000 slave nodes, K per slave node: **1.00**, goal at most 4.3: kept" in text
-    assert "type 3, 1000 slave nodes, K per contact point: **3.00**, goal at most 2.5: missed" in text
-    assert "type 3, 20 slave nodes (20 points), microseconds a step: **0.24**, goal at most 1: kept; 60 K\n" in text
+    assert "type 3, 1000 to 1000 slave nodes, K per contact point, the most (at 1000 slave nodes): **3.00**, goal at most 6.4: kept" in text
+    assert "type 7, 1000 to 1000 slave nodes, K per contact point, the most (at 1000 slave nodes): **7.00**, goal at most 6.4: missed" in text
+    assert "type 3, 20 slave nodes (20 points), K a step: **60.00**, goal at most 455: kept\n" in text
     assert "Here 4.00 ns." in text and "Here 12.00 ns = 3.00 K" in text
     assert "element routine over K: **3.00**, goal at most 2: missed" in text
     assert "| yardstick | 96 | 45.6 | 1.00 |\n| element routine | 64 | 91.3 | 2.00 |" in text

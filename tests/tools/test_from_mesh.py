@@ -41,9 +41,9 @@ def test_groups_become_parts_and_sets(tmp_path, capsys):
     text = path.with_suffix(".k").read_text()
     shown = capsys.readouterr().out
     assert "part 1: lower, 2 elements" in shown and "part 2: upper, 2 elements" in shown
-    assert "set 1: lower_top, 2 edges" in shown and "set 4: corner, 1 nodes" in shown
-    assert "1 points of no triangle or quad left out" in shown
-    assert "1 faces were walked clockwise and are turned" in shown
+    assert "set 1: lower_top, 2 edges" in shown and shown.startswith("wrote ") and "set 4: corner, 1 node\n" in shown
+    assert "1 point of no triangle or quad left out" in shown
+    assert "1 face walked clockwise and turned" in shown
     assert text.count("*SET_SEGMENT_TITLE") == 3 and text.count("*SET_NODE_LIST_TITLE") == 4
     assert cli.main(["from-mesh", str(path)]) == 2, "a deck that is there is not written over unasked"
 

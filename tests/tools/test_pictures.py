@@ -9,6 +9,7 @@ from PIL import Image
 
 from slideline_tools import plots
 from slideline_tools.fields import default_field, scalar_field
+from slideline_tools.report import charts
 from slideline_tools.results import ResultsError, read
 
 
@@ -85,6 +86,28 @@ def test_two_panels_in_the_report_picture(results_file):
         "energy", "contact force in y"]
     with pytest.raises(ResultsError):
         plots.report_figure(results, state="9")
+
+
+def test_a_flat_model_has_room_for_its_labels(results_file):
+    """The label of x was cut in two where a flat mesh has its y in thousandths."""
+    for states in (["-1"], ["1", "-1"]):
+        figure = plots.field_figure(read(results_file), "mises", states, zoom=(0.0, 0.036, -0.006, 0.003))
+        figure.canvas.draw()
+        for axes in figure.axes[:len(states)]:
+            assert axes.xaxis.label.get_window_extent().y0 > 0.0
+            assert axes.yaxis.get_offset_text().get_window_extent().y1 <= axes.title.get_window_extent().y0 + 2.0
+        plots.plt.close(figure)
+
+
+def test_pictures_and_reports_write_powers_alike(results_file):
+    """Pictures had a cross and an exponent, reports the E of a number."""
+    with plots.plt.rc_context(plots.STYLE):
+        figures = [charts.lines([("", np.arange(3.0), 1.0e8 * np.arange(3.0))], "pressure"),
+                   plots.field_figure(read(results_file), "mises", zoom=(0.0, 0.036, -0.006, 0.003))]
+    for figure in figures:
+        figure.canvas.draw()
+        assert "times" in figure.axes[0].yaxis.get_offset_text().get_text()
+        plots.plt.close(figure)
 
 
 def test_animation(tmp_path, tool, results_file):

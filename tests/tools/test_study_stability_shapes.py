@@ -7,7 +7,7 @@ import pytest
 
 from slideline_tools.studies.framework.job import Job, Options
 from slideline_tools.studies.stability_shapes import study as shapes
-from slideline_tools.studies.stability_shapes.page import draw_shapes, mesh_text
+from slideline_tools.studies.stability_shapes.page import draw_shapes, mesh_text, overhang_text, shape_text
 from slideline_tools.studies.stability_shapes.study import Case, deck_of, grids_of
 
 
@@ -91,6 +91,24 @@ def test_runs_and_page(slideline, tmp_path, sweep, value, ctype, verdict):
     shapes.page([row], tmp_path / "doc")
     text = (tmp_path / "doc/studies/stability_shapes.md").read_text()
     assert ("No cell failed." in text) == (verdict == "stable")
+
+
+def test_words_on_shapes_and_overhangs_follow_the_figures():
+    """While contact made energy there the page said that places beyond an end fail; they went on failing in its words."""
+    rows = [{"sweep": "overhang", "type": ctype, "value": value, "verdict": "stable", "created": created}
+            for ctype, value, created in ((1, 0.02, 0.0137), (2, 1.1, 0.0339), (5, 1.1, 0.003))]
+    rows += [{"sweep": "tilt", "type": 5, "value": value, "verdict": "stable"} for value in (0.1, 45.0)]
+    text = overhang_text(rows)
+    assert "Here all 3 cells are stable" in text and "at most 3.4 % of the energy (2 NTS-AR, overhang 1.1)" in text
+    assert "SRCH a tenth" not in text and "failure" not in text
+    assert shape_text(rows) == "- *Shapes*: a corner first at 0.1 to 45 degrees: all 2 cells are stable."
+    rows[0].update(verdict="blown up", created=0.7)
+    rows += [{"sweep": "overhang_srch", "type": 1, "value": 0.02, "verdict": "stable", "created": 0.001},
+             {"sweep": "ratio", "type": 1, "value": 8.0, "verdict": "locked"}]
+    text = overhang_text(rows)
+    assert "Here 1 of 3 cells are not stable" in text and "at most 70 % of the energy (1 NTS, overhang 0.02)" in text
+    assert "(*overhang, SRCH a tenth of its default*) it is at most 0.1 %." in text
+    assert shape_text(rows).endswith("a corner first at 0.1 to 45 degrees: 1 of 3 cells are not stable.")
 
 
 def test_picture_has_one_panel_with_what_fails():

@@ -14,6 +14,10 @@ import sys
 import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+
+from slideline_tools.prose import CELL  # noqa: E402
+
 HEAD = """# Verification
 
 No expected value comes from this program: closed forms, conservation laws, symmetry, differences, other programs and
@@ -47,21 +51,36 @@ def cell(text):
     return text.replace("|", "\\|").replace("\n", " ")
 
 
+def named(rows):
+    """Lines of a table from rows of a name and what follows it. A name too long for a cell has what stands before its last
+    colon in a row of its own, once where it is that of several rows."""
+    lines, scene = [], ""
+    for name, rest in rows:
+        if len(name) > CELL and ": " in name:
+            head, name = name.rsplit(": ", 1)
+            if head != scene:
+                lines.append(f"| {head}: |{' |' * (rest.count(' | ') + 1)}")
+            name, scene = f"... {name}", head
+        else:
+            scene = ""
+        lines.append(f"| {name} | {rest} |")
+    return lines
+
+
 def case_page(report):
     """All checks of a case."""
     lines = [f"# {report['case']}\n",
              f"[What the case is](../../tests/verification/{report['case']}/README.md).\n{CASE_HEAD}",
              "| quantity | expected | found | error | tolerance | kind | verdict |",
              "|---|---|---|---|---|---|---|"]
-    for check in report["checks"]:
-        lines.append(f"| {cell(check['quantity'])} | {number(check['expected'])} | "
-                     f"{number(check['found'])} | {check['error']:.2g} | "
-                     f"{check['tolerance']:.2g} | {check['kind']} | "
-                     f"{'pass' if check['passed'] else 'FAIL'} |")
+    lines += named((cell(check["quantity"]),
+                    f"{number(check['expected'])} | {number(check['found'])} | {check['error']:.2g} | "
+                    f"{check['tolerance']:.2g} | {check['kind']} | {'pass' if check['passed'] else 'FAIL'}")
+                   for check in report["checks"])
     if report["reported"]:
         lines += ["\nReported, not judged:\n", "| quantity | found | note |", "|---|---|---|"]
-        lines += [f"| {cell(entry['quantity'])} | {number(entry['found'])} | "
-                  f"{cell(entry['note'])} |" for entry in report["reported"]]
+        lines += named((cell(entry["quantity"]), f"{number(entry['found'])} | {cell(entry['note'])}")
+                       for entry in report["reported"])
     if report["problem"]:
         lines.append("\nThe case stopped before its end.")
     return lines
@@ -73,7 +92,7 @@ def coverage(reports):
     if not few:
         return "All were run in full (`run_case.py --full`); CI takes covering designs."
     which = "All" if len(few) == len(reports) else ", ".join(few)
-    return f"Run with covering designs, as in CI, not in full: {which}."
+    return f"{which} were run with covering designs, as in CI, not in full."
 
 
 def by_subject(reports):

@@ -7,13 +7,16 @@ part. Materials, contact and times are for the user to fill in: the skeleton say
 """
 from __future__ import annotations
 
+import contextlib
 import dataclasses
+import io
 import pathlib
 
 import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.decks import Deck
+from slideline_tools.names import counted
 
 FACES = {"triangle": 3, "quad": 4}
 #: cells of a plane mesh of the first order
@@ -41,7 +44,8 @@ def read(path) -> PlaneMesh:
     if not pathlib.Path(path).is_file():
         raise UserError(f"{path}: no such file")
     try:
-        mesh = meshio.read(path)
+        with contextlib.redirect_stdout(io.StringIO()):  # meshio says an empty line of some files
+            mesh = meshio.read(path)
     except (Exception, SystemExit) as trouble:  # meshio ends the interpreter on some files
         raise UserError(f"{path}: meshio cannot read it: {trouble}") from None
     check(path, mesh)
@@ -89,7 +93,7 @@ def gather(mesh) -> PlaneMesh:
     points = mesh.points[used, :2]
     result = PlaneMesh(points, {}, {}, {}, [])
     if len(used) < len(mesh.points):
-        result.notes.append(f"{len(mesh.points) - len(used)} points of no triangle or quad left out")
+        result.notes.append(f"{counted(len(mesh.points) - len(used), 'point')} of no triangle or quad left out")
     lines: dict[str, list] = {}
     numbers = mesh.cell_data.get("gmsh:physical")
     turned = 0
@@ -110,7 +114,7 @@ def gather(mesh) -> PlaneMesh:
                 name = names.get((0, int(group)), f"group {group}")
                 result.nodes[name] = np.append(result.nodes.get(name, np.zeros(0, dtype=int)), row)
     if turned:
-        result.notes.append(f"{turned} faces were walked clockwise and are turned")
+        result.notes.append(f"{counted(turned, 'face')} walked clockwise and turned")
     for name, rows in lines.items():
         result.lines[name] = np.array(rows)
     take_point_sets(mesh, place, result)
@@ -141,8 +145,9 @@ def deck_of(mesh: PlaneMesh, title: str) -> Deck:
     deck.keyword("CONTROL_TERMINATION").card("endtim", 1.0)
     deck.keyword("DATABASE_BINARY_D3PLOT").card("dt", 0.1)
     deck.keyword("DATABASE_GLSTAT").card("dt", 0.01)
-    deck.block("Plane strain (ELFORM 13; 15: axisymmetric about x = 0), one point, and a steel for each part.")
-    deck.keyword("SECTION_SHELL").card("secid elform shrf nip", 1, 13, 1.0, 1)
+    deck.block("Plane strain (ELFORM 13; 15: axisymmetric about x = 0), one point (implicit runs: four; NIP 1 and 4 "
+               "say which), and a steel for each part.")
+    deck.keyword("SECTION_SHELL").card("secid elform shrf nip", 1, 13, 1.0, None)
     for pid, name in enumerate(mesh.parts, start=1):
         deck.keyword("PART", heading(name)).card("pid secid mid", pid, 1, pid)
         deck.keyword("MAT_ELASTIC").card("mid ro e pr", pid, 7850.0, 2.1e11, 0.3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What to say of a name that does not exist, and objects in one line."""
+"""What to say of a name that does not exist, objects in one line, and numbers of things."""
 from __future__ import annotations
 
 import difflib
@@ -28,3 +28,8 @@ def one_line(words: str) -> str:
     """Words in angle brackets that fit a line."""
     words = " ".join(words.split())
     return f"<{words}>" if len(words) <= LINE - 2 else f"<{words[:LINE - 5]}...>"
+
+
+def counted(count: int, what: str) -> str:
+    """A number of things: `1 node`, `2 nodes`."""
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"

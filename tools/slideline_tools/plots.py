@@ -175,7 +175,7 @@ def field_figure(results, name=None, states=("-1",), scale=1.0, zoom=None):
         plt.close(scratch)
         height = panel_height(zoom, PAGE_WIDTH - 1.9)
         figure, panels = plt.subplots(len(states), 1, squeeze=False, layout="constrained",
-                                      figsize=(PAGE_WIDTH, (height + 0.7) * len(states) + 0.2))
+                                      figsize=(PAGE_WIDTH, (height + 0.95) * len(states) + 0.2))
         limits = field.limits(states)
         for axes, state in zip(panels[:, 0], states):
             artist = field_panel(axes, results, field, state, scale, limits, zoom)

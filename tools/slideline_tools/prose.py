@@ -11,7 +11,7 @@ import sys
 
 LONGEST = 160  # columns of a line of prose; longer ones are broken
 WIDTH = 120  # where they are broken
-CELL = 120  # characters of a cell of a table
+CELL = 119  # characters of a cell of a table
 
 FENCE = re.compile(r"\s*(```|~~~|\$\$)")
 ITEM = re.compile(r"(\s*)([-*+]|\d+[.)])\s+")

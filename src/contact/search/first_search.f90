@@ -12,6 +12,7 @@ module first_search_m
   use contacts_m, only : contact_t, is_tied
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
   use geometry_m, only : closest_distance
+  use inside_answers_m, only : answers_t
   use kinds_m, only : wp
   use model_m, only : model_t
   use self_search_m, only : find_nearest_other
@@ -59,31 +60,33 @@ contains
   end subroutine allocate_master_tracking
 
   !> Follow the slave nodes, or the spots of slave segments, over the master chain.
-  subroutine start_slave_tracking(contact, model, memory)
+  subroutine start_slave_tracking(contact, model, memory, answers)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
+    type(answers_t), intent(inout), optional :: answers
 
     associate (tracking => memory%slave_tracking, chain => memory%places(:, memory%n_slave + 1:))
       if (allocated(memory%spots)) then
         call start_tracking(tracking, contact, model, contact%slave, contact%master, memory%spots, &
-          chain, list_owners(contact%slave, size(memory%spot_xi)))
+          chain, list_owners(contact%slave, size(memory%spot_xi)), answers)
       else
         call start_tracking(tracking, contact, model, contact%slave, contact%master, &
-          memory%places(:, :memory%n_slave), chain, list_owners(contact%slave, 0))
+          memory%places(:, :memory%n_slave), chain, list_owners(contact%slave, 0), answers)
       end if
     end associate
   end subroutine start_slave_tracking
 
   !> Follow the master nodes over the slave chain.
-  subroutine start_master_tracking(contact, model, memory)
+  subroutine start_master_tracking(contact, model, memory, answers)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
+    type(answers_t), intent(inout), optional :: answers
 
     call start_tracking(memory%master_tracking, contact, model, contact%master, contact%slave, &
       memory%places(:, memory%n_slave + 1:), memory%places(:, :memory%n_slave), &
-      list_owners(contact%master, 0))
+      list_owners(contact%master, 0), answers)
   end subroutine start_master_tracking
 
   !> Memory of slave segments.
@@ -97,22 +100,25 @@ contains
 
   !> Slave segments with a master node deep inside the body behind them are in contact from the
   !> start.
-  subroutine start_segments(contact, model, memory)
+  subroutine start_segments(contact, model, memory, answers)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
+    type(answers_t), intent(inout), optional :: answers
     type(element_finder_t) :: finder
     type(tracking_t) :: scratch !! for its grid
+    logical :: inside
     integer :: i, segment
 
     if (contact%birth > 0.0_wp) return
-    call start_finder(model, contact%slave%segment_element, finder)
+    call begin_asking(model, contact%slave%segment_element, finder, answers)
     call allocate_tracking(scratch, 0, contact%slave%n_segment)
     call fill_grid(scratch%grid, contact%slave, memory%places(:, :memory%n_slave), 0.0_wp)
     do i = 1, contact%master%n_node
       associate (node => contact%master%nodes(i))
-        if (.not. is_inside_body(finder, model, model%mesh%coordinates(:, node), [node])) cycle
+        call ask_inside(finder, model, model%mesh%coordinates(:, node), [node], inside, answers)
       end associate
+      if (.not. inside) cycle
       if (contact%is_self) then
         segment = nearest_other(memory%slave_tracking, contact%slave, &
           memory%places(:, :memory%n_slave), memory%places(:, :memory%n_slave), i)
@@ -126,7 +132,7 @@ contains
   end subroutine start_segments
 
   !> Track spots of the surface `own` over the chain `surface`, at time zero.
-  subroutine start_tracking(tracking, contact, model, own, surface, spots, chain, owners)
+  subroutine start_tracking(tracking, contact, model, own, surface, spots, chain, owners, answers)
     type(tracking_t), intent(inout) :: tracking
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -134,13 +140,14 @@ contains
     real(wp), intent(in), contiguous :: spots(:, :) !! (4, n_spot)
     real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node of `surface`)
     integer, intent(in) :: owners(:, :)             !! (2, n_spot) segments of `own` at a spot
+    type(answers_t), intent(inout), optional :: answers
     integer :: n_ignored
 
     if (contact%birth > 0.0_wp) return
     n_ignored = 0
     call update_tracking(tracking, surface, chain, spots, 0.0_wp, .false., n_ignored)
     call catch_edges(tracking, surface, chain, spots)
-    call catch_deep_spots(tracking, model, own, surface, spots, chain, owners)
+    call catch_deep_spots(tracking, model, own, surface, spots, chain, owners, answers)
     call list_touching(tracking)
     tracking%next_wake = -huge(1.0_wp)
   end subroutine start_tracking
@@ -228,22 +235,25 @@ contains
   end subroutine catch_edges
 
   !> Spots that lie inside an element behind the chain, deeper than a first contact may be.
-  subroutine catch_deep_spots(tracking, model, own, surface, spots, chain, owners)
+  subroutine catch_deep_spots(tracking, model, own, surface, spots, chain, owners, answers)
     type(tracking_t), intent(inout) :: tracking
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, surface
     real(wp), intent(in), contiguous :: spots(:, :), chain(:, :)
     integer, intent(in) :: owners(:, :)
+    type(answers_t), intent(inout), optional :: answers
     type(element_finder_t) :: finder
     type(foot_t) :: foot
+    logical :: inside
     integer :: i, nearest
 
-    call start_finder(model, surface%segment_element, finder)
+    call begin_asking(model, surface%segment_element, finder, answers)
     call fill_grid(tracking%grid, surface, chain, 0.0_wp)
     do i = 1, tracking%n
       if (tracking%status(i) == is_touching .or. maxval(owners(:, i)) == 0) cycle
-      if (.not. is_inside_body(finder, model, model%mesh%coordinates(:, surface%nodes(1)) &
-        + (spots(1:2, i) - chain(1:2, 1)), own%nodes(own_nodes(own, owners(:, i))))) cycle
+      call ask_inside(finder, model, model%mesh%coordinates(:, surface%nodes(1)) &
+        + (spots(1:2, i) - chain(1:2, 1)), own%nodes(own_nodes(own, owners(:, i))), inside, answers)
+      if (.not. inside) cycle
       if (tracking%own_spots < 0) then
         nearest = nearest_segment(tracking%grid, surface, chain, spots(:, i))
       else
@@ -317,5 +327,47 @@ contains
       segment = k
     end do
   end function nearest_segment
+
+  !> Know the bodies behind a surface, unless the answers are.
+  pure subroutine begin_asking(model, members, finder, answers)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: members(:) !! elements behind the surface
+    type(element_finder_t), intent(out) :: finder
+    type(answers_t), intent(in), optional :: answers
+
+    if (present(answers)) then
+      if (answers%are_given) return
+    end if
+    call start_finder(model, members, finder)
+  end subroutine begin_asking
+
+  !> The next answer (`is_inside_body`).
+  pure subroutine ask_inside(finder, model, x, carriers, inside, answers)
+    type(element_finder_t), intent(in) :: finder
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: x(2)
+    integer, intent(in) :: carriers(:)
+    logical, intent(out) :: inside
+    type(answers_t), intent(inout), optional :: answers
+    logical, allocatable :: more(:)
+
+    if (.not. present(answers)) then
+      inside = is_inside_body(finder, model, x, carriers)
+      return
+    end if
+    answers%n = answers%n + 1
+    if (answers%are_given) then
+      inside = answers%is_inside(answers%n)
+      return
+    end if
+    inside = is_inside_body(finder, model, x, carriers)
+    if (.not. allocated(answers%is_inside)) allocate (answers%is_inside(64), source=.false.)
+    if (answers%n > size(answers%is_inside)) then
+      allocate (more(2*answers%n), source=.false.)
+      more(:answers%n - 1) = answers%is_inside
+      call move_alloc(more, answers%is_inside)
+    end if
+    answers%is_inside(answers%n) = inside
+  end subroutine ask_inside
 
 end module first_search_m

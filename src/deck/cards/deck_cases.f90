@@ -23,7 +23,8 @@ module deck_cases_m
     integer :: id = 0
     integer :: line = 0                   !! of its keyword
     character(:), allocatable :: job      !! stem of its result files
-    character(:), allocatable :: commands !! words of the command line; none where some are wrong
+    character(:), allocatable :: commands !! words of the command line, without those that are
+                                          !! wrong
     integer, allocatable :: sub_cases(:)
   end type case_t
 
@@ -93,24 +94,25 @@ contains
     call read_sub_cases(deck, no_parameters, cursor, item%sub_cases)
   end subroutine read_case
 
-  !> Words that may not stand there, or whose value no deck takes.
+  !> Words that may not stand there, or whose value no deck takes, are told and taken out. What is
+  !> left has its mistakes told with the deck that it changes.
   subroutine check_commands(deck, line, commands)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line !! of the card
     character(:), allocatable, intent(inout) :: commands
     character(:), allocatable :: rest, word, mistake
-    logical :: is_wrong
 
-    is_wrong = .false.
     rest = trim(adjustl(commands))
+    commands = ''
     do while (len(rest) > 0)
       call next_word(rest, word)
       mistake = command_mistake(word)
-      if (len(mistake) == 0) cycle
-      is_wrong = .true.
-      call reject_field(deck, place_t(line=line, card=2, name='COMMANDS', field=1), mistake)
+      if (len(mistake) == 0) then
+        commands = commands//word//' '
+      else
+        call reject_field(deck, place_t(line=line, card=2, name='COMMANDS', field=1), mistake)
+      end if
     end do
-    if (is_wrong) commands = ''
   end subroutine check_commands
 
   !> The subcases of a case, to the end of its block.

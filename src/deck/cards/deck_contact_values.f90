@@ -11,7 +11,7 @@ module deck_contact_values_m
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, report_field
   use deck_values_m, only : has_field
-  use deck_overrides_m, only : overrides_t, contact_names, override_text, override_word, &
+  use deck_overrides_m, only : overrides_t, contact_names, override_text, override_phrase, &
     override_real, override_integer
   use deck_raw_m, only : raw_contact_t
   implicit none
@@ -129,8 +129,8 @@ contains
       integer :: i
 
       if (commanded(k)) then
-        call deck_error(deck, '"'//override_word(overrides, contact_names(k), entry%contact%id) &
-          //'" on the command line '//message)
+        call deck_error(deck, override_phrase(overrides, contact_names(k), entry%contact%id) &
+          //' '//message)
         return
       end if
       do i = 1, cursor%n_card

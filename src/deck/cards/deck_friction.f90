@@ -9,7 +9,7 @@ module deck_friction_m
   use deck_fields_m, only : card_t, smallest_value
   use deck_cards_m, only : cursor_t, report_field, warn_of_field
   use deck_checks_m, only : refuse_negative
-  use deck_overrides_m, only : overrides_t, override_real, override_text, override_word
+  use deck_overrides_m, only : overrides_t, override_real, override_text, override_phrase
   use deck_raw_m, only : raw_t, raw_contact_t
   use deck_values_m, only : real_of, is_bad, place_of
   implicit none
@@ -211,8 +211,7 @@ contains
       call override_real(overrides, 'VC', id, rule%most, given)
       call override_real(overrides, 'TFAC', id, rule%stiffness, given)
       if (is_commanded(overrides, 'TFAC', entry) .and. rule%stiffness > 1.0_wp) call deck_error( &
-        deck, '"'//override_word(overrides, 'TFAC', id)//'" on the command line ' &
-        //bad_share)
+        deck, override_phrase(overrides, 'TFAC', id)//' '//bad_share)
       if (given_at_rest .or. given_sliding) entry%friction_place%line = 0
       entry%overridden = entry%overridden .or. given .or. given_at_rest .or. given_sliding
     end associate

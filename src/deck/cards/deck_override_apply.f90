@@ -58,7 +58,7 @@ contains
         if (.not. any(contact_names == item%name)) cycle
         if (item%interface /= 0) then
           if (deck%incomplete .or. any(raw%contacts%contact%id == item%interface)) cycle
-          call line_error(deck, 0, 'the command line changes interface ' &
+          call line_error(deck, 0, item%phrase//' changes interface ' &
             //to_text(item%interface)//', which the deck does not have')
         else if (size(raw%contacts) == 0) then
           call line_warning(deck, 0, 'override '//item%name, 'the command line changes ' &

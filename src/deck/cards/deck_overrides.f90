@@ -9,7 +9,7 @@ module deck_overrides_m
   implicit none
   private
   public :: overrides_t, is_override, override_mistake, read_overrides, override_text, &
-    override_word, override_real, override_integer, contact_names, run_names
+    override_phrase, override_real, override_integer, contact_names, run_names
 
   !> Overrides of interfaces; the others are those of the run.
   integer, parameter :: n_contact_name = 12
@@ -27,7 +27,7 @@ module deck_overrides_m
     character(:), allocatable :: name   !! upper case
     integer :: interface = 0            !! 0 = all
     character(:), allocatable :: text   !! value
-    character(:), allocatable :: word   !! as it was given
+    character(:), allocatable :: phrase !! `"WORD" on the command line`, for messages
   end type override_t
 
   !> All of them, in the order of the command line.
@@ -62,22 +62,24 @@ contains
   end function override_mistake
 
   !> Take the texts apart; those of parameters go straight to the parameters.
-  subroutine read_overrides(texts, deck, parameters, overrides)
+  subroutine read_overrides(texts, n_of_case, deck, parameters, overrides)
     character(*), intent(in) :: texts(:)
+    integer, intent(in) :: n_of_case !! as many, the first ones, are of COMMANDS of *CASE
     type(deck_t), intent(inout) :: deck
     type(parameters_t), intent(inout) :: parameters
     type(overrides_t), intent(out) :: overrides
     type(override_t) :: item
-    character(:), allocatable :: mistake
+    character(:), allocatable :: mistake, where
     integer :: i
 
     allocate (overrides%items(0))
     do i = 1, size(texts)
       call take_apart(texts(i), item, mistake)
-      if (len(mistake) > 0) call line_error(deck, 0, '"'//trim(texts(i)) &
-        //'" on the command line'//mistake)
+      where = trim(merge('on the command line ', 'in COMMANDS of *CASE', i > n_of_case))
+      item%phrase = '"'//trim(adjustl(texts(i)))//'" '//where
+      if (len(mistake) > 0) call line_error(deck, 0, item%phrase//mistake)
       if (index(item%name, 'P:') == 1) then
-        call override_parameter(parameters, item%name(3:), item%text)
+        call override_parameter(parameters, item%name(3:), item%text, where)
       else if (len(item%name) > 0) then
         overrides%items = [overrides%items, item]
       end if
@@ -99,7 +101,6 @@ contains
       mistake = ' is not NAME=VALUE'
       return
     end if
-    item%word = trim(adjustl(text))
     item%name = upper_case(trim(adjustl(text(:equals - 1))))
     item%text = trim(adjustl(text(equals + 1:)))
     if (index(item%name, 'P:') == 1) return
@@ -167,8 +168,8 @@ contains
     if (i > 0) text = overrides%items(i)%text
   end function override_text
 
-  !> The word of the command line that gives a value, as in `ctype.2=5`; empty when there is none.
-  pure function override_word(overrides, name, interface) result(text)
+  !> Where a value is given, as in `"ctype.2=5" on the command line`; empty when it is nowhere.
+  pure function override_phrase(overrides, name, interface) result(text)
     type(overrides_t), intent(in) :: overrides
     character(*), intent(in) :: name
     integer, intent(in) :: interface
@@ -177,8 +178,8 @@ contains
 
     text = ''
     i = find_override(overrides, name, interface)
-    if (i > 0) text = overrides%items(i)%word
-  end function override_word
+    if (i > 0) text = overrides%items(i)%phrase
+  end function override_phrase
 
   !> The override that counts for an interface (0: the run), the last one given; 0 when there is
   !> none.

@@ -16,7 +16,7 @@ module deck_raw_m
   use deck_raw_sets_m, only : raw_set_t, lengthen
   implicit none
   private
-  public :: raw_t, lost_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_contact_t, &
+  public :: raw_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_contact_t, &
     raw_erosion_t, raw_wall_t, raw_foam_t, raw_end_t, row_t, history_t, reserve_rows, &
     append_row, reserve_velocities, append_velocity, &
     reserve_nodes, reserve_elements, row_spc_node, row_spc_set, row_motion_node, row_motion_set, &
@@ -184,7 +184,7 @@ module deck_raw_m
     type(raw_part_t), allocatable :: parts(:)
     type(section_t), allocatable :: sections(:)
     integer, allocatable :: section_line(:)
-    logical, allocatable :: points_open(:)     !! NIP of a section is blank or 0
+    logical, allocatable :: points_open(:)     !! NIP of a section is blank, 0 or 2
     type(material_t), allocatable :: materials(:)
     integer, allocatable :: material_line(:)
     type(eos_t), allocatable :: equations(:)   !! of state
@@ -217,7 +217,7 @@ module deck_raw_m
     type(place_t) :: friction_place            !! SFRIC, line 0 without the keyword
     logical :: end_given = .false., step_given = .false., scale_given = .false. !! ENDTIM, the step,
                                                !! TSSFAC come from the command line
-    logical :: terminated = .false.            !! the deck has *CONTROL_TERMINATION
+    logical :: terminated = .false.            !! the deck has *CONTROL_TERMINATION, be it misspelt
     real(wp) :: newmark(2) = 0.0_wp            !! GAMMA and BETA of the implicit method, 0 = blank
     real(wp) :: hht = 0.0_wp                   !! minus ALPHA of the implicit method
     real(wp) :: spectral_radius = -1.0_wp      !! of the implicit method, negative = not given

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What implicit penalties (PUNIT 4) do not have: refused by name. Called for sound meshes only.
+!> What implicit penalties (PUNIT 4) do not have: refused by name.
 module deck_implicit_penalty_m
   use contacts_m, only : is_tied, penalty_implicit
   use deck_cards_m, only : reject_field
@@ -15,16 +15,17 @@ module deck_implicit_penalty_m
 contains
 
   !> All interfaces with such penalties.
-  subroutine check_implicit_penalties(deck, raw, model)
+  subroutine check_implicit_penalties(deck, raw, model, sound)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     type(model_t), intent(in) :: model
+    logical, intent(in) :: sound !! the interfaces have their surfaces
     integer :: i
 
     do i = 1, size(raw%contacts)
       if (raw%contacts(i)%contact%penalty_unit /= penalty_implicit) cycle
       call check_kind(deck, raw%contacts(i), model)
-      call check_nodes(deck, raw, i, model)
+      if (sound) call check_nodes(deck, raw, i, model)
     end do
   end subroutine check_implicit_penalties
 

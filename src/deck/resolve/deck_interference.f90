@@ -12,7 +12,7 @@ module deck_interference_m
   use deck_raw_m, only : raw_contact_t
   implicit none
   private
-  public :: resolve_interference, find_curve
+  public :: resolve_interference
 
   !> How near to 0 and 1 the ends of the curve must be: that is round-off of factors on it.
   real(wp), parameter :: round_off = 1.0e-12_wp
@@ -28,7 +28,9 @@ contains
     type(contact_t), intent(inout) :: contact
     integer :: found, n
 
-    call find_curve(deck, entry, maps, found)
+    found = 0
+    if (entry%interference > 0) call resolve_id(deck, maps%curves, entry%interference, 'curve', &
+      entry%interference_place, found)
     if (found == 0) return
     associate (curve => model%curves(found))
       n = size(curve%ordinate)
@@ -58,17 +60,5 @@ contains
     end subroutine refuse
 
   end subroutine resolve_interference
-
-  !> The curve of an entry, or 0.
-  subroutine find_curve(deck, entry, maps, found)
-    type(deck_t), intent(inout) :: deck
-    type(raw_contact_t), intent(in) :: entry
-    type(maps_t), intent(in) :: maps
-    integer, intent(out) :: found
-
-    found = 0
-    if (entry%interference > 0) call resolve_id(deck, maps%curves, entry%interference, 'curve', &
-      entry%interference_place, found)
-  end subroutine find_curve
 
 end module deck_interference_m

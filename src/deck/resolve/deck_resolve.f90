@@ -3,9 +3,10 @@
 module deck_resolve_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use controls_m, only : interval_t
+  use controls_m, only : interval_t, is_asked
   use deck_implicit_m, only : settle_scheme, check_scheme
-  use history_tables_m, only : n_table
+  use history_tables_m, only : history_tables, n_table, table_nodout, table_elout, table_nodfor, &
+    table_secforc
   use model_m, only : model_t
   use conditions_m, only : motion_acceleration
   use contacts_m, only : penalty_share, penalty_implicit
@@ -30,9 +31,10 @@ module deck_resolve_m
     check_loads_of_round, check_velocities_of_round
   use deck_resolve_velocity_m, only : resolve_velocity
   use deck_resolve_ends_m, only : resolve_ends
-  use deck_resolve_contacts_m, only : resolve_contacts, check_references
+  use deck_resolve_contacts_m, only : resolve_contacts
   use deck_resolve_transducers_m, only : resolve_transducers
   use deck_resolve_walls_m, only : resolve_walls
+  use deck_unsound_mesh_m, only : check_unsound_mesh
   implicit none
   private
   public :: resolve_model
@@ -133,6 +135,7 @@ contains
     type(raw_t), intent(inout) :: raw
     type(model_t), intent(inout) :: model
     type(maps_t) :: maps
+    logical, allocatable :: is_sound(:) !! (n_element)
     logical :: sound
     integer :: i
 
@@ -149,7 +152,7 @@ contains
     call resolve_erosion(deck, raw, maps, model)
     call check_erosion_points(deck, raw, model)
     call resolve_equations(deck, raw, maps, model)
-    call resolve_mesh(deck, raw, maps, model, sound)
+    call resolve_mesh(deck, raw, maps, model, is_sound, sound)
     call settle_axis(deck, raw, model)
     call resolve_sets(deck, raw, maps, model)
     call resolve_history(deck, raw, maps, model)
@@ -163,6 +166,7 @@ contains
         call take_interval(deck, maps, raw%outputs(i), model, output%histories(i))
       end do
     end associate
+    call warn_of_empty(deck, raw, model)
     if (model%controls%implicit%is_on) call check_implicit(deck, raw, model)
     call resolve_conditions(deck, raw, maps, model)
     call resolve_rigids(deck, raw, maps, model)
@@ -177,14 +181,13 @@ contains
     if (sound) then
       call resolve_contacts(deck, raw, maps, model)
       call check_eroding_contacts(deck, raw, model)
-      call check_implicit_penalties(deck, raw, model)
       call resolve_transducers(deck, raw, maps, model)
-      call resolve_ends(deck, raw, maps, model)
       if (model%is_round) call mark_round_contacts(model)
     else
-      call check_references(deck, raw, maps)
-      allocate (model%contacts(0))
+      call check_unsound_mesh(deck, raw, maps, is_sound, model)
     end if
+    call check_implicit_penalties(deck, raw, model, sound)
+    call resolve_ends(deck, raw, maps, model, sound)
   end subroutine resolve_model
 
   !> A curve that caps the step must leave it some length.
@@ -198,6 +201,33 @@ contains
     call line_error(deck, raw%curve_line(model%controls%dt_curve), &
       'curve '//to_text(raw%dt_curve)//' caps the time step (LCTM) and must be above 0 everywhere')
   end subroutine check_step_curve
+
+  !> Histories that are asked for and have no file, for want of a keyword that says of what.
+  subroutine warn_of_empty(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+
+    call look_at(table_nodout, raw%history_nodes%n + raw%history_node_sets%n, 'HISTORY_NODE')
+    call look_at(table_elout, raw%history_shells%n + raw%history_shell_sets%n, 'HISTORY_SHELL')
+    call look_at(table_nodfor, raw%force_groups%n, 'NODAL_FORCE_GROUP')
+    call look_at(table_secforc, size(raw%cuts), 'CROSS_SECTION_SET')
+
+  contains
+
+    !> One file.
+    subroutine look_at(table, n, needed)
+      integer, intent(in) :: table
+      integer, intent(in) :: n           !! what it would tell of
+      character(*), intent(in) :: needed !! end of the keyword
+
+      if (n > 0 .or. deck%incomplete .or. .not. is_asked(model%controls%output%histories(table))) &
+        return
+      call line_warning(deck, raw%outputs(table)%place%line, 'empty '//history_tables(table)%name, &
+        'asks for a history and the deck has no *DATABASE_'//needed//': no file is written')
+    end subroutine look_at
+
+  end subroutine warn_of_empty
 
   !> Interval of one output file.
   subroutine take_interval(deck, maps, history, model, interval)

@@ -1,29 +1,24 @@
 ! SPDX-License-Identifier: MIT
-!> Surfaces of the interfaces and edges of the pressure loads. Called for sound meshes only.
+!> Surfaces of the interfaces and edges of the pressure loads of sound meshes.
 module deck_resolve_contacts_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use contacts_m, only : contact_t, friction_rule_t, breaks, tie_none
   use surfaces_m, only : surface_t
-  use conditions_m, only : pressure_load_t
   use model_m, only : model_t
-  use boundary_m, only : boundary_t, find_boundary, find_edge
-  use deck_lines_m, only : deck_t, place_t
+  use boundary_m, only : boundary_t, find_boundary
+  use deck_lines_m, only : deck_t
   use deck_cards_m, only : reject_field
   use deck_choose_type_m, only : choose_type
   use deck_initial_overlap_m, only : check_overlap
-  use deck_maps_m, only : maps_t, resolve_id
-  use deck_resolve_sides_m, only : find_side, require_side, resolve_side, side_nodes, &
-    side_segments
-  use deck_interference_m, only : resolve_interference, find_curve
-  use deck_raw_m, only : raw_t, row_t, raw_contact_t, row_pressure, row_pressure_set, &
-    id_fields, id_place
+  use deck_maps_m, only : maps_t
+  use deck_resolve_pressures_m, only : resolve_pressures
+  use deck_resolve_sides_m, only : find_side, resolve_side, side_nodes, side_segments
+  use deck_interference_m, only : resolve_interference
+  use deck_raw_m, only : raw_t, raw_contact_t, row_pressure, row_pressure_set
   implicit none
   private
-  public :: resolve_contacts, check_references
-
-  !> Fields of the ends of an edge.
-  character(2), parameter :: node_fields(2) = ['N1', 'N2']
+  public :: resolve_contacts, check_common_nodes
 
 contains
 
@@ -47,7 +42,7 @@ contains
     do i = 1, size(raw%contacts)
       n_error = deck%report%n_error
       do k = 1, merge(1, 2, raw%contacts(i)%contact%is_self)
-        call resolve_side(deck, raw%contacts(i), k, maps, outside, model, sides(k))
+        call resolve_side(deck, raw, i, k, maps, outside, model, sides(k))
       end do
       if (raw%contacts(i)%contact%is_self) sides(2) = sides(1)
       model%contacts(i) = raw%contacts(i)%contact
@@ -85,39 +80,6 @@ contains
     end do
   end subroutine append_behind
 
-  !> What `resolve_contacts` would find of wrong ids, for a mesh that it can not be called for.
-  subroutine check_references(deck, raw, maps)
-    type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
-    integer :: i, k, kind, found
-
-    do i = 1, size(raw%contacts)
-      do k = 1, 2
-        call require_side(deck, raw%contacts(i), k, maps, kind, found)
-      end do
-      call find_curve(deck, raw%contacts(i), maps, found)
-    end do
-    do i = 1, size(raw%transducers)
-      call require_side(deck, raw%transducers(i), 1, maps, kind, found)
-    end do
-    do i = 1, raw%n_row
-      associate (row => raw%rows(i))
-        if (row%kind == row_pressure) then
-          call resolve_id(deck, maps%curves, row%curve, 'curve', id_place(row), found)
-          do k = 1, 2
-            call resolve_id(deck, maps%nodes, row%nodes(k), 'node', &
-              place_t(row%line, 1, node_fields(k)), found)
-          end do
-        else if (row%kind == row_pressure_set) then
-          call resolve_id(deck, maps%segment_sets, row%id, 'segment set', id_place(row), found)
-          call resolve_id(deck, maps%curves, row%curve, 'curve', place_t(row%line, 1, 'LCID'), &
-            found)
-        end if
-      end associate
-    end do
-  end subroutine check_references
-
   !> Nodes of contact node and segment sets and of pressure edges: only their edges are looked for.
   subroutine mark_nodes(raw, maps, model, among)
     use deck_ids_m, only : index_of
@@ -153,72 +115,6 @@ contains
       end if
     end do
   end subroutine mark_nodes
-
-  !> Pressure loads, their edges walked counter-clockwise round the body.
-  subroutine resolve_pressures(deck, raw, maps, outside, model)
-    type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
-    type(boundary_t), intent(in) :: outside
-    type(model_t), intent(inout) :: model
-    type(pressure_load_t), allocatable :: loads(:)
-    integer :: i, k, n, found, nodes(2)
-
-    allocate (loads(64))
-    n = 0
-    do i = 1, raw%n_row
-      if (raw%rows(i)%kind == row_pressure) then
-        do k = 1, 2
-          call resolve_id(deck, maps%nodes, raw%rows(i)%nodes(k), 'node', &
-            place_t(raw%rows(i)%line, 1, node_fields(k)), nodes(k))
-        end do
-        if (all(nodes > 0)) call add_pressures(deck, maps, raw%rows(i), &
-          reshape(nodes, [2, 1]), outside, model, loads, n)
-      else if (raw%rows(i)%kind == row_pressure_set) then
-        call resolve_id(deck, maps%segment_sets, raw%rows(i)%id, 'segment set', &
-          id_place(raw%rows(i)), found)
-        if (found > 0) call add_pressures(deck, maps, raw%rows(i), &
-          model%segment_sets(found)%nodes, outside, model, loads, n)
-      end if
-    end do
-    model%conditions%pressures = loads(:n)
-  end subroutine resolve_pressures
-
-  !> Pressure of one card on its edges.
-  subroutine add_pressures(deck, maps, row, edges, outside, model, loads, n)
-    type(deck_t), intent(inout) :: deck
-    type(maps_t), intent(in) :: maps
-    type(row_t), intent(in) :: row
-    integer, intent(in) :: edges(:, :)
-    type(boundary_t), intent(in) :: outside
-    type(model_t), intent(in) :: model
-    type(pressure_load_t), allocatable, intent(inout) :: loads(:)
-    integer, intent(inout) :: n          !! loads so far
-    type(pressure_load_t) :: load
-    integer :: i
-
-    call resolve_id(deck, maps%curves, row%curve, 'curve', place_t(row%line, 1, 'LCID'), load%curve)
-    if (load%curve == 0) return
-    load%scale = row%scale
-    load%arrival = row%arrival
-    do i = 1, size(edges, 2)
-      if (find_edge(outside, edges(1, i), edges(2, i)) > 0) then
-        load%nodes = edges(:, i)
-      else if (find_edge(outside, edges(2, i), edges(1, i)) > 0) then
-        load%nodes = edges([2, 1], i)
-      else
-        call reject_field(deck, place_t(row%line, 1, merge('N1  ', &
-          id_fields(row%kind), row%kind == row_pressure)), ': nodes ' &
-          //to_text(model%mesh%node_id(edges(1, i)))//' and ' &
-          //to_text(model%mesh%node_id(edges(2, i)))//' are not the ends of an outer edge of ' &
-          //'the mesh')
-        return
-      end if
-      if (n == size(loads)) loads = [loads, loads]
-      n = n + 1
-      loads(n) = load
-    end do
-  end subroutine add_pressures
 
   !> A node may stand on one side of an interface only.
   subroutine check_common_nodes(deck, entry, sides, model)

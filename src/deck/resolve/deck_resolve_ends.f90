@@ -15,11 +15,12 @@ module deck_resolve_ends_m
 contains
 
   !> All of them. Rigid bodies and interfaces of the model are known.
-  subroutine resolve_ends(deck, raw, maps, model)
+  subroutine resolve_ends(deck, raw, maps, model, sound)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
+    logical, intent(in) :: sound !! the interfaces have their surfaces
     integer :: i, part
 
     if (size(raw%ends) == 0) return
@@ -30,7 +31,7 @@ contains
         select case (ending%kind)
         case (end_node_place, end_node_touch)
           call resolve_id(deck, maps%nodes, ending%id, 'node', entry%id_place, ending%where)
-          if (ending%kind == end_node_touch .and. ending%where > 0) then
+          if (ending%kind == end_node_touch .and. ending%where > 0 .and. sound) then
             if (.not. is_in_contact(model, ending%where)) call reject_field(deck, &
               entry%id_place, 'is no node of an interface')
           end if
@@ -38,12 +39,13 @@ contains
           call resolve_id(deck, maps%parts, ending%id, 'part', entry%id_place, part)
           if (part == 0) cycle
           ending%where = findloc(model%rigids%part, part, 1)
-          if (ending%where == 0) call reject_field(deck, entry%id_place, &
-            'is no rigid part (*MAT_RIGID)')
+          if (ending%where == 0 .and. model%parts(part)%material > 0) call reject_field(deck, &
+            entry%id_place, 'is no rigid part (*MAT_RIGID)')
         case default
           ending%where = findloc(model%contacts(:n_told(model%contacts))%id, ending%id, 1)
           if (ending%where == 0) then
-            call reject_field(deck, entry%id_place, 'is no interface of this deck')
+            if (.not. deck%incomplete) call reject_field(deck, entry%id_place, &
+              'is no interface of this deck')
           else if (model%contacts(ending%where)%is_self) then
             call reject_field(deck, entry%id_place, &
               'is an interface of a surface with itself, whose forces cancel')

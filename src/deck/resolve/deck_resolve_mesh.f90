@@ -57,13 +57,15 @@ contains
   end subroutine resolve_parts
 
   !> Nodes and elements. `sound` tells whether the elements may be looked at further.
-  subroutine resolve_mesh(deck, raw, maps, model, sound)
+  subroutine resolve_mesh(deck, raw, maps, model, is_sound, sound)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(inout) :: raw   !! its node and element arrays move into the model
     type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
+    logical, allocatable, intent(out) :: is_sound(:) !! (n_element) of each whether its edges are
+                                                     !! those that were meant
     logical, intent(out) :: sound
-    integer :: n_before
+    integer :: i, n_before
     logical :: has_place
 
     sound = .false.
@@ -81,11 +83,16 @@ contains
     model%mesh%element_id = raw%element_id(:raw%n_element)
     deallocate (raw%node_id, raw%coordinates, raw%element_id)
     call resolve_elements(deck, raw, maps, model%mesh)
-    if (has_place) call check_shapes(deck, raw, model%mesh)
+    allocate (is_sound(raw%n_element))
+    do i = 1, raw%n_element
+      is_sound(i) = all(model%mesh%element_nodes(:, i) > 0)
+    end do
+    if (has_place) call check_shapes(deck, raw, model%mesh, is_sound)
     ! A part or node that was lost with its own mistake is not told again where it is named.
+    if (.not. has_place .or. raw%lost%nodes .or. raw%lost%elements .or. deck%incomplete) &
+      is_sound = .false.
     sound = deck%report%n_error == n_before .and. raw%n_node > 0 .and. raw%n_element > 0 &
-      .and. .not. (raw%lost%nodes .or. raw%lost%elements .or. deck%incomplete) &
-      .and. all(model%mesh%element_nodes > 0) .and. all(model%mesh%element_part > 0)
+      .and. all(is_sound) .and. all(model%mesh%element_part > 0)
   end subroutine resolve_mesh
 
   !> Coordinates within reach and in one plane.
@@ -142,17 +149,18 @@ contains
 
   !> Elements must have area, be convex and run counter-clockwise; clockwise ones are turned. Those
   !> with a node that does not exist have been refused.
-  subroutine check_shapes(deck, raw, mesh)
+  subroutine check_shapes(deck, raw, mesh, is_sound)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     type(mesh_t), intent(inout) :: mesh
+    logical, intent(inout) :: is_sound(:) !! (n_element) what is refused here is not
     integer :: i, n_turned, first_turned
     real(wp) :: corners(4), area, tolerance
 
     n_turned = 0
     first_turned = 0
     do i = 1, mesh%n_element
-      if (any(mesh%element_nodes(:, i) < 1)) cycle
+      if (.not. is_sound(i)) cycle
       corners = corner_areas(mesh, i)
       if (mesh%element_nodes(4, i) == mesh%element_nodes(3, i)) then
         area = 2.0_wp*corners(1)
@@ -160,6 +168,7 @@ contains
         area = corners(1) + corners(3)
       end if
       tolerance = 1.0e-10_wp*maxval(abs(corners))
+      is_sound(i) = .false.
       if (repeated(mesh%element_nodes(:, i))) then
         call reject_field(deck, place_t(raw%element_line(i), 1, 'EID'), 'uses a node twice ' &
           //'(a triangle repeats its third node, and no other)')
@@ -168,7 +177,9 @@ contains
           'is not convex: its edges cross or a corner points inwards')
       else if (.not. abs(area) > 2.0_wp*tolerance) then
         call reject_field(deck, place_t(raw%element_line(i), 1, 'EID'), 'has no area')
-      else if (area < 0.0_wp) then
+      else
+        is_sound(i) = .true.
+        if (area > 0.0_wp) cycle
         mesh%element_nodes(:, i) = mesh%element_nodes([1, 4, 3, 2], i)
         if (mesh%element_nodes(2, i) == mesh%element_nodes(3, i)) &
           mesh%element_nodes(3:4, i) = mesh%element_nodes(4, i)

@@ -40,15 +40,15 @@ contains
             part%section = full
           else
             call line_error(deck, raw%section_line(part%section), 'part '//to_text(part%id) &
-              //' has one-point quads (NIP 1 or 2); the implicit method needs full integration ' &
+              //' has one-point quads (NIP 1); the implicit method needs full integration ' &
               //'(NIP 4), or hourglass control by assumed strain (IHQ 6)')
           end if
         end if
       end associate
     end do
     if (len(changed) > 0) call line_warning(deck, line, 'implicit points', 'the implicit method ' &
-      //'takes parts without NIP as NIP 4 where hourglass control is not by assumed strain ' &
-      //'(IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
+      //'takes parts whose NIP is blank, 0 or 2 as NIP 4 where hourglass control is not by ' &
+      //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
   end subroutine settle_points
 
   !> The stiffness of assumed strain is that of shear.

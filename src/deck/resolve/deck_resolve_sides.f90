@@ -12,7 +12,8 @@ module deck_resolve_sides_m
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
   use deck_maps_m, only : maps_t, resolve_id
-  use deck_raw_m, only : raw_contact_t
+  use deck_raw_m, only : raw_t, raw_contact_t
+  use deck_raw_sets_m, only : raw_set_t
   implicit none
   private
   public :: find_side, require_side, resolve_side, side_none, side_parts, side_nodes, side_segments
@@ -77,10 +78,12 @@ contains
     if (len(text) > 0) text(1:1) = ';'
   end function namesakes
 
-  !> The surface of one side of an interface.
-  subroutine resolve_side(deck, entry, side, maps, outside, model, surface)
+  !> The surface of one side of an interface; without nodes where some of a node set do not exist,
+  !> which has been told.
+  subroutine resolve_side(deck, raw, i, side, maps, outside, model, surface)
     type(deck_t), intent(inout) :: deck
-    type(raw_contact_t), intent(in) :: entry
+    type(raw_t), intent(in) :: raw
+    integer, intent(in) :: i      !! interface
     integer, intent(in) :: side
     type(maps_t), intent(in) :: maps
     type(boundary_t), intent(in) :: outside
@@ -88,30 +91,44 @@ contains
     type(surface_t), intent(out) :: surface
     integer :: kind, found
 
-    call require_side(deck, entry, side, maps, kind, found)
-    select case (kind)
-    case (side_parts)
-      call surface_of_parts(deck, model%part_sets(found)%parts, entry%places(side), model, surface)
-    case (side_nodes)
-      call surface_of_nodes(deck, model%node_sets(found)%nodes, side, entry%places(side), outside, &
-        model, surface)
-    case (side_segments)
-      if (allocated(model%segment_sets(found)%parts)) then
-        call surface_of_parts(deck, model%segment_sets(found)%parts, entry%places(side), model, &
+    associate (entry => raw%contacts(i))
+      call require_side(deck, entry, side, maps, kind, found)
+      select case (kind)
+      case (side_parts)
+        call surface_of_parts(deck, model%part_sets(found)%parts, entry%places(side), model, &
           surface)
-      else
-        call surface_of_segments(deck, model%segment_sets(found), entry%places(side), outside, &
-          model, surface)
-        if (entry%contact%is_self .and. allocated(surface%previous)) then
-          if (any(surface%previous == 0)) call reject_field(deck, entry%places(side), 'is a ' &
-            //'segment set with an open chain; contact of a surface with itself is that of whole ' &
-            //'outlines')
+      case (side_nodes)
+        if (is_whole(raw%node_sets(found), model%node_sets(found)%nodes)) &
+          call surface_of_nodes(deck, model%node_sets(found)%nodes, side, entry%places(side), &
+          outside, model, surface)
+      case (side_segments)
+        if (allocated(model%segment_sets(found)%parts)) then
+          call surface_of_parts(deck, model%segment_sets(found)%parts, entry%places(side), model, &
+            surface)
+        else
+          call surface_of_segments(deck, model%segment_sets(found), entry%places(side), outside, &
+            model, surface)
+          if (entry%contact%is_self .and. allocated(surface%previous)) then
+            if (any(surface%previous == 0)) call reject_field(deck, entry%places(side), 'is a ' &
+              //'segment set with an open chain; contact of a surface with itself is that of ' &
+              //'whole outlines')
+          end if
         end if
-      end if
-    end select
+      end select
+    end associate
     if (.not. allocated(surface%nodes)) &
       allocate (surface%nodes(0), surface%segments(2, 0), surface%segment_element(0))
   end subroutine resolve_side
+
+  !> Whether all nodes that the cards of a set name exist.
+  pure function is_whole(set, nodes)
+    type(raw_set_t), intent(in) :: set
+    integer, intent(in) :: nodes(:) !! those that do
+    logical :: is_whole
+
+    is_whole = .not. set%damaged .and. (set%generate .or. allocated(set%actions) &
+      .or. size(nodes) == set%n)
+  end function is_whole
 
   !> Chains of the edges of a segment set, in any order and walked either way.
   subroutine surface_of_segments(deck, set, place, outside, model, surface)

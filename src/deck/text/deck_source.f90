@@ -1,9 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> A file read in one go and cut into lines; keyword lines taken apart.
 module deck_source_m
-  use, intrinsic :: iso_c_binding, only : c_loc, c_size_t
   use, intrinsic :: iso_fortran_env, only : int8
-  use heap_m, only : give_back_pages
   use kinds_m, only : long
   use files_m, only : is_directory, is_endless
   use text_m, only : upper_case
@@ -11,8 +9,7 @@ module deck_source_m
     format_standard, format_long, format_i10
   implicit none
   private
-  public :: read_file, scan_line, open_block, add_line, file_options, reserve_lines, &
-    forget_lines
+  public :: read_file, scan_line, open_block, add_line, file_options, reserve_lines
 
 contains
 
@@ -142,30 +139,6 @@ contains
     deck%number(deck%n_line) = number
     deck%flags(deck%n_line) = flags
   end subroutine add_line
-
-  !> Give up the text of a block that has been read, but for lines that parameters have changed.
-  subroutine forget_lines(deck, i_block)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-
-    associate (block => deck%blocks(i_block))
-      if (block%last < block%first) return
-      associate (first => deck%first(block%first), last => deck%last(block%last))
-        if (min(first, deck%first(block%last)) > 0 .and. last > first) &
-          call give_back(last - first + 1, deck%sources(block%source)%text(first:last))
-      end associate
-    end associate
-
-  contains
-
-    subroutine give_back(n, text)
-      integer, intent(in) :: n
-      character, intent(inout), target :: text(n)
-
-      call give_back_pages(c_loc(text(1)), int(n, c_size_t))
-    end subroutine give_back
-
-  end subroutine forget_lines
 
   !> A new block from its keyword line (already the last line of the deck).
   subroutine open_block(deck, source, text)

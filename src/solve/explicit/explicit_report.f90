@@ -70,7 +70,7 @@ contains
       call judge_damping(model, state%dt, monitor%log)
     end if
     call report_rigids(model, state, cycle)
-    call report_walls(model, state, monitor, cycle)
+    call report_walls(model, state, cycle)
     if (allocated(model%conditions%skew_supports)) call report_skew(model, cycle%leap, state, held)
     state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
       cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
@@ -94,6 +94,8 @@ contains
 
     call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
     call fill_rigids(model, state, monitor%snapshot)
+    if (cycle%due%tables(table_rwforc) .and. allocated(state%walls)) &
+      call fill_walls(model, state, monitor%snapshot%walls)
     if (any(cycle%due%tables([table_glstat, table_matsum]))) call fill_energies(model, state, &
       cycle%damping, monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call complete_balance(model, state, cycle%damping, &
@@ -181,16 +183,14 @@ contains
   end subroutine report_rigids
 
   !> Rigid walls in a cycle that writes: their forces, and their work so far.
-  subroutine report_walls(model, state, monitor, cycle)
+  subroutine report_walls(model, state, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(in) :: cycle
 
     if (.not. allocated(state%walls)) return
     call hold_nodes(model, cycle%leap, 1, model%layout%n_special, state)
     call count_walls(model, .true., .false., state)
-    if (cycle%due%tables(table_rwforc)) call fill_walls(model, state, monitor%snapshot%walls)
   end subroutine report_walls
 
 end module explicit_report_m

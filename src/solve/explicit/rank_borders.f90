@@ -7,7 +7,7 @@ module rank_borders_m
   use model_m, only : model_t
   use motion_sums_m, only : motion_sums_t
   use rank_shares_m, only : shares_t
-  use renumber_m, only : mark_touched_nodes
+  use renumber_m, only : mark_moved_nodes
   implicit none
   private
   public :: borders_t, plan_borders, plan_whole
@@ -81,16 +81,9 @@ contains
   subroutine mark_common(model, is_common)
     type(model_t), intent(in) :: model
     logical, allocatable, intent(out) :: is_common(:) !! (n_special)
-    logical, allocatable :: is_touched(:)
-    integer :: i
 
-    allocate (is_touched(model%mesh%n_node), source=.false.)
-    call mark_touched_nodes(model, is_touched)
-    do i = 1, size(model%rigids)
-      is_touched(model%rigids(i)%nodes) = .true.
-    end do
     associate (n => model%layout%n_special, starts => model%layout%node_slots)
-      allocate (is_common(n), source=is_touched(:n))
+      call mark_moved_nodes(model, is_common)
       ! Nodes without elements.
       is_common = is_common .or. starts(2:n + 1) == starts(:n)
     end associate

@@ -5,7 +5,7 @@
 !> all compute and what the elements have come to. The first process gathers the rest where files
 !> ask for it.
 module rank_exchange_m
-  use block_state_m, only : block_state_t
+  use block_state_m, only : block_state_t, stream_starts
   use errors_m, only : error_t
   use health_m, only : tile_check_t, check_elements, most_work
   use kinds_m, only : wp, long
@@ -17,7 +17,6 @@ module rank_exchange_m
   use ranks_m, only : ranks_t, bring_reals, bring_integers, swap_reals, find_least, share_error
   use requests_m, only : requests_t
   use state_m, only : state_t
-  use tile_values_m, only : stream_starts
   implicit none
   private
   public :: parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, exchange_failures, &

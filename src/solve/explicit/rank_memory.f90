@@ -4,44 +4,20 @@
 !> that numbers mean the same everywhere, but the pages of what belongs to others go back to the
 !> system.
 module rank_memory_m
-  use automatic_penalty_m, only : seeks_penalties
-  use block_state_m, only : block_state_t
-  use errors_m, only : error_t
-  use heap_m, only : give_back_memory
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use log_m, only : log_t
   use model_m, only : model_t
   use others_memory_m, only : others_t, forget_nodes, forget_slots
   use pages_m, only : forget_reals, forget_integers, forget_shorts
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t
-  use start_m, only : start_state
   use state_m, only : state_t
-  use tile_values_m, only : stream_starts
   use type_charts_m, only : may_change
   implicit none
   private
-  public :: start_share, forget_others, forget_tiles, needs_all
+  public :: forget_others, forget_tiles, needs_all, starts_from_all, others_of
 
 contains
-
-  !> The state at time zero, of a process that is not the first without what only others need.
-  subroutine start_share(model, ranks, log, state, error)
-    type(model_t), intent(in) :: model
-    type(ranks_t), intent(in) :: ranks
-    type(log_t), intent(inout) :: log
-    type(state_t), intent(out) :: state
-    type(error_t), allocatable, intent(out) :: error
-
-    if (ranks%mine == 0 .or. starts_from_all(model)) then
-      call start_state(model, log, state, error)
-    else
-      call give_back_memory()
-      call start_state(model, log, state, error, &
-        others_of(model, share_out(model%layout, ranks%mine, ranks%n), ranks))
-    end if
-  end subroutine start_share
 
   !> Behind the start of a process that is not the first: give up what only others need.
   subroutine forget_others(model, ranks, state)
@@ -52,7 +28,6 @@ contains
     if (ranks%mine == 0 .or. needs_all(model)) return
     deallocate (model%mesh%element_id)
     if (.not. allocated(state%cut_force)) deallocate (model%layout%element_slot)
-    if (allocated(model%mesh%deck_node)) deallocate (model%mesh%deck_node)
     call forget_tiles(share_out(model%layout, ranks%mine, ranks%n), ranks, model, state)
   end subroutine forget_others
 
@@ -72,7 +47,6 @@ contains
     call forget_shorts(others%slots, 4, model%layout%slot_local)
     call forget_nodes(others, state)
     call forget_slots(others, state%elements)
-    call forget_streams(shares, ranks%mine, state%elements)
   end subroutine forget_tiles
 
   !> Whether each process looks at all elements during the run.
@@ -91,7 +65,7 @@ contains
     type(model_t), intent(in) :: model
     logical :: starts
 
-    starts = needs_all(model) .or. model%controls%relaxation%is_on .or. seeks_penalties(model) &
+    starts = needs_all(model) .or. model%controls%relaxation%is_on &
       .or. abs(model%controls%mass_step) > 0.0_wp &
       .or. any(abs(model%parts%stiffness_damping) > 0.0_wp)
   end function starts_from_all
@@ -109,30 +83,5 @@ contains
     others%slots = [1, (shares%chunks(ranks%mine) - 1)*chunk_size, &
       (shares%chunks(ranks%mine + 1) - 1)*chunk_size + 1, model%layout%n_slot]
   end function others_of
-
-  !> What only some chunks keep.
-  subroutine forget_streams(shares, mine, elements)
-    type(shares_t), intent(in) :: shares
-    integer, intent(in) :: mine
-    type(block_state_t), intent(inout) :: elements
-
-    call forget_stream(elements%point_start, elements%point_deviator)
-    call forget_stream(elements%history_start, elements%history)
-    call forget_stream(elements%eos_start, elements%eos_state)
-    call forget_stream(elements%hourglass_start, elements%hourglass_strain)
-
-  contains
-
-    subroutine forget_stream(chunk_start, values)
-      integer, intent(in) :: chunk_start(:)
-      real(wp), intent(inout), contiguous :: values(:)
-      integer :: starts(0:size(shares%chunks) - 1)
-
-      if (size(values) == 0) return
-      starts = stream_starts(shares%chunks, chunk_start, size(values))
-      call forget_reals([1, starts(mine) - 1, starts(mine + 1), size(values)], 1, values)
-    end subroutine forget_stream
-
-  end subroutine forget_streams
 
 end module rank_memory_m

@@ -2,10 +2,10 @@
 !> Tiles go from the processes that have had them to those that have them from now on, with all that
 !> a process keeps of its tiles alone.
 module tile_moving_m
-  use freight_m, only : freight_t, start_loading, start_unloading, pass_reals, pass_integers, &
-    pass_shorts
-  use layout_m, only : tile_t, layout_t, first_slot, last_slot
-  use mesh_m, only : mesh_t
+  use block_state_m, only : block_state_t
+  use freight_m, only : freight_t, start_loading, start_unloading, pass_reals
+  use layout_m, only : tile_t, first_slot, last_slot
+  use mesh_freight_m, only : pass_nodes, pass_slots
   use model_m, only : model_t
   use rank_shares_m, only : shares_t
   use ranks_m, only : ranks_t, swap_reals
@@ -50,7 +50,7 @@ contains
         starts(k) = freight%n + 1
         do i = max(own%tiles(mine), theirs%tiles(peers(k))), &
           min(own%tiles(mine + 1), theirs%tiles(peers(k) + 1)) - 1
-          call pass_tile(model%layout%tiles(i), model%mesh, model%layout, state, freight)
+          call pass_tile(model%layout%tiles(i), model, state, freight)
         end do
       end do
       starts(size(starts)) = freight%n + 1
@@ -59,25 +59,25 @@ contains
   end subroutine move_tiles
 
   !> A tile: its elements, its interior nodes and its forces on special ones.
-  subroutine pass_tile(tile, mesh, layout, state, freight)
+  subroutine pass_tile(tile, model, state, freight)
     type(tile_t), intent(in) :: tile
-    type(mesh_t), intent(inout) :: mesh
-    type(layout_t), intent(inout) :: layout
+    type(model_t), intent(inout) :: model
     type(state_t), intent(inout) :: state
     type(freight_t), intent(inout) :: freight
 
-    call pass_nodes(tile%first_node, tile%last_node, mesh, state, freight)
+    call pass_motion(tile%first_node, tile%last_node, state, freight)
+    call pass_nodes(tile%first_node, tile%last_node, model, freight)
     associate (first => tile%first_special, last => tile%last_special)
       call pass_reals(2*(last - first + 1), state%force_slots(:, first:last), freight)
     end associate
     call pass_values(tile, state%elements, freight)
-    call pass_constants(first_slot(tile), last_slot(tile), layout, state, freight)
+    call pass_constants(first_slot(tile), last_slot(tile), state%elements, freight)
+    call pass_slots(first_slot(tile), last_slot(tile), model%layout, freight)
   end subroutine pass_tile
 
-  !> Interior nodes (what `forget_nodes` gives up, and their places and numbers).
-  subroutine pass_nodes(first, last, mesh, state, freight)
+  !> The state of interior nodes (what `forget_nodes` gives up).
+  subroutine pass_motion(first, last, state, freight)
     integer, intent(in) :: first, last
-    type(mesh_t), intent(inout) :: mesh
     type(state_t), intent(inout) :: state
     type(freight_t), intent(inout) :: freight
 
@@ -88,20 +88,17 @@ contains
       call pass_reals(2*n, state%internal_force(:, first:last), freight)
       if (allocated(state%former_velocity)) &
         call pass_reals(2*n, state%former_velocity(:, first:last), freight)
-      call pass_reals(2*n, mesh%coordinates(:, first:last), freight)
-      call pass_integers(n, mesh%node_id(first:last), freight)
     end associate
-  end subroutine pass_nodes
+  end subroutine pass_motion
 
-  !> What a step does not change of elements.
-  subroutine pass_constants(first, last, layout, state, freight)
+  !> What a step does not change of the state of elements.
+  subroutine pass_constants(first, last, elements, freight)
     integer, intent(in) :: first, last !! slots
-    type(layout_t), intent(inout) :: layout
-    type(state_t), intent(inout) :: state
+    type(block_state_t), intent(inout) :: elements
     type(freight_t), intent(inout) :: freight
     integer :: k
 
-    associate (n => last - first + 1, elements => state%elements)
+    associate (n => last - first + 1)
       do k = 1, size(elements%reference, 2)
         call pass_reals(n, elements%reference(first:last, k), freight)
       end do
@@ -109,9 +106,6 @@ contains
         call pass_reals(n, elements%mass_ratio(first:last), freight)
       if (allocated(elements%retardation)) &
         call pass_reals(n, elements%retardation(first:last), freight)
-      call pass_integers(n, layout%slot_element(first:last), freight)
-      call pass_integers(4*n, layout%slot_nodes(:, first:last), freight)
-      call pass_shorts(4*n, layout%slot_local(:, first:last), freight)
     end associate
   end subroutine pass_constants
 

@@ -3,8 +3,7 @@
 module tile_neighbours_m
   use layout_m, only : layout_t
   use model_m, only : model_t
-  use renumber_m, only : mark_touched_nodes
-  use rigids_m, only : mark_rigid_nodes
+  use renumber_m, only : mark_moved_nodes
   implicit none
   private
   public :: neighbours_t, find_neighbours
@@ -26,9 +25,7 @@ contains
     logical, allocatable :: is_touched(:)
     integer :: i
 
-    allocate (is_touched(model%mesh%n_node))
-    is_touched(:) = mark_rigid_nodes(model%rigids, model%mesh%n_node)
-    call mark_touched_nodes(model, is_touched)
+    call mark_moved_nodes(model, is_touched)
     associate (layout => model%layout, n => size(model%layout%tiles))
       allocate (neighbours%is_touched(n))
       do i = 1, n

@@ -104,16 +104,17 @@ contains
     real(wp), parameter :: as_good_as_none = 1.0e-30_wp
     logical, allocatable :: touched(:)
     integer, allocatable :: list(:)
-    integer :: i, k
+    integer :: i, k, n
 
-    allocate (touched(model%mesh%n_node), source=.false.)
+    allocate (touched(model%layout%n_special), source=.false.)
     do i = 1, size(model%contacts)
       touched(model%contacts(i)%slave%nodes) = .true.
       touched(model%contacts(i)%master%nodes) = .true.
     end do
     do i = 1, size(model%rigids)
       associate (nodes => model%rigids(i)%nodes)
-        list = pack([(k, k=1, size(nodes))], touched(nodes))
+        n = count(nodes <= size(touched)) ! they rise
+        list = pack([(k, k=1, n)], touched(nodes(:n)))
         if (size(list) == 0) cycle
         state%contact_mass(nodes(list)) = state%mass(nodes(list))/max(as_good_as_none, &
           largest_share(state%rigids(i), state%mass(nodes(list)), state%rigids(i)%arms(:, list), &

@@ -9,19 +9,20 @@ module start_m
   use constraints_m, only : fix_nodes, update_activity
   use contact_inertia_m, only : weigh_contacts
   use element_log_m, only : log_elements
-  use element_state_m, only : start_elements, lump_mass
+  use element_start_m, only : start_elements, lump_mass
   use contacts_m, only : is_tied, n_told, told_as
   use controls_m, only : is_asked
   use cross_sections_m, only : n_cut
   use errors_m, only : error_t, raise, status_input
   use history_tables_m, only : table_nodfor
+  use inside_answers_m, only : answers_t
   use initial_values_m, only : start_motion
   use log_m, only : log_t, to_text
   use mass_log_m, only : log_added_mass
   use mass_scaling_m, only : scales_masses, start_mass_scaling
   use model_log_m, only : log_masses
   use model_m, only : model_t
-  use others_memory_m, only : others_t, forget_nodes, forget_slots
+  use others_memory_m, only : others_t, known_nodes, known_slots
   use outlines_m, only : start_outlines
   use rigid_start_m, only : start_rigids
   use state_m, only : state_t
@@ -33,25 +34,25 @@ module start_m
 contains
 
   !> Allocate and fill everything that the run changes.
-  subroutine start_state(model, log, state, error, others)
+  subroutine start_state(model, log, state, error, others, answers)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     type(state_t), intent(out) :: state
     type(error_t), allocatable, intent(out) :: error
-    type(others_t), intent(in), optional :: others !! what other processes have
-    integer :: i
+    type(others_t), intent(inout), optional :: others !! what other processes have; it is left alone
+    type(answers_t), intent(inout), optional :: answers !! of the first search
+    integer :: known(2, 3), i, k
 
-    ! Long arrays one after the other, each given up before the next one takes room.
-    if (present(others)) then
-      call start_elements(model, state%elements, [others%slots(2) + 1, others%slots(3) - 1])
-      call forget_slots(others, state%elements)
-    else
-      call start_elements(model, state%elements)
-    end if
-    call start_motion(model, state%motion)
-    call lump_mass(model, state%mass)
+    known = known_nodes(model, others)
+    call start_elements(model, known_slots(model, others), state%elements)
+    call start_motion(model, known, state%motion)
     call log_elements(model, log)
-    call log_masses(model, log)
+    if (present(others)) then
+      call move_alloc(others%mass, state%mass)
+    else
+      call lump_mass(model, state%mass)
+      call log_masses(model, log)
+    end if
     if (any(abs(model%parts%stiffness_damping) > 0.0_wp)) &
       call start_retardation(model, state%motion, state%elements)
     if (scales_masses(model)) then
@@ -60,18 +61,19 @@ contains
       if (allocated(error)) return
     end if
     call start_common(model, state)
-    allocate (state%inverse_mass(2, model%mesh%n_node), source=0.0_wp)
-    do i = 1, model%mesh%n_node
-      if (state%mass(i) > 0.0_wp) state%inverse_mass(:, i) = 1.0_wp/state%mass(i)
+    call start_vectors(known, model%mesh%n_node, state%inverse_mass)
+    do k = 1, size(known, 2)
+      do i = known(1, k), known(2, k)
+        if (state%mass(i) > 0.0_wp) state%inverse_mass(:, i) = 1.0_wp/state%mass(i)
+      end do
     end do
     call update_activity(model, 0.0_wp, state%mass, state%inverse_mass)
     call fix_nodes(model, state%inverse_mass)
-    if (present(others)) call forget_nodes(others, state)
     allocate (state%force_special(2, model%layout%n_special), source=0.0_wp)
     if (size(model%conditions%nodal_loads) + size(model%conditions%pressures) > 0) &
       allocate (state%external(2, model%layout%n_special), source=0.0_wp)
     if (allocated(model%conditions%damping) .and. .not. model%controls%implicit%is_on) &
-      allocate (state%former_velocity(2, model%mesh%n_node), source=0.0_wp)
+      call start_vectors(known, model%mesh%n_node, state%former_velocity)
     if (allocated(model%conditions%part_damping)) then
       allocate (state%node_damping(2, model%mesh%n_node), &
         state%former_damping(2, model%mesh%n_node), source=0.0_wp)
@@ -79,7 +81,7 @@ contains
         allocate (state%former_velocity(2, model%mesh%n_node), source=0.0_wp)
     end if
     allocate (state%force_slots(2, size(model%layout%special_node)), source=0.0_wp)
-    allocate (state%internal_force(2, model%mesh%n_node), source=0.0_wp)
+    call start_vectors(known, model%mesh%n_node, state%internal_force)
     allocate (state%prescribed_velocity(size(model%conditions%motions)), source=0.0_wp)
     do i = 1, size(model%conditions%motions)
       associate (prescribed => model%conditions%motions(i))
@@ -91,9 +93,33 @@ contains
     call start_works(model, state)
     if (allocated(model%controls%ends)) &
       allocate (state%quiet_since(size(model%controls%ends)), source=-1.0_wp)
+    call start_contacts(model, log, state, error, answers)
+    if (allocated(error)) return
+    call start_outlines(model, state)
+    call weigh_contacts(model, state)
+    if (present(others)) then
+      do i = 1, size(state%contacts)
+        state%contacts(i)%slave_penalty = others%penalties(1, i)
+        state%contacts(i)%master_penalty = others%penalties(2, i)
+        state%contacts(i)%node_penalty = others%penalties(3, i)
+      end do
+    else
+      call set_automatic_penalties(model, state, log, error)
+    end if
+  end subroutine start_state
+
+  !> Memories of the interfaces.
+  subroutine start_contacts(model, log, state, error, answers)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    type(state_t), intent(inout) :: state
+    type(error_t), allocatable, intent(out) :: error
+    type(answers_t), intent(inout), optional :: answers !! of the first search
+    integer :: i
+
     allocate (state%contacts(size(model%contacts)), state%estimates(n_told(model%contacts)))
     do i = 1, size(model%contacts)
-      call start_contact(model%contacts(i), model, log, state%contacts(i))
+      call start_contact(model%contacts(i), model, log, state%contacts(i), answers)
       if (.not. is_tied(model%contacts(i)) .or. state%contacts(i)%points%n > 0) cycle
       call raise(error, 'interface '//to_text(model%contacts(i)%id)//' ties nothing: none of its ' &
         //to_text(state%contacts(i)%n_slave)//' slave nodes has the master within reach', &
@@ -101,10 +127,20 @@ contains
       return
     end do
     state%estimates%contact_type = model%contacts(:size(state%estimates))%contact_type
-    call start_outlines(model, state)
-    call weigh_contacts(model, state)
-    call set_automatic_penalties(model, state, log, error)
-  end subroutine start_state
+  end subroutine start_contacts
+
+  !> Vectors of all nodes, zero where the process knows them.
+  pure subroutine start_vectors(known, n_node, vectors)
+    integer, intent(in) :: known(:, :)
+    integer, intent(in) :: n_node
+    real(wp), allocatable, intent(out) :: vectors(:, :) !! (2, n_node)
+    integer :: k
+
+    allocate (vectors(2, n_node))
+    do k = 1, size(known, 2)
+      vectors(:, known(1, k):known(2, k)) = 0.0_wp
+    end do
+  end subroutine start_vectors
 
   !> Forces and works that histories ask for.
   subroutine start_works(model, state)

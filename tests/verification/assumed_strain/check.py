@@ -211,15 +211,16 @@ def check_vibration(run):
 
 
 def check_full(run):
-    """NIP blank and another form: NIP 4 with one warning, and its bits."""
-    results = []
-    for points in (None, 4):
+    """NIP blank, or 2 (the default of shells), and another form: NIP 4 with one warning, and its bits."""
+    results = {}
+    for points in (4, None, 2):
         deck, _ = beam(3, 3.0, 0.5, POISSON, "shear", form=1, quality=0.1, points=points)
-        results.append(run.program(deck, name=f"points_{points}"))
-    moved = [result.points("displacement")[-1] for result in results]
-    run.check("NIP blank without IHQ 6: displacement", moved[0], moved[1], 0.0, "abs", "NIP 4")
-    log = (results[0].folder / f"{results[0].job}.log").read_text()
-    run.check("NIP blank without IHQ 6: warnings", log.count("takes parts without NIP as NIP 4"), 1, 0.0, "abs", "one")
+        results[points] = run.program(deck, name=f"points_{points}")
+    moved = {points: result.points("displacement")[-1] for points, result in results.items()}
+    for points, name in ((None, "NIP blank"), (2, "NIP 2")):
+        run.check(f"{name} without IHQ 6: displacement", moved[points], moved[4], 0.0, "abs", "NIP 4")
+        log = (results[points].folder / f"{results[points].job}.log").read_text()
+        run.check(f"{name} without IHQ 6: warnings", log.count("blank, 0 or 2 as NIP 4"), 1, 0.0, "abs", "one")
 
 
 def check(run):

@@ -20,6 +20,7 @@ def add(commands) -> None:
 def run(options) -> int:
     """Read, write, and say what became of the groups."""
     from slideline_tools import UserError, from_mesh
+    from slideline_tools.names import counted
     source = pathlib.Path(options.mesh)
     output = pathlib.Path(options.output or source.with_suffix(".k"))
     if output.exists() and not options.output:
@@ -29,12 +30,12 @@ def run(options) -> int:
     output.parent.mkdir(parents=True, exist_ok=True)
     output.write_text(deck.text(), encoding="utf-8")
     n_face = sum(map(len, mesh.parts.values()))
-    print(f"wrote {output} ({len(mesh.points)} nodes, {n_face} elements)")
+    print(f"wrote {output} ({counted(len(mesh.points), 'node')}, {counted(n_face, 'element')})")
     for pid, (name, faces) in enumerate(mesh.parts.items(), start=1):
-        print(f"part {pid}: {name}, {len(faces)} elements")
+        print(f"part {pid}: {name}, {counted(len(faces), 'element')}")
     for sid, (name, rows) in enumerate([*mesh.lines.items(), *mesh.nodes.items()], start=1):
-        kind = "edges" if name in mesh.lines else "nodes"
-        print(f"set {sid}: {name}, {len(rows)} {kind}")
+        kind = "edge" if name in mesh.lines else "node"
+        print(f"set {sid}: {name}, {counted(len(rows), kind)}")
     for note in mesh.notes:
         print(note)
     return 0

@@ -14,6 +14,7 @@ from matplotlib.patches import Patch
 
 from slideline_tools.draw.model import Arrows, Model
 from slideline_tools.draw.surface import Surface
+from slideline_tools.names import counted
 from slideline_tools.plots import STYLE, edge_width, save  # noqa: F401
 
 WHAT = ("mesh", "sets", "surfaces", "boundary", "motion", "velocity", "loads", "walls", "history")
@@ -96,11 +97,6 @@ def fit(figure, canvas: Canvas) -> None:
                       bbox_to_anchor=(0.01, 0.0), borderaxespad=0.3, handlelength=2.4)
 
 
-def counted(count: int) -> str:
-    """A number of nodes in words."""
-    return f"{count} node" if count == 1 else f"{count} nodes"
-
-
 def thinned(count: int, most: int) -> np.ndarray:
     """At most `most` indices of `count` at equal distances."""
     step = max(-(-count // most), 1)
@@ -130,7 +126,7 @@ def draw_mesh(canvas: Canvas, model: Model, edges: bool) -> None:
 
 def part_words(part) -> str:
     """A part for the legend: elements, law, and how a rigid body is held."""
-    words = f"{part.label}: {part.n_element} elements, {part.law}"
+    words = f"{part.label}: {counted(part.n_element, 'element')}, {part.law}"
     if part.is_rigid:
         held = [name for name, is_held in (("x", part.held[0]), ("y", part.held[1]),
                                            ("turn", part.turn_held)) if is_held]
@@ -147,7 +143,7 @@ def draw_sets(canvas: Canvas, model: Model) -> None:
         style = {"marker": "o", "markersize": size, "markerfacecolor": "none",
                  "markeredgecolor": colour, "markeredgewidth": 0.7, "linestyle": "none"}
         canvas.axes.plot(*model.points[nodes].T, **style, alpha=0.8, zorder=3)
-        canvas.add(Line2D([], [], **style, label=f"node {one.label}: {counted(len(nodes))}"))
+        canvas.add(Line2D([], [], **style, label=f"node {one.label}: {counted(len(nodes), 'node')}"))
 
 
 # ---- surfaces -----------------------------------------------------------------------------------
@@ -159,7 +155,7 @@ def draw_surfaces(canvas: Canvas, model: Model) -> None:
                                       ("master", MASTER, interface.master)):
             draw_surface(canvas, model, surface, colour)
             canvas.add(Line2D([], [], color=colour, linewidth=1.8, marker=">", markersize=5,
-                              label=f"{interface.label}: {name}, {len(surface.segments)} segments"
+                              label=f"{interface.label}: {name}, {counted(len(surface.segments), 'segment')}"
                                     + friction_words(interface.friction, interface.sliding_friction)))
 
 
@@ -206,7 +202,7 @@ def draw_boundary(canvas: Canvas, model: Model) -> None:
         seen = seen[np.lexsort(model.points[seen].T)]
         canvas.axes.plot(*model.points[seen[thinned(len(seen), MOST_SYMBOLS)]].T, **style, zorder=6,
                          clip_on=False)
-        canvas.add(Line2D([], [], **style, label=f"{label}: {counted(len(nodes))}"))
+        canvas.add(Line2D([], [], **style, label=f"{label}: {counted(len(nodes), 'node')}"))
 
 
 def draw_walls(canvas: Canvas, model: Model) -> None:
@@ -243,7 +239,7 @@ def draw_velocity(canvas: Canvas, model: Model) -> None:
     if not len(moving):
         return
     picked = spread(model.points[moving], MOST_ARROWS, canvas)
-    label = f"initial velocity, largest {size.max():.4g} ({counted(len(moving))})"
+    label = f"initial velocity, largest {size.max():.4g} ({counted(len(moving), 'node')})"
     draw_arrows(canvas, Arrows("velocity", label, model.points[moving[picked]],
                                model.velocity[moving[picked]]), float(size.max()))
 

@@ -13,7 +13,7 @@ from slideline_tools.results import Results
 
 SIZE = (5.2, 2.7)
 MOST_LINES = 8
-STYLE = plots.STYLE | {"svg.hashsalt": "slideline", "axes.formatter.use_mathtext": False}
+STYLE = plots.STYLE | {"svg.hashsalt": "slideline"}
 ENERGIES = ("kinetic", "internal", "hourglass", "viscous", "damping", "contact", "friction", "leapfrog",
             "external_work", "total")
 

@@ -22,7 +22,7 @@ AT_ONCE = ", 2 runs at once"
 ROUTINE_GOAL, SMALL_GOAL = 2.0, 4.5  # element routine, step of 300 elements over K
 STEP_GOAL, TEAM_GOAL = 3.6, 1.9  # step over K, speed-up of two threads; 4000 to 100 000 elements
 LARGE_GOAL, GOAL_YARDSTICKS, GOAL_BYTES = 1.3, 3.3, 220.0  # as in tests/bench/measuring.py
-NODE_GOALS, POINT_GOAL, SMALL_CONTACT = ((1000, 4.3), (100000, 3.1)), 2.5, 1.0  # contact: K; microseconds a step
+POINT_GOAL, POINT_SIZES, SMALL_CONTACT = 6.4, (100, 1000, 10000, 100000), 455.0  # contact: K a point; a step of 20 slave nodes
 STYLES = {("elastic", 1): ("-", "o"), ("elastic", 2): ("--", "o"),
           ("yielding", 1): ("-", "s"), ("yielding", 2): ("--", "s")}
 SEARCHES = {"still": "pressed, not sliding", "sliding": "sliding fast",
@@ -74,8 +74,11 @@ of whose nodes touch and slide. Both axes are logarithmic: a cost that is propor
 
 {contact_goals}
 
+With 100 000 slave nodes contact of type 1 moves a kilobyte a slave node and step through the memory (12 lines of 64 bytes read, 4 written, by
+cachegrind with a cache of 512 kB): its time is that of the memory, at 185 instructions (4 K) a slave node.
+
 ns per slave node and step, in brackets per contact point over K. *flat*: all slave nodes touch; *crown*: a third of them.
-The clock takes no laps here (`timing=off`); in a run with `timing=phase` two or three of them come to a step of each
+The clock is not read here (`timing=off`); with `timing=phase` two or three readings come to a step of each
 interface, [20 to 40 ns each](../results.md#what-the-timing-costs).
 
 {contact_table}
@@ -203,7 +206,8 @@ def step_goals(bench):
             lines += team_goals(bench, material, [row["size"] for row in middle])
         if large:
             lines.append(verdict(f"{material}, a million elements and more, step over "
-                                 f"{GOAL_YARDSTICKS:g} K + R of {GOAL_BYTES:.0f} bytes, the largest", max(row["over_goal"] for row in large), 1.2))
+                                 f"{GOAL_YARDSTICKS:g} K + R of {GOAL_BYTES:.0f} bytes, the largest",
+                                 max(row["over_goal"] for row in large), LARGE_GOAL))
     return "\n".join(lines)
 
 
@@ -214,21 +218,17 @@ def contact_rows(bench, scene, ctype, unit="ns/slave node"):
 def contact_goals(bench):
     """The goals of contact, one line each, flat chain."""
     lines = []
-    first = {row["size"]: row for row in contact_rows(bench, "flat", 1)}
-    for size, goal in NODE_GOALS:
-        if size in first:
-            lines.append(verdict(f"type 1, {size} slave nodes, K per slave node",
-                                 first[size]["over_yardstick"], goal))
-    for size in (1000, 10000, 100000):
-        for ctype in TYPES:
-            lines += [verdict(f"type {ctype}, {size} slave nodes, K per contact point", row["over_yardstick"], POINT_GOAL)
-                      for row in contact_rows(bench, "flat", ctype, "ns/point")
-                      if row["size"] == size and ctype > 1]
+    for ctype in TYPES:
+        rows = [row for row in contact_rows(bench, "flat", ctype, "ns/point") if row["size"] in POINT_SIZES]
+        if rows:
+            sizes = [row["size"] for row in rows]
+            worst = max(rows, key=lambda row: row["over_yardstick"])
+            lines.append(verdict(f"type {ctype}, {min(sizes)} to {max(sizes)} slave nodes, K per contact point, the most "
+                                 f"(at {worst['size']} slave nodes)", worst["over_yardstick"], POINT_GOAL))
     for ctype in TYPES:
         points = {row["size"]: row["median"] for row in contact_rows(bench, "flat", ctype, "ns/point")}
-        lines += [verdict(f"type {ctype}, 20 slave nodes ({20 * row['median'] / points[20]:.0f} points), "
-                          "microseconds a step", row["median"] * row["size"] / 1.0e3, SMALL_CONTACT)
-                  + f"; {row['over_yardstick'] * row['size']:.0f} K"
+        lines += [verdict(f"type {ctype}, 20 slave nodes ({20 * row['median'] / points[20]:.0f} points), K a step",
+                          row["over_yardstick"] * row["size"], SMALL_CONTACT)
                   for row in contact_rows(bench, "flat", ctype) if row["size"] == 20 and 20 in points]
     return "\n".join(lines)
 

@@ -83,11 +83,13 @@ with contact (dashed).
 ## What would have to change
 
 - **Memory.** The first process holds the whole model: here {bytes_element:.0f} bytes an element at the peak, while the deck is read (two sizes of the square on one process). On a machine
-  with 4 GB a process that is {memory_limit:.1f} million elements; at 1e8 it would need {memory_large:.0f} GB. The others read the deck as well, without keeping its text, and give
-  up what they do not step: of four processes with a square of a million elements the second took 173 bytes an element at the peak and 78 in the cycles
-  (`tests/bench/ranks.sh`; by hand all took 241 and 217 before). Beyond, only the first may read the deck and hand out tiles. The lists of
-  border slots (`rank_borders`) already name nothing but what neighbours share.
-- **Start.** Every process reads the whole deck and renumbers it: {start_element:.1f} microseconds of processor time an element here, {start_large:.0f} s at 1e8, whatever p.
+  with 4 GB a process that is {memory_limit:.1f} million elements; at 1e8 it would need {memory_large:.0f} GB. The others get special nodes and their own tiles
+  from it: of four processes with a square of a million elements the second took 71 bytes an element at the peak and 69 in the cycles
+  (`tests/bench/ranks.sh`), a quarter of what one process takes and some 15 for the nodes between all tiles and the lists of their forces, whatever p:
+  1.5 GB a process at 1e8. Beyond, these have to be left to the processes whose tiles touch them: the lists of border slots (`rank_borders`)
+  already name nothing but what neighbours share.
+- **Start.** The first process reads the deck and renumbers it: {start_element:.1f} microseconds of processor time an element here, {start_large:.0f} s at 1e8, whatever p, while
+  the others wait.
 - **Contact** is computed by all; on 1,024 processes it takes {contact_share:.1f} times what the elements take at 1e6 elements and {contact_large:.2f} times at 1e8. Shared by
   ranges of slave segments it would take t_c n/p, and one more exchange for the forces of the ranges, which all have to hear: log2(p) L + S/B. {sharing}
 - **Loads.** Where a deck has nodal loads or pressures, each process forms them, and their power, over all special nodes of the model ({special:.0f} % of all nodes of the large square), not over those that are loaded. Where elements

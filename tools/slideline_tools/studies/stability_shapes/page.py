@@ -11,6 +11,11 @@ from slideline_tools.studies.stability.page import FILLS
 
 TWO_PASS = 3
 
+#: sweeps of shapes alone, and what they are with the least and the largest of their values
+SHAPES = {"ratio": "mesh ratios from {:g} to {:g} at one stiffness", "ratio_punit3": "mesh ratios from {:g} to {:g} with PUNIT 3",
+          "turn": "the whole scene turned by up to {1:g} degrees", "tilt": "a corner first at {:g} to {:g} degrees",
+          "speed": "slave nodes that cross master nodes at {:g} to {:g} times the wave speed"}
+
 
 def draw_shapes(rows, sweeps):
     """One panel: a line for each sweep, a column for each type; the worst verdict, and the values that are not stable."""
@@ -80,12 +85,8 @@ largest stable penalty, `TSSFAC` 0.8 (but for the mesh ratio, below). One thing 
 
 ## Read in words
 
-- Inside the stable region hardly anything fails by its shape: mesh ratios from 1:8 to 8:1, the whole scene turned, a corner first at all angles tried, and slave nodes that pass a master node every second step
-  (at the wave speed four fifths of a slave element in a step) leave all types stable.
-- *Overhang.* Where a place that carries a whole spring stands just beyond the end of the other surface, the contact makes energy: a slave node in types 1 to 3, an end node or the second or third of a longer overhang alike, a virtual
-  node in type 4, a Gauss point in type 6. It sinks beside the end without a spring; when the block spreads and draws together again it comes in over the end and is caught tens of millimetres deep, with no work done: energy from
-  nothing, at any time step. What stands a few tenths of an element away from an end stays out. Types 5 and 7 weigh what covers the master, which grows from nothing at the end. The blocks of [stability](stability.md), whose surfaces end
-  at the same place, show the same failure once an end node slips out. A smaller limit for first contacts cures it (*overhang, SRCH a tenth of its default*): such a node stays out. The program warns at the start and names node, end and SRCH.
+{shapes}
+{overhangs}
 - *Hourglass coefficient* (stiffness form). The hourglass mode alone needs `dt < L/(c sqrt(2 Q_h))`, 0.71 `L/c` at 1.0, and TSSFAC is 0.8. The
   stable step counts it (`../theory/elements.md`), at 1.0 the step is 0.57 `L/c`, and the program warns that it falls.
 {meshes}
@@ -146,6 +147,41 @@ def span(rows, name, column):
     return (min(found), max(found)) if found else None
 
 
+def judged(rows, names):
+    """(cells with a verdict, how many of them are stable in words) of some sweeps."""
+    cells = [row for row in rows if row["sweep"] in names and "verdict" in row]
+    n_bad = sum(row["verdict"] != VERDICTS[0] for row in cells)
+    return cells, f"{n_bad} of {len(cells)} cells are not stable" if n_bad else f"all {len(cells)} cells are stable"
+
+
+def shape_text(rows):
+    """Whether meshes, angles, corners and speeds break a contact inside the stable region."""
+    parts = []
+    for name, words in SHAPES.items():
+        found = span(rows, name, "value")
+        if found:
+            parts.append(words.format(*found))
+    return "- *Shapes*: " + ", ".join(parts or ["not tried"]) + f": {judged(rows, SHAPES)[1]}."
+
+
+def overhang_text(rows):
+    """What a place beyond an end does, and how much energy it makes."""
+    text = ("- *Overhang.* A place that carries a whole spring (a slave node in types 1 to 3, a virtual node in type 4, a Gauss point in type 6) and stands "
+            "just beyond the end of the other surface sinks beside it without a spring. When the block spreads and draws together again it comes in over "
+            "the end and is caught as deep as it is then, with no work done. What an interface returns is limited by what it was given "
+            "([theory](../theory/contact.md), 6.1).")
+    cells, outcome = judged(rows, ("overhang",))
+    if cells:
+        most = max(cells, key=lambda row: row["created"])
+        text += (f" Here {outcome}, and contact forces make at most {100.0 * most['created']:.2g} % of the energy "
+                 f"({label(most['type'])}, overhang {most['value']:g}).")
+    cells = judged(rows, ("overhang_srch",))[0]
+    if cells:
+        text += (f" With a limit of a tenth for first contacts (*overhang, SRCH a tenth of its default*) it is at most "
+                 f"{100.0 * max(row['created'] for row in cells):.2g} %.")
+    return text + " The program warns at the start and names node, end and SRCH."
+
+
 def mesh_text(rows):
     """What the mesh ratio changes at one stiffness, and what stiffness changes."""
     text, impulse = "- *Mesh ratio.*", span(rows, "ratio", "impulse")
@@ -177,4 +213,5 @@ def write_shapes_page(rows, sweeps, doc):
                             + value_table(rows, name, "hourglass", 100.0)
                             for name in sweeps if name.startswith("hourglass"))
     write_page(doc, "stability_shapes", PAGE.format(
-        failures=failures(rows), hourglass=hourglass, meshes=mesh_text(rows), **texts))
+        failures=failures(rows), hourglass=hourglass, meshes=mesh_text(rows), shapes=shape_text(rows),
+        overhangs=overhang_text(rows), **texts))

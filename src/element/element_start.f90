@@ -1,0 +1,178 @@
+! SPDX-License-Identifier: MIT
+!> Element state at time zero and lumped mass.
+module element_start_m
+  use block_state_m, only : block_state_t
+  use element_dispatch_m, only : point_count
+  use element_state_m, only : start_erosion
+  use eos_pressure_m, only : n_eos_value
+  use kinds_m, only : wp
+  use law_pressure_m, only : n_law_value
+  use layout_m, only : chunk_size
+  use material_dispatch_m, only : history_size
+  use model_m, only : model_t
+  use parts_m, only : hourglass_viscous, may_fail, gives_pressure
+  use round_chunk_m, only : n_round_reference
+  use round_state_m, only : fill_round_reference, add_round_masses
+  implicit none
+  private
+  public :: start_elements, lump_mass
+
+contains
+
+  !> Allocate the streams and fill the reference shape. Elastic parts get no plastic history, parts
+  !> with viscous hourglass control no hourglass memory.
+  subroutine start_elements(model, known, elements)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: known(:, :) !! (2, n) first and last slot of those that are asked for
+    type(block_state_t), intent(out) :: elements
+    integer :: n_chunk, i_slot, k
+
+    allocate (elements%reference(model%layout%n_slot, merge(n_round_reference, 6, model%is_round)))
+    allocate (elements%deviator(model%layout%n_slot, 3))
+    ! Chunks of rigid parts come after these.
+    n_chunk = model%layout%tiles(size(model%layout%tiles))%last_chunk
+    allocate (elements%deviatoric_work(n_chunk), elements%hourglass_work(n_chunk), &
+      elements%viscous_work(n_chunk), source=0.0_wp)
+    allocate (elements%time_limit(n_chunk), elements%volume_limit(n_chunk), source=1.0_wp)
+    call reserve_memories(model, elements)
+    do k = 1, size(known, 2)
+      associate (first => known(1, k), last => known(2, k))
+        elements%deviator(first:last, :) = 0.0_wp
+        do i_slot = first, last
+          call fill_reference(model, i_slot, elements%reference)
+        end do
+        if (model%is_round) call fill_round_reference(model, first, last, elements%reference)
+        call clear_memories(model, (first - 1)/chunk_size + 1, last/chunk_size, elements)
+      end associate
+    end do
+    if (model%erodes) call start_erosion(model, elements)
+  end subroutine start_elements
+
+  !> Diagonals and h.X of one slot; padding is the first element of its chunk, much larger: it
+  !> divides by no zero and its stable step never counts.
+  subroutine fill_reference(model, i_slot, reference)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_slot
+    real(wp), intent(inout) :: reference(:, :)
+    real(wp), parameter :: much = 1.0e6_wp
+    real(wp) :: x(2, 4)
+
+    if (model%layout%slot_element(i_slot) == 0) then
+      reference(i_slot, :6) = much*reference(i_slot - mod(i_slot - 1, chunk_size), :6)
+      return
+    end if
+    x = model%mesh%coordinates(:, model%layout%slot_nodes(:, i_slot))
+    reference(i_slot, 1:2) = x(:, 3) - x(:, 1)
+    reference(i_slot, 3:4) = x(:, 4) - x(:, 2)
+    reference(i_slot, 5:6) = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
+  end subroutine fill_reference
+
+  !> Where each chunk's points, history, equation of state and hourglass memory start.
+  subroutine reserve_memories(model, elements)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(inout) :: elements
+    integer :: i_chunk, n(4), total(4)
+
+    allocate (elements%history_start(model%layout%n_chunk), &
+      elements%eos_start(model%layout%n_chunk), elements%hourglass_start(model%layout%n_chunk), &
+      elements%point_start(model%layout%n_chunk), source=0)
+    total = 0
+    do i_chunk = 1, model%layout%n_chunk
+      n = memory_sizes(model, model%layout%chunk_part(i_chunk))
+      if (n(1) > 0) elements%point_start(i_chunk) = total(1) + 1
+      if (n(2) > 0) elements%history_start(i_chunk) = total(2) + 1
+      if (n(3) > 0) elements%eos_start(i_chunk) = total(3) + 1
+      if (n(4) > 0) elements%hourglass_start(i_chunk) = total(4) + 1
+      total = total + n
+    end do
+    allocate (elements%point_deviator(total(1)), elements%history(total(2)), &
+      elements%eos_state(total(3)), elements%hourglass_strain(total(4)))
+    if (any(may_fail(model%materials(model%parts%material)))) allocate (elements%n_failed( &
+      model%layout%n_chunk), source=0)
+  end subroutine reserve_memories
+
+  !> What a chunk of a part keeps in each of the four streams.
+  pure function memory_sizes(model, i_part) result(n)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_part
+    integer :: n(4), n_points
+
+    n = 0
+    associate (part => model%parts(i_part), &
+      material => model%materials(model%parts(i_part)%material))
+      if (material%is_rigid) return
+      n_points = point_count(model%sections(part%section))
+      n(2) = n_points*history_size(material)
+      if (allocated(material%eos)) n(3) = merge(n_law_value, n_eos_value, gives_pressure(material))
+      if (n_points > 1) then
+        n(1) = 3*n_points
+      else if (part%hourglass%form /= hourglass_viscous) then
+        n(4) = 2
+      end if
+      n = n*chunk_size
+    end associate
+  end function memory_sizes
+
+  !> The streams of some chunks at time zero.
+  subroutine clear_memories(model, first, last, elements)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: first, last
+    type(block_state_t), intent(inout) :: elements
+    integer :: i_chunk, n(4), i_eos
+
+    do i_chunk = first, last
+      n = memory_sizes(model, model%layout%chunk_part(i_chunk))
+      call clear(elements%point_start(i_chunk), n(1), elements%point_deviator)
+      call clear(elements%history_start(i_chunk), n(2), elements%history)
+      call clear(elements%eos_start(i_chunk), n(3), elements%eos_state)
+      call clear(elements%hourglass_start(i_chunk), n(4), elements%hourglass_strain)
+      i_eos = elements%eos_start(i_chunk)
+      if (i_eos > 0) elements%eos_state(i_eos:i_eos + chunk_size - 1) = &
+        model%materials(model%parts(model%layout%chunk_part(i_chunk))%material)%eos%energy
+    end do
+
+  contains
+
+    !> What one chunk has of a stream.
+    pure subroutine clear(start, n, values)
+      integer, intent(in) :: start, n
+      real(wp), intent(inout) :: values(:)
+
+      if (n > 0) values(start:start + n - 1) = 0.0_wp
+    end subroutine clear
+
+  end subroutine clear_memories
+
+  !> Lumped mass: a quarter of each quad, a third of each triangle to its nodes; in round bodies the
+  !> row sums of the consistent mass.
+  subroutine lump_mass(model, mass)
+    type(model_t), intent(in) :: model
+    real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of depth or per radian
+    real(wp) :: x(2, 4), area
+    integer :: i, corners
+
+    allocate (mass(model%mesh%n_node), source=0.0_wp)
+    if (allocated(model%conditions%lumped_masses)) then
+      do i = 1, size(model%conditions%lumped_masses)
+        associate (lump => model%conditions%lumped_masses(i))
+          mass(lump%node) = mass(lump%node) + lump%mass
+        end associate
+      end do
+    end if
+    if (model%is_round) then
+      call add_round_masses(model, mass)
+      return
+    end if
+    do i = 1, model%mesh%n_element
+      associate (nodes => model%mesh%element_nodes(:, i), &
+        material => model%materials(model%parts(model%mesh%element_part(i))%material))
+        x = model%mesh%coordinates(:, nodes)
+        area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
+          - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+        corners = merge(3, 4, nodes(4) == nodes(3))
+        mass(nodes(:corners)) = mass(nodes(:corners)) + material%density*area/corners
+      end associate
+    end do
+  end subroutine lump_mass
+
+end module element_start_m
