@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """CTYPE 0: which type the program chooses and why, and that the run is that of the type by name."""
 import os
+import pathlib
 import re
 
 import numpy as np
@@ -282,6 +283,13 @@ def test_changed_type_has_the_same_bits(slideline, pressed_twice, tmp_path):
         told = [re.findall(r"interface 1: (?:contact pressure|the target) .*", (tmp_path / folder / "job.log").read_text())
                 for folder in ("out", dump.stem)]
         assert told[0] == told[1] and len(told[0]) == 2
+
+
+def test_change_finds_nothing_behind_a_face(pressed_twice):
+    """Open for one type is not open for another that follows other places: the change waits until it is, and makes no energy."""
+    log = pressed_twice("out", deck=(pathlib.Path(__file__).parent / "change_of_type.k").read_text())
+    assert re.search(CHANGE, log)[4] == "NTS-mAR (type 5)"
+    assert "have made energy" not in log
 
 
 @pytest.mark.skipif(IS_SHORT, reason="Release alone: nothing happens here that other tests do not run")

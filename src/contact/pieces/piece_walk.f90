@@ -4,7 +4,7 @@
 module piece_walk_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
-  use foot_m, only : foot_t, see_segment, turns_gently
+  use foot_m, only : foot_t, see_segment, turns_gently, round_off
   use geometry_m, only : sight_t, sight_of_segment
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, grow_pieces, is_walked_piece
@@ -145,7 +145,9 @@ contains
         call add_row(ends, segment, [walk%at, 1.0_wp], [walk%node, 0], table)
       return
     end if
-    walk%is_over = i_step >= contact%master%n_segment .or. sight%along < -sight%square &
+    ! Led away: the chain below the first end does not face the segment. That below the other may.
+    if (sight%along < -sight%square) walk%segment = 0
+    walk%is_over = i_step >= contact%master%n_segment &
       .or. (walk%segment == 0 .and. walk%far_segment == 0)
     if (sight%along <= walk%at*sight%square) return
     call add_row(ends, segment, [walk%at, sight%along/sight%square], [walk%node, node], table)
@@ -176,6 +178,8 @@ contains
     end do
     walk%far_segment = 0
     walk%segment = segment
+    ! A node that is passed already cuts nothing. Where the chains meet one of either may stand.
+    if (sight%along < (walk%at - round_off)*sight%square) return
     walk%at = max(walk%at, min(1.0_wp, sight%along/sight%square))
     walk%node = contact%master%segments(2, segment)
 

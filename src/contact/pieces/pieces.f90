@@ -9,7 +9,7 @@ module pieces_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use foot_block_m, only : project
-  use foot_m, only : foot_t, nearest_foot, facing_share, face_on, round_off
+  use foot_m, only : foot_t, nearest_foot, nearer_run, facing_share, face_on, round_off
   use kinds_m, only : wp
   use piece_list_m, only : list_kept, list_run, note_segments, may_list, hair
   use piece_table_m, only : piece_table_t, shrink_pieces, n_piece_block, is_last_piece, &
@@ -100,11 +100,13 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)
     type(foot_t), intent(out) :: feet(2)
-    integer :: k, start
+    integer :: own(2), k, start
 
     associate (tracking => memory%slave_tracking)
-      start = tracking%segment(ends(1))
-      if (start == 0) start = tracking%segment(ends(2))
+      own = tracking%segment(ends)
+      if (memory%facing%is_used) call take_nearer_runs(contact, memory, ends, own)
+      start = own(1)
+      if (start == 0) start = own(2)
       if (start == 0) return
       do k = 1, 2
         if (tracking%status(ends(k)) /= is_touching) cycle
@@ -114,7 +116,7 @@ contains
       end do
       do k = 1, 2
         if (feet(k)%segment == 0) &
-          feet(k) = foot_from(contact, memory, ends(k), k, start)
+          feet(k) = foot_from(contact, memory, ends(k), k, own(k), start)
         start = feet(1)%segment
       end do
     end associate
@@ -132,18 +134,33 @@ contains
     end associate
   end subroutine find_feet
 
+  !> Master segments that ends which are not in contact are paired with, where runs meet.
+  pure subroutine take_nearer_runs(contact, memory, ends, own)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)
+    integer, intent(inout) :: own(2) !! 0: none
+    integer :: k
+
+    do k = 1, 2
+      if (own(k) == 0 .or. memory%slave_tracking%status(ends(k)) == is_touching) cycle
+      own(k) = nearer_run(contact%master, memory%places(:, memory%n_slave + 1:), &
+        memory%places(:, ends(k)), own(k))
+    end do
+  end subroutine take_nearer_runs
+
   !> Foot of an end that is not in contact, looked for from a master segment, or on the chain that
   !> it is paired with if that is another one and nearer: at a sharp corner one run ends and the
   !> next begins, and a slave segment above the corner stands on both.
-  pure function foot_from(contact, memory, node, k, start) result(foot)
+  pure function foot_from(contact, memory, node, k, own, start) result(foot)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: node, start
-    integer, intent(in) :: k !! which end of its segment
+    integer, intent(in) :: k   !! which end of its segment
+    integer, intent(in) :: own !! master segment that it is paired with, 0: none
     type(foot_t) :: foot, other
 
-    associate (places => memory%places(:, memory%n_slave + 1:), &
-      place => memory%places(:, node), own => memory%slave_tracking%segment(node))
+    associate (places => memory%places(:, memory%n_slave + 1:), place => memory%places(:, node))
       foot = nearest_foot(contact%master, places, place, start)
       if (own == 0) return
       if (contact%master%chain(own) == contact%master%chain(start)) return

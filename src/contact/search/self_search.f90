@@ -20,8 +20,13 @@ module self_search_m
   real(wp), parameter :: behind = 1.5_wp
 
   !> What a segment is to a spot: part of its own run, which is never met; nothing as the bodies
-  !> stand, but it may be when they have moved by its distance; something that it may meet.
+  !> stand, but it may be when they have moved; something that it may meet.
   integer, parameter :: is_own_run = 0, is_averted = 1, is_met = 2
+
+  type :: role_t
+    integer :: is = is_own_run
+    real(wp) :: sleep = 0.0_wp !! square of the motion after which what is averted may be met, m^2
+  end type role_t
 
 contains
 
@@ -71,6 +76,7 @@ contains
     type(kept_t), intent(inout) :: kept
     real(wp), intent(inout) :: averted !! least square of a distance, m^2
     real(wp) :: square
+    type(role_t) :: role
     integer :: k, segment
 
     do k = tracking%grid%first(bucket) + 1, tracking%grid%first(bucket + 1)
@@ -78,11 +84,12 @@ contains
       if (any(kept%segment == segment)) cycle
       square = closest_distance(see_segment(surface, chain, spots(:, i), segment))
       if (.not. square < kept%square(size(kept%square))) cycle
-      select case (role_of(tracking, surface, chain, spots, i, segment, any_depth))
+      role = role_of(tracking, surface, chain, spots, i, segment, any_depth, square)
+      select case (role%is)
       case (is_met)
         call keep_nearest(segment, square, kept)
       case (is_averted)
-        averted = min(averted, square)
+        averted = min(averted, role%sleep)
       end select
     end do
   end subroutine look_into_bucket
@@ -105,35 +112,39 @@ contains
     elsewhere = .not. is_own(surface, chain, beside, segment)
   end function is_elsewhere
 
-  !> What a segment is to a spot.
-  pure function role_of(tracking, surface, chain, spots, i, segment, any_depth) result(role)
+  !> What a segment is to a spot. One that it is behind may be met as soon as the spot is less deep,
+  !> or has turned: it must be seen then, as deep as it is.
+  pure function role_of(tracking, surface, chain, spots, i, segment, any_depth, square) result(role)
     type(tracking_t), intent(in) :: tracking
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
     integer, intent(in) :: i, segment
     logical, intent(in) :: any_depth
-    integer :: role
+    real(wp), intent(in) :: square !! of its distance, m^2
+    type(role_t) :: role
     integer :: beside(2), k
     type(foot_t) :: foot
-    real(wp) :: t(2), least
+    real(wp) :: t(2), least, deep
 
     beside = segments_of(tracking, surface, i)
-    role = is_own_run
     do k = 1, 2
       if (beside(k) == 0) cycle
       if (surface%chain(beside(k)) == surface%chain(segment)) return
     end do
-    role = is_averted
-    foot = closest_foot(surface, chain, spots(:, i), segment)
-    if (foot%gap < -behind*tracking%segment_depth(segment) .and. .not. any_depth) return
+    role%is = is_averted
+    role%sleep = square
     if (is_own(surface, chain, beside, segment)) return
+    foot = closest_foot(surface, chain, spots(:, i), segment)
+    deep = -foot%gap - behind*tracking%segment_depth(segment)
+    if (foot%is_on .and. foot%gap < 0.0_wp) role%sleep = max(0.0_wp, deep)**2
+    if (deep > 0.0_wp .and. .not. any_depth) return
     least = side_on
     if (shares_node(surface, beside, segment)) least = face_on
     t = separation(spots(:, tracking%chord(2, i)), spots(:, tracking%chord(1, i)))
     associate (normal => sight_normal(see_segment(surface, chain, spots(:, i), segment)))
       if (t(2)*normal(1) - t(1)*normal(2) > least*norm2(t)) return
     end associate
-    role = is_met
+    role%is = is_met
   end function role_of
 
   !> Segments that a spot is on: one, or the two at a node (0: none there).

@@ -5,13 +5,14 @@
 !> written, so that the deck as run makes the same choices.
 module contact_choosing_m
   use automatic_penalty_m, only : scale_penalties
+  use clock_m, only : clock_t
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_estimate_m, only : judged_each
   use contact_inertia_m, only : weigh_contacts
   use contact_state_m, only : contact_state_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, fitting_scale
   use contacts_m, only : contact_t, kind_text, penalty_share
-  use interface_m, only : start_contact
+  use interface_m, only : start_contact, apply_contact
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
@@ -51,8 +52,9 @@ contains
     real(wp) :: chosen(size(state%estimates))
     integer :: i
 
+    chosen = 0.0_wp
     do i = 1, size(chosen)
-      chosen(i) = wanted_type(model%contacts(i), state, i)
+      if (ranks%mine == 0) chosen(i) = wanted_type(model, state, i)
     end do
     if (ranks%n > 1) call spread_values(ranks, chosen)
     do i = 1, size(chosen)
@@ -61,15 +63,15 @@ contains
   end subroutine follow_choices
 
   !> The type that an interface should have from here on; 0 where it keeps its own.
-  pure function wanted_type(contact, state, i) result(wanted)
-    type(contact_t), intent(in) :: contact
+  function wanted_type(model, state, i) result(wanted)
+    type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: i
     integer :: wanted
     real(wp) :: estimate, expected
 
     wanted = 0
-    associate (watched => state%estimates(i)%watched)
+    associate (watched => state%estimates(i)%watched, contact => model%contacts(i))
       if (.not. may_change(contact) .or. state%contacts(i)%n_active > 0) return
       if (.not. watched(2) > 0.0_wp) return
       estimate = sqrt(watched(1)/watched(2))
@@ -79,7 +81,36 @@ contains
       ! Round-off may set the share of a type of itself below 1.
       if (wanted == contact%contact_type .or. .not. expected < estimate) wanted = 0
     end associate
+    if (wanted > 0) then
+      if (.not. is_open_for(model, i, wanted, state)) wanted = 0
+    end if
   end function wanted_type
+
+  !> Whether an interface that is open is so for another type too: where that would find places
+  !> behind a face at once, which the present type does not follow or has let go, their springs
+  !> would make what they hold.
+  function is_open_for(model, i, new_type, state) result(is_open)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i, new_type
+    type(state_t), intent(in) :: state
+    logical :: is_open
+    type(contact_t) :: contact
+    type(contact_state_t) :: memory
+    type(log_t) :: silence
+    type(clock_t) :: clock
+    real(wp), allocatable :: force(:, :)
+
+    contact = model%contacts(i)
+    contact%contact_type = new_type
+    silence%is_mute = .true.
+    clock%is_on = .false.
+    call start_contact(contact, model, silence, memory)
+    memory%is_stale = .true.
+    allocate (force(2, size(state%force_special, 2)), source=0.0_wp)
+    call apply_contact(contact, state%motion, state%contact_mass, state%time, state%dt_before, &
+      state%cycle, clock, memory, force)
+    is_open = memory%n_active == 0
+  end function is_open_for
 
   !> An open interface goes on with another type, if the present step bears its springs.
   subroutine change_type(model, i, new_type, element_limit, state, log)

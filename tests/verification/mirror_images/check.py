@@ -1,15 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""The collision as a full model, its own mirror image: what force there is across the line of symmetry."""
+"""The collision as a full model, its own mirror image: what force there is across the line of symmetry. Random
+bodies, their mirror images, and the same with a search in every cycle: alike to round-off."""
+import pathlib
+import sys
+
 import numpy as np
 
 from contact_types import TYPES
 from meshes import Deck, grid_quads
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+import images  # noqa: E402  (beside this file)
 
 ALUMINIUM, STEEL = (2700.0, 69.0e9, 0.33), (7850.0, 210.0e9, 0.3)
 YIELD, SPEED, GAP = 276.0e6, 80.0, 0.5e-3
 STEP, END = 1.0e-7, 6.0e-5
 SOFT, STIFF = 1.0e9, 1.0e10   # N/m per node
 ROUND_OFF = 1.0e-8    # of the largest force; the bodies' answer to the sideways push too
+ALIKE = 1.0e-11       # of the largest displacement, after some hundred cycles
 
 
 def both_sides(half):
@@ -74,7 +83,22 @@ def judge(run, kind, penalty=SOFT, is_closed=False):
                np.max(np.abs(sums[:, 0])) / largest)
 
 
+def judge_images(run, deck):
+    """A scene, its mirror image and both with FREQ 1: the same displacements."""
+    text = deck.read_text()
+    moved = {}
+    for name, marks in (("", {}), ("mirror image", {"is_mirrored": True}), ("FREQ 1", {"is_searched": True})):
+        result = run.program(images.image(text, **marks), name=f"{deck.stem}_{name.replace(' ', '_')}")
+        moved[name] = result.points("displacement")[..., :2] * ([-1.0, 1.0] if "is_mirrored" in marks else 1.0)
+    largest = np.max(np.abs(moved[""]))
+    for name in ("mirror image", "FREQ 1"):
+        run.check(f"{deck.stem}, {name}: difference of displacements / largest",
+                  np.max(np.abs(moved[name] - moved[""])) / largest, ALIKE, 0.0, "max", "symmetry")
+
+
 def check(run):
     for kind in TYPES:
         judge(run, kind)
     judge(run, 3, STIFF, True)
+    for deck in sorted(HERE.glob("*.k")):
+        judge_images(run, deck)
