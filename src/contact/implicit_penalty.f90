@@ -13,11 +13,12 @@ module implicit_penalty_m
   use contacts_m, only : friction_rule_t
   use energy_limit_m, only : energy_factor, scale_forces, count_cycle, returned_t, slack, &
     keep_former_springs, form_springs
+  use gap_rates_m, only : find_rates, fill_band, along_normal
   use implicit_friction_m, only : rub_ahead
   use kinds_m, only : wp
   use nodal_average_m, only : average_gaps, share_out
-  use pressing_m, only : pressing_t, add_compliance, fill_columns
-  use weighted_gaps_m, only : choose_rows, form_shares, find_rates, fill_band, along_normal
+  use pressing_m, only : pressing_t, take_diagonal, set_diagonal, fill_columns
+  use weighted_gaps_m, only : choose_rows, form_shares
   implicit none
   private
   public :: find_rows, press_ahead
@@ -68,7 +69,7 @@ contains
       if (step%cycle == 0) memory%energy = memory%watch%stored
       call give_credit(step, memory)
       if (allocated(memory%friction%force)) then
-        memory%limit%velocity = motion(3:4, memory%nodes)
+        call take_velocities(memory%nodes, motion, memory%limit%velocity)
         memory%points%traction(:memory%points%n) = 0.0_wp
         if (step%rows%n > 0) call rub_ahead(rule, step, memory)
       end if
@@ -94,8 +95,7 @@ contains
   pure subroutine give_credit(step, memory)
     type(pressing_t), intent(in) :: step
     type(contact_state_t), intent(inout) :: memory
-    logical :: overlaps           !! some mean gap is below zero by more than springs leave
-    real(wp) :: given(size(step%gap)) !! what they leave, m
+    logical :: overlaps !! some mean gap is below zero by more than springs leave
 
     associate (limit => memory%limit, begins => step%cycle == 0 .or. memory%scratch%is_born)
       if (.not. step%is_stiff) then
@@ -103,10 +103,8 @@ contains
         return
       end if
       if (.not. (begins .or. limit%credit >= huge(1.0_wp))) return
-      given = 0.0_wp
-      if (memory%slave_penalty > 0.0_wp) &
-        given = memory%node_pressure/(recovered*memory%slave_penalty)
-      overlaps = any(step%gap + given < -overlap*memory%closed_gap)
+      overlaps = are_below(step%gap, memory%node_pressure, recovered*memory%slave_penalty, &
+        -overlap*memory%closed_gap)
       if (begins) then
         if (overlaps) limit%credit = huge(1.0_wp)
       else if (.not. overlaps) then
@@ -116,22 +114,36 @@ contains
     end associate
   end subroutine give_credit
 
+  !> Whether any gap is below a bound by more than springs leave of it.
+  pure logical function are_below(gap, pressure, stiffness, bound)
+    real(wp), intent(in), contiguous :: gap(:), pressure(:)
+    real(wp), intent(in) :: stiffness !! N/m^3; 0: they leave nothing
+    real(wp), intent(in) :: bound     !! m
+
+    if (stiffness > 0.0_wp) then
+      are_below = any(gap + pressure/stiffness < bound)
+    else
+      are_below = any(gap < bound)
+    end if
+  end function are_below
+
   !> Contact never returns more than it took (section 6.1): areas and normals change while corners
   !> turn. The step to come is known here, and so is what it returns.
   pure subroutine limit_return(step, motion, memory)
-    type(pressing_t), intent(in) :: step
+    type(pressing_t), intent(inout) :: step
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
     type(returned_t) :: returned
     real(wp) :: before, bound, factor
 
     if (allocated(memory%scratch%spring)) then
-      call sum_returns(memory%nodes, motion, memory%scratch%spring, memory%scratch%former_spring, &
-        step%velocity, step%mobility, returned, before)
+      call sum_returns(size(memory%force), memory%limit%velocity, memory%scratch%spring, &
+        memory%scratch%former_spring, step%velocity, step%mobility, returned, before)
       returned%recoil = returned%recoil + sum_modes(memory%scratch%spring)
     else
-      call sum_returns(memory%nodes, motion, memory%force, memory%scratch%former_force, &
-        step%velocity, step%mobility, returned, before)
+      call take_velocities(memory%nodes, motion, step%behind)
+      call sum_returns(size(memory%force), step%behind, memory%force, &
+        memory%scratch%former_force, step%velocity, step%mobility, returned, before)
       returned%recoil = returned%recoil + sum_modes(memory%force)
     end if
     returned%behind = 0.5_wp*step%dt_before*returned%behind
@@ -161,30 +173,44 @@ contains
 
   end subroutine limit_return
 
-  !> Sums over all nodes, of the springs alone, x and y apart until the end.
-  pure subroutine sum_returns(nodes, motion, present, former, velocity, mobility, returned, before)
+  !> v(n-1/2) of the nodes.
+  pure subroutine take_velocities(nodes, motion, velocity)
     integer, intent(in), contiguous :: nodes(:)
     real(wp), intent(in) :: motion(4, *)
-    real(wp), intent(in), dimension(2, *) :: present, former !! forces, of the step before, N/m
-    real(wp), intent(in), dimension(2, *) :: velocity, mobility !! of the step ahead
+    real(wp), intent(inout) :: velocity(2, *)
+    integer :: i
+
+    !GCC$ NOVECTOR
+    do i = 1, size(nodes)
+      velocity(:, i) = motion(3:4, nodes(i))
+    end do
+  end subroutine take_velocities
+
+  !> Sums over x and y of all nodes, of the springs alone.
+  pure subroutine sum_returns(n, behind, present, former, ahead, mobility, returned, before)
+    integer, intent(in) :: n
+    real(wp), intent(in), dimension(n) :: behind, ahead   !! velocities of both steps, m/s
+    real(wp), intent(in), dimension(n) :: present, former !! forces, of the step before, N/m
+    real(wp), intent(in) :: mobility(n)
     type(returned_t), intent(inout) :: returned
     real(wp), intent(out) :: before
-    real(wp) :: sums(2, 4)
-    integer :: i, j
+    real(wp) :: of_present, to_come, recoil
+    integer :: i
 
-    sums = 0.0_wp
-    do i = 1, size(nodes)
-      do j = 1, 2
-        sums(j, 1) = sums(j, 1) + present(j, i)*motion(2 + j, nodes(i))
-        sums(j, 2) = sums(j, 2) + present(j, i)*velocity(j, i)
-        sums(j, 3) = sums(j, 3) + present(j, i)*present(j, i)*mobility(j, i)
-        sums(j, 4) = sums(j, 4) + former(j, i)*motion(2 + j, nodes(i))
-      end do
+    of_present = 0.0_wp
+    to_come = 0.0_wp
+    recoil = 0.0_wp
+    before = 0.0_wp
+    !$omp simd reduction(+:of_present, to_come, recoil, before)
+    do i = 1, n
+      of_present = of_present + present(i)*behind(i)
+      to_come = to_come + present(i)*ahead(i)
+      recoil = recoil + present(i)*present(i)*mobility(i)
+      before = before + former(i)*behind(i)
     end do
-    returned%behind = sums(1, 1) + sums(2, 1)
-    returned%ahead = sums(1, 2) + sums(2, 2)
-    returned%recoil = sums(1, 3) + sums(2, 3)
-    before = sums(1, 4) + sums(2, 4)
+    returned%behind = of_present
+    returned%ahead = to_come
+    returned%recoil = recoil
   end subroutine sum_returns
 
   !> Pressures of the slave nodes: P = kappa p >= 0, and what is left of each mean gap at the end of
@@ -200,7 +226,8 @@ contains
         call set_size(problem, rows%n, rows%width, step%n_mode)
         call fill_band(rows, along_normal, step%mobility, problem%band)
         call fill_columns(step, along_normal)
-        if (memory%slave_penalty > 0.0_wp) call add_compliance(rows%n, rows%width, rows%inverse, &
+        call take_diagonal(rows%n, rows%width, problem%band, step%diagonal)
+        call set_diagonal(rows%n, rows%width, step%diagonal, rows%inverse, &
           memory%slave_penalty*step%dt, problem%band)
         call set_up(step, memory%node_pressure)
         call solve_complementarity(problem, outcome)

@@ -5,11 +5,12 @@ module pressing_m
   use complementarity_m, only : problem_t
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
+  use gap_rates_m, only : find_rates
   use kinds_m, only : wp
-  use weighted_gaps_m, only : rows_t, find_rates
+  use weighted_gaps_m, only : rows_t, start_rows
   implicit none
   private
-  public :: pressing_t, start_pressing, add_compliance, fill_columns
+  public :: pressing_t, start_pressing, take_diagonal, set_diagonal, fill_columns
 
   !> The step ahead at the nodes of an interface.
   type :: pressing_t
@@ -28,9 +29,11 @@ module pressing_m
     real(wp), allocatable :: modes(:, :, :) !! (2, n_slave + n_master, n_mode or more) velocities of
                                             !! them, times the root of what a unit force makes
     real(wp), allocatable :: gap(:)         !! (n_slave) mean gaps, m
-    real(wp), allocatable :: slip(:)        !! (points) m or m/s; this and the next only where there
-                                            !! is friction
-    real(wp), allocatable :: pressed(:, :)  !! (2, n_slave + n_master) velocities with pressures
+    real(wp), allocatable :: behind(:, :)   !! (2, n_slave + n_master) v(n-1/2); only where there is
+                                            !! no friction
+    real(wp), allocatable :: pressed(:, :)  !! (2, n_slave + n_master) velocities with pressures, of
+                                            !! nodes that have rows; only where there is friction
+    real(wp), allocatable :: diagonal(:)    !! (rows) W(i, i) of the rows alone
     type(rows_t) :: rows
     type(problem_t) :: problem
   end type pressing_t
@@ -46,23 +49,39 @@ contains
     step%is_stiff = contact%penalty < 0.0_wp
     associate (n_node => memory%n_slave + memory%n_master, n_slave => memory%n_slave)
       allocate (step%velocity(2, n_node), step%mobility(2, n_node), source=0.0_wp)
-      allocate (step%gap(n_slave))
-      if (allocated(memory%friction%force)) allocate (step%pressed(2, n_node))
-      allocate (step%rows%slave(n_slave), step%rows%place(n_slave), step%rows%inverse(n_slave))
-      allocate (step%rows%first(n_node), step%rows%last(n_node), step%rows%start(n_node), &
-        step%rows%node(n_node))
+      allocate (step%gap(n_slave), step%diagonal(n_slave))
+      if (allocated(memory%friction%force)) then
+        allocate (step%pressed(2, n_node))
+      else
+        allocate (step%behind(2, n_node))
+      end if
+      call start_rows(n_slave, n_node, step%rows)
     end associate
   end subroutine start_pressing
 
-  !> What the springs of rows give way by.
-  pure subroutine add_compliance(n, width, inverse, stiffness, band)
+  !> The diagonal of the rows alone.
+  pure subroutine take_diagonal(n, width, band, diagonal)
     integer, intent(in) :: n, width
+    real(wp), intent(in) :: band(0:width, n)
+    real(wp), intent(inout) :: diagonal(n)
+
+    diagonal = band(0, :)
+  end subroutine take_diagonal
+
+  !> The diagonal of the band: that of the rows alone, and what their springs give way by.
+  pure subroutine set_diagonal(n, width, diagonal, inverse, stiffness, band)
+    integer, intent(in) :: n, width
+    real(wp), intent(in) :: diagonal(n)
     real(wp), intent(in) :: inverse(n)      !! 1/kappa of rows, 1/m
-    real(wp), intent(in) :: stiffness       !! times the step, N s/m^2
+    real(wp), intent(in) :: stiffness       !! times the step, N s/m^2; 0: they do not give way
     real(wp), intent(inout) :: band(0:width, n)
 
-    band(0, :) = band(0, :) + inverse/stiffness
-  end subroutine add_compliance
+    if (stiffness > 0.0_wp) then
+      band(0, :) = diagonal + inverse/stiffness
+    else
+      band(0, :) = diagonal
+    end if
+  end subroutine set_diagonal
 
   !> How the rows move rigid bodies.
   pure subroutine fill_columns(step, direction)
@@ -73,7 +92,7 @@ contains
     do m = 1, step%n_mode
       associate (n => step%problem%n)
         call find_rates(step%rows, direction, step%modes(:, :, m), &
-          step%problem%column((m - 1)*n + 1:m*n))
+          step%problem%column((m - 1)*n + 1))
       end associate
     end do
   end subroutine fill_columns

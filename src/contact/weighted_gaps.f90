@@ -1,17 +1,30 @@
 ! SPDX-License-Identifier: MIT
-!> Weighted gaps of slave nodes as rows over the nodes of an interface, and what forces along some
-!> rows change in others (doc/theory/contact.md, section 6.6). A row over its area kappa is a mean
-!> gap: its shares of the slave side sum to the mean normal, those of the master to minus that.
+!> Weighted gaps of slave nodes as rows over the nodes of an interface (doc/theory/contact.md,
+!> section 6.6). A row over its area kappa is a mean gap: its shares of the slave side sum to the
+!> mean normal, those of the master to minus that.
 module weighted_gaps_m
+  use complementarity_m, only : n_spare
   use contact_state_m, only : contact_points_t, n_side
   use kinds_m, only : wp
   implicit none
   private
-  public :: rows_t, choose_rows, form_shares, find_rates, press_nodes, fill_band, along_normal, &
-    along_tangent
+  public :: rows_t, start_rows, choose_rows, form_shares, node_of, first_row, last_row, share_at
 
-  !> Along what the shares of a row act: its normals, or these turned by a right angle.
-  integer, parameter :: along_normal = 1, along_tangent = 2
+  !> Points in a row with the same nodes and normal.
+  type :: group_t
+    integer :: nodes(2*n_side) = 0 !! where these are on the list of nodes that have rows, slaves
+                                   !! first
+    integer :: rows(n_side) = 0    !! of the slaves, 0: none
+    integer :: first = 0           !! point
+    integer :: last = 0
+    real(wp) :: normal(2) = 0.0_wp
+    real(wp) :: part(2*n_side, n_side) = 0.0_wp !! sums of area times weights, of the rows of both
+                                                !! slaves, m; of masters below zero
+  end type group_t
+
+  !> What is kept of a node that has rows: its number in the interface, its first and last row, and
+  !> where its shares are: that of row i at share_at + i.
+  integer, parameter :: node_of = 1, first_row = 2, last_row = 3, share_at = 4
 
   !> Rows of an interface in a step, kept from one to the next: arrays may be longer than they have
   !> to be. Shares are kept by node, from its first row to its last: those that meet at a node are
@@ -23,18 +36,24 @@ module weighted_gaps_m
     integer, allocatable :: place(:)      !! (n_slave) its row, 0: none
     real(wp), allocatable :: inverse(:)   !! (n) 1/kappa, 1/m
     integer :: n_node = 0
-    integer, allocatable :: node(:)       !! (n_node) that have rows
-    integer, allocatable :: first(:)      !! (nodes) first row of each
-    integer, allocatable :: last(:)       !! (nodes) and last one, below that: none
-    integer, allocatable :: start(:)      !! (nodes) share of row i: at start + i
-    real(wp), allocatable :: share(:, :)  !! (2, :) over the area of the row
-    integer :: n_group = 0                !! points in a row with the same nodes
-    integer, allocatable :: group(:, :)   !! (2 n_side, n_group) these, slaves first
-    real(wp), allocatable :: part(:, :, :, :) !! (2, 2 n_side, n_side, n_group) sums of their
-                                          !! shares, of the rows of both slaves
+    integer, allocatable :: node(:, :)    !! (4, n_node) that have rows
+    integer, allocatable :: listed(:)     !! (nodes) where each is on that list, 0: nowhere
+    real(wp), allocatable :: share_x(:)   !! over the area of the row, along x
+    real(wp), allocatable :: share_y(:)
+    integer :: n_group = 0
+    type(group_t), allocatable :: groups(:) !! (n_group) of points of whose slaves one has a row
   end type rows_t
 
 contains
+
+  !> Room for an interface.
+  pure subroutine start_rows(n_slave, n_node, rows)
+    integer, intent(in) :: n_slave, n_node
+    type(rows_t), intent(inout) :: rows
+
+    allocate (rows%slave(n_slave), rows%place(n_slave), rows%inverse(n_slave))
+    allocate (rows%node(4, n_node), rows%listed(n_node), source=0)
+  end subroutine start_rows
 
   !> A row for each slave node whose mean gap may close in the step, or that has pressed in the one
   !> before, in the order of the chain. A closed chain begins behind its longest stretch without
@@ -45,7 +64,7 @@ contains
     real(wp), intent(in) :: pressure(n_slave)
     real(wp), intent(in) :: reach       !! gap from which on none closes, m
     type(rows_t), intent(inout) :: rows
-    integer :: i, start, longest
+    integer :: i, begin, longest
 
     rows%n = 0
     do i = 1, n_slave
@@ -55,16 +74,19 @@ contains
       rows%n = rows%n + 1
       rows%slave(rows%n) = i
     end do
+    do i = 1, rows%n_node
+      rows%listed(rows%node(node_of, i)) = 0
+    end do
     rows%n_node = 0
     if (rows%n == 0) return
-    start = 1
+    begin = 1
     longest = rows%slave(1) + n_slave - rows%slave(rows%n)
     do i = 2, rows%n
       if (rows%slave(i) - rows%slave(i - 1) <= longest) cycle
       longest = rows%slave(i) - rows%slave(i - 1)
-      start = i
+      begin = i
     end do
-    if (start > 1) rows%slave(:rows%n) = cshift(rows%slave(:rows%n), start - 1)
+    if (begin > 1) rows%slave(:rows%n) = cshift(rows%slave(:rows%n), begin - 1)
     do i = 1, rows%n
       rows%place(rows%slave(i)) = i
       rows%inverse(i) = 1.0_wp/nodal(2, rows%slave(i))
@@ -79,48 +101,27 @@ contains
     integer :: n_share
 
     call provide_groups(points%n, rows)
-    rows%first = huge(1)
-    rows%last = 0
-    call sum_groups(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
-      points%master_weights, points%area, points%normal, rows)
-    call list_nodes(size(rows%first), rows%first, rows%last, rows%n_node, rows%node, rows%start, &
-      n_share, rows%width)
+    call find_groups(points%n, points%slave_nodes, points%master_nodes, points%normal, rows%place, &
+      rows%n_group, rows%groups)
+    call sum_groups(rows%n_group, points%slave_weights, points%master_weights, points%area, &
+      rows%groups)
+    call list_nodes(rows%n_group, rows%groups, rows%listed, rows%n_node, rows%node)
+    call place_shares(rows%n_node, rows%node, n_share, rows%width)
     call provide_shares(n_share, rows)
-    call share_groups(rows%n_group, rows%group, rows%part, rows%place, rows%inverse, rows%start, &
-      n_share, rows%share)
+    call share_groups(rows%n_group, rows%groups, rows%inverse, rows%node, n_share, rows%share_x, &
+      rows%share_y)
   end subroutine form_shares
-
-  !> The nodes that have rows, and where their shares are.
-  pure subroutine list_nodes(n, first, last, n_node, node, start, n_share, width)
-    integer, intent(in) :: n, first(n), last(n)
-    integer, intent(inout) :: node(n), start(n)
-    integer, intent(out) :: n_node, n_share, width
-    integer :: i
-
-    n_node = 0
-    n_share = 0
-    width = 0
-    !GCC$ UNROLL 1
-    do i = 1, n
-      if (last(i) < first(i)) cycle
-      n_node = n_node + 1
-      node(n_node) = i
-      start(i) = n_share + 1 - first(i)
-      n_share = start(i) + last(i)
-      width = max(width, last(i) - first(i))
-    end do
-  end subroutine list_nodes
 
   !> Room for the groups of so many points.
   pure subroutine provide_groups(n, rows)
     integer, intent(in) :: n
     type(rows_t), intent(inout) :: rows
 
-    if (allocated(rows%group)) then
-      if (size(rows%group, 2) >= n) return
-      deallocate (rows%group, rows%part)
+    if (allocated(rows%groups)) then
+      if (size(rows%groups) >= n) return
+      deallocate (rows%groups)
     end if
-    allocate (rows%group(2*n_side, n + n/2), rows%part(2, 2*n_side, n_side, n + n/2))
+    allocate (rows%groups(n + n/2))
   end subroutine provide_groups
 
   !> Room for so many shares.
@@ -128,188 +129,156 @@ contains
     integer, intent(in) :: n
     type(rows_t), intent(inout) :: rows
 
-    if (allocated(rows%share)) then
-      if (size(rows%share, 2) >= n) return
-      deallocate (rows%share)
+    if (allocated(rows%share_x)) then
+      if (size(rows%share_x) >= n) return
+      deallocate (rows%share_x, rows%share_y)
     end if
-    allocate (rows%share(2, n + n/2))
+    allocate (rows%share_x(n + n/2), rows%share_y(n + n/2))
   end subroutine provide_shares
 
-  !> Sums over points in a row with the same nodes, and which rows each node has.
-  pure subroutine sum_groups(n, slave_nodes, slave_weights, master_nodes, master_weights, area, &
-      normal, rows)
-    integer, intent(in) :: n, slave_nodes(n_side, *), master_nodes(n_side, *)
-    real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *), area(*), &
-      normal(2, *)
-    type(rows_t), intent(inout) :: rows
-    integer :: nodes(2*n_side), p, g
+  !> Points in a row that rows have shares of.
+  pure subroutine find_groups(n, slave_nodes, master_nodes, normal, place, n_group, groups)
+    integer, intent(in) :: n, slave_nodes(n_side, *), master_nodes(n_side, *), place(*)
+    real(wp), intent(in) :: normal(2, *)
+    integer, intent(out) :: n_group
+    type(group_t), intent(inout) :: groups(*)
+    integer :: begin, one, two, p
 
-    g = 0
-    nodes = 0
+    n_group = 0
+    begin = 1
     do p = 1, n
-      if (nodes(1) /= slave_nodes(1, p) .or. nodes(2) /= slave_nodes(2, p) .or. &
-        nodes(3) /= master_nodes(1, p) .or. nodes(4) /= master_nodes(2, p)) then
-        nodes(:n_side) = slave_nodes(:, p)
-        nodes(n_side + 1:) = master_nodes(:, p)
-        g = g + 1
-        rows%group(:, g) = nodes
-        call clear_part(rows%part(1, 1, 1, g))
-        call extend_nodes([rows%place(nodes(1)), rows%place(nodes(2))], nodes, rows%first, &
-          rows%last)
+      if (p < n) then
+        if (slave_nodes(1, p + 1) == slave_nodes(1, p) .and. &
+          slave_nodes(2, p + 1) == slave_nodes(2, p) .and. &
+          master_nodes(1, p + 1) == master_nodes(1, p) .and. &
+          master_nodes(2, p + 1) == master_nodes(2, p) .and. &
+          .not. abs(normal(1, p + 1) - normal(1, p)) > 0.0_wp .and. &
+          .not. abs(normal(2, p + 1) - normal(2, p)) > 0.0_wp) cycle
       end if
-      call add_point(slave_weights(1, p), master_weights(1, p), area(p), normal(1, p), &
-        rows%part(1, 1, 1, g))
+      one = place(slave_nodes(1, p))
+      two = place(slave_nodes(2, p))
+      if (one + two > 0) then
+        n_group = n_group + 1
+        groups(n_group)%nodes(:n_side) = slave_nodes(:, p)
+        groups(n_group)%nodes(n_side + 1:) = master_nodes(:, p)
+        groups(n_group)%rows(1) = one
+        groups(n_group)%rows(2) = two
+        groups(n_group)%first = begin
+        groups(n_group)%last = p
+        groups(n_group)%normal = normal(:, p)
+      end if
+      begin = p + 1
     end do
-    rows%n_group = g
-  end subroutine sum_groups
+  end subroutine find_groups
 
-  !> Nothing is in the sums of a group yet.
-  pure subroutine clear_part(part)
-    real(wp), intent(inout) :: part(2*2*n_side*n_side)
+  !> The nodes of all groups, each with its first and last row.
+  pure subroutine list_nodes(n, groups, listed, n_node, node)
+    integer, intent(in) :: n
+    type(group_t), intent(inout) :: groups(n) !! in: numbers of their nodes, out: places on the list
+    integer, intent(inout) :: listed(*), node(4, *)
+    integer, intent(inout) :: n_node
+    integer :: g, i, m, low, high
 
-    part = 0.0_wp
-  end subroutine clear_part
-
-  !> Add the shares of one point.
-  pure subroutine add_point(slave_weights, master_weights, area, normal, part)
-    real(wp), intent(in) :: slave_weights(n_side), master_weights(n_side), area, normal(2)
-    real(wp), intent(inout) :: part(2, 2*n_side, n_side)
-    real(wp) :: force(2)
-    integer :: k, m
-
-    do k = 1, n_side
-      force = (slave_weights(k)*area)*normal
-      do m = 1, n_side
-        part(:, m, k) = part(:, m, k) + slave_weights(m)*force
-        part(:, n_side + m, k) = part(:, n_side + m, k) - master_weights(m)*force
+    do g = 1, n
+      high = max(groups(g)%rows(1), groups(g)%rows(2))
+      low = min(groups(g)%rows(1), groups(g)%rows(2))
+      if (low == 0) low = high
+      do m = 1, 2*n_side
+        i = listed(groups(g)%nodes(m))
+        if (i == 0) then
+          n_node = n_node + 1
+          i = n_node
+          listed(groups(g)%nodes(m)) = i
+          node(node_of, i) = groups(g)%nodes(m)
+          node(first_row, i) = low
+          node(last_row, i) = high
+        else
+          if (low < node(first_row, i)) node(first_row, i) = low
+          if (high > node(last_row, i)) node(last_row, i) = high
+        end if
+        groups(g)%nodes(m) = i
       end do
     end do
-  end subroutine add_point
+  end subroutine list_nodes
 
-  !> Some nodes have these rows too; 0: none.
-  pure subroutine extend_nodes(pair, nodes, first, last)
-    integer, intent(in) :: pair(n_side), nodes(2*n_side)
-    integer, intent(inout) :: first(*), last(*)
-    integer :: k, low, high
+  !> Where the shares of each node are.
+  pure subroutine place_shares(n, node, n_share, width)
+    integer, intent(in) :: n
+    integer, intent(inout) :: node(4, n)
+    integer, intent(out) :: n_share, width
+    integer :: i
 
-    high = maxval(pair)
-    low = minval(pair)
-    if (low == 0) low = high
-    if (high == 0) return
-    do k = 1, 2*n_side
-      first(nodes(k)) = min(first(nodes(k)), low)
-      last(nodes(k)) = max(last(nodes(k)), high)
+    n_share = 0
+    width = 0
+    !GCC$ UNROLL 1
+    do i = 1, n
+      node(share_at, i) = n_share + 1 - node(first_row, i)
+      n_share = node(share_at, i) + node(last_row, i) + n_spare
+      width = max(width, node(last_row, i) - node(first_row, i))
     end do
-  end subroutine extend_nodes
+  end subroutine place_shares
+
+  !> The sums of all groups.
+  pure subroutine sum_groups(n, slave_weights, master_weights, area, groups)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: slave_weights(n_side, *), master_weights(n_side, *), area(*)
+    type(group_t), intent(inout) :: groups(n)
+    integer :: g
+
+    do g = 1, n
+      associate (group => groups(g))
+        call sum_points(group%last - group%first + 1, slave_weights(1, group%first), &
+          master_weights(1, group%first), area(group%first), group%part)
+      end associate
+    end do
+  end subroutine sum_groups
+
+  !> The sums of some points.
+  pure subroutine sum_points(n, slave_weights, master_weights, area, part)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: slave_weights(n_side, n), master_weights(n_side, n), area(n)
+    real(wp), intent(inout) :: part(n_side, 2, n_side) !! of both sides, of the rows of both slaves
+    real(wp) :: one, two
+    integer :: p
+
+    part = 0.0_wp
+    !GCC$ NOVECTOR
+    !GCC$ UNROLL 1
+    do p = 1, n
+      one = area(p)*slave_weights(1, p)
+      two = area(p)*slave_weights(2, p)
+      part(:, 1, 1) = part(:, 1, 1) + one*slave_weights(:, p)
+      part(:, 2, 1) = part(:, 2, 1) + one*master_weights(:, p)
+      part(:, 1, 2) = part(:, 1, 2) + two*slave_weights(:, p)
+      part(:, 2, 2) = part(:, 2, 2) + two*master_weights(:, p)
+    end do
+    part(:, 2, :) = -part(:, 2, :)
+  end subroutine sum_points
 
   !> Give the sums to the rows.
-  pure subroutine share_groups(n, group, part, place, inverse, start, n_share, share)
-    integer, intent(in) :: n, group(2*n_side, *), place(*), start(*), n_share
-    real(wp), intent(in) :: part(2, 2*n_side, n_side, *), inverse(*)
-    real(wp), intent(inout) :: share(2, n_share)
+  pure subroutine share_groups(n, groups, inverse, node, n_share, share_x, share_y)
+    integer, intent(in) :: n, node(4, *), n_share
+    type(group_t), intent(in) :: groups(n)
+    real(wp), intent(in) :: inverse(*)
+    real(wp), intent(inout) :: share_x(n_share), share_y(n_share)
+    real(wp) :: along(2)
     integer :: g, i, k, m, row
 
-    do i = 1, n_share
-      share(:, i) = 0.0_wp
-    end do
+    share_x = 0.0_wp
+    share_y = 0.0_wp
     do g = 1, n
       do k = 1, n_side
-        row = place(group(k, g))
+        row = groups(g)%rows(k)
         if (row == 0) cycle
+        along = inverse(row)*groups(g)%normal
+        !GCC$ NOVECTOR
         do m = 1, 2*n_side
-          i = start(group(m, g)) + row
-          share(:, i) = share(:, i) + inverse(row)*part(:, m, k, g)
+          i = node(share_at, groups(g)%nodes(m)) + row
+          share_x(i) = share_x(i) + groups(g)%part(m, k)*along(1)
+          share_y(i) = share_y(i) + groups(g)%part(m, k)*along(2)
         end do
       end do
     end do
   end subroutine share_groups
-
-  !> Rates of the rows by velocities of the nodes.
-  pure subroutine find_rates(rows, direction, velocity, rate)
-    type(rows_t), intent(in) :: rows
-    integer, intent(in) :: direction                   !! along_normal or along_tangent
-    real(wp), intent(in), contiguous :: velocity(:, :) !! (2, nodes) m/s
-    real(wp), intent(out) :: rate(rows%n)              !! m/s
-    real(wp) :: along(2)
-    integer :: j
-
-    rate = 0.0_wp
-    do j = 1, rows%n_node
-      associate (i => rows%node(j), first => rows%first(rows%node(j)))
-        along = velocity(:, i)
-        if (direction == along_tangent) along = [along(2), -along(1)]
-        call add_rates(rows%last(i) - first + 1, rows%share(1, rows%start(i) + first), along, &
-          rate(first))
-      end associate
-    end do
-  end subroutine find_rates
-
-  !> The part of one node.
-  pure subroutine add_rates(n, share, along, rate)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: share(2, n), along(2)
-    real(wp), intent(inout) :: rate(n)
-    integer :: k
-
-    !GCC$ NOVECTOR
-    !GCC$ UNROLL 1
-    do k = 1, n
-      rate(k) = rate(k) + (share(1, k)*along(1) + share(2, k)*along(2))
-    end do
-  end subroutine add_rates
-
-  !> Velocities of the nodes with forces along the normals of the rows.
-  pure subroutine press_nodes(rows, mobility, x, velocity, pressed)
-    type(rows_t), intent(in) :: rows
-    real(wp), intent(in), contiguous :: mobility(:, :), velocity(:, :) !! (2, nodes)
-    real(wp), intent(in) :: x(rows%n)                                  !! N/m
-    real(wp), intent(inout), contiguous :: pressed(:, :)               !! (2, nodes) m/s
-    integer :: i, j, k
-
-    pressed = velocity
-    do j = 1, rows%n_node
-      i = rows%node(j)
-      do k = rows%first(i), rows%last(i)
-        pressed(:, i) = pressed(:, i) + mobility(:, i)*(rows%share(:, rows%start(i) + k)*x(k))
-      end do
-    end do
-  end subroutine press_nodes
-
-  !> What the forces along rows change in the rates of rows.
-  pure subroutine fill_band(rows, direction, mobility, band)
-    type(rows_t), intent(in) :: rows
-    integer, intent(in) :: direction                   !! along_normal or along_tangent
-    real(wp), intent(in), contiguous :: mobility(:, :) !! (2, nodes) velocity from a force of 1
-    real(wp), intent(inout) :: band(0:rows%width, rows%n) !! W(j + i, j) in row i of column j
-    integer :: j
-
-    band = 0.0_wp
-    do j = 1, rows%n_node
-      associate (i => rows%node(j), first => rows%first(rows%node(j)))
-        call fill_node(rows%last(i) - first + 1, rows%share(1, rows%start(i) + first), &
-          mobility(direction, i), mobility(3 - direction, i), rows%width, band(0, first))
-      end associate
-    end do
-  end subroutine fill_band
-
-  !> The part of one node. Few rows meet at one.
-  pure subroutine fill_node(n, share, mobility_x, mobility_y, width, band)
-    integer, intent(in) :: n, width
-    real(wp), intent(in) :: share(2, n), mobility_x, mobility_y !! of the x and y of normals
-    real(wp), intent(inout) :: band(0:width, n)
-    real(wp) :: x, y
-    integer :: k, m
-
-    !GCC$ UNROLL 1
-    do k = 1, n
-      x = mobility_x*share(1, k)
-      y = mobility_y*share(2, k)
-      !GCC$ NOVECTOR
-      !GCC$ UNROLL 1
-      do m = k, n
-        band(m - k, k) = band(m - k, k) + (x*share(1, m) + y*share(2, m))
-      end do
-    end do
-  end subroutine fill_node
 
 end module weighted_gaps_m

@@ -16,6 +16,7 @@ module contact_pressing_m
   use rigid_motion_m, only : solve_rigids, damping_of
   use rigid_pressing_m, only : list_riders, ride
   use state_m, only : state_t
+  use weighted_gaps_m, only : node_of
   implicit none
   private
   public :: pressing_t, press_contacts
@@ -84,42 +85,66 @@ contains
     factors(:, keep) = leap%keep
     factors(:, push) = leap%half*leap%body
     if (.not. allocated(state%node_damping)) then
-      call foresee_nodes(step%rows%node(:step%rows%n_node), nodes, factors, state%inverse_mass, &
-        state%motion, state%force_special, state%internal_force, step)
+      call foresee_nodes(step%rows%node(:, :step%rows%n_node), nodes, factors, state, step)
       return
     end if
     do i = 1, step%rows%n_node
-      call find_factors(leap, state, nodes(step%rows%node(i)), factors(:, half), factors(:, keep))
+      call find_factors(leap, state, nodes(step%rows%node(node_of, i)), factors(:, half), &
+        factors(:, keep))
       factors(:, push) = factors(:, half)*leap%body
-      call foresee_nodes(step%rows%node(i:i), nodes, factors, state%inverse_mass, state%motion, &
-        state%force_special, state%internal_force, step)
+      call foresee_nodes(step%rows%node(:, i:i), nodes, factors, state, step)
     end do
   end subroutine foresee
 
   !> Some of them, with the same factors.
-  pure subroutine foresee_nodes(local, nodes, factors, inverse_mass, motion, force, &
-      internal_force, step)
-    integer, intent(in), contiguous :: local(:) !! which nodes of the interface
-    integer, intent(in) :: nodes(*)             !! all of these
+  pure subroutine foresee_nodes(listed, nodes, factors, state, step)
+    integer, intent(in), contiguous :: listed(:, :) !! of the list of nodes that have rows
+    integer, intent(in), contiguous :: nodes(:)     !! of the interface
     real(wp), intent(in) :: factors(2, 3)
-    real(wp), intent(in) :: inverse_mass(2, *), motion(4, *), force(2, *), internal_force(2, *)
+    type(state_t), intent(in) :: state
     type(pressing_t), intent(inout) :: step
-    real(wp) :: free
-    integer :: i, j, k, l
 
-    do i = 1, size(local)
-      l = local(i)
-      k = nodes(l)
-      do j = 1, 2
-        associate (mobility => step%mobility(j, l))
-          mobility = factors(j, half)*inverse_mass(j, k)
-          free = factors(j, keep)*motion(2 + j, k) + factors(j, push) &
-            + mobility*(force(j, k) - internal_force(j, k))
-          step%velocity(j, l) = merge(free, 0.0_wp, inverse_mass(j, k) > 0.0_wp)
-        end associate
-      end do
-    end do
+    call find_mobility(listed, nodes, factors(:, half), state%inverse_mass, step%mobility)
+    call find_free(listed, nodes, factors, step%mobility, state%motion, state%force_special, &
+      state%internal_force, step%velocity)
   end subroutine foresee_nodes
+
+  !> What a force adds to their velocities.
+  pure subroutine find_mobility(listed, nodes, factor, inverse_mass, mobility)
+    integer, intent(in), contiguous :: listed(:, :)
+    integer, intent(in) :: nodes(*)
+    real(wp), intent(in) :: factor(2), inverse_mass(2, *)
+    real(wp), intent(inout) :: mobility(2, *)
+    integer :: i
+
+    !GCC$ NOVECTOR
+    do i = 1, size(listed, 2)
+      associate (l => listed(node_of, i))
+        mobility(:, l) = factor*inverse_mass(:, nodes(l))
+      end associate
+    end do
+  end subroutine find_mobility
+
+  !> Their velocities; 0 where nothing moves them.
+  pure subroutine find_free(listed, nodes, factors, mobility, motion, force, internal_force, &
+      velocity)
+    integer, intent(in), contiguous :: listed(:, :)
+    integer, intent(in) :: nodes(*)
+    real(wp), intent(in) :: factors(2, 3)
+    real(wp), intent(in) :: mobility(2, *), motion(4, *), force(2, *), internal_force(2, *)
+    real(wp), intent(inout) :: velocity(2, *)
+    real(wp) :: free(2)
+    integer :: i
+
+    !GCC$ NOVECTOR
+    do i = 1, size(listed, 2)
+      associate (l => listed(node_of, i), k => nodes(listed(node_of, i)))
+        free = factors(:, keep)*motion(3:4, k) + factors(:, push) &
+          + mobility(:, l)*(force(:, k) - internal_force(:, k))
+        velocity(:, l) = merge(free, 0.0_wp, mobility(:, l) > 0.0_wp)
+      end associate
+    end do
+  end subroutine find_free
 
   !> Nodes of rigid bodies, by the forces that are known.
   subroutine carry(model, leap, damping, state, step)
