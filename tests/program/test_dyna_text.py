@@ -71,7 +71,7 @@ def blocks_of(lines):
 
 def test_glstat_of_a_run_that_loses_elements(slideline, tmp_path):
     """The lines add up to the total without what leap-frog adds; of the ratio without what has gone too."""
-    done = slideline("d=out", deck=penetration(5, n=4))
+    done = slideline("d=out", deck=penetration(5, n=6))
     assert done.returncode == 0, done.stderr
     blocks = [{label: float(number) for label, number in block.items()}
               for block in blocks_of((tmp_path / "out" / "job.glstat").read_text().splitlines())[1]]
