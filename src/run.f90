@@ -111,6 +111,7 @@ contains
     call close_log(monitor%log)
     if (.not. allocated(error) .and. allocated(monitor%log%trouble)) &
       call move_alloc(monitor%log%trouble, error)
+    call share_error(ranks, error)
   end subroutine run_deck
 
   !> The first process reads the deck, alone.

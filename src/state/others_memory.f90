@@ -15,8 +15,8 @@ module others_memory_m
   !> Two ranges of each: before and behind those of this process.
   type :: others_t
     integer :: nodes(4) = 0, slots(4) = 0
-    real(wp), allocatable :: mass(:) !! (n_node) lumped masses of all other nodes, until the state
-                                     !! takes them
+    real(wp), allocatable :: mass(:) !! (n_node) lumped masses, of nodes that this process knows,
+                                     !! until the state takes them
     real(wp), allocatable :: penalties(:, :) !! (3, interfaces) of slave, master and nodes, that the
                                      !! first process has found
   end type others_t

@@ -26,6 +26,7 @@ module explicit_m
   use node_motion_m, only : leap_t, move_tile_nodes, move_special_nodes, move_damped_nodes
   use rank_balance_m, only : balance_ranks
   use rank_report_m, only : report_exchange
+  use ranks_m, only : share_error
   use resting_tiles_m, only : is_tried, rests, is_flying, remember_tile, judge_tile, look_at_tile, &
     report_rest
   use skew_motion_m, only : hold_skew_nodes
@@ -49,6 +50,7 @@ contains
     type(explicit_cycle_t) :: cycle
 
     call start_cycles(model, state, monitor, cycle)
+    call share_error(monitor%ranks, cycle%error)
     if (allocated(cycle%error)) then
       reason = cycle%error%message
       call move_alloc(cycle%error, error)

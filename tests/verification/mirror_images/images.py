@@ -18,8 +18,9 @@ def mirrored(keyword, row, fields):
 def image(text, is_mirrored=False, is_searched=False):
     lines, keyword, row = [], "", 0
     for line in text.splitlines():
-        if line[:1] in "*$":
-            keyword, row = (line if line[0] == "*" else keyword), 0
+        if line[:1] in ("*", "$", ""):
+            if line[:1] == "*":
+                keyword, row = line.split()[0], 0
             lines.append(line)
             continue
         row += 1
