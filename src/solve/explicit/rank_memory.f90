@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> What a process of an explicit run keeps in memory: the special nodes, and nodes and elements of
-!> its own tiles. The first process keeps all, for it writes. Arrays are as long as the mesh, so that
-!> numbers mean the same everywhere, but what belongs to others is not written to; the pages of tiles
-!> that go to another process go back to the system.
+!> its own tiles. The first process keeps all, for it writes. Arrays are as long as the mesh, so
+!> that numbers mean the same everywhere, but what belongs to others is not written to; the pages of
+!> tiles that go to another process go back to the system.
 module rank_memory_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
