@@ -31,4 +31,7 @@ def image(text, is_mirrored=False, is_searched=False):
             fields = [*fields, *[""] * (8 - len(fields))]
             fields[6] = "1"
         lines.append(",".join(fields))
-    return "\n".join([*lines, ""])
+    changed = "\n".join([*lines, ""])
+    if (is_mirrored or is_searched) and changed == text:
+        raise ValueError("this image of the deck is the deck itself: no card was found that makes it another one")
+    return changed
