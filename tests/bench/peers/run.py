@@ -5,7 +5,7 @@
 usage: run.py --program SLIDELINE --peers PYTHON --out FOLDER [--counted SLIDELINE] [--rounds 5] [--quick]
 
 PYTHON is that of an environment with akantu and KratosMultiphysics, its structural and its contact application; ccx is
-CalculiX. All programs run in turn, one thread each, in each round, with the yardstick K of the benchmarks before and
+CalculiX; OpenRadioss takes part where openradioss.py finds its programs. All programs run in turn, one thread each, in each round, with the yardstick K of the benchmarks before and
 behind each run: elements.csv, collision.csv and contact.csv hold every run. With a program to be counted, retired
 instructions of all programs are counted once, into counts.csv.
 """
@@ -24,6 +24,9 @@ import numpy as np
 import calculix
 import collision
 import counted
+import openradioss
+import openradioss_collision
+import openradioss_wave
 import slideline_collision
 from slideline_tools.decks import Deck
 from slideline_tools.results import read
@@ -31,6 +34,7 @@ from slideline_tools.scenes.block import block, block_grids
 from slideline_tools.scenes.patch import even_lines, patch, patch_grids
 
 HERE = Path(__file__).resolve().parent
+POINTS = ("1", "4")                         # of the elements of slideline and of OpenRadioss
 WAVES = ((32, 200), (100, 100), (316, 15))  # columns, steps
 PATCHES = (5, 40)                           # columns of the upper block
 QUICK_WAVE = (8, 20)
@@ -45,10 +49,16 @@ ONE = {**os.environ, "OMP_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
 def wave_commands(options, columns, steps):
     """The commands of one size."""
     size = [str(columns), str(steps)]
-    ours = [sys.executable, str(HERE / "slideline_wave.py"), str(options.program),
-            str(options.runs)]
-    return [[*ours, "1", *size], [*ours, "4", *size],
-            [options.peers, str(HERE / "akantu_wave.py"), *size],
+    ours = [sys.executable, str(HERE / "slideline_wave.py"), str(options.program), str(options.runs)]
+    radioss = [sys.executable, str(HERE / "openradioss_wave.py"), str(options.runs)]
+    return [*([*ours, points, *size] for points in POINTS),
+            *([*radioss, points, *size] for points in POINTS if openradioss.programs()),
+            *python_waves(options, size)]
+
+
+def python_waves(options, size):
+    """Those of the programs that are driven from Python."""
+    return [[options.peers, str(HERE / "akantu_wave.py"), *size],
             [options.peers, str(HERE / "akantu_wave.py"), *size, "large"],
             [options.peers, str(HERE / "kratos_wave.py"), *size]]
 
@@ -56,7 +66,9 @@ def wave_commands(options, columns, steps):
 def collision_commands(options, columns):
     """The commands of one size."""
     ours = [sys.executable, str(HERE / "slideline_collision.py"), str(options.program), str(options.runs)]
+    radioss = [sys.executable, str(HERE / "openradioss_collision.py"), str(options.runs)]
     return [*([*ours, str(ctype), str(columns)] for ctype in TYPES),
+            *([*radioss, str(columns)] for _ in range(bool(openradioss.programs()))),
             [options.peers, str(HERE / "akantu_collision.py"), str(columns)]]
 
 
@@ -207,25 +219,37 @@ def run_contact(options):
     return [row for scene in contact_scenes(options) for row in scene_rows(options, *scene)]
 
 
+def counted_waves(options, columns, steps):
+    """As `wave_commands`, but of the programs alone."""
+    return [*(counted.slideline_step(options.counted, options.runs, int(points), columns, steps) for points in POINTS),
+            *(openradioss_wave.command(options.runs, int(points), columns, steps) for points in POINTS
+              if openradioss.programs()),
+            *python_waves(options, [str(columns), str(steps)])]
+
+
 def count_waves(options, rows):
     """Instructions per element and step of the smallest size; `rows`: what `run_waves` gave."""
     columns, steps = QUICK_WAVE if options.quick else WAVES[0]
-    few, many = (wave_commands(options, columns, number) for number in (steps, counted.MORE * steps))
-    for number, points in enumerate((1, 4)):
-        few[number], many[number] = (counted.slideline_step(options.counted, options.runs, points, columns, count)
-                                     for count in (steps, counted.MORE * steps))
+    few, many = (counted_waves(options, columns, number) for number in (steps, counted.MORE * steps))
     return [row for labels, *commands in zip(rows, few, many)
-            for row in counted.step_row(labels, commands, options.runs, env=ONE)]
+            for row in counted.step_row(labels, commands, options.runs, env=ONE, cwd=options.runs)]
+
+
+def counted_collisions(options, columns, steps):
+    """As `collision_commands`, but of the programs alone and for so many steps."""
+    return [*(slideline_collision.command(options.counted, options.runs, ctype, columns, steps)[0] for ctype in TYPES),
+            *(openradioss_collision.command(options.runs, columns, steps) for _ in range(bool(openradioss.programs()))),
+            [options.peers, str(HERE / "akantu_collision.py"), str(columns), str(steps)]]
 
 
 def count_collisions(options, rows):
     """Instructions per element and step of the smallest size, the first step left out; `rows`: what `run_collisions` gave."""
     columns = QUICK_COLLISION if options.quick else COLLISIONS[0]
     steps = collision.steps(columns)
-    few, many = ([*(slideline_collision.command(options.counted, options.runs, ctype, columns, number)[0] for ctype in TYPES),
-                  [options.peers, str(HERE / "akantu_collision.py"), str(columns), str(number)]] for number in (1, steps))
+    few, many = (counted_collisions(options, columns, number) for number in (1, steps))
     return [row for labels, *commands in zip(rows, few, many)
-            for row in counted.difference_row("collision", labels, labels["contact"], commands, steps - 1, options.runs, env=ONE)]
+            for row in counted.difference_row("collision", labels, labels["contact"], commands, steps - 1, options.runs,
+                                              env=ONE, cwd=options.runs)]
 
 
 def count_contact(options, rows):

@@ -5,7 +5,8 @@
 # (the Debian package calculix-ccx, which has to be installed: apt-get install calculix-ccx), all on this machine and in one run: tables in
 # results/peers and the page in results/peers/doc (--publish: doc/studies/peers.md). About ten minutes, and as long again
 # where callgrind counts the retired instructions (tools/slideline_tools/counting.py). SLIDELINE_MEASURED: another
-# program than that of the release.
+# program than that of the release. OpenRadioss comes as source alone; whoever has built it sets OPENRADIOSS_STARTER and
+# OPENRADIOSS_ENGINE (its two programs), what these need, and OPENRADIOSS_BUILT: which source and how, in words for the page.
 set -eu
 
 root=$(cd "$(dirname "$0")/../../.." && pwd)
@@ -29,6 +30,7 @@ mkdir -p "$out"
 "$venv/bin/pip" list --format=freeze >"$out/versions.txt"
 "$program" --version >>"$out/versions.txt"
 ccx -v >>"$out/versions.txt" || true  # its exit status is 201
+[ -z "${OPENRADIOSS_ENGINE:-}" ] || printf 'OpenRadioss==%s\n' "${OPENRADIOSS_BUILT:?says how it was built}" >>"$out/versions.txt"
 python=$root/build/venv/bin/python
 counted=$("$python" -m slideline_tools.counting) || echo "instructions are not counted" >&2
 "$python" "$root/tests/bench/peers/run.py" ${counted:+--counted "$counted"} --program "$program" \

@@ -19,6 +19,12 @@ from slideline_tools.studies.framework.table import COUNTED
 
 PEERS = ("akantu", "KratosMultiphysics", "KratosStructuralMechanicsApplication", "KratosContactStructuralMechanicsApplication",
          "CalculiX")
+SOURCE_ALONE = "OpenRadioss"  # comes as source alone
+NOT_BUILT = ("OpenRadioss is not in. It comes as source alone, two programs of some 5,700 files and libraries besides, and in no package of "
+             "the distribution or of PyPI; it was not built.")
+BUILT = ("OpenRadioss comes as source alone and was built for this page: {}. Its plane-strain quads have one point or 2x2 points, large strain; "
+         "its time is that of its engine alone, as slideline's (what 20 times as many steps take more). Its contact is INTER/TYPE5: the "
+         "nodes of one side on the surface of the other.")
 
 PAGE = """# Side by side with other programs
 
@@ -37,13 +43,13 @@ run ({yardstick}); times over K are medians of these ratios, and depend less on 
 
 *Instructions* are retired ones, of one run: per element and step of the smallest size, and of the whole static process. They do not depend on the load. {counted}
 
-OpenRadioss is not in. It comes as source alone, two programs of some 5,700 files and libraries besides, and in no package of the distribution or of PyPI; it was not built.
+{radioss}
 
 ## The element step
 
 A square block of elastic quads (plane strain, no lateral contraction), held on its left side, swings in its slowest longitudinal mode with a
 very small amplitude: the closed form is `u = V/w sin(w t) sin(pi x / 2 L)`. The same mesh, lumped mass, central differences and
-constant step (half of the side over the wave speed) in all programs. The time is the processor time of the steps alone: for slideline all of its cycles
+constant step (half of the side over the wave speed) in all programs. The time is the processor time of the steps alone: for slideline and OpenRadioss all of their cycles
 (what 20 times as many steps take more), for the others the calls of their `solveStep` and `Solve`. The error is that of the displacement of the free side over V/w at the end.
 
 {elements}
@@ -57,7 +63,7 @@ control is its default, two by two points are what the others have.
 
 Explicit contact: two square blocks of elastic quads (plane strain, no lateral contraction, two by two points), n columns above (slave) and 4/5 n below, strike each other flat at the speeds -V/2 and V/2.
 As two bars would they are in contact for 2 L/c and part with exchanged speeds: 1 and -1 times V/2 for the mean speeds of the upper and the lower block, nearly, since waves are left in them.
-The same meshes, lumped masses and constant step (0.3 of a side over the wave speed), 2 times 2 L/c long, and springs of the same slope. slideline's strains are large, Akantu's small. Akantu's contact is
+The same meshes, lumped masses and constant step (0.3 of a side over the wave speed), 2 times 2 L/c long, and springs of the same slope. slideline's and OpenRadioss' strains are large, Akantu's small. Akantu's contact is
 node to segment, a penalty on the nodal area. Kratos and CalculiX are not driven with explicit contact.
 *Momentum*: of both blocks together, over that of one; it is zero at the start, and no outer force acts. Time and instructions are those of all steps but the first, elements and contact, as in the first table.
 
@@ -259,11 +265,19 @@ def rounds_in_words(count):
 def version_rows(path):
     """Markdown rows of the programs and their versions."""
     lines = path.read_text(encoding="utf-8").splitlines()
-    found = dict(line.split("==") for line in lines if "==" in line)
+    found = dict(line.split("==", 1) for line in lines if "==" in line)
     found["CalculiX"] = next((line.split()[-1] for line in lines if "Version" in line), "")
     return "\n".join(f"| {name} | {found[name]} | "
                      f"{'Debian package calculix-ccx' if name == 'CalculiX' else 'PyPI, wheel'} |"
                      for name in PEERS if found.get(name))
+
+
+def radioss_in_words(path):
+    """How OpenRadioss was built, or that it was not."""
+    for line in path.read_text(encoding="utf-8").splitlines():
+        if line.startswith(f"{SOURCE_ALONE}=="):
+            return BUILT.format(line.split("==", 1)[1])
+    return NOT_BUILT
 
 
 def built_in_words(path):
@@ -278,7 +292,7 @@ def write(folder, doc):
     elements, collision, contact = (read_table(folder / f"{name}.csv") for name in ("elements", "collision", "contact"))
     counts, counted = read_counts(folder / "counts.csv")
     write_page(doc, "peers", PAGE.format(
-        counted=counted, built=built_in_words(folder / "versions.txt"), yardstick=yardstick_words(elements, collision, contact),
+        counted=counted, radioss=radioss_in_words(folder / "versions.txt"), built=built_in_words(folder / "versions.txt"), yardstick=yardstick_words(elements, collision, contact),
         rounds=rounds_in_words(max(int(row["round"]) for row in elements)), processor=processor(),
         versions=version_rows(folder / "versions.txt"), elements=element_table(elements, counts),
         words=element_words(elements), collision=collision_table(collision, counts),
