@@ -27,7 +27,7 @@ module run_m
   use processor_m, only : processor_name
   use progress_m, only : show_end
   use rank_memory_m, only : forget_others
-  use rank_model_m, only : hand_model, hand_others, start_share
+  use rank_model_m, only : hand_model, hand_others
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, leave_relaxation
   use renumber_m, only : renumber_model, forget_start
@@ -41,6 +41,7 @@ module run_m
   use sense_switch_m, only : forget_switch
   use signals_m, only : catch_stops, limit_processor
   use source_version_m, only : source_version
+  use start_m, only : start_state
   use state_m, only : state_t
   use status_file_m, only : start_status
   use timing_file_m, only : write_timing
@@ -92,8 +93,7 @@ contains
     prefix = ''
     if (ranks%mine == 0) prefix = join_path(arguments%directory, arguments%job)
     if (monitor%restarts%goes_on) then
-      call take_up_run(has_all, model, prefix, monitor%ranks, state, monitor%restarts, error)
-      call share_error(ranks, error)
+      call make_state(has_all, prefix, model, state, monitor, error)
       if (allocated(error)) return
     end if
     if (ranks%mine == 0) call claim_folder(arguments, prefix, &
@@ -164,33 +164,52 @@ contains
       call open_log(monitor%log, prefix//'.log', monitor%restarts%goes_on, error)
   end subroutine claim_folder
 
-  !> The state of the restart file, and whether all that is read later can be; before any file of an
-  !> earlier run is touched.
-  subroutine take_up_run(has_all, model, prefix, ranks, state, restarts, error)
+  !> The state from which the run begins. That of the first process comes first: the others, which
+  !> have no elements but their own, need masses from it.
+  subroutine make_state(has_all, prefix, model, state, monitor, error)
     logical, intent(in) :: has_all
-    type(model_t), intent(inout) :: model
     character(*), intent(in) :: prefix     !! directory and job name
-    type(ranks_t), intent(inout) :: ranks
+    type(model_t), intent(inout) :: model
     type(state_t), intent(inout) :: state
-    type(restarts_t), intent(inout) :: restarts
+    type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
     type(others_t), allocatable :: others
     type(answers_t), allocatable :: answers
 
-    if (ranks%mine == 0) then
+    if (monitor%ranks%mine == 0) then
       if (.not. has_all) allocate (answers)
-      call take_up_state(restarts%source, model, state, error, answers=answers)
-      if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
-      if (.not. allocated(error)) &
-        call take_up_results(restarts, model, prefix//'.vtkhdf', error)
+      call make_own_state(prefix, model, state, monitor, error, answers=answers)
     end if
-    call share_error(ranks, error)
+    call share_error(monitor%ranks, error)
     if (allocated(error)) return
-    if (.not. has_all) call hand_others(model, ranks, state, others, answers)
-    if (ranks%mine == 0) return
-    call take_up_state(restarts%source, model, state, error, others, answers)
-    if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
-  end subroutine take_up_run
+    if (.not. has_all) call hand_others(model, monitor%ranks, state, others, answers)
+    if (monitor%ranks%mine > 0) &
+      call make_own_state(prefix, model, state, monitor, error, others, answers)
+    call share_error(monitor%ranks, error)
+  end subroutine make_state
+
+  !> That of time zero, or of the restart file if all that is read later can be; before any file of
+  !> an earlier run is touched.
+  subroutine make_own_state(prefix, model, state, monitor, error, others, answers)
+    character(*), intent(in) :: prefix
+    type(model_t), intent(inout) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+    type(others_t), intent(inout), optional :: others
+    type(answers_t), intent(inout), optional :: answers
+
+    if (.not. monitor%restarts%goes_on) then
+      call start_state(model, monitor%log, state, error, others, answers)
+      return
+    end if
+    associate (restarts => monitor%restarts)
+      call take_up_state(restarts%source, model, state, error, others, answers)
+      if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
+      if (.not. allocated(error) .and. monitor%ranks%mine == 0) &
+        call take_up_results(restarts, model, prefix//'.vtkhdf', error)
+    end associate
+  end subroutine make_own_state
 
   !> What the deck layer has to know of the command line and of a restart file.
   subroutine make_request(arguments, monitor, request, error)
@@ -256,7 +275,7 @@ contains
     if (allocated(error)) return
     if (allocated(info%effective_deck)) deallocate (info%effective_deck)
     if (.not. monitor%restarts%goes_on) &
-      call start_share(has_all, model, monitor%ranks, monitor%log, state, error)
+      call make_state(has_all, prefix, model, state, monitor, error)
     if (allocated(error)) return
     call start_monitor(model, size(state%elements%history) > 0, monitor)
     if (model%controls%relaxation%is_on .and. .not. monitor%restarts%goes_on &

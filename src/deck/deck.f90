@@ -18,7 +18,8 @@ module deck_m
     known_refused
   use deck_parameter_table_m, only : parameters_t
   use deck_parameters_m, only : read_parameters
-  use deck_overrides_m, only : overrides_t, read_overrides, override_text
+  use deck_overrides_m, only : overrides_t, read_overrides, override_text, &
+    override_phrase
   use deck_override_apply_m, only : apply_overrides
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
   use deck_raw_m, only : raw_t, start_raw
@@ -128,8 +129,8 @@ contains
     end if
     call read_parameters(deck, parameters)
     raw%end_given = len(override_text(overrides, 'ENDTIM', 0)) > 0
-    raw%step_given = len(override_text(overrides, 'DT', 0)) > 0
-    raw%scale_given = len(override_text(overrides, 'TSSFAC', 0)) > 0
+    raw%step_phrase = override_phrase(overrides, 'DT', 0)
+    raw%scale_phrase = override_phrase(overrides, 'TSSFAC', 0)
     raw%controls%title = ''
     do i = 1, deck%n_block
       if (known(i) == known_honoured) call read_block(deck, parameters, i, kinds, overrides, raw)

@@ -250,6 +250,7 @@ contains
     call keep(archive, 'forces', estimate%forces)
     call keep(archive, 'least_margin', estimate%least_margin)
     call keep_fixed(archive, 'watched', estimate%watched)
+    call keep(archive, 'n_open', estimate%n_open)
     call keep(archive, 'n_stayed', estimate%n_stayed)
     call keep(archive, 'contact_type', estimate%contact_type)
     call leave(archive)

@@ -29,6 +29,7 @@ module contact_estimate_m
     real(wp) :: forces = 0.0_wp        !! sum of its squares over the same instants
     real(wp) :: least_margin = huge(1.0_wp) !! smallest of stable step over step
     real(wp) :: watched(2) = 0.0_wp    !! `still` and `load` at the looks since the type was chosen
+    integer :: n_open = 0              !! looks in a row that found it open, a better type wanted
     integer :: n_stayed = 0            !! times that the step did not bear a better type
     integer :: contact_type = 0        !! the present one
   end type contact_estimate_t

@@ -173,6 +173,36 @@ def test_words_that_need_the_model_are_told_beside_wrong_ones(slideline, fast):
         assert done.stderr.count(told) == 1, done.stderr
 
 
+SLIDELINE = "*CONTACT_2D_SLIDELINE\n-2,-3,2,,2.0e5,"
+IMPLICIT = SLIDELINE + "\n*CONTROL_IMPLICIT_GENERAL\n1,1.0e-4"
+TIE = SLIDELINE + "\n\n,,1"
+
+
+@pytest.mark.parametrize("cards, words, told", [
+    (IMPLICIT, "tssfac=0.8", "{0} has no effect with the implicit method"),
+    (IMPLICIT, "punit=3 pen=0.5", "{0} asks for a share of the largest stable penalty"),
+    (SLIDELINE, "tssfac=1.2", "{0} is above 1: the run may become unstable"),
+    (SLIDELINE, "dt=5e-5", "DTINIT has no effect beside {0}"),
+    (SLIDELINE, "punit=4 ctype=7 vdc=5", "{0} asks for implicit springs, which in this version have no damping"),
+    (SLIDELINE, "punit=3 pen=2", 'with {1} and {0} the penalty "2.000000E+00" is not a share'),
+    (SLIDELINE, "punit=3", 'with {0} the penalty "2.000000E+05" is not a share'),
+    (TIE, "vdc=20", "interface 1 is tied: ties have no contact damping; {0} has no effect on it"),
+    (TIE, "punit=3 pen=0.5", "interface 1 is tied: its penalty can not be a share of the largest stable one; {0} has no effect on it"),
+    (TIE, "fs=0.1", "interface 1 is tied: {0} has no effect on it"),
+    ("", "pen=1e5", "{0} changes PEN of all interfaces, but the deck has none")])
+def test_messages_of_words_say_where_they_stand(slideline, tmp_path, cards, words, told):
+    """On the command line or in COMMANDS, and the word itself."""
+    deck = re.sub(r"\*CONTACT_2D[^*]*", "", drop(end_time=0.001).text()).rsplit("*END", 1)[0] + cards
+    deck = deck.replace("0.0,0.9,0,0.0,0.0,9001", "1.0e-5,0.9")
+    (tmp_path / "job.k").write_text(deck + "\n*END\n")
+    (tmp_path / "case.k").write_text(f"{deck}\n*CASE\n1\n{words}\n\n*END\n")
+    for words_of_run, place in (("job.k " + words, "on the command line"), ("case.k case", "in COMMANDS of *CASE")):
+        done = slideline("check", *words_of_run.split())
+        said = done.stdout + done.stderr
+        assert said.count(told.format(*(f'"{word}" {place}' for word in words.split()))) == 1, said
+        assert ("the command line" in said) == (place == "on the command line"), said
+
+
 def test_a_name_for_several_cases_is_told_with_the_rest(slideline, check, fast):
     """Once where no case has more than the others; the cases are told by their own names."""
     for words, n in (("case", 3), ("case=7,101", 2)):

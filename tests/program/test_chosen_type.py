@@ -293,6 +293,17 @@ def test_change_finds_nothing_behind_a_face(pressed_twice):
 
 
 @pytest.mark.skipif(IS_SHORT, reason="Release alone: nothing happens here that other tests do not run")
+def test_a_type_that_was_refused_is_tried_again_more_and_more_seldom(slideline, pressed_twice, tmp_path):
+    """At 500, 600 and 800 cycles, not at 700: each look costs a start of contact. So does a run that goes on in between."""
+    deck = (pathlib.Path(__file__).parent / "change_of_type.k").read_text()
+    deck = deck.replace("*END", "*DATABASE_BINARY_D3DUMP\n650,\n*END")
+    told = re.search(CHANGE, pressed_twice("out", deck=deck))
+    assert told[1] == "800"
+    assert slideline("r=out/job.dump01.h5", "d=on").returncode == 0
+    assert re.search(CHANGE, (tmp_path / "on/job.log").read_text())[0] == told[0]
+
+
+@pytest.mark.skipif(IS_SHORT, reason="Release alone: nothing happens here that other tests do not run")
 @pytest.mark.parametrize("scene, words", [({"target": 0.9}, ()), ({"target": 0.0}, ()), ({"ctype": 0}, ("ctype=1",)),
                                           ({"ctype": 5, "columns": (3, 5)}, ())])
 def test_type_stays(pressed_twice, scene, words):

@@ -82,7 +82,7 @@ def test_fields_of_explicit_runs_warn_in_implicit_ones(said):
     for name in ("DTINIT", "TSSFAC", "ISDO", "ECDT"):
         assert told.count(f"({name}): ") == 1, (name, told)
     assert told.count("has no effect with the implicit method") - before[1].count("has no effect with the implicit method") == 5
-    assert "tssfac= on the command line has no effect" in told
+    assert '"tssfac=0.8" on the command line has no effect' in told
 
 
 @pytest.mark.parametrize("given, meant", [

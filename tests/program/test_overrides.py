@@ -128,7 +128,7 @@ def test_one_rule_for_card_and_command_line(said, card_1, card_2, word, message)
     assert text.count("on the command line") == 1
 
 
-@pytest.mark.parametrize("scale, word, told", [("1.2", None, "TSSFAC is above 1: "), ("0.9", "tssfac=1.2", "TSSFAC on the command line is above 1: "),
+@pytest.mark.parametrize("scale, word, told", [("1.2", None, "TSSFAC is above 1: "), ("0.9", "tssfac=1.2", '"tssfac=1.2" on the command line is above 1: '),
                                                ("1.2", "tssfac=0.9", None), ("1.0", "tssfac=1.0", None)])
 def test_scale_of_the_step_above_one_is_warned_of(said, scale, word, told):
     deck = slide("2,,2.0e5,").replace("0.0,0.9,0,0.0,0.0,9001", f"0.0,{scale}")
@@ -145,7 +145,7 @@ def test_first_step_that_the_curve_overrules_is_warned_of(said):
     assert "DTINIT" not in said(plain)[1]
     deck = plain.replace("0.0,0.9,0,0.0,0.0,9001", "1.0e-5,0.9")
     assert "DTINIT" not in said(deck)[1]
-    assert "DTINIT has no effect beside dt= on the command line" in said(deck, "dt=1.0e-4")[1]
+    assert 'DTINIT has no effect beside "dt=1.0e-4" on the command line' in said(deck, "dt=1.0e-4")[1]
 
 
 def test_curve_number_below_0_stays_a_mistake_of_an_implicit_deck(said):

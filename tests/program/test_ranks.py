@@ -90,6 +90,19 @@ def struck(is_round):
     return deck.output(plot=1.5e-5, glstat=3.0e-6, matsum=3.0e-6).text()
 
 
+def two_blocks(kind, depth, speed):
+    """A block that flies into another, or lies in it by several elements: then the first search finds nodes inside of bodies.
+    Nothing makes processes start from all of the model, as masses that grow do."""
+    deck = Deck("two blocks").control(0.01, scale=0.8)
+    for part in (1, 2):
+        deck.part(part).elastic(1000.0, 1.0e6, 0.3, part)
+    upper = deck.mesh(*grid(40, 20, 0.4, 0.2, (0.3, -depth)), part=1)
+    lower = deck.mesh(*grid(60, 24, 0.96, 0.24, (0.0, -0.24)), part=2)
+    deck.node_set(1, upper).node_set(2, upper[:41]).node_set(3, lower[-61:][::-1]).contact(2, 3, kind, 2.0e4)
+    deck.add("*INITIAL_VELOCITY", (1,), (0.3 * speed, -speed))
+    return deck.output(plot=2.0e-3, glstat=2.0e-4, rcforc=2.0e-4).text()
+
+
 def ended():
     """A row for every history, and a rigid body that ends the run."""
     return busy_block(fine=4).add("*TERMINATION_BODY", (2, 2, 1.0, -0.004)).text()
@@ -104,17 +117,19 @@ sys.exit(status)"""
 
 #: scene -> (deck, cycles, processes, threads, words)
 SCENES = {
-    "rigid body and wall, type 2": (lambda: anvil(2), 60, 3, 1),
-    "points that fail, type 3": (lambda: plates(3), 90, 2, 2),
-    "friction, type 4": (lambda: collision(2, 4), 60, 3, 2, "fs=0.3"),
-    "one surface, type 5": (lambda: penetration(5, is_self=True, n=16), 330, 3, 1),
-    "elements that leave, type 5": (lambda: penetration(5, n=8), 330, 2, 1),
-    "round, type 6": (lambda: rings(6), 60, 4, 2),
-    "mass that grows, type 7": (lambda: growing(7), 60, 2, 1),
-    "no contact, gravity": (settling, 60, 5, 1),
-    "tiles that wake, round": (lambda: struck(True), 260, 2, 2),
-    "histories and an end before its time, type 3": (ended, 60, 3, 1),
-    "type that changes": (lambda: twice(columns=(40, 56), pace=0.06), 400, 3, 1, "dt=4e-4"),
+    "rigid body and wall, type 2": (lambda: anvil(2), 60, (3,), 1),
+    "points that fail, type 3": (lambda: plates(3), 90, (2,), 2),
+    "friction, type 4": (lambda: collision(2, 4), 60, (3,), 2, "fs=0.3"),
+    "one surface, type 5": (lambda: penetration(5, is_self=True, n=16), 330, (3,), 1),
+    "elements that leave, type 5": (lambda: penetration(5, n=8), 330, (2,), 1),
+    "round, type 6": (lambda: rings(6), 60, (4,), 2),
+    "mass that grows, type 7": (lambda: growing(7), 60, (2,), 1),
+    "no contact, gravity": (settling, 60, (5,), 1),
+    "tiles that wake, round": (lambda: struck(True), 260, (2,), 2),
+    "histories and an end before its time, type 3": (ended, 60, (3,), 1),
+    "type that changes": (lambda: twice(columns=(40, 56), pace=0.06), 400, (3,), 1, "dt=4e-4"),
+    "bodies in each other, type 3": (lambda: two_blocks(3, 0.035, 0.0), 60, (2, 3), 1),
+    "implicit springs, type 7": (lambda: two_blocks(7, 0.0, 6.0), 60, (2, 3), 1, "punit=4", "pen=10", "fs=0.3"),
 }
 
 
@@ -172,16 +187,19 @@ def test_files_are_those_of_one_process(tmp_path, scene):
     make, cycles, processes, threads, *words = SCENES[scene]
     (tmp_path / "job.k").write_text(with_cycles(make(), cycles), encoding="ascii")
     run(tmp_path, 1, "i=job.k", "d=one", *words)
-    done = run(tmp_path, processes, "i=job.k", "d=several", f"ncpu={threads}", *words)
-    assert done.stdout.count("N o r m a l") == 1, "more than one process speaks"
-    assert_same(tmp_path / "one", tmp_path / "several")
+    for n in processes:
+        done = run(tmp_path, n, "i=job.k", f"d=on{n}", f"ncpu={threads}", *words)
+        assert done.stdout.count("N o r m a l") == 1, "more than one process speaks"
+        assert_same(tmp_path / "one", tmp_path / f"on{n}")
+        (shared,) = times_shared(tmp_path / f"on{n}")
+        assert ("wake" in scene) == (shared > 0)
     log = "\n".join(log_of(tmp_path / "one"))
     assert "leave" not in scene or "leave the mesh" in log
     assert "fail" not in scene or "points fail" in log
     assert ("end before" in scene) == ("*TERMINATION_BODY" in log)
     assert ("changes" in scene) == ("contact is open and goes on with" in log)
-    (shared,) = times_shared(tmp_path / "several")
-    assert ("wake" in scene) == (shared > 0)
+    assert "in each other" not in scene or "deepest at node 1: 3.500000E-02 m" in log
+    assert ("implicit springs" in scene) == ("penalty: implicit springs of" in log)
     if "grows" in scene:
         added = numbers(tmp_path / "one" / "job.glstat.csv", "added_mass")
         assert added[-1] > added[0]

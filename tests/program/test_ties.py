@@ -167,7 +167,7 @@ def test_the_command_line_passes_ties_by(slideline, tmp_path):
         done = slideline(f"d={folder}", *words, deck=tied(5, columns=(10, 7)))
         assert done.returncode == 0, done.stderr
     for text in ("interface 1 is tied: its penalty can not be a share", "interface 1 is tied: ties have no contact damping",
-                 "interface 1 is tied: FS on the command line has no effect"):
+                 'interface 1 is tied: "fs=0.1" on the command line has no effect'):
         assert text in done.stderr
     assert histories(tmp_path / "plain") == histories(tmp_path / "led")
 

@@ -81,7 +81,8 @@ contains
     end select
     before = entry
     call take_overrides(overrides, entry)
-    call check_tie(deck, deck%blocks(i_block)%keyword, commanded, before, entry)
+    call check_tie(deck, deck%blocks(i_block)%keyword, overrides, commanded, before, &
+      entry)
     call check_values(deck, cursor, cards, kinds, overrides, commanded, entry)
     if (entry%contact%chosen_by_keyword) then
       if (.not. any(kinds%number == entry%contact%contact_type)) call line_error(deck, &

@@ -65,6 +65,7 @@ contains
       if (contact%penalty_unit == penalty_implicit .and. .not. abs(contact%penalty) > 0.0_wp) &
         contact%penalty = implicit_factor
       contact%chosen_by_keyword = contact%chosen_by_keyword .and. .not. given(of_type)
+      entry%unit_phrase = override_phrase(overrides, 'PUNIT', id)
       if (given(of_unit)) entry%unit_place%line = 0
       entry%overridden = any(given)
     end associate
@@ -110,9 +111,12 @@ contains
 
     !> A penalty that is no share: PEN and PUNIT may come from different places.
     subroutine refuse_share()
+      character(:), allocatable :: given
 
       if (commanded(of_penalty) .or. commanded(of_unit)) then
-        call deck_error(deck, 'with the command line the penalty "' &
+        given = override_phrase(overrides, 'PEN', entry%contact%id)
+        if (all(commanded([of_penalty, of_unit]))) given = given//' and '
+        call deck_error(deck, 'with '//given//entry%unit_phrase//' the penalty "' &
           //to_text(entry%contact%penalty)//'" is not a share of the largest stable one ' &
           //'(punit=3: pen= above 0, at most 1)')
       else

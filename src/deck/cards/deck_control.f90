@@ -119,9 +119,9 @@ contains
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
     call refuse_negative(deck, cursor, card, 'DTINIT')
-    if (real_of(card, 'TSSFAC') < 0.0_wp .and. .not. raw%scale_given) call report_field(deck, &
-      cursor, card, 'TSSFAC', 'is negative: the scale of the step is more than 0 (blank and 0 ' &
-      //'mean 0.9)')
+    if (real_of(card, 'TSSFAC') < 0.0_wp .and. len(raw%scale_phrase) == 0) call report_field( &
+      deck, cursor, card, 'TSSFAC', 'is negative: the scale of the step is more than 0 (blank ' &
+      //'and 0 mean 0.9)')
     call refuse_outside(deck, cursor, card, 'ISDO', 0, 1, &
       'is not an element length rule (0 area over longest side, 1 area over longest diagonal)')
     call refuse_outside(deck, cursor, card, 'ERODE', 0, 1, 'is not 0 or 1 (1: elements whose ' &
@@ -186,20 +186,22 @@ contains
     if (is_given) raw%explicit_only = [raw%explicit_only, place_of(card, name)]
   end subroutine note_explicit
 
-  !> Rules of the step, from the card or from the command line.
+  !> Rules of the step, from the card or from a word.
   subroutine check_step(deck, raw)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
+    character(:), allocatable :: given
 
     if (raw%dt_curve < 0) call reject_field(deck, raw%dt_curve_place, 'is not a curve number')
-    if (raw%controls%dt_scale > 1.0_wp .and. .not. raw%controls%implicit%is_on) &
-      call line_warning(deck, merge(0, raw%step_line, raw%scale_given), 'tssfac', &
-      'TSSFAC'//trim(merge(' on the command line', &
-      '                    ', raw%scale_given))//' is above 1: the run may become unstable')
-    if (raw%controls%dt_initial > 0.0_wp .and. raw%dt_curve > 0 .and. &
-      .not. raw%controls%implicit%is_on) call line_warning(deck, raw%step_line, 'dtinit', &
-      'DTINIT has no effect beside '//trim(merge('dt= on the command line', &
-      'the curve LCTM         ', raw%step_given)))
+    if (raw%controls%implicit%is_on) return
+    given = raw%scale_phrase
+    if (len(given) == 0) given = 'TSSFAC'
+    if (raw%controls%dt_scale > 1.0_wp) call line_warning(deck, merge(raw%step_line, 0, &
+      len(raw%scale_phrase) == 0), 'tssfac', given//' is above 1: the run may become unstable')
+    given = raw%step_phrase
+    if (len(given) == 0) given = 'the curve LCTM'
+    if (raw%controls%dt_initial > 0.0_wp .and. raw%dt_curve > 0) call line_warning(deck, &
+      raw%step_line, 'dtinit', 'DTINIT has no effect beside '//given)
   end subroutine check_step
 
   !> *CONTROL_BULK_VISCOSITY: off without the keyword; blank fields of it are LS-DYNA's defaults.

@@ -173,7 +173,7 @@ contains
       //'cards that have none (FS, FD, DC and VC 0)')
   end subroutine settle_friction
 
-  !> Friction on the command line passes ties by.
+  !> Friction that words give passes ties by.
   subroutine warn_of_tie(deck, overrides, entry)
     type(deck_t), intent(inout) :: deck
     type(overrides_t), intent(in) :: overrides
@@ -185,7 +185,7 @@ contains
       if (is_commanded(overrides, trim(names(i)), entry)) call line_warning(deck, &
         deck%blocks(entry%block)%keyword, 'override '//names(i)//' of a tie' &
         //to_text(entry%contact%id), 'interface '//to_text(entry%contact%id)//' is tied: ' &
-        //trim(names(i))//' on the command line has no effect on it')
+        //override_phrase(overrides, trim(names(i)), entry%contact%id)//' has no effect on it')
     end do
   end subroutine warn_of_tie
 

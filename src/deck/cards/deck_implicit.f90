@@ -32,7 +32,7 @@ contains
     raw%controls%implicit%is_on = integer_of(card, 'IMFLAG') == 1
     raw%controls%implicit%dt = real_of(card, 'DT0')
     if (raw%controls%implicit%is_on .and. raw%controls%implicit%dt <= 0.0_wp .and. &
-      .not. raw%step_given) call report_field(deck, cursor, card, 'DT0', &
+      len(raw%step_phrase) == 0) call report_field(deck, cursor, card, 'DT0', &
       'is not a step (more than 0)')
   end subroutine take_implicit
 

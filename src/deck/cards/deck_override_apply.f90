@@ -61,7 +61,7 @@ contains
           call line_error(deck, 0, item%phrase//' changes interface ' &
             //to_text(item%interface)//', which the deck does not have')
         else if (size(raw%contacts) == 0) then
-          call line_warning(deck, 0, 'override '//item%name, 'the command line changes ' &
+          call line_warning(deck, 0, 'override '//item%name, item%phrase//' changes ' &
             //item%name//' of all interfaces, but the deck has none')
         end if
       end associate

@@ -120,7 +120,8 @@ module deck_raw_m
     integer :: interference = 0         !! LCINT, user id of the curve
     type(place_t) :: interference_place
     type(place_t) :: search_place       !! FREQ, where it is given
-    type(place_t) :: unit_place         !! PUNIT; line 0 where the command line gives it
+    type(place_t) :: unit_place         !! PUNIT; line 0 where a word gives it
+    character(:), allocatable :: unit_phrase !! then: which word, and where it stands
     type(place_t) :: friction_place     !! FS, or what stands for it; line 0 as before
     logical :: takes_default = .false.  !! friction of *CONTROL_CONTACT acts where it has none
     character(80) :: kind = ''          !! name of the type
@@ -215,8 +216,9 @@ module deck_raw_m
     type(controls_t) :: controls
     type(friction_rule_t) :: friction          !! of *CONTROL_CONTACT
     type(place_t) :: friction_place            !! SFRIC, line 0 without the keyword
-    logical :: end_given = .false., step_given = .false., scale_given = .false. !! ENDTIM, the step,
-                                               !! TSSFAC come from the command line
+    logical :: end_given = .false.             !! a word gives ENDTIM
+    character(:), allocatable :: step_phrase, scale_phrase !! the words that give the step and
+                                               !! TSSFAC and where they stand, empty for none
     logical :: terminated = .false.            !! the deck has *CONTROL_TERMINATION, be it misspelt
     real(wp) :: newmark(2) = 0.0_wp            !! GAMMA and BETA of the implicit method, 0 = blank
     real(wp) :: hht = 0.0_wp                   !! minus ALPHA of the implicit method
@@ -239,6 +241,8 @@ contains
   subroutine start_raw(raw)
     type(raw_t), intent(out) :: raw
 
+    raw%step_phrase = ''
+    raw%scale_phrase = ''
     allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%points_open(0), &
       raw%materials(0), &
       raw%equations(0), raw%equation_line(0), raw%erosions(0), &

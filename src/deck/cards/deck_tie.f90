@@ -10,6 +10,7 @@ module deck_tie_m
   use deck_cards_m, only : cursor_t, report_field, warn_of_field
   use deck_checks_m, only : refuse_outside
   use deck_contact_values_m, only : of_penalty, of_unit, of_damping
+  use deck_overrides_m, only : overrides_t, override_phrase
   use deck_values_m, only : integer_of, real_of, is_bad, place_of
   use deck_raw_m, only : raw_contact_t
   implicit none
@@ -97,9 +98,10 @@ contains
   !> What ties do not have. What the command line asks of all interfaces passes them by; what the
   !> deck asks for is an error, or has no effect. Ties that break hand damping, friction and FREQ to
   !> the contact behind them.
-  subroutine check_tie(deck, line, commanded, before, entry)
+  subroutine check_tie(deck, line, overrides, commanded, before, entry)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line !! of the keyword
+    type(overrides_t), intent(in) :: overrides
     logical, intent(in) :: commanded(:)         !! values that the command line gives
     type(raw_contact_t), intent(in) :: before   !! it was so before the command line
     type(raw_contact_t), intent(inout) :: entry
@@ -111,7 +113,7 @@ contains
       //': a surface can not be tied to itself (SURFB 0)')
     associate (contact => entry%contact)
       if (commanded(of_unit) .and. contact%penalty_unit == penalty_share) then
-        call pass_by('PUNIT 3', 'its penalty can not be a share of the largest stable one')
+        call pass_by('PUNIT', 'its penalty can not be a share of the largest stable one')
         contact%penalty_unit = before%contact%penalty_unit
         contact%penalty = before%contact%penalty
         contact%master_penalty = before%contact%master_penalty
@@ -145,7 +147,8 @@ contains
       character(*), intent(in) :: name, why
 
       call line_warning(deck, line, 'override '//name//' of a tie'//to_text(entry%contact%id), &
-        what//': '//why//'; '//name//' on the command line has no effect on it')
+        what//': '//why//'; '//override_phrase(overrides, name, entry%contact%id) &
+        //' has no effect on it')
     end subroutine pass_by
 
   end subroutine check_tie

@@ -10,7 +10,7 @@ module deck_implicit_penalty_m
   use model_m, only : model_t
   implicit none
   private
-  public :: check_implicit_penalties
+  public :: check_implicit_penalties, refuse_unit
 
 contains
 
@@ -129,18 +129,26 @@ contains
     end do
   end subroutine refuse_shared
 
-  !> An error where the unit of the penalty was given.
+  !> An error of such an interface.
   subroutine refuse(deck, entry, message)
     type(deck_t), intent(inout) :: deck
     type(raw_contact_t), intent(in) :: entry
     character(*), intent(in) :: message
-    character(*), parameter :: what = 'asks for implicit springs, which in this version '
+
+    call refuse_unit(deck, entry, 'asks for implicit springs, which in this version '//message)
+  end subroutine refuse
+
+  !> An error where the unit of the penalty was given.
+  subroutine refuse_unit(deck, entry, message)
+    type(deck_t), intent(inout) :: deck
+    type(raw_contact_t), intent(in) :: entry
+    character(*), intent(in) :: message
 
     if (entry%unit_place%line > 0) then
-      call reject_field(deck, entry%unit_place, what//message)
+      call reject_field(deck, entry%unit_place, message)
     else
-      call deck_error(deck, '"punit=4" on the command line '//what//message)
+      call deck_error(deck, entry%unit_phrase//' '//message)
     end if
-  end subroutine refuse
+  end subroutine refuse_unit
 
 end module deck_implicit_penalty_m

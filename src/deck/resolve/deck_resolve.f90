@@ -11,8 +11,8 @@ module deck_resolve_m
   use conditions_m, only : motion_acceleration
   use contacts_m, only : penalty_share, penalty_implicit
   use deck_cards_m, only : reject_field, warn_of_field
-  use deck_implicit_penalty_m, only : check_implicit_penalties
-  use deck_lines_m, only : deck_t, place_t, line_error, deck_error, line_warning
+  use deck_implicit_penalty_m, only : check_implicit_penalties, refuse_unit
+  use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, &
     row_motion_set, row_velocity, row_velocity_generation, output_plot
@@ -84,7 +84,7 @@ contains
     call warn_of_explicit(deck, raw)
   end subroutine check_implicit
 
-  !> What the deck and the command line give for an explicit run alone: one warning for each.
+  !> What the deck and its words give for an explicit run alone: one warning for each.
   subroutine warn_of_explicit(deck, raw)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
@@ -94,8 +94,8 @@ contains
     do i = 1, size(raw%explicit_only)
       call warn_of_field(deck, raw%explicit_only(i), no_effect)
     end do
-    if (raw%scale_given) call line_warning(deck, 0, 'implicit tssfac', &
-      'tssfac= on the command line '//no_effect)
+    if (len(raw%scale_phrase) > 0) call line_warning(deck, 0, 'implicit tssfac', &
+      raw%scale_phrase//' '//no_effect)
     if (raw%controls%implicit%is_dynamic) return
     do i = 1, raw%n_row
       if (all(raw%rows(i)%kind /= [row_velocity, row_velocity_generation])) cycle
@@ -120,13 +120,7 @@ contains
     case default
       return
     end select
-    reason = reason//', which the implicit method does not have (0, 1 or 2)'
-    if (entry%unit_place%line > 0) then
-      call reject_field(deck, entry%unit_place, reason)
-    else
-      call deck_error(deck, '"punit='//to_text(entry%contact%penalty_unit) &
-        //'" on the command line '//reason)
-    end if
+    call refuse_unit(deck, entry, reason//', which the implicit method does not have (0, 1 or 2)')
   end subroutine check_penalty_unit
 
   !> Fill the model.

@@ -50,12 +50,16 @@ contains
     type(state_t), intent(inout) :: state
     type(log_t), intent(inout) :: log
     real(wp) :: chosen(size(state%estimates))
-    integer :: i
+    integer :: i, wanted
 
     chosen = 0.0_wp
-    do i = 1, size(chosen)
-      if (ranks%mine == 0) chosen(i) = wanted_type(model, state, i)
-    end do
+    if (ranks%mine == 0) then
+      do i = 1, size(chosen)
+        wanted = wanted_type(model, state, i)
+        call try_type(model, i, state, wanted)
+        chosen(i) = wanted
+      end do
+    end if
     if (ranks%n > 1) call spread_values(ranks, chosen)
     do i = 1, size(chosen)
       if (chosen(i) > 0.0_wp) call change_type(model, i, nint(chosen(i)), element_limit, state, log)
@@ -63,7 +67,7 @@ contains
   end subroutine follow_choices
 
   !> The type that an interface should have from here on; 0 where it keeps its own.
-  function wanted_type(model, state, i) result(wanted)
+  pure function wanted_type(model, state, i) result(wanted)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: i
@@ -81,10 +85,28 @@ contains
       ! Round-off may set the share of a type of itself below 1.
       if (wanted == contact%contact_type .or. .not. expected < estimate) wanted = 0
     end associate
-    if (wanted > 0) then
-      if (.not. is_open_for(model, i, wanted, state)) wanted = 0
-    end if
   end function wanted_type
+
+  !> Whether an interface may go on with the type that it wants. Each look costs a start of contact:
+  !> where it was refused the next ones follow after twice the cycles each, until contact closes.
+  subroutine try_type(model, i, state, wanted)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    type(state_t), intent(inout) :: state
+    integer, intent(inout) :: wanted   !! 0: none; so it becomes where it is refused
+
+    associate (n => state%estimates(i)%n_open)
+      n = merge(n + 1, 0, wanted > 0)
+      if (wanted == 0) return
+      if (popcnt(n) > 1) then
+        wanted = 0
+      else if (.not. is_open_for(model, i, wanted, state)) then
+        wanted = 0
+      else
+        n = 0
+      end if
+    end associate
+  end subroutine try_type
 
   !> Whether an interface that is open is so for another type too: where that would find places
   !> behind a face at once, which the present type does not follow or has let go, their springs

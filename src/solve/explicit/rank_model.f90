@@ -4,26 +4,23 @@
 !> nobody has sent or written takes no memory: a process that is not the first gets special nodes,
 !> and the nodes and slots of its own tiles.
 module rank_model_m
-  use errors_m, only : error_t
   use freight_lists_m, only : pass
   use freight_m, only : freight_t, start_loading, pass_reals
   use freight_sharing_m, only : spread_freight, send_freight
   use inside_answers_m, only : answers_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use log_m, only : log_t
   use mesh_freight_m, only : pass_nodes, pass_slots, pass_elements, pass_faces
   use model_freight_m, only : pass_model
   use model_m, only : model_t
   use others_memory_m, only : others_t
   use rank_memory_m, only : starts_from_all, others_of
   use rank_shares_m, only : shares_t, share_out
-  use ranks_m, only : ranks_t, share_error
-  use start_m, only : start_state
+  use ranks_m, only : ranks_t
   use state_m, only : state_t
   implicit none
   private
-  public :: hand_model, hand_others, start_share
+  public :: hand_model, hand_others
 
   !> What goes in pieces, and items of a piece at most.
   integer, parameter :: of_nodes = 1, of_slots = 2, of_elements = 3, of_faces = 4, of_mass = 5
@@ -133,29 +130,6 @@ contains
         mesh%element_part(mesh%n_element), layout%element_slot(mesh%n_element))
     end associate
   end subroutine reserve_mesh
-
-  !> The state at time zero. That of the first process comes first: the others, which have no
-  !> elements but their own, need masses from it.
-  subroutine start_share(has_all, model, ranks, log, state, error)
-    logical, intent(in) :: has_all   !! each process has all of the model
-    type(model_t), intent(inout) :: model
-    type(ranks_t), intent(inout) :: ranks
-    type(log_t), intent(inout) :: log
-    type(state_t), intent(out) :: state
-    type(error_t), allocatable, intent(out) :: error
-    type(others_t), allocatable :: others
-    type(answers_t), allocatable :: answers
-
-    if (ranks%mine == 0) then
-      if (.not. has_all) allocate (answers)
-      call start_state(model, log, state, error, answers=answers)
-    end if
-    call share_error(ranks, error)
-    if (allocated(error)) return
-    if (.not. has_all) call hand_others(model, ranks, state, others, answers)
-    if (ranks%mine > 0) call start_state(model, log, state, error, others, answers)
-    call share_error(ranks, error)
-  end subroutine start_share
 
   !> What a process that starts its own share alone has to know of the state of the first one.
   subroutine hand_others(model, ranks, state, others, answers)
