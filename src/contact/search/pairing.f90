@@ -3,7 +3,7 @@
 !> have a part in types 5 to 7 (doc/theory/contact.md, section 4).
 module pairing_m
   use contact_state_m, only : contact_state_t, tracking_t
-  use foot_m, only : foot_t, see_segment, closest_foot, walk_to_closest
+  use foot_m, only : foot_t, see_segment, closest_foot, walk_to_closest, end_tolerance
   use geometry_m, only : sight_t, closest_distance
   use grid_m, only : nearest_t, find_nearest
   use kinds_m, only : wp
@@ -63,21 +63,16 @@ contains
 
   contains
 
-    !> Whether the segment of the last look or one next to it is the closest yet, at no end of a
-    !> run.
+    !> Whether the segment of the last look is the closest yet, the spot being next to neither end.
     pure function is_kept(segment) result(kept)
       integer, intent(in) :: segment
       logical :: kept
       type(sight_t) :: sight
 
       sight = see_segment(surface, chain, spots(:, i), segment)
-      kept = closest_distance(sight) <= max(0.0_wp, min(tracking%reach, &
+      kept = min(sight%along, sight%square - sight%along) > end_tolerance*sight%square &
+        .and. closest_distance(sight) <= max(0.0_wp, min(tracking%reach, &
         tracking%recheck(i) - travel))**2
-      if (sight%along < 0.0_wp) then
-        kept = kept .and. surface%previous(segment) > 0
-      else if (sight%along > sight%square) then
-        kept = kept .and. surface%next(segment) > 0
-      end if
       if (kept) kept = may_meet(tracking, surface, chain, spots, i, segment)
     end function is_kept
 

@@ -180,6 +180,7 @@ contains
     call find_foot(tracking, surface, chain, spots, i, travel, foot)
     if (foot%segment > 0 .and. foot%is_on .and. foot%gap < 0.0_wp &
       .and. .not. may_begin(tracking, spots, i, foot, only_faced)) then
+      call store_foot(tracking, i, foot)
       tracking%status(i) = is_free
       tracking%wake(i) = -huge(1.0_wp)
     else
