@@ -32,7 +32,7 @@ module interface_m
   use spots_m, only : move_spots
   use tips_m, only : has_folds, find_tips
   use tied_interface_m, only : start_ties, apply_ties, evaluate_ties
-  use tracking_m, only : update_tracking, wake_all, forget_pairs
+  use tracking_m, only : update_tracking, wake_all, forget_pairs, measure_depths
   implicit none
   private
   public :: start_contact, resume_contact, apply_contact, evaluate_contact
@@ -344,6 +344,8 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     if (memory%facing%is_used) call make_present(contact, memory)
+    call measure_depths(memory%slave_tracking)
+    call measure_depths(memory%master_tracking)
     call form_springs(memory)
   end subroutine resume_contact
 

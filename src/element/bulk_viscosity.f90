@@ -25,7 +25,7 @@ contains
     work = 0.0_wp
     !$omp simd private(length, rate, q) reduction(+ : work)
     do i = 1, chunk_size
-      length = sqrt(chunk%area(i))
+      length = sqrt(abs(chunk%area(i)))
       rate = min(0.0_wp, chunk%trace(i))
       q = density/(1.0_wp + chunk%stretch(i))*length*rate &
         *(quadratic*length*rate - linear*sound_speed)

@@ -103,7 +103,7 @@ contains
     if (.not. (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp)) return
     !$omp simd private(length, rate, density, speed)
     do i = 1, chunk_size
-      length = sqrt(chunk%area(i))
+      length = sqrt(abs(chunk%area(i)))
       rate = min(0.0_wp, chunk%trace(i))
       density = initial_density/(1.0_wp + chunk%stretch(i))
       speed = sqrt(speed_squared(i))

@@ -32,7 +32,7 @@ contains
     work = 0.0_wp
     !$omp simd private(viscosity) reduction(+ : work)
     do i = 1, chunk_size
-      viscosity = factor*sqrt(chunk%area(i))
+      viscosity = factor*sqrt(abs(chunk%area(i)))
       chunk%qx(i) = viscosity*chunk%gx(i)
       chunk%qy(i) = viscosity*chunk%gy(i)
       work = work + (chunk%qx(i)*chunk%gx(i) + chunk%qy(i)*chunk%gy(i))

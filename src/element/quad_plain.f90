@@ -302,7 +302,7 @@ contains
       ! Half of it: bulk*atanh(z).
       pressure = bulk*(z + z*w*(1.0_wp/3.0_wp + w*(1.0_wp/5.0_wp + w*(1.0_wp/7.0_wp &
         + w*(1.0_wp/9.0_wp + w*(1.0_wp/11.0_wp + w*(1.0_wp/13.0_wp + w*(1.0_wp/15.0_wp))))))))
-      root = viscosity*sqrt(0.5_wp*shape%a2(i))
+      root = viscosity*sqrt(0.5_wp*abs(shape%a2(i)))
       qx = root*shape%gx(i)
       qy = root*shape%gy(i)
       power = power + (qx*shape%gx(i) + qy*shape%gy(i))

@@ -93,6 +93,7 @@ module contact_state_m
     real(wp), allocatable :: recheck(:)      !! (n) travel at which another segment may be reached
     real(wp), allocatable :: spot_depth(:)   !! (n) deepest first contact of a spot, m
     real(wp), allocatable :: segment_depth(:) !! (n_segment) deepest first contact of a segment, m
+    real(wp) :: deepest = huge(1.0_wp)       !! largest of these, m
     integer, allocatable :: chord(:, :)      !! (2, n) neighbours along the spot's own surface
     integer :: own_spots = -1                !! where the chain is the spots' own surface: how many
                                              !! there are on a segment, 0: at its nodes; else -1

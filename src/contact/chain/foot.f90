@@ -90,9 +90,35 @@ contains
         square = nearer
         best = candidates(i)
       end do
+      if (best == 0) best = beyond_node(segment)
       if (best == 0) exit
       segment = best
+      square = closest_distance(see_segment(surface, chain, spot, segment))
     end do
+
+  contains
+
+    !> The segment behind a neighbour that is nearer than the node in common, where that is closest
+    !> of both: round-off decides on which of them the walk is.
+    pure function beyond_node(segment) result(beyond)
+      integer, intent(in) :: segment
+      integer :: beyond
+      type(sight_t) :: sight
+
+      sight = see_segment(surface, chain, spot, segment)
+      beyond = 0
+      if (sight%along < 0.0_wp) then
+        beyond = surface%previous(segment)
+        if (beyond > 0) beyond = surface%previous(beyond)
+      else if (sight%along > sight%square) then
+        beyond = surface%next(segment)
+        if (beyond > 0) beyond = surface%next(beyond)
+      end if
+      if (beyond == 0) return
+      if (.not. closest_distance(see_segment(surface, chain, spot, beyond)) &
+        < square*(1.0_wp - round_off)) beyond = 0
+    end function beyond_node
+
   end function walk_to_closest
 
   !> Foot of a spot whose closest segment is known.
@@ -112,7 +138,7 @@ contains
     if (neighbour == 0) then
       foot = end_foot(surface, sight, segment)
     else
-      foot = corner_foot(sight, see_segment(surface, chain, spot, neighbour), segment)
+      foot = corner_foot(sight, see_segment(surface, chain, spot, neighbour), [segment, neighbour])
     end if
   end function closest_foot
 
@@ -180,7 +206,8 @@ contains
       if (neighbour > 0) then
         ! Behind the node between two faces, over neither: what is found first in a valley.
         associate (other => see_segment(surface, chain, spot, neighbour))
-          if (is_before(other, backwards)) foot = corner_foot(sight, other, start)
+          if (is_before(other, backwards)) &
+            foot = corner_foot(sight, other, [start, neighbour])
         end associate
         if (foot%gap < 0.0_wp) return
       end if
@@ -229,18 +256,23 @@ contains
   !> Foot at the node between two segments, neither of which has the spot over it. Outside of a
   !> convex corner the gap is the distance. Inside of a re-entrant one it is minus the distance and
   !> the normal points from the spot to the node, so that P2 holds. The sides are told apart by the
-  !> mean normal.
-  pure function corner_foot(sight, other, segment) result(foot)
-    type(sight_t), intent(in) :: sight !! from `segment`
+  !> mean normal. The foot is that of the segment to whose normal its own is nearer, whose line is
+  !> farther away: either has the node.
+  pure function corner_foot(sight, other, segments) result(foot)
+    type(sight_t), intent(in) :: sight !! from a segment
     type(sight_t), intent(in) :: other !! from its neighbour at the corner
-    integer, intent(in) :: segment
+    integer, intent(in) :: segments(2) !! these
     type(foot_t) :: foot
     real(wp) :: d(2), mean_normal(2), side
 
-    foot%segment = segment
+    foot%segment = segments(1)
     foot%is_on = .true.
     foot%xi = merge(0.0_wp, 1.0_wp, sight%along < 0.0_wp)
     d = sight%d - foot%xi*sight%t
+    if (other%across**2*sight%square > sight%across**2*other%square) then
+      foot%segment = segments(2)
+      foot%xi = 1.0_wp - foot%xi
+    end if
     foot%distance = norm2(d)
     mean_normal = sight_normal(sight) + sight_normal(other)
     side = dot_product(d, mean_normal)
@@ -282,7 +314,7 @@ contains
       end if
       other = see_segment(surface, chain, spot, neighbour)
       if (is_before(other, sight%along < 0.0_wp)) then
-        foot = corner_foot(sight, other, segment)
+        foot = corner_foot(sight, other, [segment, neighbour])
         return
       else if (.not. turns_gently(sight, other) .and. &
         (other%across >= 0.0_wp .or. is_over_segment(sight))) then

@@ -255,6 +255,11 @@ contains
       block%xi(k) = 0.5_wp - 0.5_wp*way
       block%gap(k) = sign(sqrt(from_node(1)**2 + from_node(2)**2), own%across)
       block%normal(:, k) = from_node/block%gap(k)
+      if (across**2*own%square > own%across**2*square) then
+        block%segment(k) = other
+        block%inverse(k) = 1.0_wp/sqrt(square)
+        block%xi(k) = 0.5_wp + 0.5_wp*way
+      end if
     else if (along < -small .and. max(across, own%across) < 0.0_wp &
       .and. -across <= square + along) then
       product = own%t(1)*t(1) + own%t(2)*t(2)

@@ -124,8 +124,6 @@ contains
       is_inside = merge(along > least_cut*square, along < (1.0_wp - least_cut)*square, k == 1)
       outer = merge(before, behind, is_inside .eqv. k == 1)
       if (outer > 0) feet(k) = outer
-      ! From a node that far off the walk sees no more of the master.
-      if (along < -square .or. along > 2.0_wp*square) feet(k) = 0
     end do
   end subroutine leave_nodes
 

@@ -11,7 +11,9 @@ module pieces_m
   use foot_block_m, only : project
   use foot_m, only : foot_t, nearest_foot, nearer_run, facing_share, face_on, round_off
   use kinds_m, only : wp
+  use pairing_m, only : present_pair, has_chains
   use piece_list_m, only : list_kept, list_run, note_segments, may_list, hair
+  use piece_order_m, only : level_cuts, name_cuts
   use piece_table_m, only : piece_table_t, shrink_pieces, n_piece_block, is_last_piece, &
     is_walked_piece
   use piece_walk_m, only : walk_pieces
@@ -25,6 +27,7 @@ module pieces_m
   real(wp), parameter :: behind = 1.5_wp
   !> Share of a piece on the back of a wall: it counts nowhere, whatever faces whom.
   real(wp), parameter :: is_back = -1.0_wp
+
 
 contains
 
@@ -100,25 +103,32 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)
     type(foot_t), intent(out) :: feet(2)
-    integer :: own(2), k, start
+    integer :: own(2), k
+    logical :: touch(2)
 
     associate (tracking => memory%slave_tracking)
       own = tracking%segment(ends)
+      if (has_chains(memory, contact%master)) then
+        do k = 1, 2
+          own(k) = present_pair(tracking, contact%master, memory%places(:, memory%n_slave + 1:), &
+            memory%places(:, :memory%n_slave), ends(k), memory%travel)
+        end do
+      end if
       if (memory%facing%is_used) call take_nearer_runs(contact, memory, ends, own)
-      start = own(1)
-      if (start == 0) start = own(2)
-      if (start == 0) return
+      if (all(own == 0)) return
+      touch = tracking%status(ends) == is_touching
       do k = 1, 2
-        if (tracking%status(ends(k)) /= is_touching) cycle
-        feet(k) = tracked_foot(tracking%segment(ends(k)), tracking%xi(ends(k)), &
+        if (touch(k)) feet(k) = tracked_foot(tracking%segment(ends(k)), tracking%xi(ends(k)), &
           tracking%gap(ends(k)), tracking%normal(:, ends(k)))
-        start = feet(k)%segment
       end do
-      do k = 1, 2
-        if (feet(k)%segment == 0) &
-          feet(k) = foot_from(contact, memory, ends(k), k, own(k), start)
-        start = feet(1)%segment
-      end do
+      if (.not. any(touch)) then
+        call find_free_feet(contact, memory, ends, own, feet)
+      else
+        do k = 1, 2
+          if (.not. touch(k)) &
+            feet(k) = foot_from(contact, memory, ends(k), k, own(k), feet(3 - k)%segment)
+        end do
+      end if
     end associate
     associate (next => contact%master%next(feet(1)%segment))
       if (abs(feet(1)%xi - 1.0_wp) <= hair .and. next > 0) then
@@ -149,6 +159,31 @@ contains
     end do
   end subroutine take_nearer_runs
 
+  !> Feet of two ends neither of which is in contact: each where it is paired. An end that is not,
+  !> or that stands beyond its chain with nothing below the slave segment, has its foot on the chain
+  !> of the other one.
+  pure subroutine find_free_feet(contact, memory, ends, own, feet)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)
+    integer, intent(in) :: own(2) !! master segments that they are paired with, 0: none
+    type(foot_t), intent(inout) :: feet(2)
+    logical :: is_used(2)
+    integer :: k
+
+    associate (places => memory%places(:, memory%n_slave + 1:))
+      do k = 1, 2
+        if (own(k) > 0) &
+          feet(k) = nearest_foot(contact%master, places, memory%places(:, ends(k)), own(k))
+        is_used(k) = own(k) > 0 .and. (feet(k)%is_on .or. (feet(k)%xi > 0.5_wp .eqv. k == 1))
+      end do
+      do k = 1, 2
+        if (.not. is_used(k) .and. (is_used(3 - k) .or. own(k) == 0)) feet(k) = nearest_foot( &
+          contact%master, places, memory%places(:, ends(k)), feet(3 - k)%segment)
+      end do
+    end associate
+  end subroutine find_free_feet
+
   !> Foot of an end that is not in contact, looked for from a master segment, or on the chain that
   !> it is paired with if that is another one and nearer: at a sharp corner one run ends and the
   !> next begins, and a slave segment above the corner stands on both.
@@ -165,7 +200,8 @@ contains
       if (own == 0) return
       if (contact%master%chain(own) == contact%master%chain(start)) return
       other = nearest_foot(contact%master, places, place, own)
-      if (.not. (other%distance < foot%distance)) return
+      ! At a corner in common both are as near: what it is paired with has been decided.
+      if (.not. other%distance*(1.0_wp - round_off) < foot%distance) return
       ! Beyond the end that the way along the slave segment comes to first, nothing lies below it.
       if (other%is_on .or. (other%xi > 0.5_wp .eqv. k == 1)) foot = other
     end associate
@@ -242,8 +278,8 @@ contains
     length = 1.0_wp/inverse(:n)
   end subroutine project_nodes
 
-  !> Where the pieces start and end. A node that projects behind the last cut, or beyond the end of
-  !> the slave segment, cuts nothing: its piece is empty, or the last that is not.
+  !> Where the pieces start and end. A node that projects beyond an end of the slave segment cuts
+  !> nothing. Where one projects behind the last cut the pieces of its segment are put in order.
   pure subroutine order_pieces(n, segments, master, kind, cut, low, high, first_cut, last_cut)
     integer, intent(in) :: n, segments(2, *) !! of the master
     integer, intent(in) :: master(n), kind(n)
@@ -251,12 +287,16 @@ contains
     real(wp), intent(inout) :: low(n), high(n)
     integer, intent(inout) :: first_cut(n), last_cut(n)
     real(wp) :: at
-    integer :: k, node
+    integer :: k, node, first
+    logical :: is_bent
 
     at = 0.0_wp
     node = 0
+    first = 0
+    is_bent = .false.
     do k = 1, n
       if (kind(k) == is_walked_piece) cycle
+      if (first == 0) first = k
       low(k) = at
       first_cut(k) = node
       if (kind(k) == is_last_piece) then
@@ -264,7 +304,12 @@ contains
         last_cut(k) = 0
         at = 0.0_wp
         node = 0
+        if (is_bent) call order_bent(k - first + 1, segments, master(first), cut(first), &
+          low(first), high(first), first_cut(first), last_cut(first))
+        first = 0
+        is_bent = .false.
       else
+        is_bent = is_bent .or. (cut(k) < at .and. at > 0.0_wp)
         if (cut(k) >= 1.0_wp) then
           at = 1.0_wp
           node = 0
@@ -277,6 +322,25 @@ contains
       end if
     end do
   end subroutine order_pieces
+
+  !> The pieces of one slave segment in order, where a node of the master projects behind another
+  !> that comes before it.
+  pure subroutine order_bent(n, segments, master, cut, low, high, first_cut, last_cut)
+    integer, intent(in) :: n, segments(2, *), master(n)
+    real(wp), intent(in) :: cut(n)
+    real(wp), intent(inout) :: low(n), high(n)
+    integer, intent(inout) :: first_cut(n), last_cut(n)
+    integer :: k
+
+    do k = 1, n - 1
+      high(k) = max(0.0_wp, min(1.0_wp, cut(k)))
+      last_cut(k) = merge(segments(1, master(k)), 0, cut(k) > 0.0_wp .and. cut(k) < 1.0_wp)
+    end do
+    low(2:) = high(:n - 1)
+    first_cut(2:) = last_cut(:n - 1)
+    call level_cuts(n, low, high)
+    call name_cuts(n, low, high, first_cut, last_cut)
+  end subroutine order_bent
 
   !> How much of the pieces counts: all where the two segments face each other up to a certain
   !> angle, none from a larger one on.

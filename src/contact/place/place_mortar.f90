@@ -8,11 +8,13 @@ module place_mortar_m
   use foot_m, only : foot_t, near_foot, facing_share, face_on
   use geometry_m, only : separation
   use kinds_m, only : wp
+  use pairing_m, only : present_pair, has_chains
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
   use tips_m, only : has_folds, belongs_to
   implicit none
   private
   public :: place_mortar
+
 
 contains
 
@@ -209,6 +211,7 @@ contains
     type(foot_t) :: foot
     real(wp) :: own(2), length
     integer :: k, q, i, spots(n_block)
+    logical :: is_lost(n_block) !! within reach of nothing
 
     associate (tracking => memory%slave_tracking, ends => contact%slave%segments(:, s), &
       chain => memory%places(:, memory%n_slave + 1:), feet => block%feet)
@@ -223,7 +226,11 @@ contains
         block%ends(:, k) = ends
         block%xi(k) = memory%spot_xi(q)
         block%area(k) = memory%spot_share(q)*length
-        feet%segment(k) = merge(tracking%segment(i), near, tracking%segment(i) > 0)
+        feet%segment(k) = tracking%segment(i)
+        if (has_chains(memory, contact%master)) feet%segment(k) = present_pair(tracking, &
+          contact%master, chain, memory%spots, i, memory%travel)
+        is_lost(k) = feet%segment(k) == 0
+        if (is_lost(k)) feet%segment(k) = near
         associate (nodes => contact%master%segments(:, feet%segment(k)))
           feet%t(:, k) = separation(chain(:, nodes(2)), chain(:, nodes(1)))
           feet%d(:, k) = separation(memory%spots(:, i), chain(:, nodes(1)))
@@ -246,6 +253,8 @@ contains
           feet%normal(:, k) = foot%normal
           if (.not. foot%is_on) block%area(k) = -1.0_wp
         end if
+        ! What is within reach of nothing stands before this, if at all.
+        if (is_lost(k) .and. feet%gap(k) < 0.0_wp) block%area(k) = -1.0_wp
         block%nodes(:, k) = memory%n_slave + contact%master%segments(:, feet%segment(k))
       end do
     end associate

@@ -238,6 +238,14 @@ contains
         length = 0.0_wp
         before = 0
       end if
+      if (node == 0 .and. before > 0) then
+        ! No node stands between two pieces: either belongs to its own end.
+        call add_length(memory%points, memory%scratch%point_at(table%ends(1, k)), length)
+        node = table%last_cut(k)
+        length = to_first(k) + to_last(k)
+        before = k
+        cycle
+      end if
       length = length + to_first(k)
       if (node > 0) then
         call add_cut(table, before, k, node, length, memory, cuts, deepest)
@@ -258,7 +266,7 @@ contains
   !> A point at a master node behind a slave segment, with the normal of that.
   pure subroutine add_cut(table, before, k, node, area, memory, cuts, deepest)
     type(piece_table_t), intent(in) :: table
-    integer, intent(in) :: before   !! piece at whose end the node is, 0: it starts the chain
+    integer, intent(in) :: before   !! piece behind which the node stands, 0: it starts the chain
     integer, intent(in) :: k        !! a piece of the same slave segment
     integer, intent(in) :: node     !! of the master surface
     real(wp), intent(in) :: area    !! m
@@ -267,8 +275,11 @@ contains
     real(wp), intent(inout) :: deepest !! m
     type(sight_t) :: sight
     real(wp) :: gap, xi
+    logical :: is_its_end
 
-    if (before > 0) then
+    is_its_end = before > 0
+    if (is_its_end) is_its_end = table%nodes(1, before) == memory%n_slave + node
+    if (is_its_end) then
       gap = table%node_gap(before)
       xi = table%cut(before)
     else

@@ -80,6 +80,7 @@ contains
     tracking%grid%cell = 0.0_wp
     tracking%segment_depth(:side%n) = side%caught(side%segments(:side%n))
     tracking%segment_depth(side%n + 1:) = huge(1.0_wp)
+    tracking%deepest = maxval([0.0_wp, tracking%segment_depth(:side%n)])
   end subroutine follow_chain
 
   !> Spots of slave segments that have other numbers.

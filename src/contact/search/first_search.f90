@@ -196,6 +196,7 @@ contains
       tracking%spot_depth = tracking%reach
       tracking%segment_depth = tracking%reach
     end if
+    tracking%deepest = maxval(tracking%segment_depth)
     tracking%grid%least_cell = least_cell*tracking%reach
 
   contains

@@ -13,7 +13,7 @@ module self_search_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: find_nearest_other, is_elsewhere
+  public :: find_nearest_other, is_elsewhere, may_meet
 
   !> Deepest place of a spot behind a segment, by the depth that is caught there: deeper ones stand
   !> before the far side of something.
@@ -112,6 +112,21 @@ contains
     elsewhere = .not. is_own(surface, chain, beside, segment)
   end function is_elsewhere
 
+  !> Whether a spot may meet a segment, as it stands: between two surfaces always.
+  pure function may_meet(tracking, surface, chain, spots, i, segment)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :), spots(:, :)
+    integer, intent(in) :: i, segment
+    logical :: may_meet
+    type(role_t) :: role
+
+    may_meet = tracking%own_spots < 0
+    if (may_meet) return
+    role = role_of(tracking, surface, chain, spots, i, segment, .false., 0.0_wp)
+    may_meet = role%is == is_met
+  end function may_meet
+
   !> What a segment is to a spot. One that it is behind may be met as soon as the spot is less deep,
   !> or has turned: it must be seen then, as deep as it is.
   pure function role_of(tracking, surface, chain, spots, i, segment, any_depth, square) result(role)
@@ -125,6 +140,7 @@ contains
     integer :: beside(2), k
     type(foot_t) :: foot
     real(wp) :: t(2), least, deep
+    logical :: is_past
 
     beside = segments_of(tracking, surface, i)
     do k = 1, 2
@@ -135,11 +151,21 @@ contains
     role%sleep = square
     if (is_own(surface, chain, beside, segment)) return
     foot = closest_foot(surface, chain, spots(:, i), segment)
-    deep = -foot%gap - behind*tracking%segment_depth(segment)
-    if (foot%is_on .and. foot%gap < 0.0_wp) role%sleep = max(0.0_wp, deep)**2
-    if (deep > 0.0_wp .and. .not. any_depth) return
+    is_past = foot%is_on .and. foot%gap < 0.0_wp
+    if (is_past) then
+      deep = -foot%gap - behind*tracking%segment_depth(segment)
+      role%sleep = max(0.0_wp, deep)**2
+      if (deep > 0.0_wp .and. .not. any_depth) return
+    end if
     least = side_on
-    if (shares_node(surface, beside, segment)) least = face_on
+    if (shares_node(surface, beside, segment)) then
+      least = face_on
+    else if (.not. is_past) then
+      ! What a spot has not come behind is the closest for it whichever way it looks: else it would
+      ! see through that, and which it sees would change with an angle.
+      role%is = is_met
+      return
+    end if
     t = separation(spots(:, tracking%chord(2, i)), spots(:, tracking%chord(1, i)))
     associate (normal => sight_normal(see_segment(surface, chain, spots(:, i), segment)))
       if (t(2)*normal(1) - t(1)*normal(2) > least*norm2(t)) return

@@ -9,13 +9,14 @@ module tracking_m
   use geometry_m, only : sight_t, separation
   use grid_m, only : nearest_t, fill_grid, slip_limit, box_distance, find_nearest
   use kinds_m, only : wp
-  use self_search_m, only : find_nearest_other
+  use self_search_m, only : find_nearest_other, is_elsewhere, may_meet
   use surfaces_m, only : surface_t
   use waking_m, only : list_waking
   implicit none
   private
   public :: update_tracking, wake_all, forget_pairs, list_touching, most_facing, begin_contact, &
-    put_off
+    put_off, measure_depths
+
 
 contains
 
@@ -179,6 +180,7 @@ contains
     call find_foot(tracking, surface, chain, spots, i, travel, foot)
     if (foot%segment > 0 .and. foot%is_on .and. foot%gap < 0.0_wp &
       .and. .not. may_begin(tracking, spots, i, foot, only_faced)) then
+      call store_foot(tracking, i, foot)
       tracking%status(i) = is_free
       tracking%wake(i) = -huge(1.0_wp)
     else
@@ -204,8 +206,10 @@ contains
     if (segment > 0 .and. travel < tracking%recheck(i) .and. tracking%status(i) /= is_touching) then
       if (walk_to_closest(surface, chain, spot, segment) == segment) then
         foot = closest_foot(surface, chain, spot, segment)
-        ! Beyond the reach the spot is let go: then other segments have to be known too.
-        if (foot%distance <= tracking%reach) return
+        ! Beyond the reach the spot is let go: then other segments have to be known too. So they
+        ! have where one of them may be nearer by now: a place may have come in past its end.
+        if (foot%distance <= min(tracking%reach, tracking%recheck(i) - travel) .and. &
+          may_meet(tracking, surface, chain, spots, i, segment)) return
         foot = foot_t()
       end if
     end if
@@ -254,8 +258,11 @@ contains
       face = most_facing(tracking, surface, chain, spots, i, foot, .false.)
       tracking%status(i) = merge(is_in_front, is_free, face > 0)
       if (face > 0) tracking%segment(i) = face
-      tracking%wake(i) = min(travel + foot%distance, tracking%recheck(i))
-      if (.not. foot%is_on) tracking%wake(i) = -huge(1.0_wp)
+      ! A face reaches a little beyond its end.
+      tracking%wake(i) = travel + safe_motion(tracking, i, min(foot%distance, abs(foot%gap)), &
+        travel)
+      if (.not. foot%is_on .or. (face > 0 .and. face /= foot%segment)) &
+        tracking%wake(i) = -huge(1.0_wp)
     end if
   end subroutine judge_foot
 
@@ -309,8 +316,22 @@ contains
     if (walk_to_closest(surface, chain, spot, tracking%segment(i)) /= tracking%segment(i)) return
     foot = closest_foot(surface, chain, spot, tracking%segment(i))
     if (foot%is_on .and. foot%gap >= 0.0_wp) &
-      tracking%wake(i) = min(travel + foot%distance, tracking%recheck(i))
+      tracking%wake(i) = travel + safe_motion(tracking, i, min(foot%distance, foot%gap), travel)
   end subroutine put_off
+
+  !> Motion during which nothing new can be found for a spot before its closest segment: it does not
+  !> reach this one, and no other is the closest of all, or so near that a spot which has come in
+  !> past the end of that is caught there.
+  pure function safe_motion(tracking, i, distance, travel) result(motion)
+    type(tracking_t), intent(in) :: tracking
+    integer, intent(in) :: i
+    real(wp), intent(in) :: distance, travel !! m
+    real(wp) :: motion, others
+
+    others = tracking%recheck(i) - travel
+    motion = min(distance, max(0.5_wp*(others - distance), &
+      others - min(tracking%spot_depth(i), tracking%deepest)))
+  end function safe_motion
 
   !> Keep a foot.
   pure subroutine store_foot(tracking, i, foot)
@@ -343,6 +364,9 @@ contains
     logical :: is_next_to_corner
 
     candidates = [foot%segment, surface%previous(foot%segment), surface%next(foot%segment)]
+    ! Where runs meet at a sharp corner either may have been found.
+    if (candidates(2) == 0) candidates(2) = surface%incoming(surface%segments(1, foot%segment))
+    if (candidates(3) == 0) candidates(3) = surface%outgoing(surface%segments(2, foot%segment))
     is_next_to_corner = foot%xi <= end_tolerance .or. foot%xi >= 1.0_wp - end_tolerance
     t = separation(spots(:, tracking%chord(2, i)), spots(:, tracking%chord(1, i)))
     face = 0
@@ -350,6 +374,9 @@ contains
     do k = 1, 3
       if (k > 1 .and. .not. is_next_to_corner) exit
       if (candidates(k) == 0) cycle
+      if (tracking%own_spots >= 0 .and. k > 1) then
+        if (.not. is_elsewhere(tracking, surface, chain, i, candidates(k))) cycle
+      end if
       sight = see_segment(surface, chain, spots(:, i), candidates(k))
       facing = dot_product(t, sight%t)/sqrt(sight%square)
       if (k == 1) then
@@ -376,6 +403,14 @@ contains
     tracking%recheck = -huge(1.0_wp)
     tracking%next_wake = -huge(1.0_wp)
   end subroutine wake_all
+
+  !> After a restart: how deep a first contact is at most on any segment.
+  pure subroutine measure_depths(tracking)
+    type(tracking_t), intent(inout) :: tracking
+
+    if (allocated(tracking%segment_depth)) tracking%deepest = maxval([0.0_wp, &
+      tracking%segment_depth], mask=[0.0_wp, tracking%segment_depth] < huge(1.0_wp))
+  end subroutine measure_depths
 
   !> Start a tracking anew, knowing nothing.
   pure subroutine forget_pairs(tracking)

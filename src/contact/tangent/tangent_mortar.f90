@@ -96,7 +96,7 @@ contains
     type(foot_t) :: foot
     integer :: q
 
-    call take_piece(memory, table, k, k == 1, point)
+    call take_piece(memory, table, k, .true., point)
     xi = piece_ends(memory%places, point%nodes, [table%low(k), table%high(k)])
     length = (xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2)
     do q = 1, size(gauss_xi)

@@ -85,11 +85,13 @@ contains
     type(varied_point_t), intent(out) :: point
     type(dual_t), intent(out) :: halves(2) !! what its start gets, and its end
     type(dual_t) :: xi(2), t(2), length, half
+    logical :: is_whole
 
-    call take_piece(memory, table, k, k == 1, point)
+    is_whole = contact%strict .or. table%share(k) >= 1.0_wp
+    call take_piece(memory, table, k, is_whole, point)
     xi = piece_ends(memory%places, point%nodes, [table%low(k), table%high(k)])
     half = 0.5_wp*((xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2))
-    if (.not. (contact%strict .or. table%share(k) >= 1.0_wp)) then
+    if (.not. is_whole) then
       point%nodes(7:8) = memory%n_slave + contact%master%segments(:, table%master(k))
       t = apart(memory%places, point%nodes, 8, 7)
       length = sqrt(t(1)*t(1) + t(2)*t(2))

@@ -8,7 +8,7 @@ module variation_m
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
   use foot_m, only : side_on, face_on
-  use geometry_m, only : sight_t, sight_of_segment, separation
+  use geometry_m, only : separation
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t
   use radii_m, only : radius_of
@@ -141,44 +141,45 @@ contains
   end subroutine put_foot
 
   !> Put a slave segment into slots 1, 2 and the nodes that cut off a piece of it into slots 5 and
-  !> 6. Where the walk has gone over to another chain that begins behind the last cut, this still is
-  !> where the piece starts.
-  pure subroutine take_piece(memory, table, k, is_first, point)
+  !> 6; where there is room, those that the pieces before and behind it have there into 7 and 8.
+  pure subroutine take_piece(memory, table, k, has_room, point)
     type(contact_state_t), intent(in) :: memory
     type(piece_table_t), intent(in) :: table
     integer, intent(in) :: k        !! piece
-    logical, intent(in) :: is_first !! of its slave segment
+    logical, intent(in) :: has_room !! nothing else stands in slots 7 and 8
     type(varied_point_t), intent(out) :: point
-    type(sight_t) :: sight
-    integer :: cuts(2), before
+    integer :: cuts(4)
 
-    cuts = [table%first_cut(k), table%last_cut(k)]
-    before = 0
-    if (.not. is_first) before = table%last_cut(k - 1)
-    if (cuts(1) /= before) then
-      sight = sight_of_segment(memory%places(:, memory%n_slave + cuts(1)), &
-        memory%places(:, table%ends(1, k)), memory%places(:, table%ends(2, k)))
-      if (sight%along < (table%low(k) - round_off)*sight%square) cuts(1) = before
-    end if
+    cuts = [table%first_cut(k), table%last_cut(k), 0, 0]
+    if (has_room .and. k > 1) cuts(3) = table%last_cut(k - 1)
+    if (has_room .and. k < table%n) cuts(4) = table%first_cut(k + 1)
     point%nodes(1:2) = table%ends(:, k)
-    where (cuts > 0) point%nodes(5:6) = memory%n_slave + cuts
+    where (cuts > 0) point%nodes(5:8) = memory%n_slave + cuts
   end subroutine take_piece
 
   !> Where a piece of the slave segment in slots 1, 2 starts and ends on it; its cuts are the nodes
-  !> in slots 5 and 6, where there are any.
+  !> in slots 5 and 6, where there are any. Where another chain begins before one ends that is half
+  !> way between both nodes, if that of the other piece has a slot; else it is held.
   pure function piece_ends(places, nodes, range) result(xi)
     real(wp), intent(in), contiguous :: places(:, :)
     integer, intent(in) :: nodes(n_slot)
     real(wp), intent(in) :: range(2) !! the same, without derivatives
     type(dual_t) :: xi(2)
-    type(varied_foot_t) :: cut
+    type(varied_foot_t) :: cut, other
     integer :: k
 
     xi = constant(range)
     do k = 1, 2
       if (nodes(4 + k) == 0) cycle
       cut = project(apart(places, nodes, 4 + k, 1), apart(places, nodes, 2, 1))
-      xi(k) = cut%xi
+      other = cut
+      if (nodes(6 + k) > 0) &
+        other = project(apart(places, nodes, 6 + k, 1), apart(places, nodes, 2, 1))
+      if (abs(cut%xi%value - range(k)) <= round_off) then
+        xi(k) = cut%xi
+      else if (abs(0.5_wp*(cut%xi%value + other%xi%value) - range(k)) <= round_off) then
+        xi(k) = 0.5_wp*(cut%xi + other%xi)
+      end if
     end do
   end function piece_ends
 
