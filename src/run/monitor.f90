@@ -47,6 +47,7 @@ module monitor_m
     type(ranks_t) :: ranks        !! the first process alone has files
     logical :: has_plot = .false. !! the deck asks for plot states
     logical :: told_radii = .false. !! the log tells of nodes beyond the axis
+    logical :: told_ratio = .false. !! and of energies that do not add up
     logical :: only_checks = .false. !! the state at time zero is made, and no file
   end type monitor_t
 

@@ -3,6 +3,7 @@
 import math
 import re
 
+import numpy as np
 import pytest
 from conftest import numbers
 from meshes import Deck, grid
@@ -26,6 +27,7 @@ def test_what_rounding_leaves_is_no_energy(slideline, tmp_path, factor):
     kinetic, total, work = (numbers(table, name)[-1] for name in ("kinetic", "total", "external_work"))
     assert kinetic > 0.0 and abs(total) < 1.0e-14 * kinetic and work == 0.0
     assert list(numbers(table, "energy_ratio")) == [1.0, 1.0]
+    assert "energy ratio is" not in (tmp_path / "o" / "job.log").read_text()
 
 
 def test_energy_from_nowhere_is_no_round_off(slideline, tmp_path):
@@ -80,3 +82,19 @@ def test_factors_and_curves_count(slideline, tmp_path, factors, curve, told):
     assert log.count("*DAMPING_GLOBAL acts") == told, log
     if told:
         assert ("largest ordinate of curve 7" if curve else "VALDMP") in log
+
+
+def test_energies_that_do_not_add_up_are_told_once_while_the_run_goes_on(slideline, tmp_path):
+    """Waves of two elements at a fifth of the wave speed: viscous forces are right to first order only."""
+    deck = Deck("short waves").control(20.0).elastic(1.0, 1.0, 0.3).output(glstat=0.5)
+    deck.add("*PART", "row", (1, 1, 1)).add("*SECTION_SHELL", (1, 13), (1.0,))
+    for k, node in enumerate(deck.mesh(*grid(5, 1, 1.5, 0.3)).ravel().tolist()):
+        deck.add("*INITIAL_VELOCITY_NODE", (node, 0.06 * (-1) ** (k // 2), 0.2 * (-1) ** (k % 2 + k // 2)))
+    done = slideline(deck=deck)
+    assert done.returncode == 0, done.stderr
+    told = re.findall(r"warning: at cycle (\d+), time \S+, the energy ratio is (\S+):", done.stderr)
+    assert len(told) == 1
+    ratio, cycles = (numbers(tmp_path / "job.glstat.csv", name) for name in ("energy_ratio", "cycle"))
+    first = int(np.argmax(np.abs(ratio - 1.0) > 0.1))
+    assert int(told[0][0]) == cycles[first] and float(told[0][1]) == pytest.approx(ratio[first], rel=1e-6)
+    assert "the energy ratio ends at" in done.stderr
