@@ -90,19 +90,19 @@ contains
         square = nearer
         best = candidates(i)
       end do
-      if (best == 0) best = beyond_node(segment)
-      if (best == 0) exit
+      if (best == 0) then
+        best = beyond_node(segment)
+        if (best == 0) exit
+        square = closest_distance(see_segment(surface, chain, spot, best))
+      end if
       segment = best
-      square = closest_distance(see_segment(surface, chain, spot, segment))
     end do
 
   contains
 
-    !> The segment behind a neighbour that is nearer than the node in common, where that is closest
-    !> of both: round-off decides on which of them the walk is.
-    pure function beyond_node(segment) result(beyond)
+    !> The segment behind a neighbour, if it is nearer than the node that both share.
+    pure integer function beyond_node(segment) result(beyond)
       integer, intent(in) :: segment
-      integer :: beyond
       type(sight_t) :: sight
 
       sight = see_segment(surface, chain, spot, segment)
@@ -115,8 +115,8 @@ contains
         if (beyond > 0) beyond = surface%next(beyond)
       end if
       if (beyond == 0) return
-      if (.not. closest_distance(see_segment(surface, chain, spot, beyond)) &
-        < square*(1.0_wp - round_off)) beyond = 0
+      sight = see_segment(surface, chain, spot, beyond)
+      if (.not. closest_distance(sight) < square*(1.0_wp - round_off)) beyond = 0
     end function beyond_node
 
   end function walk_to_closest

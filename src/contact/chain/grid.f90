@@ -163,7 +163,7 @@ contains
 
     slip = travel - grid%filled_at
     centre = cell_of(grid, separation(spot, chain(:, 1)))
-    last_ring = ceiling(reach/grid%cell) + 2
+    last_ring = ceiling((reach + max(0.0_wp, min(slip, reach)))/grid%cell) + 2
     do ring = 0, last_ring
       do iy = centre(2) - ring, centre(2) + ring
         step = max(1, merge(1, 2*ring, abs(iy - centre(2)) == ring))

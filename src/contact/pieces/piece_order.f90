@@ -33,7 +33,7 @@ contains
       j = i
       if (most(i) > least(i)) then
         do while (j < 2*n)
-          if (.not. most(j + 1) > least(j + 1)) exit
+          if (.not. most(j + 1) > least(j + 1) .or. least(j + 1) >= most(j)) exit
           j = j + 1
         end do
         half_way = 0.5_wp*(most(j) + least(i))

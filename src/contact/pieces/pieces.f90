@@ -28,7 +28,6 @@ module pieces_m
   !> Share of a piece on the back of a wall: it counts nowhere, whatever faces whom.
   real(wp), parameter :: is_back = -1.0_wp
 
-
 contains
 
   !> Start a table.
@@ -309,7 +308,7 @@ contains
         first = 0
         is_bent = .false.
       else
-        is_bent = is_bent .or. (cut(k) < at .and. at > 0.0_wp)
+        is_bent = is_bent .or. (cut(k) <= at .and. at > 0.0_wp)
         if (cut(k) >= 1.0_wp) then
           at = 1.0_wp
           node = 0

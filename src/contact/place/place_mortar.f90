@@ -15,7 +15,6 @@ module place_mortar_m
   private
   public :: place_mortar
 
-
 contains
 
   !> Place the points of all segments that share a node with one in contact: these decide on nodal

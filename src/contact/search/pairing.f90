@@ -24,7 +24,8 @@ contains
     type(surface_t), intent(in) :: master
     logical :: several
 
-    several = memory%facing%is_used .or. master%chain(master%n_segment) > 1
+    several = memory%facing%is_used
+    if (.not. several) several = master%chain(master%n_segment) > 1
   end function has_chains
 
   !> Master segment that a spot which is not in contact is paired with at its present place: that of
@@ -63,7 +64,8 @@ contains
 
   contains
 
-    !> Whether the segment of the last look is the closest yet, the spot being next to neither end.
+    !> Whether no other chain than that of the last look is nearer yet, the spot being next to
+    !> neither end of its segment.
     pure function is_kept(segment) result(kept)
       integer, intent(in) :: segment
       logical :: kept

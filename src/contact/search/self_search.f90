@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> The global search of a surface in contact with itself (doc/theory/contact.md, section 3.8). Slave
 !> and master are one list of runs, so that spots and segments have numbers in common. A spot counts
-!> only with runs other than its own, with what its own side is turned towards, and not with the
-!> back of the wall that it stands on.
+!> only with runs other than its own, with what it is before or its own side is turned towards, and
+!> not with the back of the wall that it stands on.
 module self_search_m
   use contact_state_m, only : tracking_t
   use facing_m, only : is_own
@@ -41,13 +41,14 @@ contains
     logical, intent(in) :: any_depth !! the spot is known to be inside of something
     type(nearest_t), intent(out) :: nearest
     type(kept_t) :: kept
-    real(wp) :: bound, averted
+    real(wp) :: bound, averted, slip
     integer :: centre(2), ring, ix, iy, step
 
     averted = huge(1.0_wp)
     associate (grid => tracking%grid, reach => tracking%reach)
       centre = cell_of(grid, separation(spots(:, i), chain(:, 1)))
-      do ring = 0, ceiling(reach/grid%cell) + 2
+      slip = travel - grid%filled_at
+      do ring = 0, ceiling((reach + max(0.0_wp, min(slip, reach)))/grid%cell) + 2
         do iy = centre(2) - ring, centre(2) + ring
           step = max(1, merge(1, 2*ring, abs(iy - centre(2)) == ring))
           do ix = centre(1) - ring, centre(1) + ring, step
@@ -55,7 +56,7 @@ contains
               any_depth, kept, averted)
           end do
         end do
-        bound = max(0.0_wp, ring*grid%cell - (travel - grid%filled_at))
+        bound = max(0.0_wp, ring*grid%cell - slip)
         if (ring >= 1 .and. bound >= min(sqrt(kept%square(1)), reach + grid%cell)) exit
       end do
       call conclude(surface, kept, bound, reach, nearest)

@@ -17,7 +17,6 @@ module tracking_m
   public :: update_tracking, wake_all, forget_pairs, list_touching, most_facing, begin_contact, &
     put_off, measure_depths
 
-
 contains
 
   !> Bring the pairs of all spots up to date and list the spots in contact.

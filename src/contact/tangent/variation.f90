@@ -151,11 +151,30 @@ contains
     integer :: cuts(4)
 
     cuts = [table%first_cut(k), table%last_cut(k), 0, 0]
-    if (has_room .and. k > 1) cuts(3) = table%last_cut(k - 1)
-    if (has_room .and. k < table%n) cuts(4) = table%first_cut(k + 1)
+    if (has_room) cuts(3:4) = [cut_beside(table, k, -1), cut_beside(table, k, 1)]
     point%nodes(1:2) = table%ends(:, k)
     where (cuts > 0) point%nodes(5:8) = memory%n_slave + cuts
   end subroutine take_piece
+
+  !> Master node that cuts the near end of the next piece of a slave segment that is not empty, one
+  !> way or the other; 0: none.
+  pure function cut_beside(table, k, way) result(cut)
+    type(piece_table_t), intent(in) :: table
+    integer, intent(in) :: k   !! piece
+    integer, intent(in) :: way !! -1: before it, 1: behind it
+    integer :: cut, i
+
+    cut = 0
+    i = k + way
+    do while (i >= 1 .and. i <= table%n)
+      if (any(table%ends(:, i) /= table%ends(:, k))) return
+      if (table%high(i) > table%low(i)) then
+        cut = merge(table%last_cut(i), table%first_cut(i), way < 0)
+        return
+      end if
+      i = i + way
+    end do
+  end function cut_beside
 
   !> Where a piece of the slave segment in slots 1, 2 starts and ends on it; its cuts are the nodes
   !> in slots 5 and 6, where there are any. Where another chain begins before one ends that is half
