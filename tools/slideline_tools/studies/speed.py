@@ -10,6 +10,7 @@ import json
 import math
 import pathlib
 import sys
+import textwrap
 
 from slideline_tools import UserError
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
@@ -416,7 +417,8 @@ def search_chart(bench, path):
 def machine_text(path):
     """The machine in words."""
     machine = json.loads(path.read_text(encoding="utf-8"))
-    return "\n".join(f"- {name}: {value}" for name, value in machine.items())
+    return "\n".join(textwrap.fill(f"- {name}: {value}", 120, subsequent_indent="  ", break_on_hyphens=False)
+                     for name, value in machine.items())
 
 
 def write(folder, doc):
