@@ -10,7 +10,7 @@ module element_start_m
   use layout_m, only : chunk_size
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
-  use parts_m, only : hourglass_viscous, may_fail, gives_pressure
+  use parts_m, only : may_fail, gives_pressure
   use round_chunk_m, only : n_round_reference
   use round_state_m, only : fill_round_reference, add_round_masses
   implicit none
@@ -19,8 +19,8 @@ module element_start_m
 
 contains
 
-  !> Allocate the streams and fill the reference shape. Elastic parts get no plastic history, parts
-  !> with viscous hourglass control no hourglass memory.
+  !> Allocate the streams and fill the reference shape. Elastic parts get no plastic history, fully
+  !> integrated ones no hourglass memory.
   subroutine start_elements(model, known, elements)
     type(model_t), intent(in) :: model
     integer, intent(in) :: known(:, :) !! (2, n) first and last slot of those that are asked for
@@ -35,9 +35,12 @@ contains
       elements%viscous_work(n_chunk), source=0.0_wp)
     allocate (elements%time_limit(n_chunk), elements%volume_limit(n_chunk), source=1.0_wp)
     call reserve_memories(model, elements)
+    if (any([(has_viscous_pressure(model, k), k = 1, size(model%parts))])) &
+      allocate (elements%viscous_pressure(model%layout%n_slot))
     do k = 1, size(known, 2)
       associate (first => known(1, k), last => known(2, k))
         elements%deviator(first:last, :) = 0.0_wp
+        if (allocated(elements%viscous_pressure)) elements%viscous_pressure(first:last) = 0.0_wp
         do i_slot = first, last
           call fill_reference(model, i_slot, elements%reference)
         end do
@@ -47,6 +50,20 @@ contains
     end do
     if (model%erodes) call start_erosion(model, elements)
   end subroutine start_elements
+
+  !> Whether a part keeps the bulk viscosity of the last step by itself: an equation of state has
+  !> it in its own memory.
+  pure function has_viscous_pressure(model, i_part) result(yes)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_part
+    logical :: yes
+
+    associate (part => model%parts(i_part), &
+      material => model%materials(model%parts(i_part)%material))
+      yes = (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) &
+        .and. .not. (allocated(material%eos) .or. material%is_rigid)
+    end associate
+  end function has_viscous_pressure
 
   !> Diagonals and h.X of one slot; padding is the first element of its chunk, much larger: it
   !> divides by no zero and its stable step never counts.
@@ -106,7 +123,7 @@ contains
       if (allocated(material%eos)) n(3) = merge(n_law_value, n_eos_value, gives_pressure(material))
       if (n_points > 1) then
         n(1) = 3*n_points
-      else if (part%hourglass%form /= hourglass_viscous) then
+      else
         n(4) = 2
       end if
       n = n*chunk_size

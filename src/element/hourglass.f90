@@ -7,12 +7,13 @@ module hourglass_m
   use layout_m, only : chunk_size
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t
-  use parts_m, only : hourglass_t, hourglass_viscous, hourglass_assumed
+  use material_dispatch_m, only : find_failed
+  use parts_m, only : hourglass_t, material_t, hourglass_viscous, hourglass_assumed
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
   public :: resist_viscously, resist_elastically, hourglass_steps, harmless_coefficient, &
-    note_works
+    stop_failed, book_hourglass_work
 
   !> Coefficient up to which hourglass control never asks for less than L/c in a convex quad of its
   !> initial area (doc/theory/elements.md).
@@ -20,24 +21,28 @@ module hourglass_m
 
 contains
 
-  !> Viscous form: q = (Q_h rho c sqrt(A)/4) gamma.v.
-  pure subroutine resist_viscously(factor, dt, chunk, work)
+  !> Viscous form: q = (Q_h rho c sqrt(A)/4) gamma.v. Its work is that of the mean of it and of the
+  !> force of the step before: a force acts over half of the step that it was formed from and half
+  !> of the next.
+  pure subroutine resist_viscously(factor, dt, last_x, last_y, chunk)
     real(wp), intent(in) :: factor                !! Q_h rho c/4
     real(wp), intent(in) :: dt
-    type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y out
-    real(wp), intent(out) :: work                 !! work of the step
+    real(wp), intent(inout), dimension(chunk_size) :: last_x, last_y !! q of the step before; then
+                                                  !! the present one
+    type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y and their work out
     real(wp) :: viscosity
     integer :: i
 
-    work = 0.0_wp
-    !$omp simd private(viscosity) reduction(+ : work)
+    !$omp simd private(viscosity)
     do i = 1, chunk_size
       viscosity = factor*sqrt(abs(chunk%area(i)))
       chunk%qx(i) = viscosity*chunk%gx(i)
       chunk%qy(i) = viscosity*chunk%gy(i)
-      work = work + (chunk%qx(i)*chunk%gx(i) + chunk%qy(i)*chunk%gy(i))
+      chunk%hourglass_work(i) = 0.5_wp*dt*((last_x(i) + chunk%qx(i))*chunk%gx(i) &
+        + (last_y(i) + chunk%qy(i))*chunk%gy(i))
+      last_x(i) = chunk%qx(i)
+      last_y(i) = chunk%qy(i)
     end do
-    work = dt*work
   end subroutine resist_viscously
 
   !> Stiffness form: force (Q_h/4)(K + 4G/3)((B_x.B_x + B_y.B_y)/A) times the hourglass strain e,
@@ -45,19 +50,16 @@ contains
   !> gamma.v is of the mid-step frame, half a rotation back, and (1 + R)/2 is that half rotation
   !> times its cosine, by which gamma.v of a turning element is too large. So a pattern that grows
   !> while its element turns is kept without error, whatever the step, and no step divides by zero.
-  pure subroutine resist_elastically(factor, dt, stress, strain_x, strain_y, chunk, work)
+  pure subroutine resist_elastically(factor, dt, stress, strain_x, strain_y, chunk)
     real(wp), intent(in) :: factor                  !! Q_h (K + 4G/3)/4
     real(wp), intent(in) :: dt
     type(stress_chunk_t), intent(in) :: stress      !! rotation of the step
     real(wp), intent(inout), dimension(chunk_size) :: strain_x, strain_y
-    type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y out
-    real(wp), intent(out) :: work                   !! work of the step
+    type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y and their work out
     real(wp) :: stiffness, half_x, half_y, old_x, old_y, growth_x, growth_y
     integer :: i
 
-    work = 0.0_wp
-    !$omp simd private(stiffness, half_x, half_y, old_x, old_y, growth_x, growth_y) &
-    !$omp& reduction(+ : work)
+    !$omp simd private(stiffness, half_x, half_y, old_x, old_y, growth_x, growth_y)
     do i = 1, chunk_size
       stiffness = 0.5_wp*factor*(chunk%x31(i)**2 + chunk%y31(i)**2 + chunk%x42(i)**2 &
         + chunk%y42(i)**2)*chunk%inverse_area(i)
@@ -71,59 +73,99 @@ contains
       strain_y(i) = old_y + growth_y
       chunk%qx(i) = stiffness*strain_x(i)
       chunk%qy(i) = stiffness*strain_y(i)
-      work = work + stiffness*((strain_x(i) + old_x)*growth_x + (strain_y(i) + old_y)*growth_y)
+      chunk%hourglass_work(i) = 0.5_wp*stiffness*((strain_x(i) + old_x)*growth_x &
+        + (strain_y(i) + old_y)*growth_y)
     end do
-    work = 0.5_wp*work
   end subroutine resist_elastically
 
-  !> Works element by element, where these may leave.
-  pure subroutine note_works(i_chunk, hourglass, stress, elements, chunk)
+  !> No hourglass velocity of elements that have failed and whose force is gone: before hourglass
+  !> control is formed. In the step in which an element fails the force before it still does work.
+  pure subroutine stop_failed(i_chunk, material, elements, chunk)
     integer, intent(in) :: i_chunk
-    type(hourglass_t), intent(in) :: hourglass
-    type(stress_chunk_t), intent(in) :: stress
-    type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(in) :: chunk
-    integer :: slot, first
+    type(material_t), intent(in) :: material
+    type(block_state_t), intent(in) :: elements
+    type(element_chunk_t), intent(inout) :: chunk !! gamma.v
+    logical :: failed(chunk_size)
 
-    slot = (i_chunk - 1)*chunk_size + 1
-    if (hourglass%form == hourglass_viscous) then
-      call add_viscous_works(stress%dt, chunk, elements%erosion%hourglass(slot))
-    else
-      first = elements%hourglass_start(i_chunk)
-      call add_elastic_works(stress, chunk, elements%hourglass_strain(first), &
-        elements%hourglass_strain(first + chunk_size), elements%erosion%hourglass(slot))
-    end if
-  end subroutine note_works
+    if (.not. has_failed(i_chunk, elements)) return
+    call find_elements(i_chunk, material, elements, failed)
+    associate (x => elements%hourglass_start(i_chunk), y => elements%hourglass_start(i_chunk) &
+      + chunk_size, memory => elements%hourglass_strain)
+      where (failed .and. .not. abs(memory(x:x + chunk_size - 1)) &
+        + abs(memory(y:y + chunk_size - 1)) > 0.0_wp)
+        chunk%gx = 0.0_wp
+        chunk%gy = 0.0_wp
+      end where
+    end associate
+  end subroutine stop_failed
 
-  !> Works of the viscous forces, element by element.
-  pure subroutine add_viscous_works(dt, chunk, works)
+  !> The work of hourglass control of a chunk into its account, once that is formed; elements that
+  !> have failed then have none.
+  pure subroutine book_hourglass_work(i_chunk, material, dt, elements, chunk)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
-    type(element_chunk_t), intent(in) :: chunk
-    real(wp), intent(inout) :: works(chunk_size)
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y
+    real(wp) :: work
+    integer :: first, i
 
-    works = works + dt*(chunk%qx*chunk%gx + chunk%qy*chunk%gy)
-  end subroutine add_viscous_works
-
-  !> The same of the stiffness form, whose strains are those of the end of the step.
-  pure subroutine add_elastic_works(stress, chunk, strain_x, strain_y, works)
-    type(stress_chunk_t), intent(in) :: stress
-    type(element_chunk_t), intent(in) :: chunk
-    real(wp), intent(in), dimension(chunk_size) :: strain_x, strain_y
-    real(wp), intent(inout) :: works(chunk_size)
-    real(wp) :: half(2), growth(2), square
-    integer :: i
-
+    if (has_failed(i_chunk, elements)) call drop_failed(i_chunk, material, dt, elements, chunk)
+    work = 0.0_wp
+    !$omp simd reduction(+ : work)
     do i = 1, chunk_size
-      half = 0.5_wp*stress%dt*[chunk%gx(i), chunk%gy(i)]
-      growth = half + [stress%cosine(i)*half(1) - stress%sine(i)*half(2), &
-        stress%sine(i)*half(1) + stress%cosine(i)*half(2)]
-      works(i) = works(i) + (chunk%qx(i)*growth(1) + chunk%qy(i)*growth(2))
-      ! The mean of both ends: less half of stiffness times growth squared.
-      square = strain_x(i)**2 + strain_y(i)**2
-      if (square > 0.0_wp) works(i) = works(i) - 0.5_wp*sum(growth**2) &
-        *(chunk%qx(i)*strain_x(i) + chunk%qy(i)*strain_y(i))/square
+      work = work + chunk%hourglass_work(i)
     end do
-  end subroutine add_elastic_works
+    elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
+    if (.not. allocated(elements%erosion)) return
+    first = (i_chunk - 1)*chunk_size + 1
+    associate (works => elements%erosion%hourglass(first:first + chunk_size - 1))
+      works = works + chunk%hourglass_work
+    end associate
+  end subroutine book_hourglass_work
+
+  !> Elements that have failed have no hourglass force, nor a memory of it; at the end of the step it
+  !> does no work.
+  pure subroutine drop_failed(i_chunk, material, dt, elements, chunk)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: dt
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk
+    logical :: failed(chunk_size)
+    integer :: i, first
+
+    call find_elements(i_chunk, material, elements, failed)
+    do i = 1, chunk_size
+      if (.not. failed(i)) cycle
+      chunk%hourglass_work(i) = chunk%hourglass_work(i) - 0.5_wp*dt*(chunk%qx(i)*chunk%gx(i) &
+        + chunk%qy(i)*chunk%gy(i))
+      chunk%qx(i) = 0.0_wp
+      chunk%qy(i) = 0.0_wp
+      first = elements%hourglass_start(i_chunk) + i - 1
+      elements%hourglass_strain([first, first + chunk_size]) = 0.0_wp
+    end do
+  end subroutine drop_failed
+
+  !> Whether some element of a chunk has failed in this step or before.
+  pure logical function has_failed(i_chunk, elements)
+    integer, intent(in) :: i_chunk
+    type(block_state_t), intent(in) :: elements
+
+    has_failed = .false.
+    if (allocated(elements%n_failed)) has_failed = elements%n_failed(i_chunk) > 0
+  end function has_failed
+
+  !> Which elements of a chunk have failed.
+  pure subroutine find_elements(i_chunk, material, elements, failed)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    type(block_state_t), intent(in) :: elements
+    logical, intent(out) :: failed(chunk_size)
+    logical :: ignored
+
+    call find_failed(material, elements%history(elements%history_start(i_chunk)), failed, ignored)
+  end subroutine find_elements
 
   !> Steps that hourglass control of the elements allows. With masses rho A0/4 and
   !> gamma.gamma = 4 + (|d31 x h.x|^2 + |d42 x h.x|^2)/(2 A^2): 2/omega of the stiffness form,

@@ -39,7 +39,7 @@ module quad_plain_m
 
   !> What is found of the chunk.
   type :: found_t
-    real(wp) :: power          !! of the hourglass forces
+    real(wp) :: power          !! of the hourglass forces of both ends of the step
     real(wp) :: longest        !! largest (longest side/A)^2
     real(wp) :: least, largest !! z
   end type found_t
@@ -90,8 +90,9 @@ contains
     end if
     elements%deviatoric_work(i_chunk) = elements%deviatoric_work(i_chunk) + work
     call form_plain_forces(material%bulk, 0.25_wp*coefficient*material%density &
-      *material%sound_speed, shape, n_slot, elements%deviator(first, 1), chunk, found)
-    elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + dt*found%power
+      *material%sound_speed, shape, n_slot, elements%deviator(first, 1), &
+      elements%hourglass_strain(elements%hourglass_start(i_chunk)), chunk, found)
+    elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + 0.5_wp*dt*found%power
     elements%time_limit(i_chunk) = 1.0_wp/(material%sound_speed*sqrt(found%longest))
     elements%volume_limit(i_chunk) = (1.0_wp + found%least)/(1.0_wp - found%least)
     if (found%least >= -0.1_wp .and. found%largest <= 0.1_wp) return
@@ -278,12 +279,13 @@ contains
 
   !> Pressure K ln(J), viscous hourglass forces q = (Q_h rho c sqrt(A)/4) gamma.v, and nodal forces
   !> sigma B_a + q gamma_a (see `form_forces`); limits of the chunk.
-  pure subroutine form_plain_forces(bulk, viscosity, shape, n_slot, deviator, chunk, found)
+  pure subroutine form_plain_forces(bulk, viscosity, shape, n_slot, deviator, last, chunk, found)
     real(wp), intent(in) :: bulk
     real(wp), intent(in) :: viscosity                !! Q_h rho c/4
     type(shape_t), intent(in) :: shape
     integer, intent(in) :: n_slot
     real(wp), intent(in) :: deviator(n_slot, *)
+    real(wp), intent(inout) :: last(chunk_size, 2)   !! q of the step before; then the present one
     type(element_chunk_t), intent(inout) :: chunk    !! `force3`, `force4` and `swing` out
     type(found_t), intent(out) :: found
     real(wp) :: z, w, pressure, root, qx, qy, wx, wy, txx, txy, tyx, tyy, ax, ay, bx, by, power, &
@@ -305,7 +307,9 @@ contains
       root = viscosity*sqrt(0.5_wp*abs(shape%a2(i)))
       qx = root*shape%gx(i)
       qy = root*shape%gy(i)
-      power = power + (qx*shape%gx(i) + qy*shape%gy(i))
+      power = power + ((last(i, 1) + qx)*shape%gx(i) + (last(i, 2) + qy)*shape%gy(i))
+      last(i, 1) = qx
+      last(i, 2) = qy
       wx = shape%hx(i)*shape%of_a2(i)
       wy = shape%hy(i)*shape%of_a2(i)
       txx = (pressure + 0.5_wp*deviator(i, 1)) - qx*wx

@@ -132,7 +132,8 @@ contains
     if (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) then
       call form_round_increments(dt, chunk, round, unused)
       call add_bulk_viscosity(hourglass%quadratic, hourglass%linear, material%density, &
-        material%sound_speed, dt, chunk, work)
+        material%sound_speed, dt, chunk, elements%viscous_pressure((i_chunk - 1)*chunk_size + 1), &
+        work)
       elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) + work
     end if
     if (allocated(elements%retardation) .and. has_mean_dilatation(material)) then

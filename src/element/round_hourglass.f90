@@ -63,18 +63,17 @@ contains
 
   !> Assumed strain: the force of the plane times the mean radius V/A.
   pure subroutine resist_round_by_assumed_strain(material, hourglass, stress, round, stress_x, &
-    stress_y, chunk, work)
+    stress_y, chunk)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
     type(stress_chunk_t), intent(in) :: stress      !! rotation of the step
     type(round_chunk_t), intent(in) :: round
     real(wp), intent(inout), dimension(chunk_size) :: stress_x, stress_y
-    type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y out
-    real(wp), intent(out) :: work                   !! work of the step
+    type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y and their work out
     real(wp) :: radius
     integer :: i
 
-    call resist_by_assumed_strain(material, hourglass, stress, stress_x, stress_y, chunk, work)
+    call resist_by_assumed_strain(material, hourglass, stress, stress_x, stress_y, chunk)
     !$omp simd private(radius)
     do i = 1, chunk_size
       radius = round%volume(i)*chunk%inverse_area(i)
@@ -83,38 +82,38 @@ contains
     end do
   end subroutine resist_round_by_assumed_strain
 
-  !> Viscous form.
-  pure subroutine resist_round_viscously(dt, round, chunk, work)
+  !> Viscous form, with its work as in the plane (`resist_viscously`).
+  pure subroutine resist_round_viscously(dt, round, last_x, last_y, chunk)
     real(wp), intent(in) :: dt
     type(round_chunk_t), intent(in) :: round
-    type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y out
-    real(wp), intent(out) :: work                 !! work of the step
+    real(wp), intent(inout), dimension(chunk_size) :: last_x, last_y !! q of the step before; then
+                                                  !! the present one
+    type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y and their work out
     integer :: i
 
-    work = 0.0_wp
-    !$omp simd reduction(+ : work)
+    !$omp simd
     do i = 1, chunk_size
       chunk%qx(i) = round%resistance(i)*chunk%gx(i)
       chunk%qy(i) = round%resistance(i)*chunk%gy(i)
-      work = work + (chunk%qx(i)*chunk%gx(i) + chunk%qy(i)*chunk%gy(i))
+      chunk%hourglass_work(i) = 0.5_wp*dt*((last_x(i) + chunk%qx(i))*chunk%gx(i) &
+        + (last_y(i) + chunk%qy(i))*chunk%gy(i))
+      last_x(i) = chunk%qx(i)
+      last_y(i) = chunk%qy(i)
     end do
-    work = dt*work
   end subroutine resist_round_viscously
 
   !> Stiffness form: the hourglass strain turns with the element as in the plane
   !> (`resist_elastically`).
-  pure subroutine resist_round_elastically(dt, stress, round, strain_x, strain_y, chunk, work)
+  pure subroutine resist_round_elastically(dt, stress, round, strain_x, strain_y, chunk)
     real(wp), intent(in) :: dt
     type(stress_chunk_t), intent(in) :: stress      !! rotation of the step
     type(round_chunk_t), intent(in) :: round
     real(wp), intent(inout), dimension(chunk_size) :: strain_x, strain_y
-    type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y out
-    real(wp), intent(out) :: work                   !! work of the step
+    type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y and their work out
     real(wp) :: half_x, half_y, old_x, old_y, growth_x, growth_y
     integer :: i
 
-    work = 0.0_wp
-    !$omp simd private(half_x, half_y, old_x, old_y, growth_x, growth_y) reduction(+ : work)
+    !$omp simd private(half_x, half_y, old_x, old_y, growth_x, growth_y)
     do i = 1, chunk_size
       half_x = 0.5_wp*dt*chunk%gx(i)
       half_y = 0.5_wp*dt*chunk%gy(i)
@@ -126,10 +125,9 @@ contains
       strain_y(i) = old_y + growth_y
       chunk%qx(i) = round%resistance(i)*strain_x(i)
       chunk%qy(i) = round%resistance(i)*strain_y(i)
-      work = work + round%resistance(i)*((strain_x(i) + old_x)*growth_x &
+      chunk%hourglass_work(i) = 0.5_wp*round%resistance(i)*((strain_x(i) + old_x)*growth_x &
         + (strain_y(i) + old_y)*growth_y)
     end do
-    work = 0.5_wp*work
   end subroutine resist_round_elastically
 
 end module round_hourglass_m

@@ -80,6 +80,8 @@ contains
       do k = 1, size(elements%deviator, 2)
         call pass_reals(n, elements%deviator(first:last, k), freight)
       end do
+      if (allocated(elements%viscous_pressure)) &
+        call pass_reals(n, elements%viscous_pressure(first:last), freight)
       if (allocated(elements%damping_stress)) &
         call pass_reals(16*n, elements%damping_stress(16*first - 15:16*last), freight)
       if (.not. allocated(elements%erosion)) return

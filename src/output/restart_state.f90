@@ -132,6 +132,7 @@ contains
     call keep(archive, 'deviatoric_work', elements%deviatoric_work)
     call keep(archive, 'hourglass_work', elements%hourglass_work)
     call keep(archive, 'viscous_work', elements%viscous_work)
+    call keep(archive, 'viscous_pressure', elements%viscous_pressure)
     call keep(archive, 'mass_ratio', elements%mass_ratio)
     call keep(archive, 'retardation', elements%retardation)
     call keep(archive, 'damping_stress', elements%damping_stress)

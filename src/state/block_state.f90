@@ -34,12 +34,16 @@ module block_state_m
                                               !! where points may fail
     integer, allocatable :: hourglass_start(:) !! (n_chunk) where a chunk's hourglass memory starts,
                                                !! 0 = none
-    real(wp), allocatable :: hourglass_strain(:) !! chunk by chunk: q_x, then q_y (stiffness form);
-                                                 !! generalised stress (assumed strain)
+    real(wp), allocatable :: hourglass_strain(:) !! chunk by chunk, x then y: strain (stiffness
+                                                 !! form), generalised stress (assumed strain) or
+                                                 !! force of the last step (viscous form)
     real(wp), allocatable :: deviatoric_work(:) !! (n_chunk) accumulated work of the deviator, J/m
     real(wp), allocatable :: hourglass_work(:)  !! (n_chunk) accumulated work of the hourglass
                                                 !! forces
     real(wp), allocatable :: viscous_work(:)    !! (n_chunk) accumulated work of the bulk viscosity
+    real(wp), allocatable :: viscous_pressure(:) !! (n_slot) bulk viscosity of the last step, Pa;
+                                                !! only where parts without an equation of state
+                                                !! have any
     real(wp), allocatable :: mass_ratio(:)      !! (n_slot) mass of an element over that of its
                                                 !! density; only where masses are scaled
     real(wp), allocatable :: retardation(:)     !! (n_slot) viscosity over stiffness, s; it and

@@ -85,6 +85,8 @@ contains
     end do
     if (allocated(elements%mass_ratio)) call forget_reals(others%slots, 1, elements%mass_ratio)
     if (allocated(elements%retardation)) call forget_reals(others%slots, 1, elements%retardation)
+    if (allocated(elements%viscous_pressure)) &
+      call forget_reals(others%slots, 1, elements%viscous_pressure)
     if (allocated(elements%damping_stress)) &
       call forget_reals(others%slots, 16, elements%damping_stress)
     call forget_stream(elements%point_start, elements%point_deviator)

@@ -323,6 +323,8 @@ contains
       do k = 1, size(elements%deviator, 2)
         call bring_reals(ranks, slots, 1, to_all, elements%deviator(:, k))
       end do
+      if (allocated(elements%viscous_pressure)) &
+        call bring_reals(ranks, slots, 1, to_all, elements%viscous_pressure)
       if (allocated(elements%damping_stress)) &
         call bring_reals(ranks, slots, 16, to_all, elements%damping_stress)
       if (.not. allocated(elements%erosion)) return
