@@ -17,20 +17,23 @@ contains
   !> Step the generalised stress Q of the element's frame,
   !>   Q' = factor [H_xx, -lateral H_xy; -lateral H_xy, H_yy] (gamma.v in that frame),
   !> with H of the mid-step shape, so that a motion and its reverse leave nothing behind.
-  pure subroutine resist_by_assumed_strain(material, hourglass, stress, stress_x, stress_y, chunk)
+  pure subroutine resist_by_assumed_strain(material, hourglass, stress, stress_x, stress_y, chunk, &
+    work)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
     type(stress_chunk_t), intent(in) :: stress      !! step, and rotation in it
     real(wp), intent(inout), dimension(chunk_size) :: stress_x, stress_y !! Q
     type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y out, per unit of depth; their work
+    real(wp), intent(out) :: work                   !! of all of them in the step
     real(wp) :: factor, lateral, back, x31, y31, x42, y42, cosine, sine, scale, area, weight, mxx, &
       mxy, myy, half, grown_x, grown_y, added_x, added_y
     integer :: i
 
     call form_moduli(material, hourglass, factor, lateral)
     back = 0.5_wp*stress%dt
+    work = 0.0_wp
     !$omp simd private(x31, y31, x42, y42, cosine, sine, scale, area, weight, mxx, mxy, myy, half, &
-    !$omp& grown_x, grown_y, added_x, added_y)
+    !$omp& grown_x, grown_y, added_x, added_y) reduction(+ : work)
     do i = 1, chunk_size
       x31 = chunk%x31(i) - back*chunk%v31(1, i)
       y31 = chunk%y31(i) - back*chunk%v31(2, i)
@@ -67,6 +70,7 @@ contains
       ! In round bodies `mid_area` is the volume per radian.
       chunk%hourglass_work(i) = chunk%mid_area(i)/area*((stress_x(i) + 0.5_wp*added_x)*grown_x &
         + (stress_y(i) + 0.5_wp*added_y)*grown_y)
+      work = work + chunk%hourglass_work(i)
       stress_x(i) = stress_x(i) + added_x
       stress_y(i) = stress_y(i) + added_y
       chunk%qx(i) = cosine*stress_x(i) - sine*stress_y(i)

@@ -13,7 +13,7 @@ module hourglass_m
   implicit none
   private
   public :: resist_viscously, resist_elastically, hourglass_steps, harmless_coefficient, &
-    stop_failed, book_hourglass_work
+    stop_failed, drop_failed, note_works
 
   !> Coefficient up to which hourglass control never asks for less than L/c in a convex quad of its
   !> initial area (doc/theory/elements.md).
@@ -24,16 +24,18 @@ contains
   !> Viscous form: q = (Q_h rho c sqrt(A)/4) gamma.v. Its work is that of the mean of it and of the
   !> force of the step before: a force acts over half of the step that it was formed from and half
   !> of the next.
-  pure subroutine resist_viscously(factor, dt, last_x, last_y, chunk)
+  pure subroutine resist_viscously(factor, dt, last_x, last_y, chunk, work)
     real(wp), intent(in) :: factor                !! Q_h rho c/4
     real(wp), intent(in) :: dt
     real(wp), intent(inout), dimension(chunk_size) :: last_x, last_y !! q of the step before; then
                                                   !! the present one
     type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y and their work out
+    real(wp), intent(out) :: work                 !! of all of them in the step
     real(wp) :: viscosity
     integer :: i
 
-    !$omp simd private(viscosity)
+    work = 0.0_wp
+    !$omp simd private(viscosity) reduction(+ : work)
     do i = 1, chunk_size
       viscosity = factor*sqrt(abs(chunk%area(i)))
       chunk%qx(i) = viscosity*chunk%gx(i)
@@ -42,6 +44,7 @@ contains
         + (last_y(i) + chunk%qy(i))*chunk%gy(i))
       last_x(i) = chunk%qx(i)
       last_y(i) = chunk%qy(i)
+      work = work + chunk%hourglass_work(i)
     end do
   end subroutine resist_viscously
 
@@ -50,16 +53,19 @@ contains
   !> gamma.v is of the mid-step frame, half a rotation back, and (1 + R)/2 is that half rotation
   !> times its cosine, by which gamma.v of a turning element is too large. So a pattern that grows
   !> while its element turns is kept without error, whatever the step, and no step divides by zero.
-  pure subroutine resist_elastically(factor, dt, stress, strain_x, strain_y, chunk)
+  pure subroutine resist_elastically(factor, dt, stress, strain_x, strain_y, chunk, work)
     real(wp), intent(in) :: factor                  !! Q_h (K + 4G/3)/4
     real(wp), intent(in) :: dt
     type(stress_chunk_t), intent(in) :: stress      !! rotation of the step
     real(wp), intent(inout), dimension(chunk_size) :: strain_x, strain_y
     type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y and their work out
+    real(wp), intent(out) :: work                   !! of all of them in the step
     real(wp) :: stiffness, half_x, half_y, old_x, old_y, growth_x, growth_y
     integer :: i
 
-    !$omp simd private(stiffness, half_x, half_y, old_x, old_y, growth_x, growth_y)
+    work = 0.0_wp
+    !$omp simd private(stiffness, half_x, half_y, old_x, old_y, growth_x, growth_y) &
+    !$omp& reduction(+ : work)
     do i = 1, chunk_size
       stiffness = 0.5_wp*factor*(chunk%x31(i)**2 + chunk%y31(i)**2 + chunk%x42(i)**2 &
         + chunk%y42(i)**2)*chunk%inverse_area(i)
@@ -75,6 +81,7 @@ contains
       chunk%qy(i) = stiffness*strain_y(i)
       chunk%hourglass_work(i) = 0.5_wp*stiffness*((strain_x(i) + old_x)*growth_x &
         + (strain_y(i) + old_y)*growth_y)
+      work = work + chunk%hourglass_work(i)
     end do
   end subroutine resist_elastically
 
@@ -99,42 +106,19 @@ contains
     end associate
   end subroutine stop_failed
 
-  !> The work of hourglass control of a chunk into its account, once that is formed; elements that
-  !> have failed then have none.
-  pure subroutine book_hourglass_work(i_chunk, material, dt, elements, chunk)
-    integer, intent(in) :: i_chunk
-    type(material_t), intent(in) :: material
-    real(wp), intent(in) :: dt
-    type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y
-    real(wp) :: work
-    integer :: first, i
-
-    if (has_failed(i_chunk, elements)) call drop_failed(i_chunk, material, dt, elements, chunk)
-    work = 0.0_wp
-    !$omp simd reduction(+ : work)
-    do i = 1, chunk_size
-      work = work + chunk%hourglass_work(i)
-    end do
-    elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
-    if (.not. allocated(elements%erosion)) return
-    first = (i_chunk - 1)*chunk_size + 1
-    associate (works => elements%erosion%hourglass(first:first + chunk_size - 1))
-      works = works + chunk%hourglass_work
-    end associate
-  end subroutine book_hourglass_work
-
-  !> Elements that have failed have no hourglass force, nor a memory of it; at the end of the step it
-  !> does no work.
-  pure subroutine drop_failed(i_chunk, material, dt, elements, chunk)
+  !> Elements that have failed have no hourglass force, nor a memory of it; at the end of the step
+  !> in which they fail it does no work.
+  pure subroutine drop_failed(i_chunk, material, dt, elements, chunk, work)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk
+    real(wp), intent(inout) :: work               !! of all hourglass forces in the step
     logical :: failed(chunk_size)
     integer :: i, first
 
+    if (.not. has_failed(i_chunk, elements)) return
     call find_elements(i_chunk, material, elements, failed)
     do i = 1, chunk_size
       if (.not. failed(i)) cycle
@@ -145,7 +129,21 @@ contains
       first = elements%hourglass_start(i_chunk) + i - 1
       elements%hourglass_strain([first, first + chunk_size]) = 0.0_wp
     end do
+    work = sum(chunk%hourglass_work)
   end subroutine drop_failed
+
+  !> Works element by element, where these may leave.
+  pure subroutine note_works(i_chunk, elements, chunk)
+    integer, intent(in) :: i_chunk
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(in) :: chunk
+    integer :: first
+
+    first = (i_chunk - 1)*chunk_size + 1
+    associate (works => elements%erosion%hourglass(first:first + chunk_size - 1))
+      works = works + chunk%hourglass_work
+    end associate
+  end subroutine note_works
 
   !> Whether some element of a chunk has failed in this step or before.
   pure logical function has_failed(i_chunk, elements)

@@ -8,7 +8,8 @@ module quad_one_point_m
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use element_time_step_m, only : stable_step
   use eos_pressure_m, only : finish_limits
-  use hourglass_m, only : resist_viscously, resist_elastically, stop_failed, book_hourglass_work
+  use hourglass_m, only : resist_viscously, resist_elastically, stop_failed, drop_failed, &
+    note_works
   use law_pressure_m, only : load_point_state, form_element_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
@@ -119,23 +120,28 @@ contains
     type(stress_chunk_t), intent(in) :: stress
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk
+    real(wp) :: work
     integer :: first
 
-    call stop_failed(i_chunk, material, elements, chunk)
+    if (allocated(elements%n_failed)) call stop_failed(i_chunk, material, elements, chunk)
     first = elements%hourglass_start(i_chunk)
     if (hourglass%form == hourglass_viscous) then
       call resist_viscously(0.25_wp*hourglass%coefficient*material%density*material%sound_speed, &
         stress%dt, elements%hourglass_strain(first), elements%hourglass_strain(first &
-        + chunk_size), chunk)
+        + chunk_size), chunk, work)
     else if (hourglass%form == hourglass_assumed) then
       call resist_by_assumed_strain(material, hourglass, stress, &
-        elements%hourglass_strain(first), elements%hourglass_strain(first + chunk_size), chunk)
+        elements%hourglass_strain(first), elements%hourglass_strain(first + chunk_size), chunk, &
+        work)
     else
       call resist_elastically(0.25_wp*hourglass%coefficient*(material%bulk &
         + 4.0_wp*material%shear/3.0_wp), stress%dt, stress, elements%hourglass_strain(first), &
-        elements%hourglass_strain(first + chunk_size), chunk)
+        elements%hourglass_strain(first + chunk_size), chunk, work)
     end if
-    call book_hourglass_work(i_chunk, material, stress%dt, elements, chunk)
+    if (allocated(elements%n_failed)) call drop_failed(i_chunk, material, stress%dt, elements, &
+      chunk, work)
+    elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
+    if (allocated(elements%erosion)) call note_works(i_chunk, elements, chunk)
   end subroutine resist
 
 end module quad_one_point_m

@@ -63,17 +63,18 @@ contains
 
   !> Assumed strain: the force of the plane times the mean radius V/A.
   pure subroutine resist_round_by_assumed_strain(material, hourglass, stress, round, stress_x, &
-    stress_y, chunk)
+    stress_y, chunk, work)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
     type(stress_chunk_t), intent(in) :: stress      !! rotation of the step
     type(round_chunk_t), intent(in) :: round
     real(wp), intent(inout), dimension(chunk_size) :: stress_x, stress_y
     type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y and their work out
+    real(wp), intent(out) :: work                   !! of all of them in the step
     real(wp) :: radius
     integer :: i
 
-    call resist_by_assumed_strain(material, hourglass, stress, stress_x, stress_y, chunk)
+    call resist_by_assumed_strain(material, hourglass, stress, stress_x, stress_y, chunk, work)
     !$omp simd private(radius)
     do i = 1, chunk_size
       radius = round%volume(i)*chunk%inverse_area(i)
@@ -83,15 +84,17 @@ contains
   end subroutine resist_round_by_assumed_strain
 
   !> Viscous form, with its work as in the plane (`resist_viscously`).
-  pure subroutine resist_round_viscously(dt, round, last_x, last_y, chunk)
+  pure subroutine resist_round_viscously(dt, round, last_x, last_y, chunk, work)
     real(wp), intent(in) :: dt
     type(round_chunk_t), intent(in) :: round
     real(wp), intent(inout), dimension(chunk_size) :: last_x, last_y !! q of the step before; then
                                                   !! the present one
     type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y and their work out
+    real(wp), intent(out) :: work                 !! of all of them in the step
     integer :: i
 
-    !$omp simd
+    work = 0.0_wp
+    !$omp simd reduction(+ : work)
     do i = 1, chunk_size
       chunk%qx(i) = round%resistance(i)*chunk%gx(i)
       chunk%qy(i) = round%resistance(i)*chunk%gy(i)
@@ -99,21 +102,24 @@ contains
         + (last_y(i) + chunk%qy(i))*chunk%gy(i))
       last_x(i) = chunk%qx(i)
       last_y(i) = chunk%qy(i)
+      work = work + chunk%hourglass_work(i)
     end do
   end subroutine resist_round_viscously
 
   !> Stiffness form: the hourglass strain turns with the element as in the plane
   !> (`resist_elastically`).
-  pure subroutine resist_round_elastically(dt, stress, round, strain_x, strain_y, chunk)
+  pure subroutine resist_round_elastically(dt, stress, round, strain_x, strain_y, chunk, work)
     real(wp), intent(in) :: dt
     type(stress_chunk_t), intent(in) :: stress      !! rotation of the step
     type(round_chunk_t), intent(in) :: round
     real(wp), intent(inout), dimension(chunk_size) :: strain_x, strain_y
     type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y and their work out
+    real(wp), intent(out) :: work                   !! of all of them in the step
     real(wp) :: half_x, half_y, old_x, old_y, growth_x, growth_y
     integer :: i
 
-    !$omp simd private(half_x, half_y, old_x, old_y, growth_x, growth_y)
+    work = 0.0_wp
+    !$omp simd private(half_x, half_y, old_x, old_y, growth_x, growth_y) reduction(+ : work)
     do i = 1, chunk_size
       half_x = 0.5_wp*dt*chunk%gx(i)
       half_y = 0.5_wp*dt*chunk%gy(i)
@@ -127,6 +133,7 @@ contains
       chunk%qy(i) = round%resistance(i)*strain_y(i)
       chunk%hourglass_work(i) = 0.5_wp*round%resistance(i)*((strain_x(i) + old_x)*growth_x &
         + (strain_y(i) + old_y)*growth_y)
+      work = work + chunk%hourglass_work(i)
     end do
   end subroutine resist_round_elastically
 

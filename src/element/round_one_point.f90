@@ -7,7 +7,7 @@ module round_one_point_m
   use deformation_gradient_m, only : form_rubber_forces
   use element_chunk_m, only : element_chunk_t
   use eos_pressure_m, only : finish_limits
-  use hourglass_m, only : stop_failed, book_hourglass_work
+  use hourglass_m, only : stop_failed, drop_failed, note_works
   use law_pressure_m, only : load_round_state, form_element_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
@@ -121,24 +121,29 @@ contains
     type(round_chunk_t), intent(inout) :: round
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk
+    real(wp) :: work
     integer :: first
 
-    call stop_failed(i_chunk, material, elements, chunk)
+    if (allocated(elements%n_failed)) call stop_failed(i_chunk, material, elements, chunk)
     first = elements%hourglass_start(i_chunk)
     if (hourglass%form == hourglass_assumed) then
       call form_assumed_resistance(material, hourglass, chunk, round)
       call resist_round_by_assumed_strain(material, hourglass, stress, round, &
-        elements%hourglass_strain(first), elements%hourglass_strain(first + chunk_size), chunk)
+        elements%hourglass_strain(first), elements%hourglass_strain(first + chunk_size), chunk, &
+        work)
     else if (hourglass%form == hourglass_viscous) then
       call form_resistance(material, hourglass, chunk, round)
       call resist_round_viscously(stress%dt, round, elements%hourglass_strain(first), &
-        elements%hourglass_strain(first + chunk_size), chunk)
+        elements%hourglass_strain(first + chunk_size), chunk, work)
     else
       call form_resistance(material, hourglass, chunk, round)
       call resist_round_elastically(stress%dt, stress, round, elements%hourglass_strain(first), &
-        elements%hourglass_strain(first + chunk_size), chunk)
+        elements%hourglass_strain(first + chunk_size), chunk, work)
     end if
-    call book_hourglass_work(i_chunk, material, stress%dt, elements, chunk)
+    if (allocated(elements%n_failed)) call drop_failed(i_chunk, material, stress%dt, elements, &
+      chunk, work)
+    elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
+    if (allocated(elements%erosion)) call note_works(i_chunk, elements, chunk)
   end subroutine resist
 
 end module round_one_point_m
