@@ -1,13 +1,26 @@
 # SPDX-License-Identifier: MIT
 """The balance of a sound run is constant, however short the waves in it: TSSFAC 0.9, no contact."""
+import pathlib
+import sys
+
 import numpy as np
 
-from meshes import Deck, grid
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
+
+from meshes import Deck, grid  # noqa: E402
+from slideline_tools.studies.stability.eigen import quad_stiffness  # noqa: E402
 
 RHO, YOUNG = 1000.0, 1.0e7
 SOUND = np.sqrt(YOUNG / RHO)
 N, SPEED = 40, 1.0e-4
 STEP = 0.9 / N / SOUND
+# Velocities of the nodes of 4 x 4 squares of side 1, density and modulus 1, row by row, in 1e-6.
+SHORT_WAVES = np.reshape([
+    -52.4, 8.85, -26, 20.8, 25.1, -86.9, -97.4, 67.5, -48.1, -53.1,
+    99.1, -5.95, 67.3, -4.73, 27.8, -69.9, 27, 73.6, 4.64, 48.3,
+    34.3, -87.2, 51.6, 18.2, -39.7, -93.8, 73.1, -5.45, 43.8, 75.8,
+    42.8, 84.2, -21, 60.2, -11.1, 87.1, 75.8, -80.5, -72.8, -56.6,
+    93.1, -12.8, 25.3, -39.8, 1.45, -22.8, -29.8, 17, 16.9, 80.8], (25, 2))
 
 
 def bar(title, cycles=400, step=STEP, scale=None, is_held=True):
@@ -194,8 +207,72 @@ def check_variable_steps(run):
         sums(run, f"{name}, TSSFAC 0.9", run.program(kick(deck, nodes, speeds)).table("glstat"), 1e-3)
 
 
+def squares(title, form=13, points=None, hourglass=(1, 0.1), bulk=None, law=None):
+    """4 x 4 free squares with velocities of short waves, TSSFAC 0.9, or under bulk viscosity a constant step (one that
+    jumps moves the balance); of round bodies the inner radius is 4."""
+    deck = Deck(title).control(200 * 0.7757, dt=0.3 if bulk else None).hourglass(*hourglass)
+    if bulk:
+        deck.add("*CONTROL_BULK_VISCOSITY", bulk)
+    deck.add("*SECTION_SHELL", (1, form, None, points), (1.0,)).part(section=1)
+    deck.add(*law or ("*MAT_ELASTIC", (1, 1.0, 1.0, 0.3)))
+    nodes = deck.mesh(*grid(4, 4, 4.0, 4.0, (4.0 if form == 15 else 0.0, 0.0)))
+    deck.add("*INITIAL_VELOCITY_NODE", *zip(nodes.tolist(), *(1.0e-6 * SHORT_WAVES.T).tolist()))
+    return deck.output(glstat=4.0)
+
+
+def linear_hourglass_work(step, cycles, coefficient=0.1):
+    """The same by small displacements: the trapezoidal work of viscous forces of v(n-1/2)."""
+    places, quads = grid(4, 4, 4.0, 4.0)
+    stiffness, damping, mass = np.zeros((50, 50)), np.zeros((50, 50)), np.zeros(50)
+    sound = np.sqrt(0.7 / (1.3 * 0.4))
+    for quad in np.asarray(quads):
+        dofs = np.stack([2 * quad, 2 * quad + 1], axis=1).ravel()
+        stiffness[np.ix_(dofs, dofs)] += quad_stiffness(places[quad], 1.0, 0.3, 0.0)[0]
+        pattern = np.array([1.0, -1.0, 1.0, -1.0])
+        damping[np.ix_(dofs, dofs)] += 0.25 * coefficient * sound * np.kron(np.outer(pattern, pattern), np.eye(2))
+        mass[dofs] += 0.25
+    u, v, work, last = np.zeros(50), 1.0e-6 * SHORT_WAVES.ravel(), 0.0, 0.0
+    for cycle in range(cycles + 1):
+        force = damping @ v
+        work += 0.5 * step * (last + force) @ v if cycle else 0.0
+        v = v - (1.0 if cycle else 0.5) * step * (stiffness @ u + force) / mass
+        last, u = force, u + step * v
+    return work
+
+
+def check_short_waves(run):
+    """Viscous forces act over half of the step that they are formed from and half of the next: none of their work lags."""
+    energy = run.program(squares("short waves")).table("glstat")
+    run.check("short waves: hourglass energy / 1e-8", 1e8 * energy["hourglass"][-1], 4.69, 0.01, "abs", "linear one-point quads")
+    run.check("short waves: hourglass energy / that of small displacements", energy["hourglass"][-1]
+              / linear_hourglass_work(energy["dt"][0], int(energy["cycle"][-1])), 1.0, 1e-3, source="independent linear run")
+    fails = "*MAT_PLASTIC_KINEMATIC", (1, 1.0, 1.0, 0.3, 1.0), (0.0, 0.0, 10.0)
+    for name, layout in (("", {}), (", stiffness form", {"hourglass": (4, 0.1)}), (", assumed strain", {"hourglass": (6, 1.0)}),
+                         (", bulk viscosity", {"bulk": (1.5, 0.3)}), (", bulk viscosity, may fail", {"bulk": (1.5, 0.3), "law": fails}),
+                         (", bulk viscosity, NIP 4", {"bulk": (1.5, 0.3), "points": 4})):
+        for form in (13, 15):
+            energy = run.program(squares("short waves" + name, form, **layout)).table("glstat")
+            sums(run, f"short waves, ELFORM {form}{name}", energy, 1e-3)
+
+
+def check_thin_layers(run):
+    """A round plate of layers of aspect 50, whose upper face gets a pulse: what public decks are like."""
+    places, quads = grid(12, 8, 12.0, 0.16)
+    deck = Deck("thin layers").control(1.0, scale=0.67)
+    deck.add("*SECTION_SHELL", (1, 15), (1.0,)).part(section=1).elastic(2.0, 100.0, 0.28)
+    nodes = deck.mesh(places, quads)
+    deck.fix(nodes[places[:, 0] == 0.0], x=1)
+    speeds = -1.0e-3 * np.exp(-(places[-13:, 0] / 3.0) ** 2)
+    deck.add("*INITIAL_VELOCITY_NODE", *[(int(node), 0.0, float(speed)) for node, speed in zip(nodes[-13:], speeds)])
+    energy = run.program(deck.output(glstat=0.02)).table("glstat")
+    sums(run, "thin layers", energy, 1e-3)
+    run.check("thin layers: hourglass energy counts", float(energy["hourglass"][-1] > 0.2 * energy["total"][0]), 1.0, 0.0, "abs", "else no test")
+
+
 def check(run):
     check_kicks(run)
+    check_short_waves(run)
+    check_thin_layers(run)
     check_endeng(run)
     check_loads(run)
     check_exact(run)
