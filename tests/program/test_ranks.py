@@ -70,10 +70,12 @@ def settling():
 
 def struck(is_round):
     """A bar of bands of three materials, struck at one end: its tiles wake one after the other, and processes that have
-    sleeping ones take over others, with all that damping, points, hourglass forms and an equation of state remember."""
+    sleeping ones take over others, with all that damping, points, hourglass forms, bulk viscosity and an equation of state
+    remember."""
     n_x, n_y = 900, 12
     deck = Deck("a bar that is struck").add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_TIMESTEP", (0.0, 0.6))
-    deck.hourglass(4, 0.05).add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
+    deck.hourglass(4, 0.05).add("*CONTROL_BULK_VISCOSITY", (1.5, 0.06))
+    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
     deck.add("*SECTION_SHELL", (2, 15 if is_round else 13, None, 4), (1.0,))
     deck.add("*PART", "copper", (1, 1, 1, 7)).add("*PART", "steel", (2, 2, 2)).add("*PART", "lead", (3, 1, 3))
     deck.add("*MAT_JOHNSON_COOK", (1, 8930.0, 46.0e9), (9.0e7, 2.92e8, 0.31, 0.025, 1.09, 1356.0, 293.0, 1.0),

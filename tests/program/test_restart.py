@@ -126,9 +126,9 @@ def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
 
 
 def everything(form=4):
-    """Loads, damping, motion that starts and ends, points, hourglass memory, a varying interval."""
+    """Loads, damping, motion that starts and ends, points, hourglass memory, bulk viscosity, a varying interval."""
     deck = Deck("everything")
-    deck.control(0.03).hourglass(form, 0.05)
+    deck.control(0.03).hourglass(form, 0.05).add("*CONTROL_BULK_VISCOSITY", (1.5, 0.06))
     deck.part(1, points=4).elastic(1000.0, 1.0e6, 0.3, 1)
     deck.part(2, section=2).plastic(1000.0, 1.0e6, 0.3, 1.0e3, 1.0e5, 0.5, 2)
     deck.add("*CONTROL_CONTACT", (0.1,), (0, 0, 0, 0, 0.0, 0, 2))  # springs limit the step
