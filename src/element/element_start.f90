@@ -34,6 +34,8 @@ contains
     allocate (elements%deviatoric_work(n_chunk), elements%hourglass_work(n_chunk), &
       elements%viscous_work(n_chunk), source=0.0_wp)
     allocate (elements%time_limit(n_chunk), elements%volume_limit(n_chunk), source=1.0_wp)
+    allocate (elements%volume_change(n_chunk), source=0.0_wp)
+    call start_exposed(model, elements)
     call reserve_memories(model, elements)
     if (any([(has_viscous_pressure(model, k), k = 1, size(model%parts))])) &
       allocate (elements%viscous_pressure(model%layout%n_slot))
@@ -50,6 +52,20 @@ contains
     end do
     if (model%erodes) call start_erosion(model, elements)
   end subroutine start_elements
+
+  !> Quads of the whole mesh that have at most one neighbour.
+  pure subroutine start_exposed(model, elements)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(inout) :: elements
+    integer :: i
+
+    if (.not. allocated(model%layout%exposed)) return
+    if (size(model%layout%exposed, 2) == 0) return
+    allocate (elements%exposed_side(model%layout%n_slot), source=0)
+    do i = 1, size(model%layout%exposed, 2)
+      elements%exposed_side(model%layout%exposed(1, i)) = model%layout%exposed(2, i)
+    end do
+  end subroutine start_exposed
 
   !> Whether a part keeps the bulk viscosity of the last step by itself: an equation of state has
   !> it in its own memory.

@@ -6,6 +6,7 @@ module element_steps_m
   use element_chunk_m, only : element_chunk_t, gather_chunk
   use element_dispatch_m, only : point_count
   use element_time_step_m, only : single_steps
+  use exposed_step_m, only : limit_exposed
   use full_time_step_m, only : step_sums_t, start_sums, add_point_sums, full_step
   use layout_m, only : chunk_size
   use model_m, only : model_t
@@ -73,6 +74,7 @@ contains
       call shape_steps(model, part, now, model%layout%slot_nodes(:, first:last), &
         elements%reference(first:last, :), motion, dt, steps)
     end associate
+    call limit_exposed(model, elements, i_chunk, motion, steps)
     if (allocated(elements%retardation)) steps = damped_step(steps, &
       elements%retardation(first:last))
   end subroutine chunk_steps

@@ -7,14 +7,15 @@ module mass_scaling_m
   use block_state_m, only : block_state_t
   use element_shares_m, only : element_shares
   use element_steps_m, only : chunk_steps
+  use exposed_step_m, only : has_exposed, exposed_step
   use kinds_m, only : wp
   use layout_m, only : chunk_size, slot_part, tile_t
   use model_m, only : model_t
   use parts_m, only : hourglass_viscous, part_t
   implicit none
   private
-  public :: scales_masses, start_mass_scaling, refine_limits, grow_masses, scaled_step, &
-    added_masses
+  public :: scales_masses, start_mass_scaling, refine_limits, needs_refinement, grow_masses, &
+    scaled_step, added_masses
 
   !> By how much the step of an element that has become too small is made larger than asked: it then
   !> lasts for some cycles.
@@ -71,8 +72,17 @@ contains
     end do
   end subroutine set_ratio
 
-  !> Limits of the chunks of a tile whose elements may be scaled, once the forces of the step have
-  !> left those of unscaled ones.
+  !> Whether the limits that the forces of a step leave are not those of all elements.
+  pure function needs_refinement(elements) result(needs)
+    type(block_state_t), intent(in) :: elements
+    logical :: needs
+
+    needs = allocated(elements%mass_ratio) .or. allocated(elements%retardation) &
+      .or. allocated(elements%exposed_side)
+  end function needs_refinement
+
+  !> Limits of the chunks of a tile with elements that are scaled, damped or have at most one
+  !> neighbour, once the forces of the step have left those of others.
   subroutine refine_limits(model, tile, motion, dt, elements)
     type(model_t), intent(in) :: model
     type(tile_t), intent(in) :: tile
@@ -97,7 +107,14 @@ contains
     integer :: i, first
 
     first = (i_chunk - 1)*chunk_size + 1
-    if (.not. has_own_limits(elements, first)) return
+    if (.not. has_own_limits(elements, first)) then
+      if (.not. has_exposed(elements, i_chunk)) return
+      do i = 1, model%layout%chunk_elements(i_chunk)
+        elements%time_limit(i_chunk) = min(elements%time_limit(i_chunk), exposed_step(model, &
+          elements, first + i - 1, motion))
+      end do
+      return
+    end if
     call chunk_steps(model, elements, i_chunk, motion, dt, steps)
     limit = huge(1.0_wp)
     do i = 1, model%layout%chunk_elements(i_chunk)

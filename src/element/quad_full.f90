@@ -64,6 +64,7 @@ contains
     point%qx = 0.0_wp
     point%qy = 0.0_wp
     call start_sums(sums)
+    elements%volume_change(i_chunk) = 0.0_wp
     do k = 1, n_point
       call form_point(k, n_slot, elements%reference(first, 1), chunk, reference, point)
       call form_present_shape(reference, chunk_size, point)
@@ -161,6 +162,8 @@ contains
 
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
     call form_increments(dt, point, stress)
+    elements%volume_change(i_chunk) = max(elements%volume_change(i_chunk), &
+      dt*maxval(abs(point%trace)))
     call load_deviator(elements%point_deviator(first), chunk_size, stress)
     if (allocated(material%eos)) call load_point_state(i_chunk, material, point%mid_area &
       *(1.0_wp + point%stretch)*point%inverse_area, point%stretch, chunk, point, elements, stress)

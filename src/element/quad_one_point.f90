@@ -52,6 +52,7 @@ contains
     call gather_chunk(nodes, motion, chunk)
     call form_present_shape(elements%reference(first, 1), n_slot, chunk)
     call form_increments(dt, chunk, stress)
+    elements%volume_change(i_chunk) = dt*maxval(abs(chunk%trace))
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
     if (allocated(material%eos)) call load_point_state(i_chunk, material, chunk%mid_area &
       *(1.0_wp + chunk%stretch)*chunk%inverse_area, chunk%stretch, chunk, chunk, elements, stress)

@@ -56,6 +56,7 @@ contains
     chunk%force4 = 0.0_wp
     chunk%swing = 0.0_wp
     round%hoop = 0.0_wp
+    elements%volume_change(i_chunk) = 0.0_wp
     do k = 1, n_point
       call advance_point(i_chunk, k, material, dt, elements, chunk, round, points(k))
     end do
@@ -169,6 +170,8 @@ contains
     call form_radii(k, elements%reference(first, 1), stride, chunk, round, point, place)
     call form_increments(dt, point, stress)
     call add_hoop_strain(dt, place, point, stress)
+    elements%volume_change(i_chunk) = max(elements%volume_change(i_chunk), &
+      dt*maxval(abs(trace_of(stress))))
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
     call load_deviator(elements%point_deviator(first), chunk_size, stress)
     if (allocated(material%eos)) call load_point_state(i_chunk, material, point%mid_area &

@@ -48,6 +48,7 @@ contains
     call gather_round(nodes, motion, chunk, round)
     call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
     call form_round_increments(dt, chunk, round, stress)
+    elements%volume_change(i_chunk) = dt*maxval(abs(chunk%trace))
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
     if (allocated(material%eos)) call load_round_state(i_chunk, material, chunk%mid_area &
       *(1.0_wp + chunk%stretch)*round%inverse_volume, chunk, round, elements, stress)

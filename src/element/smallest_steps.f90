@@ -5,6 +5,7 @@ module smallest_steps_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use erosion_state_m, only : stays
+  use exposed_step_m, only : exposed_step
   use element_steps_m, only : shape_steps, chunk_steps, damped_step
   use law_pressure_m, only : take_now
   use layout_m, only : chunk_size
@@ -112,7 +113,7 @@ contains
       call take_now(model%materials(part%material), elements, i_slot, now)
       call shape_steps(model, part, now, nodes, shape, motion, 0.0_wp, steps)
     end associate
-    step = steps(1)
+    step = min(steps(1), exposed_step(model, elements, i_slot, motion))
     if (allocated(elements%retardation)) step = damped_step(step, elements%retardation(i_slot))
     step = scaled_step(model, i_slot, step, elements)
   end function step_of_element

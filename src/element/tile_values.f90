@@ -62,6 +62,7 @@ contains
         call pass_reals(n, elements%damping_work(first:last), freight)
       call pass_reals(n, elements%time_limit(first:last), freight)
       call pass_reals(n, elements%volume_limit(first:last), freight)
+      call pass_reals(n, elements%volume_change(first:last), freight)
       if (allocated(elements%n_failed)) &
         call pass_integers(n, elements%n_failed(first:last), freight)
       if (allocated(elements%erosion)) &

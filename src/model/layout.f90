@@ -46,6 +46,8 @@ module layout_m
     integer(local_kind), allocatable :: slot_local(:, :) !! (4, n_slot) local numbers in the tile:
                                              !! interior nodes from 1, then its special nodes;
                                              !! all equal in padding
+    integer, allocatable :: exposed(:, :)    !! (2, n) slot and neighbouring side of the quads that
+                                             !! have at most one neighbour (`find_exposed`)
     integer, allocatable :: special_node(:)  !! (force slots) node of each force slot, tile by tile
     integer, allocatable :: node_slots(:)    !! (n_special + 1) where each special node's list
                                              !! starts ...

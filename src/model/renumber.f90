@@ -4,6 +4,7 @@ module renumber_m
   use boundary_rows_m, only : list_boundaries
   use controls_m, only : is_asked
   use cross_sections_m, only : mark_corners
+  use exposed_quads_m, only : list_exposed
   use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch
   use history_tables_m, only : table_bndout
   use kinds_m, only : long
@@ -51,6 +52,7 @@ contains
     call renumber_rigids(model, new_index)
     if (allocated(model%walls)) call renumber_walls(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
+    if (.not. model%controls%implicit%is_on) model%layout%exposed = list_exposed(model)
     if (allocated(model%controls%output%cross_sections)) call renumber_sections(model, new_index)
     if (allocated(model%controls%ends)) call renumber_ends(new_index, model%controls%ends)
     model%conditions%n_support = count(mark_supports(model))

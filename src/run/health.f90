@@ -39,7 +39,8 @@ module health_m
     real(wp) :: time_limit = huge(1.0_wp)   !! smallest L/c, s
     real(wp) :: checksum = 0.0_wp           !! of the works: finite as long as all of them are
     logical :: has_volume = .true.          !! all A/A0 are positive
-    real(wp) :: unused(5) = 0.0_wp          !! fills the cache line
+    real(wp) :: volume_change = 0.0_wp      !! largest change of ln V in the step, without sign
+    real(wp) :: unused(4) = 0.0_wp          !! fills the cache line
   end type tile_check_t
 
 contains
@@ -53,6 +54,7 @@ contains
 
     do i = tile%first_chunk, tile%last_chunk
       check%time_limit = min(check%time_limit, elements%time_limit(i))
+      check%volume_change = max(check%volume_change, elements%volume_change(i))
       check%has_volume = check%has_volume .and. elements%volume_limit(i) > 0.0_wp
       check%checksum = check%checksum + (elements%deviatoric_work(i) + elements%hourglass_work(i))
     end do

@@ -55,6 +55,11 @@ module block_state_m
     real(wp), allocatable :: time_limit(:)      !! (n_chunk) smallest L/c of the last step, s
     real(wp), allocatable :: volume_limit(:)    !! (n_chunk) smallest A/A0 (or J of a point) of the
                                                 !! last step
+    real(wp), allocatable :: volume_change(:)   !! (n_chunk) largest change of ln V of an element in
+                                                !! the last step, without its sign
+    integer, allocatable :: exposed_side(:)     !! (n_slot) side of the only neighbour of a plane
+                                                !! one-point quad, see `find_exposed`; only where
+                                                !! some quads have at most one
     type(erosion_state_t), allocatable :: erosion !! only where elements may leave the mesh
   end type block_state_t
 

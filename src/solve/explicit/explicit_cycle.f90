@@ -24,6 +24,7 @@ module explicit_cycle_m
   use interface_m, only : apply_contact
   use kinds_m, only : wp
   use mass_growth_m, only : grow_state_masses
+  use mass_scaling_m, only : needs_refinement
   use mass_log_m, only : check_added_mass
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due
@@ -46,7 +47,8 @@ module explicit_cycle_m
   use skew_motion_m, only : remember_common, move_common
   use state_m, only : state_t
   use tile_forces_m, only : sum_special_forces
-  use time_step_m, only : step_plan_t, start_steps, next_step, is_last, follow_springs
+  use time_step_m, only : step_plan_t, start_steps, volume_step, next_step, is_last, &
+    follow_springs
   use wall_motion_m, only : count_walls
   implicit none
   private
@@ -112,8 +114,7 @@ contains
     cycle%may_judge = judges_at_all(model)
     cycle%presses = any(model%contacts%penalty_unit == penalty_implicit)
     if (cycle%presses) allocate (cycle%pressing(size(model%contacts)))
-    cycle%refines = allocated(state%elements%mass_ratio) .or. &
-      allocated(state%elements%retardation)
+    cycle%refines = needs_refinement(state%elements)
     associate (ranks => monitor%ranks)
       cycle%shares = share_out(model%layout, ranks%mine, ranks%n)
       if (ranks%n > 1) cycle%first_check = size(model%layout%tiles) + 1
@@ -260,7 +261,7 @@ contains
       call exchange_record(shares, cycle%checks, elements, ranks, cycle%parcel, record)
       cycle%asked = record%asked
       cycle%checks(cycle%first_check) = tile_check_t(time_limit=record%time_limit, &
-        has_volume=record%is_sound)
+        has_volume=record%is_sound, volume_change=record%volume_change)
       if (record%has_error) call share_error(ranks, cycle%error)
       if (record%loses) call exchange_erosion(ranks, shares, elements)
       if (state%cycle == 0) call exchange_limits(ranks, shares, elements)
@@ -304,6 +305,7 @@ contains
       call follow_outlines(model, n_eroded > cycle%told, state)
       cycle%told = n_eroded
     end associate
+    cycle%refines = needs_refinement(state%elements)
     deallocate (cycle%freed)
   end subroutine lose_elements
 
@@ -370,7 +372,10 @@ contains
     type(explicit_cycle_t), intent(in) :: cycle
     real(wp) :: limit
 
-    limit = minval(cycle%checks(cycle%first_check:)%time_limit)
+    associate (checks => cycle%checks(cycle%first_check:))
+      limit = min(minval(checks%time_limit), volume_step(state%dt_before, &
+        maxval(checks%volume_change)))
+    end associate
     if (.not. model%erodes) return
     associate (n_gone => state%elements%erosion%n_gone)
       if (sum(n_gone) == sum(model%layout%chunk_elements(:size(n_gone)))) &

@@ -13,6 +13,7 @@ module explicit_report_m
     table_sleout, table_spcforc, table_contact, table_elout, table_rbdout, table_bndout, &
     table_nodfor, table_secforc
   use history_elements_m, only : fill_history_elements
+  use first_change_m, only : first_change
   use health_m, only : check_energy, check_ratio, check_radii, made_by_springs
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
@@ -33,7 +34,7 @@ module explicit_report_m
   use state_m, only : state_t
   use wall_motion_m, only : hold_nodes, count_walls, fill_walls
   use support_forces_m, only : fill_explicit_reactions
-  use time_step_m, only : first_step, follow_springs
+  use time_step_m, only : first_step, shorten_first_step, follow_springs
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap, press_cycle
   use node_motion_m, only : leap_t
   implicit none
@@ -61,6 +62,7 @@ contains
       return
     end if
     if (state%cycle == 0) then
+      call bound_first_change(model, state, monitor, cycle)
       if (model%erodes) call note_least_step(model%controls, cycle%steps%first_dt, state)
       call prepare_leap(model, state, cycle)
       call start_prescribed(model, cycle%velocity, state)
@@ -83,6 +85,19 @@ contains
       minval(cycle%checks(cycle%first_check:)%time_limit), state, monitor%log)
     cycle%finished = cycle%last .or. allocated(cycle%error)
   end subroutine report_cycle
+
+  !> A shorter first step where elements would change their volume by too much in it.
+  subroutine bound_first_change(model, state, monitor, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(explicit_cycle_t), intent(inout) :: cycle
+    real(wp) :: change
+
+    call prepare_leap(model, state, cycle)
+    call first_change(model, cycle%shares, cycle%leap, cycle%velocity, state, monitor%ranks, change)
+    call shorten_first_step(change, monitor%log, cycle%steps, state%dt)
+  end subroutine bound_first_change
 
   !> Fill the snapshot with what is due, and write it.
   subroutine write_report(model, held, state, monitor, cycle)

@@ -41,6 +41,7 @@ module rank_exchange_m
   !> What all have to know of each other's elements, and what someone asks of any of them.
   type :: record_t
     real(wp) :: time_limit = huge(1.0_wp) !! smallest of the elements
+    real(wp) :: volume_change = 0.0_wp    !! largest of the elements
     logical :: is_sound = .true.          !! volumes are positive, works finite
     logical :: loses = .false.            !! elements have left
     logical :: fails = .false.            !! points have failed
@@ -165,11 +166,12 @@ contains
     type(ranks_t), intent(inout) :: ranks
     type(parcel_t), intent(inout) :: parcel
     type(record_t), intent(inout) :: record       !! in: an error and what is asked of this one
-    real(wp) :: values(9)
+    real(wp) :: values(10)
     integer :: n_gone
 
     associate (own => checks(shares%first_tile:shares%last_tile))
       record%time_limit = minval(own%time_limit)
+      record%volume_change = maxval(own%volume_change)
       ! So that the works of all are below the bound where those of each are.
       record%is_sound = all(own%has_volume) &
         .and. abs(sum(own%checksum)) <= most_work/(ranks%n + 1)
@@ -187,11 +189,13 @@ contains
     end associate
     associate (asked => record%asked)
       values(1) = record%time_limit
+      values(10) = -record%volume_change
       ! The least of numbers: below zero where it holds of any process.
-      values(2:) = merge(-1.0_wp, 0.0_wp, [.not. record%is_sound, record%loses, record%fails, &
+      values(2:9) = merge(-1.0_wp, 0.0_wp, [.not. record%is_sound, record%loses, record%fails, &
         record%has_error, asked%dump, asked%plot, asked%stop, asked%signalled])
       call find_least(ranks, values)
       record%time_limit = values(1)
+      record%volume_change = -values(10)
       record%is_sound = values(2) >= 0.0_wp
       record%loses = values(3) < 0.0_wp
       record%fails = values(4) < 0.0_wp

@@ -9,7 +9,7 @@ module relaxation_m
   use health_m, only : check_elements
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text
-  use mass_scaling_m, only : refine_limits
+  use mass_scaling_m, only : refine_limits, needs_refinement
   use model_m, only : model_t
   use motion_sums_m, only : motion_sums_t
   use node_motion_m, only : leap_t, make_leap, move_tile_nodes, move_special_nodes
@@ -17,6 +17,7 @@ module relaxation_m
   use skew_motion_m, only : hold_skew_nodes
   use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, sum_special_forces
+  use time_step_m, only : volume_step
   implicit none
   private
   public :: relax, leave_relaxation
@@ -120,7 +121,7 @@ contains
 
     associate (tile => model%layout%tiles(i))
       call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
-      if (allocated(state%elements%mass_ratio) .or. allocated(state%elements%retardation)) &
+      if (needs_refinement(state%elements)) &
         call refine_limits(model, tile, state%motion, state%dt_before, state%elements)
     end associate
   end subroutine advance_tile
@@ -131,7 +132,8 @@ contains
     type(state_t), intent(inout) :: state
     real(wp) :: limit, wanted
 
-    limit = minval(state%elements%time_limit)
+    limit = min(minval(state%elements%time_limit), volume_step(state%dt_before, &
+      maxval(state%elements%volume_change)))
     wanted = scaled_step(model, limit, 0.0_wp)
     if (model%controls%relaxation%step_scale > 0.0_wp) &
       wanted = model%controls%relaxation%step_scale*limit

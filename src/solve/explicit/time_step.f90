@@ -19,11 +19,14 @@ module time_step_m
   use state_m, only : state_t
   implicit none
   private
-  public :: step_plan_t, start_steps, first_step, next_step, is_last, cycles_in, &
-    follow_springs, has_springs
+  public :: step_plan_t, start_steps, first_step, shorten_first_step, volume_step, next_step, &
+    is_last, cycles_in, follow_springs, has_springs
 
   !> What a step must be allowed to rise by before it does.
   real(wp), parameter :: least_rise = 0.05_wp
+
+  !> Change of ln V of an element in a step beyond which the next step is shorter.
+  real(wp), parameter :: largest_change = 0.1_wp
 
   !> Cycles between two looks at the lengths that contact springs stand for.
   integer, parameter :: refresh_interval = 20
@@ -86,6 +89,32 @@ contains
     if (allocated(steps%springs)) call write_log(log, 'stable step of elements and contact ' &
       //'springs '//to_text(limit))
   end subroutine first_step
+
+  !> A first step in which the volume of an element would change by more than it should.
+  subroutine shorten_first_step(change, log, steps, dt)
+    real(wp), intent(in) :: change           !! largest change of ln V in the step dt
+    type(log_t), intent(inout) :: log
+    type(step_plan_t), intent(inout) :: steps
+    real(wp), intent(inout) :: dt            !! s
+
+    if (change <= largest_change) return
+    dt = dt*(largest_change/change)
+    steps%constant = 0.0_wp
+    call write_log(log, 'first time step shortened to '//to_text(dt)//': in the stable one the ' &
+      //'volume of an element would change by '//to_text(100.0_wp*change)//' %')
+  end subroutine shorten_first_step
+
+  !> Step after one of `dt` in which ln V of an element has changed by `change`: the change stays
+  !> near the largest wanted one where its rate is constant, and within three times that where the
+  !> rate grows as from rest, in proportion to time.
+  pure function volume_step(dt, change) result(step)
+    real(wp), intent(in) :: dt      !! s
+    real(wp), intent(in) :: change  !! >= 0
+    real(wp) :: step
+
+    step = huge(step)
+    if (change > tiny(change)) step = dt*(sqrt(1.0_wp + 3.0_wp*largest_change/change) - 1.0_wp)
+  end function volume_step
 
   !> Constant steps `dt` in a time, at least one and no more than can be counted.
   pure function cycles_in(time, dt) result(n)

@@ -19,7 +19,7 @@ module automatic_penalty_m
   use errors_m, only : error_t, raise, status_input
   use kinds_m, only : wp
   use log_m, only : log_t, warn, write_log, to_text
-  use mass_scaling_m, only : refine_limits
+  use mass_scaling_m, only : refine_limits, needs_refinement
   use model_m, only : model_t
   use scaled_step_m, only : scaled_step
   use state_m, only : state_t
@@ -178,7 +178,7 @@ contains
     do i = 1, size(model%layout%tiles)
       call add_tile_forces(model, model%layout%tiles(i), state%motion, 0.0_wp, state%elements, &
         force)
-      if (allocated(state%elements%mass_ratio) .or. allocated(state%elements%retardation)) &
+      if (needs_refinement(state%elements)) &
         call refine_limits(model, model%layout%tiles(i), state%motion, 0.0_wp, state%elements)
     end do
   end subroutine find_element_limits

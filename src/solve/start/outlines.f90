@@ -4,6 +4,7 @@ module outlines_m
   use contact_inertia_m, only : weigh_contacts
   use contacts_m, only : contact_t
   use erosion_state_m, only : stays
+  use exposed_quads_m, only : find_exposed
   use kinds_m, only : wp
   use model_m, only : model_t
   use renewal_m, only : renew_contact, close_contact, reshape_contact
@@ -37,6 +38,7 @@ contains
     integer :: i
 
     is_left = elements_left(model, state)
+    call expose_neighbours(model, is_left, state)
     do i = 1, size(state%outlines)
       if (.not. (loses(state%outlines(i)%slave) .or. loses(state%outlines(i)%master))) cycle
       former = state%outlines(i)
@@ -68,6 +70,22 @@ contains
     end function loses
 
   end subroutine follow_outlines
+
+  !> Quads that have at most one neighbour left.
+  subroutine expose_neighbours(model, is_left, state)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: is_left(:)  !! (n_element)
+    type(state_t), intent(inout) :: state
+    integer, allocatable :: side(:)
+
+    side = find_exposed(model, is_left)
+    if (.not. allocated(state%elements%exposed_side)) then
+      if (all(side == 0)) return
+      allocate (state%elements%exposed_side(model%layout%n_slot))
+    end if
+    state%elements%exposed_side = 0
+    state%elements%exposed_side(model%layout%element_slot) = side
+  end subroutine expose_neighbours
 
   !> Which elements are there.
   function elements_left(model, state) result(is_left)
@@ -116,6 +134,7 @@ contains
 
     is_left = elements_left(model, state)
     if (all(is_left)) return
+    call expose_neighbours(model, is_left, state)
     do i = 1, size(state%outlines)
       call take_left(model, i, is_left, state%outlines(i))
       call reshape_contact(state%outlines(i), model, state%contacts(i))
