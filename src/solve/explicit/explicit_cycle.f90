@@ -373,7 +373,9 @@ contains
     real(wp) :: limit
 
     associate (checks => cycle%checks(cycle%first_check:))
-      limit = min(minval(checks%time_limit), volume_step(state%dt_before, &
+      ! The change is that of the step before the last, in the first cycle that of the first step.
+      limit = min(minval(checks%time_limit), volume_step(merge(state%former_dt, state%dt_before, &
+        state%cycle > 1), merge(state%dt_before, 0.0_wp, state%cycle > 1), &
         maxval(checks%volume_change)))
     end associate
     if (.not. model%erodes) return

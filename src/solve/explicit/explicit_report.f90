@@ -96,7 +96,9 @@ contains
 
     call prepare_leap(model, state, cycle)
     call first_change(model, cycle%shares, cycle%leap, cycle%velocity, state, monitor%ranks, change)
-    call shorten_first_step(change, monitor%log, cycle%steps, state%dt)
+    call shorten_first_step(monitor%log, cycle%steps, state%dt, change)
+    ! What the elements of the first cycle could not yet tell the step of the second one.
+    cycle%checks(cycle%first_check)%volume_change = change
   end subroutine bound_first_change
 
   !> Fill the snapshot with what is due, and write it.

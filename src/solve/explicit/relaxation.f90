@@ -133,7 +133,7 @@ contains
     real(wp) :: limit, wanted
 
     limit = min(minval(state%elements%time_limit), volume_step(state%dt_before, &
-      maxval(state%elements%volume_change)))
+      state%dt_before, maxval(state%elements%volume_change)))
     wanted = scaled_step(model, limit, 0.0_wp)
     if (model%controls%relaxation%step_scale > 0.0_wp) &
       wanted = model%controls%relaxation%step_scale*limit

@@ -91,29 +91,35 @@ contains
   end subroutine first_step
 
   !> A first step in which the volume of an element would change by more than it should.
-  subroutine shorten_first_step(change, log, steps, dt)
-    real(wp), intent(in) :: change           !! largest change of ln V in the step dt
+  subroutine shorten_first_step(log, steps, dt, change)
     type(log_t), intent(inout) :: log
     type(step_plan_t), intent(inout) :: steps
     real(wp), intent(inout) :: dt            !! s
+    real(wp), intent(inout) :: change        !! largest change of ln V in it
 
     if (change <= largest_change) return
     dt = dt*(largest_change/change)
     steps%constant = 0.0_wp
     call write_log(log, 'first time step shortened to '//to_text(dt)//': in the stable one the ' &
       //'volume of an element would change by '//to_text(100.0_wp*change)//' %')
+    change = largest_change
   end subroutine shorten_first_step
 
-  !> Step after one of `dt` in which ln V of an element has changed by `change`: the change stays
-  !> near the largest wanted one where its rate is constant, and within three times that where the
-  !> rate grows as from rest, in proportion to time.
-  pure function volume_step(dt, change) result(step)
+  !> Step in which ln V of an element changes by no more than it should, from the change in an
+  !> earlier step `dt`, since which a time `since` has passed. At a constant rate that is
+  !> `largest_change`. A rate that grows as from rest, a t, is a dt/2 in the earlier step and
+  !> a (dt + since + step/2) in this one: that changes V by at most five times as much.
+  pure function volume_step(dt, since, change) result(step)
     real(wp), intent(in) :: dt      !! s
-    real(wp), intent(in) :: change  !! >= 0
+    real(wp), intent(in) :: since   !! s, one step or none
+    real(wp), intent(in) :: change  !! of ln V, without its sign
     real(wp) :: step
+    real(wp) :: passed
 
     step = huge(step)
-    if (change > tiny(change)) step = dt*(sqrt(1.0_wp + 3.0_wp*largest_change/change) - 1.0_wp)
+    if (.not. change > tiny(change)) return
+    passed = dt + since
+    step = sqrt(passed**2 + dt*(dt + 2.0_wp*passed)*(largest_change/change)) - passed
   end function volume_step
 
   !> Constant steps `dt` in a time, at least one and no more than can be counted.
