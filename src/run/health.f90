@@ -15,8 +15,8 @@ module health_m
   use state_m, only : state_t
   implicit none
   private
-  public :: tile_check_t, check_tile, are_sound, check_elements, check_step, check_cycle, &
-    check_energy, check_ratio, check_radii, judge_energies, judge_ratio, judge_contact, &
+  public :: tile_check_t, check_tile, are_sound, check_elements, check_step, name_collapsed, &
+    check_cycle, check_energy, check_ratio, check_radii, judge_energies, judge_ratio, judge_contact, &
     made_by_springs, made_by_forces, most_work
 
   !> Work beyond this means nothing any more; it is found before numbers overflow, which a
@@ -25,6 +25,9 @@ module health_m
 
   !> How far the energy ratio may be from one without a word.
   real(wp), parameter :: ratio_band = 0.05_wp
+
+  character(*), parameter :: remedy = ': reduce TSSFAC (or LCTM) of *CONTROL_TIMESTEP if it ' &
+    //'collapsed within a few cycles, else refine the mesh or let it erode (*MAT_ADD_EROSION)'
 
   character(*), parameter :: unaccounted = 'energy has come in or gone that no column accounts for'
 
@@ -140,6 +143,7 @@ contains
       if (ratio > 0.0_wp .and. ratio <= huge(ratio)) cycle
       call blame(model, state, slot, merge('negative area             ', &
         'values that are not finite', ratio <= 0.0_wp), error)
+      if (ratio <= 0.0_wp) error%message = error%message//remedy
       return
     end do
     call name_dense_element(model, state, error)
@@ -221,6 +225,31 @@ contains
       //' fell below its floor '//to_text(floor_dt)//' (DTMIN times the first step, at least a ' &
       //'millionth of it)', status_run)
   end subroutine check_step
+
+  !> What a step below its floor owes to an element that collapses, whose volume no step lets change
+  !> by much.
+  subroutine name_collapsed(model, state, error)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(error_t), intent(inout) :: error
+    real(wp) :: ratio, smallest
+    integer :: slot, worst
+
+    smallest = 0.1_wp
+    worst = 0
+    do slot = 1, model%layout%n_slot
+      if (model%layout%slot_element(slot) == 0) cycle
+      if (is_gone(state%elements, slot)) cycle
+      ratio = smallest_ratio(model, state%motion, state%elements, slot)
+      if (ratio >= smallest) cycle
+      smallest = ratio
+      worst = slot
+    end do
+    if (worst == 0) return
+    error%message = error%message//'; element '//to_text(model%mesh%element_id( &
+      model%layout%slot_element(worst)))//' of part '//to_text(model%parts(slot_part( &
+      model%layout, worst))%id)//' has collapsed to V/V0 '//to_text(smallest)//remedy
+  end subroutine name_collapsed
 
   !> Cycles are counted no further than a default integer reaches.
   subroutine check_cycle(cycle, time, error)

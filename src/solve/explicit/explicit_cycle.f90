@@ -19,7 +19,7 @@ module explicit_cycle_m
   use explicit_memory_m, only : write_restarts, take_up_steps
   use explicit_prescribed_m, only : find_prescribed_velocities, impose_prescribed, prescribed_work
   use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
-  use health_m, only : tile_check_t, are_sound, check_step, check_cycle
+  use health_m, only : tile_check_t, are_sound, check_step, name_collapsed, check_cycle
   use history_tables_m, only : table_secforc
   use interface_m, only : apply_contact
   use kinds_m, only : wp
@@ -357,6 +357,8 @@ contains
       cycle%steps, state%time, state%dt)
     if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
       state%time, state%dt, cycle%error)
+    if (allocated(cycle%error) .and. monitor%ranks%n == 1) call name_collapsed(model, state, &
+      cycle%error)
     if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     cycle%finished = allocated(cycle%error)
     if (allocated(model%controls%ends)) call heed_ends(model, state, cycle)
