@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Stable step of a plane one-point quad with at most one neighbour, whose nodes carry little mass
-!> but its own. Without a neighbour it is 2/omega of the free element: omega^2 = 4 J c^2 lambda, with
+!> but its own. Without a neighbour it is 2/omega of the free element: omega^2 = 4 J c^2 lambda,
 !> lambda the largest eigenvalue of D B B^T over K + 4G/3 and J = A/A0. The end of a strip moves as
-!> if its neighbour were its mirror image: the side between them keeps either its normal or its
-!> tangential place. No strip has a smaller step, by 1 % (doc/theory/elements.md, "Stable step").
+!> if its neighbour were its mirror image: the nodes of their common side keep either their normal
+!> or their tangential place (doc/theory/elements.md, "Stable step").
 module exposed_step_m
   use block_state_m, only : block_state_t
   use exposed_quads_m, only : no_side
@@ -72,8 +72,8 @@ contains
       side => elements%exposed_side(slot))
       if (side == 0) return
       call take_now(model%materials(part%material), elements, slot, now)
-      call form_gradients(elements%reference(slot, :6), motion(:, model%layout%slot_nodes(:, slot)), &
-        side, gradients, normal)
+      call form_gradients(elements%reference(slot, :6), &
+        motion(:, model%layout%slot_nodes(:, slot)), side, gradients, normal)
       if (side == no_side) then
         step = mode_step(now, part%hourglass, gradients, all_free, all_free)
         return

@@ -5,7 +5,6 @@ module exposed_quads_m
   use boundary_m, only : boundary_t, find_boundary
   use kinds_m, only : wp
   use model_m, only : model_t
-  use parts_m, only : form_one_point
   implicit none
   private
   public :: find_exposed, list_exposed, no_side
@@ -26,6 +25,8 @@ contains
     logical, allocatable :: is_free(:, :), is_held(:, :), among(:)
     integer :: i, edge
 
+    allocate (side(model%mesh%n_element), source=0)
+    if (model%is_round) return
     associate (mesh => model%mesh)
       allocate (is_free(4, mesh%n_element), among(mesh%n_node))
       is_free = .false.
@@ -38,13 +39,12 @@ contains
           is_free(findloc(mesh%element_nodes(:, element), nodes(1), dim=1), element) = .true.
         end associate
       end do
-      allocate (side(mesh%n_element), source=0)
       do i = 1, mesh%n_element
         if (count(is_free(:, i)) < 3) cycle
         if (mesh%element_nodes(4, i) == mesh%element_nodes(3, i)) cycle
         associate (part => model%parts(mesh%element_part(i)))
-          if (model%materials(part%material)%is_rigid) cycle
-          if (model%sections(part%section)%element_form /= form_one_point) cycle
+          if (model%materials(part%material)%is_rigid .or. model%sections(part%section)%is_full) &
+            cycle
         end associate
         side(i) = findloc(is_free(:, i), .false., dim=1)
         if (side(i) == 0) side(i) = no_side

@@ -16,8 +16,8 @@ module health_m
   implicit none
   private
   public :: tile_check_t, check_tile, are_sound, check_elements, check_step, name_collapsed, &
-    check_cycle, check_energy, check_ratio, check_radii, judge_energies, judge_ratio, judge_contact, &
-    made_by_springs, made_by_forces, most_work
+    check_cycle, check_energy, check_ratio, check_radii, judge_energies, judge_ratio, &
+    judge_contact, made_by_springs, made_by_forces, most_work
 
   !> Work beyond this means nothing any more; it is found before numbers overflow, which a
   !> checked build would stop at.

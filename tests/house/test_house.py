@@ -49,7 +49,7 @@ DISPATCHERS = {
     "contact_law": "contact_law.f90",
     "element_form": "element_dispatch.f90",
 }
-MOST_FILE_LINES, MOST_PROCEDURE_LINES, MOST_ARGUMENTS, MOST_COLUMNS = 450, 80, 8, 100
+MOST_FILE_LINES, MOST_PROCEDURE_LINES, MOST_ARGUMENTS, MOST_COLUMNS = 500, 80, 8, 100
 MOST_TEST_COLUMNS = 132
 #: procedures that have more arguments, and how many; none may be added
 MORE_ARGUMENTS = {"advance_one_point": 9, "grow_with_rate": 10}
