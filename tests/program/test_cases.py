@@ -221,7 +221,7 @@ def test_a_name_for_several_cases_is_told_with_the_rest(slideline, check, fast):
 
 def test_a_failing_case_is_not_hidden(slideline, tmp_path, fast):
     """The next case runs after an error termination; the status is that of the one that failed."""
-    deck = cases_deck().replace(BLOCKS[3], "*CONTROL_TERMINATION\n0.002,,,1.0e-9")
+    deck = cases_deck().replace(BLOCKS[3], "*CONTROL_TERMINATION\n0.006,,,1.0e-9")
     deck = deck.replace("         1         3\n", "         1\n")
     text = re.sub(r"\*CONTROL_TERMINATION\n.*\n", "", deck, count=1)
     text = text.replace("*CASE_END_4\n", "*CONTROL_TERMINATION\n0.002,\n*CASE_END_4\n")

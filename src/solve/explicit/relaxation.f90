@@ -3,16 +3,19 @@
 !> the body, and every step leaves a share of the velocities, until the body rests. What it has come
 !> to is the state at time zero. One thread, before any output.
 module relaxation_m
+  use block_state_m, only : block_state_t
   use cycle_loads_m, only : apply_loads
   use element_dispatch_m, only : add_tile_forces
   use errors_m, only : error_t, raise, status_run
   use health_m, only : check_elements
   use kinds_m, only : wp
+  use layout_m, only : chunk_size
   use log_m, only : log_t, write_log, warn, to_text
   use mass_scaling_m, only : refine_limits, needs_refinement
   use model_m, only : model_t
   use motion_sums_m, only : motion_sums_t
   use node_motion_m, only : leap_t, make_leap, move_tile_nodes, move_special_nodes
+  use parts_m, only : hourglass_viscous
   use scaled_step_m, only : scaled_step
   use skew_motion_m, only : hold_skew_nodes
   use state_m, only : state_t
@@ -69,7 +72,7 @@ contains
       if (.not. share < rules%tolerance) call warn(log, 'dynamic relaxation ended by DRTERM ' &
         //'before it converged')
     end associate
-    call begin_at_zero(start_velocity, state)
+    call begin_at_zero(model, start_velocity, state)
   end subroutine relax
 
   !> One cycle of relaxation: v(n+1/2) = DRFCTR v(n-1/2) + h a.
@@ -159,7 +162,8 @@ contains
   end function own_energy
 
   !> The clock and the account of the run begin; velocities are those that the deck gives.
-  subroutine begin_at_zero(velocity, state)
+  subroutine begin_at_zero(model, velocity, state)
+    type(model_t), intent(in) :: model
     real(wp), intent(in) :: velocity(:, :) !! (2, n_node)
     type(state_t), intent(inout) :: state
 
@@ -172,10 +176,25 @@ contains
     state%damping_work = 0.0_wp
     state%body_acceleration = 0.0_wp
     state%elements%viscous_work = 0.0_wp
+    call clear_viscous_hourglass(model, state%elements)
     if (allocated(state%external)) state%external = 0.0_wp
     if (allocated(state%elements%damping_work)) state%elements%damping_work = 0.0_wp
     if (allocated(state%elements%damping_stress)) state%elements%damping_stress = 0.0_wp
   end subroutine begin_at_zero
+
+  !> What viscous hourglass control has taken is gone; that of the other forms is stored.
+  subroutine clear_viscous_hourglass(model, elements)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(inout) :: elements
+    integer :: i
+
+    do i = 1, size(elements%hourglass_work)
+      if (model%parts(model%layout%chunk_part(i))%hourglass%form /= hourglass_viscous) cycle
+      elements%hourglass_work(i) = 0.0_wp
+      if (allocated(elements%erosion)) &
+        elements%erosion%hourglass((i - 1)*chunk_size + 1:i*chunk_size) = 0.0_wp
+    end do
+  end subroutine clear_viscous_hourglass
 
   !> The loads of the run: those of relaxation alone (SIDR 1) no longer act.
   subroutine leave_relaxation(model)

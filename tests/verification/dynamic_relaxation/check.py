@@ -34,6 +34,20 @@ def first(result, nodes, name):
     return np.array([result.node(int(node))[name][0] for node in nodes])
 
 
+def check_bent(run):
+    """Bent by its weight under viscous hourglass control, whose work before time zero is not of the run."""
+    deck = Deck("bent")
+    deck.add("*CONTROL_TERMINATION", (0.05,)).add("*CONTROL_TIMESTEP", (0.0, 0.9)).hourglass(1, 0.1)
+    deck.part().elastic(RHO, YOUNG, POISSON)
+    nodes = deck.mesh(*grid(4, 8, 1.0, LENGTH))
+    deck.fix(nodes[:5], x=1, y=1)
+    deck.add("*DEFINE_CURVE", (1, 2), (0.0, WEIGHT), (1.0e3, WEIGHT)).add("*LOAD_BODY_X", (1, 1.0))
+    deck.add("*CONTROL_DYNAMIC_RELAXATION", (50, 1e-6))
+    table = run.program(deck.output(glstat=0.01)).table("glstat")
+    run.check("bent: hourglass energy at time zero, viscous form", table["hourglass"][0], 0.0, 0.0, "abs", "dissipated before the run")
+    run.check("bent: internal energy is there", table["internal"][0], 1e-5, 0.0, "min")
+
+
 def check(run):
     for name, points in (("one point", None), ("four points", 4)):
         deck, nodes = column(f"weight in both phases, {name}", 2, (50, 1e-9), points)
@@ -57,6 +71,7 @@ def check(run):
     run.check("released: first acceleration of the top", top["ay"][0], WEIGHT, 2e-3, source="g")
     run.check("released: balance", table["energy_ratio"], 1.0, 2e-3, "abs", source="no work from outside")
     run.check("released: it swings to the other side", np.max(top["uy"]) / -settled(nodes)[-1], 0.9, 0.0, "min")
+    check_bent(run)
     # a weight of the run alone, and IDRFLG -999, change nothing
     plain, _ = column("plain", 0)
     never, _ = column("plain", 2, (50, 1e-9, None, None, None, None, None, -999))
