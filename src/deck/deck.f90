@@ -6,7 +6,7 @@
 !> All mistakes on the way are collected and come back as one error, in deck order.
 module deck_m
   use errors_m, only : error_t
-  use log_m, only : log_t
+  use log_m, only : log_t, write_log
   use contacts_m, only : contact_kind_t
   use model_m, only : model_t
   use deck_findings_m, only : list_findings
@@ -146,6 +146,10 @@ contains
     call emit_errors(deck%report, request%path, error)
     if (allocated(error)) return
     call echo_model(model, request%path, log)
+    if (allocated(deck%default_zeros)) call write_log(log, 'a 0 in these fields stands for the ' &
+      //'default, as in LS-DYNA: '//deck%default_zeros)
+    if (allocated(deck%kept_zeros)) call write_log(log, 'a 0 in these fields is kept, where ' &
+      //'LS-DYNA takes the default: '//deck%kept_zeros)
     call forget_places(deck)
     call write_effective(deck, parameters, tail, effective)
   end subroutine interpret_deck
@@ -187,7 +191,7 @@ contains
         case (known_ignored)
           call line_warning(deck, block%keyword, 'ignored'//block%given, 'has no effect here')
         case (known_refused)
-          call line_error(deck, block%keyword, reason//' not part of this version' &
+          call line_error(deck, block%keyword, reason//' not available in slideline' &
             //meant(block%given))
           call note_lost(block%given, raw)
         case default

@@ -175,7 +175,6 @@ contains
       contact%contact_type = integer_of(cards(1), 'CTYPE')
       if (is_blank(cards(1), 'CTYPE')) contact%contact_type = type_missing
       contact%n_gauss = integer_of(cards(1), 'NGAUSS')
-      if (is_blank(cards(1), 'NGAUSS') .or. contact%n_gauss == 0) contact%n_gauss = 2
       contact%penalty = real_of(cards(1), 'PEN')
       contact%penalty_unit = integer_of(cards(2), 'PUNIT')
       entry%unit_place = place_of(cards(2), 'PUNIT')

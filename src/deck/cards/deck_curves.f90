@@ -35,8 +35,6 @@ contains
     call refuse_outside(deck, cursor, head, 'SIDR', 0, 2, &
       'is not a phase (0 run, 1 dynamic relaxation, 2 both)')
     curve%phase = integer_of(head, 'SIDR')
-    if (.not. scale(1) > 0.0_wp) scale(1) = 1.0_wp
-    if (.not. abs(scale(2)) > 0.0_wp) scale(2) = 1.0_wp
     call read_rows(deck, parameters, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
       'is not beyond the point before it: abscissas must increase', cursor, points)
     if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
@@ -65,7 +63,6 @@ contains
     call read_head(deck, parameters, i_block, ['TBID', 'SFA '], &
       'is negative: it would turn the table round', cursor, head)
     scale = real_of(head, 'SFA')
-    if (.not. abs(scale) > 0.0_wp) scale = 1.0_wp
     call read_rows(deck, parameters, ['VALUE'], [scale], [real_of(head, 'OFFA')], &
       'is not beyond the value before it: the values of a table must increase', cursor, values)
     if (size(values, 2) == 0) call line_error(deck, head%line, 'the table has no values')

@@ -87,9 +87,9 @@ contains
     call next_card(deck, parameters, cursor, 1, card)
     call require_id(deck, cursor, card, 'EOSID')
     call next_card(deck, parameters, cursor, 2, start)
-    if (abs(real_of(start, 'V0')) > 0.0_wp .and. abs(real_of(start, 'V0') - 1.0_wp) > 0.0_wp) &
-      call report_field(deck, cursor, start, 'V0', 'is a volume at the start that is not that of ' &
-      //'the density RO, which this version does not have (0 or 1)')
+    if (abs(real_of(start, 'V0') - 1.0_wp) > 0.0_wp) call report_field(deck, cursor, start, &
+      'V0', 'is a volume at the start that is not that of the density RO, which this version ' &
+      //'does not have (0 or 1)')
   end subroutine read_cards
 
   !> One more equation of state.

@@ -114,9 +114,6 @@ contains
       else
         raw%sections = [raw%sections, section]
         raw%section_line = [raw%section_line, card%line]
-        ! 2 is LS-DYNA's default, through the thickness of a shell, which tools write: no number of
-        ! points in the plane.
-        raw%points_open = [raw%points_open, any(integer_of(card, 'NIP') == [0, 2])]
       end if
       call next_card(deck, parameters, cursor, 2, thickness)
       call row_comes(deck, cursor, found)

@@ -185,7 +185,6 @@ module deck_raw_m
     type(raw_part_t), allocatable :: parts(:)
     type(section_t), allocatable :: sections(:)
     integer, allocatable :: section_line(:)
-    logical, allocatable :: points_open(:)     !! NIP of a section is blank, 0 or 2
     type(material_t), allocatable :: materials(:)
     integer, allocatable :: material_line(:)
     type(eos_t), allocatable :: equations(:)   !! of state
@@ -243,7 +242,7 @@ contains
 
     raw%step_phrase = ''
     raw%scale_phrase = ''
-    allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%points_open(0), &
+    allocate (raw%parts(0), raw%sections(0), raw%section_line(0), &
       raw%materials(0), &
       raw%equations(0), raw%equation_line(0), raw%erosions(0), &
       raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &

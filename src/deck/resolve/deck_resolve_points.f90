@@ -14,8 +14,8 @@ module deck_resolve_points_m
 contains
 
   !> Parts of one-point quads: those with assumed strain must resist shear; in implicit runs those
-  !> without it, or of rubber, whose tangent is that of full integration, are fully integrated where
-  !> the deck leaves NIP open, and refused where it does not.
+  !> without it, or of rubber, whose tangent is that of full integration, are fully integrated,
+  !> whatever the deck says.
   subroutine settle_points(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
@@ -33,21 +33,15 @@ contains
           .and. allocated(model%materials(part%material)%rubber))) then
           call check_shear(deck, raw%parts(i)%line, i, model)
         else if (model%controls%implicit%is_on) then
-          if (raw%points_open(part%section)) then
-            if (len(changed) == 0) line = raw%section_line(part%section)
-            changed = changed//', '//to_text(part%id)
-            call find_full_section(n_section, part%section, model, full)
-            part%section = full
-          else
-            call line_error(deck, raw%section_line(part%section), 'part '//to_text(part%id) &
-              //' has one-point quads (NIP 1); the implicit method needs full integration ' &
-              //'(NIP 4), or hourglass control by assumed strain (IHQ 6)')
-          end if
+          if (len(changed) == 0) line = raw%section_line(part%section)
+          changed = changed//', '//to_text(part%id)
+          call find_full_section(n_section, part%section, model, full)
+          part%section = full
         end if
       end associate
     end do
     if (len(changed) > 0) call line_warning(deck, line, 'implicit points', 'the implicit method ' &
-      //'takes parts whose NIP is blank, 0 or 2 as NIP 4 where hourglass control is not by ' &
+      //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
       //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
   end subroutine settle_points
 
