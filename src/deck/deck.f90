@@ -23,6 +23,7 @@ module deck_m
   use deck_override_apply_m, only : apply_overrides
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
   use deck_raw_m, only : raw_t, start_raw
+  use deck_raw_lists_m, only : reserve_lists, trim_lists
   use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
   use deck_rubber_m, only : read_mooney_rivlin, read_blatz_ko
@@ -132,9 +133,11 @@ contains
     raw%step_phrase = override_phrase(overrides, 'DT', 0)
     raw%scale_phrase = override_phrase(overrides, 'TSSFAC', 0)
     raw%controls%title = ''
+    call reserve_lists(deck, raw)
     do i = 1, deck%n_block
       if (known(i) == known_honoured) call read_block(deck, parameters, i, kinds, overrides, raw)
     end do
+    call trim_lists(raw)
     call settle_friction(deck, overrides, raw)
     call apply_overrides(deck, overrides, raw, tail)
     call check_step(deck, raw)

@@ -104,8 +104,9 @@ contains
     if (is_bad(card, 'EOSID')) raw%lost%equations = .true.
     if (is_bad(card, 'EOSID')) return
     eos%id = integer_of(card, 'EOSID')
-    raw%equations = [raw%equations, eos]
-    raw%equation_line = [raw%equation_line, card%line]
+    raw%n_equation = raw%n_equation + 1
+    raw%equations(raw%n_equation) = eos
+    raw%equation_line(raw%n_equation) = card%line
   end subroutine append_eos
 
 end module deck_eos_m
