@@ -39,14 +39,14 @@ contains
           call take_stiffness_damping(deck, maps, row, model)
         case (row_load_rigid)
           call take_rigid_load(deck, raw, maps, row, model)
-        case (row_mass, row_mass_set)
-          call take_mass(deck, raw, maps, row, model)
         case (row_common)
           call refuse_implicit(deck, model, row%line, '*CONSTRAINED_NODE_SET is a constraint')
           call take_common_motion(deck, maps, row, model)
         end select
       end associate
     end do
+    if (any(raw%rows(:raw%n_row)%kind == row_mass .or. raw%rows(:raw%n_row)%kind == row_mass_set)) &
+      call collect_masses(deck, raw, maps, model)
   end subroutine resolve_damping
 
   !> Whether the run begins with dynamic relaxation, and what may not be in it.
@@ -206,31 +206,38 @@ contains
   end subroutine take_rigid_load
 
   !> *ELEMENT_MASS and *ELEMENT_MASS_NODE_SET: the mass on each node.
-  subroutine take_mass(deck, raw, maps, row, model)
+  subroutine collect_masses(deck, raw, maps, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
-    type(row_t), intent(in) :: row
     type(model_t), intent(inout) :: model
+    type(lumped_mass_t), allocatable :: masses(:)
     integer, allocatable :: nodes(:)
     logical, allocatable :: meshed(:)
-    integer :: k
+    integer :: i, k, n
 
-    call row_nodes(deck, maps, model, row, row%kind == row_mass_set, nodes)
     meshed = mark_meshed_nodes(model)
     if (raw%lost%elements .or. deck%incomplete) meshed = .true.
-    if (.not. allocated(model%conditions%lumped_masses)) &
-      allocate (model%conditions%lumped_masses(0))
-    do k = 1, size(nodes)
-      if (.not. meshed(nodes(k))) then
-        call reject_field(deck, id_place(row), ': node '//to_text(model%mesh%node_id(nodes(k))) &
-          //' belongs to no element and can not carry a mass')
-        return
-      end if
-      if (row%scale > 0.0_wp) model%conditions%lumped_masses = [model%conditions%lumped_masses, &
-        lumped_mass_t(nodes(k), row%scale)]
+    allocate (masses(64))
+    n = 0
+    do i = 1, raw%n_row
+      if (all(raw%rows(i)%kind /= [row_mass, row_mass_set])) cycle
+      call row_nodes(deck, maps, model, raw%rows(i), raw%rows(i)%kind == row_mass_set, nodes)
+      do k = 1, size(nodes)
+        if (.not. meshed(nodes(k))) then
+          call reject_field(deck, id_place(raw%rows(i)), ': node ' &
+            //to_text(model%mesh%node_id(nodes(k)))//' belongs to no element and can not carry a ' &
+            //'mass')
+          exit
+        end if
+        if (.not. raw%rows(i)%scale > 0.0_wp) cycle
+        if (n == size(masses)) masses = [masses, masses]
+        n = n + 1
+        masses(n) = lumped_mass_t(nodes(k), raw%rows(i)%scale)
+      end do
     end do
-  end subroutine take_mass
+    model%conditions%lumped_masses = masses(:n)
+  end subroutine collect_masses
 
   !> *CONSTRAINED_NODE_SET: its nodes may not be held or moved otherwise along the same direction.
   subroutine take_common_motion(deck, maps, row, model)
