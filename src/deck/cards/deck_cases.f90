@@ -85,9 +85,10 @@ contains
     item%job = default_job(item%id)
     if (.not. is_blank(card, 'JOBID')) then
       item%job = field_text(deck, card, field_number(card%names, 'JOBID'))
-      if (scan(item%job, ' /') > 0 .or. len(control_mistake(item%job)) > 0) call report_field(deck, cursor, card, 'JOBID', &
-        'is no stem of result files: expected a name without blanks, / and control ' &
-        //'characters')
+      if (scan(item%job, ' /') > 0 .or. len(control_mistake(item%job)) > 0) &
+        call report_field(deck, cursor, card, 'JOBID', &
+        'is no stem of result files: expected a name without blanks and /, ' &
+        //'nor control characters')
     end if
     line = cursor%line
     call next_text(deck, cursor, item%commands)

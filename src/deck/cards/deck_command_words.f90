@@ -6,8 +6,8 @@ module deck_command_words_m
   use deck_spelling_m, only : first_too_far, keep_nearer
   implicit none
   private
-  public :: lower_case, next_word, command_mistake, control_mistake, meant_word, is_memory, is_without_effect, &
-    read_threads, read_thread_share, read_count
+  public :: lower_case, next_word, command_mistake, control_mistake, meant_word, is_memory, &
+    is_without_effect, read_threads, read_thread_share, read_count
 
 contains
 
@@ -44,8 +44,8 @@ contains
     mistake = ''
     do i = 1, len(word)
       if (iachar(word(i:i)) >= 32 .and. iachar(word(i:i)) /= 127) cycle
-      mistake = '"'//trim(shown_text(word))//'" has a control character (line feed, escape or the ' &
-        //'like) where ? stands: expected none'
+      mistake = '"'//trim(shown_text(word))//'" has a control character (line feed, escape or ' &
+        //'the like) where ? stands: expected none'
       return
     end do
   end function control_mistake

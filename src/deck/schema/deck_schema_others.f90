@@ -6,8 +6,8 @@ module deck_schema_others_m
   public :: table_others
 
   !> First match counts: without effect here, or the beginning of `... not available in slideline`.
-  !> An asterisk stands for any ending. `unknown` keeps names of a family that holds honoured keywords
-  !> from the lines below it: a misspelt one must not pass for another.
+  !> An asterisk stands for any ending. `unknown` keeps names of a family that holds honoured
+  !> keywords from the lines below it: a misspelt one must not pass for another.
   character(81), parameter :: table_others(*) = [character(81) :: &
     'MAT_* this material is', &
     'EOS_* this equation of state is', &

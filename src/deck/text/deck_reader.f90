@@ -224,8 +224,8 @@ contains
     call find_file(deck%sources(1)%path, deck%sources(source)%path, &
       folders%items(:folders%n), name, path)
     if (len(path) == 0) then
-      call line_error(deck, line, 'the file "'//trim(shown_text(name))//'" was not found; what refers ' &
-        //'to nodes, elements and so on is not judged without it')
+      call line_error(deck, line, 'the file "'//trim(shown_text(name))//'" was not found; what ' &
+        //'refers to nodes, elements and so on is not judged without it')
       deck%incomplete = .true.
       return
     end if
