@@ -81,11 +81,15 @@ contains
     ids = [raw%contacts%contact%id, raw%transducers%contact%id]
     lines = deck%blocks([raw%contacts%block, raw%transducers%block])%keyword
     order = sorted_order(int(lines, long))
-    call refuse_again(deck, ids(order), lines(order), 'interface number ', 'interface'//position)
-    call refuse_again(deck, raw%cuts%id, raw%cuts%line, 'number ', 'cross section'//position)
-    has_number = raw%walls%wall%id > 0
-    call refuse_again(deck, pack(raw%walls%wall%id, has_number), pack(raw%walls%line, has_number), &
-      'wall number ', 'wall')
+    call refuse_again(deck, [ids(order)], [lines(order)], 'interface number ', &
+      'interface'//position)
+    ids = raw%cuts%id
+    lines = raw%cuts%line
+    call refuse_again(deck, ids, lines, 'number ', 'cross section'//position)
+    ids = raw%walls%wall%id
+    lines = raw%walls%line
+    has_number = ids > 0
+    call refuse_again(deck, pack(ids, has_number), pack(lines, has_number), 'wall number ', 'wall')
   end subroutine check_numbers
 
   !> An error of the line of each number that has come before.
