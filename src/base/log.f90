@@ -25,7 +25,7 @@ module log_m
     type(text_file_t) :: file
     type(error_t), allocatable :: trouble !! first failure to write
     integer :: n_warning = 0              !! warnings so far
-    character(:), allocatable :: waiting  !! lines from before the file was open, with room behind
+    character(:), allocatable :: waiting  !! lines from before the file was open, blanks behind
     integer :: n_waiting = 0              !! characters of these lines
   end type log_t
 
@@ -72,10 +72,10 @@ contains
     character(*), intent(in) :: text
     character(:), allocatable :: longer
 
-    if (.not. allocated(log%waiting)) allocate (character(4096) :: log%waiting)
+    if (.not. allocated(log%waiting)) log%waiting = repeat(' ', 4096)
     if (log%n_waiting + len(text) > len(log%waiting)) then
       allocate (character(2*log%n_waiting + len(text)) :: longer)
-      longer(:log%n_waiting) = log%waiting(:log%n_waiting)
+      longer(:) = log%waiting(:log%n_waiting)
       call move_alloc(longer, log%waiting)
     end if
     log%waiting(log%n_waiting + 1:log%n_waiting + len(text)) = text
