@@ -4,8 +4,9 @@
 !> a bare path works as i=. Words of LS-DYNA mean what they mean there, or are told to be without
 !> effect.
 module arguments_m
-  use deck_command_words_m, only : lower_case, next_word, meant_word, is_memory, &
-    is_without_effect, read_threads, read_thread_share, read_count
+  use deck_command_words_m, only : lower_case, next_word, meant_word, control_mistake, &
+    is_memory, is_without_effect, read_threads, read_thread_share, read_count
+  use deck_lines_m, only : shown_text
   use deck_overrides_m, only : is_override, override_mistake
   use errors_m, only : error_t, raise, status_input
   implicit none
@@ -135,7 +136,7 @@ contains
 
     write (found, '(ss,i0)') length
     write (limit, '(ss,i0)') argument_length
-    mistakes = mistakes//'"'//word(:shown)//'..." has '//trim(found) &
+    mistakes = mistakes//'"'//shown_text(word(:shown))//'..." has '//trim(found) &
       //' characters: an argument may have '//trim(limit)//new_line('a')
   end subroutine refuse_length
 
@@ -147,6 +148,9 @@ contains
     character(:), allocatable :: name, value, mistake
     integer :: equals
 
+    mistake = control_mistake(word)
+    call note(mistake, mistakes)
+    if (len(mistake) > 0) return
     equals = index(word, '=')
     ! No name before a value holds a slash: this is a path.
     if (equals > 0 .and. index(word(:equals), '/') > 0) equals = 0

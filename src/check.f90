@@ -13,7 +13,7 @@ module check_m
   use errors_m, only : error_t, raise, status_files
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
-  use log_m, only : log_t, to_text
+  use log_m, only : log_t, forget_waiting, to_text
   use model_json_m, only : model_json
   use model_m, only : model_t
   use monitor_m, only : monitor_t
@@ -90,7 +90,7 @@ contains
         call add_message('error', error%message, findings)
     else
       ! The deck's warnings are findings already.
-      if (allocated(monitor%log%waiting)) deallocate (monitor%log%waiting)
+      call forget_waiting(monitor%log)
       if (run%json) told = model_json(model)
       call start_run(model, monitor, error)
       call add_warnings(monitor%log, findings)
@@ -134,7 +134,7 @@ contains
 
     if (.not. allocated(log%waiting)) return
     start = 1
-    do while (start <= len(log%waiting))
+    do while (start <= log%n_waiting)
       last = start + index(log%waiting(start:), new_line('a')) - 2
       if (index(log%waiting(start:last), 'warning: ') == 1) &
         call add_message('warning', log%waiting(start + 9:last), findings)

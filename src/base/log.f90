@@ -10,7 +10,7 @@ module log_m
     close_text_file
   implicit none
   private
-  public :: log_t, open_log, write_log, warn, close_log, to_text
+  public :: log_t, open_log, write_log, warn, close_log, forget_waiting, to_text
 
   !> Number as text without surrounding blanks, for messages.
   interface to_text
@@ -25,7 +25,8 @@ module log_m
     type(text_file_t) :: file
     type(error_t), allocatable :: trouble !! first failure to write
     integer :: n_warning = 0              !! warnings so far
-    character(:), allocatable :: waiting  !! lines from before the file was open
+    character(:), allocatable :: waiting  !! lines from before the file was open, blanks behind
+    integer :: n_waiting = 0              !! characters of these lines
   end type log_t
 
 contains
@@ -44,8 +45,8 @@ contains
     if (allocated(error)) return
     log%is_open = .true.
     if (allocated(log%waiting)) then
-      call append_text(log%file, log%waiting, error)
-      deallocate (log%waiting)
+      call append_text(log%file, log%waiting(:log%n_waiting), error)
+      call forget_waiting(log)
     end if
   end subroutine open_log
 
@@ -60,12 +61,34 @@ contains
       if (allocated(log%trouble)) return
       call append_text(log%file, text//new_line('a'), error)
       if (allocated(error)) call move_alloc(error, log%trouble)
-    else if (allocated(log%waiting)) then
-      log%waiting = log%waiting//text//new_line('a')
     else
-      log%waiting = text//new_line('a')
+      call keep_waiting(log, text//new_line('a'))
     end if
   end subroutine write_log
+
+  !> Keep a text until the file is open.
+  subroutine keep_waiting(log, text)
+    type(log_t), intent(inout) :: log
+    character(*), intent(in) :: text
+    character(:), allocatable :: longer
+
+    if (.not. allocated(log%waiting)) log%waiting = repeat(' ', 4096)
+    if (log%n_waiting + len(text) > len(log%waiting)) then
+      allocate (character(2*log%n_waiting + len(text)) :: longer)
+      longer(:) = log%waiting(:log%n_waiting)
+      call move_alloc(longer, log%waiting)
+    end if
+    log%waiting(log%n_waiting + 1:log%n_waiting + len(text)) = text
+    log%n_waiting = log%n_waiting + len(text)
+  end subroutine keep_waiting
+
+  !> Forget the lines that wait for the file.
+  subroutine forget_waiting(log)
+    type(log_t), intent(inout) :: log
+
+    if (allocated(log%waiting)) deallocate (log%waiting)
+    log%n_waiting = 0
+  end subroutine forget_waiting
 
   !> A warning: counted, logged and shown on standard error.
   subroutine warn(log, text)

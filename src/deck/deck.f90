@@ -6,7 +6,7 @@
 !> All mistakes on the way are collected and come back as one error, in deck order.
 module deck_m
   use errors_m, only : error_t
-  use log_m, only : log_t
+  use log_m, only : log_t, write_log
   use contacts_m, only : contact_kind_t
   use model_m, only : model_t
   use deck_findings_m, only : list_findings
@@ -23,6 +23,7 @@ module deck_m
   use deck_override_apply_m, only : apply_overrides
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
   use deck_raw_m, only : raw_t, start_raw
+  use deck_raw_lists_m, only : reserve_lists, trim_lists
   use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
   use deck_rubber_m, only : read_mooney_rivlin, read_blatz_ko
@@ -132,9 +133,11 @@ contains
     raw%step_phrase = override_phrase(overrides, 'DT', 0)
     raw%scale_phrase = override_phrase(overrides, 'TSSFAC', 0)
     raw%controls%title = ''
+    call reserve_lists(deck, raw)
     do i = 1, deck%n_block
       if (known(i) == known_honoured) call read_block(deck, parameters, i, kinds, overrides, raw)
     end do
+    call trim_lists(raw)
     call settle_friction(deck, overrides, raw)
     call apply_overrides(deck, overrides, raw, tail)
     call check_step(deck, raw)
@@ -146,6 +149,10 @@ contains
     call emit_errors(deck%report, request%path, error)
     if (allocated(error)) return
     call echo_model(model, request%path, log)
+    if (allocated(deck%default_zeros)) call write_log(log, 'a 0 in these fields stands for the ' &
+      //'default, as in LS-DYNA: '//deck%default_zeros)
+    if (allocated(deck%kept_zeros)) call write_log(log, 'a 0 in these fields is kept, where ' &
+      //'LS-DYNA takes the default: '//deck%kept_zeros)
     call forget_places(deck)
     call write_effective(deck, parameters, tail, effective)
   end subroutine interpret_deck
@@ -187,7 +194,7 @@ contains
         case (known_ignored)
           call line_warning(deck, block%keyword, 'ignored'//block%given, 'has no effect here')
         case (known_refused)
-          call line_error(deck, block%keyword, reason//' not part of this version' &
+          call line_error(deck, block%keyword, reason//' not available in slideline' &
             //meant(block%given))
           call note_lost(block%given, raw)
         case default

@@ -59,6 +59,16 @@ def test_values_of_overrides_are_told_with_other_mistakes(slideline):
                                         'try slideline --help']
 
 
+@pytest.mark.parametrize("word", ["jobid=x\n state   normal", "jobid=x\x1b[31m", "d=out\x7f", "d=out\nx", "p:A=1\r", "memory=\t2m"])
+def test_control_characters_are_refused(slideline, tmp_path, word):
+    """A line feed in a job's name forged a line of status.out; escapes reached the log and the screen."""
+    done = slideline(word, deck=drop())
+    assert done.returncode == 1
+    shown = "".join(letter if letter.isprintable() else "?" for letter in word)
+    assert done.stderr.splitlines()[0] == f'"{shown}" has a control character (line feed, escape or the like) where ? stands: expected none'
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["job.k"]
+
+
 def test_results_folder_with_parents_and_job_name(slideline, tmp_path):
     done = slideline("d=a/b/c", "jobid=other", deck=drop(end_time=0.002))
     assert done.returncode == 0, done.stderr

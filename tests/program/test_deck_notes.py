@@ -140,3 +140,85 @@ def test_names_of_the_alternative_spelling(slideline, tmp_path):
     assert np.array_equal(numbers(tmp_path / "other/job.glstat.csv", "time"),
                           numbers(tmp_path / "plain/job.glstat.csv", "time"))
     assert (tmp_path / "other/job.vtkhdf").exists()
+
+
+def factors(factor):
+    """A block, moved and loaded in all ways that have a factor SF on a curve, and a rigid square."""
+    deck = Deck("factors").control(2.0e-2, dt=1.0e-4).part(1).part(2)
+    deck.elastic(1000.0, 1.0e6, 0.3).add("*MAT_RIGID", (2, 1000.0, 1.0e6, 0.3))
+    nodes = deck.mesh(*grid(4, 2, 2.0, 1.0)).tolist()
+    deck.mesh(*grid(1, 1, origin=(5.0, 0.0)), part=2)
+    deck.node_set(1, nodes[:5]).node_set(2, nodes[7:9]).curve(1, [(0.0, 0.0), (1.0, 1.0)]).curve(2, [(0.0, 40.0), (1.0, 60.0)])
+    deck.add("*SET_SEGMENT", (1,), (nodes[12], nodes[11])).add("*BOUNDARY_PRESCRIBED_MOTION_NODE", f"{nodes[10]},1,0,1,{factor}")
+    deck.add("*BOUNDARY_PRESCRIBED_MOTION_SET", f"1,2,2,1,{factor}").add("*BOUNDARY_PRESCRIBED_MOTION_RIGID", f"2,1,0,1,{factor}")
+    deck.add("*LOAD_RIGID_BODY", f"2,2,2,{factor}").add("*LOAD_NODE_POINT", f"{nodes[6]},1,2,{factor}")
+    deck.add("*LOAD_NODE_SET", f"2,1,2,{factor}").add("*LOAD_SEGMENT", f"2,{factor},0.0,{nodes[14]},{nodes[13]}")
+    deck.add("*LOAD_SEGMENT_SET", f"1,2,{factor}").add("*LOAD_BODY_X", f"2,{factor}").add("*LOAD_BODY_Y", f"2,{factor}")
+    deck.add("*DAMPING_PART_MASS", f"1,2,{factor}").add("*DATABASE_BINARY_RUNRSF", (100,)).add("*DATABASE_BNDOUT", (1.0e-3,))
+    deck.add("*DATABASE_RBDOUT", (1.0e-3,))
+    return deck.output(glstat=1.0e-3, nodout=1.0e-3, nodes=nodes)
+
+
+def tables(folder):
+    return [(folder / f"job.{name}.csv").read_bytes() for name in ("glstat", "nodout", "bndout", "rbdout")]
+
+
+def test_a_factor_of_zero_is_one(slideline, tmp_path):
+    """SF 0.0 and blank of motions and loads is 1, also in the deck as run and in a restart; one line of the log names them."""
+    for name, factor in (("zero", "0.0"), ("blank", ""), ("one", "1.0"), ("two", "2.0")):
+        done = slideline(f"d={name}", deck=factors(factor))
+        assert done.returncode == 0 and "warning" not in done.stderr, done.stderr
+    expected = tables(tmp_path / "one")
+    assert tables(tmp_path / "zero") == expected and tables(tmp_path / "blank") == expected
+    assert all(other != one for other, one in zip(tables(tmp_path / "two"), expected))
+    said = [line for line in (tmp_path / "zero/job.log").read_text().splitlines() if line.startswith("a 0 in these fields")]
+    assert len(said) == 1 and said[0].count("SF = 1 of *") == 11 and "SF = 1 of *LOAD_BODY_Y (" in said[0], said
+    assert "a 0 in these fields" not in (tmp_path / "one/job.log").read_text() + (tmp_path / "blank/job.log").read_text()
+    assert slideline("i=zero/job.effective.k", "jobid=job", "d=again").returncode == 0
+    assert tables(tmp_path / "again") == expected
+    assert slideline("d=half", "endtim=0.01", deck=factors("0.0")).returncode == 0
+    assert slideline("r=half/job.runrsf.h5", "endtim=0.02", "d=half").returncode == 0
+    assert numbers(tmp_path / "half/job.nodout.csv", "uy").tolist() == numbers(tmp_path / "one/job.nodout.csv", "uy").tolist()
+
+
+@pytest.mark.parametrize("cards, field", [
+    ("*CONTROL_DYNAMIC_RELAXATION\n0,0.0,0.0", "NRCYCK = 250"), ("*CONTROL_IMPLICIT_AUTO\n1,0,0", "ITEWIN = 5"),
+    ("*DEFINE_CURVE\n7,0,0.0,0.0\n0.0,1.0\n1.0,2.0", "SFO = 1"),
+    ("*MAT_JOHNSON_COOK\n7,1.0,1.0,2.6,0.3\n1.0,1.0,1.0,0,1.0,2.0,1.0,1.0\n1.0,-1.0,0.0,0,1.0\n0,0,0,0.0", "EFMIN = 1.000000E-06")])
+def test_a_zero_of_other_fields_is_their_default(slideline, tmp_path, cards, field):
+    status, said = said_by(slideline, tmp_path, cards)
+    assert status == 0 and f"{field} of *" in said, said
+
+
+def test_a_zero_that_is_kept_is_named(slideline, tmp_path):
+    """Bulk viscosity of a written 0 is none; LS-DYNA would take 1.5 and 0.06."""
+    status, said = said_by(slideline, tmp_path, "*CONTROL_BULK_VISCOSITY\n0.0,0.0")
+    assert status == 0 and "kept, where LS-DYNA takes the default: Q1 = 1.500000E+00 of *CONTROL_BULK_VISCOSITY (" in said, said
+    assert not np.any(numbers(tmp_path / "out/job.glstat.csv", "viscous"))
+
+
+def test_damping_of_foam_is_left_out(slideline, tmp_path):
+    """DAMP of two foams: one warning that says what is left out, and the bits of a deck without it."""
+    def foams(damp):
+        deck = Deck("foams").control(2.0e-3, dt=1.0e-4).part(1).part(2).curve(9, [(0.0, 1.0e3), (0.8, 1.0e5)])
+        for part in (1, 2):
+            nodes = deck.mesh(*grid(2, 2, origin=(2.0 * part, 0.0)), part=part).tolist()
+            deck.add("*MAT_CRUSHABLE_FOAM", f"{part},100.0,1.0e6,0.0,9,1.0e3,{damp}").fix(nodes[:3], y=1)
+            deck.add("*INITIAL_VELOCITY_NODE", *[(node, 0.0, -5.0) for node in nodes[6:]])
+        return deck.output(glstat=1.0e-4)
+    done = slideline("d=damped", deck=foams("0.1"))
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count("warning: ") == 1 and '(DAMP): "0.1" has no effect here: the viscous damping of the foam' in done.stderr
+    assert slideline("d=plain", deck=foams("")).stderr == ""
+    assert (tmp_path / "damped/job.glstat.csv").read_bytes() == (tmp_path / "plain/job.glstat.csv").read_bytes()
+
+
+@pytest.mark.parametrize("zeros", ["       0.0       0.0       0.0       0.0       0.0       0.0", "0,0,0,0,0,0", "0.000E+00,0.0"])
+def test_a_second_card_of_zeros_of_part_damping_is_read_over(slideline, tmp_path, zeros):
+    for name, rows in (("with", f"1,7,1.0,0\n{zeros}\n2,7\n{zeros}"), ("without", "1,7,1.0,0\n2,7")):
+        text = drop(end_time=0.001).text().rsplit("*END", 1)[0]
+        text += f"*DEFINE_CURVE\n7,\n0.0,50.0\n1.0,50.0\n*DAMPING_PART_MASS\n{rows}\n*END\n"
+        done = slideline(f"d={name}", deck=text)
+        assert done.returncode == 0 and done.stderr == "", done.stderr
+    assert (tmp_path / "with/job.glstat.csv").read_bytes() == (tmp_path / "without/job.glstat.csv").read_bytes()
+    assert numbers(tmp_path / "with/job.glstat.csv", "damping")[-1] > 0.0

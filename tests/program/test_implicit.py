@@ -53,6 +53,18 @@ def last_state(folder):
     return plot, numbers(folder / "job.glstat.csv", "time")[-1]
 
 
+@pytest.mark.parametrize("form", [13, 15])
+def test_one_point_quads_are_fully_integrated(slideline, tmp_path, form):
+    """NIP 1 without IHQ 6 is NIP 4, with one warning that names the parts; the same bits."""
+    for points in (1, 4):
+        text = pulled(100.0, dt=0.5).text().replace("1,13,,4", f"1,{form},,{points}")
+        done = slideline(f"d=nip{points}", deck=text)
+        assert done.returncode == 0, done.stderr
+        assert done.stderr.count("warning: ") == (points == 1), done.stderr
+        assert ("takes parts whose NIP is not 4 as NIP 4" in done.stderr) == (points == 1)
+    assert (tmp_path / "nip1/job.glstat.csv").read_bytes() == (tmp_path / "nip4/job.glstat.csv").read_bytes()
+
+
 def test_free_body_is_named(slideline, tmp_path):
     deck = implicit(1.0, 0.1).part(points=4).elastic(1000.0, 1.0e6, 0.3)
     nodes = deck.mesh(*grid(3, 2))

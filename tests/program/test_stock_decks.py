@@ -175,7 +175,7 @@ def test_everything_that_is_not_had_is_listed(exe, decks, tmp_path):
     lines = deck.read_text().splitlines()
     said = [line for line in done.stderr.splitlines() if line.startswith(f"{deck}:")]
     for keyword, field in UNSUPPORTED:
-        pattern = rf":(\d+): \*{keyword}(?=[ :]).*" + (rf"\({field}\)" if field else "not part of this version")
+        pattern = rf":(\d+): \*{keyword}(?=[ :]).*" + (rf"\({field}\)" if field else "not available in slideline")
         found = [re.search(pattern, line) for line in said]
         found = [match for match in found if match and not match.group(0).startswith("warning")]
         assert len(found) == 1, (keyword, field, done.stderr)

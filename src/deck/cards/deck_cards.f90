@@ -10,7 +10,7 @@ module deck_cards_m
   use deck_card_specs_m, only : card_spec_t, make_spec, field_number, max_field
   use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error, &
     place_field
-  use deck_schema_m, only : keyword_cards, refusal_reason, max_card
+  use deck_schema_m, only : keyword_cards, refusal_reason, lost_effect, max_card
   use deck_parameter_table_m, only : parameters_t
   use deck_parameters_m, only : substitute
   implicit none
@@ -247,7 +247,7 @@ contains
     else
       call line_warning(deck, card%line, 'field '//name//' '//spec%names(k)//to_text(spec%number), &
         'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &
-        //field_text(deck, card, k)//'" has no effect here')
+        //field_text(deck, card, k)//'" has no effect here'//lost_effect(trim(spec%names(k))))
     end if
   end subroutine notice_field
 

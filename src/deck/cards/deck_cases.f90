@@ -10,7 +10,7 @@ module deck_cases_m
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_text, report_field, &
     reject_field
   use deck_card_specs_m, only : field_number
-  use deck_command_words_m, only : next_word, command_mistake
+  use deck_command_words_m, only : next_word, command_mistake, control_mistake
   use deck_parameter_table_m, only : parameters_t
   use deck_values_m, only : integer_of, is_blank
   use deck_checks_m, only : require_id
@@ -85,8 +85,10 @@ contains
     item%job = default_job(item%id)
     if (.not. is_blank(card, 'JOBID')) then
       item%job = field_text(deck, card, field_number(card%names, 'JOBID'))
-      if (scan(item%job, ' /') > 0) call report_field(deck, cursor, card, 'JOBID', &
-        'is no stem of result files: expected a name without blanks and /')
+      if (scan(item%job, ' /') > 0 .or. len(control_mistake(item%job)) > 0) &
+        call report_field(deck, cursor, card, 'JOBID', &
+        'is no stem of result files: expected a name without blanks and /, ' &
+        //'nor control characters')
     end if
     line = cursor%line
     call next_text(deck, cursor, item%commands)

@@ -25,18 +25,17 @@ contains
       'is not a number of 1 or more')
   end subroutine require_id
 
-  !> Times from which and until when something acts; an end of 0 means never.
+  !> Times from which and until when something acts; the default of the end, also that of 0, is
+  !> never.
   subroutine take_life(deck, cursor, card, names, birth, death)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     character(*), intent(in) :: names(2)     !! of the two fields
     real(wp), intent(out) :: birth, death
-    real(wp), parameter :: never = 1.0e20_wp
 
     birth = real_of(card, names(1))
     death = real_of(card, names(2))
-    if (.not. abs(death) > 0.0_wp) death = never
     if (death <= birth) then
       call report_field(deck, cursor, card, names(2), 'is not after '//trim(names(1))//' "' &
         //to_text(birth)//'"')

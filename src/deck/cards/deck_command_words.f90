@@ -2,11 +2,12 @@
 !> Words of the command line that a deck may hold too, in COMMANDS of *CASE.
 module deck_command_words_m
   use deck_overrides_m, only : is_override, override_mistake, contact_names, run_names
+  use deck_lines_m, only : shown_text
   use deck_spelling_m, only : first_too_far, keep_nearer
   implicit none
   private
-  public :: lower_case, next_word, command_mistake, meant_word, is_memory, is_without_effect, &
-    read_threads, read_thread_share, read_count
+  public :: lower_case, next_word, command_mistake, control_mistake, meant_word, is_memory, &
+    is_without_effect, read_threads, read_thread_share, read_count
 
 contains
 
@@ -33,6 +34,22 @@ contains
     rest = trim(adjustl(rest(n + 1:)))
   end subroutine next_word
 
+  !> What is wrong with a word that has control characters, which would make lines of their own in
+  !> logs and status.out, or act on terminals; empty where nothing is.
+  pure function control_mistake(word) result(mistake)
+    character(*), intent(in) :: word
+    character(:), allocatable :: mistake
+    integer :: i
+
+    mistake = ''
+    do i = 1, len(word)
+      if (iachar(word(i:i)) >= 32 .and. iachar(word(i:i)) /= 127) cycle
+      mistake = '"'//trim(shown_text(word))//'" has a control character (line feed, escape or ' &
+        //'the like) where ? stands: expected none'
+      return
+    end do
+  end function control_mistake
+
   !> What is wrong with a word of COMMANDS; empty where nothing is.
   pure function command_mistake(word) result(mistake)
     character(*), intent(in) :: word
@@ -44,8 +61,10 @@ contains
     name = lower_case(word(:max(n - 1, 0)))
     value = word(n + 1:)
     unused = 1
-    mistake = ''
-    if (name == 'ncpu') then
+    mistake = control_mistake(word)
+    if (len(mistake) > 0) then
+      return
+    else if (name == 'ncpu') then
       call read_threads(value, unused, mistake)
     else if (name == 'perthread') then
       call read_thread_share(value, unused, mistake)

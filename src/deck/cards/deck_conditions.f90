@@ -167,7 +167,6 @@ contains
     type(card_t), intent(in) :: card
     type(columns_t), intent(in) :: at
     type(row_t), intent(inout) :: row
-    real(wp), parameter :: never = 1.0e28_wp
 
     row%line = card%line
     row%id = card%i(at%id)
@@ -184,7 +183,6 @@ contains
       row%motion = card%i(at%motion)
       row%birth = card%r(at%birth)
       row%death = card%r(at%death)
-      if (.not. abs(row%death) > 0.0_wp) row%death = never
     end if
     if (at%factors(1) > 0) then
       ! All six factors zero mean one everywhere.

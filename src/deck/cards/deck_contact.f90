@@ -52,7 +52,7 @@ contains
     if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%contact%id, &
       entry%contact%title)
     entry%block = i_block
-    call settle_number(deck, raw, entry)
+    call settle_number(raw, entry)
     do k = 1, cursor%n_card
       call next_card(deck, parameters, cursor, k, cards(k))
     end do
@@ -91,9 +91,8 @@ contains
         //kind_names(kinds))
     end if
     entry%kind = name_of(kinds, entry%contact%contact_type)
-    if (entry%contact%search_interval > 0) raw%explicit_only = [raw%explicit_only, &
-      entry%search_place]
-    raw%contacts = [raw%contacts, entry]
+    raw%n_contact = raw%n_contact + 1
+    raw%contacts(raw%n_contact) = entry
   end subroutine read_contact
 
   !> The type that a stock keyword stands for; 0 for our own.
@@ -175,7 +174,6 @@ contains
       contact%contact_type = integer_of(cards(1), 'CTYPE')
       if (is_blank(cards(1), 'CTYPE')) contact%contact_type = type_missing
       contact%n_gauss = integer_of(cards(1), 'NGAUSS')
-      if (is_blank(cards(1), 'NGAUSS') .or. contact%n_gauss == 0) contact%n_gauss = 2
       contact%penalty = real_of(cards(1), 'PEN')
       contact%penalty_unit = integer_of(cards(2), 'PUNIT')
       entry%unit_place = place_of(cards(2), 'PUNIT')

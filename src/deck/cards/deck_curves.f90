@@ -32,11 +32,10 @@ contains
     call read_head(deck, parameters, i_block, ['LCID', 'SFA '], &
       'is negative: it would turn the curve round', cursor, head)
     scale = reals_of(head, 'SFA', 'SFO')
+    scale(1) = abs(scale(1)) ! a negative one has been refused
     call refuse_outside(deck, cursor, head, 'SIDR', 0, 2, &
       'is not a phase (0 run, 1 dynamic relaxation, 2 both)')
     curve%phase = integer_of(head, 'SIDR')
-    if (.not. scale(1) > 0.0_wp) scale(1) = 1.0_wp
-    if (.not. abs(scale(2)) > 0.0_wp) scale(2) = 1.0_wp
     call read_rows(deck, parameters, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
       'is not beyond the point before it: abscissas must increase', cursor, points)
     if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
@@ -46,8 +45,9 @@ contains
     curve%id = integer_of(head, 'LCID')
     curve%abscissa = points(1, :)
     curve%ordinate = points(2, :)
-    raw%curves = [raw%curves, curve]
-    raw%curve_line = [raw%curve_line, head%line]
+    raw%n_curve = raw%n_curve + 1
+    raw%curves(raw%n_curve) = curve
+    raw%curve_line(raw%n_curve) = head%line
   end subroutine read_curve
 
   !> *DEFINE_TABLE: a number, and a value for each of the curves that come next.
@@ -64,15 +64,15 @@ contains
 
     call read_head(deck, parameters, i_block, ['TBID', 'SFA '], &
       'is negative: it would turn the table round', cursor, head)
-    scale = real_of(head, 'SFA')
-    if (.not. abs(scale) > 0.0_wp) scale = 1.0_wp
+    scale = abs(real_of(head, 'SFA')) ! a negative one has been refused
     call read_rows(deck, parameters, ['VALUE'], [scale], [real_of(head, 'OFFA')], &
       'is not beyond the value before it: the values of a table must increase', cursor, values)
     if (size(values, 2) == 0) call line_error(deck, head%line, 'the table has no values')
     if (is_bad(head, 'TBID')) raw%lost%tables = .true.
     if (is_bad(head, 'TBID')) return
     table = raw_table_t(integer_of(head, 'TBID'), head%line, i_block, values(1, :))
-    raw%tables = [raw%tables, table]
+    raw%n_table = raw%n_table + 1
+    raw%tables(raw%n_table) = table
   end subroutine read_table
 
   !> The first card: the number, and the scale factor of what must increase.

@@ -2,10 +2,11 @@
 !> *DAMPING_PART_MASS: a card for each part or part set, with a second one where FLAG asks for it.
 module deck_damping_m
   use kinds_m, only : wp
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, check_rest, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, row_comes, check_rest, &
+    report_field
   use deck_checks_m, only : refuse_outside
   use deck_fields_m, only : card_t
-  use deck_lines_m, only : deck_t
+  use deck_lines_m, only : deck_t, line_text
   use deck_parameter_table_m, only : parameters_t
   use deck_raw_m, only : raw_t, row_t, append_row, row_damping_part, row_damping_part_set, id_fields
   use deck_values_m, only : integer_of, real_of, reals_of
@@ -51,10 +52,24 @@ contains
         row%factor = reals_of(factors, 'STX', 'STY')
         if (row%factor(1) < 0.0_wp) call report_field(deck, cursor, factors, 'STX', feeds)
         if (row%factor(2) < 0.0_wp) call report_field(deck, cursor, factors, 'STY', feeds)
+      else
+        call skip_zeros(deck, cursor)
       end if
       if (.not. any(card%bad)) call append_row(raw, row)
     end do
     call check_rest(deck, cursor)
   end subroutine read_part_damping
+
+  !> Move past a second card of zeros, which common writers put where FLAG is 0 too: it is no row,
+  !> since there is no part 0.
+  subroutine skip_zeros(deck, cursor)
+    type(deck_t), intent(in) :: deck
+    type(cursor_t), intent(inout) :: cursor
+    logical :: found
+
+    call row_comes(deck, cursor, found)
+    if (.not. found) return
+    if (verify(line_text(deck, cursor%line), ' 0.,+-eEdD') == 0) cursor%line = cursor%line + 1
+  end subroutine skip_zeros
 
 end module deck_damping_m

@@ -41,7 +41,9 @@ contains
       case default
         call take_bounds(deck, cursor, card, 'PID', end_body_place, end_body_way, entry)
       end select
-      if (.not. any(card%bad)) raw%ends = [raw%ends, entry]
+      if (any(card%bad)) cycle
+      raw%n_end = raw%n_end + 1
+      raw%ends(raw%n_end) = entry
     end do
   end subroutine read_ends
 

@@ -87,9 +87,9 @@ contains
     call next_card(deck, parameters, cursor, 1, card)
     call require_id(deck, cursor, card, 'EOSID')
     call next_card(deck, parameters, cursor, 2, start)
-    if (abs(real_of(start, 'V0')) > 0.0_wp .and. abs(real_of(start, 'V0') - 1.0_wp) > 0.0_wp) &
-      call report_field(deck, cursor, start, 'V0', 'is a volume at the start that is not that of ' &
-      //'the density RO, which this version does not have (0 or 1)')
+    if (abs(real_of(start, 'V0') - 1.0_wp) > 0.0_wp) call report_field(deck, cursor, start, &
+      'V0', 'is a volume at the start that is not that of the density RO, which this version ' &
+      //'does not have (0 or 1)')
   end subroutine read_cards
 
   !> One more equation of state.
@@ -104,8 +104,9 @@ contains
     if (is_bad(card, 'EOSID')) raw%lost%equations = .true.
     if (is_bad(card, 'EOSID')) return
     eos%id = integer_of(card, 'EOSID')
-    raw%equations = [raw%equations, eos]
-    raw%equation_line = [raw%equation_line, card%line]
+    raw%n_equation = raw%n_equation + 1
+    raw%equations(raw%n_equation) = eos
+    raw%equation_line(raw%n_equation) = card%line
   end subroutine append_eos
 
 end module deck_eos_m

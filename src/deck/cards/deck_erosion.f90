@@ -48,7 +48,8 @@ contains
     call refuse_negative(deck, cursor, rest, 'DTMIN')
     if (real_of(rest, 'DTMIN') > 0.0_wp) entry%erosion%least_step = real_of(rest, 'DTMIN')
     call take_counts(deck, cursor, card, entry%erosion)
-    raw%erosions = [raw%erosions, entry]
+    raw%n_erosion = raw%n_erosion + 1
+    raw%erosions(raw%n_erosion) = entry
   end subroutine read_erosion
 
   !> Whether a field gives a criterion.

@@ -42,10 +42,11 @@ contains
     call append_material(raw, material, card)
     call check_rest(deck, cursor)
     if (is_bad(card, 'MID') .or. is_bad(card, 'LCID')) return
-    foam%material = size(raw%materials)
+    foam%material = raw%n_material
     foam%curve = integer_of(card, 'LCID')
     foam%place = place_of(card, 'LCID')
-    raw%foams = [raw%foams, foam]
+    raw%n_foam = raw%n_foam + 1
+    raw%foams(raw%n_foam) = foam
   end subroutine read_crushable_foam
 
 end module deck_foam_m

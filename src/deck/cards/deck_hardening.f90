@@ -64,8 +64,9 @@ contains
     call append_material(raw, material, card)
     call check_rest(deck, cursor)
     if (is_bad(card, 'MID') .or. is_bad(rate, 'LCSS')) return
-    hardening%material = size(raw%materials)
-    raw%hardenings = [raw%hardenings, hardening]
+    hardening%material = raw%n_material
+    raw%n_hardening = raw%n_hardening + 1
+    raw%hardenings(raw%n_hardening) = hardening
   end subroutine read_piecewise
 
   !> C, P, LCSS, LCSR and VP.
@@ -186,8 +187,9 @@ contains
     call append_material(raw, material, card)
     call check_rest(deck, cursor)
     if (is_bad(card, 'MID')) return
-    hardening%material = size(raw%materials)
-    raw%hardenings = [raw%hardenings, hardening]
+    hardening%material = raw%n_material
+    raw%n_hardening = raw%n_hardening + 1
+    raw%hardenings(raw%n_hardening) = hardening
   end subroutine read_hydro
 
   !> SIGY and ETAN.

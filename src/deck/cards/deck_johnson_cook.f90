@@ -144,7 +144,7 @@ contains
     flow%rate = real_of(card, 'EPSO')
   end subroutine take_stress
 
-  !> A bound on the flow stress; 0 means none.
+  !> A bound on the flow stress; its default is none.
   subroutine take_bound(deck, cursor, card, name, bound)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
@@ -152,7 +152,6 @@ contains
     character(*), intent(in) :: name
     real(wp), intent(inout) :: bound
 
-    if (.not. abs(real_of(card, name)) > 0.0_wp) return
     if (real_of(card, name) < real_of(card, 'A')) then
       call report_field(deck, cursor, card, name, 'is below A: a bound on the flow stress is not')
     else
@@ -190,7 +189,6 @@ contains
 
     call take_cutoff(deck, cursor, card, material)
     kind = real_of(card, 'SPALL')
-    if (.not. abs(kind) > 0.0_wp) kind = real(spall_stress, wp)
     if (all(abs(kind - [1.0_wp, 2.0_wp, 3.0_wp]) > 0.0_wp)) call report_field(deck, cursor, card, &
       'SPALL', 'is not 1 (least pressure), 2 (largest stress) or 3 (largest tension)')
     material%spall = spall_pressure

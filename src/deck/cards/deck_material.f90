@@ -179,8 +179,9 @@ contains
 
     if (is_bad(card, 'MID')) raw%lost%materials = .true.
     if (is_bad(card, 'MID')) return
-    raw%materials = [raw%materials, material]
-    raw%material_line = [raw%material_line, card%line]
+    raw%n_material = raw%n_material + 1
+    raw%materials(raw%n_material) = material
+    raw%material_line(raw%n_material) = card%line
   end subroutine append_material
 
 end module deck_material_m

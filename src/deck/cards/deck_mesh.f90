@@ -263,7 +263,7 @@ contains
       action = -add_parts
     case default
       call report_field(deck, cursor, card, 'OPTION', 'is not ALL, NODE, DNODE, PART or DPART ' &
-        //'(boxes are not part of this version)')
+        //'(boxes are not available in slideline)')
       return
     end select
     if (all(card%i(2:n) == 0)) call report_field(deck, cursor, card, 'E1', &

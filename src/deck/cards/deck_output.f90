@@ -2,8 +2,7 @@
 !> *DATABASE_ cards: what is written and how often.
 module deck_output_m
   use kinds_m, only : wp
-  use log_m, only : to_text
-  use deck_lines_m, only : deck_t, line_error
+  use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, next_row, row_comes, &
@@ -108,15 +107,13 @@ contains
     do while (found)
       entry = raw_section_t(line=cursor%line)
       if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%id, entry%title)
-      if (entry%id == 0) entry%id = size(raw%cuts) + 1
-      if (any(raw%cuts%id == entry%id)) call line_error(deck, entry%line, 'the number ' &
-        //to_text(entry%id)//' belongs to an earlier cross section (without a number it is the ' &
-        //'position in the deck)')
+      if (entry%id == 0) entry%id = raw%n_cut + 1
       call next_card(deck, parameters, cursor, 1, card)
       entry%line = card%line
       call take_set(deck, cursor, card, 'NSID', 'node', entry%nodes)
       call take_set(deck, cursor, card, 'SSID', 'shell', entry%shells)
-      raw%cuts = [raw%cuts, entry]
+      raw%n_cut = raw%n_cut + 1
+      raw%cuts(raw%n_cut) = entry
       call row_comes(deck, cursor, found)
     end do
   end subroutine read_cross_sections

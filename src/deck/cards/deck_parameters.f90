@@ -136,7 +136,8 @@ contains
       if (line < deck%blocks(i_block)%last) then
         if (continues(line_text(deck, line + 1), spec%widths(1))) cycle
       end if
-      call evaluate(formula, named_values(parameters, deck%blocks(i_block)%source), value, trouble)
+      call evaluate(formula, named_values(parameters, deck%blocks(i_block)%source, &
+        formula), value, trouble)
       if (allocated(trouble)) then
         call field_error(deck, spec, card, 1, 'cannot be computed: '//trouble)
       else

@@ -62,7 +62,8 @@ contains
       if (is_bad(card, 'PID')) then
         raw%lost%parts = .true.
       else
-        raw%parts = [raw%parts, part]
+        raw%n_part = raw%n_part + 1
+        raw%parts(raw%n_part) = part
       end if
     end do
   end subroutine read_part
@@ -112,11 +113,9 @@ contains
       if (is_bad(card, 'SECID')) then
         raw%lost%sections = .true.
       else
-        raw%sections = [raw%sections, section]
-        raw%section_line = [raw%section_line, card%line]
-        ! 2 is LS-DYNA's default, through the thickness of a shell, which tools write: no number of
-        ! points in the plane.
-        raw%points_open = [raw%points_open, any(integer_of(card, 'NIP') == [0, 2])]
+        raw%n_section = raw%n_section + 1
+        raw%sections(raw%n_section) = section
+        raw%section_line(raw%n_section) = card%line
       end if
       call next_card(deck, parameters, cursor, 2, thickness)
       call row_comes(deck, cursor, found)
@@ -180,9 +179,10 @@ contains
       given = .not. [is_blank(card, 'Q1'), is_blank(card, 'Q2')]
       if (is_bad(card, 'HGID')) raw%lost%hourglasses = .true.
       if (is_bad(card, 'HGID')) cycle
-      raw%hourglasses = [raw%hourglasses, hourglass]
-      raw%hourglass_line = [raw%hourglass_line, card%line]
-      raw%bulk_given = reshape([raw%bulk_given, given], [2, size(raw%hourglasses)])
+      raw%n_hourglass = raw%n_hourglass + 1
+      raw%hourglasses(raw%n_hourglass) = hourglass
+      raw%hourglass_line(raw%n_hourglass) = card%line
+      raw%bulk_given(:, raw%n_hourglass) = given
     end do
   end subroutine read_hourglass
 

@@ -182,10 +182,13 @@ module deck_raw_m
     real(wp) :: z_first = 0.0_wp
     integer :: z_line = 0                      !! first node whose z differs from the first node's
     integer, allocatable :: element_id(:), element_part(:), element_nodes(:, :), element_line(:)
+    ! Lists with a number of entries beside them: while the cards are read they may be longer.
+    integer :: n_part = 0, n_section = 0, n_material = 0, n_equation = 0, n_erosion = 0
+    integer :: n_hardening = 0, n_foam = 0, n_table = 0, n_hourglass = 0, n_curve = 0
+    integer :: n_contact = 0, n_transducer = 0, n_wall = 0, n_end = 0, n_system = 0, n_cut = 0
     type(raw_part_t), allocatable :: parts(:)
     type(section_t), allocatable :: sections(:)
     integer, allocatable :: section_line(:)
-    logical, allocatable :: points_open(:)     !! NIP of a section is blank, 0 or 2
     type(material_t), allocatable :: materials(:)
     integer, allocatable :: material_line(:)
     type(eos_t), allocatable :: equations(:)   !! of state
@@ -243,14 +246,7 @@ contains
 
     raw%step_phrase = ''
     raw%scale_phrase = ''
-    allocate (raw%parts(0), raw%sections(0), raw%section_line(0), raw%points_open(0), &
-      raw%materials(0), &
-      raw%equations(0), raw%equation_line(0), raw%erosions(0), &
-      raw%material_line(0), raw%hourglasses(0), raw%hourglass_line(0), raw%bulk_given(2, 0), &
-      raw%curves(0), raw%curve_line(0), raw%hardenings(0), raw%foams(0), raw%tables(0), &
-      raw%contacts(0), raw%transducers(0), raw%walls(0), raw%ends(0), raw%systems(0), raw%cuts(0), &
-      raw%rows(64), raw%node_velocities(0), &
-      raw%node_sets(16), raw%part_sets(16), &
+    allocate (raw%rows(64), raw%node_velocities(0), raw%node_sets(16), raw%part_sets(16), &
       raw%segment_sets(16), raw%shell_sets(4), raw%explicit_only(0))
     call reserve_nodes(raw, 0)
     call reserve_elements(raw, 0)

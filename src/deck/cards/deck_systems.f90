@@ -56,7 +56,8 @@ contains
     end if
     system%axes(:, 1) = system%axes(:, 1)/norm2(system%axes(:, 1))
     system%axes(:, 2) = sign(1.0_wp, across)*[-system%axes(2, 1), system%axes(1, 1)]
-    raw%systems = [raw%systems, system]
+    raw%n_system = raw%n_system + 1
+    raw%systems(raw%n_system) = system
   end subroutine read_system
 
 end module deck_systems_m

@@ -1,8 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> *CONTACT_2D_FORCE_TRANSDUCER: a surface on which the forces of interfaces are added up.
 module deck_transducer_m
-  use log_m, only : to_text
-  use deck_lines_m, only : deck_t, line_error
+  use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
   use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, report_field
@@ -30,7 +29,7 @@ contains
     if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%contact%id, &
       entry%contact%title)
     entry%block = i_block
-    call settle_number(deck, raw, entry)
+    call settle_number(raw, entry)
     do k = 1, size(cards)
       call next_card(deck, parameters, cursor, k, cards(k))
     end do
@@ -39,20 +38,16 @@ contains
       'is not a surface (more than 0: part set, less than 0: node set)')
     entry%places(1) = place_of(cards(1), 'SURFA')
     if (.not. is_bad(cards(1), 'SURFA')) entry%sides(1) = integer_of(cards(1), 'SURFA')
-    raw%transducers = [raw%transducers, entry]
+    raw%n_transducer = raw%n_transducer + 1
+    raw%transducers(raw%n_transducer) = entry
   end subroutine read_transducer
 
   !> The number of an interface or transducer: its own, or its position in the deck.
-  subroutine settle_number(deck, raw, entry)
-    type(deck_t), intent(inout) :: deck
+  pure subroutine settle_number(raw, entry)
     type(raw_t), intent(in) :: raw
     type(raw_contact_t), intent(inout) :: entry
 
-    if (entry%contact%id == 0) entry%contact%id = size(raw%contacts) + size(raw%transducers) + 1
-    if (any([raw%contacts%contact%id, raw%transducers%contact%id] == entry%contact%id)) &
-      call line_error(deck, deck%blocks(entry%block)%keyword, 'the interface number ' &
-      //to_text(entry%contact%id)//' belongs to an earlier interface (without a number it is the ' &
-      //'position in the deck)')
+    if (entry%contact%id == 0) entry%contact%id = raw%n_contact + raw%n_transducer + 1
   end subroutine settle_number
 
 end module deck_transducer_m

@@ -2,14 +2,13 @@
 !> *RIGIDWALL_PLANAR: the card.
 module deck_wall_m
   use kinds_m, only : wp
-  use log_m, only : to_text
   use walls_m, only : wall_t, friction_sticks
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
     report_field
   use deck_values_m, only : integer_of, real_of, reals_of
   use deck_checks_m, only : refuse_negative, take_life
   use deck_fields_m, only : card_t
-  use deck_lines_m, only : deck_t, line_error
+  use deck_lines_m, only : deck_t
   use deck_parameter_table_m, only : parameters_t
   use deck_raw_m, only : raw_t, raw_wall_t
   implicit none
@@ -32,8 +31,6 @@ contains
     call open_cursor(deck, i_block, cursor)
     entry%line = deck%blocks(i_block)%keyword
     if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%wall%id, title)
-    if (entry%wall%id > 0 .and. any(raw%walls%wall%id == entry%wall%id)) call line_error(deck, &
-      entry%line, 'the wall number '//to_text(entry%wall%id)//' belongs to an earlier wall')
     call next_card(deck, parameters, cursor, 1, card)
     call next_card(deck, parameters, cursor, 2, place)
     call check_rest(deck, cursor)
@@ -48,7 +45,8 @@ contains
     entry%reach = real_of(card, 'OFFSET')
     call take_plane(deck, cursor, place, entry%wall)
     call take_friction(deck, cursor, place, entry%wall)
-    raw%walls = [raw%walls, entry]
+    raw%n_wall = raw%n_wall + 1
+    raw%walls(raw%n_wall) = entry
   end subroutine read_wall
 
   !> Tail and head: a point of the wall, and its normal.

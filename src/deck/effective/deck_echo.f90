@@ -21,8 +21,13 @@ contains
     type(model_t), intent(in) :: model
     character(*), intent(in) :: path
     type(log_t), intent(inout) :: log
+    integer :: n_element(size(model%parts))
     integer :: i
 
+    n_element = 0
+    do i = 1, model%mesh%n_element
+      n_element(model%mesh%element_part(i)) = n_element(model%mesh%element_part(i)) + 1
+    end do
     call write_log(log, 'deck: '//path)
     call write_log(log, 'title: '//model%controls%title)
     call write_log(log, 'mesh: '//to_text(model%mesh%n_node)//' nodes, ' &
@@ -33,7 +38,7 @@ contains
       //to_text(count(.not. model%mesh%coordinates(1, :) > 0.0_wp)) &
       //' node(s) at r = 0 keep to it (u_r = 0); rigid bodies move along it alone')
     do i = 1, size(model%parts)
-      call echo_part(model, i, log)
+      call echo_part(model, i, n_element(i), log)
     end do
     do i = 1, size(model%materials)
       call echo_material(model, i, log)
@@ -111,14 +116,15 @@ contains
   end subroutine echo_short_curves
 
   !> One part.
-  subroutine echo_part(model, i, log)
+  subroutine echo_part(model, i, n_element, log)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
+    integer, intent(in) :: n_element !! of the part
     type(log_t), intent(inout) :: log
 
     associate (part => model%parts(i))
       call write_log(log, 'part '//to_text(part%id)//' "'//part%title//'": ' &
-        //to_text(count(model%mesh%element_part == i))//' elements, section ' &
+        //to_text(n_element)//' elements, section ' &
         //to_text(model%sections(part%section)%id)//', material ' &
         //to_text(model%materials(part%material)%id))
     end associate

@@ -3,7 +3,7 @@
 !> model to the last bit. Lines that nothing changed are copied as they were written.
 module deck_effective_m
   use deck_lines_m, only : deck_t, layout_mark
-  use deck_parameter_table_m, only : parameters_t, parameter_comments
+  use deck_parameter_table_m, only : parameters_t, parameter_comment
   use heap_m, only : give_back_memory
   implicit none
   private
@@ -53,7 +53,9 @@ contains
       last_block(deck%blocks(i)%source) = i
     end do
     call put(buffer, '$ The deck as run: includes, parameters and command line resolved.')
-    call put_text(buffer, parameter_comments(parameters))
+    do i = 1, parameters%n
+      call put_text(buffer, parameter_comment(parameters, i))
+    end do
     call put(buffer, '*KEYWORD')
     do i = 1, deck%n_block
       if (i > 1 .and. allocated(buffer%text)) call forget_text(deck, last_block, i - 1)

@@ -1,7 +1,10 @@
 ! SPDX-License-Identifier: MIT
 !> Id maps of every kind of thing in a deck; ids given twice are errors.
 module deck_maps_m
-  use deck_lines_m, only : deck_t, place_t, where_text
+  use kinds_m, only : long
+  use log_m, only : to_text
+  use sorting_m, only : sorted_order
+  use deck_lines_m, only : deck_t, place_t, line_error, where_text
   use deck_cards_m, only : reject_field
   use deck_ids_m, only : id_map_t, map_ids, index_of
   use deck_raw_m, only : raw_t
@@ -49,6 +52,7 @@ contains
       [raw%shell_sets(:raw%n_shell_set)%line], 'SID', maps%shell_sets)
     call map_kind(deck, 'coordinate system', [raw%systems%id], [raw%systems%line], 'CID', &
       maps%systems)
+    call check_numbers(deck, raw)
     all_lost = deck%incomplete
     maps%nodes%incomplete = raw%lost%nodes .or. raw%n_node == 0 .or. all_lost
     maps%parts%incomplete = raw%lost%parts .or. all_lost
@@ -65,6 +69,44 @@ contains
     maps%shell_sets%incomplete = raw%lost%sets .or. all_lost
     maps%elements%incomplete = raw%lost%elements .or. raw%n_element == 0 .or. all_lost
   end subroutine make_maps
+
+  !> Numbers of interfaces and transducers, walls and cross sections, which nothing refers to by id.
+  subroutine check_numbers(deck, raw)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    character(*), parameter :: position = ' (without a number it is the position in the deck)'
+    integer, allocatable :: ids(:), lines(:), order(:)
+    logical, allocatable :: has_number(:)
+
+    ids = [raw%contacts%contact%id, raw%transducers%contact%id]
+    lines = deck%blocks([raw%contacts%block, raw%transducers%block])%keyword
+    order = sorted_order(int(lines, long))
+    call refuse_again(deck, [ids(order)], [lines(order)], 'interface number ', &
+      'interface'//position)
+    ids = raw%cuts%id
+    lines = raw%cuts%line
+    call refuse_again(deck, ids, lines, 'number ', 'cross section'//position)
+    ids = raw%walls%wall%id
+    lines = raw%walls%line
+    has_number = ids > 0
+    call refuse_again(deck, pack(ids, has_number), pack(lines, has_number), 'wall number ', 'wall')
+  end subroutine check_numbers
+
+  !> An error of the line of each number that has come before.
+  subroutine refuse_again(deck, ids, lines, what, owner)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: ids(:), lines(:)   !! in the order of the deck
+    character(*), intent(in) :: what, owner   !! kind of number, what it is the number of
+    type(id_map_t) :: map
+    integer, allocatable :: twice(:)
+    integer :: i
+
+    call map_ids(ids, map, twice)
+    do i = 1, size(twice)
+      call line_error(deck, lines(twice(i)), 'the '//what//to_text(ids(twice(i))) &
+        //' belongs to an earlier '//owner)
+    end do
+  end subroutine refuse_again
 
   !> One map, with an error for each id that comes again.
   subroutine map_kind(deck, what, ids, lines, field, map, of_beams)

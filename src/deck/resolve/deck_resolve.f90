@@ -94,6 +94,10 @@ contains
     do i = 1, size(raw%explicit_only)
       call warn_of_field(deck, raw%explicit_only(i), no_effect)
     end do
+    do i = 1, size(raw%contacts)
+      if (raw%contacts(i)%contact%search_interval > 0) call warn_of_field(deck, &
+        raw%contacts(i)%search_place, no_effect)
+    end do
     if (len(raw%scale_phrase) > 0) call line_warning(deck, 0, 'implicit tssfac', &
       raw%scale_phrase//' '//no_effect)
     if (raw%controls%implicit%is_dynamic) return

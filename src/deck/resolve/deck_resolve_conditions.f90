@@ -178,11 +178,14 @@ contains
     type(raw_t), intent(in) :: raw
     type(model_t), intent(in) :: model
     integer, intent(in) :: rows(:) !! of the motions
+    logical :: is_skew(model%mesh%n_node)
     integer :: i, k
 
     if (.not. allocated(model%conditions%skew_supports)) return
+    is_skew = .false.
+    is_skew(model%conditions%skew_supports%node) = .true.
     do i = 1, size(rows)
-      if (.not. any(model%conditions%skew_supports%node == model%conditions%motions(i)%node)) cycle
+      if (.not. is_skew(model%conditions%motions(i)%node)) cycle
       call reject_field(deck, id_place(raw%rows(rows(i))), ': node ' &
         //to_text(model%mesh%node_id(model%conditions%motions(i)%node)) &
         //' has a support along an axis of a coordinate system (CID) and cannot be moved by this ' &
@@ -375,16 +378,20 @@ contains
     type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     type(body_load_t) :: load
-    integer :: i
+    type(body_load_t), allocatable :: loads(:)
+    integer :: i, n
 
-    allocate (model%conditions%body_loads(0))
+    allocate (loads(count(raw%rows(:raw%n_row)%kind == row_body)))
+    n = 0
     do i = 1, raw%n_row
       associate (row => raw%rows(i))
         if (row%kind == row_body) then
           call resolve_id(deck, maps%curves, row%curve, 'curve', id_place(row), load%curve)
           load%direction = row%direction
           load%scale = row%scale
-          if (load%curve > 0) model%conditions%body_loads = [model%conditions%body_loads, load]
+          if (load%curve == 0) cycle
+          n = n + 1
+          loads(n) = load
         else if (row%kind == row_damping) then
           if (allocated(model%conditions%damping)) call line_error(deck, row%line, &
             'is given a second time')
@@ -397,6 +404,7 @@ contains
         end if
       end associate
     end do
+    model%conditions%body_loads = loads(:n)
   end subroutine collect_global
 
   !> A curve of damping must not fall below 0.

@@ -21,10 +21,14 @@ contains
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
+    type(cross_section_t), allocatable :: sections(:)
     type(cross_section_t) :: section
-    integer :: i, nodes, shells
+    logical :: is_whole !! no node of an element is missing
+    integer :: i, n, nodes, shells
 
-    allocate (model%controls%output%cross_sections(0))
+    is_whole = all(model%mesh%element_nodes > 0)
+    allocate (sections(size(raw%cuts)))
+    n = 0
     do i = 1, size(raw%cuts)
       associate (cut => raw%cuts(i))
         nodes = 0
@@ -40,13 +44,15 @@ contains
         call keep_first(model%node_sets(nodes)%nodes, model%mesh%n_node, section%nodes)
         call keep_first(model%shell_sets(shells)%elements, model%mesh%n_element, section%elements)
         ! Of a mesh with mistakes only these are told; a set of none is told where it stands.
-        if (any(model%mesh%element_nodes < 1)) return
+        if (.not. is_whole) exit
         if (size(section%nodes) == 0 .or. size(section%elements) == 0) cycle
         call check_section(deck, cut, model, section)
         call find_edges(model%mesh%element_nodes, section)
-        model%controls%output%cross_sections = [model%controls%output%cross_sections, section]
+        n = n + 1
+        sections(n) = section
       end associate
     end do
+    model%controls%output%cross_sections = sections(:n)
   end subroutine resolve_cross_sections
 
   !> Each node has an element of the section, and no element is rigid.

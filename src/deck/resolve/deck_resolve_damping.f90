@@ -39,14 +39,14 @@ contains
           call take_stiffness_damping(deck, maps, row, model)
         case (row_load_rigid)
           call take_rigid_load(deck, raw, maps, row, model)
-        case (row_mass, row_mass_set)
-          call take_mass(deck, raw, maps, row, model)
         case (row_common)
           call refuse_implicit(deck, model, row%line, '*CONSTRAINED_NODE_SET is a constraint')
-          call take_common_motion(deck, maps, row, model)
         end select
       end associate
     end do
+    if (any(raw%rows(:raw%n_row)%kind == row_mass .or. raw%rows(:raw%n_row)%kind == row_mass_set)) &
+      call collect_masses(deck, raw, maps, model)
+    if (any(raw%rows(:raw%n_row)%kind == row_common)) call collect_common(deck, raw, maps, model)
   end subroutine resolve_damping
 
   !> Whether the run begins with dynamic relaxation, and what may not be in it.
@@ -206,84 +206,110 @@ contains
   end subroutine take_rigid_load
 
   !> *ELEMENT_MASS and *ELEMENT_MASS_NODE_SET: the mass on each node.
-  subroutine take_mass(deck, raw, maps, row, model)
+  subroutine collect_masses(deck, raw, maps, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
-    type(row_t), intent(in) :: row
     type(model_t), intent(inout) :: model
+    type(lumped_mass_t), allocatable :: masses(:)
     integer, allocatable :: nodes(:)
     logical, allocatable :: meshed(:)
-    integer :: k
+    integer :: i, k, n
 
-    call row_nodes(deck, maps, model, row, row%kind == row_mass_set, nodes)
     meshed = mark_meshed_nodes(model)
     if (raw%lost%elements .or. deck%incomplete) meshed = .true.
-    if (.not. allocated(model%conditions%lumped_masses)) &
-      allocate (model%conditions%lumped_masses(0))
-    do k = 1, size(nodes)
-      if (.not. meshed(nodes(k))) then
-        call reject_field(deck, id_place(row), ': node '//to_text(model%mesh%node_id(nodes(k))) &
-          //' belongs to no element and can not carry a mass')
-        return
-      end if
-      if (row%scale > 0.0_wp) model%conditions%lumped_masses = [model%conditions%lumped_masses, &
-        lumped_mass_t(nodes(k), row%scale)]
+    allocate (masses(64))
+    n = 0
+    do i = 1, raw%n_row
+      if (all(raw%rows(i)%kind /= [row_mass, row_mass_set])) cycle
+      call row_nodes(deck, maps, model, raw%rows(i), raw%rows(i)%kind == row_mass_set, nodes)
+      do k = 1, size(nodes)
+        if (.not. meshed(nodes(k))) then
+          call reject_field(deck, id_place(raw%rows(i)), ': node ' &
+            //to_text(model%mesh%node_id(nodes(k)))//' belongs to no element and can not carry a ' &
+            //'mass')
+          exit
+        end if
+        if (.not. raw%rows(i)%scale > 0.0_wp) cycle
+        if (n == size(masses)) masses = [masses, masses]
+        n = n + 1
+        masses(n) = lumped_mass_t(nodes(k), raw%rows(i)%scale)
+      end do
     end do
-  end subroutine take_mass
+    model%conditions%lumped_masses = masses(:n)
+  end subroutine collect_masses
 
-  !> *CONSTRAINED_NODE_SET: its nodes may not be held or moved otherwise along the same direction.
-  subroutine take_common_motion(deck, maps, row, model)
+  !> *CONSTRAINED_NODE_SET: the sets whose nodes nothing else holds or moves.
+  subroutine collect_common(deck, raw, maps, model)
     type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
     type(maps_t), intent(in) :: maps
-    type(row_t), intent(in) :: row
     type(model_t), intent(inout) :: model
-    type(common_motion_t) :: common
+    type(common_motion_t), allocatable :: motions(:)
     logical :: taken(2, model%mesh%n_node), is_rigid(model%mesh%n_node), meshed(model%mesh%n_node)
-    integer :: i, k
+    logical :: is_sound
+    integer :: i, k, n
 
-    call row_nodes(deck, maps, model, row, .true., common%nodes)
-    common%along = [any(row%direction == [1, 4, 6, 7]), any(row%direction == [2, 4, 5, 7])]
-    if (.not. any(common%along) .or. size(common%nodes) == 0) return
     meshed = mark_meshed_nodes(model)
     is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)
     call mark_taken(model, taken)
+    allocate (motions(count(raw%rows(:raw%n_row)%kind == row_common)))
+    n = 0
+    do i = 1, raw%n_row
+      if (raw%rows(i)%kind /= row_common) cycle
+      associate (row => raw%rows(i), common => motions(n + 1))
+        call row_nodes(deck, maps, model, row, .true., common%nodes)
+        common%along = [any(row%direction == [1, 4, 6, 7]), any(row%direction == [2, 4, 5, 7])]
+        if (.not. any(common%along) .or. size(common%nodes) == 0) cycle
+        call check_common(deck, row, model, common, meshed, is_rigid, taken, is_sound)
+        if (.not. is_sound) cycle
+        do k = 1, 2
+          if (common%along(k)) taken(k, common%nodes) = .true.
+        end do
+      end associate
+      n = n + 1
+    end do
+    if (n > 0) model%conditions%common_motions = motions(:n)
+  end subroutine collect_common
+
+  !> Nodes that move alike may not be held or moved otherwise along the same direction: an error of
+  !> the first that is.
+  subroutine check_common(deck, row, model, common, meshed, is_rigid, taken, is_sound)
+    type(deck_t), intent(inout) :: deck
+    type(row_t), intent(in) :: row
+    type(model_t), intent(in) :: model
+    type(common_motion_t), intent(in) :: common
+    logical, intent(in) :: meshed(:), is_rigid(:)   !! (n_node)
+    logical, intent(in) :: taken(:, :)              !! (2, n_node)
+    logical, intent(out) :: is_sound
+    character(:), allocatable :: message
+    integer :: i
+
+    is_sound = .false.
     do i = 1, size(common%nodes)
       associate (node => common%nodes(i))
         if (.not. meshed(node)) then
-          call complain('belongs to no element')
+          message = 'belongs to no element'
         else if (is_rigid(node)) then
-          call complain('belongs to a rigid part and follows it')
+          message = 'belongs to a rigid part and follows it'
         else if (any(taken(:, node) .and. common%along)) then
-          call complain('is held, moved or in another such set along the same direction')
+          message = 'is held, moved or in another such set along the same direction'
         else
           cycle
         end if
+        call reject_field(deck, id_place(row), ': node '//to_text(model%mesh%node_id(node))//' ' &
+          //message)
         return
       end associate
     end do
-    if (.not. allocated(model%conditions%common_motions)) &
-      allocate (model%conditions%common_motions(0))
-    model%conditions%common_motions = [model%conditions%common_motions, common]
-
-  contains
-
-    !> An error of the node.
-    subroutine complain(message)
-      character(*), intent(in) :: message
-
-      k = common%nodes(i)
-      call reject_field(deck, id_place(row), ': node '//to_text(model%mesh%node_id(k))//' ' &
-        //message)
-    end subroutine complain
-
-  end subroutine take_common_motion
+    is_sound = .true.
+  end subroutine check_common
 
   !> Degrees of freedom that something holds or moves.
   pure subroutine mark_taken(model, taken)
     type(model_t), intent(in) :: model
     logical, intent(out) :: taken(:, :) !! (2, n_node)
-    integer :: i, k
+    integer :: i
 
     taken = .false.
     associate (conditions => model%conditions)
@@ -294,13 +320,6 @@ contains
         taken(conditions%motions(i)%direction, conditions%motions(i)%node) = .true.
       end do
       if (allocated(conditions%skew_supports)) taken(:, conditions%skew_supports%node) = .true.
-      if (.not. allocated(conditions%common_motions)) return
-      do i = 1, size(conditions%common_motions)
-        do k = 1, 2
-          if (conditions%common_motions(i)%along(k)) &
-            taken(k, conditions%common_motions(i)%nodes) = .true.
-        end do
-      end do
     end associate
   end subroutine mark_taken
 

@@ -26,6 +26,7 @@ contains
     type(model_t), intent(inout) :: model
     integer, allocatable :: base(:), taken(:) !! of each material: whose copy it is; its equation of
                                               !! state, 0 none, -1 not known yet
+    logical, allocatable :: is_named(:)       !! of each equation of state
     integer :: i, k, m
 
     base = [(i, i=1, size(model%materials))]
@@ -54,8 +55,10 @@ contains
       if (taken(m) > 0) model%materials(m)%eos = raw%equations(taken(m))
       call settle_pressure(deck, raw%material_line(m), model%materials(m))
     end do
+    allocate (is_named(size(raw%equations)), source=.false.)
+    is_named(pack(taken, taken > 0)) = .true.
     do k = 1, size(raw%equations)
-      if (.not. any(taken == k)) call line_warning(deck, raw%equation_line(k), 'unused', &
+      if (.not. is_named(k)) call line_warning(deck, raw%equation_line(k), 'unused', &
         'no part names equation of state '//to_text(raw%equations(k)%id)//' (EOSID of *PART)')
     end do
   end subroutine resolve_equations

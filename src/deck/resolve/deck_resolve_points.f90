@@ -14,17 +14,18 @@ module deck_resolve_points_m
 contains
 
   !> Parts of one-point quads: those with assumed strain must resist shear; in implicit runs those
-  !> without it, or of rubber, whose tangent is that of full integration, are fully integrated where
-  !> the deck leaves NIP open, and refused where it does not.
+  !> without it, or of rubber, whose tangent is that of full integration, are fully integrated,
+  !> whatever the deck says.
   subroutine settle_points(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     type(model_t), intent(inout) :: model
     character(:), allocatable :: changed
-    integer :: i, line, n_section, full
+    integer :: twins(size(model%sections)) !! fully integrated ones, 0 where there is none
+    integer :: i, line
 
     changed = ''
-    n_section = size(model%sections)
+    twins = 0
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
         if (part%section == 0 .or. part%material == 0) cycle
@@ -33,21 +34,15 @@ contains
           .and. allocated(model%materials(part%material)%rubber))) then
           call check_shear(deck, raw%parts(i)%line, i, model)
         else if (model%controls%implicit%is_on) then
-          if (raw%points_open(part%section)) then
-            if (len(changed) == 0) line = raw%section_line(part%section)
-            changed = changed//', '//to_text(part%id)
-            call find_full_section(n_section, part%section, model, full)
-            part%section = full
-          else
-            call line_error(deck, raw%section_line(part%section), 'part '//to_text(part%id) &
-              //' has one-point quads (NIP 1); the implicit method needs full integration ' &
-              //'(NIP 4), or hourglass control by assumed strain (IHQ 6)')
-          end if
+          if (len(changed) == 0) line = raw%section_line(part%section)
+          changed = changed//', '//to_text(part%id)
+          if (twins(part%section) == 0) call add_full_section(part%section, model, twins)
+          part%section = twins(part%section)
         end if
       end associate
     end do
     if (len(changed) > 0) call line_warning(deck, line, 'implicit points', 'the implicit method ' &
-      //'takes parts whose NIP is blank, 0 or 2 as NIP 4 where hourglass control is not by ' &
+      //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
       //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
   end subroutine settle_points
 
@@ -68,23 +63,17 @@ contains
   end subroutine check_shear
 
   !> The fully integrated twin of a section, which other parts may go on sharing as it is.
-  pure subroutine find_full_section(n_section, section, model, full)
-    integer, intent(in) :: n_section      !! sections of the deck; twins stand behind them
+  pure subroutine add_full_section(section, model, twins)
     integer, value :: section             !! index
     type(model_t), intent(inout) :: model
-    integer, intent(out) :: full          !! index
+    integer, intent(inout) :: twins(:)    !! index, by that of the section
     type(section_t) :: twin
-    integer :: k
 
     twin = model%sections(section)
-    do k = n_section + 1, size(model%sections)
-      full = k
-      if (model%sections(k)%id == twin%id) return
-    end do
     twin%is_full = .true.
     twin%element_form = merge(form_round_full, form_full, twin%is_round)
     model%sections = [model%sections, twin]
-    full = size(model%sections)
-  end subroutine find_full_section
+    twins(section) = size(model%sections)
+  end subroutine add_full_section
 
 end module deck_resolve_points_m

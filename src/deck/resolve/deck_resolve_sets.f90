@@ -9,7 +9,7 @@ module deck_resolve_sets_m
   use boundary_m, only : boundary_t, find_boundary
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t, line_error
-  use deck_ids_m, only : id_map_t, ids_between
+  use deck_ids_m, only : id_map_t, map_ids, ids_between
   use deck_maps_m, only : maps_t, resolve_id
   use deck_cards_m, only : reject_field
   use deck_raw_m, only : raw_t
@@ -90,14 +90,17 @@ contains
     type(segment_set_t), intent(inout) :: segments
     type(boundary_t) :: boundary
     logical, allocatable :: is_chosen(:), all_nodes(:)
+    logical :: is_of_part(size(model%parts))
     integer :: i
 
     allocate (segments%nodes(2, 0))
     ! Of a mesh with mistakes only these are told.
     if (any(model%mesh%element_nodes < 1)) return
     allocate (is_chosen(model%mesh%n_element), source=.false.)
+    is_of_part = .false.
+    is_of_part(segments%parts) = .true.
     do i = 1, model%mesh%n_element
-      is_chosen(i) = any(segments%parts == model%mesh%element_part(i))
+      if (model%mesh%element_part(i) > 0) is_chosen(i) = is_of_part(model%mesh%element_part(i))
     end do
     allocate (all_nodes(model%mesh%n_node), source=.true.)
     call find_boundary(model%mesh%element_nodes, is_chosen, all_nodes, boundary)
@@ -228,12 +231,19 @@ contains
     type(raw_set_t), intent(in) :: set
     type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
-    type(force_group_t) :: group
-    integer :: i, found
+    type(force_group_t), allocatable :: groups(:)
+    type(id_map_t) :: map
+    integer, allocatable :: twice(:)
+    logical :: is_again(set%n)
+    integer :: i, n, found
 
-    allocate (model%controls%output%force_groups(0))
+    call map_ids(set%members(:set%n), map, twice)
+    is_again = .false.
+    is_again(twice) = .true.
+    allocate (groups(set%n))
+    n = 0
     do i = 1, set%n
-      if (any(set%members(:i - 1) == set%members(i))) then
+      if (is_again(i)) then
         call reject_field(deck, place_t(set%lines(i), 1, 'NSID'), &
           'is the node set of another force group')
         cycle
@@ -241,10 +251,11 @@ contains
       call resolve_id(deck, maps%node_sets, set%members(i), 'node set', &
         place_t(set%lines(i), 1, 'NSID'), found)
       if (found == 0) cycle
-      group%id = set%members(i)
-      call keep_first(model%node_sets(found)%nodes, model%mesh%n_node, group%nodes)
-      model%controls%output%force_groups = [model%controls%output%force_groups, group]
+      n = n + 1
+      groups(n)%id = set%members(i)
+      call keep_first(model%node_sets(found)%nodes, model%mesh%n_node, groups(n)%nodes)
     end do
+    model%controls%output%force_groups = groups(:n)
   end subroutine resolve_groups
 
   !> Members of a list, each where it comes first.

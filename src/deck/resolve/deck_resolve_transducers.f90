@@ -52,15 +52,17 @@ contains
     type(maps_t), intent(in) :: maps
     type(model_t), intent(in) :: model
     logical, intent(inout) :: is_on(:)
+    logical :: is_of_part(size(model%parts))
     integer :: kind, found, k
 
     is_on = .false.
     call require_side(deck, raw%transducers(i), 1, maps, kind, found)
     select case (kind)
     case (side_parts)
+      is_of_part = .false.
+      is_of_part(model%part_sets(found)%parts) = .true.
       do k = 1, model%mesh%n_element
-        if (any(model%part_sets(found)%parts == model%mesh%element_part(k))) &
-          is_on(model%mesh%element_nodes(:, k)) = .true.
+        if (is_of_part(model%mesh%element_part(k))) is_on(model%mesh%element_nodes(:, k)) = .true.
       end do
     case (side_nodes)
       is_on(model%node_sets(found)%nodes) = .true.

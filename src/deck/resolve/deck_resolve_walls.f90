@@ -49,14 +49,18 @@ contains
   !> Numbers of walls that have none (0): the position in the deck, or the next number that is free.
   pure subroutine number_walls(walls)
     type(wall_t), intent(inout) :: walls(:)
-    integer :: i
+    logical :: is_taken(2*size(walls))
+    integer :: i, k
 
+    is_taken = .false.
+    do i = 1, size(walls)
+      if (walls(i)%id > 0 .and. walls(i)%id <= size(is_taken)) is_taken(walls(i)%id) = .true.
+    end do
     do i = 1, size(walls)
       if (walls(i)%id > 0) cycle
-      walls(i)%id = i
-      do while (count(walls%id == walls(i)%id) > 1)
-        walls(i)%id = walls(i)%id + 1
-      end do
+      k = findloc(is_taken(i:), .false., 1) + i - 1
+      walls(i)%id = k
+      is_taken(k) = .true.
     end do
   end subroutine number_walls
 

@@ -5,6 +5,8 @@
 !> options; the indented lines after it are its cards, fields in order as
 !> `NAME:kind[treatment][width][=default]`. Kinds: i integer, f real, a text, x not used.
 !> Treatments: none honoured, s silently without effect, w warning when given, r refused when given.
+!> A 0 in an honoured field means its default, as in LS-DYNA; `~default` is that of blank fields
+!> alone, and a 0 stays 0.
 !> Widths are 10 unless said. A field asks for something when it is neither 0 nor its default.
 module deck_schema_m
   use deck_schema_others_m, only : table_others
@@ -13,7 +15,7 @@ module deck_schema_m
     table_database, table_cases
   implicit none
   private
-  public :: keyword_cards, find_keyword, nearest_keyword, refusal_reason, max_card, &
+  public :: keyword_cards, find_keyword, nearest_keyword, refusal_reason, lost_effect, max_card, &
     known_honoured, known_ignored, known_refused, known_not
 
   !> Characters by which a canonical name is longer than a short one at most (MAT_024).
@@ -296,6 +298,15 @@ contains
     end if
   end function matches
 
+  !> What is left out of a run where a field with treatment w is given, as the end of its warning.
+  pure function lost_effect(field) result(text)
+    character(*), intent(in) :: field
+    character(:), allocatable :: text
+
+    text = ''
+    if (field == 'DAMP') text = ': the viscous damping of the foam, its rate effect, is left out'
+  end function lost_effect
+
   !> Why a field with treatment r may not be used.
   pure function refusal_reason(field) result(text)
     character(*), intent(in) :: field
@@ -338,8 +349,9 @@ contains
     case ('REF')
       text = 'asks for stress from another reference shape, which this version does not have; ' &
         //'leave it 0'
-    case ('DAMP')
-      text = 'asks for a rate effect of foams, which this version does not have; leave it 0'
+    case ('SOLN')
+      text = 'asks for a thermal (1) or coupled thermal (2) analysis, which is not available in ' &
+        //'slideline; 0 is the mechanical one'
     case ('MODEL')
       text = 'asks for another law of foams, which this version does not have; leave it 0'
     case ('N5', 'N6', 'N7', 'N8')

@@ -45,7 +45,7 @@ module deck_schema_tables_m
     'CONTROL_HOURGLASS', &
     ' IHQ:i QH:f', &
     'CONTROL_BULK_VISCOSITY', &
-    ' Q1:f=1.5 Q2:f=0.06 TYPE:i=1 BTYPE:iw TSTYPE:iw', &
+    ' Q1:f~1.5 Q2:f~0.06 TYPE:i=1 BTYPE:iw TSTYPE:iw', &
     'CONTROL_CONTACT', &
     ' SLSFAC:f RWPNAL:fs ISLCHK:is SHLTHK:is PENOPT:iw=1 THKCHG:is ORIEN:is ENMASS:iw', &
     ' USRSTR:iw USRFRC:iw NSBCS:is INTERM:is XPENE:fs SSTHK:is ECDT:i TIEDPRJ:is', &
@@ -53,6 +53,8 @@ module deck_schema_tables_m
     ' IGNORE:iw FRCENG:is SKIPRWG:is OUTSEG:is SPOTSTP:is SPOTDEL:is SPOTHIN:fs', &
     ' ISYM:is NSEROD:is RWGAPS:is RWGDTH:fs RWKSF:fs ICOV:is SWRADF:fs ITHOFF:is', &
     ' SHLEDG:is PSTIFF:is ITHCNT:is TDCNOF:is FTALL:is -:x SHLTRW:fs IGACTC:is', &
+    'CONTROL_SOLUTION', &
+    ' SOLN:ir NLQ:is ISNAN:is LCINT:is LCACC:is NCDCF:is NOCOP:is', &
     'CONTROL_ENERGY', &
     ' HGEN:is RWEN:is SLNTEN:is RYLEN:is IRGEN:is MATEN:is DRLEN:is DISEN:is', &
     'CONTROL_OUTPUT', &
@@ -130,7 +132,7 @@ module deck_schema_tables_m
     'MAT_BLATZ-KO_RUBBER t', &
     ' MID:i RO:f G:f REF:fr', &
     'MAT_CRUSHABLE_FOAM t', &
-    ' MID:i RO:f E:f PR:f LCID:i TSC:f DAMP:fr MODEL:ir', &
+    ' MID:i RO:f E:f PR:f LCID:i TSC:f DAMP:fw MODEL:ir', &
     'MAT_ADD_EROSION t', &
     ' MID:i EXCL:f MXPRES:f MNEPS:f EFFEPS:f VOLEPS:f NUMFIP:f=1 NCS:f=1', &
     ' MNPRES:f SIGP1:f SIGVM:f MXEPS:f EPSSH:f SIGTH:f IMPULSE:f FAILTM:f', &
@@ -206,7 +208,7 @@ module deck_schema_tables_m
     'INITIAL_VELOCITY_NODE', &
     ' NID:i VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw ICID:ir', &
     'INITIAL_VELOCITY_GENERATION', &
-    ' ID:i STYP:i=1 OMEGA:f VX:f VY:f VZ:fw IVATN:is ICID:ir', &
+    ' ID:i STYP:i~1 OMEGA:f VX:f VY:f VZ:fw IVATN:is ICID:ir', &
     ' XC:f YC:f ZC:fs NX:f NY:f NZ:f PHASE:ir IRIGID:is', &
     'INITIAL_VELOCITY_RIGID_BODY', &
     ' PID:i VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:f ICID:ir', &
@@ -215,7 +217,7 @@ module deck_schema_tables_m
     'LOAD_NODE_SET', &
     ' NSID:i DOF:i LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
     'LOAD_RIGID_BODY', &
-    ' PID:i DOF:i=1 LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
+    ' PID:i DOF:i~1 LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
     'LOAD_SEGMENT t', &
     ' LCID:i SF:f=1 AT:f N1:i N2:i N3:i N4:i N5:ir', &
     'LOAD_SEGMENT_SET t', &
@@ -240,14 +242,14 @@ module deck_schema_tables_m
     'DAMPING_PART_STIFFNESS_SET', &
     ' PSID:i COEF:f', &
     'CONSTRAINED_NODE_SET t', &
-    ' NSID:i DOF:i=1 TF:fr=1e20']
+    ' NSID:i DOF:i~1 TF:fr=1e20']
 
   !> Contact interfaces.
   character(95), parameter :: table_contact(*) = [character(95) :: &
     'CONTACT_2D_SLIDELINE t', &
     ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2 PEN:f FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 PUNIT:i PENT:f VDC:f IPF:i FREQ:i SRCH:f', &
-    ' VC:f TFAC:f=1 TIE:i NFLS:f SFLS:f LCINT:i TARGET:f', &
+    ' VC:f TFAC:f~1 TIE:i NFLS:f SFLS:f LCINT:i TARGET:f', &
     'CONTACT_2D_PENALTY t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
     ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
@@ -264,32 +266,32 @@ module deck_schema_tables_m
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE t', &
     ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR t', &
     ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE t', &
     ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE t', &
     ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE_MORTAR t', &
     ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE t', &
     ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_FORCE_TRANSDUCER t', &
     ' SURFA:i SURFB:ir SFACT:fs=1 FREQ:is FS:fs FD:fs DC:fs', &

@@ -23,11 +23,14 @@ module deck_card_specs_m
                                                 !! warning, r refused unless it is the default
     integer :: widths(max_field) = 10
     real(wp) :: defaults(max_field) = 0.0_wp
+    character :: zeros(max_field) = ''          !! what a 0 means where blank is another value: =
+                                                !! the default, ~ 0
   end type card_spec_t
 
 contains
 
-  !> A card from its line of the table: words `NAME:kind[treatment][width][=default]`.
+  !> A card from its line of the table: words
+  !> `NAME:kind[treatment][width][=default]`, or ~default.
   subroutine make_spec(text, number, layout, spec)
     character(*), intent(in) :: text
     integer, intent(in) :: number
@@ -56,9 +59,10 @@ contains
           at = at + 1
         end if
       end if
-      colon = index(text(start:finish), '=') + start - 1
+      colon = scan(text(start:finish), '=~') + start - 1
       if (colon >= start) then
         call read_real(text(colon + 1:finish), spec%defaults(spec%n), status)
+        if (spec%treatments(spec%n) == 'h') spec%zeros(spec%n) = text(colon:colon)
       else
         colon = finish + 1
       end if

@@ -8,8 +8,10 @@ module deck_expression_m
   use deck_functions_m, only : raise_power, apply_function
   implicit none
   private
-  public :: evaluate, named_value_t
+  public :: evaluate, named_value_t, name_characters
 
+  !> What names are made of (upper case).
+  character(*), parameter :: name_characters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
   !> Nested parentheses, signs and powers.
   integer, parameter :: max_depth = 100
   !> Largest magnitude of any intermediate value.
@@ -194,7 +196,7 @@ contains
       return
     end if
     if (take(scanner, '&')) continue
-    n = verify(scanner%text(scanner%at:), 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_') - 1
+    n = verify(scanner%text(scanner%at:), name_characters) - 1
     if (scan(scanner%text(scanner%at:scanner%at), '0123456789.') == 1) then
       call take_number(scanner, value)
       return

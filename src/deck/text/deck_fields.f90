@@ -141,7 +141,11 @@ contains
         call read_field(deck%sources(source)%text(shift + card%first(k):shift + card%last(k)), &
           spec%kinds(k))
       end if
-      if (status /= number_good) call number_error(deck, spec, card, k, status)
+      if (status /= number_good) then
+        call number_error(deck, spec, card, k, status)
+      else if (spec%zeros(k) /= ' ') then
+        call take_zero(deck, spec, card, k)
+      end if
     end do
 
   contains
@@ -161,6 +165,44 @@ contains
     end subroutine read_field
 
   end subroutine read_numbers
+
+  !> A 0 in a field whose default is another value: LS-DYNA takes the default. The log names the
+  !> first field of each name and keyword.
+  subroutine take_zero(deck, spec, card, k)
+    type(deck_t), intent(inout) :: deck
+    type(card_spec_t), intent(in) :: spec
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    character(:), allocatable :: name, place
+
+    if (merge(abs(card%i(k)) > 0, abs(card%r(k)) > 0.0_wp, spec%kinds(k) == 'i')) return
+    name = to_text(spec%defaults(k))
+    if (abs(spec%defaults(k)) < 1.0e6_wp .and. .not. abs(spec%defaults(k) &
+      - anint(spec%defaults(k))) > 0.0_wp) name = to_text(nint(spec%defaults(k)))
+    name = trim(spec%names(k))//' = '//name//' of *'//keyword_of_line(deck, card%line)
+    place = where_text(deck, card%line)
+    place = ' ('//place(:index(place, ': *', back=.true.) - 1)//')'
+    if (spec%zeros(k) == '~') then
+      call append_zero(deck%kept_zeros)
+      return
+    end if
+    call append_zero(deck%default_zeros)
+    card%r(k) = spec%defaults(k)
+    if (spec%kinds(k) == 'i') card%i(k) = nint(spec%defaults(k))
+
+  contains
+
+    !> One more field of a list, unless it has the name already.
+    subroutine append_zero(list)
+      character(:), allocatable, intent(inout) :: list
+
+      if (.not. allocated(list)) list = ''
+      if (index(', '//list, ', '//name//' (') > 0) return
+      if (len(list) > 0) list = list//', '
+      list = list//name//place
+    end subroutine append_zero
+
+  end subroutine take_zero
 
   !> A field that does not hold the number it should.
   subroutine number_error(deck, spec, card, k, status)

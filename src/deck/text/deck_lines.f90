@@ -81,6 +81,8 @@ module deck_lines_m
     logical :: incomplete = .false.           !! an included file could not be read, or
                                               !! what belongs to the case is not known
     type(case_blocks_t) :: cases
+    character(:), allocatable :: default_zeros, kept_zeros !! fields with a 0 that means their
+                                              !! default, and of which a 0 is 0 all the same
     type(report_t) :: report
   end type deck_t
 

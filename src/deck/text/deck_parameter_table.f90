@@ -5,11 +5,11 @@ module deck_parameter_table_m
   use text_m, only : upper_case, read_real, number_good
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, line_error, line_warning
-  use deck_expression_m, only : named_value_t
+  use deck_expression_m, only : named_value_t, name_characters
   implicit none
   private
   public :: parameters_t, override_parameter, settle_parameter, named_values, look_up, &
-    parameter_comments, again_error, again_warn_keep
+    parameter_comment, again_error, again_warn_keep
 
   !> What happens when a name is defined again (*PARAMETER_DUPLICATION DFLAG); by default a second
   !> definition with another value is an error.
@@ -25,12 +25,14 @@ module deck_parameter_table_m
     logical :: fixed = .false.            !! given on the command line
     character(:), allocatable :: where    !! then: `on the command line`, for messages
     logical :: found = .false.            !! the deck defines it
+    integer :: next = 0                   !! the next one of the same hash, in the order they come
   end type parameter_t
 
-  !> All parameters.
+  !> All parameters, with the first and last one of each hash of a name.
   type :: parameters_t
     type(parameter_t), allocatable :: items(:)
     integer :: n = 0
+    integer, allocatable :: first(:), last(:)
     integer :: again = again_error
   end type parameters_t
 
@@ -59,11 +61,13 @@ contains
     integer, intent(in) :: source
     integer :: i
 
-    do i = 1, parameters%n
+    i = first_of(parameters, name)
+    do while (i > 0)
       if (parameters%items(i)%name == name .and. (parameters%items(i)%source == source &
         .or. parameters%items(i)%fixed)) exit
+      i = parameters%items(i)%next
     end do
-    if (i > parameters%n) then
+    if (i == 0) then
       call add_parameter(parameters, name, kind, text, source)
       parameters%items(parameters%n)%found = .true.
       return
@@ -106,6 +110,7 @@ contains
     character(*), intent(in) :: text
     integer, intent(in) :: source
     type(parameter_t), allocatable :: longer(:)
+    integer :: i
 
     if (.not. allocated(parameters%items)) allocate (parameters%items(16))
     if (parameters%n == size(parameters%items)) then
@@ -115,25 +120,109 @@ contains
     end if
     parameters%n = parameters%n + 1
     parameters%items(parameters%n) = parameter_t(name=name, kind=kind, text=text, source=source)
+    if (allocated(parameters%first)) then
+      if (parameters%n <= size(parameters%first)) then
+        call chain_parameter(parameters, parameters%n)
+        return
+      end if
+      deallocate (parameters%first, parameters%last)
+    end if
+    allocate (parameters%first(2*size(parameters%items)), source=0)
+    allocate (parameters%last(2*size(parameters%items)), source=0)
+    do i = 1, parameters%n
+      call chain_parameter(parameters, i)
+    end do
   end subroutine add_parameter
 
-  !> Names and values of the numbers that a file can see, those private to it first.
-  function named_values(parameters, source) result(names)
+  !> Put a parameter behind those of the same hash.
+  subroutine chain_parameter(parameters, i)
+    type(parameters_t), intent(inout) :: parameters
+    integer, intent(in) :: i
+    integer :: k
+
+    k = name_hash(parameters%items(i)%name, size(parameters%first))
+    parameters%items(i)%next = 0
+    if (parameters%first(k) == 0) then
+      parameters%first(k) = i
+    else
+      parameters%items(parameters%last(k))%next = i
+    end if
+    parameters%last(k) = i
+  end subroutine chain_parameter
+
+  !> The first parameter of the hash of a name, 0 where there is none.
+  pure function first_of(parameters, name) result(i)
+    type(parameters_t), intent(in) :: parameters
+    character(*), intent(in) :: name
+    integer :: i
+
+    i = 0
+    if (allocated(parameters%first)) i = parameters%first(name_hash(name, size(parameters%first)))
+  end function first_of
+
+  !> Hash of a name, 1 to `n`.
+  pure function name_hash(name, n) result(k)
+    character(*), intent(in) :: name
+    integer, intent(in) :: n
+    integer :: k
+    integer :: i
+
+    k = 0
+    do i = 1, len_trim(name)
+      k = modulo(31*k + iachar(name(i:i)), 16777213)
+    end do
+    k = modulo(k, n) + 1
+  end function name_hash
+
+  !> The parameter of a name that a file can see, one private to it before one of the whole deck; 0
+  !> where there is none.
+  pure function find_parameter(parameters, name, source, is_number) result(found)
+    type(parameters_t), intent(in) :: parameters
+    character(*), intent(in) :: name
+    integer, intent(in) :: source
+    logical, intent(in) :: is_number   !! texts do not count
+    integer :: found
+    integer :: i
+
+    found = 0
+    i = first_of(parameters, name)
+    do while (i > 0)
+      associate (item => parameters%items(i))
+        if (item%name == name .and. item%found .and. .not. (is_number .and. item%kind == 'C')) then
+          if (item%source == source) then
+            found = i
+            return
+          else if (item%source == 0) then
+            found = i
+          end if
+        end if
+        i = item%next
+      end associate
+    end do
+  end function find_parameter
+
+  !> Names and values of the numbers that a file can see, of the names in a formula.
+  function named_values(parameters, source, formula) result(names)
     type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: source
+    character(*), intent(in) :: formula
     type(named_value_t), allocatable :: names(:)
-    integer :: i, n, status, pass
+    character(len(formula)) :: text
+    integer :: i, n, first, last, status
 
-    allocate (names(parameters%n))
+    text = upper_case(formula)
+    allocate (names(len(formula)))
     n = 0
-    do pass = 1, 2
-      do i = 1, parameters%n
-        if (parameters%items(i)%source /= merge(source, 0, pass == 1)) cycle
-        if (parameters%items(i)%kind == 'C' .or. .not. parameters%items(i)%found) cycle
-        n = n + 1
-        names(n)%name = parameters%items(i)%name
-        call read_real(parameters%items(i)%text, names(n)%value, status)
-      end do
+    last = 0
+    do
+      first = scan(text(last + 1:), name_characters) + last
+      if (first == last) exit
+      last = verify(text(first:)//' ', name_characters) + first - 2
+      i = find_parameter(parameters, text(first:last), source, .true.)
+      if (i == 0) cycle
+      n = n + 1
+      names(n)%name = parameters%items(i)%name
+      call read_real(parameters%items(i)%text, names(n)%value, status)
     end do
     names = names(:n)
   end function named_values
@@ -152,15 +241,8 @@ contains
     negative = reference(1:1) == '-'
     name = trim(adjustl(upper_case(reference(at + 1:))))
     value = ''
-    do i = 1, parameters%n
-      if (parameters%items(i)%name /= name .or. .not. parameters%items(i)%found) cycle
-      if (parameters%items(i)%source == source) then
-        value = parameters%items(i)%text
-        exit
-      else if (parameters%items(i)%source == 0) then
-        value = parameters%items(i)%text
-      end if
-    end do
+    i = find_parameter(parameters, name, source, .false.)
+    if (i > 0) value = parameters%items(i)%text
     if (len(value) > 0 .and. negative) then
       if (value(1:1) == '-') then
         value = value(2:)
@@ -173,18 +255,15 @@ contains
     text = value
   end subroutine look_up
 
-  !> The parameters as comment lines for the effective deck.
-  function parameter_comments(parameters) result(text)
+  !> A parameter as a comment line for the effective deck; empty for one that the deck lacks.
+  pure function parameter_comment(parameters, i) result(text)
     type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: i
     character(:), allocatable :: text
-    integer :: i
 
     text = ''
-    do i = 1, parameters%n
-      if (.not. parameters%items(i)%found) cycle
-      text = text//'$ parameter '//trim(parameters%items(i)%name)//' = '//parameters%items(i)%text &
-        //new_line('a')
-    end do
-  end function parameter_comments
+    if (parameters%items(i)%found) text = '$ parameter '//trim(parameters%items(i)%name)//' = ' &
+      //parameters%items(i)%text//new_line('a')
+  end function parameter_comment
 
 end module deck_parameter_table_m

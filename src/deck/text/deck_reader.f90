@@ -5,7 +5,7 @@ module deck_reader_m
   use kinds_m, only : line_length
   use log_m, only : to_text
   use errors_m, only : error_t, raise, status_input
-  use deck_lines_m, only : deck_t, line_text, line_error, max_source
+  use deck_lines_m, only : deck_t, line_text, line_error, shown_text, max_source
   use deck_case_blocks_m, only : start_cases, follow_cases, end_cases
   use deck_source_m, only : read_file, scan_line, open_block, add_line, file_options, reserve_lines
   implicit none
@@ -21,6 +21,12 @@ module deck_reader_m
   type :: folder_t
     character(:), allocatable :: path
   end type folder_t
+
+  !> The folders that a file can see: those of its own so far behind those of the files above it.
+  type :: folders_t
+    type(folder_t), allocatable :: items(:)
+    integer :: n = 0
+  end type folders_t
 
 contains
 
@@ -46,9 +52,9 @@ contains
     character(:), allocatable, intent(inout) :: text !! moves into the deck
     type(deck_t), intent(inout) :: deck
     integer, intent(in), optional :: sub_cases(:)    !! whose keywords are read; absent: none
-    type(folder_t) :: folders(0)
+    type(folders_t) :: folders
 
-    allocate (deck%sources(max_source), deck%blocks(64))
+    allocate (deck%sources(max_source), deck%blocks(64), folders%items(16))
     deck%n_source = 1
     deck%sources(1)%path = path
     call move_alloc(text, deck%sources(1)%text)
@@ -58,18 +64,17 @@ contains
   end subroutine cut_deck
 
   !> Cut a file into lines and blocks, its includes in their place.
-  recursive subroutine cut_source(deck, source, depth, folders_above)
+  recursive subroutine cut_source(deck, source, depth, folders)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
     integer, intent(in) :: depth
-    type(folder_t), intent(in) :: folders_above(:) !! *INCLUDE_PATH entries so far
-    integer :: start, last, next, number, n_stray
+    type(folders_t), intent(inout) :: folders !! *INCLUDE_PATH entries so far; as before behind it
+    integer :: start, last, next, number, n_stray, n_above
     integer(int8) :: flags
-    type(folder_t), allocatable :: folders(:)
     logical :: in_block
 
     call reserve_lines(deck, len(deck%sources(source)%text)/60 + 64)
-    folders = folders_above
+    n_above = folders%n
     start = 1
     number = 0
     n_stray = 0
@@ -102,6 +107,7 @@ contains
       start = next
     end do
     if (in_block) call close_block(deck, source, depth, folders)
+    folders%n = n_above
     if (n_stray > 0) call line_error(deck, 0, 'in '//deck%sources(source)%path//', ' &
       //to_text(n_stray)//' line(s) before the first keyword (a line that starts with *)')
   end subroutine cut_source
@@ -137,9 +143,8 @@ contains
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
     integer, intent(in) :: depth
-    type(folder_t), allocatable, intent(inout) :: folders(:)
+    type(folders_t), intent(inout) :: folders
     character(:), allocatable :: name
-    type(folder_t) :: folder
     integer :: i_block, line
 
     i_block = deck%n_block
@@ -160,11 +165,25 @@ contains
       if (deck%blocks(i_block)%name == 'INCLUDE') then
         call include_file(deck, source, depth, folders, name, line - 1)
       else
-        folder%path = name
-        folders = [folders, folder]
+        call add_folder(folders, name)
       end if
     end do
   end subroutine close_block
+
+  !> One more folder.
+  subroutine add_folder(folders, path)
+    type(folders_t), intent(inout) :: folders
+    character(*), intent(in) :: path
+    type(folder_t), allocatable :: longer(:)
+
+    if (folders%n == size(folders%items)) then
+      allocate (longer(2*folders%n))
+      longer(:folders%n) = folders%items
+      call move_alloc(longer, folders%items)
+    end if
+    folders%n = folders%n + 1
+    folders%items(folders%n)%path = path
+  end subroutine add_folder
 
   !> A file name that may go on over several lines (each ends with ` +`); `line` moves past it.
   subroutine join_name(deck, i_block, line, name)
@@ -196,16 +215,17 @@ contains
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
     integer, intent(in) :: depth
-    type(folder_t), intent(in) :: folders(:)
+    type(folders_t), intent(inout) :: folders
     character(*), intent(in) :: name
     integer, intent(in) :: line !! where it is included
     character(:), allocatable :: path, reason
     integer :: above, i
 
-    call find_file(deck%sources(1)%path, deck%sources(source)%path, folders, name, path)
+    call find_file(deck%sources(1)%path, deck%sources(source)%path, &
+      folders%items(:folders%n), name, path)
     if (len(path) == 0) then
-      call line_error(deck, line, 'the file "'//name//'" was not found; what refers ' &
-        //'to nodes, elements and so on is not judged without it')
+      call line_error(deck, line, 'the file "'//trim(shown_text(name))//'" was not found; what ' &
+        //'refers to nodes, elements and so on is not judged without it')
       deck%incomplete = .true.
       return
     end if

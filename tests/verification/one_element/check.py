@@ -17,7 +17,7 @@ import eos  # noqa: E402
 
 N_STEP, SEEDS, TOLERANCE = 60, (1, 2, 3), 1.0e-8
 SOURCE = "independent driver"
-REFUSALS = ("this material is not part of this version", "equations of state are not part of this version")
+REFUSALS = ("this material is not available in slideline", "equations of state are not available in slideline")
 
 
 def deck_of(case, histories, dt, is_round):
