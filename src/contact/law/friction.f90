@@ -9,7 +9,8 @@ module friction_m
   use friction_slips_m, only : find_slips
   use friction_state_m, only : friction_memory_t, is_open, sticks, slips
   use kinds_m, only : wp
-  use law_friction_m, only : find_limits, return_tractions
+  use law_friction_m, only : coefficient_of, has_decay, find_limits, sliding_speed, &
+    return_tractions
   use lengths_m, only : competence_length
   use nodal_average_m, only : average_more, share_out
   implicit none
@@ -28,6 +29,7 @@ module friction_m
                                    !! rule has one
     real(wp) :: traction(n_block)  !! after the step, N/m^2
     integer :: state(n_block)      !! the same
+    logical :: slid(n_block)       !! in the step before; only where the rule has a decay
   end type rubs_t
 
 contains
@@ -132,6 +134,8 @@ contains
         call find_former(n, points%slave_nodes(1, first), points%slave_weights(1, first), &
           points%master_nodes(1, first), scratch%former_traction, scratch%former_state, &
           rubs%place, rubs%former)
+        if (has_decay(contact%friction)) call find_slid(n, points%slave_nodes(1, first), &
+          rubs%place, scratch%former_state, rubs%slid)
         rubs%pressure(:n) = points%pressure(first:last)
         rubs%stiffness(:n) = contact%friction%stiffness*points%stiffness(first:last)
         if (has_unit_area .and. contact%friction%most > 0.0_wp) then
@@ -173,6 +177,20 @@ contains
       end if
     end do
   end subroutine find_former
+
+  !> Which of some points slid in the step before. A master node that was none of the points goes on
+  !> as the ends of its slave segment.
+  pure subroutine find_slid(n, slave_nodes, place, former_state, slid)
+    integer, intent(in) :: n, slave_nodes(n_side, *), place(*)
+    integer, intent(in) :: former_state(*)  !! of all places
+    logical, intent(inout) :: slid(*)
+    integer :: p
+
+    do p = 1, n
+      slid(p) = former_state(place(p)) == slips
+      if (former_state(place(p)) == is_open) slid(p) = any(former_state(slave_nodes(:, p)) == slips)
+    end do
+  end subroutine find_slid
 
   !> Leave tractions to points and to their places.
   pure subroutine leave_tractions(n, rubs, area, traction, total, friction)
@@ -293,6 +311,8 @@ contains
           rubs%former(k) = memory%scratch%former_traction(rubs%place(k))
           rubs%pressure(k) = points%pressure(portions(k))
         end do
+        if (has_decay(contact%friction)) &
+          rubs%slid(:n) = memory%scratch%former_state(rubs%place(:n)) == slips
         call rub_block(contact%friction, n, dt, rubs)
         do k = 1, n
           if (rubs%pressure(k) > 0.0_wp) then
@@ -392,6 +412,7 @@ contains
           rubs%pressure(n) = memory%node_pressure(i)
         end if
         if (n < n_block .and. i < memory%n_slave) cycle
+        if (has_decay(rule)) rubs%slid(:n) = memory%scratch%former_state(rubs%place(:n)) == slips
         call rub_nodes(rule, n, dt, nodal, rubs, memory%friction)
         n = 0
       end do
@@ -426,10 +447,33 @@ contains
     type(rubs_t), intent(inout) :: rubs
     real(wp) :: limits(n_block)
 
-    call find_limits(rule, n, dt, rubs%slip, rubs%pressure, limits)
+    call find_limits(rule, n, rubs%pressure, limits)
     if (rule%most > 0.0_wp) limits(:n) = min(limits(:n), rubs%most(:n))
     call return_tractions(n, rubs%former, rubs%stiffness, rubs%slip, limits, rubs%traction, &
       rubs%state)
+    if (has_decay(rule) .and. dt > 0.0_wp) call slow_down(rule, n, dt, rubs)
   end subroutine rub_block
+
+  !> Tractions of the places that slide, each at the speed of its sliding.
+  pure subroutine slow_down(rule, n, dt, rubs)
+    type(friction_rule_t), intent(in) :: rule
+    integer, intent(in) :: n
+    real(wp), intent(in) :: dt
+    type(rubs_t), intent(inout) :: rubs
+    real(wp) :: trial, most, speed
+    integer :: k
+
+    most = huge(most)
+    do k = 1, n
+      if (.not. min(rubs%pressure(k), rubs%stiffness(k)) > 0.0_wp) cycle
+      trial = rubs%former(k) + rubs%stiffness(k)*rubs%slip(k)
+      if (rule%most > 0.0_wp) most = rubs%most(k)
+      speed = sliding_speed(rule, abs(trial), rubs%pressure(k), most, rubs%stiffness(k)*dt, &
+        rubs%slid(k) .and. trial*rubs%former(k) > 0.0_wp)
+      if (.not. speed > 0.0_wp) cycle
+      rubs%traction(k) = sign(min(coefficient_of(rule, speed)*rubs%pressure(k), most), trial)
+      rubs%state(k) = slips
+    end do
+  end subroutine slow_down
 
 end module friction_m
