@@ -16,8 +16,8 @@ module health_m
   implicit none
   private
   public :: tile_check_t, check_tile, are_sound, check_elements, check_step, check_cycle, &
-    check_energy, check_ratio, check_radii, judge_energies, judge_ratio, judge_contact, &
-    made_by_springs, made_by_forces, most_work
+    check_energy, check_ratio, check_static_step, check_radii, judge_energies, judge_ratio, judge_contact, &
+    made_by_springs, made_by_forces, most_work, what_would_do
 
   !> Work beyond this means nothing any more; it is found before numbers overflow, which a
   !> checked build would stop at.
@@ -26,7 +26,14 @@ module health_m
   !> How far the energy ratio may be from one without a word.
   real(wp), parameter :: ratio_band = 0.05_wp
 
+  !> Part of all work so far from which on a step is looked at whose works do not add up.
+  real(wp), parameter :: noticed = 1.0e-3_wp
+
   character(*), parameter :: unaccounted = 'energy has come in or gone that no column accounts for'
+
+  !> What follows a body beyond a limit point.
+  character(*), parameter :: what_would_do = 'a prescribed displacement in place of the load ' &
+    //'follows the path, inertia (IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS) the jump'
 
   !> What has made energy: in explicit runs the springs, by what they gave beyond what they took; in
   !> implicit ones all that contact forces did, what is stored among it.
@@ -254,8 +261,8 @@ contains
     end if
   end subroutine check_energy
 
-  !> Warn of the first energies of an explicit run that do not add up, while it goes on: a run that
-  !> ends by an error is not judged at its end. What is missing is measured by the energy that came
+  !> Warn of the first energies of a run that do not add up, while it goes on: a run that ends by an
+  !> error is not judged at its end. What is missing is measured by the energy that came
   !> in or is stored; short waves may take twice the band for a while.
   subroutine check_ratio(energies, cycle, time, told, log)
     type(energies_t), intent(in) :: energies
@@ -271,6 +278,26 @@ contains
     if (told) call warn(log, 'at cycle '//to_text(cycle)//', time '//to_text(time) &
       //', the energy ratio is '//to_text(energy_ratio(energies))//': '//unaccounted)
   end subroutine check_ratio
+
+  !> Warn of a static step whose works do not add up: the body has jumped from one equilibrium to
+  !> another, and what it would have had as kinetic energy is gone. The trapezoidal rule misses less
+  !> than a hundredth of the work of a step that follows the path.
+  subroutine check_static_step(work, former_work, held, former_held, cycle, time, log)
+    real(wp), intent(in) :: work, former_work !! done from outside, after and before the step, J/m
+    real(wp), intent(in) :: held, former_held !! stored or dissipated, J/m
+    integer, intent(in) :: cycle
+    real(wp), intent(in) :: time              !! s
+    type(log_t), intent(inout) :: log
+    real(wp) :: missing
+
+    missing = abs((work - former_work) - (held - former_held))
+    if (missing <= ratio_band*max(abs(work - former_work), abs(held - former_held))) return
+    if (missing <= noticed*max(abs(work), abs(held))) return
+    call warn(log, 'step '//to_text(cycle)//' to time '//to_text(time)//' has passed a limit point, ' &
+      //'or is far too long: of the work '//to_text(work - former_work)//' of the loads ' &
+      //to_text(held - former_held)//' is stored or dissipated, the rest would be motion; ' &
+      //what_would_do)
+  end subroutine check_static_step
 
   !> Warn of nodes of an axisymmetric run that have passed the axis, once.
   subroutine check_radii(model, state, told, log)
@@ -331,8 +358,7 @@ contains
       //'energy '//to_text(energies%internal))
   end subroutine judge_energies
 
-  !> A warning at the end of an explicit run whose energies do not add up. In implicit ones the work
-  !> of a step is a trapezium between two equilibria, and a first step may close gaps.
+  !> A warning at the end of a run whose energies do not add up.
   subroutine judge_ratio(energies, log)
     type(energies_t), intent(in) :: energies
     type(log_t), intent(inout) :: log

@@ -12,10 +12,12 @@ module implicit_report_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_output
   use element_mass_m, only : mass_times, sum_part_motion
+  use element_state_m, only : add_part_energies
   use energies_m, only : energy_ratio, total_energy
   use equations_m, only : equations_t
   use errors_m, only : error_t
-  use health_m, only : check_energy, check_radii, judge_energies, judge_contact, made_by_forces
+  use health_m, only : check_energy, check_ratio, check_radii, judge_energies, judge_ratio, &
+    judge_contact, made_by_forces
   use implicit_forces_m, only : trial_t, cut_sections
   use implicit_memory_m, only : implicit_memory_t
   use model_m, only : model_t
@@ -29,7 +31,7 @@ module implicit_report_m
   use support_forces_m, only : fill_reactions
   implicit none
   private
-  public :: report_step, reactions_work
+  public :: report_step, reactions_work, held_energy
 
 contains
 
@@ -90,10 +92,13 @@ contains
         energy_ratio(shot%energies), 'write vtkhdf state')
       if (.not. allocated(error)) call check_energy(model%controls, shot%energies, made_by_forces, &
         error)
+      if (.not. allocated(error)) call check_ratio(shot%energies, state%cycle, state%time, &
+        monitor%told_ratio, monitor%log)
       call check_radii(model, state, monitor%told_radii, monitor%log)
       if (last .and. .not. allocated(error)) then
         call judge_contact(shot%energies, monitor%log)
         call judge_energies(shot%energies, monitor%log)
+        call judge_ratio(shot%energies, monitor%log)
       end if
     end associate
     call lap(monitor%clock, phase_output)
@@ -123,6 +128,22 @@ contains
       shot%parts(i)%momentum = momentum(:, i)
     end do
   end subroutine fill_consistent_parts
+
+  !> All that a body at rest has taken of the work done on it, stored or dissipated, J/m.
+  function held_energy(model, state) result(held)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp) :: held
+    real(wp), dimension(size(model%parts)) :: internal, hourglass, viscous
+
+    internal = 0.0_wp
+    hourglass = 0.0_wp
+    viscous = 0.0_wp
+    call add_part_energies(model, state%motion, state%elements, internal, hourglass, viscous)
+    held = sum(internal + hourglass + viscous) + sum(state%contacts%energy) &
+      + sum(state%contacts%damping_work) + sum(state%contacts%friction%work)
+    if (allocated(state%elements%damping_work)) held = held + sum(state%elements%damping_work)
+  end function held_energy
 
   !> Work of the forces that hold prescribed degrees of freedom to their curves: of inertia, change
   !> of momentum times mean velocity, which is the kinetic energy that they gain, also in a blow; of
