@@ -18,7 +18,7 @@ module implicit_m
   use implicit_forces_m, only : trial_t, start_trial, net_force, keep_sections
   use implicit_memory_m, only : implicit_memory_t, write_restarts
   use implicit_prescribed_m, only : prescribe_step
-  use implicit_report_m, only : reactions_work, report_step, held_energy
+  use implicit_report_m, only : reactions_work, report_step, held_energy, spent_energy
   use implicit_start_m, only : begin_steps, plan_next, has_ended
   use implicit_tangent_m, only : step_t, new_acceleration, new_velocity
   use log_m, only : log_t, write_log, warn, to_text
@@ -169,8 +169,8 @@ contains
     held = held_energy(model, state)
     work = work_done(state)
     call commit(model, state, step, attempt, trial)
-    if (.not. step%is_dynamic) call check_static_step(work_done(state), work, held_energy(model, &
-      state), held, state%cycle, state%time, monitor%log)
+    if (.not. step%is_dynamic) call check_static_step([work, work_done(state)], [held, &
+      held_energy(model, state)], spent_energy(state, step), state%cycle, state%time, monitor%log)
     call note_pivots(outcome%began_negative, state, step, monitor%log)
     call grow_step(control, step%dt, outcome%iterations)
     call lap(monitor%clock, phase_nodes)
