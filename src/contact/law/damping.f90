@@ -1,11 +1,20 @@
 ! SPDX-License-Identifier: MIT
 !> Damping of points in contact (doc/theory/contact.md, section 6).
 module damping_m
-  use contact_state_m, only : contact_points_t, n_side
+  use contact_state_m, only : contact_points_t, contact_state_t, n_side
+  use contacts_m, only : friction_rule_t
+  use friction_m, only : place_at
+  use friction_slips_m, only : find_slips
+  use friction_state_m, only : sticks
   use kinds_m, only : wp
+  use law_friction_m, only : coefficient_of
   implicit none
   private
-  public :: damp_points
+  public :: damp_points, damp_stuck
+
+  !> Damping of stuck springs as a fraction of critical, and what it may be times omega and the step
+  !> (lagging by half a step it takes four times that off the square of what leap-frog bears).
+  real(wp), parameter :: of_stuck = 0.5_wp, of_step = 0.15_wp
 
 contains
 
@@ -21,42 +30,99 @@ contains
     real(wp), intent(in), contiguous :: mass(:)      !! (n_node) kg/m
     logical, intent(in) :: is_self !! each node is slave and master
     real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, local nodes) scratch
-    real(wp) :: rate, square, weight, damped
+    real(wp) :: rate, weight, damped
     integer :: p, k, local
 
-    call sum_springs(points, nodal)
-    if (is_self) then
-      associate (n => size(nodal, 2)/2)
-        nodal(1, :n) = nodal(1, :n) + nodal(1, n + 1:)
-        nodal(1, n + 1:) = nodal(1, :n)
-      end associate
-    end if
+    call sum_springs(points, is_self, nodal)
     points%load(:, :points%n) = 0.0_wp
     do p = 1, points%n
       if (.not. points%pressure(p)*points%area(p) > 0.0_wp) cycle
       rate = 0.0_wp
-      square = 0.0_wp
       do k = 1, n_side
         local = points%slave_nodes(k, p)
         weight = points%slave_weights(k, p)
         rate = rate + weight*dot_product(points%normal(:, p), motion(3:4, nodes(local)))
-        square = square + weight*nodal(1, local)/mass(nodes(local))
         local = points%master_nodes(k, p)
         weight = points%master_weights(k, p)
         rate = rate - weight*dot_product(points%normal(:, p), motion(3:4, nodes(local)))
-        square = square + weight*nodal(1, local)/mass(nodes(local))
       end do
       damped = max(0.0_wp, points%pressure(p) &
-        - 2.0_wp*fraction*rate*points%stiffness(p)/sqrt(square))
+        - 2.0_wp*fraction*rate*points%stiffness(p)/frequency(points, p, nodes, mass, nodal))
       points%load(3:4, p) = (damped - points%pressure(p))*points%area(p)*points%normal(:, p)
       points%pressure(p) = damped
     end do
   end subroutine damp_points
 
+  !> Add damping to the tractions of points that stick, as VDC does across the interface and up to the
+  !> limit: undamped springs ring in what comes to stick, and it would slip again before the traction
+  !> that holds it has come to FS p. What is remembered is the traction of the springs alone.
+  pure subroutine damp_stuck(rule, dt, mass, is_self, memory)
+    type(friction_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: dt                  !! step behind, s
+    real(wp), intent(in), contiguous :: mass(:) !! (n_node) kg/m
+    logical, intent(in) :: is_self              !! each node is slave and master
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: slip(memory%points%n), omega, limit, traction
+    integer :: p
+
+    associate (points => memory%points)
+      call sum_springs(points, is_self, memory%scratch%nodal)
+      call find_slips(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
+        points%master_weights, points%normal, points%gap, memory%scratch%increment, memory%places, &
+        slip)
+      do p = 1, points%n
+        if (.not. points%pressure(p)*points%area(p) > 0.0_wp) cycle
+        if (.not. is_stuck(memory, p)) cycle
+        omega = frequency(points, p, memory%nodes, mass, memory%scratch%nodal)
+        limit = abs(points%traction(p))
+        if (.not. rule%most > 0.0_wp) limit = coefficient_of(rule, 0.0_wp)*points%pressure(p)
+        traction = points%traction(p) + 2.0_wp*min(of_stuck, of_step/(omega*dt)) &
+          *rule%stiffness*points%stiffness(p)*slip(p)/(omega*dt)
+        points%traction(p) = sign(min(abs(traction), limit), traction)
+      end do
+    end associate
+  end subroutine damp_stuck
+
+  !> Whether a point belongs to places that stick.
+  pure function is_stuck(memory, p) result(stuck)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: p
+    logical :: stuck
+
+    associate (state => memory%friction%state)
+      if (allocated(memory%node_pressure)) then
+        stuck = all(state(memory%points%slave_nodes(:, p)) == sticks)
+      else
+        stuck = state(place_at(memory, p)) == sticks
+      end if
+    end associate
+  end function is_stuck
+
+  !> The frequency of a point: omega^2 = sum of w K/m, 1/s.
+  pure function frequency(points, p, nodes, mass, nodal) result(omega)
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in) :: p
+    integer, intent(in), contiguous :: nodes(:)    !! mesh index of each local node
+    real(wp), intent(in), contiguous :: mass(:)    !! (n_node) kg/m
+    real(wp), intent(in), contiguous :: nodal(:, :) !! (1, :) K of the nodes, N/m
+    real(wp) :: omega
+    integer :: k
+
+    omega = 0.0_wp
+    do k = 1, n_side
+      associate (a => points%slave_nodes(k, p), b => points%master_nodes(k, p))
+        omega = omega + points%slave_weights(k, p)*nodal(1, a)/mass(nodes(a))
+        omega = omega + points%master_weights(k, p)*nodal(1, b)/mass(nodes(b))
+      end associate
+    end do
+    omega = sqrt(omega)
+  end function frequency
+
   !> Springs of all pressed points by node, N/m, into nodal(1, :): in two passes a node stands on
   !> either side.
-  pure subroutine sum_springs(points, nodal)
+  pure subroutine sum_springs(points, is_self, nodal)
     type(contact_points_t), intent(in) :: points
+    logical, intent(in) :: is_self
     real(wp), intent(inout), contiguous :: nodal(:, :)
     real(wp) :: spring
     integer :: p, k
@@ -72,6 +138,11 @@ contains
           + points%master_weights(k, p)*spring
       end do
     end do
+    if (.not. is_self) return
+    associate (n => size(nodal, 2)/2)
+      nodal(1, :n) = nodal(1, :n) + nodal(1, n + 1:)
+      nodal(1, n + 1:) = nodal(1, :n)
+    end associate
   end subroutine sum_springs
 
 end module damping_m
