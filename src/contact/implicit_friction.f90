@@ -51,7 +51,8 @@ contains
     associate (n => step%rows%n, problem => step%problem)
       call find_limits(rule, n, problem%x, problem%high)
       if (has_decay(rule) .and. step%dt_before > 0.0_wp) then
-        call find_slips(step%rows, memory%points, memory%places, memory%scratch%increment, problem%r)
+        call find_slips(step%rows, memory%points, memory%places, memory%scratch%increment, &
+          problem%r)
         do i = 1, n
           if (memory%scratch%former_state(step%rows%slave(i)) == sticks) cycle
           problem%high(i) = coefficient_of(rule, abs(problem%r(i))/step%dt_before)*problem%x(i)

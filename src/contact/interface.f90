@@ -16,7 +16,7 @@ module interface_m
   use contact_state_m, only : contact_state_t, is_free
   use contacts_m, only : contact_t, is_tied, penalty_implicit
   use crossing_m, only : crossings_t, find_crossings, catch_crossings
-  use damping_m, only : damp_points, damp_stuck
+  use damping_m, only : damp_points, find_lag
   use energy_limit_m, only : keep_former_springs, form_springs, limit_forces, lend
   use facing_change_m, only : rest_loose_nodes
   use facing_look_m, only : has_outline, start_facing, look_at_facing, make_present
@@ -159,10 +159,10 @@ contains
       else
         call lend(energy_caught(contact, formulation%has_unit_area, memory), memory%limit)
       end if
+      if (has_decay(contact%friction) .and. times(2) > 0.0_wp) call find_lag(memory%points, &
+        memory%nodes, mass, contact%is_self, times(2), memory%scratch%nodal, memory%scratch%lag)
       if (allocated(memory%friction%force)) &
         call rub_places(contact, formulation%has_unit_area, times(2), memory)
-      if (has_decay(contact%friction) .and. times(2) > 0.0_wp) call damp_stuck(contact%friction, &
-        times(2), mass, contact%is_self, memory)
       if (contact%damping > 0.0_wp) call damp_points(memory%points, contact%damping, &
         memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
       call scatter_forces(memory)

@@ -16,9 +16,9 @@ module health_m
   implicit none
   private
   public :: tile_check_t, check_tile, are_sound, check_elements, check_step, check_cycle, &
-    check_energy, check_ratio, check_static_step, check_radii, judge_energies, judge_ratio, judge_contact, &
-    made_by_springs, made_by_forces, most_work, what_would_do, &
-    unaccounted, dissipated
+    check_energy, check_ratio, check_static_step, check_radii, judge_energies, judge_ratio, &
+    judge_contact, made_by_springs, made_by_forces, most_work, what_would_do, unaccounted, &
+    dissipated
 
   !> Work beyond this means nothing any more; it is found before numbers overflow, which a
   !> checked build would stop at.
@@ -310,8 +310,8 @@ contains
     change = [work(2) - work(1), held(2) - held(1)]
     if (change(1) - change(2) - spent <= max(ratio_band*maxval(abs(change)), &
       noticed*max(abs(work(2)), abs(held(2))))) return
-    call warn(log, 'step '//to_text(cycle)//' to time '//to_text(time)//' has passed a limit point, ' &
-      //'or is far too long: of the work '//to_text(change(1))//' of the loads ' &
+    call warn(log, 'step '//to_text(cycle)//' to time '//to_text(time)//' has passed a limit ' &
+      //'point, or is far too long: of the work '//to_text(change(1))//' of the loads ' &
       //to_text(change(2))//' is stored or dissipated, the rest would be motion; '//what_would_do)
   end subroutine check_static_step
 

@@ -1,16 +1,11 @@
 ! SPDX-License-Identifier: MIT
 !> Damping of points in contact (doc/theory/contact.md, section 6).
 module damping_m
-  use contact_state_m, only : contact_points_t, contact_state_t, n_side
-  use contacts_m, only : friction_rule_t
-  use friction_m, only : place_at
-  use friction_slips_m, only : find_slips
-  use friction_state_m, only : sticks
+  use contact_state_m, only : contact_points_t, n_side
   use kinds_m, only : wp
-  use law_friction_m, only : coefficient_of
   implicit none
   private
-  public :: damp_points, damp_stuck
+  public :: damp_points, find_lag, of_stuck
 
   !> Damping of stuck springs as a fraction of critical, and what it may be times omega and the step
   !> (lagging by half a step it takes four times that off the square of what leap-frog bears).
@@ -53,50 +48,29 @@ contains
     end do
   end subroutine damp_points
 
-  !> Add damping to the tractions of points that stick, as VDC does across the interface and up to the
-  !> limit: undamped springs ring in what comes to stick, and it would slip again before the traction
-  !> that holds it has come to FS p. What is remembered is the traction of the springs alone.
-  pure subroutine damp_stuck(rule, dt, mass, is_self, memory)
-    type(friction_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: dt                  !! step behind, s
-    real(wp), intent(in), contiguous :: mass(:) !! (n_node) kg/m
-    logical, intent(in) :: is_self              !! each node is slave and master
-    type(contact_state_t), intent(inout) :: memory
-    real(wp) :: slip(memory%points%n), omega, limit, traction
+  !> Damping over stiffness of tangential springs that stick, s: 2 fraction/omega with the largest
+  !> omega of the points in contact, and no more than the step bears. Undamped they ring in what
+  !> comes to stick, and it slips again before the traction that holds it has come to FS p.
+  pure subroutine find_lag(points, nodes, mass, is_self, dt, nodal, lag)
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in), contiguous :: nodes(:)    !! mesh index of each local node
+    real(wp), intent(in), contiguous :: mass(:)    !! (n_node) kg/m
+    logical, intent(in) :: is_self                 !! each node is slave and master
+    real(wp), intent(in) :: dt                     !! step behind, s
+    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, local nodes) scratch
+    real(wp), intent(out) :: lag
+    real(wp) :: omega
     integer :: p
 
-    associate (points => memory%points)
-      call sum_springs(points, is_self, memory%scratch%nodal)
-      call find_slips(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
-        points%master_weights, points%normal, points%gap, memory%scratch%increment, memory%places, &
-        slip)
-      do p = 1, points%n
-        if (.not. points%pressure(p)*points%area(p) > 0.0_wp) cycle
-        if (.not. is_stuck(memory, p)) cycle
-        omega = frequency(points, p, memory%nodes, mass, memory%scratch%nodal)
-        limit = abs(points%traction(p))
-        if (.not. rule%most > 0.0_wp) limit = coefficient_of(rule, 0.0_wp)*points%pressure(p)
-        traction = points%traction(p) + 2.0_wp*min(of_stuck, of_step/(omega*dt)) &
-          *rule%stiffness*points%stiffness(p)*slip(p)/(omega*dt)
-        points%traction(p) = sign(min(abs(traction), limit), traction)
-      end do
-    end associate
-  end subroutine damp_stuck
-
-  !> Whether a point belongs to places that stick.
-  pure function is_stuck(memory, p) result(stuck)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: p
-    logical :: stuck
-
-    associate (state => memory%friction%state)
-      if (allocated(memory%node_pressure)) then
-        stuck = all(state(memory%points%slave_nodes(:, p)) == sticks)
-      else
-        stuck = state(place_at(memory, p)) == sticks
-      end if
-    end associate
-  end function is_stuck
+    call sum_springs(points, is_self, nodal)
+    omega = 0.0_wp
+    do p = 1, points%n
+      if (points%pressure(p)*points%area(p) > 0.0_wp) &
+        omega = max(omega, frequency(points, p, nodes, mass, nodal))
+    end do
+    lag = 0.0_wp
+    if (omega > 0.0_wp) lag = 2.0_wp*min(of_stuck, of_step/(omega*dt))/omega
+  end subroutine find_lag
 
   !> The frequency of a point: omega^2 = sum of w K/m, 1/s.
   pure function frequency(points, p, nodes, mass, nodal) result(omega)

@@ -4,7 +4,7 @@
 module law_friction_m
   use contacts_m, only : friction_rule_t
   use dual_m, only : dual_t, constant, operator(+), operator(*)
-  use friction_state_m, only : is_open, sticks, slips
+  use friction_state_m, only : sticks, slips
   use kinds_m, only : wp
   implicit none
   private
@@ -14,7 +14,8 @@ module law_friction_m
   !> What slips on in the first tangent of a step, in which nothing has moved yet.
   integer, parameter :: goes_on = -1
 
-  !> Of Newton's for the speed of sliding. Where two roots all but meet he halves the error in each.
+  !> Passes of Newton's method for the speed of sliding. Where two roots all but meet each halves
+  !> the error.
   integer, parameter :: most_passes = 100
 
 contains
@@ -50,8 +51,8 @@ contains
   end subroutine find_limits
 
   !> Speed of sliding of a place, m/s: that of the slip that does not come back, by v = (trial -
-  !> limit(v))/stiffness with limit(v) = min(mu(v) p, most); 0 where it sticks (doc/theory/contact.md,
-  !> section 6.2).
+  !> limit(v))/stiffness with limit(v) = min(mu(v) p, most); 0 where it sticks
+  !> (doc/theory/contact.md, section 6.2).
   pure function sliding_speed(rule, trial, pressure, most, stiffness, slid) result(speed)
     type(friction_rule_t), intent(in) :: rule
     real(wp), intent(in) :: trial     !! size of the trial traction, N/m^2
@@ -74,9 +75,9 @@ contains
       speed = (trial - most)/stiffness
       if (coefficient_of(rule, speed)*pressure >= most) return
     end if
-    ! Where the coefficient falls the left side is convex, and Newton comes down to its last root from
-    ! the right; where it rises the left side is concave and increases, and he comes up to its only
-    ! one from the left. Neither passes the root.
+    ! Where the coefficient falls the left side is convex, and Newton's method comes down to its
+    ! last root from the right; where it rises the left side is concave and increases, and it comes up to
+    ! its only one from the left. Neither passes the root.
     x = merge(beyond, 0.0_wp, height > 0.0_wp)
     do pass = 1, most_passes
       former = x
@@ -116,7 +117,7 @@ contains
 
   !> The traction of a place in contact with its derivatives. One that touches without pressure has
   !> none yet, and sticks.
-  pure function vary_traction(rule, former, slip, pressure, stiffness, most, dt, before) &
+  pure function vary_traction(rule, former, slip, pressure, stiffness, most, times, before) &
       result(traction)
     type(friction_rule_t), intent(in) :: rule
     type(dual_t), intent(in) :: former   !! traction before, N/m^2
@@ -124,7 +125,7 @@ contains
     type(dual_t), intent(in) :: pressure !! N/m^2
     real(wp), intent(in) :: stiffness    !! tangential, N/m^3
     type(dual_t), intent(in) :: most     !! largest traction whatever the pressure, N/m^2
-    real(wp), intent(in) :: dt           !! step that made the slip, s
+    real(wp), intent(in) :: times(2)     !! step that made the slip, and lag of what sticks, s
     integer, intent(in) :: before        !! state before; `goes_on`: at the limit, wherever the
                                          !! trial is
     type(dual_t) :: traction
@@ -141,13 +142,15 @@ contains
     limit = coefficient_of(rule, 0.0_wp)*pressure
     if (most%value < limit%value) limit = most
     speed = 0.0_wp
-    if (has_decay(rule) .and. stiffness*dt > 0.0_wp) speed = sliding_speed(rule, trial%value, &
-      pressure%value, most%value, stiffness*dt, before /= sticks .and. before /= is_open .and. &
-      traction%value*former%value > 0.0_wp)
+    if (has_decay(rule) .and. stiffness*times(1) > 0.0_wp) speed = sliding_speed(rule, &
+      trial%value, pressure%value, most%value, stiffness*times(1), (before == slips .or. &
+      before == goes_on) .and. traction%value*former%value > 0.0_wp)
     if (speed > 0.0_wp) then
-      limit = vary_sliding_limit(rule, speed, trial, pressure, most, stiffness*dt)
+      limit = vary_sliding_limit(rule, speed, trial, pressure, most, stiffness*times(1))
     else if (.not. (trial%value > limit%value .or. before == goes_on)) then
-      return
+      if (.not. (has_decay(rule) .and. min(times(1), times(2)) > 0.0_wp)) return
+      traction = traction + (times(2)/times(1)*stiffness)*slip
+      if (.not. abs(traction%value) > limit%value) return
     end if
     traction = sign(1.0_wp, traction%value)*limit
   end function vary_traction

@@ -184,8 +184,8 @@ contains
     work = state%external_work + sum(state%contacts%interference%work)
   end function work_done
 
-  !> Tell of the first negative pivot in the stiffness of an equilibrium, that which the step set out
-  !> from.
+  !> Tell of the first negative pivot in the stiffness of an equilibrium, that which the step set
+  !> out from.
   subroutine note_pivots(is_negative, state, step, log)
     logical, intent(in) :: is_negative
     type(state_t), intent(in) :: state

@@ -93,8 +93,9 @@ contains
         energy_ratio(shot%energies), 'write vtkhdf state')
       if (.not. allocated(error)) call check_energy(model%controls, shot%energies, made_by_forces, &
         error)
-      if (.not. allocated(error)) call check_ratio(shot%energies, spent_energy(state, memory%step), &
-        cause_of(memory%step), state%cycle, state%time, monitor%told_ratio, monitor%log)
+      if (.not. allocated(error)) call check_ratio(shot%energies, &
+        spent_energy(state, memory%step), cause_of(memory%step), state%cycle, state%time, &
+        monitor%told_ratio, monitor%log)
       call check_radii(model, state, monitor%told_radii, monitor%log)
       if (last .and. .not. allocated(error)) then
         call judge_contact(shot%energies, monitor%log)
@@ -147,8 +148,8 @@ contains
     if (allocated(state%elements%damping_work)) held = held + sum(state%elements%damping_work)
   end function held_energy
 
-  !> Energy that may go without an account, J/m: in statics what springs and pre-stressed bodies hold
-  !> before the first equilibrium.
+  !> Energy that may go without an account, J/m: in statics what springs and pre-stressed bodies
+  !> hold before the first equilibrium.
   pure function spent_energy(state, step) result(spent)
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
